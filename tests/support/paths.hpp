@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace modebank::test {
+
+/// Folder with golden files and the scripts that made them.
+std::filesystem::path golden_dir();
+
+/// Real data: $MODEBANK_DATA, else ../shared/data beside the checkout; empty when there is none.
+std::filesystem::path shared_data_dir();
+
+/// A folder of its own that is removed with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void write_file(const std::filesystem::path& path, const std::string& content);
+
+}  // namespace modebank::test
+
+/// Real data is not part of the project: its absence skips a test with a message, and fails it under CI=true.
+#define MODEBANK_NEEDS_SHARED_DATA()                                                                \
+  if (::modebank::test::shared_data_dir().empty()) {                                                \
+    const char* ci = std::getenv("CI");                                                             \
+    ASSERT_FALSE(ci&& std::string(ci) == "true") << "real data is absent, but CI=true requires it"; \
+    GTEST_SKIP() << "real data is absent: set MODEBANK_DATA to a folder that holds borealtc/ICE";   \
+  }
