@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace modebank {
+
+/// The words users write for an enumeration, in the order of its values (which count from 0). Specialised beside each
+/// enumeration, so configuration, help text and archive all read them from one place.
+template <class E>
+struct EnumNames;
+
+template <class E>
+constexpr std::string_view name_of(E value) {
+  return EnumNames<E>::values.at(static_cast<std::size_t>(value));
+}
+
+template <class E>
+constexpr std::optional<E> parse_name(std::string_view word) {
+  for (std::size_t i = 0; i < EnumNames<E>::values.size(); ++i)
+    if (EnumNames<E>::values[i] == word) return static_cast<E>(i);
+  return std::nullopt;
+}
+
+template <std::size_t N>
+using Names = std::array<std::string_view, N>;
+
+}  // namespace modebank

@@ -1,0 +1,148 @@
+#include "ident/m_estimate.hpp"
+
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <utility>
+
+#include "ident/residuals.hpp"
+
+namespace modebank {
+
+namespace {
+
+/// Whitened residuals beyond this are a numerical accident: their squares would overflow.
+constexpr double largest_residual = 1e100;
+/// Ceres stops when the cost gains less than this share: first near enough for Newton's steps to do the rest, and where
+/// they do not, as far as the cost can be told apart.
+constexpr double near_tolerance = 1e-4;
+constexpr double far_tolerance = 1e-14;
+/// A gradient below this share of sqrt(samples) is rounding error; in theta it is as small a share of its standard
+/// error.
+constexpr double stationary_gradient = 1e-10;
+constexpr int max_newton_steps = 20;
+
+ceres::Problem::Options problem_options() {
+  ceres::Problem::Options options;
+  // The loss is shared by all samples, windows and threads.
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.disable_all_safety_checks = true;
+  return options;
+}
+
+ceres::Solver::Options solver_options(double function_tolerance, int max_iterations) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;  // safe: J has orthonormal columns
+  options.max_num_iterations = max_iterations;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  options.jacobi_scaling = false;             // the columns are of unit norm already
+  options.initial_trust_region_radius = 1e8;  // start with full steps: the problem is convex or starts near its optimum
+  options.function_tolerance = function_tolerance;
+  options.gradient_tolerance = 1e-14;
+  options.parameter_tolerance = 1e-12;
+  return options;
+}
+
+FitStatus search(const WhitenedProblem& problem, const RobustLoss& loss, double tolerance, int max_iterations,
+                 Eigen::VectorXd& z) {
+  ceres::Problem ceres_problem(problem_options());
+  const auto add = [&](Index first, Index count, ceres::LossFunction* function) {
+    ceres_problem.AddResidualBlock(new LinearResidual(problem, first, count), function, z.data());  // Ceres owns it
+  };
+  for (Index k = 0; k < problem.samples; ++k) add(k * problem.states, problem.states, loss.ceres_function());
+  if (problem.prior_rows() > 0) add(problem.sample_rows(), problem.prior_rows(), nullptr);
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver_options(tolerance, max_iterations), &ceres_problem, &summary);
+  if (summary.termination_type == ceres::CONVERGENCE) return FitStatus::converged;
+  return summary.termination_type == ceres::NO_CONVERGENCE ? FitStatus::iteration_limit : FitStatus::failed;
+}
+
+bool stationary(const WhitenedProblem& problem, const Eigen::VectorXd& g) {
+  return g.norm() <= stationary_gradient * std::sqrt(static_cast<double>(problem.samples));
+}
+
+/// Newton steps while they shrink the gradient; leaves z alone where the second derivative is not positive definite.
+/// Returns whether z is stationary.
+bool polish(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::VectorXd& z) {
+  RobustTerms terms = evaluate(problem, loss, z);
+  Eigen::VectorXd g = gradient(problem, terms);
+  for (int i = 0; i < max_newton_steps && g.norm() > 0.0; ++i) {
+    const Eigen::LLT<Eigen::MatrixXd> factor(hessian(problem, terms));
+    if (factor.info() != Eigen::Success) break;
+    const Eigen::VectorXd candidate = z - factor.solve(g);
+    RobustTerms candidate_terms = evaluate(problem, loss, candidate);
+    const Eigen::VectorXd candidate_g = gradient(problem, candidate_terms);
+    if (!(candidate_g.norm() < g.norm())) break;
+    z = candidate;
+    terms = std::move(candidate_terms);
+    g = candidate_g;
+  }
+  return stationary(problem, g);
+}
+
+}  // namespace
+
+Eigen::MatrixXd RobustTerms::influence_slope(Index k, Index states) const {
+  const auto r = sample(k, states);
+  Eigen::MatrixXd slope = 2.0 * curvature(k) * r * r.transpose();
+  slope.diagonal().array() += weight(k);
+  return slope;
+}
+
+RobustTerms evaluate(const WhitenedProblem& problem, const RobustLoss& loss, const Eigen::VectorXd& z) {
+  RobustTerms terms{problem.b, Eigen::VectorXd(problem.samples), Eigen::VectorXd(problem.samples)};
+  terms.residual.noalias() -= problem.J * z;
+  for (Index k = 0; k < problem.samples; ++k) {
+    const LossValue value = loss(terms.sample(k, problem.states).squaredNorm());
+    terms.weight(k) = value.weight;
+    terms.curvature(k) = value.curvature;
+  }
+  return terms;
+}
+
+Eigen::VectorXd gradient(const WhitenedProblem& problem, const RobustTerms& terms) {
+  Eigen::VectorXd psi = terms.residual;
+  for (Index k = 0; k < problem.samples; ++k) psi.segment(k * problem.states, problem.states) *= terms.weight(k);
+  return -(problem.J.transpose() * psi);
+}
+
+Eigen::MatrixXd weighted_information(const WhitenedProblem& problem, const RobustTerms& terms) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(problem.J.rows());
+  for (Index k = 0; k < problem.samples; ++k)
+    weights.segment(k * problem.states, problem.states).setConstant(terms.weight(k));
+  return problem.J.transpose() * weights.asDiagonal() * problem.J;
+}
+
+Eigen::MatrixXd hessian(const WhitenedProblem& problem, const RobustTerms& terms) {
+  Eigen::MatrixXd H = weighted_information(problem, terms);
+  for (Index k = 0; k < problem.samples; ++k) {
+    if (terms.curvature(k) == 0.0) continue;
+    const Eigen::VectorXd direction =
+        problem.J.middleRows(k * problem.states, problem.states).transpose() * terms.sample(k, problem.states);
+    H.noalias() += 2.0 * terms.curvature(k) * direction * direction.transpose();
+  }
+  return H;
+}
+
+Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max_iterations) {
+  Minimum minimum{Eigen::VectorXd::Zero(problem.unknowns()), FitStatus::failed};
+  if (!(problem.b.cwiseAbs().maxCoeff() < largest_residual) || !problem.J.allFinite()) return minimum;
+  minimum.status = FitStatus::converged;
+  if (problem.unknowns() == 0) return minimum;
+  if (!loss.convex()) {
+    const Minimum start = minimise(problem, RobustLoss(Loss::huber, 0.0), max_iterations);
+    minimum.z = start.z;
+  }
+  if (stationary(problem, gradient(problem, evaluate(problem, loss, minimum.z)))) return minimum;
+  for (const double tolerance : {near_tolerance, far_tolerance}) {
+    minimum.status = search(problem, loss, tolerance, max_iterations, minimum.z);
+    if (minimum.status != FitStatus::converged || polish(problem, loss, minimum.z)) break;
+  }
+  if (!minimum.z.allFinite()) minimum.status = FitStatus::failed;
+  return minimum;
+}
+
+}  // namespace modebank

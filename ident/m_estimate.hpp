@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "ident/robust_loss.hpp"
+#include "ident/whitened_problem.hpp"
+
+namespace modebank {
+
+/// Residuals of a whitened problem at z and the loss' derivatives there. psi_k = weight_k r_k is the influence of
+/// sample k (Huber 1981).
+struct RobustTerms {
+  Eigen::VectorXd residual;   ///< all rows of b - J z
+  Eigen::VectorXd weight;     ///< L, rho'(|r_k|^2)
+  Eigen::VectorXd curvature;  ///< L, rho''(|r_k|^2)
+
+  auto sample(Index k, Index states) const { return residual.segment(k * states, states); }
+  /// d psi_k / d r_k = rho' I + 2 rho'' r r', n x n.
+  Eigen::MatrixXd influence_slope(Index k, Index states) const;
+};
+
+RobustTerms evaluate(const WhitenedProblem& problem, const RobustLoss& loss, const Eigen::VectorXd& z);
+
+/// Gradient of 1/2 sum rho(|r_k|^2) + 1/2 |prior rows|^2 in z.
+Eigen::VectorXd gradient(const WhitenedProblem& problem, const RobustTerms& terms);
+/// Its exact second derivative.
+Eigen::MatrixXd hessian(const WhitenedProblem& problem, const RobustTerms& terms);
+/// The second derivative without rho'', as iteratively reweighted least squares takes it: never indefinite.
+Eigen::MatrixXd weighted_information(const WhitenedProblem& problem, const RobustTerms& terms);
+
+/// The minimiser, and how the search for it ended: converged, iteration_limit or failed.
+struct Minimum {
+  Eigen::VectorXd z;
+  FitStatus status = FitStatus::failed;
+};
+
+/// Ceres' trust region search from the least-squares solution (non-convex losses: from the Huber optimum), then Newton
+/// steps with the exact second derivative, because Ceres drops rho'' where it is negative and so gains only a constant
+/// factor per step near the optimum. Deterministic and silent.
+Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max_iterations);
+
+}  // namespace modebank

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "ident/model.hpp"
+#include "ident/trajectory.hpp"
+
+namespace modebank {
+
+/// N transitions as a linear regression, increments = regressors [A B c]' + noise.
+struct Transitions {
+  Eigen::MatrixXd regressors;  ///< N x q, row k is phi_k' = [x[k]' u[k]' (1)]
+  Eigen::MatrixXd increments;  ///< N x n, row k is (x[k+1] - x[k])'
+
+  Index count() const { return regressors.rows(); }
+  bool finite() const { return regressors.allFinite() && increments.allFinite(); }
+};
+
+/// Transitions start .. start + count - 1 of a run.
+Transitions stack_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure);
+/// All transitions of the training runs without those that hold a NaN or infinity.
+Transitions stack_training(const Recording& recording, const LinearStructure& structure);
+/// The rows whose entries are all finite.
+Transitions finite_rows(const Transitions& transitions);
+
+/// Relative tolerance of a rank decision on the column-scaled regressors (method: section 2).
+inline constexpr double excitation_tolerance = 1e-6;
+
+/// X = U basis^+ by the singular value decomposition of X with its columns scaled to unit norm. U spans the excited
+/// directions only, and coefficients beta = basis z in them have the smallest norm among all that give X beta = U z.
+struct Decomposition {
+  Eigen::MatrixXd U;       ///< N x r, orthonormal columns
+  Eigen::MatrixXd basis;   ///< q x r, X basis = U
+  double condition = 0.0;  ///< largest over smallest singular value of the scaled matrix; infinite when that is zero
+
+  Index rank() const { return U.cols(); }
+};
+
+/// Singular values at or below `tolerance` times the largest count as zero. X must be finite.
+Decomposition decompose(const Eigen::MatrixXd& X, double tolerance);
+
+/// Minimum-norm least-squares coefficients, q x n.
+inline Eigen::MatrixXd solve(const Decomposition& d, const Eigen::MatrixXd& Y) {
+  return d.basis * (d.U.transpose() * Y);
+}
+
+/// Least-squares residuals Y - U U' Y, N x n.
+inline Eigen::MatrixXd residuals(const Decomposition& d, const Eigen::MatrixXd& Y) {
+  return Y - d.U * (d.U.transpose() * Y);
+}
+
+}  // namespace modebank

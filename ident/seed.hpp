@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string_view>
+
+namespace modebank {
+
+/// The one source of randomness: every use derives its generator from the configured seed, the use's name and an index,
+/// so results do not depend on threads or on the order of work (FNV-1a of the name, mixed by SplitMix64, Steele 2014).
+std::uint64_t derive_seed(std::uint64_t seed, std::string_view use, std::uint64_t index = 0);
+
+inline std::mt19937_64 make_generator(std::uint64_t seed, std::string_view use, std::uint64_t index = 0) {
+  return std::mt19937_64(derive_seed(seed, use, index));
+}
+
+}  // namespace modebank
