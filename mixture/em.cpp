@@ -1,0 +1,156 @@
+#include "mixture/em.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include "ident/seed.hpp"
+#include "mixture/em_step.hpp"
+#include "mixture/feature_scale.hpp"
+#include "mixture/kmeans_start.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+namespace {
+
+/// Covariances of squared coordinates beyond this cannot be represented.
+constexpr double largest_coordinate = 1e150;
+/// Below this the floor is lost in the rounding of a covariance's largest eigenvalue.
+constexpr double smallest_floor = 1e-10;
+constexpr double agreement_per_point = 1e-4;
+
+void check(const EmOptions& options) {
+  if (options.restarts < 1 || options.max_iterations < 0 || !(options.covariance_floor >= smallest_floor))
+    throw std::invalid_argument(
+        fmt::format("EM needs restarts >= 1, max_iterations >= 0 and covariance_floor >= {}; given {}, {} and {}",
+                    smallest_floor, options.restarts, options.max_iterations, options.covariance_floor));
+}
+
+/// The points' weights, checked; all one when none are given.
+Eigen::VectorXd checked_weights(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights) {
+  if (points.rows() < 1 || points.cols() < 1)
+    throw std::invalid_argument(fmt::format("EM needs points, given {} x {}", points.rows(), points.cols()));
+  if (!(points.array().abs() <= largest_coordinate).all())
+    throw std::invalid_argument(fmt::format("EM needs finite points of magnitude up to {}", largest_coordinate));
+  if (weights.size() == 0) return Eigen::VectorXd::Ones(points.cols());
+  if (weights.size() != points.cols())
+    throw std::invalid_argument(fmt::format("EM is given {} points but {} weights", points.cols(), weights.size()));
+  if (!weights.allFinite() || weights.minCoeff() < 0.0 || !(weights.sum() > 0.0))
+    throw std::invalid_argument("EM needs finite, nonnegative weights that are not all zero");
+  return weights;
+}
+
+/// The cloud in the units it is fitted in.
+struct ScaledCloud {
+  FeatureScale scale;
+  PointBlocks points;
+
+  ScaledCloud(const Eigen::MatrixXd& physical, const Eigen::VectorXd& weights)
+      : scale(FeatureScale::of(physical, weights)), points(scale.to_scaled(physical), weights) {}
+};
+
+/// Iterates from `start` (scaled units). The result's log-likelihood belongs to the result's mixture: the last pass
+/// only measures it.
+EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptions& options) {
+  EmResult result;
+  result.mixture = std::move(start);
+  double previous = -std::numeric_limits<double>::infinity();
+  while (true) {
+    const MixtureMoments moments = expect(points, result.mixture);
+    result.log_likelihood = moments.log_likelihood;
+    result.converged = result.log_likelihood - previous < options.tolerance * points.total_weight();
+    if (result.converged || result.iterations == options.max_iterations) break;
+    previous = result.log_likelihood;
+    result.floor_active = maximise(moments, options.covariance_floor, result.mixture);
+    ++result.iterations;
+  }
+  return result;
+}
+
+void order_by_weight(GaussianMixture& mixture) {
+  std::vector<Index> order(mixture.components());
+  std::iota(order.begin(), order.end(), Index(0));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return mixture.weights(a) > mixture.weights(b); });
+  const GaussianMixture unordered = mixture;
+  for (Index k = 0; k < mixture.components(); ++k) {
+    mixture.weights(k) = unordered.weights(order[k]);
+    mixture.means.col(k) = unordered.means.col(order[k]);
+    mixture.covariances[k] = unordered.covariances[order[k]];
+  }
+}
+
+void to_physical(const ScaledCloud& cloud, EmResult& result) {
+  result.mixture = cloud.scale.to_physical(result.mixture);
+  result.log_likelihood += cloud.points.total_weight() * cloud.scale.log_jacobian();
+}
+
+/// The best of the restarts, the first on a tie, with the number that agree with it.
+EmResult best_of(std::vector<EmResult> restarts, double total_weight) {
+  const auto best = std::max_element(restarts.begin(), restarts.end(), [](const EmResult& a, const EmResult& b) {
+    return a.log_likelihood < b.log_likelihood;
+  });
+  const double agreeing = best->log_likelihood - agreement_per_point * total_weight;
+  best->agreeing_restarts = static_cast<int>(std::count_if(
+      restarts.begin(), restarts.end(), [&](const EmResult& result) { return result.log_likelihood >= agreeing; }));
+  return std::move(*best);
+}
+
+/// A start in scaled units that obeys the options: their covariance type and floor.
+GaussianMixture usable_start(const GaussianMixture& start, const FeatureScale& scale, const EmOptions& options) {
+  GaussianMixture scaled = scale.to_scaled(start);
+  scaled.type = options.covariance;
+  scaled.weights /= scaled.weights.sum();
+  for (Eigen::MatrixXd& covariance : scaled.covariances) {
+    if (!covariance.allFinite()) throw std::invalid_argument("EM is given a start whose covariance is not finite");
+    raise_to_floor(covariance, options.covariance_floor, options.covariance);
+  }
+  if (!scaled.means.allFinite() || !(scaled.weights.minCoeff() >= 0.0))
+    throw std::invalid_argument("EM is given a start with a mean or weight that is not finite, or a negative weight");
+  return scaled;
+}
+
+}  // namespace
+
+EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Index components,
+                const EmOptions& options, std::uint64_t seed) {
+  check(options);
+  if (components < 1 || components > points.cols())
+    throw std::invalid_argument(
+        fmt::format("EM of {} components needs 1 to {} (the number of points)", components, points.cols()));
+  const ScaledCloud cloud(points, checked_weights(points, weights));
+  std::vector<EmResult> restarts(options.restarts);
+  tbb::parallel_for(0, options.restarts, [&](int restart) {
+    std::mt19937_64 generator = make_generator(seed, "em restart", static_cast<std::uint64_t>(restart));
+    GaussianMixture start =
+        kmeans_start(cloud.points, components, options.covariance, options.covariance_floor, generator);
+    restarts[restart] = iterate(cloud.points, std::move(start), options);
+  });
+  EmResult result = best_of(std::move(restarts), cloud.points.total_weight());
+  order_by_weight(result.mixture);
+  to_physical(cloud, result);
+  return result;
+}
+
+EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const GaussianMixture& start,
+                const EmOptions& options) {
+  check(options);
+  check_sizes(start);
+  if (start.features() != points.rows())
+    throw std::invalid_argument(
+        fmt::format("EM is given points of {} features and a start of {}", points.rows(), start.features()));
+  const ScaledCloud cloud(points, checked_weights(points, weights));
+  EmResult result = iterate(cloud.points, usable_start(start, cloud.scale, options), options);
+  result.agreeing_restarts = 1;
+  to_physical(cloud, result);
+  return result;
+}
+
+}  // namespace modebank

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "mixture/gaussian_mixture.hpp"
+
+namespace modebank {
+
+/// Expectation-maximisation of a Gaussian mixture (Dempster, Laird & Rubin 1977), in the log domain.
+struct EmOptions {
+  CovarianceType covariance = CovarianceType::full;
+  int restarts = 5;           ///< independent k-means++ starts (Arthur & Vassilvitskii 2007), >= 1
+  double tolerance = 1e-7;    ///< stop when the mean log-likelihood per unit weight gains less; negative: never
+  int max_iterations = 1000;  ///< M steps, >= 0
+  double covariance_floor =
+      1e-6;  ///< eigenvalues (variances) are kept above this share of the data's own variance per feature, >= 1e-10
+};
+
+/// A fitted mixture and how the fit ended.
+struct EmResult {
+  GaussianMixture mixture;      ///< by decreasing weight; in the start's order when fitted from a start
+  double log_likelihood = 0.0;  ///< weighted sum over points, of `mixture`
+  int iterations = 0;           ///< of the kept restart
+  bool converged = false;
+  int agreeing_restarts = 0;  ///< restarts within 1e-4 nats per point of the best log-likelihood, itself included
+  bool floor_active = false;  ///< whether the covariance floor held any component in the last iteration
+};
+
+/// Best of options.restarts runs from k-means++ starts. `points` F x N finite, up to 1e150 in magnitude; `weights` N
+/// nonnegative or empty (all one). Fitted in units of each feature's standard deviation, so invariant to its units; a
+/// constant feature keeps its unit and is held by the floor, as are coinciding points. The floored M step is the exact
+/// constrained maximiser, so the likelihood never falls. A component that explains less than 1e-14 of the weight keeps
+/// its mean and covariance. Throws std::invalid_argument for K < 1, K > N, bad options, weights or points. Bitwise the
+/// same for any number of threads.
+EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Eigen::Index components,
+                const EmOptions& options, std::uint64_t seed);
+/// From a given start, no restarts: the components keep the start's order; its covariances are raised to the floor, and
+/// reduced to their diagonals for CovarianceType::diagonal.
+EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const GaussianMixture& start,
+                const EmOptions& options);
+
+}  // namespace modebank

@@ -1,0 +1,127 @@
+#include "mixture/em_step.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <vector>
+
+#include "mixture/block_arithmetic.hpp"
+#include "mixture/component_density.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+namespace {
+
+constexpr Index blocks_per_group = 32;
+/// Below this the work of a pass is too short to share; restarts and candidates run in parallel instead.
+constexpr Index parallel_points = 20000;
+constexpr double starved_share = 1e-14;
+
+Index second_moments(Index features, bool diagonal) { return diagonal ? features : features * (features + 1) / 2; }
+
+/// Adds a block's moments of one component; r = its weighted responsibilities.
+void add_component(const Eigen::Ref<const BlockColumns>& points, const Eigen::Ref<const Eigen::VectorXd>& mean,
+                   bool diagonal, const BlockColumn& r, BlockColumns& offsets, Eigen::Ref<Eigen::VectorXd> sums) {
+  const Index features = points.cols();
+  BlockColumn scaled;
+  sums(0) += r.sum();
+  Index row = 1 + features;
+  for (Index i = 0; i < features; ++i) {
+    offsets.col(i) = points.col(i) - mean(i);
+    scaled = r * offsets.col(i);
+    sums(1 + i) += block_dot(r, offsets.col(i));
+    for (Index j = diagonal ? i : 0; j <= i; ++j) sums(row++) += block_dot(scaled, offsets.col(j));
+  }
+}
+
+MixtureMoments expect_group(const PointBlocks& points, const ComponentFactors& factors, Index first, Index last) {
+  const Index features = points.features(), components = factors.log_constants.size();
+  MixtureMoments moments;
+  moments.sums.setZero(1 + features + second_moments(features, factors.diagonal), components);
+  BlockDensity density;
+  BlockColumns offsets(block_size, features);
+  BlockColumn scale, r;
+  for (Index b = first; b < last; ++b) {
+    const auto block = points.points(b);
+    evaluate(factors, block, density);
+    moments.log_likelihood += (points.weights(b) * density.log_density).sum();
+    scale = points.weights(b) / density.sum;
+    for (Index k = 0; k < components; ++k) {
+      r = density.relative.col(k) * scale;
+      add_component(block, factors.means.col(k), factors.diagonal, r, offsets, moments.sums.col(k));
+    }
+  }
+  return moments;
+}
+
+/// Mean and covariance of one component from its sums; `offset` is the new mean minus the old one.
+void update_component(const Eigen::Ref<const Eigen::VectorXd>& sums, bool diagonal, Eigen::VectorXd& offset,
+                      Eigen::MatrixXd& covariance) {
+  const Index features = offset.size();
+  offset = sums.segment(1, features) / sums(0);
+  covariance.setZero(features, features);
+  Index row = 1 + features;
+  for (Index i = 0; i < features; ++i)
+    for (Index j = diagonal ? i : 0; j <= i; ++j)
+      covariance(i, j) = covariance(j, i) = sums(row++) / sums(0) - offset(i) * offset(j);
+}
+
+}  // namespace
+
+MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture) {
+  const ComponentFactors factors = factor(mixture);
+  const Index groups = (points.blocks() + blocks_per_group - 1) / blocks_per_group;
+  std::vector<MixtureMoments> partial(groups);
+  const auto group = [&](Index g) {
+    const Index first = g * blocks_per_group;
+    partial[g] = expect_group(points, factors, first, std::min(first + blocks_per_group, points.blocks()));
+  };
+  if (points.count() > parallel_points)
+    tbb::parallel_for(Index(0), groups, group);
+  else
+    for (Index g = 0; g < groups; ++g) group(g);
+  for (Index g = 1; g < groups; ++g) {
+    partial[0].log_likelihood += partial[g].log_likelihood;
+    partial[0].sums += partial[g].sums;
+  }
+  return std::move(partial[0]);
+}
+
+bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType type) {
+  if (type == CovarianceType::diagonal) {
+    const Eigen::VectorXd variances = covariance.diagonal();
+    covariance = variances.cwiseMax(floor).asDiagonal();
+    return (variances.array() < floor).any();
+  }
+  Eigen::MatrixXd excess = covariance;
+  excess.diagonal().array() -= floor;
+  // Positive definite after the floor is taken off: every eigenvalue is above it, and no decomposition is needed.
+  if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(excess).info() == Eigen::Success) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+  covariance =
+      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(floor).asDiagonal() * eigen.eigenvectors().transpose();
+  covariance = (0.5 * (covariance + covariance.transpose())).eval();
+  return true;
+}
+
+bool maximise(const MixtureMoments& moments, double floor, GaussianMixture& mixture) {
+  const Eigen::VectorXd mass = moments.sums.row(0);
+  const double total = mass.sum();
+  const bool diagonal = mixture.type == CovarianceType::diagonal;
+  Eigen::VectorXd offset(mixture.features());
+  bool floor_active = false;
+  for (Index k = 0; k < mixture.components(); ++k) {
+    mixture.weights(k) = mass(k) / total;
+    if (!(mixture.weights(k) > starved_share)) continue;
+    update_component(moments.sums.col(k), diagonal, offset, mixture.covariances[k]);
+    mixture.means.col(k) += offset;
+    floor_active |= raise_to_floor(mixture.covariances[k], floor, mixture.type);
+  }
+  return floor_active;
+}
+
+}  // namespace modebank

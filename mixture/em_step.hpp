@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "mixture/gaussian_mixture.hpp"
+#include "mixture/point_blocks.hpp"
+
+namespace modebank {
+
+/// What one pass over the points yields: all an M step needs, without any N x K array.
+struct MixtureMoments {
+  double log_likelihood = 0.0;  ///< sum of w_i log p(x_i) under the mixture the pass was made with
+  /// One column per component; rows: sum of r, sum of r d (F), sum of r d d' (lower triangle by rows, or its diagonal),
+  /// with r = w_i times the responsibility and d the point's offset from the component's *old* mean, so that no second
+  /// moment is a difference of large numbers.
+  Eigen::MatrixXd sums;
+};
+
+/// E step. Blocks are summed in fixed groups and groups in order, in parallel when there are many points: the result
+/// does not depend on the number of threads.
+MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture);
+
+/// M step in place. Covariance eigenvalues (diagonal: variances) below `floor` are raised to it, which is the exact
+/// maximiser under that constraint, so the likelihood never falls. A component that explains less than 1e-14 of the
+/// total weight keeps its mean and covariance. Returns whether the floor held any component.
+bool maximise(const MixtureMoments& moments, double floor, GaussianMixture& mixture);
+
+/// Raises the eigenvalues (`diagonal`: the variances, off-diagonals are zeroed) to `floor`; whether any was below.
+bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType type);
+
+}  // namespace modebank

@@ -1,0 +1,47 @@
+#include "mixture/features.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace modebank {
+
+using Eigen::Index;
+
+namespace {
+
+bool wanted(const WindowFits& fits, WindowChoice choice, Index window) {
+  if (fits.status(window) == static_cast<int>(FitStatus::failed)) return false;
+  const bool full_rank_only =
+      choice == WindowChoice::full_rank || (choice == WindowChoice::automatic && fits.prior_sd.size() == 0);
+  return !full_rank_only || fits.rank(window) == fits.parameter_count();
+}
+
+}  // namespace
+
+FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
+                           const std::vector<Channel>& states) {
+  const Index p = fits.parameter_count(), n = fits.structure.states;
+  const bool with_noise = features == FeatureSet::parameters_and_noise;
+  if (static_cast<Index>(states.size()) != n)
+    throw std::invalid_argument(fmt::format("features of {} states are given {} state names", n, states.size()));
+  FeatureCloud cloud;
+  cloud.names = fits.structure.parameter_names();
+  if (with_noise)
+    for (const Channel& state : states) cloud.names.push_back("log_noise_variance_" + state.name);
+  Eigen::VectorXd point(p + (with_noise ? n : 0));
+  Eigen::MatrixXd points(point.size(), fits.count());
+  for (Index window = 0; window < fits.count(); ++window) {
+    if (!wanted(fits, choice, window)) continue;
+    point.head(p) = fits.parameters.col(window);
+    if (with_noise) point.tail(n) = fits.noise_variance.col(window).array().log();
+    if (!point.allFinite()) continue;
+    points.col(static_cast<Index>(cloud.windows.size())) = point;
+    cloud.windows.push_back(window);
+    cloud.runs.push_back(fits.windows[window].run);
+  }
+  cloud.points = points.leftCols(static_cast<Index>(cloud.windows.size()));
+  return cloud;
+}
+
+}  // namespace modebank

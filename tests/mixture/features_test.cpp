@@ -1,0 +1,71 @@
+#include "mixture/features.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank::test {
+namespace {
+
+using Eigen::Index;
+
+/// Five windows of one state and two inputs (the sizes whose names model.hpp documents): sound, rank deficient, failed,
+/// not finite, sound.
+WindowFits five_windows() {
+  WindowFits fits;
+  fits.structure = LinearStructure{1, 2, false};
+  fits.windows = {{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, 0}};
+  fits.parameters.resize(3, 5);
+  fits.parameters << -0.1, -0.2, -0.3, -0.4, -0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0;
+  fits.parameters(1, 3) = std::numeric_limits<double>::quiet_NaN();
+  fits.noise_variance = (Eigen::MatrixXd(1, 5) << 1.0, 0.5, 0.1, 0.2, 4.0).finished();
+  fits.rank = (Eigen::VectorXi(5) << 3, 1, 3, 3, 3).finished();
+  fits.status = (Eigen::VectorXi(5) << 0, 2, 3, 0, 1).finished();
+  return fits;
+}
+
+const std::vector<Channel> states{{"wz", "rad/s"}};
+
+TEST(Features, FullRankWindowsAreChosen) {
+  const FeatureCloud cloud = make_features(five_windows(), FeatureSet::parameters, WindowChoice::full_rank, states);
+  EXPECT_EQ(cloud.names, (std::vector<std::string>{"A", "B1", "B2"}));
+  EXPECT_EQ(cloud.windows, (std::vector<Index>{0, 4}));
+  EXPECT_EQ(cloud.runs, (std::vector<Index>{0, 2}));
+  EXPECT_TRUE(near(cloud.points, (Eigen::MatrixXd(3, 2) << -0.1, -0.5, 1.0, 5.0, 6.0, 10.0).finished(), 0.0));
+}
+
+TEST(Features, AllLeavesOutOnlyFailedAndNonFiniteWindows) {
+  const FeatureCloud cloud = make_features(five_windows(), FeatureSet::parameters, WindowChoice::all, states);
+  EXPECT_EQ(cloud.windows, (std::vector<Index>{0, 1, 4}));
+}
+
+TEST(Features, AutomaticDependsOnThePrior) {
+  WindowFits fits = five_windows();
+  EXPECT_EQ(make_features(fits, FeatureSet::parameters, WindowChoice::automatic, states).windows.size(), 2u);
+  fits.prior_sd = Eigen::Vector3d::Ones();
+  EXPECT_EQ(make_features(fits, FeatureSet::parameters, WindowChoice::automatic, states).windows.size(), 3u);
+}
+
+TEST(Features, NoiseIsTheLogOfTheVariance) {
+  const FeatureCloud cloud = make_features(five_windows(), FeatureSet::parameters_and_noise, WindowChoice::all, states);
+  EXPECT_EQ(cloud.names, (std::vector<std::string>{"A", "B1", "B2", "log_noise_variance_wz"}));
+  EXPECT_TRUE(near(cloud.points.row(3), Eigen::RowVector3d(0.0, std::log(0.5), std::log(4.0)), 1e-15));
+}
+
+TEST(Features, WindowWithoutNoiseHasNoLogVariance) {
+  WindowFits fits = five_windows();
+  fits.noise_variance(0, 0) = 0.0;
+  EXPECT_EQ(make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::all, states).windows,
+            (std::vector<Index>{1, 4}));
+  EXPECT_EQ(make_features(fits, FeatureSet::parameters, WindowChoice::all, states).windows,
+            (std::vector<Index>{0, 1, 4}));
+}
+
+TEST(Features, StateNamesMustMatch) {
+  EXPECT_THROW(make_features(five_windows(), FeatureSet::parameters, WindowChoice::all, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace modebank::test

@@ -1,0 +1,92 @@
+// Against scikit-learn (fits) and mpmath (densities): tests/golden/mixture.py wrote the golden file.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "mixture/em.hpp"
+#include "tests/support/matrix_compare.hpp"
+#include "tests/support/paths.hpp"
+
+namespace modebank::test {
+namespace {
+
+using nlohmann::json;
+
+/// Sums of some thousand terms in another order; the issue is agreement of algorithms, not of rounding.
+constexpr double parameter_tolerance = 1e-8;
+constexpr double log_likelihood_tolerance = 1e-8;
+/// A few units in the last place, relative to the log density itself, which reaches -1e12 at the outermost probe.
+constexpr double relative_density_tolerance = 2e-15;
+/// A responsibility is the exponential of a difference of log densities, of up to a few hundred where it is not 0 or 1.
+constexpr double responsibility_tolerance = 1e-13;
+
+json golden() {
+  std::ifstream file(golden_dir() / "mixture.json");
+  return json::parse(file);
+}
+
+/// A JSON array of rows.
+Eigen::MatrixXd matrix(const json& rows) {
+  Eigen::MatrixXd result(rows.size(), rows.at(0).size());
+  for (Eigen::Index i = 0; i < result.rows(); ++i)
+    for (Eigen::Index j = 0; j < result.cols(); ++j) result(i, j) = rows[i][j].get<double>();
+  return result;
+}
+
+Eigen::VectorXd vector(const json& values) {
+  const auto entries = values.get<std::vector<double>>();
+  return Eigen::Map<const Eigen::VectorXd>(entries.data(), static_cast<Eigen::Index>(entries.size()));
+}
+
+GaussianMixture mixture(const json& values) {
+  GaussianMixture result;
+  result.weights = vector(values["weights"]);
+  result.means = matrix(values["means"]).transpose();
+  for (const json& covariance : values["covariances"]) result.covariances.push_back(matrix(covariance));
+  return result;
+}
+
+TEST(MixtureGolden, FitsAgreeWithScikitLearnFromTheSameStart) {
+  const json file = golden();
+  const Eigen::MatrixXd points = matrix(file["points"]).transpose();
+  ASSERT_EQ(file["fits"].size(), 6u);
+  for (const json& expected : file["fits"]) {
+    SCOPED_TRACE(expected["covariance"].get<std::string>() + " " + expected["iterations"].dump());
+    EmOptions options;
+    options.covariance = expected["covariance"] == "full" ? CovarianceType::full : CovarianceType::diagonal;
+    options.tolerance = -1.0;  // never: a fixed number of iterations
+    options.max_iterations = expected["iterations"].get<int>();
+    options.covariance_floor = 1e-10;
+    const EmResult fit = fit_em(points, Eigen::VectorXd(), mixture(file["start"]), options);
+    EXPECT_FALSE(fit.floor_active);
+    EXPECT_EQ(fit.iterations, options.max_iterations);
+    EXPECT_NEAR(fit.log_likelihood, expected["log_likelihood"].get<double>(), log_likelihood_tolerance);
+    const GaussianMixture reference = mixture(expected);
+    EXPECT_TRUE(near(fit.mixture.weights, reference.weights, parameter_tolerance));
+    // In units of each feature's standard deviation, which differ by a factor of 500.
+    const Eigen::ArrayXd unit = reference.covariances[0].diagonal().array().sqrt();
+    EXPECT_TRUE(near(fit.mixture.means.array().colwise() / unit, reference.means.array().colwise() / unit,
+                     parameter_tolerance));
+    for (Eigen::Index k = 0; k < reference.components(); ++k) {
+      const Eigen::ArrayXXd difference = (fit.mixture.covariances[k] - reference.covariances[k]).array();
+      const Eigen::ArrayXXd scaled = (difference.colwise() / unit).rowwise() / unit.transpose();
+      EXPECT_TRUE(near(scaled, Eigen::Matrix3d::Zero(), parameter_tolerance)) << "component " << k;
+    }
+  }
+}
+
+TEST(MixtureGolden, DensitiesAndResponsibilitiesAgreeWithExtendedPrecision) {
+  const json expected = golden()["density"];
+  const GaussianMixture reference = mixture(expected);
+  const Eigen::MatrixXd probes = matrix(expected["probes"]).transpose();
+  const Eigen::VectorXd log_densities = vector(expected["log_density"]);
+  const Eigen::VectorXd relative =
+      log_density(reference, probes).cwiseQuotient(log_densities) - Eigen::VectorXd::Ones(probes.cols());
+  EXPECT_TRUE(near(relative, Eigen::VectorXd::Zero(probes.cols()), relative_density_tolerance));
+  EXPECT_TRUE(near(responsibilities(reference, probes), matrix(expected["responsibilities"]).transpose(),
+                   responsibility_tolerance));
+}
+
+}  // namespace
+}  // namespace modebank::test

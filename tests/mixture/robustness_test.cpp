@@ -1,0 +1,129 @@
+// Bad or degenerate clouds: a stated result or a clear error, never NaN.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/mixture/mixture_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank::test {
+namespace {
+
+const Eigen::VectorXd unweighted;
+
+void expect_sound(const EmResult& fit, const Eigen::MatrixXd& points) {
+  EXPECT_TRUE(is_finite(fit.mixture));
+  EXPECT_TRUE(std::isfinite(fit.log_likelihood));
+  EXPECT_TRUE(log_density(fit.mixture, points).allFinite());
+  EXPECT_TRUE(responsibilities(fit.mixture, points).allFinite());
+}
+
+class Robustness : public ::testing::TestWithParam<CovarianceType> {
+ protected:
+  EmResult fit(const Eigen::MatrixXd& points, Eigen::Index components) const {
+    EmOptions options;
+    options.covariance = GetParam();
+    return fit_em(points, unweighted, components, options, 1);
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Types, Robustness, ::testing::Values(CovarianceType::full, CovarianceType::diagonal));
+
+TEST_P(Robustness, IdenticalPoints) {
+  const Eigen::MatrixXd points = Eigen::Vector3d(1.0, -2.0, 1e6).replicate(1, 50);
+  const EmResult result = fit(points, 4);
+  expect_sound(result, points);
+  EXPECT_TRUE(result.floor_active);
+  // A constant feature keeps its unit: the floor is 1e-6 of it.
+  EXPECT_TRUE(near(result.mixture.means, points.leftCols(4), 1e-9));
+  EXPECT_TRUE(near(result.mixture.covariances[0], 1e-6 * Eigen::Matrix3d::Identity(), 1e-18));
+}
+
+TEST_P(Robustness, ConstantFeature) {
+  Eigen::MatrixXd points(3, 400);
+  points.topRows(2) = draw(three_clusters(10.0), 400, 1);
+  points.row(2).setConstant(7.0);
+  const EmResult result = fit(points, 3);
+  expect_sound(result, points);
+  EXPECT_TRUE(near(result.mixture.means.row(2), Eigen::RowVector3d::Constant(7.0), 1e-12));
+  EmOptions options;
+  options.covariance = GetParam();
+  const GaussianMixture without = fit_em(points.topRows(2), unweighted, 3, options, 1).mixture;
+  EXPECT_TRUE(near(result.mixture.means.topRows(2), without.means, 1e-9));
+}
+
+TEST_P(Robustness, FewerDistinctPointsThanComponents) {
+  Eigen::MatrixXd points(2, 60);
+  for (Eigen::Index i = 0; i < 60; ++i) points.col(i) << static_cast<double>(i % 3), static_cast<double>((i % 3) * 2);
+  expect_sound(fit(points, 8), points);
+}
+
+TEST_P(Robustness, AsManyComponentsAsPoints) {
+  const Eigen::MatrixXd points = draw(three_clusters(3.0), 7, 2);
+  expect_sound(fit(points, 7), points);
+}
+
+TEST_P(Robustness, SinglePoint) {
+  const Eigen::MatrixXd points = Eigen::Vector2d(3.0, 4.0);
+  const EmResult result = fit(points, 1);
+  expect_sound(result, points);
+  EXPECT_TRUE(near(result.mixture.means, points, 0.0));
+}
+
+TEST_P(Robustness, ExtremeOutlier) {
+  for (const double distance : {1e8, 1e100}) {
+    Eigen::MatrixXd points = draw(three_clusters(3.0), 500, 3);
+    points.col(17).setConstant(distance);
+    const EmResult result = fit(points, 2);
+    expect_sound(result, points);
+    // One component for the outlier, one for the rest.
+    EXPECT_NEAR(result.mixture.weights(0), 499.0 / 500.0, 1e-6);
+    EXPECT_NEAR(result.mixture.means(0, 1) / distance, 1.0, 1e-6);
+  }
+}
+
+TEST_P(Robustness, TinyAndHugeUnits) {
+  for (const double unit : {1e-100, 1e100}) {
+    const Eigen::MatrixXd points = unit * draw(three_clusters(8.0), 300, 4);
+    const EmResult result = fit(points, 3);
+    expect_sound(result, points);
+    EXPECT_FALSE(result.floor_active);
+  }
+}
+
+TEST_P(Robustness, StarvedComponentKeepsItsPlace) {
+  const Eigen::MatrixXd points = draw(three_clusters(3.0), 300, 5);
+  GaussianMixture start = three_clusters(3.0);
+  start.means.col(2).setConstant(1e4);  // explains nothing
+  EmOptions options;
+  options.covariance = GetParam();
+  const EmResult result = fit_em(points, unweighted, start, options);
+  expect_sound(result, points);
+  EXPECT_LT(result.mixture.weights(2), 1e-14);
+  EXPECT_TRUE(near(result.mixture.means.col(2), start.means.col(2), 1e-8));
+}
+
+TEST(RobustnessErrors, CallersMistakesThrow) {
+  const Eigen::MatrixXd points = draw(three_clusters(3.0), 20, 1);
+  const EmOptions options;
+  EXPECT_THROW(fit_em(points, unweighted, 0, options, 1), std::invalid_argument);
+  EXPECT_THROW(fit_em(points, unweighted, 21, options, 1), std::invalid_argument);
+  EXPECT_THROW(fit_em(points, Eigen::VectorXd::Ones(19), 2, options, 1), std::invalid_argument);
+  EXPECT_THROW(fit_em(points, -Eigen::VectorXd::Ones(20), 2, options, 1), std::invalid_argument);
+  EXPECT_THROW(fit_em(points, Eigen::VectorXd::Zero(20), 2, options, 1), std::invalid_argument);
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200}) {
+    Eigen::MatrixXd broken = points;
+    broken(1, 3) = bad;
+    EXPECT_THROW(fit_em(broken, unweighted, 2, options, 1), std::invalid_argument) << bad;
+  }
+  EXPECT_THROW(fit_em(points.topRows(1), unweighted, three_clusters(3.0), options), std::invalid_argument);
+  EmOptions wrong;
+  wrong.restarts = 0;
+  EXPECT_THROW(fit_em(points, unweighted, 2, wrong, 1), std::invalid_argument);
+  wrong = EmOptions();
+  wrong.covariance_floor = 0.0;
+  EXPECT_THROW(fit_em(points, unweighted, 2, wrong, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace modebank::test

@@ -1,0 +1,180 @@
+#include "mixture/select.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "ident/error.hpp"
+#include "mixture/criteria.hpp"
+#include "tests/mixture/mixture_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank::test {
+namespace {
+
+using Eigen::Index;
+
+SelectionOptions up_to(Index most, Criterion criterion = Criterion::bic) {
+  SelectionOptions options;
+  for (Index k = 1; k <= most; ++k) options.components.push_back(k);
+  options.criterion = criterion;
+  return options;
+}
+
+Index selected(const MixtureResult& result) {
+  Index components = 0, rows = 0;
+  for (const Candidate& candidate : result.candidates)
+    if (candidate.selected) components = candidate.components, ++rows;
+  EXPECT_EQ(rows, 1);
+  EXPECT_EQ(result.mixture.components(), components);
+  return components;
+}
+
+TEST(EffectiveSamples, CountsByHand) {
+  FeatureCloud cloud;
+  // Runs of 100, 10 and 30 windows; L = 25, step 1: 4 + max(1, 0.4) + 1.2.
+  for (const auto& [run, windows] : {std::pair<Index, int>{0, 100}, {3, 10}, {5, 30}})
+    cloud.runs.insert(cloud.runs.end(), static_cast<std::size_t>(windows), run);
+  EXPECT_DOUBLE_EQ(effective_samples(cloud, 25, 1), 4.0 + 1.0 + 1.2);
+  EXPECT_DOUBLE_EQ(effective_samples(cloud, 25, 5), 20.0 + 2.0 + 6.0);
+  EXPECT_DOUBLE_EQ(effective_samples(cloud, 25, 50), 140.0);  // windows apart: all count, once
+}
+
+TEST(Criteria, FormulasByHand) {
+  Candidate row;
+  row.log_likelihood = -1000.0;
+  row.parameters = 11;
+  row.effective_samples = 50.0;
+  fill_criteria(row, 200, 30.0);
+  EXPECT_DOUBLE_EQ(row.bic, 500.0 + 11.0 * std::log(50.0));
+  EXPECT_DOUBLE_EQ(row.aic, 500.0 + 22.0);
+  EXPECT_DOUBLE_EQ(row.icl, 500.0 + 11.0 * std::log(50.0) + 15.0);
+  EXPECT_DOUBLE_EQ(badness(row, Criterion::bic_naive, 200), 2000.0 + 11.0 * std::log(200.0));
+}
+
+TEST(Criteria, EntropyOfEvenAndCertainMemberships) {
+  const Eigen::MatrixXd even = Eigen::MatrixXd::Constant(4, 3, 0.25);
+  EXPECT_NEAR(entropy(even), 3.0 * std::log(4.0), 1e-14);
+  EXPECT_EQ(entropy(Eigen::MatrixXd::Identity(3, 3)), 0.0);
+}
+
+TEST(Criteria, TiesGoToTheFirstAndNonFiniteRowsAreSkipped) {
+  std::vector<Candidate> rows(4);
+  rows[0].bic = std::numeric_limits<double>::quiet_NaN();
+  rows[1].bic = 5.0;
+  rows[2].bic = 5.0;
+  rows[3].bic = -std::numeric_limits<double>::infinity();
+  EXPECT_EQ(best_candidate(rows, Criterion::bic, 10), 1);
+  rows.resize(1);
+  EXPECT_EQ(best_candidate(rows, Criterion::bic, 10), -1);
+  rows[0].heldout = -3.0;
+  rows.push_back(rows[0]);
+  rows[1].heldout = -2.0;
+  EXPECT_EQ(best_candidate(rows, Criterion::heldout, 10), 1);  // higher is better
+}
+
+TEST(Select, EveryCriterionFindsThreeSeparatedClusters) {
+  const FeatureCloud cloud = cloud_of(draw(three_clusters(12.0), 1500, 1), 6);
+  for (const Criterion criterion : {Criterion::bic, Criterion::icl, Criterion::heldout, Criterion::bic_naive}) {
+    const MixtureResult result = select_mixture(fits_of(cloud, 1, 1), cloud, up_to(5, criterion), 1);
+    // A held-out score barely falls with superfluous components, but must see that fewer are wrong.
+    if (criterion == Criterion::heldout)
+      EXPECT_GE(selected(result), 3);
+    else
+      EXPECT_EQ(selected(result), 3) << name_of(criterion);
+    for (const Candidate& row : result.candidates)
+      EXPECT_EQ(std::isfinite(row.heldout), criterion == Criterion::heldout) << row.components;
+  }
+}
+
+TEST(Select, TableRowsAgreeWithTheMixtures) {
+  const FeatureCloud cloud = cloud_of(draw(three_clusters(3.0), 600, 2), 4);
+  const MixtureResult result = select_mixture(fits_of(cloud, 25, 1), cloud, up_to(3), 1);
+  ASSERT_EQ(result.candidates.size(), 3u);
+  for (const Candidate& row : result.candidates) {
+    EXPECT_DOUBLE_EQ(row.effective_samples, 24.0);  // 4 runs of 150 windows, L = 25
+    EXPECT_EQ(row.parameters, row.components - 1 + 5 * row.components);
+    const double share = 24.0 / 600.0, q = static_cast<double>(row.parameters);
+    EXPECT_NEAR(row.bic, -2.0 * share * row.log_likelihood + q * std::log(24.0), 1e-9);
+    EXPECT_NEAR(row.aic, -2.0 * share * row.log_likelihood + 2.0 * q, 1e-9);
+    EXPECT_GE(row.icl, row.bic);
+    EXPECT_TRUE(row.converged);
+    if (row.selected) {
+      EXPECT_NEAR(row.log_likelihood, log_density(result.mixture, cloud.points).sum(), 1e-7);
+    }
+  }
+}
+
+TEST(Select, MembershipsCoverClusteredWindowsOnly) {
+  FeatureCloud cloud = cloud_of(draw(three_clusters(12.0), 300, 3), 3);
+  WindowFits fits = fits_of(cloud, 1, 1);
+  for (Index& window : cloud.windows) window = 2 * window;  // every other window is left out
+  fits.windows.resize(600);
+  const MixtureResult result = select_mixture(fits, cloud, up_to(4), 1);
+  ASSERT_EQ(result.labels.size(), 600);
+  ASSERT_EQ(result.responsibilities.cols(), 600);
+  for (Index i = 0; i < 300; ++i) {
+    Index most_likely = -1;
+    result.responsibilities.col(2 * i).maxCoeff(&most_likely);
+    EXPECT_EQ(result.labels(2 * i), most_likely);
+    EXPECT_NEAR(result.responsibilities.col(2 * i).sum(), 1.0, 1e-14);
+    EXPECT_EQ(result.labels(2 * i + 1), -1);
+    EXPECT_TRUE(result.responsibilities.col(2 * i + 1).array().isNaN().all());
+  }
+}
+
+TEST(Select, OtherCandidatesDoNotChangeARow) {
+  const FeatureCloud cloud = cloud_of(draw(three_clusters(1.0), 300, 4), 3);
+  SelectionOptions alone;
+  alone.components = {4};
+  const MixtureResult all = select_mixture(fits_of(cloud, 25, 1), cloud, up_to(5), 9);
+  const MixtureResult one = select_mixture(fits_of(cloud, 25, 1), cloud, alone, 9);
+  EXPECT_EQ(one.candidates[0].log_likelihood, all.candidates[3].log_likelihood);
+  EXPECT_EQ(one.candidates[0].iterations, all.candidates[3].iterations);
+}
+
+TEST(Select, CandidatesAboveTheNumberOfPointsAreLeftOut) {
+  const FeatureCloud cloud = cloud_of(draw(three_clusters(3.0), 4, 5), 2);
+  SelectionOptions options;
+  options.components = {9, 2, 4, 2};
+  const MixtureResult result = select_mixture(fits_of(cloud, 1, 1), cloud, options, 1);
+  ASSERT_EQ(result.candidates.size(), 2u);
+  EXPECT_EQ(result.candidates[0].components, 2);
+  EXPECT_EQ(result.candidates[1].components, 4);
+}
+
+TEST(Select, ImpossibleRequestsSayWhatWouldBeRight) {
+  const FeatureCloud cloud = cloud_of(draw(three_clusters(3.0), 4, 5), 1);
+  SelectionOptions options;
+  options.components = {9};
+  try {
+    select_mixture(fits_of(cloud, 1, 1), cloud, options, 1);
+    FAIL() << "no exception";
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find("9"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("at most 4 components"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud_of(Eigen::MatrixXd(2, 0), 1), up_to(3), 1), DataError);
+  EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud, up_to(2, Criterion::heldout), 1), DataError);  // one run
+  options.components = {0, 1};
+  EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud, options, 1), std::invalid_argument);
+  options.components.clear();
+  EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud, options, 1), std::invalid_argument);
+}
+
+TEST(Select, TableIsBitwiseTheSameForAnyNumberOfThreads) {
+  const FeatureCloud cloud = cloud_of(draw(three_clusters(2.0), 500, 6), 4);
+  std::vector<MixtureResult> results;
+  for (const std::size_t threads : {1u, 4u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    results.push_back(select_mixture(fits_of(cloud, 25, 1), cloud, up_to(4, Criterion::heldout), 1));
+  }
+  EXPECT_EQ(results[0].mixture.means, results[1].mixture.means);
+  EXPECT_EQ(results[0].responsibilities, results[1].responsibilities);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(results[0].candidates[i].heldout, results[1].candidates[i].heldout);
+    EXPECT_EQ(results[0].candidates[i].icl, results[1].candidates[i].icl);
+  }
+}
+
+}  // namespace
+}  // namespace modebank::test
