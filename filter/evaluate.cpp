@@ -1,0 +1,166 @@
+#include "filter/evaluate.hpp"
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "filter/combined.hpp"
+#include "filter/filter_step.hpp"
+#include "ident/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+void check_run(const Bank& bank, const Trajectory& run) {
+  check_sizes(bank);
+  const auto mismatch = [&](const std::string& what, Index is, Index expected) {
+    if (is != expected)
+      throw std::invalid_argument("run " + run.run + " has " + std::to_string(is) + " " + what + ", the bank needs " +
+                                  std::to_string(expected));
+  };
+  mismatch("measured signals", run.state.rows(), bank.C.rows());
+  mismatch("inputs", run.input.rows(), bank.structure.inputs);
+  mismatch("input samples", run.input.cols(), run.samples());
+  for (Index k = 0; k < run.transitions(); ++k)
+    if (!run.input.col(k).allFinite())
+      throw DataError("run " + run.run + ": the input of sample " + std::to_string(k) + " is not a finite number");
+}
+
+/// Sample where the filter starts: the first whole measurement; N when there is none.
+Index first_whole_sample(const Trajectory& run) {
+  Index k = 0;
+  while (k < run.samples() && is_missing(run.state.col(k))) ++k;
+  return k;
+}
+
+RunEvaluation empty_evaluation(const Bank& bank, Index samples) {
+  const Index n = bank.structure.states, n_y = bank.C.rows(), K = bank.mode_count();
+  RunEvaluation e;
+  e.prediction.setConstant(n, samples, nan);
+  e.innovation.setConstant(n_y, samples, nan);
+  e.innovation_covariance.setConstant(n_y * n_y, samples, nan);
+  e.state.setConstant(n, samples, nan);
+  e.covariance.setConstant(n * n, samples, nan);
+  e.nis.setConstant(samples, nan);
+  e.pit.setConstant(n_y, samples, nan);
+  e.log_density.setConstant(samples, nan);
+  e.mode_probability_predicted.setZero(K, samples);
+  e.mode_probability.setZero(K, samples);
+  return e;
+}
+
+/// Steps through one run and writes down what the filter said. Modes that the variant leaves out keep probability zero.
+template <int N, int NY>
+class RunRecorder {
+ public:
+  RunRecorder(const FilterModel<N, NY>& model, RunEvaluation& evaluation)
+      : model_(model),
+        out_(evaluation),
+        combined_(model.structure.states, model.C.rows()),
+        moments_(model.structure.states),
+        weights_(model.mode_count()) {}
+
+  void not_started(Index k) {
+    out_.mode_probability_predicted.col(k).head(model_.mode_count()) = model_.initial_probability;
+    out_.mode_probability.col(k).head(model_.mode_count()) = model_.initial_probability;
+  }
+
+  void start(Index k, const FilterState<N>& state) {
+    out_.mode_probability_predicted.col(k).head(model_.mode_count()) = state.mode_probability;
+    posterior(k, state);
+  }
+
+  void prediction(Index k, FilterStep<N, NY>& step) {
+    combined_.expect(model_, step);
+    out_.prediction.col(k) = combined_.state;
+    out_.innovation_covariance.col(k) = combined_.innovation_covariance.reshaped();
+    out_.mode_probability_predicted.col(k).head(model_.mode_count()) = step.predicted_probability;
+  }
+
+  template <class Y>
+  void measurement(Index k, const Y& y, double log_density, FilterStep<N, NY>& step) {
+    combined_.observe(model_, y, step);
+    out_.innovation.col(k) = combined_.innovation;
+    out_.nis(k) = combined_.nis;
+    out_.log_density(k) = log_density;
+    probability_transform(step, weights_, out_.pit.col(k));
+  }
+
+  void posterior(Index k, const FilterState<N>& state) {
+    merge(state.modes, state.mode_probability, moments_);
+    out_.state.col(k) = moments_.mean;
+    out_.covariance.col(k) = moments_.covariance.reshaped();
+    out_.mode_probability.col(k).head(model_.mode_count()) = state.mode_probability;
+  }
+
+ private:
+  const FilterModel<N, NY>& model_;
+  RunEvaluation& out_;
+  CombinedPrediction<N, NY> combined_;
+  Gaussian<N> moments_;
+  Eigen::VectorXd weights_;
+};
+
+template <int N, int NY>
+RunEvaluation evaluate(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  const FilterModel<N, NY> model(bank, options);
+  RunEvaluation evaluation = empty_evaluation(bank, run.samples());
+  RunRecorder<N, NY> record(model, evaluation);
+  const Index first = first_whole_sample(run);
+  for (Index k = 0; k < first; ++k) record.not_started(k);
+  if (first == run.samples()) return evaluation;
+
+  FilterStep<N, NY> step(model);
+  FilterState<N> state = start(model, run.state.col(first));
+  record.start(first, state);
+  for (Index k = first + 1; k < run.samples(); ++k) {
+    const auto y = run.state.col(k);
+    predict(model, state, run.input.col(k - 1), step);
+    record.prediction(k, step);
+    if (is_missing(y))
+      skip_measurement(step, state);
+    else
+      record.measurement(k, y, update(model, y, step, state), step);
+    record.posterior(k, state);
+  }
+  return evaluation;
+}
+
+template <int N, int NY>
+double sum_log_density(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  const Index first = first_whole_sample(run);
+  if (first == run.samples()) return 0.0;
+  const FilterModel<N, NY> model(bank, options);
+  FilterStep<N, NY> step(model);
+  FilterState<N> state = start(model, run.state.col(first));
+  double sum = 0.0;
+  for (Index k = first + 1; k < run.samples(); ++k) {
+    const auto y = run.state.col(k);
+    predict(model, state, run.input.col(k - 1), step);
+    if (is_missing(y))
+      skip_measurement(step, state);
+    else
+      sum += update(model, y, step, state);
+  }
+  return sum;
+}
+
+}  // namespace
+
+RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  check_run(bank, run);
+  return with_sizes(bank.structure.states, bank.C.rows(),
+                    [&]<int N, int NY>() { return evaluate<N, NY>(bank, run, options); });
+}
+
+double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  check_run(bank, run);
+  return with_sizes(bank.structure.states, bank.C.rows(),
+                    [&]<int N, int NY>() { return sum_log_density<N, NY>(bank, run, options); });
+}
+
+}  // namespace modebank

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "filter/bank.hpp"
+#include "ident/trajectory.hpp"
+
+namespace modebank {
+
+/// imm: Blom & Bar-Shalom (1988). mmae: no mixing. salvi2025: the printed equations 12-18. kf: the bank's first mode
+/// alone.
+enum class FilterVariant { imm, mmae, salvi2025, kf };
+
+template <>
+struct EnumNames<FilterVariant> {
+  static constexpr Names<4> values{"imm", "mmae", "salvi2025", "kf"};
+};
+
+struct FilterOptions {
+  FilterVariant variant = FilterVariant::imm;
+  bool parameter_noise = false;  ///< Q_k = Q + (I (x) phi') Sigma_theta (I (x) phi')' with the mode's spread
+};
+
+/// What a filter said about every sample of a run, one sample per column. Column 0 is the start: its scores are NaN.
+struct RunEvaluation {
+  Eigen::MatrixXd prediction;                  ///< n x N, combined one-step prediction of the state
+  Eigen::MatrixXd innovation;                  ///< n_y x N, measurement minus combined prediction
+  Eigen::MatrixXd innovation_covariance;       ///< n_y*n_y x N, of the combined prediction
+  Eigen::MatrixXd state;                       ///< n x N, after the measurement
+  Eigen::MatrixXd covariance;                  ///< n*n x N, after the measurement
+  Eigen::VectorXd nis;                         ///< N
+  Eigen::MatrixXd pit;                         ///< n_y x N, Rosenblatt's transform
+  Eigen::VectorXd log_density;                 ///< N, nats
+  Eigen::MatrixXd mode_probability_predicted;  ///< K x N, before the measurement
+  Eigen::MatrixXd mode_probability;            ///< K x N, after the measurement
+};
+
+/// Runs the filter over one run, whose `state` holds the measurements (n_y x N), starting at x[0] = y[0], P[0] = R. A
+/// sample with a NaN measurement is prediction only: its innovation and scores are NaN. When the first measurements are
+/// NaN the first whole one is the start, and everything before it is NaN but the mode probabilities. Throws
+/// std::invalid_argument when sizes disagree and DataError for an input that is not finite.
+RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options);
+
+/// Sum of log predictive densities over the scored samples of a run [nats]: the log-likelihood of theta, Q, R and T.
+/// Nothing is stored, so maximum likelihood may call it thousands of times. Same conditions as evaluate_run.
+double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options);
+
+}  // namespace modebank

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "filter/bank.hpp"
+#include "filter/evaluate.hpp"
+#include "ident/local_model.hpp"
+#include "ident/trajectory.hpp"
+#include "mixture/select.hpp"
+
+namespace modebank {
+
+enum class ThetaSource { pooled, mean };
+enum class NoiseSource { per_mode, shared, fixed };
+enum class TransitionSource { labels, stay };
+
+template <>
+struct EnumNames<ThetaSource> {
+  static constexpr Names<2> values{"pooled", "mean"};
+};
+
+template <>
+struct EnumNames<NoiseSource> {
+  static constexpr Names<3> values{"per-mode", "shared", "fixed"};
+};
+
+template <>
+struct EnumNames<TransitionSource> {
+  static constexpr Names<2> values{"labels", "stay"};
+};
+
+struct BankOptions {
+  ThetaSource theta = ThetaSource::pooled;
+  NoiseSource noise = NoiseSource::per_mode;
+  TransitionSource transition = TransitionSource::labels;
+  double stay = 0.95;                          ///< diagonal of the transition matrix for TransitionSource::stay
+  double process_variance = 0.01;              ///< Q diagonal for NoiseSource::fixed [state unit^2]
+  std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; empty: the baseline's R
+  bool screen = true;                          ///< leave unstable and starved modes out
+};
+
+/// One Kalman filter on the global model, Q and R by maximum likelihood, and how that ended.
+struct Baseline {
+  Bank bank;                    ///< K = 1
+  double log_likelihood = 0.0;  ///< of the training runs, from each run's second sample
+  bool converged = false;
+  bool at_bound = false;  ///< R stopped at its lower bound 1e-10 var(y): the data show no measurement noise
+};
+
+/// theta fixed at the global least squares; Q (full) and R (diagonal) maximise the exact Gaussian likelihood.
+Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure);
+
+/// The competitor that switches noise only: one Huber theta, eight log-spaced noise scales, `stay` chosen on the
+/// training runs.
+Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R);
+
+/// Turns clustered windows into a bank (method: section 4). `R` is used unless options.measurement_variance is set.
+/// Throws DataError when every mode is screened.
+Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
+                const BankOptions& options, const Eigen::MatrixXd& R);
+
+}  // namespace modebank

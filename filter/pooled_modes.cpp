@@ -1,0 +1,137 @@
+#include "filter/pooled_modes.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <limits>
+#include <unsupported/Eigen/KroneckerProduct>
+
+#include "filter/noise_floor.hpp"
+
+namespace modebank {
+namespace {
+
+constexpr double smallest_weight = 1e-9;         // transitions; less carries no information about Q
+constexpr double alternation_tolerance = 1e-12;  // relative change of Q; rounding is three decades below
+constexpr int max_alternations = 500;
+
+/// The weighted transitions' sufficient statistics, centred at their own least squares so that nothing cancels.
+struct WeightedRegression {
+  Eigen::MatrixXd beta;     // q x n coefficients by least squares; directions without data stay at the global model
+  Eigen::MatrixXd G;        // q x q, sum g phi phi'
+  Eigen::MatrixXd H;        // q x n, sum g phi r' at beta: zero but for rounding and directions without data
+  Eigen::MatrixXd scatter;  // n x n, sum g r r' at beta
+  double weight = 0.0;      // sum g
+
+  /// sum g r r' at other coefficients.
+  Eigen::MatrixXd scatter_about(const Eigen::MatrixXd& other) const {
+    const Eigen::MatrixXd delta = other - beta;
+    const Eigen::MatrixXd cross = delta.transpose() * H;
+    return scatter - cross - cross.transpose() + delta.transpose() * G * delta;
+  }
+};
+
+WeightedRegression regress(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
+                           const Eigen::VectorXd& global_theta) {
+  const Eigen::MatrixXd& X = transitions.data.regressors;
+  const Eigen::MatrixXd beta_global = coefficients(transitions.structure, global_theta);
+  Eigen::MatrixXd r = transitions.data.increments - X * beta_global;
+  const Eigen::VectorXd root = weights.cwiseSqrt();
+  const Eigen::MatrixXd delta = solve(decompose(root.asDiagonal() * X, excitation_tolerance), root.asDiagonal() * r);
+  r -= X * delta;
+  return {beta_global + delta, X.transpose() * weights.asDiagonal() * X, X.transpose() * weights.asDiagonal() * r,
+          r.transpose() * weights.asDiagonal() * r, weights.sum()};
+}
+
+/// Inverse prior covariance, p x p; zero without a prior.
+Eigen::MatrixXd prior_information(Index parameters, const ParameterPrior* prior) {
+  if (!prior) return Eigen::MatrixXd::Zero(parameters, parameters);
+  return prior->sd.array().square().inverse().matrix().asDiagonal();
+}
+
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& positive_definite) {
+  return positive_definite.llt().solve(Eigen::MatrixXd::Identity(positive_definite.rows(), positive_definite.cols()));
+}
+
+Eigen::MatrixXd regularised(const WeightedRegression& data, const Eigen::MatrixXd& Q, const ParameterPrior& prior) {
+  const Eigen::MatrixXd Q_inverse = inverse(Q), P_inverse = prior_information(data.beta.size(), &prior);
+  const Eigen::MatrixXd information = Eigen::kroneckerProduct(Q_inverse, data.G).eval() + P_inverse;
+  const Eigen::MatrixXd data_pull = data.H * Q_inverse;
+  const Eigen::VectorXd pull = data_pull.reshaped() + P_inverse * (prior.mean - data.beta.reshaped());
+  return data.beta + information.ldlt().solve(pull).reshaped(data.beta.rows(), data.beta.cols());
+}
+
+/// Raises the eigenvalues of Q, in units of the reference variances, to the floor; leaves Q alone when none is below.
+Eigen::MatrixXd floored(const Eigen::MatrixXd& Q, const Eigen::VectorXd& reference) {
+  const Eigen::VectorXd sd = reference.cwiseSqrt();
+  const Eigen::MatrixXd whitened = sd.cwiseInverse().asDiagonal() * Q * sd.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(whitened);
+  if (eigen.eigenvalues().minCoeff() >= process_noise_floor) return Q;
+  const Eigen::MatrixXd root = sd.asDiagonal() * eigen.eigenvectors();
+  return root * eigen.eigenvalues().cwiseMax(process_noise_floor).asDiagonal() * root.transpose();
+}
+
+Eigen::MatrixXd process_noise(const WeightedRegression& data, const Eigen::MatrixXd& beta, const GlobalModel& global) {
+  const Eigen::VectorXd reference = global.noise_variance().unaryExpr(&positive_variance);
+  if (data.weight < smallest_weight) return floored(global.residual_covariance, reference);
+  return floored(data.scatter_about(beta) / data.weight, reference);
+}
+
+Eigen::VectorXd standard_errors(const WeightedRegression& data, const Eigen::MatrixXd& Q, const ParameterPrior* prior) {
+  const double q = static_cast<double>(data.G.rows());
+  const Eigen::MatrixXd Q_unbiased = Q * (data.weight / std::max(data.weight - q, 1.0));
+  const Index p = Q.rows() * data.G.rows();
+  Eigen::MatrixXd information = prior_information(p, prior);
+  if (data.weight >= smallest_weight) information += Eigen::kroneckerProduct(inverse(Q_unbiased), data.G).eval();
+  Eigen::VectorXd not_determined = Eigen::VectorXd::Constant(p, std::numeric_limits<double>::quiet_NaN());
+  if (!(information.diagonal().minCoeff() > 0.0) || !information.allFinite()) return not_determined;
+  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * information * scale.asDiagonal());
+  if (eigen.eigenvalues().minCoeff() < excitation_tolerance * excitation_tolerance) return not_determined;
+  const Eigen::MatrixXd root = scale.asDiagonal() * eigen.eigenvectors();
+  return (root.cwiseAbs2() * eigen.eigenvalues().cwiseInverse()).cwiseSqrt();
+}
+
+ModeEstimate estimate(const WeightedRegression& data, const Eigen::MatrixXd& beta, const Eigen::MatrixXd& Q,
+                      const ParameterPrior* prior) {
+  return {beta.reshaped(), Q, standard_errors(data, Q, prior), data.weight, true};
+}
+
+}  // namespace
+
+ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
+                               const GlobalModel& global, const ParameterPrior* prior) {
+  const WeightedRegression data = regress(transitions, weights, global.theta);
+  Eigen::MatrixXd beta = data.beta;
+  Eigen::MatrixXd Q = process_noise(data, beta, global);
+  bool converged = prior == nullptr;
+  for (int i = 0; i < max_alternations && !converged; ++i) {
+    beta = regularised(data, Q, *prior);
+    const Eigen::MatrixXd previous = Q;
+    Q = process_noise(data, beta, global);
+    converged = (Q - previous).norm() <= alternation_tolerance * previous.norm();
+  }
+  ModeEstimate mode = estimate(data, beta, Q, prior);
+  mode.converged = converged;
+  return mode;
+}
+
+ModeEstimate assess_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
+                                  const GlobalModel& global, const ParameterPrior* prior,
+                                  const Eigen::VectorXd& theta) {
+  const WeightedRegression data = regress(transitions, weights, global.theta);
+  const Eigen::MatrixXd beta = coefficients(transitions.structure, theta);
+  return estimate(data, beta, process_noise(data, beta, global), prior);
+}
+
+std::vector<ModeEstimate> fit_pooled_modes(const TrainingTransitions& transitions, const Eigen::MatrixXd& memberships,
+                                           const GlobalModel& global, const ParameterPrior* prior) {
+  std::vector<ModeEstimate> modes(memberships.cols());
+  tbb::parallel_for(Index{0}, memberships.cols(),
+                    [&](Index k) { modes[k] = fit_weighted_mode(transitions, memberships.col(k), global, prior); });
+  return modes;
+}
+
+}  // namespace modebank

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "filter/transition_matrix.hpp"
+#include "ident/local_model.hpp"
+
+namespace modebank {
+
+/// Added to every count of transitions between labels, so that no transition is impossible.
+inline constexpr double label_count_smoothing = 0.1;
+
+/// K x K counts of (label i, then label j) over neighbouring windows: same run, starts one `step` apart, both with a
+/// label in `kept` (K positions in the mixture; a bank's mode j is mixture component kept[j]). Labels M, -1: none.
+Eigen::MatrixXd count_label_transitions(const WindowFits& fits, const Eigen::VectorXi& labels,
+                                        const std::vector<Index>& kept);
+
+/// Row-normalised smoothed counts, brought from one window step (`step` transitions) to one transition: the diagonal
+/// becomes T_ii^(1/step) and the rest of the row is scaled to keep the row's sum at one.
+TransitionMatrix transition_from_counts(const Eigen::MatrixXd& counts, Index step);
+
+}  // namespace modebank

@@ -1,0 +1,103 @@
+// The filters against tests/golden/imm_reference.py: an independent textbook implementation in numpy.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "filter/evaluate.hpp"
+#include "tests/support/matrix_compare.hpp"
+#include "tests/support/paths.hpp"
+
+namespace modebank {
+namespace {
+
+using nlohmann::json;
+using test::near;
+
+/// Both sides are double precision over 40 steps with condition numbers below 1e3.
+constexpr double tolerance = 1e-10;
+/// The first covariances of the unobserved state are about ten: the same relative accuracy.
+constexpr double relative_tolerance = 1e-10;
+
+/// A table of rows (any nesting below) as columns: row k becomes column k.
+Eigen::MatrixXd columns(const json& rows) {
+  Eigen::MatrixXd result;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    std::vector<double> values;
+    const std::function<void(const json&)> collect = [&](const json& value) {
+      if (value.is_array())
+        for (const json& part : value) collect(part);
+      else
+        values.push_back(value.is_null() ? std::nan("") : value.get<double>());
+    };
+    collect(rows[k]);
+    if (k == 0) result.resize(static_cast<Eigen::Index>(values.size()), static_cast<Eigen::Index>(rows.size()));
+    result.col(static_cast<Eigen::Index>(k)) =
+        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  }
+  return result;
+}
+
+Eigen::MatrixXd matrix(const json& rows) { return columns(rows).transpose(); }
+
+Bank read_bank(const json& golden) {
+  const json& source = golden.at("bank");
+  Bank bank;
+  bank.C = matrix(source.at("C"));
+  bank.R = matrix(source.at("R"));
+  bank.transition = TransitionMatrix(matrix(source.at("T")));
+  bank.initial_probability = columns(source.at("pi")).transpose();
+  for (std::size_t j = 0; j < source.at("modes").size(); ++j) {
+    const json& mode = source.at("modes")[j];
+    bank.modes.push_back({});
+    bank.modes[j].model = {matrix(mode.at("A")), matrix(mode.at("B")), columns(mode.at("c")).transpose()};
+    bank.modes[j].Q = matrix(mode.at("Q"));
+    if (!golden.at("spreads").is_null()) bank.modes[j].spread = matrix(golden.at("spreads")[j]);
+  }
+  bank.structure = {bank.modes[0].model.A.rows(), bank.modes[0].model.B.cols(), true};
+  return bank;
+}
+
+class GoldenFilter : public testing::TestWithParam<const char*> {};
+
+TEST_P(GoldenFilter, AgreesWithTheIndependentReference) {
+  std::ifstream file(test::golden_dir() / (std::string(GetParam()) + ".json"));
+  ASSERT_TRUE(file) << GetParam();
+  const json golden = json::parse(file);
+  Trajectory run;
+  run.input = columns(golden.at("input"));
+  run.state = columns(golden.at("measurement"));
+  FilterOptions options;
+  options.variant = parse_name<FilterVariant>(golden.at("variant").get<std::string>()).value();
+  options.parameter_noise = !golden.at("spreads").is_null();
+
+  const RunEvaluation actual = evaluate_run(read_bank(golden), run, options);
+
+  const json& expected = golden.at("expected");
+  const auto agrees = [&](const char* name, const Eigen::MatrixXd& value) {
+    const Eigen::MatrixXd reference = columns(expected.at(name));
+    double scale = 1.0;
+    for (const double entry : reference.reshaped())
+      scale = std::isnan(entry) ? scale : std::max(scale, std::abs(entry));
+    EXPECT_TRUE(near(value, reference, std::max(tolerance, relative_tolerance * scale))) << name;
+  };
+  agrees("prediction", actual.prediction);
+  agrees("innovation", actual.innovation);
+  agrees("innovation_covariance", actual.innovation_covariance);
+  agrees("state", actual.state);
+  agrees("covariance", actual.covariance);
+  agrees("nis", actual.nis.transpose());
+  agrees("pit", actual.pit);
+  agrees("log_density", actual.log_density.transpose());
+  agrees("predicted", actual.mode_probability_predicted);
+  agrees("mu", actual.mode_probability);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, GoldenFilter,
+                         testing::Values("imm_scalar", "imm_vector", "imm_partial", "imm_missing",
+                                         "imm_parameter_noise", "mmae_scalar", "salvi2025_scalar", "salvi2025_vector"),
+                         [](const auto& parameter) { return std::string(parameter.param); });
+
+}  // namespace
+}  // namespace modebank

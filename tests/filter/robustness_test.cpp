@@ -1,0 +1,162 @@
+// No number makes the filter give NaN, and one code serves fixed and dynamic sizes.
+#include <gtest/gtest.h>
+
+#include "filter/evaluate.hpp"
+#include "filter/filter_step.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using test::example_bank;
+using test::simulate_bank;
+
+constexpr FilterVariant all_variants[] = {FilterVariant::imm, FilterVariant::mmae, FilterVariant::salvi2025,
+                                          FilterVariant::kf};
+
+/// Everything from sample 1 on must be finite when every measurement is there.
+void expect_finite(const Bank& bank, const Trajectory& run, const std::string& what) {
+  for (const FilterVariant variant : all_variants)
+    for (const bool parameter_noise : {false, true}) {
+      const RunEvaluation r = evaluate_run(bank, run, {variant, parameter_noise});
+      const Eigen::Index scored = run.samples() - 1;
+      const std::string where = what + ", " + std::string(name_of(variant));
+      EXPECT_TRUE(r.prediction.rightCols(scored).allFinite()) << where;
+      EXPECT_TRUE(r.innovation_covariance.rightCols(scored).allFinite()) << where;
+      EXPECT_TRUE(r.state.allFinite() && r.covariance.allFinite()) << where;
+      EXPECT_TRUE(r.nis.tail(scored).allFinite() && r.log_density.tail(scored).allFinite()) << where;
+      EXPECT_TRUE(r.pit.rightCols(scored).allFinite()) << where;
+      EXPECT_TRUE((r.pit.rightCols(scored).array() >= 0.0).all() && (r.pit.rightCols(scored).array() <= 1.0).all());
+      EXPECT_TRUE(r.mode_probability.allFinite() && r.mode_probability_predicted.allFinite()) << where;
+    }
+}
+
+TEST(NeverNaN, OutliersOfAMillionSigma) {
+  for (const Eigen::Index n : {1, 2, 4}) {
+    const Bank bank = example_bank(n, 1, 3);
+    Trajectory run = simulate_bank(bank, 40, 1);
+    run.state.col(10).setConstant(1e6 * std::sqrt(bank.R(0, 0)));
+    run.state(0, 20) = -1e6;
+    run.state(n - 1, 30) = 1e29;
+    expect_finite(bank, run, "outliers, n = " + std::to_string(n));
+  }
+}
+
+TEST(NeverNaN, AlmostNoMeasurementNoise) {
+  const Bank clean = example_bank(2, 1, 3, 1e-12);
+  expect_finite(clean, simulate_bank(clean, 40, 2), "R = 1e-12");
+}
+
+TEST(NeverNaN, ADeadMode) {
+  Bank bank = example_bank(1, 2, 3);
+  bank.initial_probability << 1.0, 0.0, 0.0;
+  bank.transition = TransitionMatrix((Eigen::MatrixXd(3, 3) << 0.9, 0.1, 0, 0.2, 0.8, 0, 0.5, 0.5, 0).finished());
+  expect_finite(bank, simulate_bank(bank, 40, 3), "mode that no other leads to");
+}
+
+TEST(NeverNaN, SingularNoise) {
+  Bank bank = example_bank(2, 1, 2);
+  for (Mode& mode : bank.modes) mode.Q = Eigen::MatrixXd::Constant(2, 2, 1e-4);
+  const Trajectory run = simulate_bank(bank, 40, 4);
+  expect_finite(bank, run, "rank-one Q");
+  bank.R.setZero();
+  expect_finite(bank, run, "rank-one Q, R = 0");
+  for (Mode& mode : bank.modes) mode.Q.setZero();
+  expect_finite(bank, run, "Q = R = 0");
+}
+
+TEST(NeverNaN, TinyAndHugeUnits) {
+  const Bank bank = example_bank(2, 1, 2);
+  const Trajectory run = simulate_bank(bank, 40, 5);
+  for (const double unit : {1e-9, 1e9}) {
+    Bank scaled = bank;
+    Trajectory scaled_run = run;
+    scaled_run.state *= unit;
+    scaled.R *= unit * unit;
+    for (Mode& mode : scaled.modes) {
+      mode.Q *= unit * unit;
+      mode.model.B *= unit;
+      mode.model.c *= unit;
+    }
+    expect_finite(scaled, scaled_run, "unit " + std::to_string(unit));
+    // The units of a signal do not change which mode it speaks for.
+    constexpr double relative = 1e-9;
+    EXPECT_TRUE(test::near(evaluate_run(scaled, scaled_run, {}).mode_probability,
+                           evaluate_run(bank, run, {}).mode_probability, relative));
+  }
+}
+
+TEST(NeverNaN, AnUnstableModeWithoutMeasurementsStaysFinite) {
+  Bank bank = example_bank(2, 1, 2);
+  bank.modes[1].model.A = 2.0 * Eigen::Matrix2d::Identity();
+  Trajectory run = simulate_bank(example_bank(2, 1, 2), 3000, 6);
+  run.state.middleCols(5, 2900).setConstant(std::nan(""));
+  for (const FilterVariant variant : all_variants) {
+    const RunEvaluation result = evaluate_run(bank, run, {variant});
+    EXPECT_TRUE(result.state.allFinite() && result.covariance.allFinite()) << name_of(variant);
+    EXPECT_TRUE(result.log_density.tail(90).allFinite()) << name_of(variant);
+  }
+}
+
+TEST(NeverNaN, InfinityCountsAsMissing) {
+  const Bank bank = example_bank(1, 1, 2);
+  Trajectory run = simulate_bank(bank, 10, 7), missing = run;
+  run.state(0, 4) = std::numeric_limits<double>::infinity();
+  missing.state(0, 4) = std::nan("");
+  EXPECT_TRUE(test::near(evaluate_run(bank, run, {}).state, evaluate_run(bank, missing, {}).state, 0.0));
+}
+
+TEST(DeadMode, ComesBackWhenTheMotionChanges) {
+  Bank bank = example_bank(1, 2, 2);
+  bank.modes[1].model.c(0) = 0.5;
+  Trajectory calm = simulate_bank(test::single_mode(bank, 0), 400, 8);
+  Trajectory run = simulate_bank(test::single_mode(bank, 1), 420, 9);
+  run.state.leftCols(400) = calm.state;
+  run.input.leftCols(400) = calm.input;
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::mmae}) {
+    const RunEvaluation result = evaluate_run(bank, run, {variant});
+    EXPECT_GT(result.mode_probability(0, 399), 0.99) << name_of(variant);
+    EXPECT_GT(result.mode_probability(1, 419), 0.99) << name_of(variant);
+  }
+}
+
+/// Steps through `run` with the given sizes; the last state and the log densities, bit for bit.
+template <int N, int NY>
+std::vector<double> trace(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  const FilterModel<N, NY> model(bank, options);
+  FilterStep<N, NY> step(model);
+  FilterState<N> state = start(model, run.state.col(0));
+  std::vector<double> numbers;
+  for (Eigen::Index k = 1; k < run.samples(); ++k) {
+    predict(model, state, run.input.col(k - 1), step);
+    numbers.push_back(update(model, run.state.col(k), step, state));
+    for (const Gaussian<N>& mode : state.modes) {
+      numbers.insert(numbers.end(), mode.mean.begin(), mode.mean.end());
+      for (const double entry : mode.covariance.reshaped()) numbers.push_back(entry);
+    }
+    numbers.insert(numbers.end(), state.mode_probability.begin(), state.mode_probability.end());
+  }
+  return numbers;
+}
+
+template <int N>
+void expect_same_bits() {
+  const Bank bank = example_bank(N, 2, 3);
+  const Trajectory run = simulate_bank(bank, 100, 10);
+  for (const FilterVariant variant : all_variants)
+    for (const bool parameter_noise : {false, true}) {
+      const auto fixed = trace<N, N>(bank, run, {variant, parameter_noise});
+      const auto dynamic = trace<Eigen::Dynamic, Eigen::Dynamic>(bank, run, {variant, parameter_noise});
+      EXPECT_EQ(fixed, dynamic) << "n = " << N << ", " << name_of(variant);
+    }
+}
+
+TEST(Sizes, FixedAndDynamicGiveTheSameBits) {
+  expect_same_bits<1>();
+  expect_same_bits<2>();
+  expect_same_bits<3>();
+}
+
+}  // namespace
+}  // namespace modebank
