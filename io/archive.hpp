@@ -1,0 +1,74 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "filter/bank.hpp"
+#include "filter/evaluate.hpp"
+#include "filter/scores.hpp"
+#include "ident/local_model.hpp"
+#include "ident/trajectory.hpp"
+#include "io/import.hpp"
+#include "mixture/select.hpp"
+
+namespace modebank {
+
+/// Where an archive comes from.
+struct Provenance {
+  std::string modebank_version;
+  std::string created;  ///< UTC, ISO 8601
+  std::string command_line;
+  std::string config_hash;
+  std::string data_hash;
+  std::vector<std::pair<std::string, std::string>> versions;  ///< library or tool -> version
+  std::vector<InputFile> inputs;
+};
+
+/// One filter over all runs of the recording, in its order.
+struct FilterEvaluation {
+  std::string filter;  ///< bank, baseline or noise_only
+  std::vector<RunEvaluation> runs;
+};
+
+/// What one execution produced, stage by stage; absent stages did not run.
+struct Archive {
+  Provenance provenance;
+  std::string config;  ///< fully resolved, itself a valid configuration file
+  std::optional<Recording> recording;
+  std::optional<WindowFits> windows;
+  std::optional<MixtureResult> mixture;
+  std::optional<Bank> bank;
+  std::optional<Bank> baseline;
+  std::optional<Bank> noise_only;
+  std::vector<FilterEvaluation> evaluations;
+  std::vector<SummaryRow> summary;
+};
+
+inline constexpr const char* schema_version = "1.0";
+
+/// Throws ConfigurationError when `path` cannot become an archive: its folder is missing or not writable, or it is a
+/// folder.
+void check_writable(const std::filesystem::path& path);
+
+/// Writes under a temporary name in the same folder, flushes, closes, hashes, renames. Throws DataError on failure and
+/// leaves nothing behind. The layout is described in README.md; every number is stored as computed.
+void write_archive(const std::filesystem::path& path, const Archive& archive);
+
+/// Reads all stages that the file holds, bit by bit as written. Throws DataError for a file that is unreadable,
+/// truncated, not a modebank archive, or of a newer major schema; ConfigurationError when it does not exist.
+Archive read_archive(const std::filesystem::path& path);
+
+/// What verification found; empty `problems` means the archive is whole.
+struct Verification {
+  std::vector<std::string> problems;
+  bool ok() const { return problems.empty(); }
+};
+
+/// Checks the hash and zeros of the user block, format, schema version and that the layout's required members are
+/// there.
+Verification verify_archive(const std::filesystem::path& path);
+
+}  // namespace modebank

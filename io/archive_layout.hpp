@@ -1,0 +1,175 @@
+#pragma once
+
+#include <string>
+
+#include "io/archive.hpp"
+#include "io/archive_file.hpp"
+#include "io/archive_layout_filter.hpp"
+#include "io/archive_sizes.hpp"
+#include "io/archive_stored.hpp"
+#include "io/archive_units.hpp"
+#include "io/table_columns.hpp"
+
+/// The one description of the archive's layout; its part for banks and evaluations is archive_layout_filter.hpp. Every
+/// function names members once; `Io` is ArchiveWriter or ArchiveReader, so writing, reading and verification cannot
+/// drift apart. Letters: M windows, K modes, n states, m inputs, n_y outputs, p parameters, N samples, F features.
+namespace modebank::layout {
+
+template <class Io, class R>
+void exchange_recording(Io& io, R& recording) {
+  const auto channels = [&](auto& list, const std::string& kind) {
+    io.through(list, store_channels, restore_channels, [&](auto& stored) {
+      io.attribute_texts(kind + "_names", stored.names);
+      io.attribute_texts(kind + "_units", stored.units);
+    });
+  };
+  channels(recording.states, "state");
+  channels(recording.inputs, "input");
+  const auto named_runs = [](const std::vector<std::string>& names) {
+    std::vector<Trajectory> runs(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) runs[i].run = names[i];
+    return runs;
+  };
+  io.through(recording.runs, run_names, named_runs, [&](auto& names) { io.attribute_texts("runs", names); });
+  Sizes known;
+  known.set("n", recording.states.size());
+  known.set("m", recording.inputs.size());
+  const Units units(recording);
+  for (auto& run : recording.runs)
+    io.group(run.run, known, [&](auto& member) {
+      member.attribute("role", run.role);
+      member.attribute("lag_s", run.lag_s);
+      member.field("time", run.time_s, {"N"}, {"s"});
+      member.field("state", run.state, {"N", "n"}, units.states());
+      member.field("input", run.input, {"N", "m"}, units.inputs());
+      member.optional_field("truth", run.truth, {"N", "n"}, units.states());
+    });
+}
+
+template <class Io, class G>
+void exchange_global(Io& io, G& global, const Unit& parameters, const Unit& states) {
+  io.attribute("transitions", global.transitions);
+  io.field("parameters", global.theta, {"p"}, parameters);
+  io.field("covariance", global.covariance, {"p", "p"}, outer(parameters));
+  io.field("residual_covariance", global.residual_covariance, {"n", "n"}, outer(states));
+  const Eigen::VectorXd noise_variance = Io::reads ? Eigen::VectorXd() : global.noise_variance();
+  io.derived_field("noise_variance", noise_variance, {"n"}, squared(states));
+}
+
+template <class Io, class W>
+void exchange_windows(Io& io, W& fits, const std::vector<Trajectory>& runs, const Units& units) {
+  const Unit parameters = parameter_units(fits.structure, units.states(), units.inputs());
+  io.attribute("length", fits.length);
+  io.attribute("step", fits.step);
+  io.attribute("loss", fits.loss);
+  io.through(
+      fits.windows, [&](const auto& windows) { return store_windows(windows, runs); },
+      [&](const StoredWindows& stored) { return restore_windows(stored, runs, fits.length); },
+      [&](auto& stored) {
+        io.texts("run", stored.run, {"M"});
+        io.field("start", stored.start, {"M"});
+      });
+  io.field("parameters", fits.parameters, {"M", "p"}, parameters);
+  io.field("covariance", fits.covariance, {"M", "p", "p"}, outer(parameters));
+  io.field("noise_variance", fits.noise_variance, {"M", "n"}, squared(units.states()));
+  io.field("condition", fits.condition, {"M"});
+  io.field("rank", fits.rank, {"M"});
+  io.field("information", fits.information, {"M", "p"});
+  io.field("inlier_fraction", fits.inlier_fraction, {"M"});
+  io.field("status", fits.status, {"M"});
+  io.optional_field("prior_sd", fits.prior_sd, {"p"}, parameters);
+  exchange_structure(io, fits.structure);
+  std::vector<std::string> names = fits.structure.parameter_names();
+  io.attribute_texts("parameter_names", names);
+  io.group("global", io.known({"n", "p"}),
+           [&](auto& member) { exchange_global(member, fits.global, parameters, units.states()); });
+}
+
+template <class Io, class C>
+void exchange_candidates(Io& io, C& candidates) {
+  io.table("candidates", candidates, column("components", &Candidate::components),
+           column("covariance", &Candidate::covariance), column("log_likelihood", &Candidate::log_likelihood, "nat"),
+           column("parameters", &Candidate::parameters), column("effective_samples", &Candidate::effective_samples),
+           column("bic", &Candidate::bic), column("aic", &Candidate::aic), column("icl", &Candidate::icl),
+           column("heldout", &Candidate::heldout, "nat"), column("iterations", &Candidate::iterations),
+           column("converged", &Candidate::converged), column("agreeing_restarts", &Candidate::agreeing_restarts),
+           column("selected", &Candidate::selected));
+}
+
+/// `parameters`: units of theta, the first features; the others are logarithms, without unit.
+template <class Io, class X>
+void exchange_mixture(Io& io, X& result, const Unit& parameters) {
+  Unit features = parameters;
+  features.resize(result.feature_names.size(), "1");
+  exchange_candidates(io, result.candidates);
+  io.attribute_texts("feature_names", result.feature_names);
+  io.attribute("covariance", result.mixture.type);
+  io.field("weights", result.mixture.weights, {"K"});
+  io.field("means", result.mixture.means, {"K", "F"}, features);
+  io.through(
+      result.mixture.covariances, store_covariances,
+      [&](const Eigen::MatrixXd& stored) { return restore_covariances(stored, result.mixture.features()); },
+      [&](auto& stored) {
+        io.field("covariances", stored, {"K", "F", "F"}, outer(features));
+      });
+  io.field("labels", result.labels, {"M"});
+  io.field("responsibilities", result.responsibilities, {"M", "K"});
+}
+
+template <class Io, class P>
+void exchange_provenance(Io& io, P& provenance) {
+  io.attributes(provenance.versions);
+  io.table("inputs", provenance.inputs, column("path", &InputFile::path), column("bytes", &InputFile::bytes, "byte"),
+           column("sha256", &InputFile::sha256));
+}
+
+/// A part that an std::optional holds.
+template <class Io, class T, class Body>
+void exchange_part(Io& io, const std::string& name, T& part, const Sizes& known, Body body) {
+  io.optional_group(name, part.has_value(), known, [&](auto& member) {
+    if constexpr (Io::reads) part.emplace();
+    body(member, *part);
+  });
+}
+
+/// The root attributes, the configuration and where everything comes from; every archive has them.
+template <class Io, class A>
+void exchange_origin(Io& io, A& archive) {
+  io.constant_attribute("format", std::string(archive_format));
+  std::string version = schema_version;
+  io.attribute("schema_version", version);
+  io.attribute("modebank_version", archive.provenance.modebank_version);
+  io.attribute("created", archive.provenance.created);
+  io.attribute("command_line", archive.provenance.command_line);
+  io.attribute("config_hash", archive.provenance.config_hash);
+  io.attribute("data_hash", archive.provenance.data_hash);
+  io.text("config", archive.config);
+  io.group("provenance", {}, [&](auto& member) { exchange_provenance(member, archive.provenance); });
+}
+
+template <class Io, class A>
+void exchange_archive(Io& io, A& archive) {
+  exchange_origin(io, archive);
+  exchange_part(io, "data", archive.recording, {}, [](auto& member, auto& part) { exchange_recording(member, part); });
+  const Recording none;
+  const Recording& recording = archive.recording ? *archive.recording : none;
+  const Units units(recording);
+  exchange_part(io, "windows", archive.windows, {},
+                [&](auto& member, auto& part) { exchange_windows(member, part, recording.runs, units); });
+  Sizes known;
+  Unit parameters;
+  if (archive.windows) {
+    if (archive.windows->count() > 0) known.set("M", static_cast<hsize_t>(archive.windows->count()));
+    parameters = parameter_units(archive.windows->structure, units.states(), units.inputs());
+  }
+  exchange_part(io, "mixture", archive.mixture, known,
+                [&](auto& member, auto& part) { exchange_mixture(member, part, parameters); });
+  const auto exchange_one = [&](auto& member, auto& part) { exchange_bank(member, part, units); };
+  exchange_part(io, "bank", archive.bank, {}, exchange_one);
+  exchange_part(io, "baseline", archive.baseline, {}, exchange_one);
+  exchange_part(io, "noise_only", archive.noise_only, {}, exchange_one);
+  io.optional_group("evaluation", !archive.evaluations.empty() || !archive.summary.empty(), {},
+                    [&](auto& member) { exchange_evaluation(member, archive, recording, units); });
+}
+
+}  // namespace modebank::layout

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "io/archive.hpp"
+#include "io/archive_sizes.hpp"
+#include "io/archive_stored.hpp"
+#include "io/archive_units.hpp"
+#include "io/table_columns.hpp"
+
+/// The layout of banks and evaluations; see archive_layout.hpp.
+namespace modebank::layout {
+
+/// Needs n and p, which the arrays before have bound when reading.
+template <class Io, class S>
+void exchange_structure(Io& io, S& structure) {
+  io.constant_attribute("model", std::string("linear"));
+  io.constant_attribute("form", std::string("increment"));
+  io.attribute("intercept", structure.intercept);
+  if constexpr (Io::reads)
+    io.finish([&] { structure = restore_structure(io.size("n"), io.size("p"), structure.intercept); });
+}
+
+/// The filter measures the recorded states, so outputs have the states' units where there are as many.
+template <class Io, class S>
+void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs) {
+  const Unit parameters = parameter_units(stored.structure, states, inputs);
+  const bool measured = static_cast<std::size_t>(stored.C.cols()) == states.size();
+  io.field("weight", stored.weight, {"K"});
+  io.field("c", stored.c, {"K", "n"}, states);
+  io.field("A", stored.A, {"K", "n", "n"}, ratios(states, states));
+  io.field("B", stored.B, {"K", "n", "m"}, ratios(states, inputs));
+  io.field("Q", stored.Q, {"K", "n", "n"}, outer(states));
+  io.field("parameters", stored.parameters, {"K", "p"}, parameters);
+  io.optional_field("parameter_covariance", stored.spread, {"K", "p", "p"}, outer(parameters));
+  io.optional_field("parameter_standard_error", stored.standard_error, {"K", "p"}, parameters);
+  io.field("C", stored.C, {"n_y", "n"}, measured ? ratios(states, states) : Unit());
+  io.field("R", stored.R, {"n_y", "n_y"}, measured ? outer(states) : Unit());
+  io.field("transition", stored.transition, {"K", "K"});
+  io.field("initial_probability", stored.initial_probability, {"K"});
+  exchange_structure(io, stored.structure);
+}
+
+/// Names, period and screened modes, then everything that StoredBank holds.
+template <class Io, class B>
+void exchange_bank(Io& io, B& bank, const Units& units) {
+  io.attribute_texts("state_names", bank.state_names);
+  io.attribute_texts("input_names", bank.input_names);
+  io.attribute("dt_s", bank.dt_s);
+  io.table("screened", bank.screened, column("component", &ScreenedMode::component),
+           column("weight", &ScreenedMode::weight), column("spectral_radius", &ScreenedMode::spectral_radius),
+           column("reason", &ScreenedMode::reason));
+  const Unit states = units.states(bank.state_names), inputs = units.inputs(bank.input_names);
+  io.through(
+      bank, store_bank, [&](const StoredBank& stored) { return restore_bank(stored, bank); },
+      [&](auto& stored) { exchange_modes(io, stored, states, inputs); });
+}
+
+template <class Io, class E>
+void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
+  io.field("prediction", evaluation.prediction, {"N", "n"}, states);
+  io.field("innovation", evaluation.innovation, {"N", "n_y"}, states);
+  io.field("innovation_covariance", evaluation.innovation_covariance, {"N", "n_y", "n_y"}, outer(states));
+  io.field("state", evaluation.state, {"N", "n"}, states);
+  io.field("covariance", evaluation.covariance, {"N", "n", "n"}, outer(states));
+  io.field("nis", evaluation.nis, {"N"});
+  io.field("pit", evaluation.pit, {"N", "n_y"});
+  io.field("log_density", evaluation.log_density, {"N"}, {"nat"});
+  io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"N", "K"});
+  io.field("mode_probability", evaluation.mode_probability, {"N", "K"});
+}
+
+/// One filter's evaluation of every run of the recording.
+template <class Io, class F>
+void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Unit& states) {
+  if constexpr (Io::reads) evaluation.runs.resize(recording.runs.size());
+  if (evaluation.runs.size() != recording.runs.size())
+    throw std::invalid_argument("filter " + evaluation.filter + " has evaluated " +
+                                std::to_string(evaluation.runs.size()) + " runs of " +
+                                std::to_string(recording.runs.size()));
+  for (std::size_t i = 0; i < recording.runs.size(); ++i) {
+    Sizes known;
+    if (recording.runs[i].samples() > 0) known.set("N", static_cast<hsize_t>(recording.runs[i].samples()));
+    io.group(recording.runs[i].run, known,
+             [&](auto& member) { exchange_run_evaluation(member, evaluation.runs[i], states); });
+  }
+}
+
+template <class Io, class S>
+void exchange_summary(Io& io, S& summary, const Unit& states) {
+  io.optional_table("summary", summary, column("filter", &SummaryRow::filter), column("role", &SummaryRow::role),
+                    column("run", &SummaryRow::run), column("samples", &SummaryRow::samples),
+                    column("log_score", &SummaryRow::log_score, "nat"),
+                    column("rmse", &SummaryRow::rmse, joined(states)), column("nis_mean", &SummaryRow::nis_mean),
+                    column("nis_above", &SummaryRow::nis_above), column("nis_below", &SummaryRow::nis_below),
+                    column("tail_above", &SummaryRow::tail_above), column("tail_below", &SummaryRow::tail_below),
+                    column("pit_distance", &SummaryRow::pit_distance), column("whiteness_p", &SummaryRow::whiteness_p));
+}
+
+template <class Io, class A>
+void exchange_evaluation(Io& io, A& archive, const Recording& recording, const Units& units) {
+  const auto names = [](const std::vector<FilterEvaluation>& list) {
+    std::vector<std::string> filters;
+    for (const FilterEvaluation& evaluation : list) filters.push_back(evaluation.filter);
+    return filters;
+  };
+  const auto named = [](const std::vector<std::string>& filters) {
+    std::vector<FilterEvaluation> list;
+    for (const std::string& filter : filters) list.push_back({filter, {}});
+    return list;
+  };
+  io.through(archive.evaluations, names, named, [&](auto& filters) { io.attribute_texts("filters", filters); });
+  for (auto& evaluation : archive.evaluations)
+    io.group(evaluation.filter, {},
+             [&](auto& member) { exchange_filter(member, evaluation, recording, units.states()); });
+  exchange_summary(io, archive.summary, units.states());
+}
+
+}  // namespace modebank::layout

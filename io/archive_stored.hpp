@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "filter/bank.hpp"
+#include "ident/local_model.hpp"
+#include "ident/trajectory.hpp"
+#include "mixture/select.hpp"
+
+namespace modebank {
+
+/// Forms in which the archive stores values whose structs are shaped otherwise. Each `store_` has a `restore_` that
+/// gives back the same bits. Arrays hold one window or mode per column; matrices within a column are row-major.
+/// store_ throws std::invalid_argument for sizes that disagree, restore_ DataError for content that cannot be.
+
+struct StoredChannels {
+  std::vector<std::string> names;
+  std::vector<std::string> units;
+};
+StoredChannels store_channels(const std::vector<Channel>& channels);
+std::vector<Channel> restore_channels(const StoredChannels& stored);
+
+std::vector<std::string> run_names(const std::vector<Trajectory>& runs);
+
+/// Windows by the name of their run.
+struct StoredWindows {
+  std::vector<std::string> run;                          ///< M
+  Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> start;  ///< M
+};
+StoredWindows store_windows(const std::vector<Window>& windows, const std::vector<Trajectory>& runs);
+/// Every window must lie within its run.
+std::vector<Window> restore_windows(const StoredWindows& stored, const std::vector<Trajectory>& runs, Index length);
+
+/// n states, p parameters and the intercept decide the number of inputs. Throws DataError when they do not.
+LinearStructure restore_structure(Index states, Index parameters, bool intercept);
+
+/// The components' covariances, F*F x K.
+Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances);
+std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, Index features);
+
+/// A bank's modes side by side (K columns) and its matrices so that their memory is row-major.
+struct StoredBank {
+  LinearStructure structure;
+  Eigen::VectorXd weight;          ///< K
+  Eigen::MatrixXd c;               ///< n x K
+  Eigen::MatrixXd A;               ///< n*n x K
+  Eigen::MatrixXd B;               ///< n*m x K
+  Eigen::MatrixXd Q;               ///< n*n x K
+  Eigen::MatrixXd parameters;      ///< p x K
+  Eigen::MatrixXd spread;          ///< p*p x K, empty without
+  Eigen::MatrixXd standard_error;  ///< p x K, empty without
+  Eigen::MatrixXd C;               ///< transposed
+  Eigen::MatrixXd R;               ///< transposed
+  Eigen::MatrixXd transition;      ///< transposed
+  Eigen::VectorXd initial_probability;
+};
+StoredBank store_bank(const Bank& bank);
+/// Fills what StoredBank holds and leaves names, dt_s and the screened modes as they are.
+Bank restore_bank(const StoredBank& stored, Bank named);
+
+}  // namespace modebank

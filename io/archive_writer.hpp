@@ -1,0 +1,127 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "io/archive_sizes.hpp"
+#include "io/archive_units.hpp"
+#include "io/hdf5_array.hpp"
+#include "io/table_columns.hpp"
+
+namespace modebank {
+
+/// The writing side of the layout's description (archive_layout.hpp): one group of a file in the making.
+/// Arrays hold one sample, window or mode per column, which in memory is just the row-major (count, ...) dataset.
+class ArchiveWriter {
+ public:
+  static constexpr bool reads = false;
+
+  explicit ArchiveWriter(hdf5::Handle group, std::string path = {})
+      : group_(std::move(group)), path_(std::move(path)) {}
+
+  /// Makes a member group and runs `body(writer)` on it.
+  template <class Body>
+  void group(const std::string& name, const Sizes& known, Body body) {
+    ArchiveWriter member(make_group(name), path_ + "/" + name);
+    member.sizes_ = known;
+    body(member);
+  }
+  /// An absent part is left out.
+  template <class Body>
+  void optional_group(const std::string& name, bool present, const Sizes& known, Body body) {
+    if (present) group(name, known, body);
+  }
+
+  template <class T>
+  void attribute(const std::string& name, const T& value) {
+    write_attribute(name, to_stored(value));
+  }
+  template <class T>
+  void constant_attribute(const std::string& name, const T& value) {
+    attribute(name, value);
+  }
+  void attribute_texts(const std::string& name, const std::vector<std::string>& texts) {
+    hdf5::write_texts(group_.id(), hdf5::Place::attribute, name, texts, {texts.size()});
+  }
+  /// Every pair becomes an attribute.
+  void attributes(const std::vector<std::pair<std::string, std::string>>& pairs) {
+    for (const auto& [name, value] : pairs) attribute(name, value);
+  }
+
+  void text(const std::string& name, const std::string& value) {
+    hdf5::write_texts(group_.id(), hdf5::Place::dataset, name, {value}, {});
+  }
+  void texts(const std::string& name, const std::vector<std::string>& values, const Letters& letters) {
+    agree(name, letters, {values.size()});
+    hdf5::write_texts(group_.id(), hdf5::Place::dataset, name, values, {values.size()});
+  }
+
+  /// A vector has one letter; a matrix has two, or three when each column is itself a matrix. The middle extent must
+  /// then be known already.
+  template <class Derived>
+  void field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
+             const Unit& unit = {}) {
+    using Stored = decltype(to_stored(std::declval<typename Derived::Scalar>()));
+    const hdf5::Shape shape = shape_of(name, letters, static_cast<hsize_t>(values.rows()),
+                                       static_cast<hsize_t>(values.cols()), Derived::IsVectorAtCompileTime);
+    hdf5::write_array(group_.id(), hdf5::Place::dataset, name, hdf5::file_type<Stored>(), hdf5::memory_type<Stored>(),
+                      shape, values.data());
+    write_unit(name, unit, shape);
+  }
+  /// An array computed from others: for readers of the file, ignored when read back.
+  template <class Derived>
+  void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
+                     const Unit& unit = {}) {
+    field(name, values, letters, unit);
+  }
+  /// An empty array is left out.
+  template <class Derived>
+  void optional_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
+                      const Unit& unit = {}) {
+    if (values.size() > 0) field(name, values, letters, unit);
+  }
+
+  template <class Row, class... T>
+  void table(const std::string& name, const std::vector<Row>& rows, const Column<Row, T>&... columns) {
+    hdf5::write_table(group_.id(), name, {encode(rows, columns)...}, rows.size());
+    write_column_units(name, {columns.unit...});
+  }
+
+  /// An empty table is left out.
+  template <class Row, class... T>
+  void optional_table(const std::string& name, const std::vector<Row>& rows, const Column<Row, T>&... columns) {
+    if (!rows.empty()) table(name, rows, columns...);
+  }
+
+  /// Works on the stored form of a value: `to` makes it, `body` writes it.
+  template <class Value, class To, class From, class Body>
+  void through(const Value& value, To to, From, Body body) {
+    const auto stored = to(value);
+    body(stored);
+  }
+
+  /// What the arrays so far have decided, to hand on to a member group.
+  Sizes known(const Letters& letters) const { return sizes_.only(letters); }
+
+ private:
+  hdf5::Handle make_group(const std::string& name);
+  void write_attribute(const std::string& name, const std::string& value) {
+    hdf5::write_texts(group_.id(), hdf5::Place::attribute, name, {value}, {});
+  }
+  template <class Number>
+  void write_attribute(const std::string& name, Number value) {
+    hdf5::write_array(group_.id(), hdf5::Place::attribute, name, hdf5::file_type<Number>(), hdf5::memory_type<Number>(),
+                      {}, &value);
+  }
+  void agree(const std::string& name, const Letters& letters, const hdf5::Shape& shape);
+  hdf5::Shape shape_of(const std::string& name, const Letters& letters, hsize_t rows, hsize_t cols, bool is_vector);
+  void write_unit(const std::string& name, const Unit& unit, const hdf5::Shape& shape);
+  void write_column_units(const std::string& name, const std::vector<std::string>& units);
+
+  hdf5::Handle group_;
+  std::string path_;
+  Sizes sizes_;
+};
+
+}  // namespace modebank

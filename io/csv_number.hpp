@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string_view>
+
+namespace modebank {
+
+enum class NumberStatus { ok, missing, out_of_range, text };
+
+struct ParsedNumber {
+  double value = 0.0;
+  NumberStatus status = NumberStatus::ok;
+};
+
+/// A decimal number with blanks around it and a leading '+' tolerated. Empty, NaN and infinity are `missing`; what is
+/// too small for a double becomes zero.
+ParsedNumber parse_number(std::string_view field);
+
+}  // namespace modebank

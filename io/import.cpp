@@ -1,0 +1,118 @@
+#include "io/import.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <exception>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "ident/error.hpp"
+#include "io/import_plan.hpp"
+#include "io/read_runs.hpp"
+#include "io/run_roles.hpp"
+#include "io/sha256.hpp"
+
+namespace modebank {
+
+namespace {
+
+std::vector<Channel> make_channels(const char* key, const std::vector<std::string>& names,
+                                   const std::vector<std::string>& units) {
+  if (units.size() > 1 && units.size() != names.size())
+    throw ConfigurationError(
+        fmt::format("data.{0}_unit has {1} units, but data.{0} {2} columns: one each, one for all, "
+                    "or none",
+                    key, units.size(), names.size()));
+  std::vector<Channel> channels;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    channels.push_back({names[i], units.empty() ? "" : units[units.size() == 1 ? 0 : i]});
+  return channels;
+}
+
+/// What reading one plan gave, or how it failed: the failure of the first plan in order is the one reported.
+struct Outcome {
+  FileContent content;
+  std::exception_ptr error;
+};
+
+Outcome try_read(const FilePlan& plan, const DataOptions& options) {
+  Outcome outcome;
+  try {
+    outcome.content = read_runs(plan, options);
+  } catch (...) {
+    outcome.error = std::current_exception();
+  }
+  return outcome;
+}
+
+/// Reads plans in parallel; results arrive in order, so the hash over all contents needs only a few of them in memory.
+void read_all(const std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data) {
+  Sha256 hash;
+  std::vector<Outcome> outcomes(plans.size());  // the pipeline passes positions on: it would leak objects on an error
+  std::size_t next = 0;
+  const auto take = [&](tbb::flow_control& flow) {
+    if (next == plans.size()) flow.stop();
+    return next++;
+  };
+  const auto read = [&](std::size_t plan) {
+    outcomes[plan] = try_read(plans[plan], options);
+    return plan;
+  };
+  const auto collect = [&](std::size_t plan) {
+    Outcome outcome = std::exchange(outcomes[plan], {});
+    if (outcome.error) std::rethrow_exception(outcome.error);
+    for (const std::string& bytes : outcome.content.content) hash.update(bytes);
+    std::move(outcome.content.files.begin(), outcome.content.files.end(), std::back_inserter(data.files));
+    std::move(outcome.content.runs.begin(), outcome.content.runs.end(), std::back_inserter(data.recording.runs));
+  };
+  const auto in_flight = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  using tbb::filter_mode;
+  tbb::parallel_pipeline(in_flight, tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, take) &
+                                        tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, read) &
+                                        tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, collect));
+  data.data_hash = hash.hex();
+}
+
+/// Run names become groups of the archive.
+void check_run_names(const std::vector<Trajectory>& runs) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const std::string& name = runs[i].run;
+    if (name.find('/') != std::string::npos || name == "." || name == "..")
+      throw DataError(fmt::format("\"{}\" cannot name a run: a name must not hold '/' nor be '.' or '..'", name));
+    if (i > 0 && name == runs[i - 1].run) throw DataError(fmt::format("two runs are named \"{}\"", name));
+  }
+}
+
+void set_roles(std::vector<Trajectory>& runs, const DataOptions& options) {
+  std::vector<std::string> names(runs.size());
+  std::transform(runs.begin(), runs.end(), names.begin(), [](const Trajectory& run) { return run.run; });
+  const std::vector<std::optional<Role>> roles = assign_roles(names, options.train, options.test);
+  std::vector<Trajectory> kept;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!roles[i]) continue;
+    runs[i].role = *roles[i];
+    kept.push_back(std::move(runs[i]));
+  }
+  runs = std::move(kept);
+}
+
+}  // namespace
+
+ImportedData import_data(const DataOptions& options) {
+  ImportedData data;
+  data.recording.states = make_channels("state", options.state, options.state_unit);
+  data.recording.inputs = make_channels("input", options.input, options.input_unit);
+  const std::vector<FilePlan> plans = plan_import(options);
+  read_all(plans, options, data);
+  auto& runs = data.recording.runs;
+  std::sort(runs.begin(), runs.end(), [](const Trajectory& a, const Trajectory& b) { return a.run < b.run; });
+  check_run_names(runs);
+  set_roles(runs, options);
+  return data;
+}
+
+}  // namespace modebank

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ident/trajectory.hpp"
+#include "io/data_options.hpp"
+
+namespace modebank {
+
+/// One file that was read, for provenance.
+struct InputFile {
+  std::string path;  ///< absolute
+  std::uint64_t bytes = 0;
+  std::string sha256;  ///< lowercase hex of the content
+};
+
+struct ImportedData {
+  Recording recording;           ///< runs sorted by name (byte order), roles set
+  std::vector<InputFile> files;  ///< in run order, inputs before states
+  std::string data_hash;         ///< SHA-256 over the files' contents, in that order
+};
+
+/// Finds, checks and reads all runs. Throws ConfigurationError for what can be seen before any sample is read (pattern
+/// without a match, a run without its states file, empty file, missing column: lists those that exist, unknown run
+/// name) and DataError, naming file and line, for content (text in a number, NaN, time not increasing, too few samples,
+/// streams that do not overlap, row counts that differ under Join::row).
+ImportedData import_data(const DataOptions& options);
+
+}  // namespace modebank

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+namespace modebank {
+
+/// Why `path` cannot become a regular file of ours: its folder is missing or not writable, or something that is not a
+/// regular file has the name. Empty when nothing stands in the way.
+std::string write_obstacle(const std::filesystem::path& path);
+
+/// Makes `path` hold the given pieces, one after the other: temporary name in the same folder, fsync, rename, fsync of
+/// the folder. A file under its final name is complete; on failure the temporary is removed, the old file stays and
+/// DataError gives the system's reason.
+void replace_file(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces);
+
+}  // namespace modebank

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace modebank {
+
+/// The HDF5 user block in front of an archive's content: the lowercase hex SHA-256 of all bytes after the block in
+/// bytes 0-63, zeros in the rest.
+inline constexpr std::size_t user_block_bytes = 512;
+using UserBlock = std::array<char, user_block_bytes>;
+
+UserBlock make_user_block(std::string_view content_sha256);
+
+/// What is wrong with a block whose content has the given hash; empty when nothing is.
+std::vector<std::string> user_block_problems(const UserBlock& block, std::string_view content_sha256);
+
+}  // namespace modebank

@@ -1,0 +1,198 @@
+#include <cstring>
+
+#include "tests/io/archive_fixture.hpp"
+
+namespace modebank::test {
+
+namespace {
+
+using test::expect_same;  // beside the overloads of this file
+
+void expect_same(const Recording& actual, const Recording& expected) {
+  const auto same_channels = [](const std::vector<Channel>& a, const std::vector<Channel>& e) {
+    ASSERT_EQ(a.size(), e.size());
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].name, e[i].name);
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].unit, e[i].unit);
+  };
+  same_channels(actual.states, expected.states);
+  same_channels(actual.inputs, expected.inputs);
+  ASSERT_EQ(actual.runs.size(), expected.runs.size());
+  for (std::size_t r = 0; r < actual.runs.size(); ++r) {
+    const Trajectory &a = actual.runs[r], &e = expected.runs[r];
+    EXPECT_EQ(a.run, e.run);
+    EXPECT_EQ(a.role, e.role);
+    EXPECT_EQ(a.lag_s, e.lag_s);
+    EXPECT_TRUE(same_bits(a.time_s, e.time_s));
+    EXPECT_TRUE(same_bits(a.state, e.state));
+    EXPECT_TRUE(same_bits(a.input, e.input));
+    EXPECT_TRUE(same_bits(a.truth, e.truth));
+  }
+}
+
+void expect_same(const WindowFits& actual, const WindowFits& expected) {
+  EXPECT_EQ(actual.structure, expected.structure);
+  EXPECT_EQ(actual.length, expected.length);
+  EXPECT_EQ(actual.step, expected.step);
+  EXPECT_EQ(actual.loss, expected.loss);
+  ASSERT_EQ(actual.windows.size(), expected.windows.size());
+  for (std::size_t i = 0; i < actual.windows.size(); ++i) {
+    EXPECT_EQ(actual.windows[i].run, expected.windows[i].run);
+    EXPECT_EQ(actual.windows[i].start, expected.windows[i].start);
+  }
+  EXPECT_TRUE(same_bits(actual.parameters, expected.parameters));
+  EXPECT_TRUE(same_bits(actual.covariance, expected.covariance));
+  EXPECT_TRUE(same_bits(actual.noise_variance, expected.noise_variance));
+  EXPECT_TRUE(same_bits(actual.condition, expected.condition));
+  EXPECT_EQ(actual.rank, expected.rank);
+  EXPECT_TRUE(same_bits(actual.information, expected.information));
+  EXPECT_TRUE(same_bits(actual.inlier_fraction, expected.inlier_fraction));
+  EXPECT_EQ(actual.status, expected.status);
+  EXPECT_TRUE(same_bits(actual.prior_sd, expected.prior_sd));
+  EXPECT_TRUE(same_bits(actual.global.theta, expected.global.theta));
+  EXPECT_TRUE(same_bits(actual.global.covariance, expected.global.covariance));
+  EXPECT_TRUE(same_bits(actual.global.residual_covariance, expected.global.residual_covariance));
+  EXPECT_EQ(actual.global.transitions, expected.global.transitions);
+}
+
+void expect_same(const Candidate& a, const Candidate& e) {
+  EXPECT_EQ(a.components, e.components);
+  EXPECT_EQ(a.covariance, e.covariance);
+  EXPECT_EQ(a.parameters, e.parameters);
+  EXPECT_EQ(a.iterations, e.iterations);
+  EXPECT_EQ(a.converged, e.converged);
+  EXPECT_EQ(a.agreeing_restarts, e.agreeing_restarts);
+  EXPECT_EQ(a.selected, e.selected);
+  const auto reals = [](const Candidate& c) {
+    return Eigen::Matrix<double, 6, 1>(c.log_likelihood, c.effective_samples, c.bic, c.aic, c.icl, c.heldout);
+  };
+  EXPECT_TRUE(same_bits(reals(a), reals(e)));
+}
+
+void expect_same(const MixtureResult& actual, const MixtureResult& expected) {
+  EXPECT_TRUE(same_bits(actual.mixture.weights, expected.mixture.weights));
+  EXPECT_TRUE(same_bits(actual.mixture.means, expected.mixture.means));
+  ASSERT_EQ(actual.mixture.covariances.size(), expected.mixture.covariances.size());
+  for (std::size_t k = 0; k < actual.mixture.covariances.size(); ++k)
+    EXPECT_TRUE(same_bits(actual.mixture.covariances[k], expected.mixture.covariances[k]));
+  EXPECT_EQ(actual.mixture.type, expected.mixture.type);
+  EXPECT_EQ(actual.feature_names, expected.feature_names);
+  EXPECT_EQ(actual.labels, expected.labels);
+  EXPECT_TRUE(same_bits(actual.responsibilities, expected.responsibilities));
+  ASSERT_EQ(actual.candidates.size(), expected.candidates.size());
+  for (std::size_t i = 0; i < actual.candidates.size(); ++i) expect_same(actual.candidates[i], expected.candidates[i]);
+}
+
+void expect_same(const SummaryRow& a, const SummaryRow& e) {
+  EXPECT_EQ(a.filter, e.filter);
+  EXPECT_EQ(a.role, e.role);
+  EXPECT_EQ(a.run, e.run);
+  EXPECT_EQ(a.samples, e.samples);
+  EXPECT_TRUE(same_bits(a.rmse, e.rmse));
+  const auto reals = [](const SummaryRow& r) {
+    Eigen::VectorXd values(8);
+    values << r.log_score, r.nis_mean, r.nis_above, r.nis_below, r.tail_above, r.tail_below, r.pit_distance,
+        r.whiteness_p;
+    return values;
+  };
+  EXPECT_TRUE(same_bits(reals(a), reals(e)));
+}
+
+void expect_same(const Provenance& actual, const Provenance& expected) {
+  EXPECT_EQ(actual.modebank_version, expected.modebank_version);
+  EXPECT_EQ(actual.created, expected.created);
+  EXPECT_EQ(actual.command_line, expected.command_line);
+  EXPECT_EQ(actual.config_hash, expected.config_hash);
+  EXPECT_EQ(actual.data_hash, expected.data_hash);
+  EXPECT_EQ(actual.versions, expected.versions);
+  ASSERT_EQ(actual.inputs.size(), expected.inputs.size());
+  for (std::size_t i = 0; i < actual.inputs.size(); ++i) {
+    EXPECT_EQ(actual.inputs[i].path, expected.inputs[i].path);
+    EXPECT_EQ(actual.inputs[i].bytes, expected.inputs[i].bytes);
+    EXPECT_EQ(actual.inputs[i].sha256, expected.inputs[i].sha256);
+  }
+}
+
+template <class T>
+void expect_same_part(const std::optional<T>& actual, const std::optional<T>& expected, const char* part) {
+  SCOPED_TRACE(part);
+  ASSERT_EQ(actual.has_value(), expected.has_value());
+  if (actual) expect_same(*actual, *expected);
+}
+
+}  // namespace
+
+::testing::AssertionResult same_bits(const Eigen::MatrixXd& actual, const Eigen::MatrixXd& expected) {
+  if (actual.rows() != expected.rows() || actual.cols() != expected.cols())
+    return ::testing::AssertionFailure() << "shape " << actual.rows() << " x " << actual.cols() << ", expected "
+                                         << expected.rows() << " x " << expected.cols();
+  for (Index j = 0; j < actual.cols(); ++j)
+    for (Index i = 0; i < actual.rows(); ++i)
+      if (std::memcmp(&actual(i, j), &expected(i, j), sizeof(double)) != 0)
+        return ::testing::AssertionFailure()
+               << "at (" << i << ", " << j << "): " << actual(i, j) << ", expected " << expected(i, j);
+  return ::testing::AssertionSuccess();
+}
+
+void expect_same(const RunEvaluation& a, const RunEvaluation& e) {
+  EXPECT_TRUE(same_bits(a.prediction, e.prediction));
+  EXPECT_TRUE(same_bits(a.innovation, e.innovation));
+  EXPECT_TRUE(same_bits(a.innovation_covariance, e.innovation_covariance));
+  EXPECT_TRUE(same_bits(a.state, e.state));
+  EXPECT_TRUE(same_bits(a.covariance, e.covariance));
+  EXPECT_TRUE(same_bits(a.nis, e.nis));
+  EXPECT_TRUE(same_bits(a.pit, e.pit));
+  EXPECT_TRUE(same_bits(a.log_density, e.log_density));
+  EXPECT_TRUE(same_bits(a.mode_probability_predicted, e.mode_probability_predicted));
+  EXPECT_TRUE(same_bits(a.mode_probability, e.mode_probability));
+}
+
+void expect_same(const Bank& actual, const Bank& expected) {
+  EXPECT_EQ(actual.structure, expected.structure);
+  ASSERT_EQ(actual.modes.size(), expected.modes.size());
+  for (std::size_t k = 0; k < actual.modes.size(); ++k) {
+    const Mode &a = actual.modes[k], &e = expected.modes[k];
+    EXPECT_TRUE(same_bits(a.model.A, e.model.A));
+    EXPECT_TRUE(same_bits(a.model.B, e.model.B));
+    EXPECT_TRUE(same_bits(a.model.c, e.model.c));
+    EXPECT_TRUE(same_bits(a.Q, e.Q));
+    EXPECT_TRUE(same_bits(a.spread, e.spread));
+    EXPECT_TRUE(same_bits(a.standard_error, e.standard_error));
+    EXPECT_EQ(a.weight, e.weight);
+  }
+  EXPECT_TRUE(same_bits(actual.C, expected.C));
+  EXPECT_TRUE(same_bits(actual.R, expected.R));
+  EXPECT_TRUE(same_bits(actual.transition.matrix(), expected.transition.matrix()));
+  EXPECT_TRUE(same_bits(actual.initial_probability, expected.initial_probability));
+  EXPECT_EQ(actual.state_names, expected.state_names);
+  EXPECT_EQ(actual.input_names, expected.input_names);
+  EXPECT_EQ(actual.dt_s, expected.dt_s);
+  ASSERT_EQ(actual.screened.size(), expected.screened.size());
+  for (std::size_t i = 0; i < actual.screened.size(); ++i) {
+    EXPECT_EQ(actual.screened[i].component, expected.screened[i].component);
+    EXPECT_EQ(actual.screened[i].weight, expected.screened[i].weight);
+    EXPECT_EQ(actual.screened[i].spectral_radius, expected.screened[i].spectral_radius);
+    EXPECT_EQ(actual.screened[i].reason, expected.screened[i].reason);
+  }
+}
+
+void expect_same(const Archive& actual, const Archive& expected) {
+  expect_same(actual.provenance, expected.provenance);
+  EXPECT_EQ(actual.config, expected.config);
+  expect_same_part(actual.recording, expected.recording, "recording");
+  expect_same_part(actual.windows, expected.windows, "windows");
+  expect_same_part(actual.mixture, expected.mixture, "mixture");
+  expect_same_part(actual.bank, expected.bank, "bank");
+  expect_same_part(actual.baseline, expected.baseline, "baseline");
+  expect_same_part(actual.noise_only, expected.noise_only, "noise_only");
+  ASSERT_EQ(actual.evaluations.size(), expected.evaluations.size());
+  for (std::size_t f = 0; f < actual.evaluations.size(); ++f) {
+    EXPECT_EQ(actual.evaluations[f].filter, expected.evaluations[f].filter);
+    ASSERT_EQ(actual.evaluations[f].runs.size(), expected.evaluations[f].runs.size());
+    for (std::size_t r = 0; r < actual.evaluations[f].runs.size(); ++r)
+      expect_same(actual.evaluations[f].runs[r], expected.evaluations[f].runs[r]);
+  }
+  ASSERT_EQ(actual.summary.size(), expected.summary.size());
+  for (std::size_t i = 0; i < actual.summary.size(); ++i) expect_same(actual.summary[i], expected.summary[i]);
+}
+
+}  // namespace modebank::test

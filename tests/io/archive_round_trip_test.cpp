@@ -1,0 +1,139 @@
+#include <gtest/gtest.h>
+
+#include <boost/random/uniform_01.hpp>
+
+#include "filter/evaluate.hpp"
+#include "ident/error.hpp"
+#include "ident/seed.hpp"
+#include "io/archive.hpp"
+#include "tests/io/archive_fixture.hpp"
+#include "tests/support/paths.hpp"
+
+namespace modebank {
+namespace {
+
+using test::expect_same;
+using test::full_archive;
+
+Archive round_trip(const Archive& archive) {
+  const test::TemporaryFolder folder;
+  write_archive(folder.path() / "a.h5", archive);
+  EXPECT_EQ(verify_archive(folder.path() / "a.h5").problems, std::vector<std::string>());
+  return read_archive(folder.path() / "a.h5");
+}
+
+TEST(ArchiveRoundTrip, EveryFieldBitByBitForTwoStatesAndOneInput) {
+  const Archive archive = full_archive(2, 1);
+  expect_same(round_trip(archive), archive);
+}
+
+TEST(ArchiveRoundTrip, EveryFieldBitByBitForOneStateAndTwoInputs) {
+  const Archive archive = full_archive(1, 2);
+  expect_same(round_trip(archive), archive);
+}
+
+TEST(ArchiveRoundTrip, ThreeStatesWithoutInputs) {
+  const Archive archive = full_archive(3, 0);
+  expect_same(round_trip(archive), archive);
+}
+
+TEST(ArchiveRoundTrip, AnyStageMayBeAbsent) {
+  const Archive full = full_archive(2, 1);
+  Archive origin;
+  origin.provenance = full.provenance;
+  expect_same(round_trip(origin), origin);
+
+  Archive identified = origin;
+  identified.recording = full.recording;
+  identified.windows = full.windows;
+  identified.windows->prior_sd.resize(0);
+  expect_same(round_trip(identified), identified);
+
+  Archive bank_only = origin;
+  bank_only.bank = full.bank;
+  expect_same(round_trip(bank_only), bank_only);
+
+  Archive evaluated = bank_only;
+  evaluated.recording = full.recording;
+  evaluated.evaluations = {full.evaluations.front()};
+  evaluated.summary = full.summary;
+  expect_same(round_trip(evaluated), evaluated);
+
+  Archive summary_only = origin;
+  summary_only.summary = full.summary;
+  expect_same(round_trip(summary_only), summary_only);
+}
+
+TEST(ArchiveRoundTrip, AStoredBankGivesTheSameScores) {
+  Archive archive = full_archive(2, 1);
+  const Bank stored = *round_trip(archive).bank;
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::salvi2025})
+    for (const Trajectory& run : archive.recording->runs)
+      expect_same(evaluate_run(stored, run, {variant, true}), evaluate_run(*archive.bank, run, {variant, true}));
+}
+
+TEST(ArchiveRoundTrip, TransitionRowsKeepTheirBits) {
+  Archive archive;
+  archive.bank = full_archive(2, 1).bank;
+  std::mt19937_64 generator = make_generator(1, "transition rows");
+  boost::random::uniform_01<double> uniform;
+  for (int trial = 0; trial < 50; ++trial) {
+    Eigen::Matrix3d rows = Eigen::Matrix3d::NullaryExpr([&](Index, Index) { return uniform(generator); });
+    const Eigen::Vector3d sums = rows.rowwise().sum();
+    rows.array().colwise() /= sums.array();
+    archive.bank->transition = TransitionMatrix(rows);
+    ASSERT_TRUE(test::same_bits(round_trip(archive).bank->transition.matrix(), archive.bank->transition.matrix()));
+  }
+}
+
+TEST(ArchiveRoundTrip, TextsOfAnyLength) {
+  Archive archive;
+  archive.provenance.command_line = std::string(200000, 'x') + "ä";
+  archive.recording = Recording{{{"x", ""}}, {}, {}};
+  for (int i = 0; i < 300; ++i) {
+    Trajectory run;
+    run.run =
+        std::string(250, 'r') + std::to_string(1000 + i);  // 75 kB of names, above HDF5's 64 kB for small attributes
+    run.time_s.resize(0);
+    run.state.resize(1, 0);
+    run.input.resize(0, 0);
+    archive.recording->runs.push_back(run);
+  }
+  const Archive back = round_trip(archive);
+  EXPECT_EQ(back.provenance.command_line, archive.provenance.command_line);
+  ASSERT_EQ(back.recording->runs.size(), archive.recording->runs.size());
+  EXPECT_EQ(back.recording->runs.back().run, archive.recording->runs.back().run);
+}
+
+TEST(ArchiveRoundTrip, RunNamesThatHdf5CannotHoldAreRefused) {
+  const test::TemporaryFolder folder;
+  for (const std::string& name : {std::string("a/b"), std::string("."), std::string(), std::string("a\0b", 3)}) {
+    Archive archive = full_archive(2, 1);
+    archive.recording->runs[1].run = name;
+    EXPECT_THROW(write_archive(folder.path() / "a.h5", archive), ConfigurationError) << name;
+  }
+  Archive twice = full_archive(2, 1);
+  twice.recording->runs[1].run = twice.recording->runs[0].run;
+  EXPECT_THROW(write_archive(folder.path() / "a.h5", twice), ConfigurationError);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(ArchiveRoundTrip, SizesThatDisagreeAreRefusedBeforeAnythingIsWritten) {
+  const test::TemporaryFolder folder;
+  const auto refuses = [&](const char* what, auto change) {
+    Archive archive = full_archive(2, 1);
+    change(archive);
+    EXPECT_THROW(write_archive(folder.path() / "a.h5", archive), std::invalid_argument) << what;
+  };
+  refuses("information", [](Archive& a) { a.windows->information.conservativeResize(Eigen::NoChange, 5); });
+  refuses("labels", [](Archive& a) { a.mixture->labels.conservativeResize(4); });
+  refuses("Q", [](Archive& a) { a.bank->modes[1].Q.resize(1, 2); });
+  refuses("run of a window", [](Archive& a) { a.windows->windows[2].run = 3; });
+  refuses("windows without runs", [](Archive& a) { a.recording.reset(); });
+  refuses("run of an evaluation", [](Archive& a) { a.evaluations[1].runs.pop_back(); });
+  refuses("samples", [](Archive& a) { a.evaluations[1].runs[0].nis.conservativeResize(3); });
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace modebank
