@@ -1,0 +1,68 @@
+#include "app/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/program_options.hpp>
+
+#include "app/config_file.hpp"
+#include "app/option_table.hpp"
+#include "ident/error.hpp"
+
+namespace po = boost::program_options;
+
+namespace modebank::app {
+namespace {
+
+po::options_description describe_options(CommandLine& line) {
+  po::options_description description;
+  auto add = description.add_options();
+  add("help,h", po::bool_switch(&line.help));
+  add("version", po::bool_switch(&line.version));
+  add("markdown", po::bool_switch(&line.markdown));
+  add("json", po::bool_switch(&line.json));
+  add("form", po::value(&line.form));
+  add("words", po::value<std::vector<std::string>>());
+  for (const Option& option : option_table()) add(option.key.c_str(), po::value<std::string>());
+  return description;
+}
+
+std::string shell_quoted(const std::string& word) {
+  return word.find_first_of(" \t*|'\"#$&;()<>") == std::string::npos ? word : "'" + word + "'";
+}
+
+}  // namespace
+
+CommandLine parse_command_line(int argc, const char* const* argv) {
+  CommandLine line;
+  for (int i = 0; i < argc; ++i) line.typed += (i ? " " : "") + shell_quoted(argv[i]);
+  const po::options_description description = describe_options(line);
+  po::positional_options_description positional;
+  positional.add("words", -1);
+  po::variables_map values;
+  try {
+    // No guessing: an abbreviated key would change its meaning when keys are added.
+    const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
+    const po::parsed_options parsed =
+        po::command_line_parser(argc, argv).options(description).positional(positional).style(style).run();
+    for (const po::option& option : parsed.options)
+      if (option.string_key.find('.') != std::string::npos)
+        line.overrides.emplace_back(option.string_key, option.value.at(0));
+    po::store(parsed, values);
+    po::notify(values);
+  } catch (const po::unknown_option& error) {
+    const std::string name = error.get_option_name();
+    throw ConfigurationError(fmt::format("unknown option {}{}", name, nearest_key_hint(name)));
+  } catch (const po::error& error) {
+    throw ConfigurationError(error.what());
+  }
+  if (values.count("words")) line.files = values["words"].as<std::vector<std::string>>();
+  if (!line.files.empty()) {
+    line.command = line.files.front();
+    line.files.erase(line.files.begin());
+  }
+  if (line.form != "increment" && line.form != "full")
+    throw ConfigurationError(fmt::format("--form {}: allowed are increment and full", line.form));
+  return line;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace modebank::app {
+
+/// What the user typed, split but not yet interpreted.
+struct CommandLine {
+  std::string command;                                         ///< empty: none given
+  std::vector<std::string> files;                              ///< positional arguments after the command
+  std::vector<std::pair<std::string, std::string>> overrides;  ///< configuration keys given as options, in order
+  bool help = false;
+  bool version = false;
+  bool markdown = false;  ///< help: the table of keys as README holds it
+  bool json = false;
+  std::string form = "increment";  ///< of models that `show` prints: increment or full
+  std::string typed;               ///< the whole line, for provenance
+};
+
+/// Throws ConfigurationError for an unknown option (naming the nearest known one) or one without its value.
+CommandLine parse_command_line(int argc, const char* const* argv);
+
+}  // namespace modebank::app

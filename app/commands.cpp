@@ -1,0 +1,110 @@
+#include "app/commands.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+
+#include "app/build_info.hpp"
+#include "app/option_table.hpp"
+#include "ident/error.hpp"
+#include "ident/nearest_name.hpp"
+#include "io/archive.hpp"
+
+namespace modebank::app {
+namespace {
+
+struct Command {
+  const char* name;
+  const char* arguments;
+  const char* help;
+  int (*run)(const CommandLine&);
+};
+
+constexpr Command commands[] = {
+    {"run", "CONFIG", "the whole chain: import, windows, mixture, bank, evaluation, archive, summary", run_pipeline},
+    {"identify", "CONFIG", "fit the windows and archive them", run_pipeline},
+    {"cluster", "CONFIG", "cluster the windows (of --archive.input, if given)", run_pipeline},
+    {"evaluate", "CONFIG", "learn the bank and score it (stages of --archive.input; or the bank of --archive.bank)",
+     run_pipeline},
+    {"simulate", "CONFIG", "write runs with known truth in the CSV layout that run reads", run_simulate},
+    {"show", "ARCHIVE [PATH]", "provenance, candidates, modes, summary; or one object; --json; --form full", run_show},
+    {"verify", "ARCHIVE...", "check hash, schema and completeness of archives", run_verify},
+};
+
+std::string option_help() {
+  const Config defaults = default_config();
+  std::string text, section;
+  for (const Option& option : option_table()) {
+    if (option.section() != section) text += fmt::format("\n[{}]\n", option.section());
+    section = option.section();
+    const std::string value = option.get(defaults);
+    text +=
+        fmt::format("  --{} {}{}\n      {} (default: {})\n", option.key, option.range,
+                    option.unit.empty() ? "" : " [" + option.unit + "]", option.help, value.empty() ? "empty" : value);
+  }
+  return text;
+}
+
+/// README's table of keys, so that it is this table and no other.
+std::string option_markdown() {
+  const Config defaults = default_config();
+  std::string text = "| key | allowed | unit | default | meaning |\n|---|---|---|---|---|\n";
+  for (const Option& option : option_table()) {
+    const std::string value = option.get(defaults);
+    std::string range = option.range, help = option.help;
+    boost::replace_all(range, "|", "\\|");
+    boost::replace_all(help, "|", "\\|");
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", option.key, range, option.unit,
+                        value.empty() ? "" : "`" + value + "`", help);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string help_text() {
+  std::string text = "usage: modebank COMMAND [FILE...] [--key value ...]\n\nCommands\n";
+  for (const Command& command : commands)
+    text += fmt::format("  {:<24} {}\n", fmt::format("{} {}", command.name, command.arguments), command.help);
+  text +=
+      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show). Every configuration key is an "
+      "option\n"
+      "too, and wins over the file. Exit status: 0 done; 2 usage, configuration or path; 1 content or run failure.\n";
+  return text + option_help();
+}
+
+int run_command(const CommandLine& line) {
+  if (line.version) {
+    fmt::print("modebank {} ({})\n", build_info::version, build_info::git_revision);
+    return 0;
+  }
+  if (line.help || line.command == "help") {
+    fmt::print("{}", line.markdown ? option_markdown() : help_text());
+    return 0;
+  }
+  for (const Command& command : commands)
+    if (line.command == command.name) return command.run(line);
+  std::vector<std::string> names;
+  for (const Command& command : commands) names.emplace_back(command.name);
+  if (line.command.empty())
+    throw ConfigurationError(fmt::format("no command; one of {} (see --help)", fmt::join(names, ", ")));
+  const std::string nearest = nearest_name(line.command, names);
+  throw ConfigurationError(fmt::format("unknown command {}{}; commands are {}", line.command,
+                                       nearest.empty() ? "" : ", did you mean " + nearest + "?",
+                                       fmt::join(names, ", ")));
+}
+
+int run_verify(const CommandLine& line) {
+  if (line.files.empty()) throw ConfigurationError("verify needs at least one archive: modebank verify ARCHIVE...");
+  bool all_good = true;
+  for (const std::string& file : line.files) {
+    const Verification result = verify_archive(file);
+    all_good = all_good && result.ok();
+    if (result.ok()) fmt::print("{}: ok\n", file);
+    for (const std::string& problem : result.problems) fmt::print("{}: {}\n", file, problem);
+  }
+  return all_good ? 0 : 1;
+}
+
+}  // namespace modebank::app

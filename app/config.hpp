@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "filter/evaluate.hpp"
+#include "filter/learn.hpp"
+#include "ident/fit_options.hpp"
+#include "ident/simulate.hpp"
+#include "io/data_options.hpp"
+#include "mixture/select.hpp"
+
+namespace modebank::app {
+
+/// The [mixture] section: which cloud is clustered, and how.
+struct MixtureConfig {
+  SelectionOptions selection;
+  FeatureSet features = FeatureSet::parameters_and_noise;
+  WindowChoice windows = WindowChoice::automatic;
+};
+
+struct ArchiveConfig {
+  std::string output;  ///< empty: the configuration file's name with .h5, in the current folder
+  std::string input;   ///< archive that supplies earlier stages
+  std::string bank;    ///< archive whose bank is evaluated
+};
+
+struct JobConfig {
+  int threads = 0;  ///< 0: all cores
+  std::uint64_t seed = 1;
+};
+
+struct SimulateConfig {
+  SimulationOptions system;
+  std::string output = "simulated";
+  double rate_hz = 6.5;
+  double state_rate_hz = 65.0;
+};
+
+/// Every stage's options, as one configuration file states them. The option table lists their keys.
+struct Config {
+  DataOptions data;
+  FitOptions window;
+  MixtureConfig mixture;
+  BankOptions bank;
+  FilterOptions filter;
+  ArchiveConfig archive;
+  JobConfig job;
+  SimulateConfig simulate;
+};
+
+/// Defaults that are not those of the library's own structs.
+Config default_config();
+
+}  // namespace modebank::app

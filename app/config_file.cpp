@@ -1,0 +1,154 @@
+#include "app/config_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+#include <boost/program_options.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "app/option_table.hpp"
+#include "ident/error.hpp"
+#include "ident/nearest_name.hpp"
+#include "io/sha256.hpp"
+
+namespace po = boost::program_options;
+
+namespace modebank::app {
+namespace {
+
+/// A key as it stands in the file.
+struct FileEntry {
+  std::string key, value;
+  int line = 0;
+  bool has_comment = false;
+};
+
+const Option* find_option(const std::string& key) {
+  const auto& table = option_table();
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Option& option) { return option.key == key; });
+  return found == table.end() ? nullptr : &*found;
+}
+
+/// One line at a time through Boost's parser: its grammar, and a line number for every message.
+std::vector<FileEntry> parse_lines(std::istream& stream, const std::string& path) {
+  static const po::options_description no_options;
+  std::vector<FileEntry> entries;
+  std::string section, line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    if (number == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
+    std::string content = boost::trim_copy(line.substr(0, line.find('#')));
+    if (content.empty()) continue;
+    if (content.front() == '[' && content.back() == ']') {
+      section = content;
+      continue;
+    }
+    std::istringstream one(section + "\n" + line + "\n");
+    try {
+      const po::parsed_options parsed = po::parse_config_file(one, no_options, true);
+      for (const po::option& option : parsed.options)
+        entries.push_back({option.string_key, option.value.at(0), number, line.find('#') != std::string::npos});
+    } catch (const po::error&) {
+      throw ConfigurationError(fmt::format("{}:{}: '{}' is neither [section] nor key = value", path, number, content));
+    }
+  }
+  return entries;
+}
+
+std::string section_list() {
+  std::vector<std::string> sections;
+  for (const Option& option : option_table())
+    if (sections.empty() || sections.back() != option.section()) sections.push_back(option.section());
+  return boost::join(sections, ", ");
+}
+
+const Option& known_option(const std::string& where, const std::string& key) {
+  const Option* option = find_option(key);
+  if (option) return *option;
+  const std::string section_hint =
+      key.find('.') == std::string::npos ? fmt::format(" (keys belong to a section: {})", section_list()) : "";
+  throw ConfigurationError(fmt::format("{}: unknown key {}{}{}", where, key, nearest_key_hint(key), section_hint));
+}
+
+void apply(Config& config, const std::string& where, const std::string& key, const std::string& value,
+           bool has_comment) {
+  const Option& option = known_option(where, key);
+  try {
+    option.set(config, value);
+  } catch (const std::invalid_argument& error) {
+    const std::string unit = option.unit.empty() ? "" : " [" + option.unit + "]";
+    const std::string hint = has_comment ? "; # starts a comment, so no value can hold one" : "";
+    throw ConfigurationError(
+        fmt::format("{}: {} = '{}' {}; allowed: {}{}{}", where, key, value, error.what(), option.range, unit, hint));
+  }
+}
+
+std::filesystem::path default_root(const std::filesystem::path& config_path) {
+  const char* environment = std::getenv("MODEBANK_DATA");
+  if (environment && *environment) return environment;
+  return std::filesystem::absolute(config_path).parent_path();
+}
+
+}  // namespace
+
+std::string nearest_key_hint(const std::string& key) {
+  std::vector<std::string> keys;
+  for (const Option& option : option_table()) keys.push_back(option.key);
+  const std::string bare = boost::trim_left_copy_if(key, boost::is_any_of("-"));
+  const std::string nearest = nearest_name(bare, keys);
+  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
+}
+
+Config load_config(const std::filesystem::path& path, const KeyValues& overrides) {
+  std::ifstream stream(path);
+  if (!stream || std::filesystem::is_directory(path))
+    throw ConfigurationError(fmt::format("{}: cannot read this configuration file", path.string()));
+  Config config = default_config();
+  std::map<std::string, int> seen;
+  for (const FileEntry& entry : parse_lines(stream, path.string())) {
+    const std::string where = fmt::format("{}:{}", path.string(), entry.line);
+    if (const auto [earlier, fresh] = seen.emplace(entry.key, entry.line); !fresh)
+      throw ConfigurationError(fmt::format("{}: {} is already set in line {}", where, entry.key, earlier->second));
+    apply(config, where, entry.key, entry.value, entry.has_comment);
+    // A relative root in a file means relative to that file, wherever the program is started.
+    if (entry.key == "data.root" && !config.data.root.empty())
+      config.data.root = (std::filesystem::absolute(path).parent_path() / config.data.root).string();
+  }
+  for (const auto& [key, value] : overrides) {
+    if (value.find('#') != std::string::npos)
+      throw ConfigurationError(fmt::format(
+          "--{}: '{}' holds a #, which starts a comment in configuration files, so no value can hold one", key, value));
+    apply(config, "--" + key, key, boost::trim_copy(value), false);
+  }
+  if (config.data.root.empty()) config.data.root = default_root(path).string();
+  config.data.root = std::filesystem::absolute(config.data.root).lexically_normal().string();
+  if (config.archive.output.empty()) config.archive.output = path.stem().string() + ".h5";
+  return config;
+}
+
+std::string resolved_text(const Config& config) {
+  std::string text, section;
+  for (const Option& option : option_table()) {
+    if (option.section() != section) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", option.section());
+    section = option.section();
+    const std::string value = option.get(config);
+    text += option.name() + " =" + (value.empty() ? "" : " " + value) + "\n";
+  }
+  return text;
+}
+
+std::string config_hash(const Config& config) {
+  std::vector<std::string> lines;
+  for (const Option& option : option_table()) {
+    const bool decides_no_number =
+        option.key == "data.root" || option.section() == "archive" || option.key == "job.threads";
+    if (!decides_no_number) lines.push_back(option.key + "=" + option.get(config) + "\n");
+  }
+  std::sort(lines.begin(), lines.end());
+  return sha256_hex(boost::join(lines, ""));
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,258 @@
+#include "app/option_table.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <optional>
+#include <stdexcept>
+#include <type_traits>
+
+#include "app/option_text.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// Allowed numbers, in words and as a test.
+struct Range {
+  std::string text;
+  std::function<bool(double)> contains;
+};
+
+Range any() {
+  return {"a number", [](double) { return true; }};
+}
+Range at_least(double low) {
+  return {fmt::format(">= {}", low), [low](double v) { return v >= low; }};
+}
+Range above(double low) {
+  return {fmt::format("> {}", low), [low](double v) { return v > low; }};
+}
+Range between(double low, double high) {
+  return {fmt::format("{} to {}", low, high), [low, high](double v) { return v >= low && v <= high; }};
+}
+Range inside(double low, double high) {
+  return {fmt::format("above {} and below {}", low, high), [low, high](double v) { return v > low && v < high; }};
+}
+Range each(Range range) {
+  range.text = "each " + range.text;
+  return range;
+}
+
+template <class T>
+requires std::is_arithmetic_v<T>
+bool in_range(const Range& range, T value) { return range.contains(static_cast<double>(value)); }
+bool in_range(const Range& range, const std::optional<double>& value) { return !value || range.contains(*value); }
+bool in_range(const Range& range, const Eigen::MatrixXd& values) {
+  return std::all_of(values.reshaped().begin(), values.reshaped().end(), range.contains);
+}
+template <class T>
+bool in_range(const Range& range, const std::vector<T>& values) {
+  return std::all_of(values.begin(), values.end(), [&range](const T& value) { return in_range(range, value); });
+}
+
+/// `field` maps a Config to the value, so reading and writing go through one expression.
+template <class Field>
+Option option(std::string key, std::string range, std::string unit, std::string help, Field field) {
+  return {std::move(key),
+          std::move(range),
+          std::move(unit),
+          std::move(help),
+          [field](Config& config, const std::string& text) {
+            std::decay_t<decltype(field(config))> value = field(config);
+            parse_value(text, value);
+            field(config) = value;
+          },
+          [field](const Config& config) {
+            Config copy = config;
+            return format_value(field(copy));
+          }};
+}
+
+template <class Field>
+Option numeric(std::string key, const Range& range, std::string unit, std::string help, Field field) {
+  Option result = option(std::move(key), range.text, std::move(unit), std::move(help), field);
+  result.set = [set = result.set, range, field](Config& config, const std::string& text) {
+    Config candidate = config;
+    set(candidate, text);
+    if (!in_range(range, field(candidate))) throw std::invalid_argument("is out of range");
+    config = candidate;
+  };
+  return result;
+}
+
+template <class Field>
+Option words(std::string key, std::string help, Field field) {
+  using E = std::decay_t<decltype(field(std::declval<Config&>()))>;
+  return option(std::move(key), words_of<E>(), "", std::move(help), field);
+}
+
+template <class Field>
+Option flag(std::string key, std::string help, Field field) {
+  return option(std::move(key), "true | false", "", std::move(help), field);
+}
+
+template <class Field>
+Option text(std::string key, std::string what, std::string help, Field field) {
+  return option(std::move(key), std::move(what), "", std::move(help), field);
+}
+
+#define FIELD(expression) \
+  [](Config & c) -> auto& { return c.expression; }
+
+std::vector<Option> data_options() {
+  return {
+      text("data.root", "a folder", "prefix of relative data paths; empty: $MODEBANK_DATA, else this file's folder",
+           FIELD(data.root)),
+      text("data.inputs", "a path with at most one *", "one file per run; the part matched by * names the run",
+           FIELD(data.inputs)),
+      text("data.states", "a path with at most one *",
+           "the runs' states files; empty: states are columns of the inputs files", FIELD(data.states)),
+      text("data.state", "column names", "measured states", FIELD(data.state)),
+      text("data.input", "column names", "inputs", FIELD(data.input)),
+      text("data.truth", "column names", "true states, one per state, where known; empty: none", FIELD(data.truth)),
+      text("data.state_unit", "units", "one per state, or one for all; written to the archive and the plots",
+           FIELD(data.state_unit)),
+      text("data.input_unit", "units", "one per input, or one for all", FIELD(data.input_unit)),
+      text("data.time", "a column name", "time in seconds", FIELD(data.time)),
+      words("data.join", "how states join the inputs: interpolated at the inputs' times, or row by row",
+            FIELD(data.join)),
+      text("data.run", "a column name", "column whose value separates runs inside one file; empty: one run per file",
+           FIELD(data.run)),
+      numeric("data.rate_hz", at_least(0), "Hz", "0: the inputs' own times; else resample (states linear, inputs held)",
+              FIELD(data.rate_hz)),
+      numeric("data.lag_s", any(), "s", "inputs act this much later (negative: earlier)", FIELD(data.lag_s)),
+      text("data.train", "run names", "training runs; empty: positions 0, 2, 4, ... in name order", FIELD(data.train)),
+      text("data.test", "run names", "held-out runs; empty: all that do not train", FIELD(data.test)),
+  };
+}
+
+std::vector<Option> window_options() {
+  return {
+      numeric("window.length", between(1, 1e6), "transitions", "length of a window", FIELD(window.length)),
+      numeric("window.step", between(1, 1e6), "transitions", "from one window's start to the next", FIELD(window.step)),
+      words("window.loss", "robust loss of a sample's residual", FIELD(window.loss)),
+      numeric("window.loss_scale", at_least(0), "sigma", "where the loss bends; 0: 95 % efficiency under normal noise",
+              FIELD(window.loss_scale)),
+      words("window.scale", "residual scale sigma: of each window, of its run, or window.sigma", FIELD(window.scale)),
+      numeric("window.sigma", at_least(0), "state unit", "residual standard deviation for scale = fixed",
+              FIELD(window.sigma)),
+      words("window.prior", "Gaussian prior on a window's parameters", FIELD(window.prior)),
+      numeric("window.prior_sd", each(above(0)), "parameter unit",
+              "the prior's standard deviations, one per parameter or one for all; empty: 3 x the spread of full-rank "
+              "windows",
+              FIELD(window.prior_sd)),
+      flag("window.intercept", "estimate a constant term c", FIELD(window.intercept)),
+      words("window.covariance", "covariance of a window's parameters: M-estimator or HC3 sandwich",
+            FIELD(window.covariance)),
+      numeric("window.max_iterations", between(1, 1e5), "", "limit of the minimiser", FIELD(window.max_iterations)),
+  };
+}
+
+std::vector<Option> mixture_options() {
+  return {
+      numeric("mixture.components", each(at_least(1)), "", "a number, a range such as 1..12, or a list",
+              FIELD(mixture.selection.components)),
+      words("mixture.covariance", "shape of the components", FIELD(mixture.selection.em.covariance)),
+      words("mixture.criterion", "chooses the number of components", FIELD(mixture.selection.criterion)),
+      words("mixture.features", "what is clustered", FIELD(mixture.features)),
+      words("mixture.windows", "which windows are clustered; automatic: all with a prior, else full_rank",
+            FIELD(mixture.windows)),
+      numeric("mixture.restarts", between(1, 10'000), "", "independent starts per candidate",
+              FIELD(mixture.selection.em.restarts)),
+      numeric("mixture.tolerance", above(0), "nats/window", "stop when the mean log-likelihood gains less",
+              FIELD(mixture.selection.em.tolerance)),
+      numeric("mixture.max_iterations", between(1, 1e6), "", "limit of each EM run",
+              FIELD(mixture.selection.em.max_iterations)),
+      numeric("mixture.covariance_floor", between(0, 1), "feature variance", "smallest variance of a component",
+              FIELD(mixture.selection.em.covariance_floor)),
+  };
+}
+
+std::vector<Option> bank_options() {
+  return {
+      words("bank.theta", "a mode's parameters: pooled least squares, or the component's mean", FIELD(bank.theta)),
+      words("bank.noise", "process noise Q", FIELD(bank.noise)),
+      words("bank.transition", "transition matrix from window labels, or bank.stay", FIELD(bank.transition)),
+      numeric("bank.stay", inside(0, 1), "", "probability to stay in a mode, for transition = stay", FIELD(bank.stay)),
+      numeric("bank.process_variance", above(0), "state unit^2", "Q for noise = fixed", FIELD(bank.process_variance)),
+      numeric("bank.measurement_variance", above(0), "state unit^2", "R; empty: the baseline's",
+              FIELD(bank.measurement_variance)),
+      flag("bank.screen", "leave unstable and starved modes out of the bank", FIELD(bank.screen)),
+  };
+}
+
+std::vector<Option> other_options() {
+  return {
+      words("filter.variant", "multiple-model filter", FIELD(filter.variant)),
+      flag("filter.parameter_noise", "add the modes' parameter spread to Q", FIELD(filter.parameter_noise)),
+      text("archive.output", "a path", "archive to write; empty: this file's name with .h5, in the current folder",
+           FIELD(archive.output)),
+      text("archive.input", "an archive", "supplies the earlier stages of identify, cluster and evaluate",
+           FIELD(archive.input)),
+      text("archive.bank", "an archive", "evaluate: its banks are run instead of learning new ones",
+           FIELD(archive.bank)),
+      numeric("job.threads", between(0, 1024), "", "0: all cores; never changes a number", FIELD(job.threads)),
+      option("job.seed", "a whole number >= 0", "", "the one seed; every use of randomness derives from it",
+             FIELD(job.seed)),
+  };
+}
+
+std::vector<Option> simulate_options() {
+  return {
+      text("simulate.output", "a folder", "where the runs are written", FIELD(simulate.output)),
+      numeric("simulate.modes", any(), "", "parameters [A B (c)] row by row, one set per mode, sets separated by |",
+              FIELD(simulate.system.modes)),
+      numeric("simulate.process_sd", each(at_least(0)), "state unit", "process noise per mode, or one for all",
+              FIELD(simulate.system.process_sd)),
+      numeric("simulate.measurement_sd", at_least(0), "state unit", "measurement noise",
+              FIELD(simulate.system.measurement_sd)),
+      numeric("simulate.transition", each(between(0, 1)), "",
+              "mode transition matrix, rows separated by |; empty: from dwell_samples",
+              FIELD(simulate.system.transition)),
+      numeric("simulate.dwell_samples", at_least(0), "samples", "mean stay in a mode; 0: each run stays in one mode",
+              FIELD(simulate.system.dwell_samples)),
+      numeric("simulate.outlier_fraction", between(0, 1), "", "share of measurements with an outlier",
+              FIELD(simulate.system.outlier_fraction)),
+      numeric("simulate.outlier_sd", at_least(0), "state unit", "size of outliers", FIELD(simulate.system.outlier_sd)),
+      words("simulate.input_law",
+            "inputs redrawn every sample, held, or driven (steps, ramps, standstill, equal wheels)",
+            FIELD(simulate.system.input_law)),
+      numeric("simulate.hold_samples", at_least(1), "samples", "mean length of a command",
+              FIELD(simulate.system.hold_samples)),
+      numeric("simulate.input_amplitude", above(0), "input unit", "largest command",
+              FIELD(simulate.system.input_amplitude)),
+      numeric("simulate.input_quantum", at_least(0), "input unit", "inputs are multiples of this; 0: any value",
+              FIELD(simulate.system.input_quantum)),
+      numeric("simulate.standstill_fraction", between(0, 1), "", "share of commands with all inputs zero (drive)",
+              FIELD(simulate.system.standstill_fraction)),
+      numeric("simulate.equal_fraction", between(0, 1), "", "share of commands with all inputs equal (drive)",
+              FIELD(simulate.system.equal_fraction)),
+      numeric("simulate.runs", between(1, 100'000), "", "number of runs", FIELD(simulate.system.runs)),
+      numeric("simulate.samples", between(2, 1e8), "", "samples per run", FIELD(simulate.system.samples)),
+      numeric("simulate.rate_hz", above(0), "Hz", "rate of the system and of the inputs file", FIELD(simulate.rate_hz)),
+      numeric("simulate.state_rate_hz", above(0), "Hz",
+              "rate of the states file; a multiple of rate_hz keeps every measurement", FIELD(simulate.state_rate_hz)),
+  };
+}
+
+#undef FIELD
+
+}  // namespace
+
+Config default_config() {
+  Config config;
+  for (Eigen::Index k = 1; k <= 12; ++k) config.mixture.selection.components.push_back(k);
+  return config;
+}
+
+const std::vector<Option>& option_table() {
+  static const std::vector<Option> table = [] {
+    std::vector<Option> all;
+    for (auto section : {data_options, window_options, mixture_options, bank_options, other_options, simulate_options})
+      for (Option& entry : section()) all.push_back(std::move(entry));
+    return all;
+  }();
+  return table;
+}
+
+}  // namespace modebank::app

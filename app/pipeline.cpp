@@ -1,0 +1,112 @@
+#include "app/pipeline.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <tbb/parallel_for.h>
+
+#include <chrono>
+
+#include "filter/evaluate.hpp"
+#include "filter/learn.hpp"
+#include "filter/scores.hpp"
+#include "ident/error.hpp"
+#include "ident/fit_window.hpp"
+#include "ident/seed.hpp"
+#include "io/import.hpp"
+#include "mixture/features.hpp"
+#include "mixture/select.hpp"
+
+namespace modebank::app {
+namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::vector<RunEvaluation> evaluate_runs(const Bank& bank, const std::vector<Trajectory>& runs,
+                                         const FilterOptions& options) {
+  std::vector<RunEvaluation> evaluations(runs.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(),
+                    [&](std::size_t i) { evaluations[i] = evaluate_run(bank, runs[i], options); });
+  return evaluations;
+}
+
+}  // namespace
+
+void import_stage(const Config& config, Archive& archive) {
+  const Stopwatch watch;
+  ImportedData data = import_data(config.data);
+  archive.recording = std::move(data.recording);
+  archive.provenance.inputs = std::move(data.files);
+  archive.provenance.data_hash = std::move(data.data_hash);
+  spdlog::info("import: {} runs, {} training and {} test transitions in {:.2f} s", archive.recording->runs.size(),
+               archive.recording->transitions(Role::train), archive.recording->transitions(Role::test),
+               watch.seconds());
+}
+
+void identify_stage(const Config& config, Archive& archive) {
+  const Stopwatch watch;
+  archive.windows = fit_windows(*archive.recording, config.window);
+  spdlog::info("windows: {} fitted in {:.2f} s", archive.windows->count(), watch.seconds());
+}
+
+void cluster_stage(const Config& config, Archive& archive) {
+  const Stopwatch watch;
+  const FeatureCloud cloud =
+      make_features(*archive.windows, config.mixture.features, config.mixture.windows, archive.recording->states);
+  archive.mixture = select_mixture(*archive.windows, cloud, config.mixture.selection, config.job.seed);
+  spdlog::info("mixture: {} components from {} windows in {:.2f} s", archive.mixture->mixture.components(),
+               cloud.windows.size(), watch.seconds());
+}
+
+void bank_stage(const Config& config, Archive& archive) {
+  const Stopwatch watch;
+  const Recording& recording = *archive.recording;
+  const WindowFits& windows = *archive.windows;
+  const Baseline baseline = learn_baseline(recording, windows.global, windows.structure);
+  archive.baseline = baseline.bank;
+  archive.noise_only = learn_noise_only(recording, windows.structure, baseline.bank.R);
+  archive.bank = config.filter.variant == FilterVariant::kf
+                     ? baseline.bank
+                     : learn_bank(recording, windows, *archive.mixture, config.bank, baseline.bank.R);
+  if (!baseline.converged) spdlog::warn("baseline: the maximum likelihood search for Q and R did not converge");
+  spdlog::info("bank: {} modes, {} screened, in {:.2f} s", archive.bank->mode_count(), archive.bank->screened.size(),
+               watch.seconds());
+}
+
+void load_banks(const Config& config, Archive& archive) {
+  Archive stored = read_archive(config.archive.bank);
+  if (!stored.bank) throw DataError(fmt::format("{}: holds no bank", config.archive.bank));
+  const Recording& recording = *archive.recording;
+  const LinearStructure& structure = stored.bank->structure;
+  if (structure.states != recording.state_count() || structure.inputs != recording.input_count())
+    throw DataError(fmt::format("{}: its bank has {} states and {} inputs, the data have {} and {}",
+                                config.archive.bank, structure.states, structure.inputs, recording.state_count(),
+                                recording.input_count()));
+  archive.bank = std::move(stored.bank);
+  archive.baseline = std::move(stored.baseline);
+  archive.noise_only = std::move(stored.noise_only);
+}
+
+void evaluate_stage(const Config& config, Archive& archive) {
+  const Stopwatch watch;
+  archive.evaluations.clear();
+  archive.summary.clear();
+  auto evaluate = [&](const char* name, const std::optional<Bank>& bank, const FilterOptions& options) {
+    if (!bank) return;
+    archive.evaluations.push_back({name, evaluate_runs(*bank, archive.recording->runs, options)});
+    for (SummaryRow& row : summarize(name, archive.recording->runs, archive.evaluations.back().runs))
+      archive.summary.push_back(std::move(row));
+  };
+  evaluate("bank", archive.bank, config.filter);
+  // The competitors stay what they are, whatever filter the bank runs in.
+  evaluate("baseline", archive.baseline, FilterOptions{FilterVariant::kf, false});
+  evaluate("noise_only", archive.noise_only, FilterOptions{FilterVariant::imm, false});
+  spdlog::info("evaluation: {} filters in {:.2f} s", archive.evaluations.size(), watch.seconds());
+}
+
+}  // namespace modebank::app

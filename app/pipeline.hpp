@@ -1,0 +1,21 @@
+#pragma once
+
+#include "app/config.hpp"
+#include "io/archive.hpp"
+
+namespace modebank::app {
+
+/// The stages of a run. Each fills its part of the archive from the parts before it, and logs one line of progress.
+void import_stage(const Config& config, Archive& archive);
+void identify_stage(const Config& config, Archive& archive);
+void cluster_stage(const Config& config, Archive& archive);
+void bank_stage(const Config& config, Archive& archive);
+void evaluate_stage(const Config& config, Archive& archive);
+
+/// Replaces the banks by those stored in config.archive.bank. Throws DataError when its channels do not fit the data's.
+void load_banks(const Config& config, Archive& archive);
+
+/// Checks values against each other, before any file of data is opened. Throws ConfigurationError naming the keys.
+void validate(const Config& config);
+
+}  // namespace modebank::app

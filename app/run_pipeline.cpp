@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <optional>
+#include <thread>
+
+#include "app/commands.hpp"
+#include "app/config_file.hpp"
+#include "app/pipeline.hpp"
+#include "app/provenance.hpp"
+#include "app/summary_text.hpp"
+#include "ident/error.hpp"
+#include "io/archive.hpp"
+
+namespace modebank::app {
+namespace {
+
+std::size_t thread_count(int configured) {
+  return configured > 0 ? static_cast<std::size_t>(configured) : std::max(1u, std::thread::hardware_concurrency());
+}
+
+/// Earlier stages from --archive.input; what the file lacks is computed.
+void take_earlier_stages(const Config& config, const std::string& command, Archive& archive) {
+  Archive stored = read_archive(config.archive.input);
+  if (!stored.recording) throw DataError(fmt::format("{}: holds no data", config.archive.input));
+  archive.recording = std::move(stored.recording);
+  archive.provenance.inputs = std::move(stored.provenance.inputs);
+  archive.provenance.data_hash = std::move(stored.provenance.data_hash);
+  if (command != "identify") archive.windows = std::move(stored.windows);
+  if (command == "evaluate") archive.mixture = std::move(stored.mixture);
+}
+
+void check_usage(const CommandLine& line, const Config& config) {
+  if (line.command == "run" && !config.archive.input.empty())
+    throw ConfigurationError(
+        "archive.input: run starts from the data; identify, cluster and evaluate take earlier stages");
+  if (line.command != "evaluate" && !config.archive.bank.empty())
+    throw ConfigurationError("archive.bank: only evaluate runs a stored bank");
+  if (!config.archive.bank.empty() && !config.archive.input.empty())
+    throw ConfigurationError("archive.bank and archive.input: give one of them");
+  for (const std::string& file : {config.archive.input, config.archive.bank})
+    if (!file.empty() && !std::filesystem::exists(file))
+      throw ConfigurationError(fmt::format("{}: no such file", file));
+}
+
+void run_stages(const std::string& command, const Config& config, Archive& archive) {
+  if (config.archive.input.empty())
+    import_stage(config, archive);
+  else
+    take_earlier_stages(config, command, archive);
+  if (!config.archive.bank.empty()) {
+    load_banks(config, archive);
+    evaluate_stage(config, archive);
+    return;
+  }
+  if (!archive.windows) identify_stage(config, archive);
+  if (command == "identify") return;
+  if (!archive.mixture) cluster_stage(config, archive);
+  if (command == "cluster") return;
+  bank_stage(config, archive);
+  evaluate_stage(config, archive);
+}
+
+}  // namespace
+
+int run_pipeline(const CommandLine& line) {
+  if (line.files.size() != 1)
+    throw ConfigurationError(
+        fmt::format("{} needs one configuration file: modebank {} CONFIG", line.command, line.command));
+  const Config config = load_config(line.files.front(), line.overrides);
+  check_usage(line, config);
+  validate(config);
+  check_writable(config.archive.output);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, thread_count(config.job.threads));
+
+  Archive archive;
+  archive.config = resolved_text(config);
+  archive.provenance = make_provenance(config, line);
+  run_stages(line.command, config, archive);
+  write_archive(config.archive.output, archive);
+  fmt::print("{}\narchive {}\n", summary_text(archive), config.archive.output);
+  return 0;
+}
+
+}  // namespace modebank::app

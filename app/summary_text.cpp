@@ -1,0 +1,153 @@
+#include "app/summary_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace modebank::app {
+namespace {
+
+const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role) {
+  for (const SummaryRow& row : archive.summary)
+    if (row.filter == filter && row.role == role && row.run == "*") return &row;
+  return nullptr;
+}
+
+std::string data_text(const Recording& recording) {
+  const auto count = [&](Role role) {
+    return std::count_if(recording.runs.begin(), recording.runs.end(),
+                         [role](const Trajectory& t) { return t.role == role; });
+  };
+  return fmt::format("data      {} train and {} test runs, {} and {} transitions, sample period {:.4g} s\n",
+                     count(Role::train), count(Role::test), recording.transitions(Role::train),
+                     recording.transitions(Role::test), recording.median_period_s());
+}
+
+std::string windows_text(const WindowFits& fits) {
+  const auto share = [&](FitStatus status) { return (fits.status.array() == static_cast<int>(status)).count(); };
+  std::string text = fmt::format(
+      "windows   {} of {} transitions: {} converged, {} rank deficient, {} at the iteration limit, {} failed\n",
+      fits.count(), fits.length, share(FitStatus::converged), share(FitStatus::rank_deficient),
+      share(FitStatus::iteration_limit), share(FitStatus::failed));
+  const auto names = fits.structure.parameter_names();
+  text += "global   ";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    text +=
+        fmt::format(" {} = {:.4g} +- {:.2g}", names[i], fits.global.theta(k), std::sqrt(fits.global.covariance(k, k)));
+  }
+  return text + fmt::format(", residual variance {:.4g}\n", fmt::join(fits.global.noise_variance(), " "));
+}
+
+std::string mixture_text(const MixtureResult& result) {
+  const auto& candidates = result.candidates;
+  const auto chosen = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.selected; });
+  std::string text = fmt::format("mixture   {} components over {}", result.mixture.components(),
+                                 fmt::join(result.feature_names, ", "));
+  if (chosen == candidates.end()) return text + "\n";
+  text += fmt::format("; BIC {:.1f} with N_eff {:.0f} of {} windows", chosen->bic, chosen->effective_samples,
+                      (result.labels.array() >= 0).count());
+  if (candidates.size() > 1)
+    text += fmt::format("; chosen from {}..{}", candidates.front().components, candidates.back().components);
+  if (!chosen->converged) text += "; not converged";
+  if (candidates.size() > 1 && (chosen == candidates.begin() || chosen + 1 == candidates.end()))
+    text += "; at the edge of the range";
+  return text + "\n";
+}
+
+std::string bank_text(const Bank& bank) {
+  std::string text = fmt::format("bank      {} modes", bank.mode_count());
+  for (const ScreenedMode& mode : bank.screened)
+    text += fmt::format("; component {} screened: {}", mode.component, mode.reason);
+  return text + fmt::format("; R = {:.4g}\n", fmt::join(bank.R.diagonal(), " "));
+}
+
+std::string unit_suffix(const Recording& recording) {
+  return recording.states.size() == 1 && !recording.states.front().unit.empty()
+             ? " [" + recording.states.front().unit + "]"
+             : "";
+}
+
+std::string scores_text(const Archive& archive) {
+  const std::string unit = archive.recording ? unit_suffix(*archive.recording) : "";
+  std::string text =
+      fmt::format("\n{:<11} {:<5} {:>8} {:>10} {:>14}  {:>17}  {:>17} {:>8} {:>8}\n", "filter", "role", "samples",
+                  "log score", "rmse" + unit, "pit tails +/-", "NIS above/below", "mean NIS", "white p");
+  for (const SummaryRow& row : archive.summary) {
+    if (row.run != "*") continue;
+    text += fmt::format(
+        "{:<11} {:<5} {:>8} {:>10.4f} {:>14.5f}  {:>7.2f} % {:>5.2f} %  {:>7.2f} % {:>5.2f} % {:>8.3f} {:>8.2g}\n",
+        row.filter, name_of(row.role), row.samples, row.log_score, fmt::join(row.rmse, " "), 100 * row.tail_above,
+        100 * row.tail_below, 100 * row.nis_above, 100 * row.nis_below, row.nis_mean, row.whiteness_p);
+  }
+  return text + "A true filter has 2.5 % in each pit tail; log score in nats per sample, higher is better.\n";
+}
+
+std::string gain_text(const Archive& archive) {
+  const Role role = pooled_row(archive, "bank", Role::test) ? Role::test : Role::train;
+  const SummaryRow* bank = pooled_row(archive, "bank", role);
+  const SummaryRow* baseline = pooled_row(archive, "baseline", role);
+  const SummaryRow* noise_only = pooled_row(archive, "noise_only", role);
+  if (!bank || !baseline || !noise_only) return "";
+  const double over_noise = bank->log_score - noise_only->log_score;
+  return fmt::format(
+      "\nOn {} runs the bank gains {:+.3f} nats/sample over one Kalman filter (baseline) and {:+.3f} over noise\n"
+      "switching alone (noise_only): {}.\n",
+      role == Role::test ? "held-out" : "training", bank->log_score - baseline->log_score, over_noise,
+      over_noise > 0 ? "that excess is its evidence for modes of motion"
+                     : "no evidence for modes of motion beyond changing noise");
+}
+
+}  // namespace
+
+std::string summary_text(const Archive& archive) {
+  std::string text;
+  if (archive.recording) text += data_text(*archive.recording);
+  if (archive.windows) text += windows_text(*archive.windows);
+  if (archive.mixture) text += mixture_text(*archive.mixture);
+  if (archive.bank) text += bank_text(*archive.bank);
+  if (!archive.summary.empty()) text += scores_text(archive) + gain_text(archive);
+  return text;
+}
+
+std::string provenance_text(const Archive& archive) {
+  const Provenance& p = archive.provenance;
+  std::string text = fmt::format("modebank  {} on {}\ncommand   {}\nconfig    {}\ndata      {}\nbuilt     ",
+                                 p.modebank_version, p.created, p.command_line, p.config_hash, p.data_hash);
+  for (const auto& [name, version] : p.versions) text += fmt::format("{} {}  ", name, version);
+  return text + fmt::format("\ninputs    {} files\n", p.inputs.size());
+}
+
+std::string candidates_text(const MixtureResult& mixture) {
+  std::string text =
+      fmt::format("{:>4} {:<8} {:>14} {:>6} {:>8} {:>12} {:>12} {:>12} {:>10} {:>6} {:>9} {:>8}\n", "K", "shape",
+                  "log likelihood", "q", "N_eff", "BIC", "AIC", "ICL", "held out", "iter", "converged", "agreeing");
+  for (const Candidate& c : mixture.candidates)
+    text += fmt::format(
+        "{:>4} {:<8} {:>14.3f} {:>6} {:>8.1f} {:>12.3f} {:>12.3f} {:>12.3f} {:>10.4f} {:>6} {:>9} {:>8}{}\n",
+        c.components, name_of(c.covariance), c.log_likelihood, c.parameters, c.effective_samples, c.bic, c.aic, c.icl,
+        c.heldout, c.iterations, c.converged ? "yes" : "no", c.agreeing_restarts, c.selected ? "  <- selected" : "");
+  return text;
+}
+
+std::string modes_text(const Bank& bank, bool full_form) {
+  const auto names = bank.structure.parameter_names();
+  std::string text = fmt::format("{:>4} {:>7}", "mode", "weight");
+  for (const std::string& name : names)
+    text += fmt::format(" {:>20}", name + (full_form && name[0] == 'A' ? " (full)" : ""));
+  text += fmt::format(" {:>12}\n", "sqrt diag Q");
+  for (Index k = 0; k < bank.mode_count(); ++k) {
+    const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
+    LinearModel model = mode.model;
+    if (full_form) model.A.diagonal().array() += 1.0;
+    const Eigen::VectorXd theta = pack(bank.structure, model);
+    text += fmt::format("{:>4} {:>7.3f}", k, mode.weight);
+    for (Index i = 0; i < theta.size(); ++i)
+      text += fmt::format(" {:>20}", fmt::format("{:.4f} +- {:.4f}", theta(i), mode.standard_error(i)));
+    text += fmt::format(" {:>12.4g}\n", fmt::join(mode.Q.diagonal().cwiseSqrt().eval(), " "));
+  }
+  return text;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,32 @@
+#include <fmt/format.h>
+
+#include "app/pipeline.hpp"
+#include "ident/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+void require(bool condition, const std::string& message) {
+  if (!condition) throw ConfigurationError(message);
+}
+
+}  // namespace
+
+void validate(const Config& config) {
+  const DataOptions& data = config.data;
+  require(!data.inputs.empty(), "data.inputs is empty: it names the files to read, for example pro_*.csv");
+  require(!data.state.empty(), "data.state is empty: it names the columns of the measured states");
+  require(data.truth.empty() || data.truth.size() == data.state.size(),
+          fmt::format("data.truth names {} columns, data.state {}: there must be as many, or none", data.truth.size(),
+                      data.state.size()));
+  const LinearStructure structure{static_cast<Index>(data.state.size()), static_cast<Index>(data.input.size()),
+                                  config.window.intercept};
+  const Index sds = config.window.prior_sd.size();
+  require(sds <= 1 || sds == structure.parameters(),
+          fmt::format("window.prior_sd has {} values: give one, or one per parameter ({}), or none", sds,
+                      structure.parameters()));
+  require(config.window.scale != ScaleSource::fixed || config.window.sigma > 0.0,
+          "window.scale = fixed needs window.sigma, the residual standard deviation, above 0");
+}
+
+}  // namespace modebank::app

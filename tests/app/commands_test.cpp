@@ -1,0 +1,159 @@
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/config_file.hpp"
+#include "io/archive.hpp"
+#include "io/inspect.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+class Commands : public CliTest {};
+
+/// All numbers of an archive, as text that round-trips.
+std::string numbers_of(const std::string& archive, const std::string& path) {
+  const nlohmann::json object = inspect(archive, path);
+  if (!object.contains("members")) return path + object.at("value").dump() + "\n";
+  std::string text = path + object.at("attributes").dump() + "\n";
+  for (const auto& [name, member] : object.at("members").items())
+    text += numbers_of(archive, (path == "/" ? "" : path) + "/" + name);
+  return text;
+}
+
+std::string all_stages(const std::string& archive) {
+  std::string text;
+  for (const char* stage : {"/data", "/windows", "/mixture", "/bank", "/baseline", "/noise_only", "/evaluation"})
+    text += numbers_of(archive, stage);
+  return text;
+}
+
+TEST_F(Commands, RunWritesACompleteArchiveAndASummary) {
+  const ProgramResult result = run();
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* part : {"windows", "mixture", "baseline", "noise_only", "the bank gains"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part;
+  EXPECT_EQ(left_behind(), std::vector<std::string>{"out.h5"});
+  EXPECT_EQ(modebank({"verify", archive()}).status, 0);
+}
+
+TEST_F(Commands, NumbersAreTheSameForAnyThreadCount) {
+  ASSERT_EQ(run({"--job.threads", "1"}).status, 0);
+  const std::string one = all_stages(archive());
+  ASSERT_EQ(run({"--job.threads", "2"}).status, 0);
+  EXPECT_EQ(all_stages(archive()), one);
+}
+
+TEST_F(Commands, StoredConfigurationReproducesTheArchive) {
+  ASSERT_EQ(run().status, 0);
+  const Archive first = read_archive(archive());
+  const std::string numbers = all_stages(archive());
+  write("test.ini", first.config);
+  ASSERT_EQ(modebank({"run", config()}).status, 0);
+  EXPECT_EQ(all_stages(archive()), numbers);
+  EXPECT_EQ(read_archive(archive()).provenance.config_hash, first.provenance.config_hash);
+}
+
+TEST_F(Commands, StoredBankGivesBitIdenticalScores) {
+  ASSERT_EQ(run().status, 0);
+  const std::string again = file("again.h5").string();
+  const ProgramResult result = modebank({"evaluate", config(), "--archive.bank", archive(), "--archive.output", again});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(numbers_of(again, "/evaluation"), numbers_of(archive(), "/evaluation"));
+  EXPECT_EQ(numbers_of(again, "/bank"), numbers_of(archive(), "/bank"));
+}
+
+TEST_F(Commands, StagesOneByOneGiveWhatRunGives) {
+  ASSERT_EQ(run().status, 0);
+  const std::string a = file("a.h5").string(), b = file("b.h5").string(), c = file("c.h5").string();
+  ASSERT_EQ(modebank({"identify", config(), "--archive.output", a}).status, 0);
+  EXPECT_FALSE(read_archive(a).mixture.has_value());
+  ASSERT_EQ(modebank({"cluster", config(), "--archive.input", a, "--archive.output", b}).status, 0);
+  EXPECT_FALSE(read_archive(b).bank.has_value());
+  ASSERT_EQ(modebank({"evaluate", config(), "--archive.input", b, "--archive.output", c}).status, 0);
+  EXPECT_EQ(all_stages(c), all_stages(archive()));
+}
+
+TEST_F(Commands, ShowPrintsTheSameSummaryAndAnyObject) {
+  const ProgramResult result = run();
+  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult shown = modebank({"show", archive()});
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  EXPECT_NE(shown.out.find(result.out.substr(0, result.out.find("\narchive"))), std::string::npos);
+  for (const char* part : {"candidates", "modes", "config", "<- selected"})
+    EXPECT_NE(shown.out.find(part), std::string::npos);
+  const ProgramResult object = modebank({"show", archive(), "bank/A", "--json"});
+  ASSERT_EQ(object.status, 0) << object.err;
+  const Archive content = read_archive(archive());
+  const double A = content.bank->modes[0].model.A(0, 0);
+  EXPECT_EQ(nlohmann::json::parse(object.out).at("value")[0][0][0].get<double>(), A);
+  const ProgramResult full = modebank({"show", archive(), "bank/A", "--json", "--form", "full"});
+  EXPECT_EQ(nlohmann::json::parse(full.out).at("value")[0][0][0].get<double>(), 1.0 + A);
+  EXPECT_EQ(modebank({"show", archive(), "bank/nothing"}).status, 2);
+}
+
+TEST_F(Commands, SimulateWritesRunsThatRunReads) {
+  const std::string options =
+      std::string("[data]\nstate = wz\ninput = left, right\n[simulate]\n") +
+      "modes = -0.6, -0.7, 0.7 | -0.2, -0.1, 0.1\nprocess_sd = 0.01\nruns = 4\nsamples = 120\n" +
+      "output = " + file("sim").string() + "\n";
+  write("sim.ini", options);
+  const ProgramResult simulated = modebank({"simulate", file("sim.ini").string()});
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  const ProgramResult result = run({"--data.root", file("sim").string(), "--data.inputs", "pro_*.csv", "--data.states",
+                                    "imu_*.csv", "--data.truth", "true_wz"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Archive content = read_archive(archive());
+  EXPECT_EQ(content.recording->runs.size(), 4u);
+  EXPECT_EQ(content.recording->runs[0].samples(), 120);
+  EXPECT_EQ(content.recording->runs[0].truth.cols(), 120);
+}
+
+TEST_F(Commands, ThePapersOwnLayoutRunsByChangingDataOptionsOnly) {
+  for (const char* run : {"01", "02"}) {
+    std::istringstream lines(csv_run(90, static_cast<unsigned>(run[1])));
+    std::string line, states = "time,IMU_fil_AngZ\n", joints = "Time,name,velocity_0,velocity_1\n";
+    std::getline(lines, line);
+    for (int k = 0; std::getline(lines, line); ++k) {
+      std::istringstream fields(line);
+      std::string time, wz, left, right;
+      std::getline(fields, time, ',');
+      std::getline(fields, wz, ',');
+      std::getline(fields, left, ',');
+      std::getline(fields, right);
+      states += time + "," + wz + "\n";
+      joints += std::to_string(1700000000 + k) + ",\"['front_left', 'front_right']\"," + left + "," + right + "\n";
+    }
+    write("TSyn_" + std::string(run) + ".csv", states);
+    write("joint_states_" + std::string(run) + ".csv", joints);
+  }
+  const std::string husky = (golden_dir() / "../../configs/husky_ice.ini").string();
+  const ProgramResult result =
+      modebank({"run", husky, "--data.root", file(".").string(), "--data.inputs", "joint_states_*.csv", "--data.states",
+                "TSyn_*.csv", "--data.state", "IMU_fil_AngZ", "--data.input", "velocity_0, velocity_1", "--data.join",
+                "row", "--archive.output", archive()});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Archive content = read_archive(archive());
+  ASSERT_EQ(content.recording->runs.size(), 2u);
+  EXPECT_EQ(content.recording->runs[0].samples(), 90);
+  EXPECT_EQ(content.recording->runs[0].run, "01");
+}
+
+TEST_F(Commands, HelpNamesEveryCommandAndOption) {
+  const ProgramResult result = modebank({"--help"});
+  EXPECT_EQ(result.status, 0);
+  for (const char* part :
+       {"run CONFIG", "verify ARCHIVE", "--window.length", "--simulate.state_rate_hz", "default: 25"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part;
+}
+
+TEST_F(Commands, ReadmeHoldsTheTableOfKeysAsHelpPrintsIt) {
+  const ProgramResult result = modebank({"help", "--markdown"});
+  ASSERT_EQ(result.status, 0);
+  std::ifstream stream(golden_dir() / "../../README.md");
+  const std::string readme{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_NE(readme.find(result.out), std::string::npos) << "run: make readme";
+}
+
+}  // namespace
+}  // namespace modebank::test
