@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all build demo test bench check format tidy strict sanitize coverage picture clean
+.PHONY: all build demo test bench check format strict sanitize coverage picture readme clean
 
 all: build
 
@@ -29,7 +29,7 @@ bench: build
 	build/bench_modebank
 
 # Everything CI runs beside `make test`.
-check: format strict sanitize tidy
+check: format strict sanitize
 
 format: packages-check
 	git ls-files '*.hpp' '*.cpp' | xargs clang-format --dry-run --Werror
@@ -44,9 +44,6 @@ sanitize: packages-build packages-test
 	cmake --build --preset sanitize -j $(JOBS)
 	ctest --preset sanitize -j $(JOBS)
 
-tidy: strict packages-check
-	git ls-files '*.cpp' | grep -v '^tests/' | xargs -P $(JOBS) -n 1 clang-tidy --quiet -p build
-
 coverage: packages-build packages-test
 	cmake --preset coverage >/dev/null
 	cmake --build --preset coverage -j $(JOBS)
@@ -54,6 +51,11 @@ coverage: packages-build packages-test
 
 picture: demo packages-picture
 	/usr/bin/python3 app/report/readme_picture.py $(DEMO)/demo.h5 app/report/readme.png
+
+# README's table of keys is what the program prints.
+readme: build
+	@build/modebank help --markdown > build/options.md
+	@sed -i -e '/<!-- options -->/,/<!-- end of options -->/{//!d}' -e '/<!-- options -->/r build/options.md' README.md
 
 clean:
 	rm -rf build

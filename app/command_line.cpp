@@ -22,12 +22,26 @@ po::options_description describe_options(CommandLine& line) {
   add("json", po::bool_switch(&line.json));
   add("form", po::value(&line.form));
   add("words", po::value<std::vector<std::string>>());
-  for (const Option& option : option_table()) add(option.key.c_str(), po::value<std::string>());
+  for (const Option& option : option_table())
+    add(option.key.c_str(), po::value<std::vector<std::string>>()->composing());  // given twice, the last wins
   return description;
 }
 
 std::string shell_quoted(const std::string& word) {
   return word.find_first_of(" \t*|'\"#$&;()<>") == std::string::npos ? word : "'" + word + "'";
+}
+
+/// --key=value as two words, because Boost refuses the empty value of --key=.
+std::vector<std::string> split_at_equal_signs(int argc, const char* const* argv) {
+  std::vector<std::string> words;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto equal_sign = word.find('=');
+    const bool key_with_value = word.rfind("--", 0) == 0 && equal_sign != std::string::npos;
+    words.push_back(word.substr(0, key_with_value ? equal_sign : std::string::npos));
+    if (key_with_value) words.push_back(word.substr(equal_sign + 1));
+  }
+  return words;
 }
 
 }  // namespace
@@ -42,8 +56,11 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   try {
     // No guessing: an abbreviated key would change its meaning when keys are added.
     const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
-    const po::parsed_options parsed =
-        po::command_line_parser(argc, argv).options(description).positional(positional).style(style).run();
+    const po::parsed_options parsed = po::command_line_parser(split_at_equal_signs(argc, argv))
+                                          .options(description)
+                                          .positional(positional)
+                                          .style(style)
+                                          .run();
     for (const po::option& option : parsed.options)
       if (option.string_key.find('.') != std::string::npos)
         line.overrides.emplace_back(option.string_key, option.value.at(0));

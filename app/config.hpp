@@ -18,6 +18,7 @@ struct MixtureConfig {
   SelectionOptions selection;
   FeatureSet features = FeatureSet::parameters_and_noise;
   WindowChoice windows = WindowChoice::automatic;
+  StraddlingWindows straddling = StraddlingWindows::leave_out;
 };
 
 struct ArchiveConfig {

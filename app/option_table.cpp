@@ -157,6 +157,7 @@ std::vector<Option> mixture_options() {
       words("mixture.features", "what is clustered", FIELD(mixture.features)),
       words("mixture.windows", "which windows are clustered; automatic: all with a prior, else full_rank",
             FIELD(mixture.windows)),
+      words("mixture.straddling", "windows that straddle a switch of mode", FIELD(mixture.straddling)),
       numeric("mixture.restarts", between(1, 10'000), "", "independent starts per candidate",
               FIELD(mixture.selection.em.restarts)),
       numeric("mixture.tolerance", above(0), "nats/window", "stop when the mean log-likelihood gains less",

@@ -56,8 +56,8 @@ void identify_stage(const Config& config, Archive& archive) {
 
 void cluster_stage(const Config& config, Archive& archive) {
   const Stopwatch watch;
-  const FeatureCloud cloud =
-      make_features(*archive.windows, config.mixture.features, config.mixture.windows, archive.recording->states);
+  const FeatureCloud cloud = make_features(*archive.windows, config.mixture.features, config.mixture.windows,
+                                           archive.recording->states, config.mixture.straddling);
   archive.mixture = select_mixture(*archive.windows, cloud, config.mixture.selection, config.job.seed);
   spdlog::info("mixture: {} components from {} windows in {:.2f} s", archive.mixture->mixture.components(),
                cloud.windows.size(), watch.seconds());

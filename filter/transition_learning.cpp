@@ -22,11 +22,14 @@ Eigen::MatrixXd count_label_transitions(const WindowFits& fits, const Eigen::Vec
   const std::vector<Index> position = positions(labels, kept);
   const auto mode_of = [&](Index window) { return labels(window) < 0 ? Index{-1} : position[labels(window)]; };
   Eigen::MatrixXd counts = Eigen::MatrixXd::Zero(std::ssize(kept), std::ssize(kept));
-  for (Index i = 0; i + 1 < fits.count(); ++i) {
-    const Window &now = fits.windows[i], &next = fits.windows[i + 1];
-    if (now.run != next.run || next.start - now.start != fits.step) continue;
-    const Index from = mode_of(i), to = mode_of(i + 1);
-    if (from >= 0 && to >= 0) counts(from, to) += 1.0;
+  Index from = -1;
+  for (Index i = 0; i < fits.count(); ++i) {
+    const bool follows = i > 0 && fits.windows[i - 1].run == fits.windows[i].run &&
+                         fits.windows[i].start - fits.windows[i - 1].start == fits.step;
+    if (!follows) from = -1;
+    const Index to = mode_of(i);
+    if (from >= 0) counts(from, to >= 0 ? to : from) += 1.0;
+    if (to >= 0) from = to;
   }
   return counts;
 }

@@ -40,7 +40,7 @@ void check_modes(const SimulationOptions& o) {
   for (const Eigen::VectorXd& theta : o.modes)
     require(theta.size() == p && theta.allFinite(), "a mode has " + std::to_string(theta.size()) +
                                                         " parameters; it needs " + std::to_string(p) + " finite ones");
-  require(o.process_sd.size() == o.modes.size(),
+  require(o.process_sd.size() == 1 || o.process_sd.size() == o.modes.size(),
           std::to_string(o.process_sd.size()) + " process_sd values for " + std::to_string(o.modes.size()) + " modes");
   for (const double sd : o.process_sd) require_nonnegative(sd, "process_sd");
 }
@@ -126,7 +126,8 @@ Eigen::MatrixXd drive_states(const SimulationOptions& o, const Eigen::VectorXi& 
   Eigen::MatrixXd states = Eigen::MatrixXd::Zero(o.states, o.samples);
   for (Index k = 0; k + 1 < o.samples; ++k) {
     const std::size_t s = static_cast<std::size_t>(modes(k));
-    states.col(k + 1) = models[s].next(states.col(k), inputs.col(k)) + draw_noise(o.states, o.process_sd[s], generator);
+    states.col(k + 1) = models[s].next(states.col(k), inputs.col(k)) +
+                        draw_noise(o.states, o.process_sd.size() == 1 ? o.process_sd[0] : o.process_sd[s], generator);
     require(states.col(k + 1).allFinite(), "mode " + std::to_string(s) + " is unstable: the state leaves all bounds");
   }
   return states;

@@ -23,7 +23,7 @@ struct EnumNames<InputLaw> {
 /// chain.
 struct SimulationOptions {
   std::vector<Eigen::VectorXd> modes;  ///< theta per mode, p entries each
-  std::vector<double> process_sd;      ///< per mode, sqrt of the diagonal of Q [state unit / step]
+  std::vector<double> process_sd;      ///< per mode or one for all, sqrt of the diagonal of Q [state unit]
   double measurement_sd = 0.0;         ///< sqrt of the diagonal of R [state unit]
   Eigen::MatrixXd transition;          ///< K x K, row = from; empty: from dwell_samples, equal elsewhere
   double dwell_samples = 0.0;  ///< mean samples in a mode, at least 1; 0: every run stays in one mode, run i in mode (i

@@ -94,8 +94,12 @@ std::string write_obstacle(const fs::path& path) {
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status)) return "'" + path.string() + "' is a folder";
   if (fs::exists(status) && !fs::is_regular_file(status)) return "'" + path.string() + "' is not a regular file";
-  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
-    return "the folder '" + folder.string() + "' is not writable: " + system_reason();
+  // Permissions do not tell (read-only mounts, /proc, root): only a file made there does. It goes with this scope.
+  try {
+    const TemporaryFile probe(path);
+  } catch (const DataError& obstacle) {
+    return "the folder '" + folder.string() + "' is not writable: " + obstacle.what();
+  }
   return {};
 }
 

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "mixture/straddling.hpp"
+
 namespace modebank {
 
 using Eigen::Index;
@@ -20,7 +22,7 @@ bool wanted(const WindowFits& fits, WindowChoice choice, Index window) {
 }  // namespace
 
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
-                           const std::vector<Channel>& states) {
+                           const std::vector<Channel>& states, StraddlingWindows straddling) {
   const Index p = fits.parameter_count(), n = fits.structure.states;
   const bool with_noise = features == FeatureSet::parameters_and_noise;
   if (static_cast<Index>(states.size()) != n)
@@ -31,8 +33,11 @@ FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowCh
     for (const Channel& state : states) cloud.names.push_back("log_noise_variance_" + state.name);
   Eigen::VectorXd point(p + (with_noise ? n : 0));
   Eigen::MatrixXd points(point.size(), fits.count());
+  const std::vector<bool> left_out = straddling == StraddlingWindows::leave_out
+                                         ? straddling_windows(fits)
+                                         : std::vector<bool>(static_cast<std::size_t>(fits.count()), false);
   for (Index window = 0; window < fits.count(); ++window) {
-    if (!wanted(fits, choice, window)) continue;
+    if (!wanted(fits, choice, window) || left_out[static_cast<std::size_t>(window)]) continue;
     point.head(p) = fits.parameters.col(window);
     if (with_noise) point.tail(n) = fits.noise_variance.col(window).array().log();
     if (!point.allFinite()) continue;

@@ -21,6 +21,15 @@ struct EnumNames<WindowChoice> {
   static constexpr Names<3> values{"automatic", "full_rank", "all"};
 };
 
+/// What becomes of windows that straddle a switch of mode: they follow no single model and are a population of their
+/// own, which would claim a component. `leave_out` takes them out of the cloud; `keep` clusters them like the others.
+enum class StraddlingWindows { leave_out, keep };
+
+template <>
+struct EnumNames<StraddlingWindows> {
+  static constexpr Names<2> values{"leave_out", "keep"};
+};
+
 /// The cloud that is clustered: one point per clustered window.
 struct FeatureCloud {
   std::vector<std::string> names;     ///< F: parameter names, then "log_noise_variance_<state>" when noise is included
@@ -31,6 +40,6 @@ struct FeatureCloud {
 
 /// Failed fits and non-finite windows are left out.
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
-                           const std::vector<Channel>& states);
+                           const std::vector<Channel>& states, StraddlingWindows straddling = StraddlingWindows::keep);
 
 }  // namespace modebank

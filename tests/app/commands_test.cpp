@@ -92,6 +92,17 @@ TEST_F(Commands, ShowPrintsTheSameSummaryAndAnyObject) {
   EXPECT_EQ(modebank({"show", archive(), "bank/nothing"}).status, 2);
 }
 
+TEST_F(Commands, OptionsMayBeGivenWithEqualSignAndMayBeEmpty) {
+  write("test.ini", std::string(config_text()) + "[bank]\nmeasurement_variance = 0.25\n");
+  ASSERT_EQ(run({"--mixture.components=1"}).status, 0);
+  EXPECT_EQ(read_archive(archive()).bank->R(0, 0), 0.25);
+  for (const std::vector<std::string>& empty :
+       {std::vector<std::string>{"--bank.measurement_variance="}, {"--bank.measurement_variance", ""}}) {
+    ASSERT_EQ(run(empty).status, 0);
+    EXPECT_LT(read_archive(archive()).bank->R(0, 0), 0.25);
+  }
+}
+
 TEST_F(Commands, SimulateWritesRunsThatRunReads) {
   const std::string options =
       std::string("[data]\nstate = wz\ninput = left, right\n[simulate]\n") +

@@ -257,7 +257,7 @@ TEST(SimulateOptions, AreChecked) {
   };
   rejects([](SimulationOptions& o) { o.modes.clear(); });
   rejects([](SimulationOptions& o) { o.modes[1] = VectorXd::Zero(2); });
-  rejects([](SimulationOptions& o) { o.process_sd.pop_back(); });
+  rejects([](SimulationOptions& o) { o.process_sd = {0.1, 0.1, 0.1}; });
   rejects([](SimulationOptions& o) { o.process_sd[0] = -1; });
   rejects([](SimulationOptions& o) { o.transition = MatrixXd::Ones(3, 3) / 3; });
   rejects([](SimulationOptions& o) { o.transition = MatrixXd{{0.9, 0.2}, {0.5, 0.5}}; });

@@ -1,0 +1,35 @@
+#include "mixture/straddling.hpp"
+
+#include <boost/math/distributions/fisher_f.hpp>
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+constexpr double significance = 0.999;
+
+/// Windows between a window's start and that of its nearest neighbour without a shared transition.
+Index neighbour_offset(const WindowFits& fits) { return (fits.length + fits.step - 1) / fits.step; }
+
+bool same_run(const WindowFits& fits, Index a, Index b) {
+  return fits.windows[static_cast<std::size_t>(a)].run == fits.windows[static_cast<std::size_t>(b)].run;
+}
+
+}  // namespace
+
+std::vector<bool> straddling_windows(const WindowFits& fits) {
+  std::vector<bool> straddling(static_cast<std::size_t>(fits.count()), false);
+  const auto freedom = static_cast<double>(fits.length - fits.structure.regressors());
+  if (freedom <= 0.0) return straddling;
+  const double threshold = boost::math::quantile(boost::math::fisher_f(freedom, freedom), significance);
+  const Index offset = neighbour_offset(fits);
+  for (Index i = offset; i + offset < fits.count(); ++i) {
+    if (!same_run(fits, i - offset, i) || !same_run(fits, i, i + offset)) continue;
+    const Eigen::ArrayXd calm =
+        fits.noise_variance.col(i - offset).cwiseMax(fits.noise_variance.col(i + offset)).array();
+    straddling[static_cast<std::size_t>(i)] = (fits.noise_variance.col(i).array() > threshold * calm).any();
+  }
+  return straddling;
+}
+
+}  // namespace modebank
