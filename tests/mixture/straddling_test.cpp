@@ -1,0 +1,62 @@
+#include "mixture/straddling.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mixture/features.hpp"
+
+namespace modebank {
+namespace {
+
+/// Windows of 25 transitions of one run; residual variance 1e-4, and `ratio` times that in windows 40..60.
+WindowFits fits_with_a_loud_stretch(double ratio, Index step = 1) {
+  WindowFits fits;
+  fits.structure = {1, 2, false};
+  fits.length = 25;
+  fits.step = step;
+  for (Index i = 0; i < 100; ++i) fits.windows.push_back({0, i * step});
+  fits.resize(100);
+  fits.parameters.setZero();
+  fits.noise_variance.setConstant(1e-4);
+  fits.noise_variance.middleCols(40, 21).setConstant(ratio * 1e-4);
+  fits.rank.setConstant(3);
+  fits.status.setConstant(static_cast<int>(FitStatus::converged));
+  return fits;
+}
+
+// The 99.9 % quantile of F(22, 22) is 3.98 (R: qf(0.999, 22, 22)).
+TEST(Straddling, LouderThanBothDisjointNeighbours) {
+  const std::vector<bool> flags = straddling_windows(fits_with_a_loud_stretch(4.1));
+  for (std::size_t i = 0; i < flags.size(); ++i) EXPECT_EQ(flags[i], i >= 40 && i <= 60) << i;
+}
+
+TEST(Straddling, NotBelowTheQuantile) {
+  const std::vector<bool> flags = straddling_windows(fits_with_a_loud_stretch(3.8));
+  EXPECT_EQ(std::count(flags.begin(), flags.end(), true), 0);
+}
+
+TEST(Straddling, AModeThatLastsIsNotStraddling) {
+  // At step 5 the loud stretch lasts 100 transitions: every window in it has a neighbour as loud as itself.
+  const std::vector<bool> flags = straddling_windows(fits_with_a_loud_stretch(100.0, 5));
+  EXPECT_EQ(std::count(flags.begin(), flags.end(), true), 0);
+}
+
+TEST(Straddling, NeighboursAreOfTheSameRun) {
+  WindowFits fits = fits_with_a_loud_stretch(100.0);
+  for (std::size_t i = 50; i < 100; ++i) fits.windows[i].run = 1;
+  const std::vector<bool> flags = straddling_windows(fits);
+  EXPECT_EQ(std::count(flags.begin(), flags.end(), true), 0);
+}
+
+TEST(Straddling, WindowsAreLeftOutOfTheCloudOnlyOnRequest) {
+  const WindowFits fits = fits_with_a_loud_stretch(10.0);
+  const std::vector<Channel> states{{"wz", "rad/s"}};
+  EXPECT_EQ(make_features(fits, FeatureSet::parameters, WindowChoice::all, states).windows.size(), 100u);
+  EXPECT_EQ(make_features(fits, FeatureSet::parameters, WindowChoice::all, states, StraddlingWindows::leave_out)
+                .windows.size(),
+            79u);
+}
+
+}  // namespace
+}  // namespace modebank
