@@ -25,14 +25,16 @@ nlohmann::json golden() {
 }
 
 TEST(Calibration, ChiSquareQuantilesAgreeWithScipy) {
-  for (const auto& row : golden().at("chi_square")) {
+  const nlohmann::json rows = golden().at("chi_square");  // outlives the loop
+  for (const auto& row : rows) {
     const double expected = row.at("value");
     EXPECT_NEAR(chi_square_quantile(row.at("p"), row.at("dof")) / expected, 1.0, special_function_tolerance);
   }
 }
 
 TEST(Calibration, NormalScoresAgreeWithScipyAndAreClipped) {
-  for (const auto& row : golden().at("normal_score"))
+  const nlohmann::json rows = golden().at("normal_score");
+  for (const auto& row : rows)
     EXPECT_NEAR(normal_score(row.at("pit")), row.at("z").get<double>(), special_function_tolerance);
   EXPECT_EQ(normal_score(0.0), normal_score(1e-15));
   EXPECT_EQ(normal_score(1.0), normal_score(1.0 - 1e-15));
