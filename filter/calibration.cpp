@@ -6,12 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "ident/not_a_number.hpp"
+
 namespace modebank {
 
 namespace {
 
 using boost::math::chi_squared;
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 std::size_t lag_count(std::size_t samples) { return std::min<std::size_t>(20, samples / 5); }
 

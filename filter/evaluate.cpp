@@ -1,19 +1,18 @@
 #include "filter/evaluate.hpp"
 
-#include <limits>
 #include <stdexcept>
 #include <string>
 
 #include "filter/combined.hpp"
 #include "filter/filter_step.hpp"
 #include "ident/error.hpp"
+#include "ident/not_a_number.hpp"
 
 namespace modebank {
 
 namespace {
 
 using Eigen::Index;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 void check_run(const Bank& bank, const Trajectory& run) {
   check_sizes(bank);
@@ -40,14 +39,14 @@ Index first_whole_sample(const Trajectory& run) {
 RunEvaluation empty_evaluation(const Bank& bank, Index samples) {
   const Index n = bank.structure.states, n_y = bank.C.rows(), K = bank.mode_count();
   RunEvaluation e;
-  e.prediction.setConstant(n, samples, nan);
-  e.innovation.setConstant(n_y, samples, nan);
-  e.innovation_covariance.setConstant(n_y * n_y, samples, nan);
-  e.state.setConstant(n, samples, nan);
-  e.covariance.setConstant(n * n, samples, nan);
-  e.nis.setConstant(samples, nan);
-  e.pit.setConstant(n_y, samples, nan);
-  e.log_density.setConstant(samples, nan);
+  e.prediction.setConstant(n, samples, not_a_number);
+  e.innovation.setConstant(n_y, samples, not_a_number);
+  e.innovation_covariance.setConstant(n_y * n_y, samples, not_a_number);
+  e.state.setConstant(n, samples, not_a_number);
+  e.covariance.setConstant(n * n, samples, not_a_number);
+  e.nis.setConstant(samples, not_a_number);
+  e.pit.setConstant(n_y, samples, not_a_number);
+  e.log_density.setConstant(samples, not_a_number);
   e.mode_probability_predicted.setZero(K, samples);
   e.mode_probability.setZero(K, samples);
   return e;

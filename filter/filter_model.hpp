@@ -1,13 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/QR>
-#include <algorithm>
 #include <vector>
 
 #include "filter/bank.hpp"
 #include "filter/evaluate.hpp"
 #include "filter/gaussian.hpp"
+#include "filter/start_moments.hpp"
 
 namespace modebank {
 
@@ -39,21 +38,6 @@ struct FilterModel {
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
 };
 
-/// Directions of the state that one measurement leaves open start with this multiple of the largest variance of Q and
-/// R: wide against what the filter will learn, and close enough to it to keep the arithmetic sound.
-inline constexpr double unobserved_variance_factor = 1e4;
-
-/// P[0] = C+ R C+' (+ wide variance where C sees nothing); R itself for C = I.
-inline Eigen::MatrixXd start_covariance(const Bank& bank, const Eigen::MatrixXd& C_pinv) {
-  double largest = bank.R.diagonal().maxCoeff();
-  for (const Mode& mode : bank.modes) largest = std::max(largest, mode.Q.diagonal().maxCoeff());
-  const Eigen::Index n = bank.structure.states;
-  Eigen::MatrixXd P = C_pinv * bank.R * C_pinv.transpose();
-  const Eigen::MatrixXd unobserved = Eigen::MatrixXd::Identity(n, n) - C_pinv * bank.C;
-  if (bank.C.rows() < n) P += unobserved_variance_factor * largest * unobserved;
-  return 0.5 * (P + P.transpose());
-}
-
 template <int N, int NY>
 FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
     : structure(bank.structure), variant(options.variant), C(bank.C), R(bank.R) {
@@ -67,9 +51,9 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
     modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q,
                      noisy ? mode.spread : Eigen::MatrixXd()});
   }
-  const Eigen::MatrixXd C_pinv = bank.C.completeOrthogonalDecomposition().pseudoInverse();
-  start_gain = C_pinv;
-  start_covariance = modebank::start_covariance(bank, C_pinv);
+  const StartMoments start = start_moments(bank);
+  start_gain = start.gain;
+  start_covariance = start.covariance;
 }
 
 /// Calls f.template operator()<N, NY>() with fixed sizes where they are built, Eigen::Dynamic otherwise. The one place

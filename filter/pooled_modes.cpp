@@ -5,10 +5,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <limits>
 #include <unsupported/Eigen/KroneckerProduct>
 
 #include "filter/noise_floor.hpp"
+#include "ident/not_a_number.hpp"
+#include "mixture/em_step.hpp"
 
 namespace modebank {
 namespace {
@@ -66,11 +67,9 @@ Eigen::MatrixXd regularised(const WeightedRegression& data, const Eigen::MatrixX
 /// Raises the eigenvalues of Q, in units of the reference variances, to the floor; leaves Q alone when none is below.
 Eigen::MatrixXd floored(const Eigen::MatrixXd& Q, const Eigen::VectorXd& reference) {
   const Eigen::VectorXd sd = reference.cwiseSqrt();
-  const Eigen::MatrixXd whitened = sd.cwiseInverse().asDiagonal() * Q * sd.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(whitened);
-  if (eigen.eigenvalues().minCoeff() >= process_noise_floor) return Q;
-  const Eigen::MatrixXd root = sd.asDiagonal() * eigen.eigenvectors();
-  return root * eigen.eigenvalues().cwiseMax(process_noise_floor).asDiagonal() * root.transpose();
+  Eigen::MatrixXd whitened = sd.cwiseInverse().asDiagonal() * Q * sd.cwiseInverse().asDiagonal();
+  if (!raise_to_floor(whitened, process_noise_floor, CovarianceType::full)) return Q;
+  return sd.asDiagonal() * whitened * sd.asDiagonal();
 }
 
 Eigen::MatrixXd process_noise(const WeightedRegression& data, const Eigen::MatrixXd& beta, const GlobalModel& global) {
@@ -85,7 +84,7 @@ Eigen::VectorXd standard_errors(const WeightedRegression& data, const Eigen::Mat
   const Index p = Q.rows() * data.G.rows();
   Eigen::MatrixXd information = prior_information(p, prior);
   if (data.weight >= smallest_weight) information += Eigen::kroneckerProduct(inverse(Q_unbiased), data.G).eval();
-  Eigen::VectorXd not_determined = Eigen::VectorXd::Constant(p, std::numeric_limits<double>::quiet_NaN());
+  Eigen::VectorXd not_determined = Eigen::VectorXd::Constant(p, not_a_number);
   if (!(information.diagonal().minCoeff() > 0.0) || !information.allFinite()) return not_determined;
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * information * scale.asDiagonal());

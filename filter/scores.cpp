@@ -1,18 +1,17 @@
 #include "filter/scores.hpp"
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 
 #include "filter/calibration.hpp"
+#include "ident/not_a_number.hpp"
 
 namespace modebank {
 
 namespace {
 
 using Eigen::Index;
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// The two-sided 5 % region of a chi-square variable, as method section 6 counts it.
 struct ChiSquareRegion {

@@ -3,7 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
-#include <limits>
+
+#include "ident/not_a_number.hpp"
 
 namespace modebank {
 
@@ -15,8 +16,7 @@ constexpr double least_one_minus_leverage = 1e-6;
 constexpr double least_correlation_rcond = 1e-10;
 
 Eigen::MatrixXd undefined(const WhitenedProblem& problem) {
-  return Eigen::MatrixXd::Constant(problem.basis.rows(), problem.basis.rows(),
-                                   std::numeric_limits<double>::quiet_NaN());
+  return Eigen::MatrixXd::Constant(problem.basis.rows(), problem.basis.rows(), not_a_number);
 }
 
 Eigen::MatrixXd prior_information(const WhitenedProblem& problem) {
@@ -58,7 +58,7 @@ Eigen::MatrixXd from_information(const WhitenedProblem& problem, const Eigen::Ma
     information += sample_rows(problem, k).transpose() * G_inverse * sample_rows(problem, k);
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   if (factor.info() != Eigen::Success)
-    return Eigen::MatrixXd::Constant(problem.unknowns(), problem.unknowns(), std::numeric_limits<double>::quiet_NaN());
+    return Eigen::MatrixXd::Constant(problem.unknowns(), problem.unknowns(), not_a_number);
   return factor.solve(Eigen::MatrixXd::Identity(problem.unknowns(), problem.unknowns()));
 }
 
@@ -79,7 +79,7 @@ Eigen::MatrixXd sandwich(const CovarianceInput& in) {
   Eigen::LLT<Eigen::MatrixXd> factor(hessian(in.problem, in.terms));
   const bool exact = factor.info() == Eigen::Success;
   if (!exact) factor.compute(weighted_information(in.problem, in.terms));
-  if (factor.info() != Eigen::Success) return Eigen::MatrixXd::Constant(z, z, std::numeric_limits<double>::quiet_NaN());
+  if (factor.info() != Eigen::Success) return Eigen::MatrixXd::Constant(z, z, not_a_number);
   const Eigen::MatrixXd H_inverse = factor.solve(Eigen::MatrixXd::Identity(z, z));
 
   Eigen::MatrixXd meat = prior_information(in.problem);

@@ -1,7 +1,7 @@
-#include <limits>
 
 #include "ident/error.hpp"
 #include "ident/fit_window.hpp"
+#include "ident/not_a_number.hpp"
 #include "ident/regression.hpp"
 
 namespace modebank {
@@ -11,7 +11,7 @@ namespace {
 /// S (x) (X'X)^-1 for theta row-major; NaN where the transitions leave it open.
 Eigen::MatrixXd least_squares_covariance(const Decomposition& d, const Eigen::MatrixXd& residual_square_sum, Index N) {
   const Index q = d.basis.rows(), n = residual_square_sum.rows();
-  if (d.rank() < q || N <= q) return Eigen::MatrixXd::Constant(n * q, n * q, std::numeric_limits<double>::quiet_NaN());
+  if (d.rank() < q || N <= q) return Eigen::MatrixXd::Constant(n * q, n * q, not_a_number);
   const Eigen::MatrixXd gram_inverse = d.basis * d.basis.transpose();
   Eigen::MatrixXd covariance(n * q, n * q);
   for (Index i = 0; i < n; ++i)

@@ -1,15 +1,13 @@
 #include "ident/fit_transitions.hpp"
 
-#include <limits>
-
 #include "ident/covariance.hpp"
 #include "ident/m_estimate.hpp"
+#include "ident/not_a_number.hpp"
 
 namespace modebank {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// An inlier keeps at least this share of its least-squares weight.
 constexpr double inlier_weight = 0.5;
 
@@ -33,7 +31,7 @@ Eigen::VectorXd noise_variance(const WhitenedProblem& problem, const RobustTerms
 }
 
 Eigen::VectorXd information(const Eigen::MatrixXd& covariance, const ParameterPrior* prior) {
-  if (!prior) return Eigen::VectorXd::Constant(covariance.rows(), nan);
+  if (!prior) return Eigen::VectorXd::Constant(covariance.rows(), not_a_number);
   return 1.0 - covariance.diagonal().array() / prior->sd.array().square();
 }
 
@@ -48,12 +46,12 @@ Estimator make_estimator(const LinearStructure& structure, const FitOptions& opt
 LocalModel failed_fit(const LinearStructure& structure) {
   const Index p = structure.parameters();
   LocalModel fit;
-  fit.theta = Eigen::VectorXd::Constant(p, nan);
-  fit.covariance = Eigen::MatrixXd::Constant(p, p, nan);
-  fit.noise_variance = Eigen::VectorXd::Constant(structure.states, nan);
-  fit.condition = nan;
+  fit.theta = Eigen::VectorXd::Constant(p, not_a_number);
+  fit.covariance = Eigen::MatrixXd::Constant(p, p, not_a_number);
+  fit.noise_variance = Eigen::VectorXd::Constant(structure.states, not_a_number);
+  fit.condition = not_a_number;
   fit.information = fit.theta;
-  fit.inlier_fraction = nan;
+  fit.inlier_fraction = not_a_number;
   fit.status = FitStatus::failed;
   return fit;
 }
@@ -85,7 +83,8 @@ Eigen::VectorXd fit_theta(const Transitions& transitions, const Decomposition& d
                           const Estimator& estimator, const NoiseScale& scale, const ParameterPrior* prior) {
   const WhitenedProblem problem = whiten(transitions, decomposition, scale.sigma, prior);
   const Minimum minimum = minimise(problem, estimator.loss, estimator.max_iterations);
-  if (minimum.status == FitStatus::failed) return Eigen::VectorXd::Constant(estimator.structure.parameters(), nan);
+  if (minimum.status == FitStatus::failed)
+    return Eigen::VectorXd::Constant(estimator.structure.parameters(), not_a_number);
   return problem.theta(minimum.z);
 }
 

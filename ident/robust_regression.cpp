@@ -3,10 +3,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "ident/fit_window.hpp"
+#include "ident/not_a_number.hpp"
 #include "ident/robust_scale.hpp"
 
 namespace modebank {
@@ -61,7 +61,7 @@ ResponseFit fit_response(const MatrixXd& U, const VectorXd& y, double k) {
 double variance_factor(const ResponseFit& fit, double k, Index q) {
   const double N = static_cast<double>(fit.residuals.size()), spare = N - static_cast<double>(q);
   if (fit.scale == 0.0) return 0.0;
-  if (spare <= 0.0) return std::numeric_limits<double>::quiet_NaN();
+  if (spare <= 0.0) return not_a_number;
   const Eigen::ArrayXd standardised = fit.residuals.array() / fit.scale;
   const double psi_squared = standardised.min(k).max(-k).square().sum();
   const double inside = static_cast<double>((standardised.abs() <= k).count()) / N;
@@ -72,7 +72,7 @@ double variance_factor(const ResponseFit& fit, double k, Index q) {
 /// Diagonal of (X'X)^-1 = basis basis', NaN when the rank is deficient.
 VectorXd unscaled_variance(const Decomposition& design) {
   const Index q = design.basis.rows();
-  if (design.rank() < q) return VectorXd::Constant(q, std::numeric_limits<double>::quiet_NaN());
+  if (design.rank() < q) return VectorXd::Constant(q, not_a_number);
   return design.basis.rowwise().squaredNorm();
 }
 

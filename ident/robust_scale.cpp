@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ident/not_a_number.hpp"
+
 namespace modebank {
 
 namespace {
@@ -13,7 +15,7 @@ constexpr double least_scale = 1e-150;  // its square is still a normal number
 }  // namespace
 
 double median(Eigen::VectorXd values) {
-  if (values.size() == 0) return std::numeric_limits<double>::quiet_NaN();
+  if (values.size() == 0) return not_a_number;
   double* const middle = values.data() + values.size() / 2;
   std::nth_element(values.data(), middle, values.data() + values.size());
   if (values.size() % 2 == 1) return *middle;
@@ -26,7 +28,7 @@ double normalised_mad(const Eigen::VectorXd& values) {
 
 Eigen::VectorXd robust_scale(const Transitions& transitions, const Decomposition& decomposition) {
   const Index N = transitions.count(), rank = decomposition.rank(), n = transitions.increments.cols();
-  if (N <= rank) return Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN());
+  if (N <= rank) return Eigen::VectorXd::Constant(n, not_a_number);
   const Eigen::MatrixXd r = residuals(decomposition, transitions.increments);
   Eigen::VectorXd scale(n);
   for (Index i = 0; i < n; ++i) scale(i) = normalised_mad(r.col(i));

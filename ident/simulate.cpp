@@ -1,6 +1,6 @@
 #include "ident/simulate.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <boost/random/bernoulli_distribution.hpp>
 #include <boost/random/discrete_distribution.hpp>
@@ -91,8 +91,8 @@ Eigen::VectorXd stationary_distribution(const Eigen::MatrixXd& T) {
   Eigen::MatrixXd equations(K + 1, K);
   equations.topRows(K) = T.transpose() - Eigen::MatrixXd::Identity(K, K);
   equations.row(K).setOnes();
-  const Eigen::VectorXd pi =
-      equations.completeOrthogonalDecomposition().solve(Eigen::VectorXd::Unit(K + 1, K)).cwiseMax(0.0);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(equations, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::VectorXd pi = svd.solve(Eigen::VectorXd::Unit(K + 1, K).eval()).cwiseMax(0.0);
   return pi / pi.sum();
 }
 

@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "ident/not_a_number.hpp"
+
 namespace modebank {
 
 using Eigen::Index;
@@ -46,7 +48,7 @@ double badness(const Candidate& candidate, Criterion criterion, Index points) {
       return -2.0 * candidate.log_likelihood +
              static_cast<double>(candidate.parameters) * std::log(static_cast<double>(points));
   }
-  return std::numeric_limits<double>::quiet_NaN();
+  return not_a_number;
 }
 
 Index best_candidate(const std::vector<Candidate>& candidates, Criterion criterion, Index points) {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <vector>
 
+#include "ident/not_a_number.hpp"
 #include "ident/seed.hpp"
 
 namespace modebank {
@@ -16,7 +16,6 @@ using Eigen::Index;
 namespace {
 
 constexpr Index most_groups = 5;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The runs that have points, in run order.
 std::vector<Index> distinct_runs(const FeatureCloud& cloud) {
@@ -57,8 +56,8 @@ Index heldout_groups(const FeatureCloud& cloud) {
 double heldout_score(const FeatureCloud& cloud, Index components, const EmOptions& options, std::uint64_t seed) {
   const std::vector<std::vector<Index>> groups = points_of_groups(cloud);
   const Index count = static_cast<Index>(groups.size());
-  if (count < 2) return nan;
-  std::vector<double> sums(count, nan);
+  if (count < 2) return not_a_number;
+  std::vector<double> sums(count, not_a_number);
   tbb::parallel_for(Index(0), count, [&](Index g) {
     const std::vector<Index> rest = rest_of(groups[g], cloud.points.cols());
     if (static_cast<Index>(rest.size()) < components) return;

@@ -4,12 +4,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "ident/error.hpp"
+#include "ident/not_a_number.hpp"
 #include "ident/seed.hpp"
 #include "mixture/criteria.hpp"
 #include "mixture/heldout.hpp"
@@ -19,8 +19,6 @@ namespace modebank {
 using Eigen::Index;
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct FittedCandidate {
   GaussianMixture mixture;
@@ -60,7 +58,8 @@ FittedCandidate fit_candidate(const WindowFits& fits, const FeatureCloud& cloud,
   row.converged = fit.converged;
   row.agreeing_restarts = fit.agreeing_restarts;
   fill_criteria(row, cloud.points.cols(), entropy(responsibilities(fit.mixture, cloud.points)));
-  row.heldout = options.criterion == Criterion::heldout ? heldout_score(cloud, components, options.em, own_seed) : nan;
+  row.heldout =
+      options.criterion == Criterion::heldout ? heldout_score(cloud, components, options.em, own_seed) : not_a_number;
   return {std::move(fit.mixture), row};
 }
 
@@ -68,7 +67,7 @@ FittedCandidate fit_candidate(const WindowFits& fits, const FeatureCloud& cloud,
 void fill_memberships(const FeatureCloud& cloud, Index windows, MixtureResult& result) {
   const Eigen::MatrixXd memberships = responsibilities(result.mixture, cloud.points);
   result.labels.setConstant(windows, -1);
-  result.responsibilities.setConstant(result.mixture.components(), windows, nan);
+  result.responsibilities.setConstant(result.mixture.components(), windows, not_a_number);
   for (Index i = 0; i < cloud.points.cols(); ++i) {
     const Index window = cloud.windows[i];
     result.responsibilities.col(window) = memberships.col(i);

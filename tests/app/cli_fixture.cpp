@@ -1,12 +1,14 @@
 #include "tests/app/cli_fixture.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <random>
 #include <sstream>
 
 namespace modebank::test {
 
 CliTest::CliTest() {
+  unsetenv("MODEBANK_DATA");  // the user's data folder is not where these runs are
   write("run_00.csv", csv_run(80, 1));
   write("run_01.csv", csv_run(80, 2));
   write("test.ini", config_text());

@@ -1,18 +1,19 @@
 // The filters against tests/golden/imm_reference.py: an independent textbook implementation in numpy.
+#include "tests/support/golden.hpp"
+
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "filter/evaluate.hpp"
 #include "tests/support/matrix_compare.hpp"
-#include "tests/support/paths.hpp"
 
 namespace modebank {
 namespace {
 
 using nlohmann::json;
+using test::golden_columns;
+using test::golden_rows;
 using test::near;
 
 /// Both sides are double precision over 40 steps with condition numbers below 1e3.
@@ -20,40 +21,19 @@ constexpr double tolerance = 1e-10;
 /// The first covariances of the unobserved state are about ten: the same relative accuracy.
 constexpr double relative_tolerance = 1e-10;
 
-/// A table of rows (any nesting below) as columns: row k becomes column k.
-Eigen::MatrixXd columns(const json& rows) {
-  Eigen::MatrixXd result;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    std::vector<double> values;
-    const std::function<void(const json&)> collect = [&](const json& value) {
-      if (value.is_array())
-        for (const json& part : value) collect(part);
-      else
-        values.push_back(value.is_null() ? std::nan("") : value.get<double>());
-    };
-    collect(rows[k]);
-    if (k == 0) result.resize(static_cast<Eigen::Index>(values.size()), static_cast<Eigen::Index>(rows.size()));
-    result.col(static_cast<Eigen::Index>(k)) =
-        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-  }
-  return result;
-}
-
-Eigen::MatrixXd matrix(const json& rows) { return columns(rows).transpose(); }
-
 Bank read_bank(const json& golden) {
   const json& source = golden.at("bank");
   Bank bank;
-  bank.C = matrix(source.at("C"));
-  bank.R = matrix(source.at("R"));
-  bank.transition = TransitionMatrix(matrix(source.at("T")));
-  bank.initial_probability = columns(source.at("pi")).transpose();
+  bank.C = golden_rows(source.at("C"));
+  bank.R = golden_rows(source.at("R"));
+  bank.transition = TransitionMatrix(golden_rows(source.at("T")));
+  bank.initial_probability = golden_rows(source.at("pi"));
   for (std::size_t j = 0; j < source.at("modes").size(); ++j) {
     const json& mode = source.at("modes")[j];
     bank.modes.push_back({});
-    bank.modes[j].model = {matrix(mode.at("A")), matrix(mode.at("B")), columns(mode.at("c")).transpose()};
-    bank.modes[j].Q = matrix(mode.at("Q"));
-    if (!golden.at("spreads").is_null()) bank.modes[j].spread = matrix(golden.at("spreads")[j]);
+    bank.modes[j].model = {golden_rows(mode.at("A")), golden_rows(mode.at("B")), golden_rows(mode.at("c"))};
+    bank.modes[j].Q = golden_rows(mode.at("Q"));
+    if (!golden.at("spreads").is_null()) bank.modes[j].spread = golden_rows(golden.at("spreads")[j]);
   }
   bank.structure = {bank.modes[0].model.A.rows(), bank.modes[0].model.B.cols(), true};
   return bank;
@@ -62,12 +42,10 @@ Bank read_bank(const json& golden) {
 class GoldenFilter : public testing::TestWithParam<const char*> {};
 
 TEST_P(GoldenFilter, AgreesWithTheIndependentReference) {
-  std::ifstream file(test::golden_dir() / (std::string(GetParam()) + ".json"));
-  ASSERT_TRUE(file) << GetParam();
-  const json golden = json::parse(file);
+  const json golden = test::read_golden(GetParam());
   Trajectory run;
-  run.input = columns(golden.at("input"));
-  run.state = columns(golden.at("measurement"));
+  run.input = golden_columns(golden.at("input"));
+  run.state = golden_columns(golden.at("measurement"));
   FilterOptions options;
   options.variant = parse_name<FilterVariant>(golden.at("variant").get<std::string>()).value();
   options.parameter_noise = !golden.at("spreads").is_null();
@@ -76,7 +54,7 @@ TEST_P(GoldenFilter, AgreesWithTheIndependentReference) {
 
   const json& expected = golden.at("expected");
   const auto agrees = [&](const char* name, const Eigen::MatrixXd& value) {
-    const Eigen::MatrixXd reference = columns(expected.at(name));
+    const Eigen::MatrixXd reference = golden_columns(expected.at(name));
     double scale = 1.0;
     for (const double entry : reference.reshaped())
       scale = std::isnan(entry) ? scale : std::max(scale, std::abs(entry));

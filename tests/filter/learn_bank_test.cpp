@@ -15,7 +15,7 @@ namespace {
 
 using test::near;
 
-constexpr double exact = 1e-10;
+constexpr double bank_exact = 1e-10;
 const Eigen::MatrixXd R_given = Eigen::MatrixXd::Constant(1, 1, 1e-4);
 
 /// Runs of 40 transitions, each in one mode of x[k+1] = x + a x + 0.5 u + 0.1 w, and a test run that must not matter.
@@ -63,9 +63,9 @@ TEST(LearnBank, OneModeWithoutPriorIsTheGlobalModel) {
   data.mixture = test::mixture_of(data.fits, Eigen::MatrixXd::Ones(1, data.fits.count()));
   const Bank bank = data.learn();
   ASSERT_EQ(bank.mode_count(), 1);
-  EXPECT_TRUE(near(bank.theta(0), data.fits.global.theta, exact));
-  EXPECT_TRUE(near(bank.modes[0].Q, data.fits.global.residual_covariance, exact));
-  EXPECT_TRUE(near(bank.modes[0].standard_error, data.fits.global.covariance.diagonal().cwiseSqrt(), exact));
+  EXPECT_TRUE(near(bank.theta(0), data.fits.global.theta, bank_exact));
+  EXPECT_TRUE(near(bank.modes[0].Q, data.fits.global.residual_covariance, bank_exact));
+  EXPECT_TRUE(near(bank.modes[0].standard_error, data.fits.global.covariance.diagonal().cwiseSqrt(), bank_exact));
   EXPECT_TRUE(near(bank.transition.matrix(), Eigen::MatrixXd::Ones(1, 1), 0.0));
 }
 
@@ -74,18 +74,18 @@ TEST(LearnBank, EachModeIsTheRegressionOfItsRun) {
   const Bank bank = data.learn();
   ASSERT_EQ(bank.mode_count(), 3);
   for (Index j = 0; j < 3; ++j) {
-    EXPECT_TRUE(near(bank.theta(j), data.alone(j).theta, exact));
-    EXPECT_TRUE(near(bank.modes[j].Q, data.alone(j).residual_covariance, exact));
+    EXPECT_TRUE(near(bank.theta(j), data.alone(j).theta, bank_exact));
+    EXPECT_TRUE(near(bank.modes[j].Q, data.alone(j).residual_covariance, bank_exact));
     EXPECT_TRUE(near(bank.modes[j].spread, data.mixture.mixture.covariances[j], 0.0));
-    EXPECT_NEAR(bank.modes[j].weight, 1.0 / 3.0, exact);
+    EXPECT_NEAR(bank.modes[j].weight, 1.0 / 3.0, bank_exact);
   }
   EXPECT_NO_THROW(check_sizes(bank));
   EXPECT_TRUE(near(bank.C, Eigen::MatrixXd::Identity(1, 1), 0.0));
   EXPECT_TRUE(near(bank.R, R_given, 0.0));
-  EXPECT_TRUE(near(bank.initial_probability, Eigen::Vector3d::Constant(1.0 / 3.0), exact));
+  EXPECT_TRUE(near(bank.initial_probability, Eigen::Vector3d::Constant(1.0 / 3.0), bank_exact));
   EXPECT_THAT(bank.state_names, testing::ElementsAre("x0"));
   EXPECT_THAT(bank.input_names, testing::ElementsAre("u0"));
-  EXPECT_NEAR(bank.dt_s, 0.1, exact) << "of the training runs";
+  EXPECT_NEAR(bank.dt_s, 0.1, bank_exact) << "of the training runs";
   EXPECT_TRUE(bank.screened.empty());
 }
 
@@ -115,7 +115,7 @@ TEST(LearnBank, MeanTakesTheComponentsMeansAndNoiseAboutThem) {
     double sum = 0.0;
     for (Index k = 0; k < 40; ++k)
       sum += std::pow(run.state(k + 1) - bank.modes[j].model.next(run.state.col(k), run.input.col(k))(0), 2);
-    EXPECT_NEAR(bank.modes[j].Q(0, 0), sum / 40.0, exact);
+    EXPECT_NEAR(bank.modes[j].Q(0, 0), sum / 40.0, bank_exact);
   }
 }
 
@@ -131,7 +131,7 @@ TEST(LearnBank, NoiseMayBeSharedOrFixed) {
   const Bank fixed = data.learn(options);
   EXPECT_NE(own.modes[0].Q(0, 0), own.modes[1].Q(0, 0));
   for (Index j = 0; j < 2; ++j) {
-    EXPECT_NEAR(shared.modes[j].Q(0, 0), 0.5 * (own.modes[0].Q(0, 0) + own.modes[1].Q(0, 0)), exact);
+    EXPECT_NEAR(shared.modes[j].Q(0, 0), 0.5 * (own.modes[0].Q(0, 0) + own.modes[1].Q(0, 0)), bank_exact);
     EXPECT_EQ(fixed.modes[j].Q(0, 0), 0.02);
     EXPECT_TRUE(near(fixed.theta(j), own.theta(j), 0.0));
   }
@@ -143,12 +143,12 @@ TEST(LearnBank, TransitionsComeFromLabelsOrStay) {
   const double stay = std::sqrt(15.1 / 15.2);
   Eigen::Matrix2d expected;
   expected << stay, 1 - stay, 1 - stay, stay;
-  EXPECT_TRUE(near(data.learn().transition.matrix(), expected, exact));
+  EXPECT_TRUE(near(data.learn().transition.matrix(), expected, bank_exact));
   BankOptions options;
   options.transition = TransitionSource::stay;
   options.stay = 0.9;
   expected << 0.9, 0.1, 0.1, 0.9;
-  EXPECT_TRUE(near(data.learn(options).transition.matrix(), expected, exact));
+  EXPECT_TRUE(near(data.learn(options).transition.matrix(), expected, bank_exact));
 }
 
 TEST(Screening, UnstableAndStarvedModesAreListedAndLeftOut) {
@@ -160,15 +160,15 @@ TEST(Screening, UnstableAndStarvedModesAreListedAndLeftOut) {
   data.mixture.mixture.weights << 0.4, 0.2, 0.3, 0.1;
   const Bank bank = data.learn();
   ASSERT_EQ(bank.mode_count(), 2);
-  EXPECT_NEAR(bank.modes[0].weight, 4.0 / 7.0, exact);
-  EXPECT_NEAR(bank.modes[1].weight, 3.0 / 7.0, exact);
-  EXPECT_TRUE(near(bank.theta(1), data.alone(2).theta, exact));
+  EXPECT_NEAR(bank.modes[0].weight, 4.0 / 7.0, bank_exact);
+  EXPECT_NEAR(bank.modes[1].weight, 3.0 / 7.0, bank_exact);
+  EXPECT_TRUE(near(bank.theta(1), data.alone(2).theta, bank_exact));
   EXPECT_EQ(bank.transition.modes(), 2);
   ASSERT_EQ(bank.screened.size(), 2);
   EXPECT_EQ(bank.screened[0].component, 1);
   EXPECT_EQ(bank.screened[0].reason, "unstable");
   EXPECT_EQ(bank.screened[0].weight, 0.2);
-  EXPECT_NEAR(bank.screened[0].spectral_radius, 1.0 + data.alone(1).theta(0), exact);
+  EXPECT_NEAR(bank.screened[0].spectral_radius, 1.0 + data.alone(1).theta(0), bank_exact);
   EXPECT_EQ(bank.screened[1].component, 3);
   EXPECT_EQ(bank.screened[1].reason, "starved");
 

@@ -2,35 +2,16 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "filter/learn.hpp"
 #include "ident/fit_window.hpp"
-#include "tests/support/paths.hpp"
+#include "tests/support/golden.hpp"
 
 namespace modebank::test {
-
-inline nlohmann::json read_golden(const std::string& name) {
-  std::ifstream file(golden_dir() / name);
-  if (!file) throw std::runtime_error("no golden file " + name);
-  return nlohmann::json::parse(file);
-}
-
-/// A list of numbers, or of equally long rows of numbers, as the matrix with these rows.
-inline Eigen::MatrixXd golden_matrix(const nlohmann::json& rows) {
-  Eigen::MatrixXd result;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto row = rows[i].is_array() ? rows[i].get<std::vector<double>>() : std::vector{rows[i].get<double>()};
-    if (i == 0) result.resize(std::ssize(rows), std::ssize(row));
-    result.row(static_cast<Index>(i)) = Eigen::RowVectorXd::Map(row.data(), std::ssize(row));
-  }
-  return result;
-}
 
 inline Recording empty_recording(Index n, Index m) {
   Recording recording;
@@ -54,9 +35,9 @@ inline void add_run(Recording& recording, Eigen::MatrixXd state, Eigen::MatrixXd
 inline Recording golden_recording(const nlohmann::json& runs) {
   Recording recording;
   for (const nlohmann::json& run : runs) {
-    const Eigen::MatrixXd x = golden_matrix(run.at("x")), u = golden_matrix(run.at("u"));
-    if (recording.runs.empty()) recording = empty_recording(x.cols(), u.cols());
-    add_run(recording, x.transpose(), u.transpose());
+    const Eigen::MatrixXd x = golden_columns(run.at("x")), u = golden_columns(run.at("u"));
+    if (recording.runs.empty()) recording = empty_recording(x.rows(), u.rows());
+    add_run(recording, x, u);
   }
   return recording;
 }

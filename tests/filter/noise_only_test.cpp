@@ -14,11 +14,11 @@ namespace {
 using test::near;
 
 /// Both sides iterate until theta moves by less than 1e-12.
-constexpr double exact = 1e-10;
+constexpr double noise_exact = 1e-10;
 
 class NoiseOnly : public testing::TestWithParam<const char*> {
  protected:
-  nlohmann::json golden = test::read_golden("learn_noise_only.json").at(GetParam());
+  nlohmann::json golden = test::read_golden("learn_noise_only").at(GetParam());
   Recording recording = test::golden_recording(golden.at("runs"));
   LinearStructure structure = test::structure_of(recording);
 };
@@ -26,27 +26,27 @@ class NoiseOnly : public testing::TestWithParam<const char*> {
 TEST_P(NoiseOnly, ThetaIsHubersRegression) {
   const RobustRegression fit = huber_regression(stack_training(recording, structure));
   EXPECT_TRUE(fit.converged);
-  EXPECT_TRUE(near(fit.coefficients.reshaped(), test::golden_matrix(golden.at("theta")), exact));
-  EXPECT_TRUE(near(fit.scale, test::golden_matrix(golden.at("scale")), exact));
-  EXPECT_TRUE(near(fit.standard_error.reshaped(), test::golden_matrix(golden.at("standard_error")), exact));
+  EXPECT_TRUE(near(fit.coefficients.reshaped(), test::golden_rows(golden.at("theta")), noise_exact));
+  EXPECT_TRUE(near(fit.scale, test::golden_rows(golden.at("scale")), noise_exact));
+  EXPECT_TRUE(near(fit.standard_error.reshaped(), test::golden_rows(golden.at("standard_error")), noise_exact));
 }
 
 TEST_P(NoiseOnly, ScalesLieBetweenTheQuantiles) {
-  const Bank bank = learn_noise_only(recording, structure, test::golden_matrix(golden.at("R")));
-  const Eigen::MatrixXd variances = test::golden_matrix(golden.at("variances"));
+  const Bank bank = learn_noise_only(recording, structure, test::golden_rows(golden.at("R")));
+  const Eigen::MatrixXd variances = test::golden_rows(golden.at("variances"));
   ASSERT_EQ(bank.mode_count(), 8);
   for (Index j = 0; j < 8; ++j) {
-    EXPECT_TRUE(near(bank.modes[j].Q, variances.col(j).asDiagonal().toDenseMatrix(), exact)) << "mode " << j;
-    EXPECT_TRUE(near(bank.theta(j), test::golden_matrix(golden.at("theta")), exact)) << "mode " << j;
-    EXPECT_NEAR(bank.modes[j].weight, 0.125, exact);
+    EXPECT_TRUE(near(bank.modes[j].Q, variances.col(j).asDiagonal().toDenseMatrix(), noise_exact)) << "mode " << j;
+    EXPECT_TRUE(near(bank.theta(j), test::golden_rows(golden.at("theta")), noise_exact)) << "mode " << j;
+    EXPECT_NEAR(bank.modes[j].weight, 0.125, noise_exact);
   }
   EXPECT_NO_THROW(check_sizes(bank));
 }
 
 TEST_P(NoiseOnly, StayIsTheMostLikelyOne) {
-  Bank bank = learn_noise_only(recording, structure, test::golden_matrix(golden.at("R")));
-  EXPECT_NEAR(bank.transition.matrix()(0, 0), golden.at("stay").get<double>(), exact);
-  EXPECT_TRUE(near(bank.R, test::golden_matrix(golden.at("R")), 0.0));
+  Bank bank = learn_noise_only(recording, structure, test::golden_rows(golden.at("R")));
+  EXPECT_NEAR(bank.transition.matrix()(0, 0), golden.at("stay").get<double>(), noise_exact);
+  EXPECT_TRUE(near(bank.R, test::golden_rows(golden.at("R")), 0.0));
   for (std::size_t i = 0; i < golden.at("stays").size(); ++i) {
     bank.transition = TransitionMatrix::sticky(8, golden.at("stays")[i].get<double>());
     // The sum over a hundred samples of densities that agree to 1e-10.
@@ -55,7 +55,7 @@ TEST_P(NoiseOnly, StayIsTheMostLikelyOne) {
 }
 
 TEST_P(NoiseOnly, TestRunsDoNotMatter) {
-  const Eigen::MatrixXd R = test::golden_matrix(golden.at("R"));
+  const Eigen::MatrixXd R = test::golden_rows(golden.at("R"));
   const Bank before = learn_noise_only(recording, structure, R);
   test::add_run(recording, 9.0 * recording.runs[0].state, recording.runs[0].input, Role::test);
   const Bank after = learn_noise_only(recording, structure, R);

@@ -22,32 +22,32 @@ constexpr double exact = 1e-10;
 constexpr double minimiser = 2e-6;
 
 struct WeightedGolden {
-  nlohmann::json golden = test::read_golden("learn_weighted.json");
+  nlohmann::json golden = test::read_golden("learn_weighted");
   Recording recording = test::golden_recording(golden.at("runs"));
   LinearStructure structure = test::structure_of(recording);
   TrainingTransitions transitions = gather_training_transitions(recording, structure);
   GlobalModel global = fit_global(recording, structure);
-  Eigen::VectorXd weights = test::golden_matrix(golden.at("weights"));
+  Eigen::VectorXd weights = test::golden_rows(golden.at("weights"));
 };
 
 TEST(WeightedMode, AgreesWithFrequencyWeightedRegression) {
   const WeightedGolden data;
   const nlohmann::json& expected = data.golden.at("plain");
   const ModeEstimate mode = fit_weighted_mode(data.transitions, data.weights, data.global, nullptr);
-  EXPECT_TRUE(near(mode.theta, test::golden_matrix(expected.at("theta")), exact));
-  EXPECT_TRUE(near(mode.Q, test::golden_matrix(expected.at("Q")), exact));
-  EXPECT_TRUE(near(mode.standard_error, test::golden_matrix(expected.at("standard_error")), exact));
+  EXPECT_TRUE(near(mode.theta, test::golden_rows(expected.at("theta")), exact));
+  EXPECT_TRUE(near(mode.Q, test::golden_rows(expected.at("Q")), exact));
+  EXPECT_TRUE(near(mode.standard_error, test::golden_rows(expected.at("standard_error")), exact));
   EXPECT_NEAR(mode.effective_transitions, data.weights.sum(), exact);
 }
 
 TEST(WeightedMode, PriorMaximisesThePenalisedLikelihood) {
   const WeightedGolden data;
   const nlohmann::json& expected = data.golden.at("penalised");
-  const ParameterPrior prior{data.global.theta, test::golden_matrix(expected.at("sd"))};
+  const ParameterPrior prior{data.global.theta, test::golden_rows(expected.at("sd"))};
   const ModeEstimate mode = fit_weighted_mode(data.transitions, data.weights, data.global, &prior);
   EXPECT_TRUE(mode.converged);
-  EXPECT_TRUE(near(mode.theta, test::golden_matrix(expected.at("theta")), minimiser));
-  EXPECT_TRUE(near(mode.Q, test::golden_matrix(expected.at("Q")), minimiser));
+  EXPECT_TRUE(near(mode.theta, test::golden_rows(expected.at("theta")), minimiser));
+  EXPECT_TRUE(near(mode.Q, test::golden_rows(expected.at("Q")), minimiser));
 }
 
 TEST(WeightedMode, WithOneModeAndNoPriorIsTheGlobalModel) {

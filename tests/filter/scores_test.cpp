@@ -2,13 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "filter/calibration.hpp"
 #include "tests/filter/filter_test_support.hpp"
+#include "tests/support/golden.hpp"
 #include "tests/support/matrix_compare.hpp"
-#include "tests/support/paths.hpp"
 
 namespace modebank {
 namespace {
@@ -19,10 +18,7 @@ constexpr double special_function_tolerance = 1e-11;
 /// seeds are fixed.
 constexpr double sigmas = 4.0;
 
-nlohmann::json golden() {
-  std::ifstream file(test::golden_dir() / "scores.json");
-  return nlohmann::json::parse(file);
-}
+nlohmann::json golden() { return test::read_golden("scores"); }
 
 TEST(Calibration, ChiSquareQuantilesAgreeWithScipy) {
   const nlohmann::json rows = golden().at("chi_square");  // outlives the loop

@@ -12,7 +12,7 @@ namespace {
 using test::near;
 
 /// A handful of divisions.
-constexpr double rounding = 1e-14;
+constexpr double row_rounding = 1e-14;
 
 WindowFits windows(std::initializer_list<Window> list, Index step) {
   WindowFits fits;
@@ -45,7 +45,7 @@ TEST(TransitionFromCounts, SmoothsByATenth) {
   counts << 9, 1, 0, 0;
   Eigen::MatrixXd expected(2, 2);
   expected << 9.1 / 10.2, 1.1 / 10.2, 0.5, 0.5;
-  EXPECT_TRUE(near(transition_from_counts(counts, 1).matrix(), expected, rounding));
+  EXPECT_TRUE(near(transition_from_counts(counts, 1).matrix(), expected, row_rounding));
 }
 
 TEST(TransitionFromCounts, LongerStepsTakeTheRootOfTheDiagonal) {
@@ -56,7 +56,7 @@ TEST(TransitionFromCounts, LongerStepsTakeTheRootOfTheDiagonal) {
   expected << stay0, (1 - stay0) / 2, (1 - stay0) / 2,  //
       (1 - stay1) / 4, stay1, (1 - stay1) * 3 / 4,      //
       (1 - stay2) / 2, (1 - stay2) / 2, stay2;
-  EXPECT_TRUE(near(transition_from_counts(counts, 3).matrix(), expected, rounding));
+  EXPECT_TRUE(near(transition_from_counts(counts, 3).matrix(), expected, row_rounding));
 }
 
 TEST(TransitionFromCounts, OneModeStays) {

@@ -9,16 +9,16 @@
 namespace modebank {
 namespace {
 
-constexpr double rounding = 1e-15;
+constexpr double matrix_rounding = 1e-15;
 
 TEST(TransitionMatrix, KeepsARowStochasticMatrix) {
   const Eigen::MatrixXd T = (Eigen::MatrixXd(2, 2) << 0.95, 0.05, 0.10, 0.90).finished();
-  EXPECT_TRUE(test::near(TransitionMatrix(T).matrix(), T, rounding));
+  EXPECT_TRUE(test::near(TransitionMatrix(T).matrix(), T, matrix_rounding));
 }
 
 TEST(TransitionMatrix, NormalisesRowsWithinTheTolerance) {
   const Eigen::MatrixXd T = (Eigen::MatrixXd(2, 2) << 0.95 + 5e-10, 0.05, 0.10, 0.90).finished();
-  EXPECT_NEAR(TransitionMatrix(T).matrix().row(0).sum(), 1.0, rounding);
+  EXPECT_NEAR(TransitionMatrix(T).matrix().row(0).sum(), 1.0, matrix_rounding);
 }
 
 TEST(TransitionMatrix, RejectsWhatIsNotRowStochastic) {
@@ -34,7 +34,7 @@ TEST(TransitionMatrix, RejectsWhatIsNotRowStochastic) {
 TEST(TransitionMatrix, StickySpreadsTheRestEqually) {
   const Eigen::MatrixXd expected =
       (Eigen::MatrixXd(3, 3) << 0.9, 0.05, 0.05, 0.05, 0.9, 0.05, 0.05, 0.05, 0.9).finished();
-  EXPECT_TRUE(test::near(TransitionMatrix::sticky(3, 0.9).matrix(), expected, rounding));
+  EXPECT_TRUE(test::near(TransitionMatrix::sticky(3, 0.9).matrix(), expected, matrix_rounding));
   EXPECT_EQ(TransitionMatrix::sticky(1, 0.3).matrix()(0, 0), 1.0);
   EXPECT_THROW(TransitionMatrix::sticky(0, 0.9), std::invalid_argument);
   EXPECT_THROW(TransitionMatrix::sticky(2, 1.1), std::invalid_argument);

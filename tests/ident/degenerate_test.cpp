@@ -10,8 +10,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-const LinearStructure structure{1, 2, false};
-const Eigen::Vector3d theta(-0.3, -0.4, 0.5);
 const std::vector<Loss> losses{Loss::trivial, Loss::huber, Loss::cauchy, Loss::softlone, Loss::tukey, Loss::arctan};
 
 /// fit_windows on one run of 60 samples; checks that nothing is printed and that numbers and status agree.
@@ -41,7 +39,7 @@ struct Signals {
 
 Signals excited(double noise_sd) {
   std::mt19937_64 generator(21);
-  const Trajectory run = test::gaussian_run(structure, theta, noise_sd, 60, generator);
+  const Trajectory run = test::gaussian_run(test::skid_structure, test::skid_theta, noise_sd, 60, generator);
   return {run.state, run.input};
 }
 
@@ -58,8 +56,8 @@ TEST_P(Degenerate, ConstantDataHaveRankOne) {
   const WindowFits fits = fit_quietly(MatrixXd::Constant(1, 60, 0.4), MatrixXd::Constant(2, 60, 0.2), options());
   EXPECT_TRUE((fits.rank.array() == 1).all());
   EXPECT_TRUE((fits.status.array() == 2).all());
-  constexpr double rounding = 1e-12;
-  EXPECT_TRUE(test::near(fits.parameters, MatrixXd::Zero(3, fits.count()), rounding));
+  constexpr double svd_rounding = 1e-12;
+  EXPECT_TRUE(test::near(fits.parameters, MatrixXd::Zero(3, fits.count()), svd_rounding));
 }
 
 TEST_P(Degenerate, AllZeroDataHaveRankZero) {
@@ -74,7 +72,7 @@ TEST_P(Degenerate, NoiseFreeDataGiveTheTruth) {
   const Signals s = excited(0.0);
   const WindowFits fits = fit_quietly(s.state, s.input, options());
   constexpr double conditioned_rounding = 1e-11;
-  EXPECT_TRUE(test::near(fits.parameters, theta.replicate(1, fits.count()), conditioned_rounding));
+  EXPECT_TRUE(test::near(fits.parameters, test::skid_theta.replicate(1, fits.count()), conditioned_rounding));
 }
 
 TEST_P(Degenerate, HugeAndTinyUnitsDoNotMatter) {
@@ -135,7 +133,7 @@ TEST(IterationLimit, IsAStatus) {
   const Trajectory run = test::make_run(s.state, s.input);
   FitOptions options = test::whole_run(run, Loss::cauchy);
   options.max_iterations = 1;
-  const LocalModel fit = fit_window(run, 0, structure, options, VectorXd::Constant(1, 0.01), nullptr);
+  const LocalModel fit = fit_window(run, 0, test::skid_structure, options, VectorXd::Constant(1, 0.01), nullptr);
   EXPECT_EQ(fit.status, FitStatus::iteration_limit);
   EXPECT_TRUE(fit.theta.allFinite());
 }

@@ -16,16 +16,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using test::near;
 
-const LinearStructure structure{1, 2, false};
-const Eigen::Vector3d theta(-0.3, -0.4, 0.5);
-constexpr double rounding = 1e-12;
+constexpr double window_rounding = 1e-12;
 
 /// Three training runs and a test run; stretches of standstill, some outliers.
 Recording mixed_recording() {
   std::mt19937_64 generator(3);
   std::vector<Trajectory> runs;
   for (int i = 0; i < 4; ++i) {
-    runs.push_back(test::gaussian_run(structure, theta, 0.05, 90, generator));
+    runs.push_back(test::gaussian_run(test::skid_structure, test::skid_theta, 0.05, 90, generator));
     runs.back().input.middleCols(30, 35).colwise() = Eigen::Vector2d(0.2, 0.4);
     runs.back().state(0, 10) += 2.0;
     runs.back().state(0, 50) -= 1.0;
@@ -72,11 +70,11 @@ TEST(FitWindows, AgreeWithFitWindow) {
   ASSERT_EQ(fits.count(), 3 * 10);  // 89 transitions: starts 0, 7, ..., 63
   for (const Index i : {0, 11, 29}) {
     const Window window = fits.windows[static_cast<std::size_t>(i)];
-    const LocalModel one = fit_window(recording.runs[static_cast<std::size_t>(window.run)], window.start, structure,
-                                      options, VectorXd::Constant(1, 0.06), &prior, floor);
-    EXPECT_TRUE(near(fits.at(i).theta, one.theta, rounding)) << "window " << i;
-    EXPECT_TRUE(near(fits.at(i).covariance, one.covariance, rounding)) << "window " << i;
-    EXPECT_TRUE(near(fits.at(i).noise_variance, one.noise_variance, rounding)) << "window " << i;
+    const LocalModel one = fit_window(recording.runs[static_cast<std::size_t>(window.run)], window.start,
+                                      test::skid_structure, options, VectorXd::Constant(1, 0.06), &prior, floor);
+    EXPECT_TRUE(near(fits.at(i).theta, one.theta, window_rounding)) << "window " << i;
+    EXPECT_TRUE(near(fits.at(i).covariance, one.covariance, window_rounding)) << "window " << i;
+    EXPECT_TRUE(near(fits.at(i).noise_variance, one.noise_variance, window_rounding)) << "window " << i;
   }
 }
 
@@ -104,7 +102,7 @@ TEST(FitWindows, TakeSigmaFromWhereTheyAreTold) {
     const double mad = N % 2 ? deviation(N / 2) : (deviation(N / 2) + deviation(N / 2 - 1)) / 2;
     const double sigma = 1.4826 * mad * std::sqrt(static_cast<double>(N) / static_cast<double>(N - 3));
     const LocalModel one =
-        fit_window(run, fits.windows[3].start, structure, options, VectorXd::Constant(1, sigma), nullptr);
+        fit_window(run, fits.windows[3].start, test::skid_structure, options, VectorXd::Constant(1, sigma), nullptr);
     constexpr double optimum_tolerance = 1e-9;  // sigma by normal equations here
     EXPECT_TRUE(near(fits.at(i).theta, one.theta, optimum_tolerance)) << name_of(source);
   }
@@ -129,17 +127,18 @@ TEST(FitWindows, MarkUnexcitedWindows) {
 TEST(FitWindows, OneWindowOverOneRunIsTheGlobalModel) {
   std::mt19937_64 generator(5);
   for (const LinearStructure s : {LinearStructure{1, 2, false}, LinearStructure{2, 1, true}}) {
-    const VectorXd truth = s.states == 1 ? VectorXd(theta) : VectorXd{{-0.3, 0.1, 0.5, 0.05, 0.2, -0.4, -0.3, -0.1}};
+    const VectorXd truth =
+        s.states == 1 ? VectorXd(test::skid_theta) : VectorXd{{-0.3, 0.1, 0.5, 0.05, 0.2, -0.4, -0.3, -0.1}};
     const Trajectory run = test::gaussian_run(s, truth, 0.1, 61, generator);
     FitOptions options = test::whole_run(run, Loss::trivial);
     options.prior = Prior::none;
     options.intercept = s.intercept;
     const WindowFits fits = fit_windows(test::make_recording({run}), options);
     ASSERT_EQ(fits.count(), 1);
-    EXPECT_TRUE(near(fits.at(0).theta, fits.global.theta, rounding));
-    EXPECT_TRUE(near(fits.at(0).covariance, fits.global.covariance, rounding));
+    EXPECT_TRUE(near(fits.at(0).theta, fits.global.theta, window_rounding));
+    EXPECT_TRUE(near(fits.at(0).covariance, fits.global.covariance, window_rounding));
     const double q = static_cast<double>(s.regressors());
-    EXPECT_TRUE(near(fits.at(0).noise_variance, fits.global.noise_variance() * 60.0 / (60.0 - q), rounding));
+    EXPECT_TRUE(near(fits.at(0).noise_variance, fits.global.noise_variance() * 60.0 / (60.0 - q), window_rounding));
     EXPECT_TRUE(near(fits.global.theta, truth, 0.25)) << "five standard errors";
   }
 }
@@ -162,12 +161,12 @@ TEST(NoiseVariance, IsConsistentUnderGaussianNoise) {
   constexpr double sd = 0.2;
   const LinearStructure two{2, 1, true};
   const VectorXd truth{{-0.3, 0.1, 0.5, 0.05, 0.2, -0.4, -0.3, -0.1}};
-  const Trajectory one_state = test::gaussian_run(structure, theta, sd, 20001, generator);
+  const Trajectory one_state = test::gaussian_run(test::skid_structure, test::skid_theta, sd, 20001, generator);
   const Trajectory two_states = test::gaussian_run(two, truth, sd, 20001, generator);
   for (const Loss loss : {Loss::trivial, Loss::huber, Loss::cauchy, Loss::softlone, Loss::tukey, Loss::arctan}) {
     constexpr double four_standard_errors = 4 * 0.012 * sd * sd;  // sqrt(2 / 20000) = 0.010, /sqrt(0.7) efficiency
-    const LocalModel a =
-        fit_window(one_state, 0, structure, test::whole_run(one_state, loss), VectorXd::Constant(1, sd), nullptr);
+    const LocalModel a = fit_window(one_state, 0, test::skid_structure, test::whole_run(one_state, loss),
+                                    VectorXd::Constant(1, sd), nullptr);
     EXPECT_NEAR(a.noise_variance(0), sd * sd, four_standard_errors) << name_of(loss);
     const LocalModel b =
         fit_window(two_states, 0, two, test::whole_run(two_states, loss), VectorXd::Constant(2, sd), nullptr);
@@ -177,10 +176,10 @@ TEST(NoiseVariance, IsConsistentUnderGaussianNoise) {
 
 TEST(InlierFraction, CountsSamplesThatKeepHalfTheirWeight) {
   std::mt19937_64 generator(13);
-  Trajectory run = test::gaussian_run(structure, theta, 0.0, 101, generator);
+  Trajectory run = test::gaussian_run(test::skid_structure, test::skid_theta, 0.0, 101, generator);
   run.state(0, 100) += 10.0;  // one bad transition: its Huber weight is 1.345 sigma / 10
   const LocalModel fit =
-      fit_window(run, 0, structure, test::whole_run(run, Loss::huber), VectorXd::Constant(1, 1.0), nullptr);
+      fit_window(run, 0, test::skid_structure, test::whole_run(run, Loss::huber), VectorXd::Constant(1, 1.0), nullptr);
   EXPECT_DOUBLE_EQ(fit.inlier_fraction, 0.99);
 }
 

@@ -5,34 +5,23 @@
 #include <Eigen/Core>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 
 #include "ident/fit_window.hpp"
 #include "ident/trajectory.hpp"
+#include "tests/support/golden.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank::test {
 
-inline Eigen::VectorXd to_vector(const nlohmann::json& array) {
-  Eigen::VectorXd v(static_cast<Index>(array.size()));
-  for (Index i = 0; i < v.size(); ++i) v(i) = array.at(static_cast<std::size_t>(i)).get<double>();
-  return v;
-}
-
-inline Eigen::MatrixXd to_matrix(const nlohmann::json& rows) {
-  Eigen::MatrixXd m(static_cast<Index>(rows.size()), static_cast<Index>(rows.at(0).size()));
-  for (Index i = 0; i < m.rows(); ++i) m.row(i) = to_vector(rows.at(static_cast<std::size_t>(i))).transpose();
-  return m;
-}
+/// One yaw-rate state, two wheels: the layout of the real logs.
+inline const LinearStructure skid_structure{1, 2, false};
+inline const Eigen::Vector3d skid_theta(-0.3, -0.4, 0.5);
 
 /// One case of tests/golden/ident_fits.json (written by ident_fits.py).
-inline nlohmann::json golden_fit(const std::string& name) {
-  std::ifstream file(golden_dir() / "ident_fits.json");
-  return nlohmann::json::parse(file).at(name);
-}
+inline nlohmann::json golden_fit(const std::string& name) { return read_golden("ident_fits").at(name); }
 
 inline Trajectory make_run(const Eigen::MatrixXd& state, const Eigen::MatrixXd& input, Role role = Role::train) {
   Trajectory run;

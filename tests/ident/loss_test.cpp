@@ -80,7 +80,7 @@ TEST(RobustLossScale, MustBePositive) {
 
 WhitenedProblem example_problem(const ParameterPrior* prior) {
   const auto golden = test::golden_fit("two_states");
-  const Trajectory run = test::make_run(test::to_matrix(golden.at("state")), test::to_matrix(golden.at("input")));
+  const Trajectory run = test::make_run(test::golden_rows(golden.at("state")), test::golden_rows(golden.at("input")));
   const Transitions t = stack_transitions(run, 0, run.transitions(), {2, 1, true});
   return whiten(t, decompose(t.regressors, excitation_tolerance), Eigen::Vector2d(0.06, 0.14), prior);
 }
@@ -111,7 +111,7 @@ TEST(WhitenedProblem, IsTheStatedLeastSquaresProblem) {
   const Eigen::VectorXd prior_residual = (example_prior.mean - theta).cwiseQuotient(example_prior.sd);
   EXPECT_TRUE(near(r.tail(8), prior_residual, 1e-10));
   const auto golden = test::golden_fit("two_states");
-  const Trajectory run = test::make_run(test::to_matrix(golden.at("state")), test::to_matrix(golden.at("input")));
+  const Trajectory run = test::make_run(test::golden_rows(golden.at("state")), test::golden_rows(golden.at("input")));
   const LinearModel model = unpack({2, 1, true}, theta);
   for (const Index k : {0, 17, 39}) {
     const Eigen::Vector2d error = run.state.col(k + 1) - model.next(run.state.col(k), run.input.col(k));

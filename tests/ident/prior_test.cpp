@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using test::near;
 
-constexpr double rounding = 1e-11;
+constexpr double prior_rounding = 1e-11;
 
 /// theta, sigma and prior of a small problem with one state and two inputs.
 struct Example {
@@ -59,13 +59,13 @@ TEST(Prior, ShortWindowsHaveTheClosedFormPosterior) {
       options.loss = Loss::trivial;
       options.covariance = kind;
       const LocalModel model = fit_window(run, start, e.structure, options, VectorXd::Constant(1, e.sigma), &e.prior);
-      EXPECT_TRUE(near(model.theta, theta, rounding)) << "L = " << L;
-      EXPECT_TRUE(near(model.covariance, covariance, rounding)) << "L = " << L;
-      EXPECT_NEAR(model.noise_variance(0), (y - X * theta).squaredNorm() / static_cast<double>(L), rounding);
+      EXPECT_TRUE(near(model.theta, theta, prior_rounding)) << "L = " << L;
+      EXPECT_TRUE(near(model.covariance, covariance, prior_rounding)) << "L = " << L;
+      EXPECT_NEAR(model.noise_variance(0), (y - X * theta).squaredNorm() / static_cast<double>(L), prior_rounding);
       EXPECT_EQ(model.rank, L);
       EXPECT_EQ(model.status, L < 3 ? FitStatus::rank_deficient : FitStatus::converged);
       const VectorXd information = 1.0 - covariance.diagonal().array() / e.prior.sd.array().square();
-      EXPECT_TRUE(near(model.information, information, rounding));
+      EXPECT_TRUE(near(model.information, information, prior_rounding));
     }
   }
 }
@@ -77,7 +77,7 @@ TEST(Prior, ShortWindowsWithoutOneHaveMinimumNorm) {
   const LocalModel model = fit(e, run, 20, 1, Loss::huber, false);
   const VectorXd phi = regressors(run, 20, 1).row(0);
   const VectorXd expected = phi * increments(run, 20, 1)(0) / phi.squaredNorm();
-  EXPECT_TRUE(near(model.theta, expected, rounding));
+  EXPECT_TRUE(near(model.theta, expected, prior_rounding));
   EXPECT_EQ(model.status, FitStatus::rank_deficient);
   EXPECT_EQ(model.rank, 1);
   EXPECT_TRUE(model.covariance.array().isNaN().all());
@@ -94,9 +94,9 @@ TEST(Prior, LongWindowsHaveTheClosedFormPosterior) {
       (X.transpose() * X / 0.01 + P).ldlt().solve(VectorXd(X.transpose() * y / 0.01 + P * e.prior.mean));
   const double s2 = (y - X * theta).squaredNorm() / 22;
   const LocalModel model = fit(e, run, 0, 25, Loss::trivial);
-  EXPECT_TRUE(near(model.theta, theta, rounding));
-  EXPECT_TRUE(near(model.covariance, (X.transpose() * X / s2 + P).inverse(), rounding));
-  EXPECT_NEAR(model.noise_variance(0), s2, rounding);
+  EXPECT_TRUE(near(model.theta, theta, prior_rounding));
+  EXPECT_TRUE(near(model.covariance, (X.transpose() * X / s2 + P).inverse(), prior_rounding));
+  EXPECT_NEAR(model.noise_variance(0), s2, prior_rounding);
 }
 
 TEST(Prior, UnexcitedDirectionsStayAtThePrior) {
@@ -108,9 +108,9 @@ TEST(Prior, UnexcitedDirectionsStayAtThePrior) {
     FitOptions options;
     options.covariance = kind;
     const LocalModel model = fit_window(run, 0, e.structure, options, VectorXd::Constant(1, e.sigma), &e.prior);
-    EXPECT_TRUE(near(model.theta.tail(2), e.prior.mean.tail(2), rounding));
-    EXPECT_TRUE(near(model.covariance.diagonal().tail(2), e.prior.sd.tail(2).cwiseAbs2(), rounding));
-    EXPECT_TRUE(near(model.information.tail(2), VectorXd::Zero(2), rounding));
+    EXPECT_TRUE(near(model.theta.tail(2), e.prior.mean.tail(2), prior_rounding));
+    EXPECT_TRUE(near(model.covariance.diagonal().tail(2), e.prior.sd.tail(2).cwiseAbs2(), prior_rounding));
+    EXPECT_TRUE(near(model.information.tail(2), VectorXd::Zero(2), prior_rounding));
     EXPECT_GT(model.information(0), 0.1);
     EXPECT_EQ(model.status, FitStatus::rank_deficient);
   }

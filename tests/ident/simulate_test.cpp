@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 using test::near;
 
 constexpr std::uint64_t seed = 17;
-constexpr double rounding = 1e-12;
+constexpr double simulation_rounding = 1e-12;
 
 /// Two modes, one state, two inputs.
 SimulationOptions two_modes() {
@@ -73,7 +73,7 @@ TEST(Simulate, NamesRolesAndTimes) {
   EXPECT_EQ(runs[100].measured.run, "100");
   EXPECT_EQ(runs[0].measured.role, Role::train);
   EXPECT_EQ(runs[1].measured.role, Role::test);
-  EXPECT_TRUE(near(runs[0].measured.time_s, Eigen::Vector3d(0, 0.25, 0.5), rounding));
+  EXPECT_TRUE(near(runs[0].measured.time_s, Eigen::Vector3d(0, 0.25, 0.5), simulation_rounding));
   options.runs = 2;
   EXPECT_EQ(simulate(options, seed)[1].measured.run, "01");
 }
@@ -141,7 +141,7 @@ TEST(Simulate, NoiseFreeRunsFollowTheModel) {
   options.process_sd = {0.0, 0.0};
   options.samples = 500;
   const SimulatedRun run = simulate(options, seed).front();
-  for (const int mode : {0, 1}) EXPECT_LT(process_noise(run, options, mode).cwiseAbs().maxCoeff(), rounding);
+  for (const int mode : {0, 1}) EXPECT_LT(process_noise(run, options, mode).cwiseAbs().maxCoeff(), simulation_rounding);
   EXPECT_TRUE(near(run.measured.state, run.measured.truth, 0.0));
 }
 
@@ -225,7 +225,7 @@ TEST(InputLaw, DriveMixesItsCommands) {
     equal += !zero && u(0, k) == u(1, k) ? 1 : 0;
     held += !zero && u.col(k) == u.col(k + 1) ? 1 : 0;
     const Eigen::Vector2d bend = u.col(k + 1) - 2 * u.col(k) + u.col(k - 1);
-    ramps += u.col(k) != u.col(k + 1) && bend.cwiseAbs().maxCoeff() < rounding ? 1 : 0;
+    ramps += u.col(k) != u.col(k + 1) && bend.cwiseAbs().maxCoeff() < simulation_rounding ? 1 : 0;
   }
   // Shares of samples equal shares of commands because length and kind are independent; 5000 commands of geometric
   // length: standard error about sqrt(2 p / 5000).
@@ -243,9 +243,9 @@ TEST(InputLaw, QuantisedInputsAreTheAppliedOnes) {
   options.samples = 300;
   const SimulatedRun run = simulate(options, seed).front();
   const MatrixXd steps = run.measured.input / 0.08;
-  EXPECT_TRUE(near(steps, steps.array().round(), rounding));
+  EXPECT_TRUE(near(steps, steps.array().round(), simulation_rounding));
   EXPECT_GT(std::set<double>(run.measured.input.reshaped().begin(), run.measured.input.reshaped().end()).size(), 5U);
-  for (const int mode : {0, 1}) EXPECT_LT(process_noise(run, options, mode).cwiseAbs().maxCoeff(), rounding);
+  for (const int mode : {0, 1}) EXPECT_LT(process_noise(run, options, mode).cwiseAbs().maxCoeff(), simulation_rounding);
 }
 
 TEST(SimulateOptions, AreChecked) {

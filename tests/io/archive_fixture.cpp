@@ -2,13 +2,14 @@
 
 #include <limits>
 
+#include "ident/not_a_number.hpp"
+
 namespace modebank::test {
 
 namespace {
 
 constexpr Index modes = 3;
 constexpr Index length = 5;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Recording make_recording(Index n, Index m) {
   Recording recording;
@@ -30,7 +31,7 @@ Recording make_recording(Index n, Index m) {
     run.lag_s = 0.1 * static_cast<double>(r);
     recording.runs.push_back(run);
   }
-  recording.runs[0].state(0, 3) = nan;
+  recording.runs[0].state(0, 3) = not_a_number;
   return recording;
 }
 
@@ -49,7 +50,7 @@ WindowFits make_windows_fits(const LinearStructure& structure) {
   fits.condition(2) = std::numeric_limits<double>::infinity();
   fits.rank = Eigen::VectorXi::LinSpaced(count, 1, 9);
   fits.information = pattern(p, count, 5.0);
-  fits.information.col(1).setConstant(nan);
+  fits.information.col(1).setConstant(not_a_number);
   fits.inlier_fraction = pattern(count, 1, 6.0);
   fits.status = Eigen::VectorXi::LinSpaced(count, 0, 3);
   fits.prior_sd = pattern(p, 1, 8.0);
@@ -69,10 +70,10 @@ MixtureResult make_mixture(const WindowFits& fits) {
   result.feature_names.push_back("log_noise_variance_x0");
   result.labels = Eigen::VectorXi::Constant(count, -1);
   result.labels.head(3) << 0, 2, 1;
-  result.responsibilities = Eigen::MatrixXd::Constant(modes, count, nan);
+  result.responsibilities = Eigen::MatrixXd::Constant(modes, count, not_a_number);
   result.responsibilities.leftCols(3) = pattern(modes, 3, 40.0);
   result.candidates.push_back(
-      {2, CovarianceType::full, -10.25, 13, 7.5, 1.0 / 3.0, 2.0 / 3.0, 4.0 / 3.0, nan, 17, false, 1, false});
+      {2, CovarianceType::full, -10.25, 13, 7.5, 1.0 / 3.0, 2.0 / 3.0, 4.0 / 3.0, not_a_number, 17, false, 1, false});
   result.candidates.push_back({3, CovarianceType::diagonal, -9.5, 20, 7.5, 0.1, 0.2, 0.3, -1.5, 40, true, 4, true});
   return result;
 }
@@ -122,7 +123,7 @@ RunEvaluation make_evaluation(Index n, Index samples, Index count) {
   evaluation.state = pattern(n, samples, 73.0);
   evaluation.covariance = pattern(n * n, samples, 74.0);
   evaluation.nis = pattern(samples, 1, 75.0);
-  evaluation.nis(0) = nan;
+  evaluation.nis(0) = not_a_number;
   evaluation.pit = pattern(n, samples, 76.0);
   evaluation.log_density = pattern(samples, 1, 77.0);
   evaluation.mode_probability_predicted = pattern(count, samples, 78.0);
@@ -131,7 +132,7 @@ RunEvaluation make_evaluation(Index n, Index samples, Index count) {
 }
 
 SummaryRow make_row(const std::string& filter, Role role, const std::string& run, Index n) {
-  return {filter, role, run, 123, 2.5, pattern(n, 1, 80.0), 0.9, 0.02, 0.03, 0.01, 0.04, 0.1, nan};
+  return {filter, role, run, 123, 2.5, pattern(n, 1, 80.0), 0.9, 0.02, 0.03, 0.01, 0.04, 0.1, not_a_number};
 }
 
 }  // namespace

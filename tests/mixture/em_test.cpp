@@ -14,8 +14,6 @@ namespace {
 
 using Eigen::Index;
 
-const Eigen::VectorXd unweighted;
-/// A few hundred iterations amplify a change in the order of sums.
 constexpr double law_tolerance = 1e-9;
 /// Per unit of |log L|: rounding of a sum of hundreds of terms.
 constexpr double monotone_slack = 1e-12;

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
+#include "ident/not_a_number.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank::test {
@@ -19,7 +18,7 @@ WindowFits five_windows() {
   fits.windows = {{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, 0}};
   fits.parameters.resize(3, 5);
   fits.parameters << -0.1, -0.2, -0.3, -0.4, -0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0;
-  fits.parameters(1, 3) = std::numeric_limits<double>::quiet_NaN();
+  fits.parameters(1, 3) = not_a_number;
   fits.noise_variance = (Eigen::MatrixXd(1, 5) << 1.0, 0.5, 0.1, 0.2, 4.0).finished();
   fits.rank = (Eigen::VectorXi(5) << 3, 1, 3, 3, 3).finished();
   fits.status = (Eigen::VectorXi(5) << 0, 2, 3, 0, 1).finished();

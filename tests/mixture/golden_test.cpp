@@ -1,12 +1,12 @@
 // Against scikit-learn (fits) and mpmath (densities): tests/golden/mixture.py wrote the golden file.
+#include "tests/support/golden.hpp"
+
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "mixture/em.hpp"
 #include "tests/support/matrix_compare.hpp"
-#include "tests/support/paths.hpp"
 
 namespace modebank::test {
 namespace {
@@ -21,35 +21,17 @@ constexpr double relative_density_tolerance = 2e-15;
 /// A responsibility is the exponential of a difference of log densities, of up to a few hundred where it is not 0 or 1.
 constexpr double responsibility_tolerance = 1e-13;
 
-json golden() {
-  std::ifstream file(golden_dir() / "mixture.json");
-  return json::parse(file);
-}
-
-/// A JSON array of rows.
-Eigen::MatrixXd matrix(const json& rows) {
-  Eigen::MatrixXd result(rows.size(), rows.at(0).size());
-  for (Eigen::Index i = 0; i < result.rows(); ++i)
-    for (Eigen::Index j = 0; j < result.cols(); ++j) result(i, j) = rows[i][j].get<double>();
-  return result;
-}
-
-Eigen::VectorXd vector(const json& values) {
-  const auto entries = values.get<std::vector<double>>();
-  return Eigen::Map<const Eigen::VectorXd>(entries.data(), static_cast<Eigen::Index>(entries.size()));
-}
-
 GaussianMixture mixture(const json& values) {
   GaussianMixture result;
-  result.weights = vector(values["weights"]);
-  result.means = matrix(values["means"]).transpose();
-  for (const json& covariance : values["covariances"]) result.covariances.push_back(matrix(covariance));
+  result.weights = golden_rows(values["weights"]);
+  result.means = golden_columns(values["means"]);
+  for (const json& covariance : values["covariances"]) result.covariances.push_back(golden_rows(covariance));
   return result;
 }
 
 TEST(MixtureGolden, FitsAgreeWithScikitLearnFromTheSameStart) {
-  const json file = golden();
-  const Eigen::MatrixXd points = matrix(file["points"]).transpose();
+  const json file = read_golden("mixture");
+  const Eigen::MatrixXd points = golden_columns(file["points"]);
   ASSERT_EQ(file["fits"].size(), 6u);
   for (const json& expected : file["fits"]) {
     SCOPED_TRACE(expected["covariance"].get<std::string>() + " " + expected["iterations"].dump());
@@ -77,14 +59,14 @@ TEST(MixtureGolden, FitsAgreeWithScikitLearnFromTheSameStart) {
 }
 
 TEST(MixtureGolden, DensitiesAndResponsibilitiesAgreeWithExtendedPrecision) {
-  const json expected = golden()["density"];
+  const json expected = read_golden("mixture")["density"];
   const GaussianMixture reference = mixture(expected);
-  const Eigen::MatrixXd probes = matrix(expected["probes"]).transpose();
-  const Eigen::VectorXd log_densities = vector(expected["log_density"]);
+  const Eigen::MatrixXd probes = golden_columns(expected["probes"]);
+  const Eigen::VectorXd log_densities = golden_rows(expected["log_density"]);
   const Eigen::VectorXd relative =
       log_density(reference, probes).cwiseQuotient(log_densities) - Eigen::VectorXd::Ones(probes.cols());
   EXPECT_TRUE(near(relative, Eigen::VectorXd::Zero(probes.cols()), relative_density_tolerance));
-  EXPECT_TRUE(near(responsibilities(reference, probes), matrix(expected["responsibilities"]).transpose(),
+  EXPECT_TRUE(near(responsibilities(reference, probes), golden_columns(expected["responsibilities"]),
                    responsibility_tolerance));
 }
 

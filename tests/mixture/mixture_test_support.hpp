@@ -10,6 +10,8 @@
 
 namespace modebank::test {
 
+inline const Eigen::VectorXd unweighted;
+
 /// Three clusters of different shape in two features, overlapping or `distance` standard deviations apart.
 inline GaussianMixture three_clusters(double distance) {
   GaussianMixture mixture;

@@ -3,13 +3,12 @@
 
 #include <limits>
 
+#include "ident/not_a_number.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank::test {
 namespace {
-
-const Eigen::VectorXd unweighted;
 
 void expect_sound(const EmResult& fit, const Eigen::MatrixXd& points) {
   EXPECT_TRUE(is_finite(fit.mixture));
@@ -111,7 +110,7 @@ TEST(RobustnessErrors, CallersMistakesThrow) {
   EXPECT_THROW(fit_em(points, Eigen::VectorXd::Ones(19), 2, options, 1), std::invalid_argument);
   EXPECT_THROW(fit_em(points, -Eigen::VectorXd::Ones(20), 2, options, 1), std::invalid_argument);
   EXPECT_THROW(fit_em(points, Eigen::VectorXd::Zero(20), 2, options, 1), std::invalid_argument);
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200}) {
+  for (const double bad : {not_a_number, std::numeric_limits<double>::infinity(), 1e200}) {
     Eigen::MatrixXd broken = points;
     broken(1, 3) = bad;
     EXPECT_THROW(fit_em(broken, unweighted, 2, options, 1), std::invalid_argument) << bad;

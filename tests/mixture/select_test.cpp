@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include "ident/error.hpp"
+#include "ident/not_a_number.hpp"
 #include "mixture/criteria.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -59,7 +60,7 @@ TEST(Criteria, EntropyOfEvenAndCertainMemberships) {
 
 TEST(Criteria, TiesGoToTheFirstAndNonFiniteRowsAreSkipped) {
   std::vector<Candidate> rows(4);
-  rows[0].bic = std::numeric_limits<double>::quiet_NaN();
+  rows[0].bic = not_a_number;
   rows[1].bic = 5.0;
   rows[2].bic = 5.0;
   rows[3].bic = -std::numeric_limits<double>::infinity();
