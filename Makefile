@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all build demo test bench check format strict sanitize coverage picture readme clean
+.PHONY: all build demo test bench check format strict seeds sanitize coverage picture readme clean
 
 all: build
 
@@ -29,7 +29,7 @@ bench: build
 	build/bench_modebank
 
 # Everything CI runs beside `make test`.
-check: format strict sanitize
+check: format strict seeds sanitize
 
 format: packages-check
 	git ls-files '*.hpp' '*.cpp' | xargs clang-format --dry-run --Werror
@@ -38,6 +38,10 @@ format: packages-check
 strict: packages-build
 	cmake --preset release -DMODEBANK_WARNINGS_AS_ERRORS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS)
+
+# Recovery of known systems over many seeds.
+seeds: build
+	ctest --preset seeds
 
 sanitize: packages-build packages-test
 	cmake --preset sanitize >/dev/null

@@ -89,10 +89,8 @@ int run_command(const CommandLine& line) {
   for (const Command& command : commands) names.emplace_back(command.name);
   if (line.command.empty())
     throw ConfigurationError(fmt::format("no command; one of {} (see --help)", fmt::join(names, ", ")));
-  const std::string nearest = nearest_name(line.command, names);
   throw ConfigurationError(fmt::format("unknown command {}{}; commands are {}", line.command,
-                                       nearest.empty() ? "" : ", did you mean " + nearest + "?",
-                                       fmt::join(names, ", ")));
+                                       did_you_mean(line.command, names), fmt::join(names, ", ")));
 }
 
 int run_verify(const CommandLine& line) {

@@ -97,9 +97,7 @@ std::filesystem::path default_root(const std::filesystem::path& config_path) {
 std::string nearest_key_hint(const std::string& key) {
   std::vector<std::string> keys;
   for (const Option& option : option_table()) keys.push_back(option.key);
-  const std::string bare = boost::trim_left_copy_if(key, boost::is_any_of("-"));
-  const std::string nearest = nearest_name(bare, keys);
-  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
+  return did_you_mean(boost::trim_left_copy_if(key, boost::is_any_of("-")), keys);
 }
 
 Config load_config(const std::filesystem::path& path, const KeyValues& overrides) {

@@ -23,7 +23,7 @@ std::string resolved_text(const Config& config);
 /// numbers.
 std::string config_hash(const Config& config);
 
-/// "; did you mean window.length?", or nothing when no known key is close.
+/// ", did you mean window.length?", or nothing when no known key is close.
 std::string nearest_key_hint(const std::string& key);
 
 }  // namespace modebank::app

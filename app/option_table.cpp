@@ -121,6 +121,14 @@ std::vector<Option> data_options() {
       numeric("data.rate_hz", at_least(0), "Hz", "0: the inputs' own times; else resample (states linear, inputs held)",
               FIELD(data.rate_hz)),
       numeric("data.lag_s", any(), "s", "inputs act this much later (negative: earlier)", FIELD(data.lag_s)),
+      words("data.missing",
+            "NaN, infinite or empty values: an error; a gap that splits the run; or a missing state is a step of "
+            "prediction "
+            "only, a missing input the last known one",
+            FIELD(data.missing)),
+      words("data.disorder",
+            "time going backwards or repeated: an error, or sort the rows and keep the first of each time",
+            FIELD(data.disorder)),
       text("data.train", "run names", "training runs; empty: positions 0, 2, 4, ... in name order", FIELD(data.train)),
       text("data.test", "run names", "held-out runs; empty: all that do not train", FIELD(data.test)),
   };

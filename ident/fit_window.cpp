@@ -38,8 +38,8 @@ LocalModel fit_window(const Trajectory& run, Index start, const LinearStructure&
   const Eigen::VectorXd floor = sigma_floor.size() > 0 ? sigma_floor : Eigen::VectorXd::Zero(structure.states);
   check_range(run, start, options.length);
   check_arguments(structure, sigma, floor, prior);
-  const Transitions transitions = stack_transitions(run, start, options.length, structure);
-  if (!transitions.finite()) return failed_fit(structure);
+  const Transitions transitions = finite_rows(stack_transitions(run, start, options.length, structure));
+  if (transitions.count() == 0) return failed_fit(structure);
   return fit_transitions(transitions, decompose(transitions.regressors, excitation_tolerance),
                          make_estimator(structure, options), {sigma, floor}, prior);
 }

@@ -23,8 +23,8 @@ struct ParameterPrior {
 /// Fits one window as a robust Ceres problem: residual r_k = (x[k+1] - x[k] - [A B c] phi_k) / sigma, one loss per
 /// sample on |r_k|^2 over its n states. Assumes independent residuals of standard deviation `sigma` (n entries, the
 /// state's unit) apart from outliers. `prior` may be null. Rank deficiency is a status of the result, never an
-/// exception, and takes precedence over iteration_limit. Status failed (theta NaN): an entry that is not finite or
-/// overflows.
+/// exception, and takes precedence over iteration_limit. Transitions that hold a NaN or infinity are left out, L counts
+/// the others. Status failed (theta NaN): no transition is left, or numbers overflow.
 ///
 /// noise_variance: sigma^2 sum w_k r_k^2 / [(L - rank) kappa], w_k = rho' the robust weight and kappa = E[w z^2] for
 /// Gaussian z, which makes it consistent for the variance of Gaussian noise (rank: of one state's regressors). Not

@@ -80,11 +80,12 @@ struct WindowData {
   NoiseScale scale;
 };
 
-/// Nothing when the window holds a NaN or infinity.
+/// Transitions with a NaN or infinity are left out; nothing when none is left.
 std::optional<WindowData> load(const Context& context, const Window& window) {
   const Trajectory& run = context.recording.runs[static_cast<std::size_t>(window.run)];
-  Transitions transitions = stack_transitions(run, window.start, context.options.length, context.estimator.structure);
-  if (!transitions.finite()) return std::nullopt;
+  const LinearStructure& structure = context.estimator.structure;
+  Transitions transitions = finite_rows(stack_transitions(run, window.start, context.options.length, structure));
+  if (transitions.count() == 0) return std::nullopt;
   Decomposition decomposition = decompose(transitions.regressors, excitation_tolerance);
   Eigen::VectorXd sigma = window_sigma(context, window, transitions, decomposition);
   return WindowData{std::move(transitions), std::move(decomposition), {std::move(sigma), context.floor}};

@@ -1,7 +1,5 @@
 #include "io/archive.hpp"
 
-#include <set>
-
 #include "ident/error.hpp"
 #include "io/archive_file.hpp"
 #include "io/archive_layout.hpp"
@@ -9,27 +7,11 @@
 #include "io/archive_writer.hpp"
 #include "io/read_stages.hpp"
 #include "io/replace_file.hpp"
+#include "io/run_names.hpp"
 #include "io/sha256.hpp"
 #include "io/user_block.hpp"
 
 namespace modebank {
-
-namespace {
-
-/// HDF5 takes '/' for a level and "." for the same group, and texts are padded with zero bytes.
-void check_run_names(const Archive& archive) {
-  if (!archive.recording) return;
-  std::set<std::string> seen;
-  for (const Trajectory& run : archive.recording->runs) {
-    const bool usable = !run.run.empty() && run.run != "." && run.run.find('/') == std::string::npos &&
-                        run.run.find('\0') == std::string::npos;
-    if (!usable)
-      throw ConfigurationError("'" + run.run + "' cannot name a run: '/' , '.' alone and empty names are taken");
-    if (!seen.insert(run.run).second) throw ConfigurationError("two runs are named '" + run.run + "'");
-  }
-}
-
-}  // namespace
 
 void check_writable(const std::filesystem::path& path) {
   if (const std::string obstacle = write_obstacle(path); !obstacle.empty())
@@ -37,7 +19,7 @@ void check_writable(const std::filesystem::path& path) {
 }
 
 void write_archive(const std::filesystem::path& path, const Archive& archive) {
-  check_run_names(archive);
+  if (archive.recording) check_run_names(run_names(archive.recording->runs));
   const hdf5::Quiet quiet;
   const ArchiveImage image;
   {

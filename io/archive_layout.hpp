@@ -8,6 +8,7 @@
 #include "io/archive_sizes.hpp"
 #include "io/archive_stored.hpp"
 #include "io/archive_units.hpp"
+#include "io/run_names.hpp"
 #include "io/table_columns.hpp"
 
 /// The one description of the archive's layout; its part for banks and evaluations is archive_layout_filter.hpp. Every

@@ -49,12 +49,6 @@ std::vector<Channel> restore_channels(const StoredChannels& stored) {
   return channels;
 }
 
-std::vector<std::string> run_names(const std::vector<Trajectory>& runs) {
-  std::vector<std::string> names;
-  for (const Trajectory& run : runs) names.push_back(run.run);
-  return names;
-}
-
 StoredWindows store_windows(const std::vector<Window>& windows, const std::vector<Trajectory>& runs) {
   StoredWindows stored;
   stored.start.resize(static_cast<Index>(windows.size()));

@@ -23,8 +23,6 @@ struct StoredChannels {
 StoredChannels store_channels(const std::vector<Channel>& channels);
 std::vector<Channel> restore_channels(const StoredChannels& stored);
 
-std::vector<std::string> run_names(const std::vector<Trajectory>& runs);
-
 /// Windows by the name of their run.
 struct StoredWindows {
   std::vector<std::string> run;                          ///< M

@@ -7,9 +7,10 @@
 #include <utility>
 
 #include "ident/error.hpp"
+#include "ident/nearest_name.hpp"
+#include "ident/not_a_number.hpp"
 #include "io/csv_number.hpp"
 #include "io/csv_pass.hpp"
-#include "io/did_you_mean.hpp"
 #include "io/read_file.hpp"
 
 namespace modebank {
@@ -50,6 +51,7 @@ struct TableSink {
   std::size_t text_column = none;
   std::vector<std::string> header;
   CsvTable table;
+  std::vector<bool> may_miss;  // per position in table.numbers
   bool header_seen = false, empty_line_seen = false;
   std::size_t fields = 0;
   std::uint64_t line = 1;
@@ -67,8 +69,9 @@ struct TableSink {
 
   void number(std::size_t column, std::string_view text) {
     const ParsedNumber parsed = parse_number(text);
-    table.numbers[target[column]].push_back(parsed.value);
-    if (parsed.status != NumberStatus::ok) error = complaint(parsed.status, column, text);
+    const bool tolerated = parsed.status == NumberStatus::missing && may_miss[target[column]];
+    table.numbers[target[column]].push_back(tolerated ? not_a_number : parsed.value);
+    if (parsed.status != NumberStatus::ok && !tolerated) error = complaint(parsed.status, column, text);
   }
 
   std::string complaint(NumberStatus status, std::size_t column, std::string_view text) const {
@@ -112,6 +115,8 @@ TableSink make_sink(std::string_view file, std::vector<std::string> header, cons
   if (!request.text.empty()) sink.text_column = column_position(file, header, request.text);
   for (std::size_t i = 0; i < request.numbers.size(); ++i)
     sink.target[column_position(file, header, request.numbers[i])] = static_cast<int>(i);
+  sink.may_miss = request.may_miss;
+  sink.may_miss.resize(request.numbers.size(), false);
   sink.table.numbers.resize(request.numbers.size());
   for (auto& column : sink.table.numbers) column.reserve(rows);
   sink.table.line.reserve(rows);

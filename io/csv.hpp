@@ -17,6 +17,7 @@ namespace modebank {
 struct CsvRequest {
   std::vector<std::string> numbers;  ///< columns of finite numbers, each once
   std::string text;                  ///< one column of text, or empty
+  std::vector<bool> may_miss = {};   ///< per number: whether missing values become NaN; empty: they are errors
 };
 
 struct CsvTable {
@@ -37,7 +38,7 @@ std::size_t column_position(std::string_view file, const std::vector<std::string
 
 /// Reads the wanted columns of `content`, the bytes of `file` (which is only named in messages). Throws as
 /// column_position does, and DataError, naming file, line and column, for text where a number is wanted, a missing
-/// value (empty, NaN or infinite) and a malformed row.
+/// value (empty, NaN or infinite) in a column that may not miss any and a malformed row.
 CsvTable parse_csv(std::string_view file, std::string_view content, const CsvRequest& request);
 
 }  // namespace modebank

@@ -18,6 +18,12 @@ std::string quoted(Place place, const std::string& name) {
 
 hsize_t saturating_product(hsize_t a, hsize_t b) { return a != 0 && b > largest / a ? largest : a * b; }
 
+bool is_ascii(const std::vector<std::string>& texts) {
+  const auto ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
+  return std::all_of(texts.begin(), texts.end(),
+                     [&](const std::string& text) { return std::all_of(text.begin(), text.end(), ascii); });
+}
+
 Handle make_space(const Shape& shape) {
   const hid_t space =
       shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
@@ -91,6 +97,9 @@ void write_texts(hid_t parent, Place place, const std::string& name, const std::
                  const Shape& shape) {
   const std::size_t bytes = longest(texts);
   const Handle type = string_type(bytes);
+  // UTF-8 holds ASCII, and Octave's load gives up a whole group at a dataset that says UTF-8, such as /windows/run.
+  const bool array = place == Place::dataset && !shape.empty();
+  if (array && is_ascii(texts)) check(H5Tset_cset(type.id(), H5T_CSET_ASCII), "make an ASCII type");
   write_array(parent, place, name, type.id(), type.id(), shape, pack_texts(texts, bytes).data());
 }
 

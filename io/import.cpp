@@ -12,7 +12,9 @@
 
 #include "ident/error.hpp"
 #include "io/import_plan.hpp"
+#include "io/missing_values.hpp"
 #include "io/read_runs.hpp"
+#include "io/run_names.hpp"
 #include "io/run_roles.hpp"
 #include "io/sha256.hpp"
 
@@ -49,7 +51,7 @@ Outcome try_read(const FilePlan& plan, const DataOptions& options) {
   return outcome;
 }
 
-/// Reads plans in parallel; results arrive in order, so the hash over all contents needs only a few of them in memory.
+/// Reads plans in parallel; results arrive in order, which the hash over all of them needs.
 void read_all(const std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data) {
   Sha256 hash;
   std::vector<Outcome> outcomes(plans.size());  // the pipeline passes positions on: it would leak objects on an error
@@ -65,7 +67,7 @@ void read_all(const std::vector<FilePlan>& plans, const DataOptions& options, Im
   const auto collect = [&](std::size_t plan) {
     Outcome outcome = std::exchange(outcomes[plan], {});
     if (outcome.error) std::rethrow_exception(outcome.error);
-    for (const std::string& bytes : outcome.content.content) hash.update(bytes);
+    for (const InputFile& file : outcome.content.files) hash.update(file.sha256);
     std::move(outcome.content.files.begin(), outcome.content.files.end(), std::back_inserter(data.files));
     std::move(outcome.content.runs.begin(), outcome.content.runs.end(), std::back_inserter(data.recording.runs));
   };
@@ -77,20 +79,12 @@ void read_all(const std::vector<FilePlan>& plans, const DataOptions& options, Im
   data.data_hash = hash.hex();
 }
 
-/// Run names become groups of the archive.
-void check_run_names(const std::vector<Trajectory>& runs) {
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const std::string& name = runs[i].run;
-    if (name.find('/') != std::string::npos || name == "." || name == "..")
-      throw DataError(fmt::format("\"{}\" cannot name a run: a name must not hold '/' nor be '.' or '..'", name));
-    if (i > 0 && name == runs[i - 1].run) throw DataError(fmt::format("two runs are named \"{}\"", name));
-  }
+void sort_by_name(std::vector<Trajectory>& runs) {
+  std::sort(runs.begin(), runs.end(), [](const Trajectory& a, const Trajectory& b) { return a.run < b.run; });
 }
 
 void set_roles(std::vector<Trajectory>& runs, const DataOptions& options) {
-  std::vector<std::string> names(runs.size());
-  std::transform(runs.begin(), runs.end(), names.begin(), [](const Trajectory& run) { return run.run; });
-  const std::vector<std::optional<Role>> roles = assign_roles(names, options.train, options.test);
+  const std::vector<std::optional<Role>> roles = assign_roles(run_names(runs), options.train, options.test);
   std::vector<Trajectory> kept;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!roles[i]) continue;
@@ -98,6 +92,21 @@ void set_roles(std::vector<Trajectory>& runs, const DataOptions& options) {
     kept.push_back(std::move(runs[i]));
   }
   runs = std::move(kept);
+}
+
+/// After the roles are set: data.train and data.test name whole runs.
+void treat_missing_values(std::vector<Trajectory>& runs, Missing missing) {
+  if (missing == Missing::error) return;
+  std::vector<Trajectory> treated;
+  for (const Trajectory& run : runs) {
+    if (missing == Missing::predict) {
+      treated.push_back(hold_missing_inputs(run));
+      continue;
+    }
+    std::vector<Trajectory> parts = split_at_gaps(run);
+    std::move(parts.begin(), parts.end(), std::back_inserter(treated));
+  }
+  runs = std::move(treated);
 }
 
 }  // namespace
@@ -109,9 +118,12 @@ ImportedData import_data(const DataOptions& options) {
   const std::vector<FilePlan> plans = plan_import(options);
   read_all(plans, options, data);
   auto& runs = data.recording.runs;
-  std::sort(runs.begin(), runs.end(), [](const Trajectory& a, const Trajectory& b) { return a.run < b.run; });
-  check_run_names(runs);
+  sort_by_name(runs);
+  check_run_names(run_names(runs));
   set_roles(runs, options);
+  treat_missing_values(runs, options.missing);
+  sort_by_name(runs);
+  check_run_names(run_names(runs));
   return data;
 }
 

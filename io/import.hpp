@@ -19,7 +19,7 @@ struct InputFile {
 struct ImportedData {
   Recording recording;           ///< runs sorted by name (byte order), roles set
   std::vector<InputFile> files;  ///< in run order, inputs before states
-  std::string data_hash;         ///< SHA-256 over the files' contents, in that order
+  std::string data_hash;         ///< SHA-256 over the files' hex digests, in that order: the content, not where it lies
 };
 
 /// Finds, checks and reads all runs. Throws ConfigurationError for what can be seen before any sample is read (pattern

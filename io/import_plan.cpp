@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "ident/error.hpp"
-#include "io/did_you_mean.hpp"
+#include "ident/nearest_name.hpp"
 #include "io/file_patterns.hpp"
 #include "io/run_roles.hpp"
 
@@ -113,6 +113,11 @@ void plan_columns(FilePlan& plan, const DataOptions& options) {
     plan.inputs_runs = find.text(options.run, {inputs});
     plan.states_runs = find.text(options.run, {states});
   }
+  // A sample without time has no place.
+  for (CsvRequest& request : plan.requests)
+    request.may_miss.assign(request.numbers.size(), options.missing != Missing::error);
+  for (const ColumnRef time : {plan.inputs_time, plan.states_time})
+    plan.requests[time.file].may_miss[time.column] = false;
 }
 
 ColumnNames without_left_out(const ColumnNames& names, const DataOptions& options) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 
@@ -24,7 +25,7 @@ std::vector<CsvTable> read_tables(const FilePlan& plan, FileContent& result) {
   std::vector<CsvTable> tables(plan.paths.size());
   for (std::size_t f = 0; f < plan.paths.size(); ++f) {
     const std::string path = plan.paths[f].string();
-    const std::string& content = result.content.emplace_back(read_file(path));
+    const std::string content = read_file(path);
     std::string sha256;
     tbb::parallel_invoke([&] { sha256 = sha256_hex(content); },
                          [&] { tables[f] = parse_csv(path, content, plan.requests[f]); });
@@ -53,6 +54,16 @@ class RowReader {
       runs[table.text[row]].push_back(row);
     }
     return runs;
+  }
+
+  /// The rows in order of time; of those that share a time the first in the file.
+  Rows in_order(ColumnRef time, Rows rows) const {
+    const std::vector<double>& time_s = tables_[time.file].numbers[time.column];
+    std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
+    rows.erase(
+        std::unique(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return time_s[a] == time_s[b]; }),
+        rows.end());
+    return rows;
   }
 
   VectorXd times(ColumnRef time, const Rows& rows) const {
@@ -120,8 +131,12 @@ std::string run_name(const FilePlan& plan, const std::string& value, const DataO
   return plan.starred ? plan.name + "_" + value : value;
 }
 
-Trajectory join(const FilePlan& plan, const RowReader& reader, const std::string& name, const Rows& states_rows,
-                const Rows& inputs_rows, const DataOptions& options) {
+Trajectory join(const FilePlan& plan, const RowReader& reader, const std::string& name, Rows states_rows,
+                Rows inputs_rows, const DataOptions& options) {
+  if (options.disorder == Disorder::sort) {
+    states_rows = reader.in_order(plan.states_time, std::move(states_rows));
+    inputs_rows = reader.in_order(plan.inputs_time, std::move(inputs_rows));
+  }
   const Stream states{reader.times(plan.states_time, states_rows), reader.columns(plan.state, states_rows)};
   const Stream inputs{reader.times(plan.inputs_time, inputs_rows), reader.columns(plan.input, inputs_rows)};
   Trajectory run;

@@ -12,9 +12,8 @@ namespace modebank {
 
 /// The content of one plan's files.
 struct FileContent {
-  std::vector<Trajectory> runs;      ///< sorted by name; roles not yet set
-  std::vector<InputFile> files;      ///< inputs before states
-  std::vector<std::string> content;  ///< the bytes of `files`
+  std::vector<Trajectory> runs;  ///< sorted by name; roles not yet set
+  std::vector<InputFile> files;  ///< inputs before states
 };
 
 /// Reads one plan's files and joins their streams. Throws DataError (io/import.hpp).

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "ident/error.hpp"
-#include "io/did_you_mean.hpp"
+#include "ident/nearest_name.hpp"
 
 namespace modebank {
 

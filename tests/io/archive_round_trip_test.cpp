@@ -110,11 +110,11 @@ TEST(ArchiveRoundTrip, RunNamesThatHdf5CannotHoldAreRefused) {
   for (const std::string& name : {std::string("a/b"), std::string("."), std::string(), std::string("a\0b", 3)}) {
     Archive archive = full_archive(2, 1);
     archive.recording->runs[1].run = name;
-    EXPECT_THROW(write_archive(folder.path() / "a.h5", archive), ConfigurationError) << name;
+    EXPECT_THROW(write_archive(folder.path() / "a.h5", archive), DataError) << name;
   }
   Archive twice = full_archive(2, 1);
   twice.recording->runs[1].run = twice.recording->runs[0].run;
-  EXPECT_THROW(write_archive(folder.path() / "a.h5", twice), ConfigurationError);
+  EXPECT_THROW(write_archive(folder.path() / "a.h5", twice), DataError);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

@@ -207,7 +207,7 @@ TEST_F(Import, ListsFilesWithTheirHashes) {
   EXPECT_EQ(data.files[2].path, path("pro_b.csv"));
   EXPECT_EQ(data.files[1].bytes, imu_a.size());
   EXPECT_EQ(data.files[1].sha256, sha256_hex(imu_a));
-  EXPECT_EQ(data.data_hash, sha256_hex(pro + imu_a + pro + imu_b));
+  EXPECT_EQ(data.data_hash, sha256_hex(sha256_hex(pro) + sha256_hex(imu_a) + sha256_hex(pro) + sha256_hex(imu_b)));
 }
 
 TEST_F(Import, DoesNotDependOnThreads) {

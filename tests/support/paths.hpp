@@ -28,10 +28,14 @@ void write_file(const std::filesystem::path& path, const std::string& content);
 
 }  // namespace modebank::test
 
-/// Real data is not part of the project: its absence skips a test with a message, and fails it under CI=true.
-#define MODEBANK_NEEDS_SHARED_DATA()                                                                \
-  if (::modebank::test::shared_data_dir().empty()) {                                                \
-    const char* ci = std::getenv("CI");                                                             \
-    ASSERT_FALSE(ci&& std::string(ci) == "true") << "real data is absent, but CI=true requires it"; \
-    GTEST_SKIP() << "real data is absent: set MODEBANK_DATA to a folder that holds borealtc/ICE";   \
+/// What a test needs from outside the project: its absence skips the test with a message, and fails it under CI=true.
+#define MODEBANK_NEEDS(present, absence)                                              \
+  if (!(present)) {                                                                   \
+    const char* ci = std::getenv("CI");                                               \
+    ASSERT_FALSE(ci&& std::string(ci) == "true") << (absence) << " (CI requires it)"; \
+    GTEST_SKIP() << (absence);                                                        \
   }
+
+#define MODEBANK_NEEDS_SHARED_DATA()                           \
+  MODEBANK_NEEDS(!::modebank::test::shared_data_dir().empty(), \
+                 "real data is absent: set MODEBANK_DATA to a folder that holds borealtc/ICE")
