@@ -1,6 +1,7 @@
 #include "app/config_file.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
@@ -24,7 +25,7 @@ namespace {
 struct FileEntry {
   std::string key, value;
   int line = 0;
-  bool has_comment = false;
+  bool has_comment = false, comment_touches_value = false;
 };
 
 const Option* find_option(const std::string& key) {
@@ -40,7 +41,9 @@ std::vector<FileEntry> parse_lines(std::istream& stream, const std::string& path
   std::string section, line;
   for (int number = 1; std::getline(stream, line); ++number) {
     if (number == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
-    std::string content = boost::trim_copy(line.substr(0, line.find('#')));
+    const std::size_t hash = line.find('#');
+    const bool touches = hash != std::string::npos && hash > 0 && line[hash - 1] != ' ' && line[hash - 1] != '\t';
+    std::string content = boost::trim_copy(line.substr(0, hash));
     if (content.empty()) continue;
     if (content.front() == '[' && content.back() == ']') {
       section = content;
@@ -50,7 +53,7 @@ std::vector<FileEntry> parse_lines(std::istream& stream, const std::string& path
     try {
       const po::parsed_options parsed = po::parse_config_file(one, no_options, true);
       for (const po::option& option : parsed.options)
-        entries.push_back({option.string_key, option.value.at(0), number, line.find('#') != std::string::npos});
+        entries.push_back({option.string_key, option.value.at(0), number, hash != std::string::npos, touches});
     } catch (const po::error&) {
       throw ConfigurationError(fmt::format("{}:{}: '{}' is neither [section] nor key = value", path, number, content));
     }
@@ -111,6 +114,9 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
     if (const auto [earlier, fresh] = seen.emplace(entry.key, entry.line); !fresh)
       throw ConfigurationError(fmt::format("{}: {} is already set in line {}", where, entry.key, earlier->second));
     apply(config, where, entry.key, entry.value, entry.has_comment);
+    if (entry.comment_touches_value)
+      spdlog::warn("{}: {} is cut to '{}': # starts a comment, so no value can hold one", where, entry.key,
+                   entry.value);
     // A relative root in a file means relative to that file, wherever the program is started.
     if (entry.key == "data.root" && !config.data.root.empty())
       config.data.root = (std::filesystem::absolute(path).parent_path() / config.data.root).string();
@@ -138,12 +144,21 @@ std::string resolved_text(const Config& config) {
   return text;
 }
 
+std::map<std::string, std::string> resolved_values(const std::string& resolved) {
+  std::istringstream stream(resolved);
+  std::map<std::string, std::string> values;
+  for (const FileEntry& entry : parse_lines(stream, "stored configuration")) values[entry.key] = entry.value;
+  return values;
+}
+
+bool decides_numbers(const std::string& key) {
+  return key != "data.root" && key.rfind("archive.", 0) != 0 && key != "job.threads";
+}
+
 std::string config_hash(const Config& config) {
   std::vector<std::string> lines;
   for (const Option& option : option_table()) {
-    const bool decides_no_number =
-        option.key == "data.root" || option.section() == "archive" || option.key == "job.threads";
-    if (!decides_no_number) lines.push_back(option.key + "=" + option.get(config) + "\n");
+    if (decides_numbers(option.key)) lines.push_back(option.key + "=" + option.get(config) + "\n");
   }
   std::sort(lines.begin(), lines.end());
   return sha256_hex(boost::join(lines, ""));

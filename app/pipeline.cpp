@@ -1,10 +1,13 @@
 #include "app/pipeline.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "filter/evaluate.hpp"
 #include "filter/learn.hpp"
@@ -35,11 +38,19 @@ std::vector<RunEvaluation> evaluate_runs(const Bank& bank, const std::vector<Tra
   return evaluations;
 }
 
+bool trained_on(const Recording& recording, const Trajectory& run) {
+  return std::any_of(recording.runs.begin(), recording.runs.end(), [&](const Trajectory& other) {
+    return other.role == Role::train && other.samples() == run.samples() && other.state == run.state &&
+           other.input == run.input;
+  });
+}
+
 }  // namespace
 
 void import_stage(const Config& config, Archive& archive) {
   const Stopwatch watch;
   ImportedData data = import_data(config.data);
+  for (const std::string& note : data.notes) spdlog::warn("{}", note);
   archive.recording = std::move(data.recording);
   archive.provenance.inputs = std::move(data.files);
   archive.provenance.data_hash = std::move(data.data_hash);
@@ -78,6 +89,24 @@ void bank_stage(const Config& config, Archive& archive) {
                watch.seconds());
 }
 
+/// What makes a stored bank's scores mean something else than they seem to.
+void warn_of_foreign_bank(const std::string& file, const Archive& stored, const Recording& recording) {
+  std::vector<std::string> trained;
+  for (const Trajectory& run : recording.runs)
+    if (run.role == Role::test && stored.recording && trained_on(*stored.recording, run)) trained.push_back(run.run);
+  if (!trained.empty())
+    spdlog::warn("{}: its bank was trained on {}: the scores of the test runs are not held out", file,
+                 fmt::join(trained, ", "));
+  const Bank& bank = *stored.bank;
+  if (bank.state_names != names_of(recording.states) || bank.input_names != names_of(recording.inputs))
+    spdlog::warn("{}: its bank was learned from columns {}; {}, the data have {}; {}", file,
+                 fmt::join(bank.state_names, ", "), fmt::join(bank.input_names, ", "),
+                 fmt::join(names_of(recording.states), ", "), fmt::join(names_of(recording.inputs), ", "));
+  constexpr double tolerated = 0.1;  // a tenth more or less time per step changes increments by as much
+  if (const double dt_s = recording.median_period_s(); std::abs(dt_s - bank.dt_s) > tolerated * bank.dt_s)
+    spdlog::warn("{}: its bank steps by {:.4g} s, the data by {:.4g} s", file, bank.dt_s, dt_s);
+}
+
 void load_banks(const Config& config, Archive& archive) {
   Archive stored = read_archive(config.archive.bank);
   if (!stored.bank) throw DataError(fmt::format("{}: holds no bank", config.archive.bank));
@@ -87,6 +116,8 @@ void load_banks(const Config& config, Archive& archive) {
     throw DataError(fmt::format("{}: its bank has {} states and {} inputs, the data have {} and {}",
                                 config.archive.bank, structure.states, structure.inputs, recording.state_count(),
                                 recording.input_count()));
+  warn_of_foreign_bank(config.archive.bank, stored, recording);
+  archive.provenance.inputs.push_back(describe_file(config.archive.bank));
   archive.bank = std::move(stored.bank);
   archive.baseline = std::move(stored.baseline);
   archive.noise_only = std::move(stored.noise_only);

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
+#include <map>
 #include <optional>
 #include <thread>
 
@@ -11,6 +13,7 @@
 #include "app/summary_text.hpp"
 #include "ident/error.hpp"
 #include "io/archive.hpp"
+#include "io/import.hpp"
 
 namespace modebank::app {
 namespace {
@@ -19,12 +22,32 @@ std::size_t thread_count(int configured) {
   return configured > 0 ? static_cast<std::size_t>(configured) : std::max(1u, std::thread::hardware_concurrency());
 }
 
+/// Stages that are taken as they are must have been made as the configuration says, which the new archive will record.
+void check_same_settings(const Config& config, const std::string& stored, const std::vector<std::string>& sections) {
+  const std::map<std::string, std::string> before = resolved_values(stored),
+                                           now = resolved_values(resolved_text(config));
+  for (const auto& [key, value] : now) {
+    const std::string section = key.substr(0, key.find('.'));
+    const bool decides = std::find(sections.begin(), sections.end(), section) != sections.end() && decides_numbers(key);
+    if (const auto stage = before.find(key); decides && stage != before.end() && stage->second != value)
+      throw ConfigurationError(
+          fmt::format("archive.input: {} was made with {} = {}, the configuration says '{}': take the stored value, or "
+                      "start from the data",
+                      config.archive.input, key, stage->second.empty() ? "''" : stage->second, value));
+  }
+}
+
 /// Earlier stages from --archive.input; what the file lacks is computed.
 void take_earlier_stages(const Config& config, const std::string& command, Archive& archive) {
   Archive stored = read_archive(config.archive.input);
   if (!stored.recording) throw DataError(fmt::format("{}: holds no data", config.archive.input));
+  std::vector<std::string> sections{"data"};
+  if (command != "identify" && stored.windows) sections.emplace_back("window");
+  if (command == "evaluate" && stored.mixture) sections.insert(sections.end(), {"mixture", "job"});
+  check_same_settings(config, stored.config, sections);
   archive.recording = std::move(stored.recording);
   archive.provenance.inputs = std::move(stored.provenance.inputs);
+  archive.provenance.inputs.push_back(describe_file(config.archive.input));
   archive.provenance.data_hash = std::move(stored.provenance.data_hash);
   if (command != "identify") archive.windows = std::move(stored.windows);
   if (command == "evaluate") archive.mixture = std::move(stored.mixture);
@@ -41,6 +64,20 @@ void check_usage(const CommandLine& line, const Config& config) {
   for (const std::string& file : {config.archive.input, config.archive.bank})
     if (!file.empty() && !std::filesystem::exists(file))
       throw ConfigurationError(fmt::format("{}: no such file", file));
+}
+
+/// An archive must not take the place of what it was made from.
+void check_output(const CommandLine& line, const Config& config) {
+  const auto require_other = [&](const std::filesystem::path& file) {
+    std::error_code absent;
+    if (std::filesystem::equivalent(file, config.archive.output, absent))
+      throw ConfigurationError(fmt::format("archive.output: {} is read by this run; name another file", file.string()));
+  };
+  require_other(line.files.front());
+  for (const std::string& file : {config.archive.input, config.archive.bank})
+    if (!file.empty()) require_other(file);
+  if (!config.archive.input.empty()) return;
+  for (const std::filesystem::path& file : data_files(config.data)) require_other(file);
 }
 
 void run_stages(const std::string& command, const Config& config, Archive& archive) {
@@ -71,6 +108,7 @@ int run_pipeline(const CommandLine& line) {
   check_usage(line, config);
   validate(config);
   check_writable(config.archive.output);
+  check_output(line, config);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, thread_count(config.job.threads));
 
   Archive archive;

@@ -95,8 +95,9 @@ std::string gain_text(const Archive& archive) {
       "\nOn {} runs the bank gains {:+.3f} nats/sample over one Kalman filter (baseline) and {:+.3f} over noise\n"
       "switching alone (noise_only): {}.\n",
       role == Role::test ? "held-out" : "training", bank->log_score - baseline->log_score, over_noise,
-      over_noise > 0 ? "that excess is its evidence for modes of motion"
-                     : "no evidence for modes of motion beyond changing noise");
+      role == Role::train ? "nothing was held out, so neither is evidence"
+      : over_noise > 0    ? "that excess is its evidence for modes of motion"
+                          : "no evidence for modes of motion beyond changing noise");
 }
 
 }  // namespace

@@ -6,16 +6,7 @@
 #include "filter/training_transitions.hpp"
 
 namespace modebank {
-namespace {
-
-std::vector<std::string> names_of(const std::vector<Channel>& channels) {
-  std::vector<std::string> names;
-  names.reserve(channels.size());
-  for (const Channel& channel : channels) names.push_back(channel.name);
-  return names;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Bank bank_frame(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R) {
   check_structure(recording, structure);

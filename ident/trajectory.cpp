@@ -14,4 +14,10 @@ double Recording::median_period_s() const {
   return *middle;
 }
 
+std::vector<std::string> names_of(const std::vector<Channel>& channels) {
+  std::vector<std::string> names;
+  for (const Channel& channel : channels) names.push_back(channel.name);
+  return names;
+}
+
 }  // namespace modebank

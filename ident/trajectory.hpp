@@ -16,6 +16,8 @@ struct Channel {
   std::string unit;
 };
 
+std::vector<std::string> names_of(const std::vector<Channel>& channels);
+
 enum class Role { train, test };
 
 template <>

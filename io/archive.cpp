@@ -34,6 +34,8 @@ void write_archive(const std::filesystem::path& path, const Archive& archive) {
 Archive read_archive(const std::filesystem::path& path) {
   const hdf5::Quiet quiet;
   const hdf5::Handle file = open_archive(path);
+  if (const std::vector<std::string> problems = hash_problems(path); !problems.empty())
+    throw DataError(path.string() + ": damaged: " + problems.front());
   try {
     return read_stages(file, nullptr);
   } catch (const DataError& error) {

@@ -58,7 +58,8 @@ void check_writable(const std::filesystem::path& path);
 void write_archive(const std::filesystem::path& path, const Archive& archive);
 
 /// Reads all stages that the file holds, bit by bit as written. Throws DataError for a file that is unreadable,
-/// truncated, not a modebank archive, or of a newer major schema; ConfigurationError when it does not exist.
+/// truncated, damaged (its hash does not match), not a modebank archive, or of a newer major schema; ConfigurationError
+/// when it does not exist.
 Archive read_archive(const std::filesystem::path& path);
 
 /// What verification found; empty `problems` means the archive is whole.

@@ -13,6 +13,7 @@
 #include "ident/error.hpp"
 #include "io/import_plan.hpp"
 #include "io/missing_values.hpp"
+#include "io/read_file.hpp"
 #include "io/read_runs.hpp"
 #include "io/run_names.hpp"
 #include "io/run_roles.hpp"
@@ -95,15 +96,14 @@ void set_roles(std::vector<Trajectory>& runs, const DataOptions& options) {
 }
 
 /// After the roles are set: data.train and data.test name whole runs.
-void treat_missing_values(std::vector<Trajectory>& runs, Missing missing) {
-  if (missing == Missing::error) return;
+void treat_missing_values(std::vector<Trajectory>& runs, Missing missing, std::vector<std::string>& notes) {
+  const bool predict = missing == Missing::predict;
   std::vector<Trajectory> treated;
   for (const Trajectory& run : runs) {
-    if (missing == Missing::predict) {
-      treated.push_back(hold_missing_inputs(run));
-      continue;
-    }
-    std::vector<Trajectory> parts = split_at_gaps(run);
+    std::vector<Trajectory> parts = split_at_gaps(predict ? hold_missing_inputs(run) : run, predict);
+    if (parts.size() > 1)
+      notes.push_back(fmt::format("run {} has gaps: it is taken as {} runs, {} to {}", run.run, parts.size(),
+                                  parts.front().run, parts.back().run));
     std::move(parts.begin(), parts.end(), std::back_inserter(treated));
   }
   runs = std::move(treated);
@@ -121,10 +121,21 @@ ImportedData import_data(const DataOptions& options) {
   sort_by_name(runs);
   check_run_names(run_names(runs));
   set_roles(runs, options);
-  treat_missing_values(runs, options.missing);
+  treat_missing_values(runs, options.missing, data.notes);
   sort_by_name(runs);
   check_run_names(run_names(runs));
   return data;
+}
+
+std::vector<std::filesystem::path> data_files(const DataOptions& options) {
+  std::vector<std::filesystem::path> files;
+  for (const FilePlan& plan : plan_import(options)) files.insert(files.end(), plan.paths.begin(), plan.paths.end());
+  return files;
+}
+
+InputFile describe_file(const std::filesystem::path& path) {
+  const std::string content = read_file(path);
+  return {std::filesystem::absolute(path).string(), content.size(), sha256_hex(content)};
 }
 
 }  // namespace modebank

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,10 @@ struct InputFile {
 };
 
 struct ImportedData {
-  Recording recording;           ///< runs sorted by name (byte order), roles set
-  std::vector<InputFile> files;  ///< in run order, inputs before states
-  std::string data_hash;         ///< SHA-256 over the files' hex digests, in that order: the content, not where it lies
+  Recording recording;             ///< runs sorted by name (byte order), roles set
+  std::vector<InputFile> files;    ///< in run order, inputs before states
+  std::vector<std::string> notes;  ///< what the user should know of the data
+  std::string data_hash;  ///< SHA-256 over the files' hex digests, in that order: the content, not where it lies
 };
 
 /// Finds, checks and reads all runs. Throws ConfigurationError for what can be seen before any sample is read (pattern
@@ -27,5 +29,11 @@ struct ImportedData {
 /// name) and DataError, naming file and line, for content (text in a number, NaN, time not increasing, too few samples,
 /// streams that do not overlap, row counts that differ under Join::row).
 ImportedData import_data(const DataOptions& options);
+
+/// The files that import_data would read. Throws ConfigurationError as it does.
+std::vector<std::filesystem::path> data_files(const DataOptions& options);
+
+/// Path, size and hash of any file, for provenance. Throws ConfigurationError when it cannot be read.
+InputFile describe_file(const std::filesystem::path& path);
 
 }  // namespace modebank

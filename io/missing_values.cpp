@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "ident/error.hpp"
+#include "ident/not_a_number.hpp"
 
 namespace modebank {
 
@@ -17,26 +20,49 @@ Trajectory stretch(const Trajectory& run, Index first, Index samples) {
   return part;
 }
 
+/// Median interval; 0 without any.
+double median_period(const Eigen::VectorXd& time_s) {
+  if (time_s.size() < 2) return 0.0;
+  Eigen::VectorXd period = time_s.tail(time_s.size() - 1) - time_s.head(time_s.size() - 1);
+  const auto middle = period.begin() + period.size() / 2;
+  std::nth_element(period.begin(), middle, period.end());
+  return *middle;
+}
+
 bool known(const Trajectory& run, Index k) { return run.state.col(k).allFinite() && run.input.col(k).allFinite(); }
 
 [[noreturn]] void fail(const Trajectory& run) {
-  throw DataError(fmt::format("run \"{}\" has no two samples in a row without a missing value", run.run));
+  throw DataError(fmt::format("run \"{}\" has no two samples in a row without a gap or missing value", run.run));
 }
 
 }  // namespace
 
-std::vector<Trajectory> split_at_gaps(const Trajectory& run) {
+void blank_gaps(const Eigen::VectorXd& stream_time_s, const Eigen::VectorXd& time_s, Eigen::MatrixXd& values) {
+  const double longest = gap_periods * median_period(stream_time_s);
+  Index j = 0;  // the stream's first sample at or after time_s(k)
+  for (Index k = 0; k < time_s.size(); ++k) {
+    while (j < stream_time_s.size() && stream_time_s(j) < time_s(k)) ++j;
+    const bool between = j > 0 && j < stream_time_s.size() && stream_time_s(j) != time_s(k);
+    if (between && stream_time_s(j) - stream_time_s(j - 1) > longest) values.col(k).setConstant(not_a_number);
+  }
+}
+
+std::vector<Trajectory> split_at_gaps(const Trajectory& run, bool predict) {
+  const double longest = gap_periods * median_period(run.time_s);
   std::vector<Trajectory> parts;
-  bool whole = true;
   for (Index first = 0; first < run.samples();) {
-    Index end = first;
-    while (end < run.samples() && known(run, end)) ++end;
+    if (!predict && !known(run, first)) {
+      ++first;
+      continue;
+    }
+    Index end = first + 1;
+    while (end < run.samples() && (predict || known(run, end)) && run.time_s(end) - run.time_s(end - 1) <= longest)
+      ++end;
     if (end - first >= 2) parts.push_back(stretch(run, first, end - first));
-    whole = whole && end == run.samples();
-    first = end + 1;
+    first = end;
   }
   if (parts.empty()) fail(run);
-  if (!whole)
+  if (parts.size() > 1 || parts[0].samples() < run.samples())
     for (std::size_t i = 0; i < parts.size(); ++i) parts[i].run = fmt::format("{}.{}", run.run, i + 1);
   return parts;
 }

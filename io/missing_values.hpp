@@ -1,14 +1,22 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "ident/trajectory.hpp"
 
 namespace modebank {
 
-/// The stretches of a run in which every state and input is known, named RUN.1, RUN.2, ... (RUN itself when there is no
-/// gap). A stretch of one sample holds no transition and is left out. Throws DataError when none is left.
-std::vector<Trajectory> split_at_gaps(const Trajectory& run);
+/// Samples further apart than this many median periods of their file have a gap between them.
+inline constexpr double gap_periods = 5.0;
+
+/// Makes values NaN that were interpolated across a gap of the stream they come from (`stream_time_s`, increasing).
+void blank_gaps(const Eigen::VectorXd& stream_time_s, const Eigen::VectorXd& time_s, Eigen::MatrixXd& values);
+
+/// The stretches of a run without a gap in time and, unless `predict`, in which every state and input is known; named
+/// RUN.1, RUN.2, ... (RUN itself when it is whole). A stretch of one sample holds no transition and is left out. Throws
+/// DataError when none is left.
+std::vector<Trajectory> split_at_gaps(const Trajectory& run, bool predict);
 
 /// Inputs that miss keep their last known value, as a command does; the run starts where every input is known. States
 /// stay NaN: the filter only predicts there. Throws DataError when fewer than two samples are left.

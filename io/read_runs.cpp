@@ -9,6 +9,7 @@
 
 #include "ident/error.hpp"
 #include "io/join_streams.hpp"
+#include "io/missing_values.hpp"
 #include "io/read_file.hpp"
 #include "io/sha256.hpp"
 
@@ -145,6 +146,7 @@ Trajectory join(const FilePlan& plan, const RowReader& reader, const std::string
   run.time_s = joint_times(states.time_s, inputs.time_s, {options.rate_hz, options.lag_s});
   check_samples(plan, name, run.time_s.size(), states, inputs, options);
   run.state = interpolate(states, run.time_s);
+  blank_gaps(states.time_s, run.time_s, run.state);
   run.input = hold(inputs, run.time_s.array() - options.lag_s);
   run.truth.resize(static_cast<Index>(plan.truth.size()), plan.truth.empty() ? 0 : run.time_s.size());
   for (std::size_t i = 0; i < plan.truth.size(); ++i) {

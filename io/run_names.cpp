@@ -19,9 +19,10 @@ void check_run_names(const std::vector<std::string>& names) {
   constexpr std::string_view level_or_end("/\0", 2);
   std::set<std::string> seen;
   for (const std::string& name : names) {
-    if (name.empty() || name == "." || name == ".." || name.find_first_of(level_or_end) != std::string::npos)
+    if (name.empty() || name == "." || name == ".." || name == "*" ||
+        name.find_first_of(level_or_end) != std::string::npos)
       throw DataError(fmt::format(
-          "\"{}\" cannot name a run: a name must not be empty, '.' or '..' nor hold '/' or a zero byte", name));
+          "\"{}\" cannot name a run: a name must not be empty, '*', '.' or '..' nor hold '/' or a zero byte", name));
     if (!seen.insert(name).second) throw DataError(fmt::format("two runs are named \"{}\"", name));
   }
 }

@@ -2,6 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+#include <vector>
+
+#include "io/sha256.hpp"
 
 namespace modebank {
 
@@ -32,6 +38,19 @@ std::vector<std::string> user_block_problems(const UserBlock& block, std::string
   if (odd != block.end())
     problems.push_back("byte " + std::to_string(odd - block.begin()) + " of the user block is not zero");
   return problems;
+}
+
+std::vector<std::string> hash_problems(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return {"cannot open the file: " + std::generic_category().message(errno)};
+  UserBlock block{};
+  if (!file.read(block.data(), block.size())) return {"the file is shorter than its user block"};
+  Sha256 hash;
+  std::vector<char> buffer(std::size_t{1} << 20);
+  while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), file.gcount() > 0)
+    hash.update(buffer.data(), static_cast<std::size_t>(file.gcount()));
+  if (file.bad()) return {"cannot read the file: " + std::generic_category().message(errno)};
+  return user_block_problems(block, hash.hex());
 }
 
 }  // namespace modebank

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,5 +18,8 @@ UserBlock make_user_block(std::string_view content_sha256);
 
 /// What is wrong with a block whose content has the given hash; empty when nothing is.
 std::vector<std::string> user_block_problems(const UserBlock& block, std::string_view content_sha256);
+
+/// The same for a file's block and content; a file that cannot be read is a problem, too.
+std::vector<std::string> hash_problems(const std::filesystem::path& path);
 
 }  // namespace modebank

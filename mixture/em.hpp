@@ -10,7 +10,7 @@ namespace modebank {
 /// Expectation-maximisation of a Gaussian mixture (Dempster, Laird & Rubin 1977), in the log domain.
 struct EmOptions {
   CovarianceType covariance = CovarianceType::full;
-  int restarts = 5;           ///< independent k-means++ starts (Arthur & Vassilvitskii 2007), >= 1
+  int restarts = 5;           ///< independent, >= 1; each goes on from the best of five short runs
   double tolerance = 1e-7;    ///< stop when the mean log-likelihood per unit weight gains less; negative: never
   int max_iterations = 1000;  ///< M steps, >= 0
   double covariance_floor =
@@ -27,12 +27,12 @@ struct EmResult {
   bool floor_active = false;  ///< whether the covariance floor held any component in the last iteration
 };
 
-/// Best of options.restarts runs from k-means++ starts. `points` F x N finite, up to 1e150 in magnitude; `weights` N
-/// nonnegative or empty (all one). Fitted in units of each feature's standard deviation, so invariant to its units; a
-/// constant feature keeps its unit and is held by the floor, as are coinciding points. The floored M step is the exact
-/// constrained maximiser, so the likelihood never falls. A component that explains less than 1e-14 of the weight keeps
-/// its mean and covariance. Throws std::invalid_argument for K < 1, K > N, bad options, weights or points. Bitwise the
-/// same for any number of threads.
+/// Best of options.restarts runs from k-means++ starts (Arthur & Vassilvitskii 2007). `points` F x N finite, up to
+/// 1e150 in magnitude; `weights` N nonnegative or empty (all one). Fitted in units of each feature's standard
+/// deviation, so invariant to its units; a constant feature keeps its unit and is held by the floor, as are coinciding
+/// points. The floored M step is the exact constrained maximiser, so the likelihood never falls. A component that
+/// explains less than 1e-14 of the weight keeps its mean and covariance. Throws std::invalid_argument for K < 1, K > N,
+/// bad options, weights or points. Bitwise the same for any number of threads.
 EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Eigen::Index components,
                 const EmOptions& options, std::uint64_t seed);
 /// From a given start, no restarts: the components keep the start's order; its covariances are raised to the floor, and

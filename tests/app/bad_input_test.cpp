@@ -97,6 +97,16 @@ TEST_F(BadInput, ValueWithACommentSign) {
 TEST_F(BadInput, MoreComponentsThanWindows) { expect(run({"--mixture.components", "500..501"}), 1, {"500", "55"}); }
 TEST_F(BadInput, OutputFolderMissing) { expect(run({"--archive.output", file("none/out.h5").string()}), 2, {"none"}); }
 TEST_F(BadInput, OutputFolderNotWritable) { expect(run({"--archive.output", "/proc/out.h5"}), 2, {"/proc"}); }
+TEST_F(BadInput, OutputThatTheRunReads) {
+  expect(run({"--archive.output", config()}), 2, {"archive.output", "test.ini"});
+  expect(run({"--archive.output", file("run_01.csv").string()}), 2, {"archive.output", "run_01.csv"});
+}
+TEST_F(BadInput, CommentThatTouchesAValue) {
+  write("test.ini", std::string(config_text()) + "[window]\nloss = hub#er\n");
+  expect(run(), 2, {"test.ini:8", "window.loss", "# starts a comment"});
+  write("test.ini", std::string("[data]\ninputs = run#_*.csv\nstate = wz\ninput = left, right\n"));
+  expect(run(), 2, {"test.ini:2", "data.inputs is cut to 'run'", "# starts a comment"});
+}
 TEST_F(BadInput, UnknownCommand) { expect(modebank({"rnu", config()}), 2, {"rnu", "run"}); }
 TEST_F(BadInput, NoCommand) { expect(modebank({}), 2, {"run"}); }
 

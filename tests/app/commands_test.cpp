@@ -4,6 +4,8 @@
 #include "app/config_file.hpp"
 #include "io/archive.hpp"
 #include "io/inspect.hpp"
+#include "io/read_file.hpp"
+#include "io/sha256.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
@@ -101,6 +103,45 @@ TEST_F(Commands, OptionsMayBeGivenWithEqualSignAndMayBeEmpty) {
     ASSERT_EQ(run(empty).status, 0);
     EXPECT_LT(read_archive(archive()).bank->R(0, 0), 0.25);
   }
+}
+
+TEST_F(Commands, StoredStagesMustBeAsConfigured) {
+  ASSERT_EQ(run().status, 0);
+  const std::string again = file("again.h5").string();
+  const auto refusal = [&](const char* command, const char* key, const char* value) {
+    const ProgramResult result = modebank({command, config(), "--data.root", file(".").string(), "--archive.input",
+                                           archive(), "--archive.output", again, key, value});
+    EXPECT_EQ(result.status, 2) << key;
+    EXPECT_THAT(result.err, ::testing::HasSubstr(key + 2)) << "without the dashes";
+    EXPECT_FALSE(std::filesystem::exists(again));
+  };
+  refusal("cluster", "--window.length", "30");
+  refusal("evaluate", "--mixture.components", "1");
+  refusal("identify", "--data.train", "01");
+  const ProgramResult replaced =
+      modebank({"cluster", config(), "--archive.input", archive(), "--archive.output", archive()});
+  EXPECT_EQ(replaced.status, 2) << "an archive must not replace its source";
+}
+
+TEST_F(Commands, DamagedBanksAreNotRun) {
+  ASSERT_EQ(run().status, 0);
+  std::string bytes = read_file(archive());
+  bytes[bytes.size() - 9] = static_cast<char>(bytes[bytes.size() - 9] ^ 1);
+  write("damaged.h5", bytes);
+  const ProgramResult result = modebank({"evaluate", config(), "--archive.bank", file("damaged.h5").string(),
+                                         "--archive.output", file("again.h5").string()});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, ::testing::HasSubstr("SHA-256"));
+}
+
+TEST_F(Commands, AStoredBankLeavesItsTraceAndIsNotHeldOutOnItsTrainingRuns) {
+  ASSERT_EQ(run().status, 0);
+  const std::string again = file("again.h5").string();
+  const ProgramResult result = modebank({"evaluate", config(), "--archive.bank", archive(), "--archive.output", again,
+                                         "--data.train", "01", "--data.test", "00"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, ::testing::HasSubstr("its bank was trained on 00"));
+  EXPECT_EQ(read_archive(again).provenance.inputs.back().sha256, sha256_hex(read_file(archive())));
 }
 
 TEST_F(Commands, SimulateWritesRunsThatRunReads) {

@@ -5,6 +5,11 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "io/read_file.hpp"
+#include "io/sha256.hpp"
+#include "io/user_block.hpp"
+#include "tests/support/paths.hpp"
+
 namespace modebank::test {
 
 namespace {
@@ -36,6 +41,13 @@ void replace(const std::filesystem::path& path, const std::string& member, Kind 
 
 }  // namespace
 
+void sign(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  const std::string content = bytes.substr(user_block_bytes);
+  const UserBlock block = make_user_block(sha256_hex(content));
+  write_file(path, std::string(block.data(), block.size()) + content);
+}
+
 void write_foreign_hdf5(const std::filesystem::path& path, unsigned long long user_block_bytes) {
   const hid_t creation = must(H5Pcreate(H5P_FILE_CREATE));
   must(H5Pset_userblock(creation, user_block_bytes));
@@ -60,12 +72,14 @@ void patch_text_attribute(const std::filesystem::path& path, const std::string& 
   H5Tclose(type);
   H5Oclose(holder);
   must(H5Fclose(file));
+  sign(path);
 }
 
 void remove_member(const std::filesystem::path& path, const std::string& member) {
   const hid_t file = open_for_change(path);
   must(H5Ldelete(file, member.c_str(), H5P_DEFAULT));
   must(H5Fclose(file));
+  sign(path);
 }
 
 void replace_by_zeros(const std::filesystem::path& path, const std::string& member,
@@ -78,6 +92,7 @@ void replace_by_zeros(const std::filesystem::path& path, const std::string& memb
   }
   replace(path, member, kind, shape, creation);
   H5Pclose(creation);
+  sign(path);
 }
 
 void replace_by_external(const std::filesystem::path& path, const std::string& member, const std::string& elsewhere) {
@@ -85,6 +100,7 @@ void replace_by_external(const std::filesystem::path& path, const std::string& m
   must(H5Pset_external(creation, elsewhere.c_str(), 0, H5F_UNLIMITED));
   replace(path, member, Kind::real, {9}, creation);
   H5Pclose(creation);
+  sign(path);
 }
 
 }  // namespace modebank::test

@@ -6,7 +6,10 @@
 
 namespace modebank::test {
 
-/// Changes to an archive that only another program would make, by the HDF5 C API.
+/// Makes the user block hold the hash of what the file now contains.
+void sign(const std::filesystem::path& path);
+
+/// Changes to an archive that only another program would make, by the HDF5 C API, signed afterwards.
 enum class Kind { real, integer, text };
 
 void write_foreign_hdf5(const std::filesystem::path& path, unsigned long long user_block_bytes);

@@ -49,6 +49,30 @@ TEST_F(ImportMissing, InterpolationBesideAMissingStateIsMissing) {
   EXPECT_TRUE(near(import().recording.runs[0].state, row({0, not_a_number, not_a_number, not_a_number, 2}), 0.0));
 }
 
+TEST_F(ImportMissing, GapsInTimeSplitTheRunInEveryMode) {
+  for (const Missing missing : {Missing::error, Missing::gap, Missing::predict}) {
+    options.missing = missing;
+    write("pro_a.csv", "time,x,u\n0,1,9\n1,2,9\n2,3,9\n3,4,9\n8.5,5,9\n9.5,6,9\n14.5,7,9\n");
+    const ImportedData data = import();
+    EXPECT_THAT(names(data), ElementsAre("a.1", "a.2"));
+    EXPECT_EQ(data.recording.runs[0].time_s.transpose(), row({0, 1, 2, 3}));
+    EXPECT_EQ(data.recording.runs[1].time_s.transpose(), row({8.5, 9.5, 14.5})) << "5 periods are no gap";
+    EXPECT_THAT(data.notes, ElementsAre("run a has gaps: it is taken as 2 runs, a.1 to a.2"));
+  }
+}
+
+TEST_F(ImportMissing, StatesAreNotInterpolatedAcrossAGap) {
+  options.states = "imu_*.csv";
+  write("pro_a.csv", "time,u\n0,1\n1,1\n2,1\n3,1\n4,1\n5,1\n");
+  write("imu_a.csv", "time,x\n0,0\n0.5,1\n1,2\n1.5,3\n4,8\n4.5,9\n5,10\n");
+  EXPECT_THAT(names(import()), ElementsAre("a")) << "5 periods are no gap";
+  write("imu_a.csv", "time,x\n0,0\n0.25,0.5\n0.5,1\n0.75,1\n1,2\n1.5,3\n4,8\n4.25,8\n4.5,9\n5,10\n");
+  const ImportedData data = import();
+  EXPECT_THAT(names(data), ElementsAre("a.1", "a.2"));
+  EXPECT_EQ(data.recording.runs[0].time_s.transpose(), row({0, 1}));
+  EXPECT_EQ(data.recording.runs[1].state, row({8, 10}));
+}
+
 TEST_F(ImportMissing, TimeTextAndRunsWithoutSamplesRemainErrors) {
   for (const Missing missing : {Missing::gap, Missing::predict}) {
     options.missing = missing;
