@@ -6,7 +6,7 @@ namespace modebank {
 namespace {
 
 using Eigen::Index;
-constexpr double significance = 0.999;
+constexpr double significance = 0.99;
 
 /// Windows between a window's start and that of its nearest neighbour without a shared transition.
 Index neighbour_offset(const WindowFits& fits) { return (fits.length + fits.step - 1) / fits.step; }
