@@ -79,6 +79,8 @@ void bank_stage(const Config& config, Archive& archive) {
   const Recording& recording = *archive.recording;
   const WindowFits& windows = *archive.windows;
   const Baseline baseline = learn_baseline(recording, windows.global, windows.structure);
+  if (baseline.at_bound) spdlog::info("baseline: R is at its lower bound: the data show no measurement noise");
+  if (!baseline.converged) spdlog::warn("baseline: its noise did not reach a maximum of the likelihood");
   archive.baseline = baseline.bank;
   archive.noise_only = learn_noise_only(recording, windows.structure, baseline.bank.R);
   archive.bank = config.filter.variant == FilterVariant::kf
