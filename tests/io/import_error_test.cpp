@@ -144,6 +144,8 @@ TEST_F(ImportError, RunColumn) {
   options.run = "lap";
   write("all.csv", "lap,time,x,u\na/b,0,1,1\na/b,1,1,1\n");
   EXPECT_THAT(error<DataError>(), HasSubstr("\"a/b\" cannot name a run"));
+  write("all.csv", "lap,time,x,u\n*,0,1,1\n*,1,1,1\n");
+  EXPECT_THAT(error<DataError>(), HasSubstr("\"*\" cannot name a run")) << "it is all runs in the summary";
   write("all.csv", "lap,time,x,u\na,0,1,1\n,1,1,1\n");
   EXPECT_EQ(error<DataError>(), path("all.csv") + ":3: column lap: missing value");
   write("all.csv", "lap,time,x,u\na,0,1,1\na,1,1,1\nb,1,1,1\n");
