@@ -20,14 +20,13 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
 /// Every key with its value, itself a valid configuration file.
 std::string resolved_text(const Config& config);
 
-/// SHA-256 over the resolved keys in name order, without data.root, archive.* and job.threads: what decides the
-/// numbers.
 /// Key and value of every line of a resolved configuration.
 std::map<std::string, std::string> resolved_values(const std::string& resolved);
 
 /// Whether a key can change a number of the result: not where data lie, archives go or how many threads work.
 bool decides_numbers(const std::string& key);
 
+/// SHA-256 over the resolved keys that decide numbers, in name order.
 std::string config_hash(const Config& config);
 
 /// ", did you mean window.length?", or nothing when no known key is close.

@@ -123,8 +123,7 @@ std::vector<Option> data_options() {
       numeric("data.lag_s", any(), "s", "inputs act this much later (negative: earlier)", FIELD(data.lag_s)),
       words("data.missing",
             "NaN, infinite or empty values: an error; a gap that splits the run; or a missing state is a step of "
-            "prediction "
-            "only, a missing input the last known one",
+            "prediction only, a missing input the last known one",
             FIELD(data.missing)),
       words("data.disorder",
             "time going backwards or repeated: an error, or sort the rows and keep the first of each time",

@@ -68,6 +68,7 @@ void check_usage(const CommandLine& line, const Config& config) {
 
 /// An archive must not take the place of what it was made from.
 void check_output(const CommandLine& line, const Config& config) {
+  if (!std::filesystem::exists(config.archive.output)) return;
   const auto require_other = [&](const std::filesystem::path& file) {
     std::error_code absent;
     if (std::filesystem::equivalent(file, config.archive.output, absent))

@@ -12,7 +12,10 @@ namespace modebank {
 namespace {
 
 Trajectory stretch(const Trajectory& run, Index first, Index samples) {
-  Trajectory part = run;
+  Trajectory part;
+  part.run = run.run;
+  part.role = run.role;
+  part.lag_s = run.lag_s;
   part.time_s = run.time_s.segment(first, samples);
   part.state = run.state.middleCols(first, samples);
   part.input = run.input.middleCols(first, samples);
