@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all build demo test bench check format strict seeds sanitize coverage picture readme clean
+.PHONY: all build demo test bench uncertainty check format strict seeds sanitize coverage picture readme clean
 
 all: build
 
@@ -15,9 +15,9 @@ build: packages-build build/build.ninja
 packages-%:
 	@sh .ci/install-packages $*
 
-# Simulates ice-like runs with known truth and takes the whole chain over them.
+# Simulates a robot on ice and grip with known truth and takes the whole chain over its runs.
 demo: build
-	@mkdir -p $(DEMO)
+	@rm -rf $(DEMO)/data && mkdir -p $(DEMO)
 	build/modebank simulate configs/simulate_ice.ini --simulate.output $(DEMO)/data
 	build/modebank run configs/demo.ini --data.root $(DEMO)/data --archive.output $(DEMO)/demo.h5
 	@echo "Look inside: build/modebank show $(DEMO)/demo.h5"
@@ -25,8 +25,15 @@ demo: build
 test: build packages-test
 	ctest --preset release -j $(JOBS)
 
+# The second program compares window fits with other people's, in Python too where it is installed.
 bench: build
 	build/bench_modebank
+	build/compare_windows 5 build/compare_windows.bin
+	-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 /usr/bin/python3 tests/bench/window_peers.py build/compare_windows.bin
+
+# Coverage of the stated 95 % regions, as the README's table has it.
+uncertainty: build
+	build/measure_coverage
 
 # Everything CI runs beside `make test`.
 check: format strict seeds sanitize

@@ -27,6 +27,7 @@ constexpr Command commands[] = {
     {"cluster", "CONFIG", "cluster the windows (of --archive.input, if given)", run_pipeline},
     {"evaluate", "CONFIG", "learn the bank and score it (stages of --archive.input; or the bank of --archive.bank)",
      run_pipeline},
+    {"check", "CONFIG", "advice on the data before identification, run by run; --json", run_check},
     {"simulate", "CONFIG", "write runs with known truth in the CSV layout that run reads", run_simulate},
     {"show", "ARCHIVE [PATH]", "provenance, candidates, modes, summary; or one object; --json; --form full", run_show},
     {"verify", "ARCHIVE...", "check hash, schema and completeness of archives", run_verify},

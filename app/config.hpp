@@ -1,13 +1,16 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "filter/evaluate.hpp"
 #include "filter/learn.hpp"
 #include "ident/fit_options.hpp"
 #include "ident/simulate.hpp"
+#include "ident/simulate_vehicle.hpp"
 #include "io/data_options.hpp"
 #include "mixture/select.hpp"
 
@@ -30,10 +33,18 @@ struct ArchiveConfig {
 struct JobConfig {
   int threads = 0;  ///< 0: all cores
   std::uint64_t seed = 1;
+
+  std::size_t thread_count() const {
+    return threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
+  }
 };
 
+enum class SimulatedSystem { linear, vehicle };
+
 struct SimulateConfig {
-  SimulationOptions system;
+  SimulatedSystem kind = SimulatedSystem::linear;
+  SimulationOptions system;          ///< the linear system; commands, runs and outliers also of the vehicle
+  VehicleSimulationOptions vehicle;  ///< what only a vehicle has
   std::string output = "simulated";
   double rate_hz = 6.5;
   double state_rate_hz = 65.0;
@@ -55,3 +66,8 @@ struct Config {
 Config default_config();
 
 }  // namespace modebank::app
+
+template <>
+struct modebank::EnumNames<modebank::app::SimulatedSystem> {
+  static constexpr Names<2> values{"linear", "vehicle"};
+};

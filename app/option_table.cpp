@@ -1,6 +1,7 @@
 #include "app/option_table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Core>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <type_traits>
 
 #include "app/option_text.hpp"
+#include "ident/motion_model.hpp"
 
 namespace modebank::app {
 namespace {
@@ -65,7 +67,8 @@ Option option(std::string key, std::string range, std::string unit, std::string 
           [field](const Config& config) {
             Config copy = config;
             return format_value(field(copy));
-          }};
+          },
+          {}};
 }
 
 template <class Field>
@@ -99,6 +102,22 @@ Option text(std::string key, std::string what, std::string help, Field field) {
 #define FIELD(expression) \
   [](Config & c) -> auto& { return c.expression; }
 
+/// A number, or a word in its place.
+Option lag_option() {
+  Option result = numeric("data.lag_s", any(), "s",
+                          "inputs act this much later (negative: earlier); auto estimates lag and clock drift per run "
+                          "on the training runs and applies them if cross-validation among these gains",
+                          FIELD(data.lag_s));
+  result.range = "a number or auto";
+  result.set = [set = result.set](Config& config, const std::string& text) {
+    if (text != "auto") set(config, text);
+    config.data.lag_auto = text == "auto";
+    if (config.data.lag_auto) config.data.lag_s = 0.0;
+  };
+  result.get = [get = result.get](const Config& config) { return config.data.lag_auto ? "auto" : get(config); };
+  return result;
+}
+
 std::vector<Option> data_options() {
   return {
       text("data.root", "a folder", "prefix of relative data paths; empty: $MODEBANK_DATA, else this file's folder",
@@ -110,6 +129,9 @@ std::vector<Option> data_options() {
       text("data.state", "column names", "measured states", FIELD(data.state)),
       text("data.input", "column names", "inputs", FIELD(data.input)),
       text("data.truth", "column names", "true states, one per state, where known; empty: none", FIELD(data.truth)),
+      text("data.weight", "a column name",
+           "sample weights >= 0 of the transitions that end in each sample, 0 leaves one out; empty: all equal",
+           FIELD(data.weight)),
       text("data.state_unit", "units", "one per state, or one for all; written to the archive and the plots",
            FIELD(data.state_unit)),
       text("data.input_unit", "units", "one per input, or one for all", FIELD(data.input_unit)),
@@ -120,7 +142,9 @@ std::vector<Option> data_options() {
            FIELD(data.run)),
       numeric("data.rate_hz", at_least(0), "Hz", "0: the inputs' own times; else resample (states linear, inputs held)",
               FIELD(data.rate_hz)),
-      numeric("data.lag_s", any(), "s", "inputs act this much later (negative: earlier)", FIELD(data.lag_s)),
+      lag_option(),
+      numeric("data.lag_range_s", above(0), "s",
+              "lags from minus to plus this are searched by lag_s = auto and by check", FIELD(data.lag_range_s)),
       words("data.missing",
             "NaN, infinite or empty values: an error; a gap that splits the run; or a missing state is a step of "
             "prediction only, a missing input the last known one",
@@ -133,8 +157,35 @@ std::vector<Option> data_options() {
   };
 }
 
+/// linear, varx and every motion model that is compiled in.
+Option model_option() {
+  std::vector<std::string> models{"linear", "varx"};
+  for (const std::string& model : motion_model_names()) models.push_back(model);
+  Option result = text("window.model", fmt::format("{}", fmt::join(models, " | ")),
+                       "A x + B u; with lags; or a motion model of ident/models", FIELD(window.model));
+  result.set = [set = result.set, models](Config& config, const std::string& value) {
+    if (std::find(models.begin(), models.end(), value) == models.end())
+      throw std::invalid_argument("is none of its words");
+    set(config, value);
+  };
+  return result;
+}
+
 std::vector<Option> window_options() {
   return {
+      model_option(),
+      numeric("window.state_lags", between(1, 100), "samples", "varx: states x[k], x[k-1], ... that predict x[k+1]",
+              FIELD(window.state_lags)),
+      numeric("window.input_lags", between(1, 100), "samples", "varx: input samples that act on one transition",
+              FIELD(window.input_lags)),
+      numeric("window.input_delay", between(0, 1000), "samples",
+              "varx: from an input to its first effect; 0: u[k+1] acts on x[k+1]", FIELD(window.input_delay)),
+      numeric("window.wheel_radius_m", above(0), "m",
+              "icr and slip: turns wheel speeds in rad/s into m/s; 1 for inputs that are m/s",
+              FIELD(window.wheel_radius_m)),
+      words("window.residual",
+            "each sample predicted from the one before, or the window simulated from its first sample (estimated)",
+            FIELD(window.residual)),
       numeric("window.length", between(1, 1e6), "transitions", "length of a window", FIELD(window.length)),
       numeric("window.step", between(1, 1e6), "transitions", "from one window's start to the next", FIELD(window.step)),
       words("window.loss", "robust loss of a sample's residual", FIELD(window.loss)),
@@ -151,6 +202,9 @@ std::vector<Option> window_options() {
       flag("window.intercept", "estimate a constant term c", FIELD(window.intercept)),
       words("window.covariance", "covariance of a window's parameters: M-estimator or HC3 sandwich",
             FIELD(window.covariance)),
+      words("window.solver",
+            "who minimises: Ceres window by window, the batch solver for linear models of one state, or whichever can",
+            FIELD(window.solver)),
       numeric("window.max_iterations", between(1, 1e5), "", "limit of the minimiser", FIELD(window.max_iterations)),
   };
 }
@@ -205,20 +259,19 @@ std::vector<Option> other_options() {
   };
 }
 
+std::vector<Option> only_for(SimulatedSystem system, std::vector<Option> options) {
+  for (Option& entry : options) {
+    entry.only_for = system;
+    entry.help += fmt::format(" ({})", name_of(system));
+  }
+  return options;
+}
+
 std::vector<Option> simulate_options() {
   return {
       text("simulate.output", "a folder", "where the runs are written", FIELD(simulate.output)),
-      numeric("simulate.modes", any(), "", "parameters [A B (c)] row by row, one set per mode, sets separated by |",
-              FIELD(simulate.system.modes)),
-      numeric("simulate.process_sd", each(at_least(0)), "state unit", "process noise per mode, or one for all",
-              FIELD(simulate.system.process_sd)),
-      numeric("simulate.measurement_sd", at_least(0), "state unit", "measurement noise",
-              FIELD(simulate.system.measurement_sd)),
-      numeric("simulate.transition", each(between(0, 1)), "",
-              "mode transition matrix, rows separated by |; empty: from dwell_samples",
-              FIELD(simulate.system.transition)),
-      numeric("simulate.dwell_samples", at_least(0), "samples", "mean stay in a mode; 0: each run stays in one mode",
-              FIELD(simulate.system.dwell_samples)),
+      words("simulate.system", "switching linear system, or skid-steer robot on patches of ground",
+            FIELD(simulate.kind)),
       numeric("simulate.outlier_fraction", between(0, 1), "", "share of measurements with an outlier",
               FIELD(simulate.system.outlier_fraction)),
       numeric("simulate.outlier_sd", at_least(0), "state unit", "size of outliers", FIELD(simulate.system.outlier_sd)),
@@ -229,18 +282,99 @@ std::vector<Option> simulate_options() {
               FIELD(simulate.system.hold_samples)),
       numeric("simulate.input_amplitude", above(0), "input unit", "largest command",
               FIELD(simulate.system.input_amplitude)),
-      numeric("simulate.input_quantum", at_least(0), "input unit", "inputs are multiples of this; 0: any value",
-              FIELD(simulate.system.input_quantum)),
+      numeric("simulate.input_quantum", at_least(0), "input unit",
+              "inputs (vehicle: commands) are multiples of this; 0: any value", FIELD(simulate.system.input_quantum)),
       numeric("simulate.standstill_fraction", between(0, 1), "", "share of commands with all inputs zero (drive)",
               FIELD(simulate.system.standstill_fraction)),
       numeric("simulate.equal_fraction", between(0, 1), "", "share of commands with all inputs equal (drive)",
               FIELD(simulate.system.equal_fraction)),
       numeric("simulate.runs", between(1, 100'000), "", "number of runs", FIELD(simulate.system.runs)),
       numeric("simulate.samples", between(2, 1e8), "", "samples per run", FIELD(simulate.system.samples)),
-      numeric("simulate.rate_hz", above(0), "Hz", "rate of the system and of the inputs file", FIELD(simulate.rate_hz)),
-      numeric("simulate.state_rate_hz", above(0), "Hz",
-              "rate of the states file; a multiple of rate_hz keeps every measurement", FIELD(simulate.state_rate_hz)),
+      numeric("simulate.rate_hz", between(1e-6, 1e6), "Hz", "rate of commands and of the inputs file",
+              FIELD(simulate.rate_hz)),
+      numeric("simulate.state_rate_hz", between(1e-6, 1e6), "Hz",
+              "rate of the states file; for a linear system a multiple of rate_hz keeps every measurement",
+              FIELD(simulate.state_rate_hz)),
   };
+}
+
+std::vector<Option> simulate_linear_options() {
+  return only_for(
+      SimulatedSystem::linear,
+      {
+          numeric("simulate.modes", any(), "", "parameters [A B (c)] row by row, one set per mode, sets separated by |",
+                  FIELD(simulate.system.modes)),
+          numeric("simulate.process_sd", each(at_least(0)), "state unit", "process noise per mode, or one for all",
+                  FIELD(simulate.system.process_sd)),
+          numeric("simulate.measurement_sd", at_least(0), "state unit", "measurement noise",
+                  FIELD(simulate.system.measurement_sd)),
+          numeric("simulate.transition", each(between(0, 1)), "",
+                  "mode transition matrix, rows separated by |; empty: from dwell_samples",
+                  FIELD(simulate.system.transition)),
+          numeric("simulate.dwell_samples", at_least(0), "samples",
+                  "mean stay in a mode; 0: each run stays in one mode", FIELD(simulate.system.dwell_samples)),
+      });
+}
+
+std::vector<Option> simulate_robot_options() {
+  return only_for(
+      SimulatedSystem::vehicle,
+      {
+          numeric("simulate.mass", above(0), "kg", "mass", FIELD(simulate.vehicle.vehicle.mass_kg)),
+          numeric("simulate.yaw_inertia", above(0), "kg m^2", "moment of inertia about the vertical axis",
+                  FIELD(simulate.vehicle.vehicle.yaw_inertia_kg_m2)),
+          numeric("simulate.track", above(0), "m", "between left and right wheels",
+                  FIELD(simulate.vehicle.vehicle.track_m)),
+          numeric("simulate.wheelbase", at_least(0), "m", "between front and rear axle",
+                  FIELD(simulate.vehicle.vehicle.wheelbase_m)),
+          numeric("simulate.contact_length", above(0), "m", "length of a tyre's contact patch",
+                  FIELD(simulate.vehicle.vehicle.contact_m)),
+          numeric("simulate.slip_speed", above(0), "m/s",
+                  "slip is relative to wheel speed plus this; small: sharper stick and slip, shorter steps",
+                  FIELD(simulate.vehicle.vehicle.slip_speed_m_s)),
+          numeric("simulate.drive_mass", above(0), "kg", "inertia of one side's wheels and gears, at the rim",
+                  FIELD(simulate.vehicle.vehicle.drive_mass_kg)),
+          numeric("simulate.drive_time", above(0), "s", "time constant of the wheel speed loop",
+                  FIELD(simulate.vehicle.vehicle.drive_time_s)),
+          numeric("simulate.drive_force", above(0), "N", "largest force of one side's motor at the rim",
+                  FIELD(simulate.vehicle.vehicle.drive_force_N)),
+          numeric("simulate.friction", each(above(0)), "", "friction coefficient of each kind of ground",
+                  FIELD(simulate.vehicle.friction)),
+          numeric("simulate.shear", each(above(0)), "m",
+                  "shear deformation modulus of each kind of ground, or one for all", FIELD(simulate.vehicle.shear_m)),
+          numeric("simulate.resistance", each(at_least(0)), "",
+                  "motion resistance over weight on each kind of ground, or one for all",
+                  FIELD(simulate.vehicle.resistance)),
+          numeric("simulate.patch", at_least(0), "m",
+                  "side of the square tiles whose ground is drawn; 0: each run stays on one kind",
+                  FIELD(simulate.vehicle.patch_m)),
+          numeric("simulate.forward_speed", any(), "m/s", "added to both wheels of every command but standstill",
+                  FIELD(simulate.vehicle.forward_speed_m_s)),
+          numeric("simulate.turn_scale", at_least(0), "", "factor on the turning part of commands",
+                  FIELD(simulate.vehicle.turn_scale)),
+          numeric("simulate.gyro_noise_density", at_least(0), "rad/s/sqrt(Hz)",
+                  "a sample's standard deviation is this times sqrt(state_rate_hz)",
+                  FIELD(simulate.vehicle.sensors.gyro_noise_density)),
+          numeric("simulate.gyro_bias", any(), "rad/s", "bias at the start of a run",
+                  FIELD(simulate.vehicle.sensors.gyro_bias)),
+          numeric("simulate.gyro_bias_walk", at_least(0), "rad/s/sqrt(s)", "random walk of the bias",
+                  FIELD(simulate.vehicle.sensors.gyro_bias_walk)),
+          numeric(
+              "simulate.speed_noise_sd", at_least(0), "m/s",
+              "noise of forward and sideways speed, which are measured when data.state names them after the yaw rate",
+              FIELD(simulate.vehicle.sensors.speed_noise_sd)),
+          numeric("simulate.wheel_quantum", at_least(0), "m/s", "wheel speeds are multiples of this; 0: exact",
+                  FIELD(simulate.vehicle.sensors.wheel_quantum_m_s)),
+          numeric(
+              "simulate.lag_s", any(), "s",
+              "the inputs file's times are this much early (negative: late): data.lag_s with the same value undoes it",
+              FIELD(simulate.vehicle.sensors.lag_s)),
+          numeric("simulate.drift", between(-0.5, 0.5), "s/s",
+                  "true time = t + lag_s + drift * t for a time t of the inputs file",
+                  FIELD(simulate.vehicle.sensors.drift)),
+          numeric("simulate.step", at_least(0), "s", "integration step; 0: from the stiffest ground",
+                  FIELD(simulate.vehicle.step_s)),
+      });
 }
 
 #undef FIELD
@@ -256,7 +390,8 @@ Config default_config() {
 const std::vector<Option>& option_table() {
   static const std::vector<Option> table = [] {
     std::vector<Option> all;
-    for (auto section : {data_options, window_options, mixture_options, bank_options, other_options, simulate_options})
+    for (auto section : {data_options, window_options, mixture_options, bank_options, other_options, simulate_options,
+                         simulate_linear_options, simulate_robot_options})
       for (Option& entry : section()) all.push_back(std::move(entry));
     return all;
   }();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct Option {
   std::string help;
   std::function<void(Config&, const std::string&)> set;  ///< throws std::invalid_argument when the text is not in range
   std::function<std::string(const Config&)> get;         ///< text that `set` reads back to the same value
+  std::optional<SimulatedSystem> only_for = {};          ///< the simulated system that has this key; empty: all
 
   std::string section() const { return key.substr(0, key.find('.')); }
   std::string name() const { return key.substr(key.find('.') + 1); }

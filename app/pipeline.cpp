@@ -9,11 +9,17 @@
 #include <chrono>
 #include <cmath>
 
+#include "app/summary_text.hpp"
+#include "filter/bank_frame.hpp"
 #include "filter/evaluate.hpp"
+#include "filter/innovation_tests.hpp"
 #include "filter/learn.hpp"
 #include "filter/scores.hpp"
 #include "ident/error.hpp"
 #include "ident/fit_window.hpp"
+#include "ident/linearise.hpp"
+#include "ident/model_choice.hpp"
+#include "ident/residual_tests.hpp"
 #include "ident/seed.hpp"
 #include "io/import.hpp"
 #include "mixture/features.hpp"
@@ -38,6 +44,21 @@ std::vector<RunEvaluation> evaluate_runs(const Bank& bank, const std::vector<Tra
   return evaluations;
 }
 
+/// The global model of the windows in linear terms, whatever they were fitted with.
+GlobalModel linear_global(const Config& config, const Archive& archive) {
+  const Recording& recording = *archive.recording;
+  const auto motion = motion_model(config.window, recording.state_count(), recording.input_count());
+  const GlobalModel& global = archive.windows->global;
+  return motion ? linearise(*motion, global, operating_point(recording)) : global;
+}
+
+/// The one seed reaches the windows' samples, too.
+FitOptions window_options(const Config& config) {
+  FitOptions options = config.window;
+  options.seed = config.job.seed;
+  return options;
+}
+
 bool trained_on(const Recording& recording, const Trajectory& run) {
   return std::any_of(recording.runs.begin(), recording.runs.end(), [&](const Trajectory& other) {
     return other.role == Role::train && other.samples() == run.samples() && other.state == run.state &&
@@ -52,6 +73,7 @@ void import_stage(const Config& config, Archive& archive) {
   ImportedData data = import_data(config.data);
   for (const std::string& note : data.notes) spdlog::warn("{}", note);
   archive.recording = std::move(data.recording);
+  archive.lag = std::move(data.lag);
   archive.provenance.inputs = std::move(data.files);
   archive.provenance.data_hash = std::move(data.data_hash);
   spdlog::info("import: {} runs, {} training and {} test transitions in {:.2f} s", archive.recording->runs.size(),
@@ -61,8 +83,32 @@ void import_stage(const Config& config, Archive& archive) {
 
 void identify_stage(const Config& config, Archive& archive) {
   const Stopwatch watch;
-  archive.windows = fit_windows(*archive.recording, config.window);
+  archive.windows = fit_windows(*archive.recording, window_options(config));
   spdlog::info("windows: {} fitted in {:.2f} s", archive.windows->count(), watch.seconds());
+  if (const std::string warning = audit_warning(*archive.windows); !warning.empty())
+    spdlog::warn("windows: {}", warning);
+}
+
+bool streams_windows(const Config& config, const Archive& archive) {
+  constexpr Index in_memory = 1000000;  // some 150 MB for three parameters
+  return is_linear(config.window) && config.window.residual == ResidualKind::one_step &&
+         count_windows(*archive.recording, config.window) > in_memory;
+}
+
+std::string identify_into_file(const Config& config, const Archive& archive) {
+  const Stopwatch watch;
+  WindowCounts counts;
+  const auto produce = [&](const WindowSink& sink) {
+    return stream_windows(*archive.recording, window_options(config), [&](const WindowFits& fits, Index first) {
+      counts.add(fits);
+      sink(fits, first);
+    });
+  };
+  const Index windows = count_windows(*archive.recording, config.window);
+  const WindowFits common = write_archive(config.archive.output, archive, windows, produce);
+  spdlog::info("windows: {} fitted and archived in {:.2f} s", windows, watch.seconds());
+  if (const std::string warning = audit_warning(common); !warning.empty()) spdlog::warn("windows: {}", warning);
+  return data_text(*archive.recording) + windows_text(common, counts);
 }
 
 void cluster_stage(const Config& config, Archive& archive) {
@@ -78,15 +124,16 @@ void bank_stage(const Config& config, Archive& archive) {
   const Stopwatch watch;
   const Recording& recording = *archive.recording;
   const WindowFits& windows = *archive.windows;
-  const Baseline baseline = learn_baseline(recording, windows.global, windows.structure);
+  const auto motion = motion_model(config.window, recording.state_count(), recording.input_count());
+  Baseline baseline = learn_baseline(recording, linear_global(config, archive), windows.structure);
+  baseline.bank.model = windows.model;
   if (baseline.at_bound) spdlog::info("baseline: R is at its lower bound: the data show no measurement noise");
   if (!baseline.converged) spdlog::warn("baseline: its noise did not reach a maximum of the likelihood");
   archive.baseline = baseline.bank;
   archive.noise_only = learn_noise_only(recording, windows.structure, baseline.bank.R);
   archive.bank = config.filter.variant == FilterVariant::kf
                      ? baseline.bank
-                     : learn_bank(recording, windows, *archive.mixture, config.bank, baseline.bank.R);
-  if (!baseline.converged) spdlog::warn("baseline: the maximum likelihood search for Q and R did not converge");
+                     : learn_bank(recording, windows, *archive.mixture, config.bank, baseline.bank.R, motion.get());
   spdlog::info("bank: {} modes, {} screened, in {:.2f} s", archive.bank->mode_count(), archive.bank->screened.size(),
                watch.seconds());
 }
@@ -100,7 +147,8 @@ void warn_of_foreign_bank(const std::string& file, const Archive& stored, const 
     spdlog::warn("{}: its bank was trained on {}: the scores of the test runs are not held out", file,
                  fmt::join(trained, ", "));
   const Bank& bank = *stored.bank;
-  if (bank.state_names != names_of(recording.states) || bank.input_names != names_of(recording.inputs))
+  if (bank.state_names != state_names(recording, bank.structure) ||
+      bank.input_names != input_names(recording, bank.structure))
     spdlog::warn("{}: its bank was learned from columns {}; {}, the data have {}; {}", file,
                  fmt::join(bank.state_names, ", "), fmt::join(bank.input_names, ", "),
                  fmt::join(names_of(recording.states), ", "), fmt::join(names_of(recording.inputs), ", "));
@@ -140,6 +188,22 @@ void evaluate_stage(const Config& config, Archive& archive) {
   evaluate("baseline", archive.baseline, FilterOptions{FilterVariant::kf, false});
   evaluate("noise_only", archive.noise_only, FilterOptions{FilterVariant::imm, false});
   spdlog::info("evaluation: {} filters in {:.2f} s", archive.evaluations.size(), watch.seconds());
+}
+
+void residual_test_stage(const Config& config, Archive& archive) {
+  const std::vector<Trajectory>& runs = archive.recording->runs;
+  archive.residual_tests.clear();
+  const auto add = [&](const std::string& model, auto test) {
+    ResidualTestSet set{model, std::vector<ResidualTests>(runs.size())};
+    tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) { set.runs[i] = test(i); });
+    archive.residual_tests.push_back(std::move(set));
+  };
+  if (archive.windows) {
+    const Eigen::VectorXd theta = linear_global(config, archive).theta;
+    add("global", [&](std::size_t i) { return test_residuals(runs[i], archive.windows->structure, theta); });
+  }
+  for (const FilterEvaluation& evaluation : archive.evaluations)
+    add(evaluation.filter, [&](std::size_t i) { return test_innovations(runs[i], evaluation.runs[i]); });
 }
 
 }  // namespace modebank::app

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "app/config.hpp"
 #include "io/archive.hpp"
 
@@ -8,9 +10,16 @@ namespace modebank::app {
 /// The stages of a run. Each fills its part of the archive from the parts before it, and logs one line of progress.
 void import_stage(const Config& config, Archive& archive);
 void identify_stage(const Config& config, Archive& archive);
+/// Whether identify alone writes its windows as they are fitted, because there are too many to hold in memory.
+bool streams_windows(const Config& config, const Archive& archive);
+/// Does so; returns the summary.
+std::string identify_into_file(const Config& config, const Archive& archive);
 void cluster_stage(const Config& config, Archive& archive);
 void bank_stage(const Config& config, Archive& archive);
 void evaluate_stage(const Config& config, Archive& archive);
+
+/// Residual tests of the global model and of every evaluated filter, on all runs.
+void residual_test_stage(const Config& config, Archive& archive);
 
 /// Replaces the banks by those stored in config.archive.bank. Throws DataError when its channels do not fit the data's.
 void load_banks(const Config& config, Archive& archive);

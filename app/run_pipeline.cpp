@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <thread>
 
 #include "app/commands.hpp"
 #include "app/config_file.hpp"
@@ -17,10 +16,6 @@
 
 namespace modebank::app {
 namespace {
-
-std::size_t thread_count(int configured) {
-  return configured > 0 ? static_cast<std::size_t>(configured) : std::max(1u, std::thread::hardware_concurrency());
-}
 
 /// Stages that are taken as they are must have been made as the configuration says, which the new archive will record.
 void check_same_settings(const Config& config, const std::string& stored, const std::vector<std::string>& sections) {
@@ -46,6 +41,7 @@ void take_earlier_stages(const Config& config, const std::string& command, Archi
   if (command == "evaluate" && stored.mixture) sections.insert(sections.end(), {"mixture", "job"});
   check_same_settings(config, stored.config, sections);
   archive.recording = std::move(stored.recording);
+  archive.lag = std::move(stored.lag);
   archive.provenance.inputs = std::move(stored.provenance.inputs);
   archive.provenance.inputs.push_back(describe_file(config.archive.input));
   archive.provenance.data_hash = std::move(stored.provenance.data_hash);
@@ -81,11 +77,14 @@ void check_output(const CommandLine& line, const Config& config) {
   for (const std::filesystem::path& file : data_files(config.data)) require_other(file);
 }
 
-void run_stages(const std::string& command, const Config& config, Archive& archive) {
+void data_stage(const std::string& command, const Config& config, Archive& archive) {
   if (config.archive.input.empty())
     import_stage(config, archive);
   else
     take_earlier_stages(config, command, archive);
+}
+
+void run_stages(const std::string& command, const Config& config, Archive& archive) {
   if (!config.archive.bank.empty()) {
     load_banks(config, archive);
     evaluate_stage(config, archive);
@@ -110,14 +109,22 @@ int run_pipeline(const CommandLine& line) {
   validate(config);
   check_writable(config.archive.output);
   check_output(line, config);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, thread_count(config.job.threads));
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
 
   Archive archive;
   archive.config = resolved_text(config);
   archive.provenance = make_provenance(config, line);
-  run_stages(line.command, config, archive);
-  write_archive(config.archive.output, archive);
-  fmt::print("{}\narchive {}\n", summary_text(archive), config.archive.output);
+  data_stage(line.command, config, archive);
+  std::string summary;
+  if (line.command == "identify" && streams_windows(config, archive)) {
+    summary = identify_into_file(config, archive);
+  } else {
+    run_stages(line.command, config, archive);
+    residual_test_stage(config, archive);
+    write_archive(config.archive.output, archive);
+    summary = summary_text(archive);
+  }
+  fmt::print("{}\narchive {}\n", summary, config.archive.output);
   return 0;
 }
 

@@ -16,6 +16,7 @@ using nlohmann::json;
 void print_overview(const std::string& file, bool full_form) {
   const Archive archive = read_archive(file);
   fmt::print("{}\n{}", provenance_text(archive), summary_text(archive));
+  if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(*archive.windows));
   if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture));
   if (archive.bank) fmt::print("\nmodes\n{}", modes_text(*archive.bank, full_form));
 }

@@ -4,6 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <numeric>
+
+#include "app/lag_text.hpp"
+#include "ident/window_summary.hpp"
 
 namespace modebank::app {
 namespace {
@@ -12,32 +16,6 @@ const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, 
   for (const SummaryRow& row : archive.summary)
     if (row.filter == filter && row.role == role && row.run == "*") return &row;
   return nullptr;
-}
-
-std::string data_text(const Recording& recording) {
-  const auto count = [&](Role role) {
-    return std::count_if(recording.runs.begin(), recording.runs.end(),
-                         [role](const Trajectory& t) { return t.role == role; });
-  };
-  return fmt::format("data      {} train and {} test runs, {} and {} transitions, sample period {:.4g} s\n",
-                     count(Role::train), count(Role::test), recording.transitions(Role::train),
-                     recording.transitions(Role::test), recording.median_period_s());
-}
-
-std::string windows_text(const WindowFits& fits) {
-  const auto share = [&](FitStatus status) { return (fits.status.array() == static_cast<int>(status)).count(); };
-  std::string text = fmt::format(
-      "windows   {} of {} transitions: {} converged, {} rank deficient, {} at the iteration limit, {} failed\n",
-      fits.count(), fits.length, share(FitStatus::converged), share(FitStatus::rank_deficient),
-      share(FitStatus::iteration_limit), share(FitStatus::failed));
-  const auto names = fits.structure.parameter_names();
-  text += "global   ";
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto k = static_cast<Index>(i);
-    text +=
-        fmt::format(" {} = {:.4g} +- {:.2g}", names[i], fits.global.theta(k), std::sqrt(fits.global.covariance(k, k)));
-  }
-  return text + fmt::format(", residual variance {:.4g}\n", fmt::join(fits.global.noise_variance(), " "));
 }
 
 std::string mixture_text(const MixtureResult& result) {
@@ -61,6 +39,31 @@ std::string bank_text(const Bank& bank) {
   for (const ScreenedMode& mode : bank.screened)
     text += fmt::format("; component {} screened: {}", mode.component, mode.reason);
   return text + fmt::format("; R = {:.4g}\n", fmt::join(bank.R.diagonal(), " "));
+}
+
+/// Of the training and of the held-out runs, as far as there are any.
+std::string residuals_text(const Archive& archive) {
+  if (!archive.recording) return "";
+  std::string text;
+  for (const ResidualTestSet& set : archive.residual_tests) {
+    if ((set.model != "global" && set.model != "bank") || set.runs.empty()) continue;
+    std::vector<std::string> roles, autocorrelations, input_correlations;
+    for (const Role role : {Role::train, Role::test}) {
+      std::vector<ResidualTests> runs;
+      for (std::size_t i = 0; i < set.runs.size(); ++i)
+        if (archive.recording->runs[i].role == role) runs.push_back(set.runs[i]);
+      if (runs.empty()) continue;
+      const ResidualSummary summary = summarize(runs);
+      roles.emplace_back(name_of(role));
+      autocorrelations.push_back(fmt::format("{:.0f}", 100 * summary.autocorrelation_outside));
+      input_correlations.push_back(fmt::format("{:.0f}", 100 * summary.cross_correlation_outside));
+    }
+    text +=
+        fmt::format("residuals {:<6} beyond {:g} % bands: {} % of autocorrelations, {} % of input correlations ({})\n",
+                    set.model, 100 * set.runs.front().level, fmt::join(autocorrelations, " / "),
+                    fmt::join(input_correlations, " / "), fmt::join(roles, " / "));
+  }
+  return text;
 }
 
 std::string unit_suffix(const Recording& recording) {
@@ -102,12 +105,75 @@ std::string gain_text(const Archive& archive) {
 
 }  // namespace
 
+std::string data_text(const Recording& recording) {
+  const auto count = [&](Role role) {
+    return std::count_if(recording.runs.begin(), recording.runs.end(),
+                         [role](const Trajectory& t) { return t.role == role; });
+  };
+  return fmt::format("data      {} train and {} test runs, {} and {} transitions, sample period {:.4g} s\n",
+                     count(Role::train), count(Role::test), recording.transitions(Role::train),
+                     recording.transitions(Role::test), recording.median_period_s());
+}
+
+void WindowCounts::add(const WindowFits& fits) {
+  for (const int value : fits.status) ++status[static_cast<std::size_t>(value)];
+}
+
+namespace {
+
+/// How the windows were solved; empty for archives older than the audit and where Ceres solved all.
+std::string audit_text(const WindowAudit& audit) {
+  if (audit.batch == 0) return "";
+  std::string text =
+      fmt::format("audit     {} windows by Newton's method, {} by Ceres; {} solved by both: cost differs by ",
+                  audit.batch, audit.ceres, audit.checked);
+  text += fmt::format("{:.1e} relative, parameters by {:.1e} standard errors", audit.cost_difference,
+                      audit.parameter_difference);
+  if (audit.lower > 0) text += fmt::format("; {} in a lower minimum than Ceres'", audit.lower);
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string audit_warning(const WindowFits& fits) {
+  if (fits.audit.replaced == 0) return "";
+  return fmt::format(
+      "the batch solver's cost was above Ceres' by more than {:.0e} relative in {} of {} audited windows, which have "
+      "Ceres' solution "
+      "now; window.solver = ceres solves all of them so",
+      WindowAudit::tolerance, fits.audit.replaced, fits.audit.checked);
+}
+
+std::string windows_text(const WindowFits& fits, const WindowCounts& counts) {
+  const auto count = [&](FitStatus status) { return counts.status[static_cast<std::size_t>(status)]; };
+  std::string text = fmt::format(
+      "windows   {} of {} transitions: {} converged, {} rank deficient, {} at the iteration limit, {} failed\n",
+      std::accumulate(counts.status.begin(), counts.status.end(), Index{0}), fits.length, count(FitStatus::converged),
+      count(FitStatus::rank_deficient), count(FitStatus::iteration_limit), count(FitStatus::failed));
+  text += audit_text(fits.audit);
+  if (const std::string warning = audit_warning(fits); !warning.empty()) text += "warning   " + warning + "\n";
+  const auto names = fits.parameter_names();
+  text += "global   ";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    text +=
+        fmt::format(" {} = {:.4g} +- {:.2g}", names[i], fits.global.theta(k), std::sqrt(fits.global.covariance(k, k)));
+  }
+  return text + fmt::format(", residual variance {:.4g}\n", fmt::join(fits.global.noise_variance(), " "));
+}
+
 std::string summary_text(const Archive& archive) {
   std::string text;
   if (archive.recording) text += data_text(*archive.recording);
-  if (archive.windows) text += windows_text(*archive.windows);
+  if (archive.lag) text += lag_text(*archive.lag);
+  if (archive.windows) {
+    WindowCounts counts;
+    counts.add(*archive.windows);
+    text += windows_text(*archive.windows, counts);
+  }
   if (archive.mixture) text += mixture_text(*archive.mixture);
   if (archive.bank) text += bank_text(*archive.bank);
+  text += residuals_text(archive);
   if (!archive.summary.empty()) text += scores_text(archive) + gain_text(archive);
   return text;
 }
@@ -132,6 +198,38 @@ std::string candidates_text(const MixtureResult& mixture) {
   return text;
 }
 
+std::string window_parameters_text(const WindowFits& fits) {
+  const WindowSummary summary = summarize(fits);
+  const auto names = fits.parameter_names();
+  std::string text = fmt::format("{:>9} {:>12} {:>16} {:>12}\n", "parameter", "median", "standard error", "|t| > 2");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto j = static_cast<Index>(i);
+    text += fmt::format("{:>9} {:>12.4g} {:>16.3g} {:>10.0f} %\n", names[i], summary.parameter(j),
+                        summary.standard_error(j), 100 * summary.significant(j));
+  }
+  return text + fmt::format("R^2 of the increments {:.3f}, AIC {:.2f} (medians)\n", fmt::join(summary.r_squared, " "),
+                            summary.aic);
+}
+
+namespace {
+
+/// The modes in a motion model's own parameters; empty for linear models, whose table says all.
+std::string motion_parameters_text(const Bank& bank) {
+  if (bank.motion_parameters.empty()) return "";
+  std::string text = fmt::format("\nmodes as {}\n{:>4}", bank.model, "mode");
+  for (const ModelParameter& parameter : bank.motion_parameters) text += fmt::format(" {:>20}", parameter.name);
+  for (Index k = 0; k < bank.mode_count(); ++k) {
+    const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
+    text += fmt::format("\n{:>4}", k);
+    for (Index i = 0; i < mode.motion_theta.size(); ++i)
+      text +=
+          fmt::format(" {:>20}", fmt::format("{:.4f} +- {:.4f}", mode.motion_theta(i), mode.motion_standard_error(i)));
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
 std::string modes_text(const Bank& bank, bool full_form) {
   const auto names = bank.structure.parameter_names();
   std::string text = fmt::format("{:>4} {:>7}", "mode", "weight");
@@ -148,7 +246,7 @@ std::string modes_text(const Bank& bank, bool full_form) {
       text += fmt::format(" {:>20}", fmt::format("{:.4f} +- {:.4f}", theta(i), mode.standard_error(i)));
     text += fmt::format(" {:>12.4g}\n", fmt::join(mode.Q.diagonal().cwiseSqrt().eval(), " "));
   }
-  return text;
+  return text + motion_parameters_text(bank);
 }
 
 }  // namespace modebank::app

@@ -2,12 +2,19 @@
 
 #include "app/pipeline.hpp"
 #include "ident/error.hpp"
+#include "ident/model_choice.hpp"
 
 namespace modebank::app {
 namespace {
 
 void require(bool condition, const std::string& message) {
   if (!condition) throw ConfigurationError(message);
+}
+
+void check_prior(const FitOptions& window, Index parameters) {
+  const Index sds = window.prior_sd.size();
+  require(sds <= 1 || sds == parameters,
+          fmt::format("window.prior_sd has {} values: give one, or one per parameter ({}), or none", sds, parameters));
 }
 
 }  // namespace
@@ -19,12 +26,9 @@ void validate(const Config& config) {
   require(data.truth.empty() || data.truth.size() == data.state.size(),
           fmt::format("data.truth names {} columns, data.state {}: there must be as many, or none", data.truth.size(),
                       data.state.size()));
-  const LinearStructure structure{static_cast<Index>(data.state.size()), static_cast<Index>(data.input.size()),
-                                  config.window.intercept};
-  const Index sds = config.window.prior_sd.size();
-  require(sds <= 1 || sds == structure.parameters(),
-          fmt::format("window.prior_sd has {} values: give one, or one per parameter ({}), or none", sds,
-                      structure.parameters()));
+  const Index states = std::ssize(data.state), inputs = std::ssize(data.input);
+  check_model(config.window, states, inputs);
+  check_prior(config.window, parameter_count(config.window, states, inputs));
   require(config.window.scale != ScaleSource::fixed || config.window.sigma > 0.0,
           "window.scale = fixed needs window.sigma, the residual standard deviation, above 0");
 }

@@ -6,16 +6,21 @@
 
 #include "filter/transition_matrix.hpp"
 #include "ident/model.hpp"
+#include "ident/motion_model.hpp"
 
 namespace modebank {
 
-/// One mode of motion: x[k+1] = x + A x + B u + c + w, w ~ N(0, Q).
+/// One mode of motion, in state space (with lags z and v of LinearStructure take the places of x and u): x[k+1] = x + A
+/// x + B u + c + w, w ~ N(0, Q).
 struct Mode {
   LinearModel model;               ///< A (n x n), B (n x m), c (n)
   Eigen::MatrixXd Q;               ///< n x n process noise covariance per step
   Eigen::MatrixXd spread;          ///< p x p covariance of theta over the windows of the mode
   Eigen::VectorXd standard_error;  ///< p, of theta itself
   double weight = 1.0;             ///< share of the windows
+  /// Of banks of a motion model: its parameters and their standard errors; what stands above is then its linearisation.
+  Eigen::VectorXd motion_theta = {};
+  Eigen::VectorXd motion_standard_error = {};
 };
 
 /// A mode that was left out of the bank, and why.
@@ -28,6 +33,7 @@ struct ScreenedMode {
 
 /// K modes, how they follow each other, and how the state is measured: y = C x + v, v ~ N(0, R).
 struct Bank {
+  std::string model = "linear";  ///< linear, varx, or the name of a motion model
   LinearStructure structure;
   std::vector<Mode> modes;              ///< K >= 1
   Eigen::MatrixXd C;                    ///< n_y x n
@@ -38,6 +44,7 @@ struct Bank {
   std::vector<std::string> input_names;
   double dt_s = 0.0;  ///< median sample period of the training data
   std::vector<ScreenedMode> screened;
+  std::vector<ModelParameter> motion_parameters;  ///< of a motion model; empty for linear ones
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
   Eigen::VectorXd theta(Eigen::Index mode) const { return pack(structure, modes[mode].model); }

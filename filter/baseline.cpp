@@ -34,6 +34,11 @@ struct NoiseEstimate {
   bool stationary = false;
 };
 
+/// Of the measured states; lagged samples have none.
+void set_process_noise(Bank& bank, const Eigen::MatrixXd& Q) {
+  bank.modes.front().Q.topLeftCorner(Q.rows(), Q.cols()) = Q;
+}
+
 /// Minus the mean log-likelihood per sample as Ceres minimises it, with gradient by central differences.
 class NoiseObjective final : public ceres::FirstOrderFunction {
  public:
@@ -66,7 +71,7 @@ class NoiseObjective final : public ceres::FirstOrderFunction {
   double value(const double* coordinates) const {
     Bank bank = bank_;
     const NoiseCovariances noise = parametrisation_.decode(coordinates);
-    bank.modes.front().Q = noise.Q;
+    set_process_noise(bank, noise.Q);
     bank.R = noise.R;
     return -training_log_likelihood(bank, training_, {FilterVariant::kf, false}) / samples_;
   }
@@ -144,8 +149,8 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
   const Index n = structure.states, p = structure.parameters();
   Baseline baseline;
   baseline.bank = bank_frame(recording, structure, Eigen::MatrixXd::Zero(n, n));
-  baseline.bank.modes.push_back({unpack(structure, global.theta), global.residual_covariance,
-                                 Eigen::MatrixXd::Zero(p, p), global.covariance.diagonal().cwiseSqrt(), 1.0});
+  baseline.bank.modes.push_back(make_mode(structure, global.theta, global.residual_covariance,
+                                          Eigen::MatrixXd::Zero(p, p), global.covariance.diagonal().cwiseSqrt(), 1.0));
   set_mode_sequence(baseline.bank, TransitionMatrix());
 
   const NoiseParametrisation parametrisation(global.noise_variance().unaryExpr(&positive_variance),
@@ -153,7 +158,7 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
   const NoiseEstimate best =
       hold_at_bounds(baseline.bank, training, best_of_starts(baseline.bank, training, parametrisation), n);
   const NoiseCovariances noise = best.parametrisation.decode(best.coordinates.data());
-  baseline.bank.modes.front().Q = noise.Q;
+  set_process_noise(baseline.bank, noise.Q);
   baseline.bank.R = noise.R;
   baseline.log_likelihood = training_log_likelihood(baseline.bank, training, {FilterVariant::kf, false});
   baseline.converged = best.stationary;

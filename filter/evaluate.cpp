@@ -1,11 +1,13 @@
 #include "filter/evaluate.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
 #include "filter/combined.hpp"
 #include "filter/filter_step.hpp"
 #include "ident/error.hpp"
+#include "ident/lagged_samples.hpp"
 #include "ident/not_a_number.hpp"
 
 namespace modebank {
@@ -24,20 +26,40 @@ void check_run(const Bank& bank, const Trajectory& run) {
   mismatch("measured signals", run.state.rows(), bank.C.rows());
   mismatch("inputs", run.input.rows(), bank.structure.inputs);
   mismatch("input samples", run.input.cols(), run.samples());
+  if (bank.structure.state_lags > 1 && bank.C.rows() != bank.structure.states)
+    throw std::invalid_argument("a bank with lagged states must measure each of its " +
+                                std::to_string(bank.structure.states) + " states");
   for (Index k = 0; k < run.transitions(); ++k)
     if (!run.input.col(k).allFinite())
       throw DataError("run " + run.run + ": the input of sample " + std::to_string(k) + " is not a finite number");
 }
 
-/// Sample where the filter starts: the first whole measurement; N when there is none.
-Index first_whole_sample(const Trajectory& run) {
-  Index k = 0;
-  while (k < run.samples() && is_missing(run.state.col(k))) ++k;
-  return k;
-}
+/// A run as the filter takes it: inputs that act on each transition, and where it starts from.
+class FilterInput {
+ public:
+  FilterInput(const LinearStructure& s, const Trajectory& run)
+      : run_(run), acting_(s.lagged() ? acting_inputs(s, run) : Eigen::MatrixXd()), lagged_(s.lagged()) {
+    if (s.state_lags > 1) stacked_ = stacked_states(s, run);
+    first_ = s.first_transition();
+    while (first_ < run.samples() && is_missing(measurements().col(first_))) ++first_;
+    first_ = std::min(first_, run.samples());
+  }
+  /// The first sample with a whole measurement (of every lagged sample); N when there is none.
+  Index first() const { return first_; }
+  auto start() const { return measurements().col(first_); }
+  auto inputs(Index transition) const { return (lagged_ ? acting_ : run_.input).col(transition); }
+
+ private:
+  const Eigen::MatrixXd& measurements() const { return stacked_.size() > 0 ? stacked_ : run_.state; }
+
+  const Trajectory& run_;
+  Eigen::MatrixXd acting_, stacked_;
+  bool lagged_;
+  Index first_ = 0;
+};
 
 RunEvaluation empty_evaluation(const Bank& bank, Index samples) {
-  const Index n = bank.structure.states, n_y = bank.C.rows(), K = bank.mode_count();
+  const Index n = bank.structure.dimension(), n_y = bank.C.rows(), K = bank.mode_count();
   RunEvaluation e;
   e.prediction.setConstant(n, samples, not_a_number);
   e.innovation.setConstant(n_y, samples, not_a_number);
@@ -59,8 +81,8 @@ class RunRecorder {
   RunRecorder(const FilterModel<N, NY>& model, RunEvaluation& evaluation)
       : model_(model),
         out_(evaluation),
-        combined_(model.structure.states, model.C.rows()),
-        moments_(model.structure.states),
+        combined_(model.structure.dimension(), model.C.rows()),
+        moments_(model.structure.dimension()),
         weights_(model.mode_count()) {}
 
   void not_started(Index k) {
@@ -109,16 +131,17 @@ RunEvaluation evaluate(const Bank& bank, const Trajectory& run, const FilterOpti
   const FilterModel<N, NY> model(bank, options);
   RunEvaluation evaluation = empty_evaluation(bank, run.samples());
   RunRecorder<N, NY> record(model, evaluation);
-  const Index first = first_whole_sample(run);
+  const FilterInput input(bank.structure, run);
+  const Index first = input.first();
   for (Index k = 0; k < first; ++k) record.not_started(k);
   if (first == run.samples()) return evaluation;
 
   FilterStep<N, NY> step(model);
-  FilterState<N> state = start(model, run.state.col(first));
+  FilterState<N> state = start(model, input.start());
   record.start(first, state);
   for (Index k = first + 1; k < run.samples(); ++k) {
     const auto y = run.state.col(k);
-    predict(model, state, run.input.col(k - 1), step);
+    predict(model, state, input.inputs(k - 1), step);
     record.prediction(k, step);
     if (is_missing(y))
       skip_measurement(step, state);
@@ -131,15 +154,16 @@ RunEvaluation evaluate(const Bank& bank, const Trajectory& run, const FilterOpti
 
 template <int N, int NY>
 double sum_log_density(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
-  const Index first = first_whole_sample(run);
+  const FilterInput input(bank.structure, run);
+  const Index first = input.first();
   if (first == run.samples()) return 0.0;
   const FilterModel<N, NY> model(bank, options);
   FilterStep<N, NY> step(model);
-  FilterState<N> state = start(model, run.state.col(first));
+  FilterState<N> state = start(model, input.start());
   double sum = 0.0;
   for (Index k = first + 1; k < run.samples(); ++k) {
     const auto y = run.state.col(k);
-    predict(model, state, run.input.col(k - 1), step);
+    predict(model, state, input.inputs(k - 1), step);
     if (is_missing(y))
       skip_measurement(step, state);
     else
@@ -152,13 +176,13 @@ double sum_log_density(const Bank& bank, const Trajectory& run, const FilterOpti
 
 RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   check_run(bank, run);
-  return with_sizes(bank.structure.states, bank.C.rows(),
+  return with_sizes(bank.structure.dimension(), bank.C.rows(),
                     [&]<int N, int NY>() { return evaluate<N, NY>(bank, run, options); });
 }
 
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   check_run(bank, run);
-  return with_sizes(bank.structure.states, bank.C.rows(),
+  return with_sizes(bank.structure.dimension(), bank.C.rows(),
                     [&]<int N, int NY>() { return sum_log_density<N, NY>(bank, run, options); });
 }
 

@@ -37,7 +37,8 @@ struct RunEvaluation {
 
 /// Runs the filter over one run, whose `state` holds the measurements (n_y x N), starting at x[0] = y[0], P[0] = R. A
 /// sample with a NaN measurement is prediction only: its innovation and scores are NaN. When the first measurements are
-/// NaN the first whole one is the start, and everything before it is NaN but the mode probabilities. Throws
+/// NaN the first whole one is the start, and everything before it is NaN but the mode probabilities; a bank with lags
+/// starts at the first sample whose lagged samples are all measured. Throws
 /// std::invalid_argument when sizes disagree and DataError for an input that is not finite.
 RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 

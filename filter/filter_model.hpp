@@ -29,7 +29,7 @@ struct FilterModel {
   Eigen::Matrix<double, NY, NY> R;
   TransitionMatrix transition;
   Eigen::VectorXd initial_probability;           ///< K
-  Eigen::Matrix<double, N, NY> start_gain;       ///< x[0] = start_gain y[0]: the pseudo-inverse of C
+  Eigen::Matrix<double, N, NY> start_gain;       ///< x[0] = start_gain y[0]
   Eigen::Matrix<double, N, N> start_covariance;  ///< P[0]
 
   /// FilterVariant::kf keeps the first mode alone. Requires check_sizes(bank).

@@ -34,19 +34,20 @@ struct FilterStep {
   explicit FilterStep(const FilterModel<N, NY>& model)
       : predicted_probability(model.mode_count()),
         log_likelihood(model.mode_count()),
-        difference(model.structure.states),
+        difference(model.structure.dimension()),
         residual(model.C.rows()) {
-    const Eigen::Index K = model.mode_count(), n = model.structure.states;
+    const Eigen::Index K = model.mode_count(), n = model.structure.dimension();
     kalman.assign(model.modes.size(), KalmanStep<N, NY>(n, model.C.rows(), model.structure.regressors()));
     mixed.assign(model.modes.size(), Gaussian<N>(n));
     mixing.matrix.setZero(K, K);
   }
 };
 
-/// x[0] = C+ y[0], P[0] = C+ R C+' (C = I: y[0] and R), mode probabilities from the bank.
+/// x[0] = start_gain y[0], P[0] = start_covariance, mode probabilities from the bank. `y`: the first measurement; with
+/// lags the first whole z of measurements.
 template <int N, int NY, class Y>
 FilterState<N> start(const FilterModel<N, NY>& model, const Y& y) {
-  Gaussian<N> first(model.structure.states);
+  Gaussian<N> first(model.structure.dimension());
   small::multiply(first.mean, model.start_gain, y);
   first.covariance = model.start_covariance;
   FilterState<N> state{std::vector<Gaussian<N>>(model.modes.size(), first), model.initial_probability};

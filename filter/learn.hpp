@@ -56,8 +56,9 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
 Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R);
 
 /// Turns clustered windows into a bank (method: section 4). `R` is used unless options.measurement_variance is set.
-/// Throws DataError when every mode is screened.
+/// `motion`: the model that the windows were fitted with, null for linear ones; its modes are linearised at their mean
+/// state and input. Throws DataError when every mode is screened.
 Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
-                const BankOptions& options, const Eigen::MatrixXd& R);
+                const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion = nullptr);
 
 }  // namespace modebank

@@ -8,6 +8,7 @@
 #include "filter/bank_frame.hpp"
 #include "filter/learn.hpp"
 #include "filter/memberships.hpp"
+#include "filter/motion_modes.hpp"
 #include "filter/pooled_modes.hpp"
 #include "filter/screening.hpp"
 #include "filter/transition_learning.hpp"
@@ -31,56 +32,89 @@ std::optional<ParameterPrior> prior_of(const WindowFits& fits) {
   return ParameterPrior{fits.global.theta, fits.prior_sd};
 }
 
+/// A component's estimates: linear, and the motion model's behind it where there is one.
+struct ComponentEstimate {
+  ModeEstimate linear;
+  std::optional<MotionMode> motion;
+};
+
+/// What every way to estimate the components needs.
+struct EstimationInput {
+  const Recording& recording;
+  const WindowFits& fits;
+  const MixtureResult& mixture;
+  ThetaSource source;
+};
+
 /// [S25]'s way: theta is the component's mean, and Q is taken about that mean.
-std::vector<ModeEstimate> modes_at_means(const TrainingTransitions& transitions, const Eigen::MatrixXd& memberships,
-                                         const WindowFits& fits, const ParameterPrior* prior,
-                                         const GaussianMixture& mixture) {
+Eigen::VectorXd component_mean(const EstimationInput& in, Index k) {
+  return in.mixture.mixture.means.col(k).head(in.fits.parameter_count());
+}
+
+std::vector<ModeEstimate> linear_modes(const EstimationInput& in, const TrainingTransitions& transitions,
+                                       const Eigen::MatrixXd& memberships, const ParameterPrior* prior) {
+  if (in.source == ThetaSource::pooled) return fit_pooled_modes(transitions, memberships, in.fits.global, prior);
   std::vector<ModeEstimate> modes;
-  modes.reserve(mixture.components());
-  for (Index k = 0; k < mixture.components(); ++k)
-    modes.push_back(assess_weighted_mode(transitions, memberships.col(k), fits.global, prior,
-                                         mixture.means.col(k).head(fits.parameter_count())));
+  for (Index k = 0; k < memberships.cols(); ++k)
+    modes.push_back(
+        assess_weighted_mode(transitions, memberships.col(k), in.fits.global, prior, component_mean(in, k)));
   return modes;
 }
 
-std::vector<ModeEstimate> estimate_modes(const Recording& recording, const WindowFits& fits,
-                                         const MixtureResult& mixture, ThetaSource source) {
-  const TrainingTransitions transitions = gather_training_transitions(recording, fits.structure);
-  const Eigen::MatrixXd memberships = transition_memberships(transitions, fits, mixture);
-  const std::optional<ParameterPrior> prior = prior_of(fits);
+std::vector<MotionMode> motion_modes(const EstimationInput& in, const MotionModel& motion,
+                                     const Eigen::MatrixXd& memberships, const ParameterPrior* prior) {
+  if (in.source == ThetaSource::pooled)
+    return fit_motion_modes(in.recording, motion, memberships, in.fits.global, prior);
+  std::vector<MotionMode> modes;
+  for (Index k = 0; k < memberships.cols(); ++k) {
+    const Eigen::VectorXd theta = component_mean(in, k);
+    modes.push_back(fit_motion_mode(in.recording, motion, memberships.col(k), in.fits.global, prior, &theta));
+  }
+  return modes;
+}
+
+std::vector<ComponentEstimate> estimate_components(const EstimationInput& in, const MotionModel* motion) {
+  const TrainingTransitions transitions = gather_training_transitions(in.recording, in.fits.structure);
+  const Eigen::MatrixXd memberships = transition_memberships(transitions, in.fits, in.mixture);
+  const std::optional<ParameterPrior> prior = prior_of(in.fits);
   const ParameterPrior* prior_or_null = prior ? &*prior : nullptr;
-  if (source == ThetaSource::mean)
-    return modes_at_means(transitions, memberships, fits, prior_or_null, mixture.mixture);
-  return fit_pooled_modes(transitions, memberships, fits.global, prior_or_null);
+  std::vector<ComponentEstimate> estimates;
+  if (!motion)
+    for (ModeEstimate& mode : linear_modes(in, transitions, memberships, prior_or_null))
+      estimates.push_back({std::move(mode), std::nullopt});
+  else
+    for (MotionMode& mode : motion_modes(in, *motion, memberships, prior_or_null))
+      estimates.push_back({mode.linear, std::move(mode)});
+  return estimates;
 }
 
 /// Positions of the components that become modes; the others are listed in `screened`.
-std::vector<Index> screen(const LinearStructure& structure, const std::vector<ModeEstimate>& modes,
+std::vector<Index> screen(const LinearStructure& structure, const std::vector<ComponentEstimate>& modes,
                           const Eigen::VectorXd& weights, std::vector<ScreenedMode>& screened) {
   std::vector<Index> kept;
   for (Index k = 0; k < std::ssize(modes); ++k) {
-    const std::string reason = screening_reason(structure, modes[k]);
+    const std::string reason = screening_reason(structure, modes[k].linear);
     if (reason.empty())
       kept.push_back(k);
     else
-      screened.push_back({k, weights(k), spectral_radius(unpack(structure, modes[k].theta)), reason});
+      screened.push_back({k, weights(k), spectral_radius(unpack(structure, modes[k].linear.theta)), reason});
   }
   if (kept.empty()) throw DataError("no mode is left for the bank: " + describe(screened));
   return kept;
 }
 
 /// Where Q of the bank's modes comes from. theta and its errors always rest on the mode's own noise.
-void set_process_noise(std::vector<ModeEstimate>& modes, const BankOptions& options) {
-  const Index n = modes.front().Q.rows();
+void set_process_noise(std::vector<ComponentEstimate>& modes, const BankOptions& options) {
+  const Index n = modes.front().linear.Q.rows();
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
   double weight = 0.0;
-  for (const ModeEstimate& mode : modes) {
-    sum += mode.effective_transitions * mode.Q;
-    weight += mode.effective_transitions;
+  for (const ComponentEstimate& mode : modes) {
+    sum += mode.linear.effective_transitions * mode.linear.Q;
+    weight += mode.linear.effective_transitions;
   }
-  for (ModeEstimate& mode : modes) {
-    if (options.noise == NoiseSource::shared) mode.Q = sum / weight;
-    if (options.noise == NoiseSource::fixed) mode.Q = options.process_variance * Eigen::MatrixXd::Identity(n, n);
+  for (ComponentEstimate& mode : modes) {
+    if (options.noise == NoiseSource::shared) mode.linear.Q = sum / weight;
+    if (options.noise == NoiseSource::fixed) mode.linear.Q = options.process_variance * Eigen::MatrixXd::Identity(n, n);
   }
 }
 
@@ -88,6 +122,19 @@ TransitionMatrix learn_transition(const WindowFits& fits, const Eigen::VectorXi&
                                   const BankOptions& options) {
   if (options.transition == TransitionSource::stay) return TransitionMatrix::sticky(std::ssize(kept), options.stay);
   return transition_from_counts(count_label_transitions(fits, labels, kept), fits.step);
+}
+
+/// The mode of the bank: with a motion model the windows' spread is carried over to the linear parameters.
+Mode bank_mode(const LinearStructure& structure, const ComponentEstimate& estimate, const Eigen::MatrixXd& spread,
+               double weight) {
+  const ModeEstimate& linear = estimate.linear;
+  if (!estimate.motion) return make_mode(structure, linear.theta, linear.Q, spread, linear.standard_error, weight);
+  const MotionMode& motion = *estimate.motion;
+  Mode mode = make_mode(structure, linear.theta, linear.Q, motion.by_motion * spread * motion.by_motion.transpose(),
+                        linear.standard_error, weight);
+  mode.motion_theta = motion.theta;
+  mode.motion_standard_error = motion.standard_error;
+  return mode;
 }
 
 std::vector<Index> all_positions(Index count) {
@@ -99,17 +146,20 @@ std::vector<Index> all_positions(Index count) {
 }  // namespace
 
 Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
-                const BankOptions& options, const Eigen::MatrixXd& R) {
+                const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion) {
   check(options, fits, mixture);
   const GaussianMixture& components = mixture.mixture;
-  const std::vector<ModeEstimate> estimates = estimate_modes(recording, fits, mixture, options.theta);
+  const std::vector<ComponentEstimate> estimates =
+      estimate_components({recording, fits, mixture, options.theta}, motion);
 
   Bank bank = bank_frame(recording, fits.structure, R);
+  bank.model = fits.model;
+  if (motion) bank.motion_parameters = motion->parameters();
   if (options.measurement_variance)
     bank.R = *options.measurement_variance * Eigen::MatrixXd::Identity(bank.R.rows(), bank.R.cols());
   const std::vector<Index> kept = options.screen ? screen(fits.structure, estimates, components.weights, bank.screened)
                                                  : all_positions(components.components());
-  std::vector<ModeEstimate> modes;
+  std::vector<ComponentEstimate> modes;
   modes.reserve(kept.size());
   for (const Index k : kept) modes.push_back(estimates[k]);
   set_process_noise(modes, options);
@@ -117,9 +167,8 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
   const Index p = fits.parameter_count();
   const double kept_weight = components.weights(kept).sum();
   for (Index j = 0; j < std::ssize(kept); ++j)
-    bank.modes.push_back({unpack(fits.structure, modes[j].theta), modes[j].Q,
-                          components.covariances[kept[j]].topLeftCorner(p, p), modes[j].standard_error,
-                          components.weights(kept[j]) / kept_weight});
+    bank.modes.push_back(bank_mode(fits.structure, modes[j], components.covariances[kept[j]].topLeftCorner(p, p),
+                                   components.weights(kept[j]) / kept_weight));
   set_mode_sequence(bank, learn_transition(fits, mixture.labels, kept, options));
   return bank;
 }

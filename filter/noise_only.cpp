@@ -62,16 +62,16 @@ void choose_stay(Bank& bank, const Recording& recording) {
 
 Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R) {
   Bank bank = bank_frame(recording, structure, R);
-  const Transitions transitions = stack_training(recording, structure);
+  const Transitions transitions = unweighted(stack_training(recording, structure));
   if (transitions.count() == 0) throw DataError("no training run has a transition to learn from");
   const RobustRegression fit = huber_regression(transitions);
   const Eigen::MatrixXd variances =
       noise_scales_per_state(transitions.increments - transitions.regressors * fit.coefficients);
-  const LinearModel model = unpack(structure, fit.coefficients.reshaped());
   const Index p = structure.parameters();
   for (Index j = 0; j < scales; ++j)
-    bank.modes.push_back({model, variances.row(j).asDiagonal(), Eigen::MatrixXd::Zero(p, p),
-                          fit.standard_error.reshaped(), 1.0 / static_cast<double>(scales)});
+    bank.modes.push_back(make_mode(structure, fit.coefficients.reshaped(), variances.row(j).asDiagonal(),
+                                   Eigen::MatrixXd::Zero(p, p), fit.standard_error.reshaped(),
+                                   1.0 / static_cast<double>(scales)));
   choose_stay(bank, recording);
   return bank;
 }

@@ -64,18 +64,9 @@ Eigen::MatrixXd regularised(const WeightedRegression& data, const Eigen::MatrixX
   return data.beta + information.ldlt().solve(pull).reshaped(data.beta.rows(), data.beta.cols());
 }
 
-/// Raises the eigenvalues of Q, in units of the reference variances, to the floor; leaves Q alone when none is below.
-Eigen::MatrixXd floored(const Eigen::MatrixXd& Q, const Eigen::VectorXd& reference) {
-  const Eigen::VectorXd sd = reference.cwiseSqrt();
-  Eigen::MatrixXd whitened = sd.cwiseInverse().asDiagonal() * Q * sd.cwiseInverse().asDiagonal();
-  if (!raise_to_floor(whitened, process_noise_floor, CovarianceType::full)) return Q;
-  return sd.asDiagonal() * whitened * sd.asDiagonal();
-}
-
 Eigen::MatrixXd process_noise(const WeightedRegression& data, const Eigen::MatrixXd& beta, const GlobalModel& global) {
-  const Eigen::VectorXd reference = global.noise_variance().unaryExpr(&positive_variance);
-  if (data.weight < smallest_weight) return floored(global.residual_covariance, reference);
-  return floored(data.scatter_about(beta) / data.weight, reference);
+  if (data.weight < smallest_weight) return floored_process_noise(global.residual_covariance, global);
+  return floored_process_noise(data.scatter_about(beta) / data.weight, global);
 }
 
 Eigen::VectorXd standard_errors(const WeightedRegression& data, const Eigen::MatrixXd& Q, const ParameterPrior* prior) {
@@ -99,6 +90,13 @@ ModeEstimate estimate(const WeightedRegression& data, const Eigen::MatrixXd& bet
 }
 
 }  // namespace
+
+Eigen::MatrixXd floored_process_noise(const Eigen::MatrixXd& Q, const GlobalModel& global) {
+  const Eigen::VectorXd sd = global.noise_variance().unaryExpr(&positive_variance).cwiseSqrt();
+  Eigen::MatrixXd whitened = sd.cwiseInverse().asDiagonal() * Q * sd.cwiseInverse().asDiagonal();
+  if (!raise_to_floor(whitened, process_noise_floor, CovarianceType::full)) return Q;
+  return sd.asDiagonal() * whitened * sd.asDiagonal();
+}
 
 ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
                                const GlobalModel& global, const ParameterPrior* prior) {

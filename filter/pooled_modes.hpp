@@ -30,6 +30,9 @@ ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eig
 ModeEstimate assess_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
                                   const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd& theta);
 
+/// A process noise covariance whose eigenvalues, in units of the global residual variances, are raised to the floor.
+Eigen::MatrixXd floored_process_noise(const Eigen::MatrixXd& Q, const GlobalModel& global);
+
 /// One mode per column of `memberships` (N x K), in parallel; mode k depends on column k alone.
 std::vector<ModeEstimate> fit_pooled_modes(const TrainingTransitions& transitions, const Eigen::MatrixXd& memberships,
                                            const GlobalModel& global, const ParameterPrior* prior);

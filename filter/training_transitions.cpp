@@ -22,16 +22,21 @@ std::vector<RunRows> number_rows(const Recording& recording) {
   return runs;
 }
 
-/// Zeros in the rows that are not finite.
+/// Zeros in the rows that are not finite or have no weight.
 void blank_unusable(TrainingTransitions& transitions) {
   Transitions& data = transitions.data;
-  transitions.usable = Eigen::VectorXd::Ones(data.count());
+  const bool weighted = data.weight.size() > 0;
+  transitions.usable = weighted ? data.weight : Eigen::VectorXd::Ones(data.count());
   for (Index k = 0; k < data.count(); ++k) {
-    if (data.regressors.row(k).allFinite() && data.increments.row(k).allFinite()) continue;
+    if (data.regressors.row(k).allFinite() && data.increments.row(k).allFinite() && transitions.usable(k) > 0.0)
+      continue;
     data.regressors.row(k).setZero();
     data.increments.row(k).setZero();
     transitions.usable(k) = 0.0;
   }
+  data.weight.resize(0);
+  const Index usable = (transitions.usable.array() > 0.0).count();
+  if (weighted && usable > 0) transitions.usable *= static_cast<double>(usable) / transitions.usable.sum();
 }
 
 }  // namespace
@@ -50,10 +55,12 @@ TrainingTransitions gather_training_transitions(const Recording& recording, cons
                           {Eigen::MatrixXd(N, structure.regressors()), Eigen::MatrixXd(N, structure.states)},
                           {},
                           number_rows(recording)};
+  if (recording.weighted()) all.data.weight = Eigen::VectorXd::Ones(N);
   for (const RunRows& rows : all.runs) {
     const Transitions run = stack_transitions(recording.runs[rows.run], 0, rows.count, structure);
     all.data.regressors.middleRows(rows.first, rows.count) = run.regressors;
     all.data.increments.middleRows(rows.first, rows.count) = run.increments;
+    if (run.weight.size() > 0) all.data.weight.segment(rows.first, rows.count) = run.weight;
   }
   blank_unusable(all);
   if (all.usable.sum() == 0.0) throw DataError("no training run has a transition to learn from");

@@ -17,11 +17,12 @@ struct RunRows {
 };
 
 /// Every transition of the training runs once, run by run. A transition with a missing (non-finite) sample keeps its
-/// row, so that positions stay those of the run, but holds zeros and is not usable.
+/// row, so that positions stay those of the run, but holds zeros and is not usable; nor is one of sample weight zero.
+/// Rows are not multiplied by their sample weights: `usable` carries these.
 struct TrainingTransitions {
   LinearStructure structure;
   Transitions data;           ///< N rows
-  Eigen::VectorXd usable;     ///< N, 1 or 0
+  Eigen::VectorXd usable;     ///< N, 0 or the sample weight (1 without; mean 1 over the usable)
   std::vector<RunRows> runs;  ///< training runs, in the recording's order
 
   Index count() const { return data.count(); }

@@ -28,20 +28,33 @@ auto sample_rows(const WhitenedProblem& problem, Index k) {
   return problem.J.middleRows(k * problem.states, problem.states);
 }
 
+/// f of the header: sum of the samples' leverages, per state (a state's columns are zero in the other states' rows).
+Eigen::ArrayXd determined_by_data(const WhitenedProblem& problem) {
+  Eigen::ArrayXd f = Eigen::ArrayXd::Zero(problem.states);
+  for (Index k = 0; k < problem.samples; ++k) f += sample_rows(problem, k).rowwise().squaredNorm().array();
+  return f;
+}
+
 /// G^-1 of the header; zero (no information) where the mean slope of psi is not positive.
 Eigen::MatrixXd inverse_G(const CovarianceInput& in) {
   const Index L = in.problem.samples, n = in.problem.states;
   Eigen::MatrixXd psi_square = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd slope = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(n), slope_square = slope;
   for (Index k = 0; k < L; ++k) {
     const Eigen::VectorXd psi = in.terms.weight(k) * in.terms.sample(k, n);
     psi_square += psi * psi.transpose();
-    slope += in.terms.influence_slope(k, n).diagonal();
+    const Eigen::ArrayXd d =
+        in.terms.weight(k) + 2.0 * in.terms.curvature(k) * in.terms.sample(k, n).array().square();  // influence_slope's
+    slope += (in.problem.sample_weight(k) * d).matrix();
+    slope_square += (in.problem.sample_weight(k) * d.square()).matrix();
   }
   if (!(slope.minCoeff() > 0.0)) return Eigen::MatrixXd::Zero(n, n);
-  psi_square /= static_cast<double>(L - in.regressors);
-  const Eigen::VectorXd inverse_mean_slope = static_cast<double>(L) * slope.cwiseInverse();
-  Eigen::MatrixXd G = inverse_mean_slope.asDiagonal() * psi_square * inverse_mean_slope.asDiagonal();
+  const Eigen::ArrayXd mean_slope = slope / static_cast<double>(L);
+  const Eigen::ArrayXd variance = (slope_square.array() / static_cast<double>(L) - mean_slope.square()).max(0.0);
+  const Eigen::ArrayXd f = determined_by_data(in.problem);
+  const Eigen::ArrayXd K = 1.0 + f / static_cast<double>(L) * variance / mean_slope.square();
+  const Eigen::VectorXd factor = K / mean_slope / (static_cast<double>(L) - f).sqrt();
+  Eigen::MatrixXd G = factor.asDiagonal() * psi_square * factor.asDiagonal();
   G.diagonal() = G.diagonal().cwiseMax(in.floor);
 
   const Eigen::VectorXd inverse_sd = G.diagonal().cwiseSqrt().cwiseInverse();
@@ -54,8 +67,13 @@ Eigen::MatrixXd inverse_G(const CovarianceInput& in) {
 /// (sum J_k' G_inverse J_k + P)^-1 in z.
 Eigen::MatrixXd from_information(const WhitenedProblem& problem, const Eigen::MatrixXd& G_inverse) {
   Eigen::MatrixXd information = prior_information(problem);
-  for (Index k = 0; k < problem.samples; ++k)
-    information += sample_rows(problem, k).transpose() * G_inverse * sample_rows(problem, k);
+  if (problem.states == 1) {
+    const auto J = problem.J.topRows(problem.samples);
+    information.noalias() += G_inverse(0, 0) * J.transpose() * J;
+  } else {
+    for (Index k = 0; k < problem.samples; ++k)
+      information += sample_rows(problem, k).transpose() * G_inverse * sample_rows(problem, k);
+  }
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   if (factor.info() != Eigen::Success)
     return Eigen::MatrixXd::Constant(problem.unknowns(), problem.unknowns(), not_a_number);

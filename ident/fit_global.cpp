@@ -1,3 +1,5 @@
+#include <Eigen/QR>
+#include <utility>
 
 #include "ident/error.hpp"
 #include "ident/fit_window.hpp"
@@ -20,18 +22,42 @@ Eigen::MatrixXd least_squares_covariance(const Decomposition& d, const Eigen::Ma
   return covariance;
 }
 
+/// All training transitions turned into few rows of the same least-squares problem: the triangle of a QR decomposition
+/// that takes block after block (so that a long recording needs no copy of itself), and their count.
+std::pair<Transitions, Index> reduce(const Recording& recording, const LinearStructure& structure) {
+  const Index q = structure.regressors(), n = structure.states;
+  Eigen::MatrixXd triangle(0, q + n);
+  Index count = 0;
+  for_each_training_block(recording, structure, [&](const Transitions& block) {
+    count += block.count();
+    Eigen::MatrixXd rows(triangle.rows() + block.count(), q + n);
+    rows.topRows(triangle.rows()) = triangle;
+    rows.bottomRows(block.count()) << block.regressors, block.increments;
+    if (rows.rows() <= q + n) {
+      triangle = rows;
+      return;
+    }
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows);
+    triangle = qr.matrixQR().topRows(q + n).triangularView<Eigen::Upper>();
+  });
+  return {{triangle.leftCols(q), triangle.rightCols(n)}, count};
+}
+
 }  // namespace
 
 GlobalModel fit_global(const Recording& recording, const LinearStructure& structure) {
-  const Transitions transitions = stack_training(recording, structure);
-  const Index N = transitions.count();
+  const auto [transitions, N] = reduce(recording, structure);
   if (N == 0) throw DataError("the training runs hold no transition between two finite samples");
   const Decomposition d = decompose(transitions.regressors, excitation_tolerance);
-  const Eigen::MatrixXd r = residuals(d, transitions.increments);
-  const Eigen::MatrixXd square_sum = r.transpose() * r;
+  const Eigen::MatrixXd coefficients = solve(d, transitions.increments);
+  Eigen::MatrixXd square_sum = Eigen::MatrixXd::Zero(structure.states, structure.states);
+  for_each_training_block(recording, structure, [&](const Transitions& block) {
+    const Eigen::MatrixXd r = block.increments - block.regressors * coefficients;
+    square_sum += r.transpose() * r;
+  });
   GlobalModel global;
   // Column i of the coefficients is row i of [A B c], so their column-major vec is theta.
-  global.theta = solve(d, transitions.increments).reshaped();
+  global.theta = coefficients.reshaped();
   global.covariance = least_squares_covariance(d, square_sum, N);
   global.residual_covariance = square_sum / static_cast<double>(N);
   global.transitions = N;

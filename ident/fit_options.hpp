@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <string>
 
 #include "ident/local_model.hpp"
 
@@ -21,8 +23,24 @@ struct EnumNames<Prior> {
   static constexpr Names<2> values{"none", "global"};
 };
 
+/// Who minimises: Ceres window by window, or the batch solver, many linear windows of one state at a time, with Ceres
+/// for those it hands back. automatic: the batch solver wherever it has kernels. Motion models: see ModelSearch; all
+/// but `ceres` try Newton's steps first, on one-step residuals.
+enum class WindowSolver { ceres, batch, automatic };
+
+template <>
+struct EnumNames<WindowSolver> {
+  static constexpr Names<3> values{"ceres", "batch", "auto"};
+};
+
 /// How windows are cut and fitted. Defaults are the recommended method.
 struct FitOptions {
+  std::string model = "linear";  ///< linear, varx, or one of motion_model_names()
+  Index state_lags = 1;          ///< varx: see LinearStructure
+  Index input_lags = 1;
+  Index input_delay = 1;
+  double wheel_radius_m = 1.0;  ///< motion models: see ModelSettings
+  ResidualKind residual = ResidualKind::one_step;
   Index length = 25;  ///< transitions per window
   Index step = 1;     ///< transitions between window starts
   Loss loss = Loss::huber;
@@ -34,6 +52,17 @@ struct FitOptions {
   bool intercept = false;
   CovarianceKind covariance = CovarianceKind::model;
   int max_iterations = 100;  ///< of the minimiser
+  WindowSolver solver = WindowSolver::automatic;
+  std::uint64_t seed = 1;  ///< of the samples of windows that are audited and that the default prior is made from
 };
+
+inline bool is_linear(const FitOptions& options) { return options.model == "linear" || options.model == "varx"; }
+
+/// The linear model that the options name, for n states and m inputs; of a motion model the structure of its
+/// linearisations, with an intercept.
+inline LinearStructure linear_structure(Index states, Index inputs, const FitOptions& o) {
+  if (o.model == "varx") return {states, inputs, o.intercept, o.state_lags, o.input_lags, o.input_delay};
+  return {states, inputs, is_linear(o) ? o.intercept : true};
+}
 
 }  // namespace modebank

@@ -1,16 +1,24 @@
-#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "ident/batch_solver.hpp"
 #include "ident/error.hpp"
-#include "ident/fit_transitions.hpp"
+#include "ident/linear_motion.hpp"
+#include "ident/model_choice.hpp"
+#include "ident/model_windows.hpp"
+#include "ident/not_a_number.hpp"
 #include "ident/parameter_prior.hpp"
-#include "ident/robust_scale.hpp"
+#include "ident/seed.hpp"
+#include "ident/window_audit.hpp"
+#include "ident/window_plan.hpp"
 
 namespace modebank {
 
@@ -24,6 +32,9 @@ void check_options(const FitOptions& options, Index parameters) {
   require(options.step >= 1, "window.step", std::to_string(options.step), "at least 1");
   require(options.loss_scale >= 0.0 && std::isfinite(options.loss_scale), "window.loss_scale",
           std::to_string(options.loss_scale), "positive, or 0 for the default");
+  require(options.state_lags >= 1, "window.state_lags", std::to_string(options.state_lags), "at least 1");
+  require(options.input_lags >= 1, "window.input_lags", std::to_string(options.input_lags), "at least 1");
+  require(options.input_delay >= 0, "window.input_delay", std::to_string(options.input_delay), "at least 0");
   require(options.max_iterations >= 1, "window.max_iterations", std::to_string(options.max_iterations), "at least 1");
   if (options.scale == ScaleSource::fixed)
     require(options.sigma > 0.0 && std::isfinite(options.sigma), "window.sigma", std::to_string(options.sigma),
@@ -35,125 +46,232 @@ void check_options(const FitOptions& options, Index parameters) {
     require(value > 0.0 && std::isfinite(value), "window.prior_sd", std::to_string(value), "positive");
 }
 
-/// Everything that the fits of all windows share.
-struct Context {
-  const Recording& recording;
-  const FitOptions& options;
-  const GlobalModel& global;
-  Estimator estimator;
-  Eigen::VectorXd floor;                   ///< n, least sigma
-  std::vector<Eigen::VectorXd> run_scale;  ///< sigma of each training run, n; empty for other runs
+/// The model of the general door, or null for the linear one.
+std::shared_ptr<const MotionModel> general_model(const FitOptions& options, Index states, Index inputs) {
+  if (is_linear(options) && options.residual == ResidualKind::simulation)
+    return make_linear_motion(linear_structure(states, inputs, options));
+  return motion_model(options, states, inputs);
+}
+
+/// A batch solver's unit of work: long enough to pay for its staging, short enough to stay in a core's second cache.
+constexpr Index job_windows = 1024;
+/// What stream_windows hands over at a time.
+constexpr Index streamed_windows = 65536;
+/// The default prior is made from so many windows at most, drawn in blocks.
+constexpr Index prior_windows = 200000;
+constexpr Index prior_block = 64;
+
+/// What one thread needs for its jobs.
+struct Worker {
+  BatchWorkspace workspace;
+  std::vector<batch::Verdict> verdict = std::vector<batch::Verdict>(static_cast<std::size_t>(job_windows));
 };
+using Workers = tbb::enumerable_thread_specific<Worker>;
 
-/// sigma of a whole run; a run too short to tell has the global one.
-Eigen::VectorXd run_scale(const Trajectory& run, const GlobalModel& global, const LinearStructure& structure,
-                          const Eigen::VectorXd& floor) {
-  const Transitions transitions = finite_rows(stack_transitions(run, 0, run.transitions(), structure));
-  const Eigen::VectorXd scale = robust_scale(transitions, decompose(transitions.regressors, excitation_tolerance));
-  const Eigen::VectorXd& usable = scale.allFinite() ? scale : Eigen::VectorXd(global.noise_variance().cwiseSqrt());
-  return usable.cwiseMax(floor);
+std::optional<BatchSolver> make_batch_solver(const WindowContext& context, const ParameterPrior* prior) {
+  const FitOptions& options = context.options();
+  const bool possible = BatchSolver::handles(context.structure(), options.length) && !context.recording().weighted();
+  if (options.solver == WindowSolver::batch && !possible)
+    throw ConfigurationError("window.solver = batch: the batch solver fits one state with at most " +
+                             std::to_string(batch::max_regressors) +
+                             " regressors, fewer than window.length, without sample weights; take auto or ceres");
+  if (options.solver == WindowSolver::ceres || !possible) return std::nullopt;
+  return BatchSolver(batch_settings(context.structure(), options, prior, context.floor()(0)));
 }
 
-Context make_context(const Recording& recording, const FitOptions& options, const LinearStructure& structure,
-                     const GlobalModel& global) {
-  const Eigen::VectorXd floor = scale_floor(stack_training(recording, structure), global.noise_variance());
-  Context context{recording, options, global, make_estimator(structure, options), floor, {}};
-  for (const Trajectory& run : recording.runs)
-    context.run_scale.push_back(run.role == Role::train ? run_scale(run, global, structure, floor) : Eigen::VectorXd());
-  return context;
+double chunk_sigma(const WindowContext& context, Index run) {
+  if (context.options().scale == ScaleSource::fixed) return context.options().sigma;
+  return context.options().scale == ScaleSource::run ? context.run_scale(run)(0) : 1.0;
 }
 
-Eigen::VectorXd window_sigma(const Context& context, const Window& window, const Transitions& transitions,
-                             const Decomposition& decomposition) {
-  if (context.options.scale == ScaleSource::fixed)
-    return Eigen::VectorXd::Constant(transitions.increments.cols(), context.options.sigma);
-  const bool whole_run =
-      context.options.scale == ScaleSource::run || transitions.count() <= transitions.regressors.cols();
-  if (whole_run) return context.run_scale[static_cast<std::size_t>(window.run)];
-  return robust_scale(transitions, decomposition).cwiseMax(context.floor);
+/// Solves one stretch; the worker's verdicts say which windows are left.
+void solve_stretch(const WindowContext& context, const BatchSolver& solver, const WindowPlan::Stretch& stretch,
+                   Worker& worker, batch::Output out) {
+  const batch::Settings& settings = solver.settings();
+  batch::Chunk chunk = worker.workspace.stage(context.run_of(stretch.window), stretch.window.start, stretch.count,
+                                              context.structure(), settings);
+  chunk.sigma = chunk_sigma(context, stretch.window.run);
+  out.verdict = worker.verdict.data();
+  solver(chunk, worker.workspace.scratch(settings.length), out);
 }
 
-/// A window's data on the way to its fit.
-struct WindowData {
-  Transitions transitions;
-  Decomposition decomposition;
-  NoiseScale scale;
-};
-
-/// Transitions with a NaN or infinity are left out; nothing when none is left.
-std::optional<WindowData> load(const Context& context, const Window& window) {
-  const Trajectory& run = context.recording.runs[static_cast<std::size_t>(window.run)];
-  const LinearStructure& structure = context.estimator.structure;
-  Transitions transitions = finite_rows(stack_transitions(run, window.start, context.options.length, structure));
-  if (transitions.count() == 0) return std::nullopt;
-  Decomposition decomposition = decompose(transitions.regressors, excitation_tolerance);
-  Eigen::VectorXd sigma = window_sigma(context, window, transitions, decomposition);
-  return WindowData{std::move(transitions), std::move(decomposition), {std::move(sigma), context.floor}};
+batch::Output columns_from(WindowFits& fits, Index i) {
+  batch::Output out;
+  out.theta = fits.parameters.col(i).data();
+  out.covariance = fits.covariance.col(i).data();
+  out.noise_variance = fits.noise_variance.col(i).data();
+  out.condition = fits.condition.data() + i;
+  out.information = fits.information.col(i).data();
+  out.inlier_fraction = fits.inlier_fraction.data() + i;
+  out.r_squared = fits.r_squared.col(i).data();
+  out.aic = fits.aic.data() + i;
+  out.transitions = fits.transitions.data() + i;
+  out.rank = fits.rank.data() + i;
+  out.status = fits.status.data() + i;
+  return out;
 }
 
-LocalModel fit_one(const Context& context, const Window& window, const ParameterPrior* prior) {
-  const std::optional<WindowData> data = load(context, window);
-  if (!data) return failed_fit(context.estimator.structure);
-  return fit_transitions(data->transitions, data->decomposition, context.estimator, data->scale, prior);
-}
-
-template <class Body>
-void for_each_window(const std::vector<Window>& windows, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(windows.size())),
-                    [&](const tbb::blocked_range<Index>& range) {
-                      for (Index i = range.begin(); i < range.end(); ++i) body(i, windows[static_cast<std::size_t>(i)]);
-                    });
-}
-
-/// theta of the full-rank windows fitted without prior, one per column.
-Eigen::MatrixXd unregularised_fits(const Context& context, const std::vector<Window>& windows) {
-  const Index M = static_cast<Index>(windows.size());
-  Eigen::MatrixXd all = Eigen::MatrixXd::Constant(context.global.theta.size(), M, std::nan(""));
-  for_each_window(windows, [&](Index i, const Window& window) {
-    const std::optional<WindowData> data = load(context, window);
-    if (!data || data->decomposition.rank() < context.estimator.structure.regressors()) return;
-    all.col(i) = fit_theta(data->transitions, data->decomposition, context.estimator, data->scale, nullptr);
+/// theta of full-rank windows fitted without prior, one per column.
+Eigen::MatrixXd unregularised_fits(const WindowContext& context, const WindowPlan& plan, Workers& workers) {
+  const Index M = plan.count(), blocks = prior_windows / prior_block;
+  std::vector<WindowPlan::Stretch> jobs;
+  if (M <= prior_windows) {
+    jobs = plan.stretches(0, M, job_windows);
+  } else {
+    std::mt19937_64 generator = make_generator(context.options().seed, "prior_windows");
+    for (Index b = 0; b < blocks; ++b) {
+      const Index begin = b * M / blocks, size = (b + 1) * M / blocks - begin;
+      const Index offset =
+          static_cast<Index>(generator() % static_cast<std::uint64_t>(std::max<Index>(1, size - prior_block + 1)));
+      for (const auto& stretch : plan.stretches(begin + offset, std::min(prior_block, size), prior_block))
+        jobs.push_back(stretch);
+    }
+  }
+  std::vector<Index> column{0};
+  for (const auto& job : jobs) column.push_back(column.back() + job.count);
+  const std::optional<BatchSolver> solver = make_batch_solver(context, nullptr);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Constant(context.structure().parameters(), column.back(), not_a_number);
+  tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t j) {
+    const WindowPlan::Stretch& job = jobs[j];
+    Worker& worker = workers.local();
+    batch::Output out;
+    out.theta = all.col(column[j]).data();
+    if (solver) solve_stretch(context, *solver, job, worker, out);
+    for (Index i = 0; i < job.count; ++i) {
+      const auto verdict = solver ? worker.verdict[static_cast<std::size_t>(i)] : batch::Verdict::failed;
+      if (verdict == batch::Verdict::solved) continue;
+      if (verdict == batch::Verdict::rank_deficient)
+        all.col(column[j] + i).setConstant(not_a_number);
+      else
+        all.col(column[j] + i) = context.unregularised_theta(plan.window(job.first + i));
+    }
   });
   std::vector<Index> fitted;
-  for (Index i = 0; i < M; ++i)
+  for (Index i = 0; i < all.cols(); ++i)
     if (all.col(i).allFinite()) fitted.push_back(i);
   return all(Eigen::all, fitted);
 }
 
-Eigen::VectorXd prior_sd(const Context& context, const std::vector<Window>& windows) {
-  const Eigen::VectorXd& given = context.options.prior_sd;
-  const Index p = context.global.theta.size();
+Eigen::VectorXd prior_sd(const WindowContext& context, const WindowPlan& plan, const GlobalModel& global,
+                         Workers& workers) {
+  const Eigen::VectorXd& given = context.options().prior_sd;
+  const Index p = global.theta.size();
   if (given.size() == p) return given;
   if (given.size() == 1) return Eigen::VectorXd::Constant(p, given(0));
-  return default_prior_sd(unregularised_fits(context, windows), context.global, context.options.length);
+  return default_prior_sd(unregularised_fits(context, plan, workers), global, context.options().length);
 }
+
+/// All windows of a recording, to be fitted range by range.
+class Fitting {
+ public:
+  Fitting(const Recording& recording, const FitOptions& options, const LinearStructure& structure)
+      : plan_(recording, options.length, options.step, structure.first_transition()) {
+    if (plan_.count() == 0)
+      throw DataError("no training run has the " + std::to_string(options.length) + " transitions of a window");
+    common_.model = options.model;
+    common_.structure = structure;
+    common_.length = options.length;
+    common_.step = options.step;
+    common_.loss = options.loss;
+    common_.global = fit_global(recording, structure);
+    context_.emplace(recording, options, structure, common_.global);
+    if (options.prior == Prior::global) {
+      common_.prior_sd = prior_sd(*context_, plan_, common_.global, workers_);
+      prior_ = ParameterPrior{common_.global.theta, common_.prior_sd};
+    }
+    solver_ = make_batch_solver(*context_, prior());
+    if (solver_) audited_ = audited_windows(plan_.count(), options.seed);
+  }
+  Fitting(const Fitting&) = delete;  // the context refers to the global model
+  Fitting& operator=(const Fitting&) = delete;
+
+  Index count() const { return plan_.count(); }
+  const WindowFits& common() const { return common_; }
+
+  /// Windows first .. first + count - 1 into the columns of `fits`.
+  void fit(Index first, Index count, WindowFits& fits) {
+    fits.resize(count);
+    std::vector<batch::Verdict> verdicts(static_cast<std::size_t>(count), batch::Verdict::failed);
+    const std::vector<WindowPlan::Stretch> jobs = plan_.stretches(first, count, solver_ ? job_windows : 1);
+    tbb::parallel_for(std::size_t{0}, jobs.size(),
+                      [&](std::size_t j) { fit_stretch(jobs[j], jobs[j].first - first, verdicts, fits); });
+    const auto solved = std::count(verdicts.begin(), verdicts.end(), batch::Verdict::solved);
+    common_.audit.batch += solved;
+    common_.audit.ceres += count - solved;
+    audit(first, count, verdicts, fits);
+    fits.audit = common_.audit;
+  }
+
+ private:
+  const ParameterPrior* prior() const { return prior_ ? &*prior_ : nullptr; }
+
+  void fit_stretch(const WindowPlan::Stretch& stretch, Index column, std::vector<batch::Verdict>& verdicts,
+                   WindowFits& fits) {
+    Worker& worker = workers_.local();
+    if (solver_) solve_stretch(*context_, *solver_, stretch, worker, columns_from(fits, column));
+    for (Index i = 0; i < stretch.count; ++i) {
+      const Window window = plan_.window(stretch.first + i);
+      const auto w = static_cast<std::size_t>(column + i);
+      fits.windows[w] = window;
+      if (solver_) verdicts[w] = worker.verdict[static_cast<std::size_t>(i)];
+      if (verdicts[w] != batch::Verdict::solved) fits.set(column + i, context_->fit(window, prior()));
+    }
+  }
+
+  void audit(Index first, Index count, const std::vector<batch::Verdict>& verdicts, WindowFits& fits) {
+    const auto begin = std::lower_bound(audited_.begin(), audited_.end(), first),
+               end = std::lower_bound(audited_.begin(), audited_.end(), first + count);
+    std::vector<AuditedWindow> results(static_cast<std::size_t>(end - begin));
+    tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
+      const Index column = begin[static_cast<std::ptrdiff_t>(i)] - first;
+      if (verdicts[static_cast<std::size_t>(column)] != batch::Verdict::solved) return;
+      results[i] = audit_window(*context_, fits.windows[static_cast<std::size_t>(column)], prior(), fits.at(column));
+    });
+    for (std::size_t i = 0; i < results.size(); ++i)
+      if (add_to_audit(results[i], common_.audit))
+        fits.set(begin[static_cast<std::ptrdiff_t>(i)] - first, results[i].ceres);
+  }
+
+  WindowPlan plan_;
+  WindowFits common_;
+  Workers workers_;
+  std::optional<WindowContext> context_;
+  std::optional<ParameterPrior> prior_;
+  std::optional<BatchSolver> solver_;
+  std::vector<Index> audited_;
+};
 
 }  // namespace
 
 WindowFits fit_windows(const Recording& recording, const FitOptions& options) {
-  const LinearStructure structure{recording.state_count(), recording.input_count(), options.intercept};
-  check_options(options, structure.parameters());
-  WindowFits fits;
-  fits.structure = structure;
-  fits.length = options.length;
-  fits.step = options.step;
-  fits.loss = options.loss;
-  fits.windows = make_windows(recording, options.length, options.step);
-  if (fits.windows.empty())
-    throw DataError("no training run has the " + std::to_string(options.length) + " transitions of a window");
-  fits.global = fit_global(recording, structure);
-
-  const Context context = make_context(recording, options, structure, fits.global);
-  std::optional<ParameterPrior> prior;
-  if (options.prior == Prior::global) {
-    fits.prior_sd = prior_sd(context, fits.windows);
-    prior = ParameterPrior{fits.global.theta, fits.prior_sd};
+  const LinearStructure structure = linear_structure(recording.state_count(), recording.input_count(), options);
+  check_model(options, recording.state_count(), recording.input_count());
+  if (const auto motion = general_model(options, recording.state_count(), recording.input_count())) {
+    check_options(options, motion->parameter_count());
+    return fit_windows(recording, options, *motion);
   }
-  fits.resize(fits.count());
-  for_each_window(fits.windows, [&](Index i, const Window& window) {
-    fits.set(i, fit_one(context, window, prior ? &*prior : nullptr));
-  });
+  check_options(options, structure.parameters());
+  Fitting fitting(recording, options, structure);
+  WindowFits fits = fitting.common();
+  fitting.fit(0, fitting.count(), fits);
   return fits;
+}
+
+Index count_windows(const Recording& recording, const FitOptions& options) {
+  const LinearStructure structure = linear_structure(recording.state_count(), recording.input_count(), options);
+  return WindowPlan(recording, options.length, options.step, structure.first_transition()).count();
+}
+
+WindowFits stream_windows(const Recording& recording, const FitOptions& options, const WindowSink& sink) {
+  const LinearStructure structure = linear_structure(recording.state_count(), recording.input_count(), options);
+  check_options(options, structure.parameters());
+  Fitting fitting(recording, options, structure);
+  WindowFits chunk = fitting.common();
+  for (Index first = 0; first < fitting.count(); first += streamed_windows) {
+    fitting.fit(first, std::min(streamed_windows, fitting.count() - first), chunk);
+    sink(chunk, first);
+  }
+  return fitting.common();
 }
 
 }  // namespace modebank

@@ -12,7 +12,7 @@ namespace {
 /// Share of the driven commands (neither standstill nor equal inputs) that ramp to their target instead of jumping.
 constexpr double ramp_share = 0.5;
 
-Eigen::VectorXd draw_levels(const SimulationOptions& options, std::mt19937_64& generator) {
+Eigen::VectorXd draw_levels(const CommandOptions& options, std::mt19937_64& generator) {
   boost::random::uniform_real_distribution<double> level(-options.input_amplitude, options.input_amplitude);
   Eigen::VectorXd levels(options.inputs);
   for (double& value : levels) value = level(generator);
@@ -20,7 +20,7 @@ Eigen::VectorXd draw_levels(const SimulationOptions& options, std::mt19937_64& g
 }
 
 /// New levels for all inputs every `hold` samples.
-Eigen::MatrixXd held_inputs(const SimulationOptions& options, Index hold, std::mt19937_64& generator) {
+Eigen::MatrixXd held_inputs(const CommandOptions& options, Index hold, std::mt19937_64& generator) {
   Eigen::MatrixXd inputs(options.inputs, options.samples);
   for (Index k = 0; k < options.samples; k += hold)
     inputs.middleCols(k, std::min(hold, options.samples - k)).colwise() = draw_levels(options, generator);
@@ -39,7 +39,7 @@ struct Command {
   bool ramp = false;
 };
 
-Command draw_command(const SimulationOptions& options, std::mt19937_64& generator) {
+Command draw_command(const CommandOptions& options, std::mt19937_64& generator) {
   boost::random::uniform_01<double> uniform;
   const double kind = uniform(generator);
   if (kind < options.standstill_fraction) return {Eigen::VectorXd::Zero(options.inputs), false};
@@ -51,7 +51,7 @@ Command draw_command(const SimulationOptions& options, std::mt19937_64& generato
   return command;
 }
 
-Eigen::MatrixXd driven_inputs(const SimulationOptions& options, std::mt19937_64& generator) {
+Eigen::MatrixXd driven_inputs(const CommandOptions& options, std::mt19937_64& generator) {
   Eigen::MatrixXd inputs(options.inputs, options.samples);
   Eigen::VectorXd current = Eigen::VectorXd::Zero(options.inputs);
   for (Index k = 0; k < options.samples;) {
@@ -66,7 +66,7 @@ Eigen::MatrixXd driven_inputs(const SimulationOptions& options, std::mt19937_64&
   return inputs;
 }
 
-Eigen::MatrixXd draw_exact(const SimulationOptions& options, std::mt19937_64& generator) {
+Eigen::MatrixXd draw_exact(const CommandOptions& options, std::mt19937_64& generator) {
   switch (options.input_law) {
     case InputLaw::white:
       return held_inputs(options, 1, generator);
@@ -80,7 +80,7 @@ Eigen::MatrixXd draw_exact(const SimulationOptions& options, std::mt19937_64& ge
 
 }  // namespace
 
-Eigen::MatrixXd draw_inputs(const SimulationOptions& options, std::mt19937_64& generator) {
+Eigen::MatrixXd draw_inputs(const CommandOptions& options, std::mt19937_64& generator) {
   Eigen::MatrixXd inputs = draw_exact(options, generator);
   if (options.input_quantum > 0.0) inputs = (inputs / options.input_quantum).array().round() * options.input_quantum;
   return inputs;

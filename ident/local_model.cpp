@@ -1,6 +1,19 @@
 #include "ident/local_model.hpp"
 
+#include "ident/not_a_number.hpp"
+
 namespace modebank {
+
+Index WindowFits::parameter_count() const {
+  return model_parameters.empty() ? structure.parameters() : static_cast<Index>(model_parameters.size());
+}
+
+std::vector<std::string> WindowFits::parameter_names() const {
+  if (model_parameters.empty()) return structure.parameter_names();
+  std::vector<std::string> names;
+  for (const ModelParameter& parameter : model_parameters) names.push_back(parameter.name);
+  return names;
+}
 
 void WindowFits::resize(Index windows_count) {
   const Index p = parameter_count();
@@ -13,6 +26,9 @@ void WindowFits::resize(Index windows_count) {
   information.resize(p, windows_count);
   inlier_fraction.resize(windows_count);
   status.resize(windows_count);
+  r_squared.resize(structure.states, windows_count);
+  aic.resize(windows_count);
+  transitions.resize(windows_count);
 }
 
 void WindowFits::set(Index i, const LocalModel& fit) {
@@ -24,6 +40,12 @@ void WindowFits::set(Index i, const LocalModel& fit) {
   information.col(i) = fit.information;
   inlier_fraction(i) = fit.inlier_fraction;
   status(i) = static_cast<int>(fit.status);
+  if (fit.r_squared.size() > 0)
+    r_squared.col(i) = fit.r_squared;
+  else
+    r_squared.col(i).setConstant(not_a_number);
+  aic(i) = fit.aic;
+  transitions(i) = static_cast<int>(fit.transitions);
 }
 
 LocalModel WindowFits::at(Index i) const {
@@ -37,7 +59,19 @@ LocalModel WindowFits::at(Index i) const {
   fit.information = information.col(i);
   fit.inlier_fraction = inlier_fraction(i);
   fit.status = static_cast<FitStatus>(status(i));
+  if (r_squared.cols() > 0) fit.r_squared = r_squared.col(i);
+  fit.aic = aic.size() > 0 ? aic(i) : not_a_number;
+  fit.transitions = transitions.size() > 0 ? transitions(i) : length;
   return fit;
 }
+
+Eigen::MatrixXd WindowFits::standard_errors() const {
+  const Index p = parameter_count();
+  Eigen::MatrixXd errors(p, count());
+  for (Index j = 0; j < p; ++j) errors.row(j) = covariance.row(j * (p + 1)).cwiseSqrt();
+  return errors;
+}
+
+Eigen::MatrixXd WindowFits::t_values() const { return parameters.cwiseQuotient(standard_errors()); }
 
 }  // namespace modebank

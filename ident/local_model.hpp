@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "ident/enum_names.hpp"
 #include "ident/model.hpp"
+#include "ident/motion_model.hpp"
 #include "ident/window.hpp"
 
 namespace modebank {
@@ -18,6 +20,16 @@ enum class Loss { trivial, huber, cauchy, softlone, tukey, arctan };
 template <>
 struct EnumNames<Loss> {
   static constexpr Names<6> values{"trivial", "huber", "cauchy", "softlone", "tukey", "arctan"};
+};
+
+/// What a model is compared with: each sample predicted from the measured one before (equation error), or the whole
+/// window simulated from its first sample, which then is estimated, too (output error: Ljung 1999, section 3.2). The
+/// first assumes process noise, the second measurement noise.
+enum class ResidualKind { one_step, simulation };
+
+template <>
+struct EnumNames<ResidualKind> {
+  static constexpr Names<2> values{"one-step", "simulation"};
 };
 
 /// Which covariance of theta is reported (method: Huber 1981 for `model`, HC3 for `sandwich`).
@@ -38,6 +50,9 @@ struct LocalModel {
   Eigen::VectorXd information;   ///< p, 1 - posterior variance / prior variance; NaN without a prior
   double inlier_fraction = 0.0;  ///< share of samples that keep at least half of their least-squares weight
   FitStatus status = FitStatus::failed;
+  Eigen::VectorXd r_squared;  ///< n, see ident/fit_quality.hpp; empty: not computed
+  double aic = 0.0;           ///< nat, see ident/fit_quality.hpp
+  Index transitions = 0;      ///< L, those that entered the fit: finite and of positive weight
 };
 
 /// The global model: plain least squares over all training transitions.
@@ -49,9 +64,27 @@ struct GlobalModel {
   Eigen::VectorXd noise_variance() const { return residual_covariance.diagonal(); }
 };
 
+/// How the windows were solved: by the batch solver or by Ceres, and what Ceres said of a random sample of the former
+/// (their objective evaluated in both solutions).
+struct WindowAudit {
+  /// Relative difference in cost above which two solutions disagree.
+  static constexpr double tolerance = 1e-9;
+  Index batch = 0;    ///< windows of the batch solver; of a motion model all that Newton's steps were tried on first
+  Index ceres = 0;    ///< windows of Ceres, the batch solver's leftovers among them
+  Index checked = 0;  ///< windows of the batch solver solved again by Ceres
+  double cost_difference = 0.0;       ///< largest relative difference in cost
+  double parameter_difference = 0.0;  ///< largest difference of a parameter in its standard errors
+  Index replaced = 0;  ///< checked windows whose cost was above Ceres' by more than the tolerance: they are Ceres' now
+  Index lower = 0;     ///< checked windows whose cost was below Ceres' by more (losses with several minima)
+};
+
 /// All windows' fits, one window per column (M columns), so a million windows are a handful of arrays.
 struct WindowFits {
+  std::string model = "linear";  ///< linear, varx, or the name of a motion model
+  /// Of linear models. Of a motion model: that of its linearisations x[k+1] = x + A x + B u + c.
   LinearStructure structure;
+  std::vector<ModelParameter> model_parameters;  ///< of a motion model; empty for linear ones
+  ResidualKind residual = ResidualKind::one_step;
   Index length = 0;  ///< transitions per window
   Index step = 1;    ///< transitions between window starts
   Loss loss = Loss::huber;
@@ -64,14 +97,22 @@ struct WindowFits {
   Eigen::MatrixXd information;      ///< p x M
   Eigen::VectorXd inlier_fraction;  ///< M
   Eigen::VectorXi status;           ///< M, FitStatus
+  Eigen::MatrixXd r_squared;        ///< n x M
+  Eigen::VectorXd aic;              ///< M
+  Eigen::VectorXi transitions;      ///< M
   Eigen::VectorXd prior_sd;         ///< p, the prior's standard deviations; empty without a prior
   GlobalModel global;
+  WindowAudit audit;
 
   Index count() const { return static_cast<Index>(windows.size()); }
-  Index parameter_count() const { return structure.parameters(); }
+  Index parameter_count() const;
+  std::vector<std::string> parameter_names() const;
   void resize(Index windows_count);
   void set(Index i, const LocalModel& fit);
   LocalModel at(Index i) const;
+  /// p x M standard errors and t values (theta / standard error), derived from parameters and covariance.
+  Eigen::MatrixXd standard_errors() const;
+  Eigen::MatrixXd t_values() const;
 };
 
 }  // namespace modebank

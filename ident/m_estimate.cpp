@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "ident/residuals.hpp"
 
@@ -52,7 +53,11 @@ FitStatus search(const WhitenedProblem& problem, const RobustLoss& loss, double 
   const auto add = [&](Index first, Index count, ceres::LossFunction* function) {
     ceres_problem.AddResidualBlock(new LinearResidual(problem, first, count), function, z.data());  // Ceres owns it
   };
-  for (Index k = 0; k < problem.samples; ++k) add(k * problem.states, problem.states, loss.ceres_function());
+  std::vector<WeightedLoss> weighted;
+  for (const double weight : problem.weight) weighted.emplace_back(*loss.ceres_function(), weight);
+  for (Index k = 0; k < problem.samples; ++k)
+    add(k * problem.states, problem.states,
+        weighted.empty() ? loss.ceres_function() : &weighted[static_cast<std::size_t>(k)]);
   if (problem.prior_rows() > 0) add(problem.sample_rows(), problem.prior_rows(), nullptr);
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(tolerance, max_iterations), &ceres_problem, &summary);
@@ -96,9 +101,10 @@ RobustTerms evaluate(const WhitenedProblem& problem, const RobustLoss& loss, con
   RobustTerms terms{problem.b, Eigen::VectorXd(problem.samples), Eigen::VectorXd(problem.samples)};
   terms.residual.noalias() -= problem.J * z;
   for (Index k = 0; k < problem.samples; ++k) {
-    const LossValue value = loss(terms.sample(k, problem.states).squaredNorm());
+    const double sample_weight = problem.sample_weight(k);
+    const LossValue value = loss(terms.sample(k, problem.states).squaredNorm() / sample_weight);
     terms.weight(k) = value.weight;
-    terms.curvature(k) = value.curvature;
+    terms.curvature(k) = value.curvature / sample_weight;
   }
   return terms;
 }

@@ -8,11 +8,12 @@
 namespace modebank {
 
 /// Residuals of a whitened problem at z and the loss' derivatives there. psi_k = weight_k r_k is the influence of
-/// sample k (Huber 1981).
+/// sample k (Huber 1981). Of a sample with weight w all are those of its rows, which carry sqrt(w): r_k is sqrt(w)
+/// times the sample's residual.
 struct RobustTerms {
   Eigen::VectorXd residual;   ///< all rows of b - J z
-  Eigen::VectorXd weight;     ///< L, rho'(|r_k|^2)
-  Eigen::VectorXd curvature;  ///< L, rho''(|r_k|^2)
+  Eigen::VectorXd weight;     ///< L, rho'(|r_k|^2 / w)
+  Eigen::VectorXd curvature;  ///< L, rho''(|r_k|^2 / w) / w
 
   auto sample(Index k, Index states) const { return residual.segment(k * states, states); }
   /// d psi_k / d r_k = rho' I + 2 rho'' r r', n x n.
@@ -21,7 +22,7 @@ struct RobustTerms {
 
 RobustTerms evaluate(const WhitenedProblem& problem, const RobustLoss& loss, const Eigen::VectorXd& z);
 
-/// Gradient of 1/2 sum rho(|r_k|^2) + 1/2 |prior rows|^2 in z.
+/// Gradient of 1/2 sum w rho(|r_k|^2 / w) + 1/2 |prior rows|^2 in z.
 Eigen::VectorXd gradient(const WhitenedProblem& problem, const RobustTerms& terms);
 /// Its exact second derivative.
 Eigen::MatrixXd hessian(const WhitenedProblem& problem, const RobustTerms& terms);

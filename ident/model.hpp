@@ -1,31 +1,48 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <string>
 #include <vector>
 
 namespace modebank {
 
-/// Shape of the linear increment model x[k+1] = x[k] + A x[k] + B u[k] (+ c) + w[k] (Salvi et al. 2025, eq. 1).
-/// theta is the row-major vec of [A B (c)]: row i of [A B (c)] predicts the increment of state i.
+/// Shape of the linear increment model x[k+1] = x[k] + A x[k] + B u[k] (+ c) + w[k] (Salvi et al. 2025, eq. 1) and of
+/// its extension to lags, a VARX model in increment form (Ljung 1999, section 4.2):
+///   x[k+1] = x[k] + sum_{i=1..state_lags} A_i x[k+1-i] + sum_{j=0..input_lags-1} B_j u[k+1-input_delay-j] (+ c) +
+///   w[k].
+/// theta is the row-major vec of [A_1 A_2 ... B_0 B_1 ... (c)]: row i predicts the increment of state i. In state space
+/// the lagged samples are states of their own: z[k] = [x[k]; x[k-1]; ...] has dimension n = states * state_lags and the
+/// inputs that act on transition k are v[k] = [u[k+1-d]; u[k-d]; ...].
 /// This header is the one place where that equation stands; fits, filters and simulation call it.
 struct LinearStructure {
-  Eigen::Index states = 1;  ///< n
-  Eigen::Index inputs = 0;  ///< m
-  bool intercept = false;   ///< whether c is estimated
+  Eigen::Index states = 1;       ///< measured states
+  Eigen::Index inputs = 0;       ///< input channels
+  bool intercept = false;        ///< whether c is estimated
+  Eigen::Index state_lags = 1;   ///< samples x[k], x[k-1], ... that predict x[k+1]; at least 1
+  Eigen::Index input_lags = 1;   ///< input samples that act on one transition; at least 1
+  Eigen::Index input_delay = 1;  ///< samples from an input to its first effect; 0: u[k+1] acts on x[k+1]
 
-  Eigen::Index regressors() const { return states + inputs + (intercept ? 1 : 0); }  ///< q, columns of [A B (c)]
-  Eigen::Index parameters() const { return states * regressors(); }                  ///< p = n q
-  /// "A", "B1", "B2", "c" for one state; "A11", "A12", "B11", ..., "c1" for several.
+  Eigen::Index dimension() const { return states * state_lags; }                                   ///< n, size of z
+  Eigen::Index acting_inputs() const { return inputs * input_lags; }                               ///< m, size of v
+  Eigen::Index regressors() const { return dimension() + acting_inputs() + (intercept ? 1 : 0); }  ///< q
+  Eigen::Index parameters() const { return states * regressors(); }                                ///< p
+  bool lagged() const { return state_lags != 1 || input_lags != 1 || input_delay != 1; }
+  /// First transition of a run whose regressors lie inside the run.
+  Eigen::Index first_transition() const {
+    return std::max({Eigen::Index{0}, state_lags - 1, input_delay + input_lags - 2});
+  }
+  /// "A", "B1", "B2", "c" for one state; "A11", "A12", "B11", ..., "c1" for several. With lags each is followed by the
+  /// samples between it and what it predicts: "A_lag1", "A_lag2", "B1_lag0".
   std::vector<std::string> parameter_names() const;
   bool operator==(const LinearStructure&) const = default;
 };
 
-/// phi = [x; u; (1)], the q regressors of one transition.
-template <class X, class U, class Phi>
-void fill_regressor(const LinearStructure& s, const X& x, const U& u, Phi&& phi) {
-  phi.head(s.states) = x;
-  phi.segment(s.states, s.inputs) = u;
+/// phi = [z; v; (1)], the q regressors of one transition.
+template <class Z, class V, class Phi>
+void fill_regressor(const LinearStructure& s, const Z& z, const V& v, Phi&& phi) {
+  phi.head(s.dimension()) = z;
+  phi.segment(s.dimension(), s.acting_inputs()) = v;
   if (s.intercept) phi(s.regressors() - 1) = typename std::decay_t<Phi>::Scalar(1);
 }
 
@@ -41,7 +58,7 @@ void propagate(const MatrixA& A, const MatrixB& B, const VectorC& c, const X& x,
   }
 }
 
-/// The matrices of one parameter vector.
+/// The matrices of one parameter vector, in state space: with lags A is in companion form.
 struct LinearModel {
   Eigen::MatrixXd A;  ///< n x n, increment form: the full form is I + A
   Eigen::MatrixXd B;  ///< n x m
@@ -58,6 +75,7 @@ struct LinearModel {
   Eigen::MatrixXd full_form() const { return A + Eigen::MatrixXd::Identity(A.rows(), A.cols()); }
 };
 
+/// theta with its companion rows, and back; pack ignores the companion rows.
 LinearModel unpack(const LinearStructure& structure, const Eigen::VectorXd& theta);
 Eigen::VectorXd pack(const LinearStructure& structure, const LinearModel& model);
 

@@ -2,21 +2,56 @@
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <limits>
+#include <stdexcept>
 #include <vector>
+
+#include "ident/not_a_number.hpp"
 
 namespace modebank {
 
 namespace {
 
-/// Writes transitions start .. start + count - 1 of `run` to the rows from `first` on.
-void fill_rows(const Trajectory& run, Index start, Index count, const LinearStructure& structure, Index first,
-               Transitions& transitions) {
-  for (Index k = 0; k < count; ++k) {
-    fill_regressor(structure, run.state.col(start + k), run.input.col(start + k),
-                   transitions.regressors.row(first + k).transpose());
-    transitions.increments.row(first + k) = (run.state.col(start + k + 1) - run.state.col(start + k)).transpose();
+/// Samples first .. first + count - 1 of one signal, one per row; NaN before the run.
+void copy_signal(const Eigen::MatrixXd& signals, Index signal, Index first, Index count, double* out) {
+  const double* const samples = signals.data() + signal;
+  const Index stride = signals.rows(), outside = std::clamp(-first, Index{0}, count);
+  std::fill_n(out, outside, not_a_number);
+  if (stride == 1) {
+    std::copy(samples + first + outside, samples + first + count, out + outside);
+  } else {
+    for (Index k = outside; k < count; ++k) out[k] = samples[(first + k) * stride];
   }
+}
+
+/// Writes transitions start .. start + count - 1 of `run` to the rows from `first` on; fill_regressor, column by
+/// column.
+void fill_rows(const Trajectory& run, Index start, Index count, const LinearStructure& s, Index first,
+               Transitions& transitions) {
+  const auto column = [first](Eigen::MatrixXd& matrix, Index j) { return matrix.col(j).data() + first; };
+  for (Index i = 0; i < s.state_lags; ++i)
+    for (Index j = 0; j < s.states; ++j)
+      copy_signal(run.state, j, start - i, count, column(transitions.regressors, i * s.states + j));
+  for (Index i = 0; i < s.input_lags; ++i)
+    for (Index j = 0; j < s.inputs; ++j)
+      copy_signal(run.input, j, start + 1 - s.input_delay - i, count,
+                  column(transitions.regressors, s.dimension() + i * s.inputs + j));
+  if (s.intercept) transitions.regressors.col(s.regressors() - 1).segment(first, count).setOnes();
+  for (Index j = 0; j < s.states; ++j) {
+    double* const increment = column(transitions.increments, j);
+    copy_signal(run.state, j, start + 1, count, increment);
+    const double* const samples = run.state.data() + j;
+    for (Index k = 0; k < count; ++k) increment[k] -= samples[(start + k) * run.state.rows()];
+  }
+}
+
+/// Weights of transitions start .. start + count - 1, each that of the sample it ends in.
+Eigen::VectorXd transition_weights(const Trajectory& run, Index start, Index count) {
+  if (run.weight.size() == 0) return {};
+  if (run.weight.size() != run.samples() || !(run.weight.array() >= 0.0).all() || !run.weight.allFinite())
+    throw std::invalid_argument("run '" + run.run + "' needs one finite nonnegative weight per sample");
+  return run.weight.segment(start + 1, count);
 }
 
 Transitions allocate(Index count, const LinearStructure& structure) {
@@ -53,25 +88,63 @@ Eigen::MatrixXd basis_of(const Eigen::VectorXd& scales, const Eigen::MatrixXd& V
 Transitions stack_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure) {
   Transitions transitions = allocate(count, structure);
   fill_rows(run, start, count, structure, 0, transitions);
+  transitions.weight = transition_weights(run, start, count);
   return transitions;
+}
+
+void fill_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure,
+                      Transitions& transitions) {
+  fill_rows(run, start, count, structure, 0, transitions);
 }
 
 Transitions finite_rows(const Transitions& transitions) {
   std::vector<Index> rows;
   for (Index k = 0; k < transitions.count(); ++k)
-    if (transitions.regressors.row(k).allFinite() && transitions.increments.row(k).allFinite()) rows.push_back(k);
-  return {transitions.regressors(rows, Eigen::all), transitions.increments(rows, Eigen::all)};
+    if (transitions.regressors.row(k).allFinite() && transitions.increments.row(k).allFinite() &&
+        !(transitions.weight.size() > 0 && transitions.weight(k) == 0.0))
+      rows.push_back(k);
+  Transitions kept{transitions.regressors(rows, Eigen::all), transitions.increments(rows, Eigen::all)};
+  if (transitions.weight.size() == 0 || rows.empty()) return kept;
+  kept.weight = transitions.weight(rows);
+  kept.weight /= kept.weight.mean();
+  const Eigen::VectorXd root = kept.weight.cwiseSqrt();
+  kept.regressors.array().colwise() *= root.array();
+  kept.increments.array().colwise() *= root.array();
+  return kept;
+}
+
+Transitions unweighted(const Transitions& transitions) {
+  if (transitions.weight.size() == 0) return transitions;
+  const Eigen::VectorXd inverse_root = transitions.weight.cwiseSqrt().cwiseInverse();
+  return {inverse_root.asDiagonal() * transitions.regressors, inverse_root.asDiagonal() * transitions.increments};
 }
 
 Transitions stack_training(const Recording& recording, const LinearStructure& structure) {
   Transitions all = allocate(recording.transitions(Role::train), structure);
+  const bool weighted = recording.weighted();
+  if (weighted) all.weight = Eigen::VectorXd::Ones(all.count());
   Index first = 0;
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train) continue;
     fill_rows(run, 0, run.transitions(), structure, first, all);
+    if (run.weight.size() > 0)
+      all.weight.segment(first, run.transitions()) = transition_weights(run, 0, run.transitions());
     first += run.transitions();
   }
-  return all.finite() ? all : finite_rows(all);
+  return all.finite() && !weighted ? all : finite_rows(all);
+}
+
+void for_each_training_block(const Recording& recording, const LinearStructure& structure,
+                             const std::function<void(const Transitions&)>& body) {
+  constexpr Index block = 16384;
+  if (recording.weighted()) return body(stack_training(recording, structure));  // weights are shares of all
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != Role::train) continue;
+    for (Index start = 0; start < run.transitions(); start += block) {
+      const Transitions t = stack_transitions(run, start, std::min(block, run.transitions() - start), structure);
+      body(t.finite() ? t : finite_rows(t));
+    }
+  }
 }
 
 Decomposition decompose(const Eigen::MatrixXd& X, double tolerance) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include "ident/not_a_number.hpp"
 
@@ -26,19 +28,55 @@ double normalised_mad(const Eigen::VectorXd& values) {
   return mad_to_sd * median((values.array() - median(values)).abs());
 }
 
+namespace {
+
+/// Smallest value up to which lies half of the weight; the mean of it and the next where that half is exact.
+double weighted_median(const Eigen::VectorXd& values, const Eigen::VectorXd& weights) {
+  std::vector<Index> order(static_cast<std::size_t>(values.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return values(a) < values(b); });
+  constexpr double rounding = 1e-12;  // of sums of weights that are equal in exact arithmetic
+  const double half = 0.5 * weights.sum();
+  double below = 0.0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    below += weights(order[i]);
+    if (below < half * (1.0 - rounding)) continue;
+    const bool exact = below <= half * (1.0 + rounding) && i + 1 < order.size();
+    return exact ? 0.5 * (values(order[i]) + values(order[i + 1])) : values(order[i]);
+  }
+  return not_a_number;
+}
+
+}  // namespace
+
+double normalised_mad(const Eigen::VectorXd& values, const Eigen::VectorXd& weights) {
+  const Eigen::VectorXd distance = (values.array() - weighted_median(values, weights)).abs();
+  return mad_to_sd * weighted_median(distance, weights);
+}
+
 Eigen::VectorXd robust_scale(const Transitions& transitions, const Decomposition& decomposition) {
   const Index N = transitions.count(), rank = decomposition.rank(), n = transitions.increments.cols();
   if (N <= rank) return Eigen::VectorXd::Constant(n, not_a_number);
   const Eigen::MatrixXd r = residuals(decomposition, transitions.increments);
+  const Eigen::VectorXd& weight = transitions.weight;
   Eigen::VectorXd scale(n);
-  for (Index i = 0; i < n; ++i) scale(i) = normalised_mad(r.col(i));
+  for (Index i = 0; i < n; ++i)
+    scale(i) = weight.size() > 0 ? normalised_mad(r.col(i).cwiseQuotient(weight.cwiseSqrt()), weight)
+                                 : normalised_mad(r.col(i));
   return scale * std::sqrt(static_cast<double>(N) / static_cast<double>(N - rank));
 }
 
-Eigen::VectorXd scale_floor(const Transitions& training, const Eigen::VectorXd& global_noise_variance) {
+Eigen::VectorXd scale_floor(const Recording& recording, const LinearStructure& structure,
+                            const Eigen::VectorXd& global_noise_variance) {
   Eigen::VectorXd floor = floor_share * global_noise_variance.cwiseSqrt();
+  Eigen::VectorXd norm = Eigen::VectorXd::Zero(floor.size());  // of the states
+  Index count = 0;
+  for_each_training_block(recording, structure, [&](const Transitions& block) {
+    count += block.count();
+    for (Index i = 0; i < norm.size(); ++i) norm(i) = std::hypot(norm(i), block.regressors.col(i).stableNorm());
+  });
   for (Index i = 0; i < floor.size(); ++i) {
-    const double rms = training.regressors.col(i).stableNorm() / std::sqrt(static_cast<double>(training.count()));
+    const double rms = norm(i) / std::sqrt(static_cast<double>(count));
     floor(i) = std::max(floor(i), std::numeric_limits<double>::epsilon() * rms);
     floor(i) = floor(i) > 0.0 ? std::max(floor(i), least_scale) : 1.0;
   }

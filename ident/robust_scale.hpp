@@ -11,12 +11,17 @@ double median(Eigen::VectorXd values);  ///< mean of the two middle ones for an 
 /// 1.4826 times the median absolute deviation from the median: consistent for the standard deviation of a Gaussian.
 double normalised_mad(const Eigen::VectorXd& values);
 
-/// Residual standard deviation per state (n): normalised_mad of the least-squares residuals times sqrt(N / (N - rank)).
-/// NaN where N <= rank leaves no degree of freedom.
+/// The same of a sample in which value i stands for weights(i) > 0 values.
+double normalised_mad(const Eigen::VectorXd& values, const Eigen::VectorXd& weights);
+
+/// Residual standard deviation per state (n): normalised_mad of the least-squares residuals times sqrt(N / (N - rank)),
+/// with the sample weights where there are some (of the residuals themselves, not of those multiplied by sqrt(w)). NaN
+/// where N <= rank leaves no degree of freedom.
 Eigen::VectorXd robust_scale(const Transitions& transitions, const Decomposition& decomposition);
 
 /// What no sigma may fall below, per state: 1e-3 of the global residual standard deviation. Noise-free data keep a
 /// floor at the states' rounding error, and constant zero data one of 1, so that whitened residuals stay finite.
-Eigen::VectorXd scale_floor(const Transitions& training, const Eigen::VectorXd& global_noise_variance);
+Eigen::VectorXd scale_floor(const Recording& recording, const LinearStructure& structure,
+                            const Eigen::VectorXd& global_noise_variance);
 
 }  // namespace modebank

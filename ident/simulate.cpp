@@ -2,9 +2,7 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
-#include <boost/random/bernoulli_distribution.hpp>
 #include <boost/random/discrete_distribution.hpp>
-#include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -12,6 +10,7 @@
 #include "ident/error.hpp"
 #include "ident/input_law.hpp"
 #include "ident/seed.hpp"
+#include "ident/simulation_parts.hpp"
 
 namespace modebank {
 
@@ -19,59 +18,42 @@ namespace {
 
 constexpr double row_sum_tolerance = 1e-9;
 
-void require(bool ok, const std::string& message) {
-  if (!ok) throw ConfigurationError("simulation: " + message);
-}
-
-void require_nonnegative(double value, const std::string& name) {
-  require(value >= 0.0 && std::isfinite(value), name + " = " + std::to_string(value) + " is negative or not finite");
-}
-
-void require_fraction(double value, const std::string& name) {
-  require(value >= 0.0 && value <= 1.0, name + " = " + std::to_string(value) + " is outside 0..1");
-}
-
 LinearStructure structure_of(const SimulationOptions& o) { return {o.states, o.inputs, o.intercept}; }
 
 void check_modes(const SimulationOptions& o) {
-  require(!o.modes.empty(), "no mode is given");
-  require(o.states >= 1 && o.inputs >= 0, "there must be at least one state and no negative number of inputs");
+  require_setting(!o.modes.empty(), "no mode is given");
+  require_setting(o.states >= 1 && o.inputs >= 0, "there must be at least one state and no negative number of inputs");
   const Index p = structure_of(o).parameters();
   for (const Eigen::VectorXd& theta : o.modes)
-    require(theta.size() == p && theta.allFinite(), "a mode has " + std::to_string(theta.size()) +
-                                                        " parameters; it needs " + std::to_string(p) + " finite ones");
-  require(o.process_sd.size() == 1 || o.process_sd.size() == o.modes.size(),
-          std::to_string(o.process_sd.size()) + " process_sd values for " + std::to_string(o.modes.size()) + " modes");
-  for (const double sd : o.process_sd) require_nonnegative(sd, "process_sd");
+    require_setting(
+        theta.size() == p && theta.allFinite(),
+        "a mode has " + std::to_string(theta.size()) + " parameters; it needs " + std::to_string(p) + " finite ones");
+  require_setting(
+      o.process_sd.size() == 1 || o.process_sd.size() == o.modes.size(),
+      std::to_string(o.process_sd.size()) + " process_sd values for " + std::to_string(o.modes.size()) + " modes");
+  for (const double sd : o.process_sd) require_nonnegative_setting(sd, "process_sd");
 }
 
 void check_transition(const Eigen::MatrixXd& T, Index modes) {
-  require(T.rows() == modes && T.cols() == modes, "the transition matrix is " + std::to_string(T.rows()) + " x " +
-                                                      std::to_string(T.cols()) + " for " + std::to_string(modes) +
-                                                      " modes");
-  require((T.array() >= 0.0).all(), "the transition matrix has a negative or undefined entry");
+  require_setting(T.rows() == modes && T.cols() == modes, "the transition matrix is " + std::to_string(T.rows()) +
+                                                              " x " + std::to_string(T.cols()) + " for " +
+                                                              std::to_string(modes) + " modes");
+  require_setting((T.array() >= 0.0).all(), "the transition matrix has a negative or undefined entry");
   for (Index i = 0; i < modes; ++i)
-    require(std::abs(T.row(i).sum() - 1.0) <= row_sum_tolerance,
-            "row " + std::to_string(i) + " of the transition matrix sums to " + std::to_string(T.row(i).sum()));
+    require_setting(std::abs(T.row(i).sum() - 1.0) <= row_sum_tolerance,
+                    "row " + std::to_string(i) + " of the transition matrix sums to " + std::to_string(T.row(i).sum()));
 }
 
 void check(const SimulationOptions& o) {
   check_modes(o);
   if (o.transition.size() > 0) check_transition(o.transition, static_cast<Index>(o.modes.size()));
-  require(o.dwell_samples == 0.0 || (o.dwell_samples >= 1.0 && std::isfinite(o.dwell_samples)),
-          "dwell_samples = " + std::to_string(o.dwell_samples) + " is neither 0 nor at least 1");
-  require(o.runs >= 1, "runs = " + std::to_string(o.runs) + " is below 1");
-  require(o.samples >= 2, "samples = " + std::to_string(o.samples) + " is below 2");
-  require(o.hold_samples >= 1, "hold_samples = " + std::to_string(o.hold_samples) + " is below 1");
-  require(o.dt_s > 0.0 && std::isfinite(o.dt_s), "dt_s = " + std::to_string(o.dt_s) + " is not positive");
-  require_nonnegative(o.measurement_sd, "measurement_sd");
-  require_nonnegative(o.outlier_sd, "outlier_sd");
-  require_nonnegative(o.input_amplitude, "input_amplitude");
-  require_nonnegative(o.input_quantum, "input_quantum");
-  require_fraction(o.outlier_fraction, "outlier_fraction");
-  require_fraction(o.standstill_fraction, "standstill_fraction");
-  require_fraction(o.equal_fraction, "equal_fraction");
-  require_fraction(o.standstill_fraction + o.equal_fraction, "standstill_fraction + equal_fraction");
+  require_setting(o.dwell_samples == 0.0 || (o.dwell_samples >= 1.0 && std::isfinite(o.dwell_samples)),
+                  "dwell_samples = " + std::to_string(o.dwell_samples) + " is neither 0 nor at least 1");
+  check_runs(o.runs, o.dt_s);
+  check_commands(o);
+  require_nonnegative_setting(o.measurement_sd, "measurement_sd");
+  require_nonnegative_setting(o.outlier_sd, "outlier_sd");
+  require_fraction_setting(o.outlier_fraction, "outlier_fraction");
 }
 
 /// Row-stochastic matrix of the mode chain; not used when every run keeps its mode.
@@ -111,13 +93,6 @@ Eigen::VectorXi draw_modes(const SimulationOptions& o, Index run, std::mt19937_6
   return modes;
 }
 
-Eigen::VectorXd draw_noise(Index size, double sd, std::mt19937_64& generator) {
-  boost::random::normal_distribution<double> standard;
-  Eigen::VectorXd noise(size);
-  for (double& value : noise) value = sd * standard(generator);
-  return noise;
-}
-
 /// The stepping law: true states from zero, the mode of sample k driving the transition to k + 1.
 Eigen::MatrixXd drive_states(const SimulationOptions& o, const Eigen::VectorXi& modes, const Eigen::MatrixXd& inputs,
                              std::mt19937_64& generator) {
@@ -128,29 +103,10 @@ Eigen::MatrixXd drive_states(const SimulationOptions& o, const Eigen::VectorXi& 
     const std::size_t s = static_cast<std::size_t>(modes(k));
     states.col(k + 1) = models[s].next(states.col(k), inputs.col(k)) +
                         draw_noise(o.states, o.process_sd.size() == 1 ? o.process_sd[0] : o.process_sd[s], generator);
-    require(states.col(k + 1).allFinite(), "mode " + std::to_string(s) + " is unstable: the state leaves all bounds");
+    require_setting(states.col(k + 1).allFinite(),
+                    "mode " + std::to_string(s) + " is unstable: the state leaves all bounds");
   }
   return states;
-}
-
-/// Measurement noise on every sample, an outlier on some.
-Eigen::MatrixXd measure(const SimulationOptions& o, const Eigen::MatrixXd& states, std::mt19937_64& generator) {
-  boost::random::bernoulli_distribution<double> is_outlier(o.outlier_fraction);
-  Eigen::MatrixXd measured = states;
-  for (Index k = 0; k < states.cols(); ++k) {
-    measured.col(k) += draw_noise(o.states, o.measurement_sd, generator);
-    const bool outlier = is_outlier(generator);
-    const Eigen::VectorXd error = draw_noise(o.states, o.outlier_sd, generator);
-    if (outlier) measured.col(k) += error;
-  }
-  return measured;
-}
-
-/// "00", "01", ...: as many digits as the last run needs, at least two, so that byte order is run order.
-std::string run_name(Index run, Index runs) {
-  const std::size_t width = std::max<std::size_t>(2, std::to_string(runs - 1).size());
-  const std::string digits = std::to_string(run);
-  return std::string(width - digits.size(), '0') + digits;
 }
 
 SimulatedRun simulate_run(const SimulationOptions& o, std::uint64_t seed, Index i) {
@@ -160,12 +116,14 @@ SimulatedRun simulate_run(const SimulationOptions& o, std::uint64_t seed, Index 
        process_generator = generator("simulate.process"), measurement_generator = generator("simulate.measurement");
   SimulatedRun run;
   run.mode = draw_modes(o, i, mode_generator);
-  run.measured.run = run_name(i, o.runs);
+  run.measured.run = simulated_run_name(i, o.runs);
   run.measured.role = i % 2 == 0 ? Role::train : Role::test;
   run.measured.time_s = Eigen::VectorXd::LinSpaced(o.samples, 0, static_cast<double>(o.samples - 1)) * o.dt_s;
   run.measured.input = draw_inputs(o, input_generator);
   run.measured.truth = drive_states(o, run.mode, run.measured.input, process_generator);
-  run.measured.state = measure(o, run.measured.truth, measurement_generator);
+  run.measured.state = run.measured.truth;
+  add_noise(run.measured.state, Eigen::VectorXd::Constant(o.states, o.measurement_sd),
+            {o.outlier_fraction, o.outlier_sd}, measurement_generator);
   return run;
 }
 

@@ -19,9 +19,21 @@ struct EnumNames<InputLaw> {
   static constexpr Names<3> values{"white", "hold", "drive"};
 };
 
+/// What a driver does.
+struct CommandOptions {
+  InputLaw input_law = InputLaw::drive;
+  Index hold_samples = 10;           ///< length of a command (law `drive`: its mean)
+  double input_amplitude = 0.5;      ///< commands are drawn from [-amplitude, amplitude] [input unit]
+  double input_quantum = 0.0;        ///< applied inputs are rounded to multiples of this; 0: none
+  double standstill_fraction = 0.1;  ///< share of commands with all inputs zero (law `drive`)
+  double equal_fraction = 0.3;       ///< share of commands with all inputs equal (law `drive`)
+  Index samples = 300;               ///< per run
+  Index inputs = 2;
+};
+
 /// A switching linear system x[k+1] = x + A_s x + B_s u (+ c_s) + w, w ~ N(0, Q_s), y = x + v, v ~ N(0, R), s a Markov
 /// chain.
-struct SimulationOptions {
+struct SimulationOptions : CommandOptions {
   std::vector<Eigen::VectorXd> modes;  ///< theta per mode, p entries each
   std::vector<double> process_sd;      ///< per mode or one for all, sqrt of the diagonal of Q [state unit]
   double measurement_sd = 0.0;         ///< sqrt of the diagonal of R [state unit]
@@ -30,18 +42,10 @@ struct SimulationOptions {
                                ///< / 2) mod K, so that even (training) and odd (test) runs both see every mode
   double outlier_fraction = 0.0;  ///< share of measured samples with an outlier
   double outlier_sd = 0.0;        ///< standard deviation of an outlier [state unit]
-  InputLaw input_law = InputLaw::drive;
-  Index hold_samples = 10;           ///< length of a command (law `drive`: its mean)
-  double input_amplitude = 0.5;      ///< commands are drawn from [-amplitude, amplitude] [input unit]
-  double input_quantum = 0.0;        ///< applied inputs are rounded to multiples of this; 0: none
-  double standstill_fraction = 0.1;  ///< share of commands with all inputs zero (law `drive`)
-  double equal_fraction = 0.3;       ///< share of commands with all inputs equal (law `drive`)
   Index runs = 12;
-  Index samples = 300;      ///< per run
   double dt_s = 1.0 / 6.5;  ///< sample period
   bool intercept = false;
   Index states = 1;
-  Index inputs = 2;
 };
 
 /// One simulated run: what a robot would have measured, and the truth.

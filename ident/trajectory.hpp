@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,10 @@ struct Channel {
 
 std::vector<std::string> names_of(const std::vector<Channel>& channels);
 
+/// Median interval (the upper one of an even count) between successive times, over all series; 0 without any.
+double median_period_s(const std::vector<const Eigen::VectorXd*>& times_s);
+double median_period_s(const Eigen::VectorXd& time_s);
+
 enum class Role { train, test };
 
 template <>
@@ -34,6 +39,10 @@ struct Trajectory {
   Eigen::MatrixXd input;   ///< m x N
   Eigen::MatrixXd truth;   ///< n x N true state, or empty
   double lag_s = 0.0;      ///< lag that was applied to the inputs
+  /// N or empty (all one). weight(k) belongs to the transition that ends in sample k, whose error it multiplies the
+  /// loss of; weight(0) is unused. At least 0, finite; 0 leaves the transition out. Only ratios matter: every fit
+  /// divides by the mean over its transitions.
+  Eigen::VectorXd weight;
 
   Index samples() const { return state.cols(); }
   /// Transition k leads from sample k to sample k + 1.
@@ -53,6 +62,10 @@ struct Recording {
     Index sum = 0;
     for (const Trajectory& run : runs) sum += run.role == role ? run.transitions() : 0;
     return sum;
+  }
+  /// Whether any run has sample weights.
+  bool weighted() const {
+    return std::any_of(runs.begin(), runs.end(), [](const Trajectory& run) { return run.weight.size() > 0; });
   }
   /// Median sample period over all runs [s]; 0 without any transition.
   double median_period_s() const;

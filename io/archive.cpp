@@ -1,5 +1,7 @@
 #include "io/archive.hpp"
 
+#include <fstream>
+
 #include "ident/error.hpp"
 #include "io/archive_file.hpp"
 #include "io/archive_layout.hpp"
@@ -29,6 +31,47 @@ void write_archive(const std::filesystem::path& path, const Archive& archive) {
   const std::string_view content = image.content();
   const UserBlock block = make_user_block(sha256_hex(content));
   replace_file(path, {std::string_view(block.data(), block.size()), content});
+}
+
+namespace {
+
+void stamp_hash(const std::filesystem::path& path) {
+  const UserBlock block = make_user_block(content_hash(path));
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.write(block.data(), block.size());
+  file.close();
+  if (!file) throw DataError("the hash could not be written");
+}
+
+}  // namespace
+
+WindowFits write_archive(const std::filesystem::path& path, const Archive& archive, Index count,
+                         const std::function<WindowFits(const WindowSink&)>& produce) {
+  const Recording& recording = archive.recording.value();
+  check_run_names(run_names(recording.runs));
+  const hdf5::Quiet quiet;
+  const Units units(recording);
+  WindowFits common;
+  replace_file(path, [&](const std::filesystem::path& temporary) {
+    {
+      const hdf5::Handle file = create_archive_file(temporary);
+      ArchiveWriter root(open_root(file));
+      layout::exchange_origin(root, archive);
+      root.group("data", {}, [&](ArchiveWriter& member) { layout::exchange_recording(member, recording); });
+      layout::exchange_part(root, "lag", archive.lag, {},
+                            [](ArchiveWriter& member, const LagReport& lag) { layout::exchange_lag(member, lag); });
+      root.group("windows", {}, [&](ArchiveWriter& member) {
+        common = produce([&](const WindowFits& fits, Index first) {
+          member.windows_from(static_cast<hsize_t>(first), static_cast<hsize_t>(fits.count()),
+                              static_cast<hsize_t>(count), run_names(recording.runs));
+          layout::exchange_windows(member, fits, recording.runs, units);
+        });
+      });
+      hdf5::check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "complete the archive");
+    }
+    stamp_hash(temporary);
+  });
+  return common;
 }
 
 Archive read_archive(const std::filesystem::path& path) {

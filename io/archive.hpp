@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,7 +10,10 @@
 #include "filter/bank.hpp"
 #include "filter/evaluate.hpp"
 #include "filter/scores.hpp"
+#include "ident/fit_window.hpp"
+#include "ident/lag_report.hpp"
 #include "ident/local_model.hpp"
+#include "ident/residual_tests.hpp"
 #include "ident/trajectory.hpp"
 #include "io/import.hpp"
 #include "mixture/select.hpp"
@@ -33,11 +37,18 @@ struct FilterEvaluation {
   std::vector<RunEvaluation> runs;
 };
 
+/// Residual tests of one model over all runs of the recording, in its order.
+struct ResidualTestSet {
+  std::string model;  ///< global (its one-step residuals), or a filter: bank, baseline or noise_only (its scores z)
+  std::vector<ResidualTests> runs;
+};
+
 /// What one execution produced, stage by stage; absent stages did not run.
 struct Archive {
   Provenance provenance;
   std::string config;  ///< fully resolved, itself a valid configuration file
   std::optional<Recording> recording;
+  std::optional<LagReport> lag;  ///< with data.lag_s = auto
   std::optional<WindowFits> windows;
   std::optional<MixtureResult> mixture;
   std::optional<Bank> bank;
@@ -45,6 +56,7 @@ struct Archive {
   std::optional<Bank> noise_only;
   std::vector<FilterEvaluation> evaluations;
   std::vector<SummaryRow> summary;
+  std::vector<ResidualTestSet> residual_tests;
 };
 
 inline constexpr const char* schema_version = "1.0";
@@ -56,6 +68,11 @@ void check_writable(const std::filesystem::path& path);
 /// Writes under a temporary name in the same folder, flushes, closes, hashes, renames. Throws DataError on failure and
 /// leaves nothing behind. The layout is described in README.md; every number is stored as computed.
 void write_archive(const std::filesystem::path& path, const Archive& archive);
+
+/// The same for an archive of data and windows alone whose `count` windows come from `produce` part by part
+/// (stream_windows): nothing of the size of the archive is held in memory. Returns what `produce` returns.
+WindowFits write_archive(const std::filesystem::path& path, const Archive& archive, Index count,
+                         const std::function<WindowFits(const WindowSink&)>& produce);
 
 /// Reads all stages that the file holds, bit by bit as written. Throws DataError for a file that is unreadable,
 /// truncated, damaged (its hash does not match), not a modebank archive, or of a newer major schema; ConfigurationError

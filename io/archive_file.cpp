@@ -92,24 +92,31 @@ namespace {
 
 constexpr std::size_t growth_bytes = std::size_t{4} << 20;  ///< memory is taken in steps of this
 
-hdf5::Handle memory_access() {
+hdf5::Handle file_access() {
   hdf5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the archive");
-  hdf5::check(H5Pset_fapl_core(access.id(), growth_bytes, false), "prepare the archive in memory");
   // The 1.8 format has checksums on all metadata and is read by every HDF5 since 2008, MATLAB's and Octave's included.
   hdf5::check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18), "choose the file format");
   return access;
 }
 
-hdf5::Handle create_in_memory(const hdf5::Handle& access) {
+hdf5::Handle memory_access() {
+  hdf5::Handle access = file_access();
+  hdf5::check(H5Pset_fapl_core(access.id(), growth_bytes, false), "prepare the archive in memory");
+  return access;
+}
+
+hdf5::Handle create_file(const std::string& name, const hdf5::Handle& access) {
   const hdf5::Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "prepare the archive");
   hdf5::check(H5Pset_userblock(creation.id(), user_block_bytes), "reserve the user block");
   hdf5::check(H5Pset_obj_track_times(creation.id(), false), "prepare the archive");
-  return {H5Fcreate("modebank", H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose, "create the archive in memory"};
+  return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose, "create the archive"};
 }
 
 }  // namespace
 
-ArchiveImage::ArchiveImage() : access_(memory_access()), file_(create_in_memory(access_)) {}
+ArchiveImage::ArchiveImage() : access_(memory_access()), file_(create_file("modebank", access_)) {}
+
+hdf5::Handle create_archive_file(const fs::path& path) { return create_file(path.string(), file_access()); }
 
 std::string_view ArchiveImage::content() const {
   hdf5::check(H5Fflush(file_.id(), H5F_SCOPE_GLOBAL), "complete the archive");

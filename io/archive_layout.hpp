@@ -5,13 +5,16 @@
 #include "io/archive.hpp"
 #include "io/archive_file.hpp"
 #include "io/archive_layout_filter.hpp"
+#include "io/archive_layout_lag.hpp"
+#include "io/archive_layout_residuals.hpp"
 #include "io/archive_sizes.hpp"
 #include "io/archive_stored.hpp"
 #include "io/archive_units.hpp"
 #include "io/run_names.hpp"
 #include "io/table_columns.hpp"
 
-/// The one description of the archive's layout; its part for banks and evaluations is archive_layout_filter.hpp. Every
+/// The one description of the archive's layout; its parts for banks and evaluations and for
+/// residual tests are archive_layout_filter.hpp and archive_layout_residuals.hpp. Every
 /// function names members once; `Io` is ArchiveWriter or ArchiveReader, so writing, reading and verification cannot
 /// drift apart. Letters: M windows, K modes, n states, m inputs, n_y outputs, p parameters, N samples, F features.
 namespace modebank::layout {
@@ -44,6 +47,7 @@ void exchange_recording(Io& io, R& recording) {
       member.field("state", run.state, {"N", "n"}, units.states());
       member.field("input", run.input, {"N", "m"}, units.inputs());
       member.optional_field("truth", run.truth, {"N", "n"}, units.states());
+      member.optional_field("weight", run.weight, {"N"});
     });
 }
 
@@ -57,12 +61,32 @@ void exchange_global(Io& io, G& global, const Unit& parameters, const Unit& stat
   io.derived_field("noise_variance", noise_variance, {"n"}, squared(states));
 }
 
+inline Unit window_units(const WindowFits& fits, const Units& units) {
+  return fits.model_parameters.empty() ? parameter_units(fits.structure, units.states(), units.inputs())
+                                       : unit_of(fits.model_parameters);
+}
+
+template <class Io, class A>
+void exchange_audit(Io& io, A& audit) {
+  io.optional_attribute("audit_batch_windows", audit.batch);
+  io.optional_attribute("audit_ceres_windows", audit.ceres);
+  io.optional_attribute("audit_checked", audit.checked);
+  io.optional_attribute("audit_cost_difference", audit.cost_difference);
+  io.optional_attribute("audit_parameter_difference", audit.parameter_difference);
+  io.optional_attribute("audit_replaced", audit.replaced);
+  io.optional_attribute("audit_lower", audit.lower);
+}
+
 template <class Io, class W>
 void exchange_windows(Io& io, W& fits, const std::vector<Trajectory>& runs, const Units& units) {
-  const Unit parameters = parameter_units(fits.structure, units.states(), units.inputs());
+  const Unit parameters = window_units(fits, units);
+  io.attribute("residual", fits.residual);
+  exchange_model_parameters(io, fits.model_parameters, "model_parameter");
+  exchange_structure(io, fits.structure, fits.model);
   io.attribute("length", fits.length);
   io.attribute("step", fits.step);
   io.attribute("loss", fits.loss);
+  exchange_audit(io, fits.audit);
   io.through(
       fits.windows, [&](const auto& windows) { return store_windows(windows, runs); },
       [&](const StoredWindows& stored) { return restore_windows(stored, runs, fits.length); },
@@ -78,9 +102,15 @@ void exchange_windows(Io& io, W& fits, const std::vector<Trajectory>& runs, cons
   io.field("information", fits.information, {"M", "p"});
   io.field("inlier_fraction", fits.inlier_fraction, {"M"});
   io.field("status", fits.status, {"M"});
+  io.optional_field("r_squared", fits.r_squared, {"M", "n"});
+  io.optional_field("aic", fits.aic, {"M"}, {"nat"});
+  io.optional_field("transitions", fits.transitions, {"M"});
+  io.optional_derived_field(
+      "standard_error", [&] { return fits.standard_errors(); }, {"M", "p"}, parameters);
+  io.optional_derived_field("t_value", [&] { return fits.t_values(); }, {"M", "p"});
   io.optional_field("prior_sd", fits.prior_sd, {"p"}, parameters);
-  exchange_structure(io, fits.structure);
-  std::vector<std::string> names = fits.structure.parameter_names();
+  if constexpr (Io::reads) io.finish([&] { restore_window_structure(fits, io.size("n"), io.size("p")); });
+  std::vector<std::string> names = fits.parameter_names();
   io.attribute_texts("parameter_names", names);
   io.group("global", io.known({"n", "p"}),
            [&](auto& member) { exchange_global(member, fits.global, parameters, units.states()); });
@@ -152,6 +182,7 @@ template <class Io, class A>
 void exchange_archive(Io& io, A& archive) {
   exchange_origin(io, archive);
   exchange_part(io, "data", archive.recording, {}, [](auto& member, auto& part) { exchange_recording(member, part); });
+  exchange_part(io, "lag", archive.lag, {}, [](auto& member, auto& part) { exchange_lag(member, part); });
   const Recording none;
   const Recording& recording = archive.recording ? *archive.recording : none;
   const Units units(recording);
@@ -161,7 +192,7 @@ void exchange_archive(Io& io, A& archive) {
   Unit parameters;
   if (archive.windows) {
     if (archive.windows->count() > 0) known.set("M", static_cast<hsize_t>(archive.windows->count()));
-    parameters = parameter_units(archive.windows->structure, units.states(), units.inputs());
+    parameters = window_units(*archive.windows, units);
   }
   exchange_part(io, "mixture", archive.mixture, known,
                 [&](auto& member, auto& part) { exchange_mixture(member, part, parameters); });
@@ -169,6 +200,8 @@ void exchange_archive(Io& io, A& archive) {
   exchange_part(io, "bank", archive.bank, {}, exchange_one);
   exchange_part(io, "baseline", archive.baseline, {}, exchange_one);
   exchange_part(io, "noise_only", archive.noise_only, {}, exchange_one);
+  io.optional_group("residual_tests", !archive.residual_tests.empty(), {},
+                    [&](auto& member) { exchange_residual_tests(member, archive.residual_tests, recording); });
   io.optional_group("evaluation", !archive.evaluations.empty() || !archive.summary.empty(), {},
                     [&](auto& member) { exchange_evaluation(member, archive, recording, units); });
 }

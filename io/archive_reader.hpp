@@ -48,6 +48,10 @@ class ArchiveReader {
       from_stored(stored, value);
     });
   }
+  template <class T>
+  void optional_attribute(const std::string& name, T& value) {
+    if (hdf5::has_attribute(group_.id(), name)) attribute(name, value);
+  }
   void constant_attribute(const std::string& name, const std::string& expected);
   void attribute_texts(const std::string& name, std::vector<std::string>& texts);
   /// All attributes, in name order.
@@ -76,6 +80,11 @@ class ArchiveReader {
                      const Unit& = {}) {
     Derived unused;
     field(name, unused, letters);
+  }
+  template <class Make>
+  void optional_derived_field(const std::string& name, Make, const Letters& letters, const Unit& = {}) {
+    std::invoke_result_t<Make> unused;
+    if (has(name)) field(name, unused, letters);
   }
   template <class Derived>
   void optional_field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters,

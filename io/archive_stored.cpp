@@ -78,12 +78,48 @@ std::vector<Window> restore_windows(const StoredWindows& stored, const std::vect
   return windows;
 }
 
-LinearStructure restore_structure(Index states, Index parameters, bool intercept) {
-  LinearStructure structure{states, 0, intercept};
-  if (states > 0) structure.inputs = parameters / states - states - (intercept ? 1 : 0);
-  if (states < 1 || structure.inputs < 0 || structure.parameters() != parameters)
-    throw DataError(std::to_string(parameters) + " parameters do not fit " + std::to_string(states) + " states");
+StoredChannels store_model_parameters(const std::vector<ModelParameter>& parameters) {
+  StoredChannels stored;
+  for (const ModelParameter& parameter : parameters) {
+    stored.names.push_back(parameter.name);
+    stored.units.push_back(parameter.unit);
+  }
+  return stored;
+}
+
+std::vector<ModelParameter> restore_model_parameters(const StoredChannels& stored) {
+  std::vector<ModelParameter> parameters;
+  for (const Channel& channel : restore_channels(stored)) parameters.push_back({channel.name, channel.unit});
+  return parameters;
+}
+
+namespace {
+
+void check_lags(const LinearStructure& s, Index dimension) {
+  if (dimension < 1 || s.inputs < 0 || s.state_lags < 1 || s.input_lags < 1 || s.input_delay < 0 ||
+      dimension % s.state_lags != 0)
+    throw DataError(std::to_string(dimension) + " states, " + std::to_string(s.inputs) + " inputs and lags of " +
+                    std::to_string(s.state_lags) + ", " + std::to_string(s.input_lags) + ", " +
+                    std::to_string(s.input_delay) + " make no model");
+}
+
+[[noreturn]] void parameters_do_not_fit(Index parameters, Index states) {
+  throw DataError(std::to_string(parameters) + " parameters do not fit " + std::to_string(states) + " states");
+}
+
+}  // namespace
+
+LinearStructure restore_structure(LinearStructure structure, Index dimension, Index parameters) {
+  check_lags(structure, dimension);
+  structure.states = dimension / structure.state_lags;
+  if (structure.parameters() != parameters) parameters_do_not_fit(parameters, structure.states);
   return structure;
+}
+
+void restore_window_structure(WindowFits& fits, Index states, Index parameters) {
+  check_lags(fits.structure, states * std::max(Index{1}, fits.structure.state_lags));
+  fits.structure.states = states;
+  if (fits.parameter_count() != parameters) parameters_do_not_fit(parameters, states);
 }
 
 Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances) {
@@ -101,7 +137,7 @@ std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, 
 
 StoredBank store_bank(const Bank& bank) {
   const LinearStructure& s = bank.structure;
-  const Index n = s.states, p = s.parameters();
+  const Index n = s.dimension(), p = s.parameters();
   const auto columns = [&](Index rows, Index cols, const char* what, auto get) {
     return side_by_side(
         bank.modes.size(), rows, cols, what, [&](std::size_t k) -> const auto& { return get(bank.modes[k]); });
@@ -110,13 +146,22 @@ StoredBank store_bank(const Bank& bank) {
     return std::all_of(bank.modes.begin(), bank.modes.end(), [&](const Mode& mode) { return get(mode).size() == 0; });
   };
   StoredBank stored;
+  stored.model = bank.model;
   stored.structure = s;
+  if (!bank.motion_parameters.empty()) {
+    const Index p_motion = std::ssize(bank.motion_parameters);
+    stored.motion_parameters = columns(
+        p_motion, 1, "motion parameters", [](const Mode& mode) -> const auto& { return mode.motion_theta; });
+    stored.motion_standard_error = columns(
+        p_motion, 1, "motion standard error",
+        [](const Mode& mode) -> const auto& { return mode.motion_standard_error; });
+  }
   stored.c = columns(
       n, 1, "c", [](const Mode& mode) -> const auto& { return mode.model.c; });
   stored.A = columns(
       n, n, "A", [](const Mode& mode) -> const auto& { return mode.model.A; });
   stored.B = columns(
-      n, s.inputs, "B", [](const Mode& mode) -> const auto& { return mode.model.B; });
+      n, s.acting_inputs(), "B", [](const Mode& mode) -> const auto& { return mode.model.B; });
   stored.Q = columns(
       n, n, "Q", [](const Mode& mode) -> const auto& { return mode.Q; });
   const auto spread = [](const Mode& mode) -> const auto& { return mode.spread; };
@@ -138,19 +183,27 @@ StoredBank store_bank(const Bank& bank) {
 
 Bank restore_bank(const StoredBank& stored, Bank bank) {
   const LinearStructure& s = stored.structure;
-  const Index n = s.states, p = s.parameters();
-  if (stored.B.rows() != n * s.inputs)
+  const Index n = s.dimension(), p = s.parameters();
+  if (stored.B.rows() != n * s.acting_inputs())
     throw DataError("B has " + std::to_string(stored.B.rows() / n) + " inputs, the parameters " +
-                    std::to_string(s.inputs));
+                    std::to_string(s.acting_inputs()));
+  if (stored.motion_parameters.rows() != std::ssize(bank.motion_parameters) ||
+      stored.motion_standard_error.rows() != std::ssize(bank.motion_parameters))
+    throw DataError("the motion parameters are not as many as their names");
+  bank.model = stored.model;
   bank.structure = s;
   bank.modes.clear();
   for (Index k = 0; k < stored.weight.size(); ++k) {
     Mode mode;
-    mode.model = {one_of(stored.A, k, n, n), one_of(stored.B, k, n, s.inputs), stored.c.col(k)};
+    mode.model = {one_of(stored.A, k, n, n), one_of(stored.B, k, n, s.acting_inputs()), stored.c.col(k)};
     mode.Q = one_of(stored.Q, k, n, n);
     if (stored.spread.size() > 0) mode.spread = one_of(stored.spread, k, p, p);
     if (stored.standard_error.size() > 0) mode.standard_error = stored.standard_error.col(k);
     mode.weight = stored.weight(k);
+    if (stored.motion_parameters.size() > 0) {
+      mode.motion_theta = stored.motion_parameters.col(k);
+      mode.motion_standard_error = stored.motion_standard_error.col(k);
+    }
     bank.modes.push_back(std::move(mode));
   }
   bank.C = stored.C.transpose();

@@ -32,8 +32,14 @@ StoredWindows store_windows(const std::vector<Window>& windows, const std::vecto
 /// Every window must lie within its run.
 std::vector<Window> restore_windows(const StoredWindows& stored, const std::vector<Trajectory>& runs, Index length);
 
-/// n states, p parameters and the intercept decide the number of inputs. Throws DataError when they do not.
-LinearStructure restore_structure(Index states, Index parameters, bool intercept);
+/// Names and units of a motion model's parameters; where a search starts is not kept.
+StoredChannels store_model_parameters(const std::vector<ModelParameter>& parameters);
+std::vector<ModelParameter> restore_model_parameters(const StoredChannels& stored);
+
+/// The structure with the states that its dimension n says. Throws DataError when p parameters do not fit.
+LinearStructure restore_structure(LinearStructure stored, Index dimension, Index parameters);
+/// The same for windows, whose arrays have one entry per measured state; p is that of the motion model if there is one.
+void restore_window_structure(WindowFits& fits, Index states, Index parameters);
 
 /// The components' covariances, F*F x K.
 Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances);
@@ -41,18 +47,21 @@ std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, 
 
 /// A bank's modes side by side (K columns) and its matrices so that their memory is row-major.
 struct StoredBank {
+  std::string model;
   LinearStructure structure;
-  Eigen::VectorXd weight;          ///< K
-  Eigen::MatrixXd c;               ///< n x K
-  Eigen::MatrixXd A;               ///< n*n x K
-  Eigen::MatrixXd B;               ///< n*m x K
-  Eigen::MatrixXd Q;               ///< n*n x K
-  Eigen::MatrixXd parameters;      ///< p x K
-  Eigen::MatrixXd spread;          ///< p*p x K, empty without
-  Eigen::MatrixXd standard_error;  ///< p x K, empty without
-  Eigen::MatrixXd C;               ///< transposed
-  Eigen::MatrixXd R;               ///< transposed
-  Eigen::MatrixXd transition;      ///< transposed
+  Eigen::MatrixXd motion_parameters;      ///< p_motion x K, empty for linear models
+  Eigen::MatrixXd motion_standard_error;  ///< p_motion x K
+  Eigen::VectorXd weight;                 ///< K
+  Eigen::MatrixXd c;                      ///< n x K
+  Eigen::MatrixXd A;                      ///< n*n x K
+  Eigen::MatrixXd B;                      ///< n*m x K
+  Eigen::MatrixXd Q;                      ///< n*n x K
+  Eigen::MatrixXd parameters;             ///< p x K
+  Eigen::MatrixXd spread;                 ///< p*p x K, empty without
+  Eigen::MatrixXd standard_error;         ///< p x K, empty without
+  Eigen::MatrixXd C;                      ///< transposed
+  Eigen::MatrixXd R;                      ///< transposed
+  Eigen::MatrixXd transition;             ///< transposed
   Eigen::VectorXd initial_probability;
 };
 StoredBank store_bank(const Bank& bank);

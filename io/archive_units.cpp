@@ -67,9 +67,17 @@ Unit Units::of(const std::vector<Channel>& channels) {
 Unit Units::of(const std::vector<Channel>& channels, const std::vector<std::string>& names) {
   Unit result;
   for (const std::string& name : names) {
-    const auto found = std::find_if(channels.begin(), channels.end(), [&](const Channel& c) { return c.name == name; });
+    const std::string base = name.substr(0, name.rfind("[k"));
+    const auto found = std::find_if(channels.begin(), channels.end(),
+                                    [&](const Channel& c) { return c.name == name || c.name == base; });
     result.push_back(found == channels.end() ? std::string() : found->unit);
   }
+  return result;
+}
+
+Unit unit_of(const std::vector<ModelParameter>& parameters) {
+  Unit result;
+  for (const ModelParameter& parameter : parameters) result.push_back(parameter.unit);
   return result;
 }
 
@@ -77,9 +85,12 @@ Unit parameter_units(const LinearStructure& structure, const Unit& states, const
   Unit result;
   for (Eigen::Index i = 0; i < structure.states; ++i) {
     // A diagonal entry of A has unit 1 whatever the state's unit is.
-    for (Eigen::Index j = 0; j < structure.states; ++j)
-      result.push_back(i == j ? "1" : unit_ratio(at(states, i), at(states, j)));
-    for (Eigen::Index j = 0; j < structure.inputs; ++j) result.push_back(unit_ratio(at(states, i), at(inputs, j)));
+    for (Eigen::Index j = 0; j < structure.dimension(); ++j) {
+      const Eigen::Index state = j % structure.states;
+      result.push_back(i == state ? "1" : unit_ratio(at(states, i), at(states, state)));
+    }
+    for (Eigen::Index j = 0; j < structure.acting_inputs(); ++j)
+      result.push_back(unit_ratio(at(states, i), at(inputs, j % structure.inputs)));
     if (structure.intercept) result.push_back(at(states, i));
   }
   return result;

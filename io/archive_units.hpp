@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ident/model.hpp"
+#include "ident/motion_model.hpp"
 #include "ident/trajectory.hpp"
 
 namespace modebank {
@@ -33,7 +34,7 @@ class Units {
 
   Unit states() const { return of(states_); }
   Unit inputs() const { return of(inputs_); }
-  /// Of named channels, which may be more than the recorded ones (lagged states); unknown for those.
+  /// Of named channels, which may be more than the recorded ones: a lagged one, "wz[k-1]", has its channel's unit.
   Unit states(const std::vector<std::string>& names) const { return of(states_, names); }
   Unit inputs(const std::vector<std::string>& names) const { return of(inputs_, names); }
 
@@ -44,6 +45,9 @@ class Units {
   std::vector<Channel> states_;
   std::vector<Channel> inputs_;
 };
+
+/// Units of a motion model's parameters.
+Unit unit_of(const std::vector<ModelParameter>& parameters);
 
 /// Units of theta, the row-major vec of [A B (c)].
 Unit parameter_units(const LinearStructure& structure, const Unit& states, const Unit& inputs);

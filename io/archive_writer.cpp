@@ -14,6 +14,12 @@ hdf5::Handle ArchiveWriter::make_group(const std::string& name) {
           "create the group '" + name + "'"};
 }
 
+void ArchiveWriter::write_text_rows(const std::string& name, const std::vector<std::string>& values) {
+  const hdf5::Handle type = hdf5::array_text_type(part_->texts);
+  hdf5::write_rows(group_.id(), name, type.id(), type.id(), {part_->total}, part_->first, part_->count,
+                   hdf5::pack_texts(values, hdf5::longest(part_->texts)).data());
+}
+
 void ArchiveWriter::agree(const std::string& name, const Letters& letters, const hdf5::Shape& shape) {
   const std::string problem = sizes_.agree(letters, shape);
   if (!problem.empty()) throw std::invalid_argument(path_ + "/" + name + " has " + problem);
@@ -31,7 +37,9 @@ hdf5::Shape ArchiveWriter::shape_of(const std::string& name, const Letters& lett
                                   std::to_string(third));
     shape = {cols, second, third};
   }
-  agree(name, letters, shape);
+  hdf5::Shape whole = shape;
+  if (part_ && letters.front() == "M") whole.front() = part_->total;
+  agree(name, letters, whole);
   return shape;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ class ArchiveWriter {
   /// Makes a member group and runs `body(writer)` on it.
   template <class Body>
   void group(const std::string& name, const Sizes& known, Body body) {
+    if (!complete()) return;
     ArchiveWriter member(make_group(name), path_ + "/" + name);
     member.sizes_ = known;
     body(member);
@@ -33,16 +35,27 @@ class ArchiveWriter {
     if (present) group(name, known, body);
   }
 
+  /// From here on calls hand over windows first .. first + count - 1 of `total`: arrays over windows (letter M) are
+  /// written into their rows, everything else with the last of them. `texts`: all that their texts can be.
+  void windows_from(hsize_t first, hsize_t count, hsize_t total, std::vector<std::string> texts) {
+    part_ = Part{first, count, total, std::move(texts)};
+  }
+
   template <class T>
   void attribute(const std::string& name, const T& value) {
-    write_attribute(name, to_stored(value));
+    if (complete()) write_attribute(name, to_stored(value));
+  }
+  /// What older archives lack.
+  template <class T>
+  void optional_attribute(const std::string& name, const T& value) {
+    attribute(name, value);
   }
   template <class T>
   void constant_attribute(const std::string& name, const T& value) {
     attribute(name, value);
   }
   void attribute_texts(const std::string& name, const std::vector<std::string>& texts) {
-    hdf5::write_texts(group_.id(), hdf5::Place::attribute, name, texts, {texts.size()});
+    if (complete()) hdf5::write_texts(group_.id(), hdf5::Place::attribute, name, texts, {texts.size()});
   }
   /// Every pair becomes an attribute.
   void attributes(const std::vector<std::pair<std::string, std::string>>& pairs) {
@@ -53,6 +66,7 @@ class ArchiveWriter {
     hdf5::write_texts(group_.id(), hdf5::Place::dataset, name, {value}, {});
   }
   void texts(const std::string& name, const std::vector<std::string>& values, const Letters& letters) {
+    if (part_) return write_text_rows(name, values);
     agree(name, letters, {values.size()});
     hdf5::write_texts(group_.id(), hdf5::Place::dataset, name, values, {values.size()});
   }
@@ -63,8 +77,16 @@ class ArchiveWriter {
   void field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
              const Unit& unit = {}) {
     using Stored = decltype(to_stored(std::declval<typename Derived::Scalar>()));
-    const hdf5::Shape shape = shape_of(name, letters, static_cast<hsize_t>(values.rows()),
-                                       static_cast<hsize_t>(values.cols()), Derived::IsVectorAtCompileTime);
+    const bool rows_only = part_ && letters.front() == "M";
+    if (!rows_only && !complete()) return;
+    hdf5::Shape shape = shape_of(name, letters, static_cast<hsize_t>(values.rows()),
+                                 static_cast<hsize_t>(values.cols()), Derived::IsVectorAtCompileTime);
+    if (rows_only) {
+      shape.front() = part_->total;
+      hdf5::write_rows(group_.id(), name, hdf5::file_type<Stored>(), hdf5::memory_type<Stored>(), shape, part_->first,
+                       part_->count, values.data());
+      return complete() ? write_unit(name, unit, shape) : void();
+    }
     hdf5::write_array(group_.id(), hdf5::Place::dataset, name, hdf5::file_type<Stored>(), hdf5::memory_type<Stored>(),
                       shape, values.data());
     write_unit(name, unit, shape);
@@ -74,6 +96,11 @@ class ArchiveWriter {
   void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
                      const Unit& unit = {}) {
     field(name, values, letters, unit);
+  }
+  /// One that older files lack; `make` computes it only when it is written.
+  template <class Make>
+  void optional_derived_field(const std::string& name, Make make, const Letters& letters, const Unit& unit = {}) {
+    optional_field(name, make(), letters, unit);
   }
   /// An empty array is left out.
   template <class Derived>
@@ -119,9 +146,17 @@ class ArchiveWriter {
   void write_unit(const std::string& name, const Unit& unit, const hdf5::Shape& shape);
   void write_column_units(const std::string& name, const std::vector<std::string>& units);
 
+  struct Part {
+    hsize_t first, count, total;
+    std::vector<std::string> texts;
+  };
+  bool complete() const { return !part_ || part_->first + part_->count == part_->total; }
+  void write_text_rows(const std::string& name, const std::vector<std::string>& values);
+
   hdf5::Handle group_;
   std::string path_;
   Sizes sizes_;
+  std::optional<Part> part_;
 };
 
 }  // namespace modebank

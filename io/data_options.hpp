@@ -43,13 +43,18 @@ struct DataOptions {
   std::vector<std::string> truth;       ///< true states; as many as states, or none
   std::vector<std::string> state_unit;  ///< one per state, one for all, or none
   std::vector<std::string> input_unit;
+  /// Column of sample weights, at least 0 (Trajectory::weight); looked up as truth is: in the states file first. Empty:
+  /// none.
+  std::string weight;
   std::string time = "time";  ///< column of seconds
   Join join = Join::time;
   /// Column whose value separates runs inside one file: the run is named by it, after "<matched part>_" where inputs
   /// has a *. Join::time needs it in both files; else it is looked up in the states file first, as `time` is.
   std::string run;
-  double rate_hz = 0.0;  ///< 0: the inputs file's own times; else resampled (states linear, inputs held)
-  double lag_s = 0.0;    ///< inputs act this much later: at time t the input is u(t - lag_s), held
+  double rate_hz = 0.0;      ///< 0: the inputs file's own times; else resampled (states linear, inputs held)
+  double lag_s = 0.0;        ///< inputs act this much later: at time t the input is u(t - lag_s), held
+  bool lag_auto = false;     ///< lag_s is estimated on the training runs (ident/lag_choice.hpp)
+  double lag_range_s = 2.5;  ///< lags that the estimate searches, either way
   Missing missing = Missing::error;
   Disorder disorder = Disorder::error;
   std::vector<std::string> train;  ///< run names; empty: all not in test, or positions 0, 2, 4, ... in name order

@@ -54,6 +54,13 @@ std::size_t longest(const std::vector<std::string>& texts) {
   return bytes;
 }
 
+Handle array_text_type(const std::vector<std::string>& texts) {
+  Handle type = string_type(longest(texts));
+  // UTF-8 holds ASCII, and Octave's load gives up a whole group at a dataset that says UTF-8, such as /windows/run.
+  if (is_ascii(texts)) check(H5Tset_cset(type.id(), H5T_CSET_ASCII), "make an ASCII type");
+  return type;
+}
+
 std::string pack_texts(const std::vector<std::string>& texts, std::size_t bytes) {
   std::string cells(texts.size() * bytes, '\0');
   for (std::size_t i = 0; i < texts.size(); ++i) texts[i].copy(cells.data() + i * bytes, bytes);
@@ -76,6 +83,35 @@ hsize_t element_count(const Shape& shape) {
   return count;
 }
 
+namespace {
+
+/// A contiguous dataset without time stamps.
+Handle create_dataset(hid_t parent, const std::string& name, hid_t file_type, const Handle& space) {
+  const std::string what = quoted(Place::dataset, name);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare " + what);
+  check(H5Pset_obj_track_times(creation.id(), false), "prepare " + what);
+  return {H5Dcreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose,
+          "create " + what};
+}
+
+}  // namespace
+
+void write_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape,
+                hsize_t first, hsize_t count, const void* data) {
+  const std::string what = quoted(Place::dataset, name);
+  const Handle space = make_space(shape);
+  const Handle dataset = first == 0 ? create_dataset(parent, name, file_type, space)
+                                    : Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + what);
+  Shape offset(shape.size(), 0), extent = shape;
+  offset.front() = first;
+  extent.front() = count;
+  check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, offset.data(), nullptr, extent.data(), nullptr),
+        "select rows of " + what);
+  const Handle memory = make_space(extent);
+  if (element_count(extent) > 0)
+    check(H5Dwrite(dataset.id(), memory_type, memory.id(), space.id(), H5P_DEFAULT, data), "write " + what);
+}
+
 void write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,
                  const Shape& shape, const void* data) {
   const std::string what = quoted(place, name);
@@ -85,10 +121,7 @@ void write_array(hid_t parent, Place place, const std::string& name, hid_t file_
                            "create " + what);
     return check(H5Awrite(attribute.id(), memory_type, data), "write " + what);
   }
-  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare " + what);
-  check(H5Pset_obj_track_times(creation.id(), false), "prepare " + what);
-  const Handle dataset(H5Dcreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
-                       H5Dclose, "create " + what);
+  const Handle dataset = create_dataset(parent, name, file_type, space);
   if (element_count(shape) > 0)
     check(H5Dwrite(dataset.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write " + what);
 }
@@ -96,10 +129,8 @@ void write_array(hid_t parent, Place place, const std::string& name, hid_t file_
 void write_texts(hid_t parent, Place place, const std::string& name, const std::vector<std::string>& texts,
                  const Shape& shape) {
   const std::size_t bytes = longest(texts);
-  const Handle type = string_type(bytes);
-  // UTF-8 holds ASCII, and Octave's load gives up a whole group at a dataset that says UTF-8, such as /windows/run.
   const bool array = place == Place::dataset && !shape.empty();
-  if (array && is_ascii(texts)) check(H5Tset_cset(type.id(), H5T_CSET_ASCII), "make an ASCII type");
+  const Handle type = array ? array_text_type(texts) : string_type(bytes);
   write_array(parent, place, name, type.id(), type.id(), shape, pack_texts(texts, bytes).data());
 }
 

@@ -35,6 +35,8 @@ hid_t file_type() {
 
 /// Fixed-length, null-padded UTF-8; HDF5 knows no string type of length 0, so the least is 1.
 Handle string_type(std::size_t bytes);
+/// That of a dataset whose texts are among these: ASCII where all are.
+Handle array_text_type(const std::vector<std::string>& texts);
 std::size_t longest(const std::vector<std::string>& texts);
 /// Texts laid side by side in cells of `bytes` each, and back.
 std::string pack_texts(const std::vector<std::string>& texts, std::size_t bytes);
@@ -46,6 +48,9 @@ hsize_t element_count(const Shape& shape);
 /// Creates a dataset (contiguous, without time stamps) or attribute and writes it. An empty shape is a scalar.
 void write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,
                  const Shape& shape, const void* data);
+/// Writes rows first .. first + count - 1 of a dataset of the full `shape`, which is created with row 0.
+void write_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape,
+                hsize_t first, hsize_t count, const void* data);
 void write_texts(hid_t parent, Place place, const std::string& name, const std::vector<std::string>& texts,
                  const Shape& shape);
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "ident/error.hpp"
+#include "ident/lag_choice.hpp"
 #include "io/import_plan.hpp"
 #include "io/missing_values.hpp"
 #include "io/read_file.hpp"
@@ -42,10 +43,12 @@ struct Outcome {
   std::exception_ptr error;
 };
 
-Outcome try_read(const FilePlan& plan, const DataOptions& options) {
+Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_stand) {
   Outcome outcome;
   try {
     outcome.content = read_runs(plan, options);
+    for (RunStreams& run : outcome.content.runs)
+      if (!as_they_stand) put_in_order(run, options.disorder);
   } catch (...) {
     outcome.error = std::current_exception();
   }
@@ -53,7 +56,9 @@ Outcome try_read(const FilePlan& plan, const DataOptions& options) {
 }
 
 /// Reads plans in parallel; results arrive in order, which the hash over all of them needs.
-void read_all(const std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data) {
+std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data,
+                                 bool as_they_stand) {
+  std::vector<RunStreams> runs;
   Sha256 hash;
   std::vector<Outcome> outcomes(plans.size());  // the pipeline passes positions on: it would leak objects on an error
   std::size_t next = 0;
@@ -62,7 +67,7 @@ void read_all(const std::vector<FilePlan>& plans, const DataOptions& options, Im
     return next++;
   };
   const auto read = [&](std::size_t plan) {
-    outcomes[plan] = try_read(plans[plan], options);
+    outcomes[plan] = try_read(plans[plan], options, as_they_stand);
     return plan;
   };
   const auto collect = [&](std::size_t plan) {
@@ -70,7 +75,7 @@ void read_all(const std::vector<FilePlan>& plans, const DataOptions& options, Im
     if (outcome.error) std::rethrow_exception(outcome.error);
     for (const InputFile& file : outcome.content.files) hash.update(file.sha256);
     std::move(outcome.content.files.begin(), outcome.content.files.end(), std::back_inserter(data.files));
-    std::move(outcome.content.runs.begin(), outcome.content.runs.end(), std::back_inserter(data.recording.runs));
+    std::move(outcome.content.runs.begin(), outcome.content.runs.end(), std::back_inserter(runs));
   };
   const auto in_flight = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   using tbb::filter_mode;
@@ -78,15 +83,23 @@ void read_all(const std::vector<FilePlan>& plans, const DataOptions& options, Im
                                         tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, read) &
                                         tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, collect));
   data.data_hash = hash.hex();
+  return runs;
 }
 
-void sort_by_name(std::vector<Trajectory>& runs) {
-  std::sort(runs.begin(), runs.end(), [](const Trajectory& a, const Trajectory& b) { return a.run < b.run; });
+std::vector<std::string> run_names(const std::vector<RunStreams>& runs) {
+  std::vector<std::string> names;
+  for (const RunStreams& run : runs) names.push_back(run.run);
+  return names;
 }
 
-void set_roles(std::vector<Trajectory>& runs, const DataOptions& options) {
+template <class Run>
+void sort_by_name(std::vector<Run>& runs) {
+  std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.run < b.run; });
+}
+
+void set_roles(std::vector<RunStreams>& runs, const DataOptions& options) {
   const std::vector<std::optional<Role>> roles = assign_roles(run_names(runs), options.train, options.test);
-  std::vector<Trajectory> kept;
+  std::vector<RunStreams> kept;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!roles[i]) continue;
     runs[i].role = *roles[i];
@@ -109,22 +122,47 @@ void treat_missing_values(std::vector<Trajectory>& runs, Missing missing, std::v
   runs = std::move(treated);
 }
 
+/// All runs that have a role, in name order.
+std::vector<RunStreams> named_streams(const std::vector<FilePlan>& plans, const DataOptions& options,
+                                      ImportedData& data, bool as_they_stand) {
+  std::vector<RunStreams> runs = read_all(plans, options, data, as_they_stand);
+  sort_by_name(runs);
+  check_run_names(run_names(runs));
+  set_roles(runs, options);
+  return runs;
+}
+
+LagReport find_lags(const std::vector<RunStreams>& streams, const DataOptions& options) {
+  std::vector<RunPair> pairs;
+  for (const RunStreams& run : streams) pairs.push_back({run.run, run.role, run.states.stream, run.inputs.stream});
+  return choose_lag(pairs, {options.lag_range_s, options.rate_hz});
+}
+
 }  // namespace
 
 ImportedData import_data(const DataOptions& options) {
   ImportedData data;
   data.recording.states = make_channels("state", options.state, options.state_unit);
   data.recording.inputs = make_channels("input", options.input, options.input_unit);
-  const std::vector<FilePlan> plans = plan_import(options);
-  read_all(plans, options, data);
+  std::vector<RunStreams> streams = named_streams(plan_import(options), options, data, false);
+  if (options.lag_auto) data.lag = find_lags(streams, options);
   auto& runs = data.recording.runs;
-  sort_by_name(runs);
-  check_run_names(run_names(runs));
-  set_roles(runs, options);
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    runs.push_back(join_run(streams[i], options, data.lag ? data.lag->runs[i].applied() : InputClock{}));
+    streams[i] = {};
+  }
   treat_missing_values(runs, options.missing, data.notes);
   sort_by_name(runs);
-  check_run_names(run_names(runs));
+  check_run_names(modebank::run_names(runs));
   return data;
+}
+
+std::vector<RunStreams> read_streams(const DataOptions& options) {
+  ImportedData unused;
+  std::vector<FilePlan> plans = plan_import(options);
+  for (FilePlan& plan : plans)
+    for (CsvRequest& request : plan.requests) request.may_miss.assign(request.numbers.size(), true);
+  return named_streams(plans, options, unused, true);
 }
 
 std::vector<std::filesystem::path> data_files(const DataOptions& options) {

@@ -44,6 +44,10 @@ void check_options(const DataOptions& options) {
     throw ConfigurationError(fmt::format("data.rate_hz = {}: must be 0 to {}", options.rate_hz, highest_rate_hz));
   if (!std::isfinite(options.lag_s))
     throw ConfigurationError(fmt::format("data.lag_s = {}: must be finite", options.lag_s));
+  if (!(options.lag_range_s > 0.0) || !std::isfinite(options.lag_range_s))
+    throw ConfigurationError(fmt::format("data.lag_range_s = {}: must be above 0", options.lag_range_s));
+  if (options.lag_auto && options.input.empty())
+    throw ConfigurationError("data.lag_s = auto needs inputs (data.input): without one there is no lag");
 }
 
 /// Looks columns up in the headers of one plan's files and notes them in its requests.
@@ -104,6 +108,7 @@ void plan_columns(FilePlan& plan, const DataOptions& options) {
   plan.state = find.numbers(options.state, {states});
   plan.input = find.numbers(options.input, {inputs});
   plan.truth = find.numbers(options.truth, states_first);
+  if (!options.weight.empty()) plan.weight = {find.number(options.weight, states_first)};
   if (options.join == Join::row || states == inputs) {
     plan.inputs_time = plan.states_time = find.number(options.time, states_first);
     plan.inputs_runs = plan.states_runs = find.text(options.run, states_first);
@@ -113,11 +118,12 @@ void plan_columns(FilePlan& plan, const DataOptions& options) {
     plan.inputs_runs = find.text(options.run, {inputs});
     plan.states_runs = find.text(options.run, {states});
   }
-  // A sample without time has no place.
+  // A sample without time has no place, and one without weight should not be guessed at.
   for (CsvRequest& request : plan.requests)
     request.may_miss.assign(request.numbers.size(), options.missing != Missing::error);
   for (const ColumnRef time : {plan.inputs_time, plan.states_time})
     plan.requests[time.file].may_miss[time.column] = false;
+  for (const ColumnRef weight : plan.weight) plan.requests[weight.file].may_miss[weight.column] = false;
 }
 
 ColumnNames without_left_out(const ColumnNames& names, const DataOptions& options) {

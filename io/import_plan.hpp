@@ -22,6 +22,7 @@ struct FilePlan {
   std::vector<std::filesystem::path> paths;  ///< inputs file, then the states file if there is one
   std::vector<CsvRequest> requests;          ///< one per path
   std::vector<ColumnRef> state, input, truth;
+  std::vector<ColumnRef> weight;                 ///< one or none
   ColumnRef inputs_time, states_time;            ///< the same column where rows correspond
   std::size_t inputs_runs = 0, states_runs = 0;  ///< files whose text column holds the rows' run names, if any
 

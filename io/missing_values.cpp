@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "ident/error.hpp"
-#include "ident/not_a_number.hpp"
+#include "ident/join_streams.hpp"
 
 namespace modebank {
 
@@ -19,17 +17,9 @@ Trajectory stretch(const Trajectory& run, Index first, Index samples) {
   part.time_s = run.time_s.segment(first, samples);
   part.state = run.state.middleCols(first, samples);
   part.input = run.input.middleCols(first, samples);
+  if (run.weight.size() > 0) part.weight = run.weight.segment(first, samples);
   if (run.truth.cols() > 0) part.truth = run.truth.middleCols(first, samples);
   return part;
-}
-
-/// Median interval; 0 without any.
-double median_period(const Eigen::VectorXd& time_s) {
-  if (time_s.size() < 2) return 0.0;
-  Eigen::VectorXd period = time_s.tail(time_s.size() - 1) - time_s.head(time_s.size() - 1);
-  const auto middle = period.begin() + period.size() / 2;
-  std::nth_element(period.begin(), middle, period.end());
-  return *middle;
 }
 
 bool known(const Trajectory& run, Index k) { return run.state.col(k).allFinite() && run.input.col(k).allFinite(); }
@@ -40,18 +30,8 @@ bool known(const Trajectory& run, Index k) { return run.state.col(k).allFinite()
 
 }  // namespace
 
-void blank_gaps(const Eigen::VectorXd& stream_time_s, const Eigen::VectorXd& time_s, Eigen::MatrixXd& values) {
-  const double longest = gap_periods * median_period(stream_time_s);
-  Index j = 0;  // the stream's first sample at or after time_s(k)
-  for (Index k = 0; k < time_s.size(); ++k) {
-    while (j < stream_time_s.size() && stream_time_s(j) < time_s(k)) ++j;
-    const bool between = j > 0 && j < stream_time_s.size() && stream_time_s(j) != time_s(k);
-    if (between && stream_time_s(j) - stream_time_s(j - 1) > longest) values.col(k).setConstant(not_a_number);
-  }
-}
-
 std::vector<Trajectory> split_at_gaps(const Trajectory& run, bool predict) {
-  const double longest = gap_periods * median_period(run.time_s);
+  const double longest = gap_periods * median_period_s(run.time_s);
   std::vector<Trajectory> parts;
   for (Index first = 0; first < run.samples();) {
     if (!predict && !known(run, first)) {

@@ -7,12 +7,6 @@
 
 namespace modebank {
 
-/// Samples further apart than this many median periods of their file have a gap between them.
-inline constexpr double gap_periods = 5.0;
-
-/// Makes values NaN that were interpolated across a gap of the stream they come from (`stream_time_s`, increasing).
-void blank_gaps(const Eigen::VectorXd& stream_time_s, const Eigen::VectorXd& time_s, Eigen::MatrixXd& values);
-
 /// The stretches of a run without a gap in time and, unless `predict`, in which every state and input is known; named
 /// RUN.1, RUN.2, ... (RUN itself when it is whole). A stretch of one sample holds no transition and is left out. Throws
 /// DataError when none is left.

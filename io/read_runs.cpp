@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
 
-#include <algorithm>
 #include <map>
 #include <numeric>
 
 #include "ident/error.hpp"
-#include "io/join_streams.hpp"
-#include "io/missing_values.hpp"
 #include "io/read_file.hpp"
 #include "io/sha256.hpp"
 
@@ -17,7 +14,6 @@ namespace modebank {
 
 namespace {
 
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Rows = std::vector<std::size_t>;
 using RunRows = std::map<std::string, Rows>;  // sorted by run name, byte order
@@ -57,33 +53,31 @@ class RowReader {
     return runs;
   }
 
-  /// The rows in order of time; of those that share a time the first in the file.
-  Rows in_order(ColumnRef time, Rows rows) const {
-    const std::vector<double>& time_s = tables_[time.file].numbers[time.column];
-    std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
-    rows.erase(
-        std::unique(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return time_s[a] == time_s[b]; }),
-        rows.end());
-    return rows;
+  FileStream stream(ColumnRef time, const std::vector<ColumnRef>& refs, const Rows& rows) const {
+    FileStream result;
+    result.stream.time_s = column(time, rows);
+    result.stream.values.resize(static_cast<Index>(refs.size()), static_cast<Index>(rows.size()));
+    for (std::size_t i = 0; i < refs.size(); ++i)
+      result.stream.values.row(static_cast<Index>(i)) = column(refs[i], rows).transpose();
+    for (const std::size_t row : rows) result.line.push_back(tables_[time.file].line[row]);
+    result.file = plan_.paths[time.file].string();
+    result.time_column = plan_.requests[time.file].numbers[time.column];
+    return result;
   }
 
-  VectorXd times(ColumnRef time, const Rows& rows) const {
-    VectorXd time_s = column(time, rows);
-    for (Index k = 1; k < time_s.size(); ++k)
-      if (!(time_s(k) > time_s(k - 1)))
-        throw DataError(fmt::format("{}: column {}: {} after {}: time going backwards or repeated",
-                                    place(time.file, rows[k]), plan_.requests[time.file].numbers[time.column],
-                                    time_s(k), time_s(k - 1)));
-    return time_s;
-  }
-
-  MatrixXd columns(const std::vector<ColumnRef>& refs, const Rows& rows) const {
-    MatrixXd values(static_cast<Index>(refs.size()), static_cast<Index>(rows.size()));
-    for (std::size_t i = 0; i < refs.size(); ++i) values.row(static_cast<Index>(i)) = column(refs[i], rows).transpose();
+  /// Weights, none negative.
+  VectorXd weights(ColumnRef ref, const Rows& rows) const {
+    const VectorXd values = column(ref, rows);
+    for (Index k = 0; k < values.size(); ++k)
+      if (values(k) < 0.0)
+        throw DataError(
+            fmt::format("{}: column {}: {} is negative: a weight is at least 0, and 0 leaves the sample's "
+                        "transition out",
+                        place(ref.file, rows[static_cast<std::size_t>(k)]),
+                        plan_.requests[ref.file].numbers[ref.column], values(k)));
     return values;
   }
 
- private:
   VectorXd column(ColumnRef ref, const Rows& rows) const {
     const std::vector<double>& all = tables_[ref.file].numbers[ref.column];
     VectorXd values(static_cast<Index>(rows.size()));
@@ -91,6 +85,7 @@ class RowReader {
     return values;
   }
 
+ private:
   std::string place(std::size_t file, std::size_t row) const {
     return fmt::format("{}:{}", plan_.paths[file].string(), tables_[file].line[row]);
   }
@@ -115,45 +110,24 @@ void check_same_runs(const FilePlan& plan, const RunRows& inputs, const RunRows&
   require(states, inputs, plan.paths.back().string(), plan.paths.front().string());
 }
 
-std::string span(const VectorXd& time_s) { return fmt::format("{} to {} s", time_s(0), time_s(time_s.size() - 1)); }
-
-void check_samples(const FilePlan& plan, const std::string& run, Index samples, const Stream& states,
-                   const Stream& inputs, const DataOptions& options) {
-  if (samples >= 2) return;
-  const std::string lag = options.lag_s == 0.0 ? "" : fmt::format(", lag {} s", options.lag_s);
-  throw DataError(fmt::format(
-      "run \"{}\" has {} sample{}, but needs at least two: states {} ({}), inputs {} ({}){}{}", run, samples,
-      samples == 1 ? "" : "s", span(states.time_s), plan.paths[plan.states_time.file].string(), span(inputs.time_s),
-      plan.paths[plan.inputs_time.file].string(), lag, samples == 0 ? ": the streams do not overlap" : ""));
-}
-
 std::string run_name(const FilePlan& plan, const std::string& value, const DataOptions& options) {
   if (options.run.empty()) return plan.name;
   return plan.starred ? plan.name + "_" + value : value;
 }
 
-Trajectory join(const FilePlan& plan, const RowReader& reader, const std::string& name, Rows states_rows,
-                Rows inputs_rows, const DataOptions& options) {
-  if (options.disorder == Disorder::sort) {
-    states_rows = reader.in_order(plan.states_time, std::move(states_rows));
-    inputs_rows = reader.in_order(plan.inputs_time, std::move(inputs_rows));
-  }
-  const Stream states{reader.times(plan.states_time, states_rows), reader.columns(plan.state, states_rows)};
-  const Stream inputs{reader.times(plan.inputs_time, inputs_rows), reader.columns(plan.input, inputs_rows)};
-  Trajectory run;
+RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::string& name, const Rows& states_rows,
+                      const Rows& inputs_rows) {
+  RunStreams run;
   run.run = name;
-  run.lag_s = options.lag_s;
-  run.time_s = joint_times(states.time_s, inputs.time_s, {options.rate_hz, options.lag_s});
-  check_samples(plan, name, run.time_s.size(), states, inputs, options);
-  run.state = interpolate(states, run.time_s);
-  blank_gaps(states.time_s, run.time_s, run.state);
-  run.input = hold(inputs, run.time_s.array() - options.lag_s);
-  run.truth.resize(static_cast<Index>(plan.truth.size()), plan.truth.empty() ? 0 : run.time_s.size());
-  for (std::size_t i = 0; i < plan.truth.size(); ++i) {
-    const bool with_states = plan.rows_correspond() || plan.truth[i].file == plan.states_time.file;
-    const Stream truth{with_states ? states.time_s : inputs.time_s,
-                       reader.columns({plan.truth[i]}, with_states ? states_rows : inputs_rows)};
-    run.truth.row(static_cast<Index>(i)) = interpolate(truth, run.time_s);
+  run.states = reader.stream(plan.states_time, plan.state, states_rows);
+  run.inputs = reader.stream(plan.inputs_time, plan.input, inputs_rows);
+  for (const ColumnRef& truth : plan.truth) {
+    const bool with_states = plan.rows_correspond() || truth.file == plan.states_time.file;
+    run.truth.push_back({with_states, reader.column(truth, with_states ? states_rows : inputs_rows)});
+  }
+  for (const ColumnRef& ref : plan.weight) {
+    const bool with_states = plan.rows_correspond() || ref.file == plan.states_time.file;
+    run.weight.push_back({with_states, reader.weights(ref, with_states ? states_rows : inputs_rows)});
   }
   return run;
 }
@@ -170,7 +144,7 @@ FileContent read_runs(const FilePlan& plan, const DataOptions& options) {
   const RunRows states = plan.rows_correspond() ? inputs : reader.rows_by_run(plan.paths.size() - 1, has_run_column);
   check_same_runs(plan, inputs, states);
   for (const auto& [value, inputs_rows] : inputs)
-    result.runs.push_back(join(plan, reader, run_name(plan, value, options), states.at(value), inputs_rows, options));
+    result.runs.push_back(streams_of(plan, reader, run_name(plan, value, options), states.at(value), inputs_rows));
   return result;
 }
 

@@ -3,20 +3,20 @@
 #include <string>
 #include <vector>
 
-#include "ident/trajectory.hpp"
 #include "io/data_options.hpp"
 #include "io/import.hpp"
 #include "io/import_plan.hpp"
+#include "io/run_streams.hpp"
 
 namespace modebank {
 
 /// The content of one plan's files.
 struct FileContent {
-  std::vector<Trajectory> runs;  ///< sorted by name; roles not yet set
+  std::vector<RunStreams> runs;  ///< sorted by name; roles not yet set, samples not yet in order
   std::vector<InputFile> files;  ///< inputs before states
 };
 
-/// Reads one plan's files and joins their streams. Throws DataError (io/import.hpp).
+/// Reads one plan's files into streams, run by run. Throws DataError (io/import.hpp).
 FileContent read_runs(const FilePlan& plan, const DataOptions& options);
 
 }  // namespace modebank

@@ -65,6 +65,7 @@ class TemporaryFile {
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
+  const fs::path& path() const { return path_; }
   void write(std::string_view bytes) const { descriptor_.write(bytes); }
   void become(const fs::path& target) {
     descriptor_.sync();
@@ -103,11 +104,11 @@ std::string write_obstacle(const fs::path& path) {
   return {};
 }
 
-void replace_file(const fs::path& path, std::initializer_list<std::string_view> pieces) {
+void replace_file(const fs::path& path, const std::function<void(const fs::path&)>& fill) {
   try {
     if (const std::string obstacle = write_obstacle(path); !obstacle.empty()) throw DataError(obstacle);
     TemporaryFile temporary(path);
-    for (const std::string_view piece : pieces) temporary.write(piece);
+    fill(temporary.path());
     temporary.become(path);
     Descriptor(folder_of(path), O_RDONLY | O_DIRECTORY).sync();
   } catch (const DataError& error) {
@@ -115,6 +116,12 @@ void replace_file(const fs::path& path, std::initializer_list<std::string_view> 
   } catch (const fs::filesystem_error& error) {
     throw DataError("cannot write " + path.string() + ": " + error.code().message());
   }
+}
+
+void replace_file(const fs::path& path, std::initializer_list<std::string_view> pieces) {
+  replace_file(path, [&](const fs::path& temporary) {
+    for (const std::string_view piece : pieces) Descriptor(temporary, O_WRONLY | O_APPEND).write(piece);
+  });
 }
 
 }  // namespace modebank

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -15,5 +16,8 @@ std::string write_obstacle(const std::filesystem::path& path);
 /// the folder. A file under its final name is complete; on failure the temporary is removed, the old file stays and
 /// DataError gives the system's reason.
 void replace_file(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces);
+
+/// The same with a file that `fill` writes under its temporary name, which it is given.
+void replace_file(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& fill);
 
 }  // namespace modebank

@@ -18,8 +18,8 @@ struct SimulationLayout {
   double state_rate_hz = 65.0;
 };
 
-/// Truth columns are named true_<state>; `mode` counts from 0. Existing files of the same names are replaced (temporary
-/// name, then rename). Throws ConfigurationError when the folder cannot be made.
+/// Truth columns are named true_<state>; `mode` counts from 0. All files or none; existing ones of the same names are
+/// replaced. Throws ConfigurationError when the folder cannot be made or holds other runs' files.
 void write_simulation(const std::vector<SimulatedRun>& runs, const SimulationLayout& layout);
 
 }  // namespace modebank

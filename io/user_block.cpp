@@ -7,6 +7,7 @@
 #include <system_error>
 #include <vector>
 
+#include "ident/error.hpp"
 #include "io/sha256.hpp"
 
 namespace modebank {
@@ -38,6 +39,17 @@ std::vector<std::string> user_block_problems(const UserBlock& block, std::string
   if (odd != block.end())
     problems.push_back("byte " + std::to_string(odd - block.begin()) + " of the user block is not zero");
   return problems;
+}
+
+std::string content_hash(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(user_block_bytes));
+  Sha256 hash;
+  std::vector<char> buffer(std::size_t{1} << 20);
+  while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), file.gcount() > 0)
+    hash.update(buffer.data(), static_cast<std::size_t>(file.gcount()));
+  if (file.bad()) throw DataError("cannot read the file: " + std::generic_category().message(errno));
+  return hash.hex();
 }
 
 std::vector<std::string> hash_problems(const std::filesystem::path& path) {

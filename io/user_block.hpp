@@ -19,6 +19,9 @@ UserBlock make_user_block(std::string_view content_sha256);
 /// What is wrong with a block whose content has the given hash; empty when nothing is.
 std::vector<std::string> user_block_problems(const UserBlock& block, std::string_view content_sha256);
 
+/// SHA-256 of everything after a file's user block. Throws DataError when the file cannot be read.
+std::string content_hash(const std::filesystem::path& path);
+
 /// The same for a file's block and content; a file that cannot be read is a problem, too.
 std::vector<std::string> hash_problems(const std::filesystem::path& path);
 

@@ -4,6 +4,7 @@
 #include "io/archive.hpp"
 #include "io/archive_file.hpp"
 #include "io/read_stages.hpp"
+#include "io/user_block.hpp"
 
 namespace modebank {
 

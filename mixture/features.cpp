@@ -28,7 +28,7 @@ FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowCh
   if (static_cast<Index>(states.size()) != n)
     throw std::invalid_argument(fmt::format("features of {} states are given {} state names", n, states.size()));
   FeatureCloud cloud;
-  cloud.names = fits.structure.parameter_names();
+  cloud.names = fits.parameter_names();
   if (with_noise)
     for (const Channel& state : states) cloud.names.push_back("log_noise_variance_" + state.name);
   Eigen::VectorXd point(p + (with_noise ? n : 0));

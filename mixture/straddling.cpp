@@ -19,7 +19,8 @@ bool same_run(const WindowFits& fits, Index a, Index b) {
 
 std::vector<bool> straddling_windows(const WindowFits& fits) {
   std::vector<bool> straddling(static_cast<std::size_t>(fits.count()), false);
-  const auto freedom = static_cast<double>(fits.length - fits.structure.regressors());
+  const auto unknowns = static_cast<double>(fits.parameter_count()) / static_cast<double>(fits.structure.states);
+  const double freedom = static_cast<double>(fits.length) - unknowns;  // per state
   if (freedom <= 0.0) return straddling;
   const double threshold = boost::math::quantile(boost::math::fisher_f(freedom, freedom), significance);
   const Index offset = neighbour_offset(fits);

@@ -1,5 +1,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "app/config_file.hpp"
 #include "io/archive.hpp"
@@ -25,7 +26,8 @@ std::string numbers_of(const std::string& archive, const std::string& path) {
 
 std::string all_stages(const std::string& archive) {
   std::string text;
-  for (const char* stage : {"/data", "/windows", "/mixture", "/bank", "/baseline", "/noise_only", "/evaluation"})
+  for (const char* stage :
+       {"/data", "/windows", "/mixture", "/bank", "/baseline", "/noise_only", "/evaluation", "/residual_tests"})
     text += numbers_of(archive, stage);
   return text;
 }
@@ -37,6 +39,40 @@ TEST_F(Commands, RunWritesACompleteArchiveAndASummary) {
     EXPECT_NE(result.out.find(part), std::string::npos) << part;
   EXPECT_EQ(left_behind(), std::vector<std::string>{"out.h5"});
   EXPECT_EQ(modebank({"verify", archive()}).status, 0);
+}
+
+TEST_F(Commands, ResidualTestsAreInTheArchiveAndInTheSummary) {
+  const ProgramResult result = run();
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("residuals global"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("% of input correlations (train / test)"), std::string::npos) << result.out;
+  for (const char* model : {"global", "bank", "baseline", "noise_only"})
+    for (const char* name : {"00", "01"}) {
+      const std::string group = std::string("/residual_tests/") + model + "/" + name;
+      EXPECT_EQ(inspect(archive(), group + "/autocorrelation").at("shape"), nlohmann::json({26, 1})) << group;
+      EXPECT_EQ(inspect(archive(), group + "/cross_correlation").at("shape"), nlohmann::json({26, 1, 2})) << group;
+    }
+  const ProgramResult shown = modebank({"show", archive()});
+  EXPECT_NE(shown.out.find("R^2 of the increments"), std::string::npos) << shown.out;
+}
+
+/// A column of zeros and ones is the same as leaving the transitions out; the column named must hold weights.
+TEST_F(Commands, SampleWeightsComeFromAColumn) {
+  std::string text = csv_run(80, 1), weighted = "time,wz,left,right,w\n";
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  for (int k = 0; std::getline(lines, line); ++k) weighted += line + (k % 9 == 4 ? ",0\n" : ",3\n");
+  write("run_00.csv", weighted);
+  write("run_01.csv", weighted);
+  ASSERT_EQ(run({"--data.weight", "w"}).status, 0);
+  const Archive archived = read_archive(archive());
+  EXPECT_EQ(archived.recording->runs[0].weight(4), 0.0);
+  EXPECT_EQ(archived.windows->global.transitions, 79 - 9);
+  EXPECT_EQ(archived.windows->transitions(0), 25 - 3);
+  const ProgramResult negative = run({"--data.weight", "left"});
+  EXPECT_EQ(negative.status, 1);
+  EXPECT_NE(negative.err.find("run_00.csv:"), std::string::npos) << negative.err;
 }
 
 TEST_F(Commands, NumbersAreTheSameForAnyThreadCount) {
@@ -159,6 +195,51 @@ TEST_F(Commands, SimulateWritesRunsThatRunReads) {
   EXPECT_EQ(content.recording->runs.size(), 4u);
   EXPECT_EQ(content.recording->runs[0].samples(), 120);
   EXPECT_EQ(content.recording->runs[0].truth.cols(), 120);
+}
+
+TEST_F(Commands, SimulatedVehicleRunsWithItsLagUndone) {
+  const std::string folder = file("vehicle").string();
+  write("vehicle.ini",
+        "[data]\nstate = wz, vx\ninput = left, right\n[simulate]\nsystem = vehicle\nfriction = 0.06\nruns = 4\n"
+        "samples = 120\nlag_s = 0.4\noutput = " +
+            folder + "\n");
+  const ProgramResult simulated = modebank({"simulate", file("vehicle.ini").string()});
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  const auto score = [&](const char* lag) {
+    const ProgramResult result =
+        run({"--data.root", folder, "--data.inputs", "pro_*.csv", "--data.states", "imu_*.csv", "--data.truth",
+             "true_wz", "--data.input", "cmd_left, cmd_right", "--data.lag_s", lag});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const Archive content = read_archive(archive());
+    EXPECT_EQ(content.recording->runs.size(), 4u);
+    EXPECT_EQ(content.recording->runs[0].truth.rows(), 1);
+    return content.windows->global.noise_variance()(0);
+  };
+  const double undone = score("0.4");
+  EXPECT_LT(undone, 0.8 * score("0"));
+  EXPECT_LT(undone, 0.8 * score("-0.4"));
+}
+
+TEST_F(Commands, SimulateRefusesKeysOfTheOtherSystem) {
+  const auto refusal = [&](const char* system, const char* key, const char* value) {
+    write("sim.ini", "[data]\nstate = wz\ninput = left, right\n[simulate]\nsamples = 5\nsystem = " +
+                         std::string(system) + "\noutput = " + file("sim").string() + "\n");
+    const ProgramResult result = modebank({"simulate", file("sim.ini").string(), key, value});
+    EXPECT_EQ(result.status, 2) << key;
+    EXPECT_THAT(result.err, ::testing::HasSubstr(key + 2));
+    EXPECT_FALSE(std::filesystem::exists(file("sim"))) << "nothing is written";
+    return result.err;
+  };
+  EXPECT_THAT(refusal("vehicle", "--simulate.dwell_samples", "20"),
+              ::testing::HasSubstr("belongs to simulate.system = linear"));
+  refusal("linear", "--simulate.friction", "0.1, 0.5");
+  refusal("vehicle", "--simulate.friction", "0");
+  refusal("vehicle", "--simulate.drift", "0.9");
+  refusal("vehicle", "--simulate.system", "car");
+  write("three.ini", "[data]\nstate = wz\ninput = a, b, c\n[simulate]\nsystem = vehicle\n");
+  const ProgramResult three = modebank({"simulate", file("three.ini").string()});
+  EXPECT_EQ(three.status, 2);
+  EXPECT_THAT(three.err, ::testing::HasSubstr("left and right wheel speed"));
 }
 
 TEST_F(Commands, ThePapersOwnLayoutRunsByChangingDataOptionsOnly) {

@@ -78,7 +78,8 @@ def check_root(file):
     expect("config_hash", file.attrs["config_hash"], b"c" * 64)
     expect("data_hash", file.attrs["data_hash"], b"d" * 64)
     expect("root members", sorted(file), sorted(
-        ["config", "provenance", "data", "windows", "mixture", "bank", "baseline", "noise_only", "evaluation"]))
+        ["config", "provenance", "data", "lag", "windows", "mixture", "bank", "baseline", "noise_only", "evaluation",
+         "residual_tests"]))
     check_strings(file["config"], "config")
     expect("config", file["config"][()].decode(), "[window]\nlength = 5  # fünf\n")
     expect("Ceres", file["provenance"].attrs["Ceres"], b"2.1.0")
@@ -104,7 +105,22 @@ def check_data(file):
             state[3, 0] = np.nan
         expect(f"{run} state bits", group["state"][()].tobytes(), state.tobytes())
         expect(f"{run} input", group["input"][()], pattern(N, m, 0.0))
+    expect("weighted runs", [run for run in RUNS if "weight" in file["data"][run]], ["run 2"])
+    expect_array(file["data/run 2/weight"], (12,), "<f8")
+    expect("weight", file["data/run 2/weight"][()], pattern(1, 12, 0.5)[0])
     expect_array(file["data/run 2/truth"], (12, n), "<f8", STATE_UNITS)
+
+
+def check_lag(file):
+    group = file["lag"]
+    expect("correction", group.attrs["correction"], b"per_run")
+    expect("pooled lag", group.attrs["lag_s"], 0.25)
+    runs = group["runs"]
+    expect("lag runs", [name.decode() for name in runs["run"]], ["run 2", "Gelände.ä", "10"])
+    expect("lag status", list(runs["status"]), [b"at_edge", b"not_estimated", b"at_edge"])
+    expect("lag applied", runs["applied_lag_s"], np.array([0.0, 0.1, 0.2]))
+    expect("lag units", dict(zip(runs.dtype.names, runs.attrs["units"]))["lag_s"], b"s")
+    expect("lag scores", list(group["scores"]["correction"]), [b"none", b"drift"])
 
 
 def check_windows(file):
@@ -127,6 +143,15 @@ def check_windows(file):
     expect_array(group["information"], (M, p), "<f8")
     expect_array(group["inlier_fraction"], (M,), "<f8")
     expect_array(group["status"], (M,), "<i4")
+    expect_array(group["standard_error"], (M, p), "<f8", PARAMETER_UNITS)
+    expect_array(group["t_value"], (M, p), "<f8")
+    expect_array(group["r_squared"], (M, n), "<f8")
+    expect_array(group["aic"], (M,), "<f8", b"nat")
+    expect_array(group["transitions"], (M,), "<i4")
+    error = np.sqrt(np.diagonal(pattern(M, p * p, 2.0).reshape(M, p, p), axis1=1, axis2=2))
+    expect("standard_error", group["standard_error"][()], error)
+    expect("t_value", group["t_value"][()], pattern(M, p, 1.0) / error)
+    expect("aic", group["aic"][()], pattern(1, M, 13.0)[0])
     expect("parameters", group["parameters"][()], pattern(M, p, 1.0))
     expect("covariance", group["covariance"][()], pattern(M, p * p, 2.0).reshape(M, p, p))
     expect("rank", group["rank"][()], np.arange(1, M + 1))
@@ -225,17 +250,36 @@ def check_evaluation(file):
     expect("summary units", dict(zip(table.dtype.names, table.attrs["units"]))["rmse"], b"rad/s, m/s")
 
 
+def check_residual_tests(file):
+    expect("models", list(file["residual_tests"].attrs["models"]), [b"global", b"bank"])
+    T = 4
+    for model in ("global", "bank"):
+        for position, run in enumerate(RUNS):
+            group = file["residual_tests"][model][run]
+            expect_array(group["autocorrelation"], (T, n), "<f8")
+            expect_array(group["cross_correlation"], (T, n, m), "<f8")
+            expect_array(group["cross_correlation_band"], (n, m), "<f8")
+            expect_array(group["ljung_box_p"], (n,), "<f8")
+            expect("autocorrelation", group["autocorrelation"][()], pattern(T, n, 90.0 + position))
+            expect("cross_correlation", group["cross_correlation"][()], pattern(T, n * m, 91.0).reshape(T, n, m))
+            expect("band", group.attrs["autocorrelation_band"], 0.25)
+            expect("level", group.attrs["level"], 0.99)
+            expect("samples", group.attrs["samples"], 10 + position)
+
+
 def main():
     check_user_block(sys.argv[1])
     with h5py.File(sys.argv[1], "r") as file:
         check_root(file)
         check_data(file)
+        check_lag(file)
         check_windows(file)
         check_mixture(file)
         check_bank(file["bank"], K, True)
         check_bank(file["baseline"], 1, False)
         check_bank(file["noise_only"], K, False)
         check_evaluation(file)
+        check_residual_tests(file)
     for problem in problems:
         print(problem)
     return 1 if problems else 0

@@ -100,16 +100,13 @@ def single_state(rng):
     ols = sm.OLS(Y[:, 0], X).fit()
     rlm = sm.RLM(Y[:, 0], X, M=sm.robust.norms.HuberT(TUNING["huber"])).fit(
         update_scale=False, tol=1e-15, maxiter=2000, cov="H1")
-    r = rlm.resid / rlm.scale
-    slope = (np.abs(r) <= TUNING["huber"]).astype(float)
-    k = 1 + X.shape[1] / len(r) * slope.var() / slope.mean() ** 2  # statsmodels' H1 holds Huber's correction k^2
     sigma = np.array([0.06])
     return {
         "state": x.tolist(), "input": u.tolist(), "intercept": False, "sigma": sigma.tolist(),
         "ols": {"theta": ols.params.tolist(), "covariance": ols.cov_params().tolist(), "hc3": ols.cov_HC3.tolist(),
                 "noise_variance": ols.scale, "population_variance": float(np.mean(ols.resid**2))},
         "rlm": {"sigma": rlm.scale, "theta": rlm.params.tolist(),
-                "covariance": (rlm.bcov_scaled / k**2).tolist()},
+                "covariance": rlm.bcov_scaled.tolist()},
         "robust": robust_optima(X, Y, sigma),
     }
 
@@ -124,15 +121,17 @@ def two_states(rng):
     S = np.array([[fits[i].resid @ fits[j].resid / (L - q) for j in range(2)] for i in range(2)])
     robust = robust_optima(X, Y, sigma)
 
-    # Covariance block (i, j): sigma_i sigma_j [sum psi_i psi_j / (L - q)] / (mean psi'_i mean psi'_j) (X'X)^-1.
+    # Covariance block (i, j): sigma_i sigma_j K_i K_j [sum psi_i psi_j / (L - q)] / (mean psi'_i mean psi'_j) (X'X)^-1.
     r = (Y - X @ np.array(robust["huber"]).reshape(2, q).T) / sigma
     s = (r**2).sum(axis=1)
     c = TUNING["huber"]
     w = weight("huber", s)
     curvature = np.where(s <= c * c, 0.0, -w / (2 * s))
     psi = w[:, None] * r
-    slope = (w[:, None] + 2 * curvature[:, None] * r**2).mean(axis=0)
-    G = psi.T @ psi / (L - q) / np.outer(slope, slope)
+    slopes = w[:, None] + 2 * curvature[:, None] * r**2
+    slope = slopes.mean(axis=0)
+    K = 1 + q / L * slopes.var(axis=0) / slope**2
+    G = psi.T @ psi / (L - q) * np.outer(K / slope, K / slope)
     return {
         "state": x.tolist(), "input": u.tolist(), "intercept": True, "sigma": sigma.tolist(),
         "ols": {"theta": np.concatenate([f.params for f in fits]).tolist(),

@@ -10,8 +10,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-const std::vector<Loss> losses{Loss::trivial, Loss::huber, Loss::cauchy, Loss::softlone, Loss::tukey, Loss::arctan};
-
 /// fit_windows on one run of 60 samples; checks that nothing is printed and that numbers and status agree.
 WindowFits fit_quietly(const MatrixXd& state, const MatrixXd& input, const FitOptions& options) {
   ::testing::internal::CaptureStderr();
@@ -120,7 +118,8 @@ TEST_P(Degenerate, MostlyExactSamplesWithFewErrorsDoNotBreak) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, Degenerate,
-                         ::testing::Combine(::testing::ValuesIn(losses), ::testing::Values(Prior::none, Prior::global),
+                         ::testing::Combine(::testing::ValuesIn(test::all_losses),
+                                            ::testing::Values(Prior::none, Prior::global),
                                             ::testing::Values(CovarianceKind::model, CovarianceKind::sandwich)),
                          [](const auto& instance) {
                            return std::string(name_of(std::get<0>(instance.param))) + "_" +

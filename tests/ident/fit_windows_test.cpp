@@ -32,11 +32,6 @@ Recording mixed_recording() {
   return test::make_recording(runs);
 }
 
-bool same_bits(const MatrixXd& a, const MatrixXd& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
-}
-
 TEST(FitWindows, AreTheSameBitsForAnyThreadCount) {
   const Recording recording = mixed_recording();
   for (const Loss loss : {Loss::huber, Loss::tukey}) {
@@ -47,11 +42,11 @@ TEST(FitWindows, AreTheSameBitsForAnyThreadCount) {
       tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
       results.push_back(fit_windows(recording, options));
     }
-    EXPECT_TRUE(same_bits(results[0].parameters, results[1].parameters));
-    EXPECT_TRUE(same_bits(results[0].covariance, results[1].covariance));
-    EXPECT_TRUE(same_bits(results[0].noise_variance, results[1].noise_variance));
-    EXPECT_TRUE(same_bits(results[0].information, results[1].information));
-    EXPECT_TRUE(same_bits(results[0].prior_sd, results[1].prior_sd));
+    EXPECT_TRUE(test::same_bits(results[0].parameters, results[1].parameters));
+    EXPECT_TRUE(test::same_bits(results[0].covariance, results[1].covariance));
+    EXPECT_TRUE(test::same_bits(results[0].noise_variance, results[1].noise_variance));
+    EXPECT_TRUE(test::same_bits(results[0].information, results[1].information));
+    EXPECT_TRUE(test::same_bits(results[0].prior_sd, results[1].prior_sd));
     EXPECT_TRUE(results[0].status == results[1].status);
   }
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <string>
@@ -22,6 +23,14 @@ inline const Eigen::Vector3d skid_theta(-0.3, -0.4, 0.5);
 
 /// One case of tests/golden/ident_fits.json (written by ident_fits.py).
 inline nlohmann::json golden_fit(const std::string& name) { return read_golden("ident_fits").at(name); }
+
+inline const std::vector<Loss> all_losses{Loss::trivial,  Loss::huber, Loss::cauchy,
+                                          Loss::softlone, Loss::tukey, Loss::arctan};
+
+inline bool same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+}
 
 inline Trajectory make_run(const Eigen::MatrixXd& state, const Eigen::MatrixXd& input, Role role = Role::train) {
   Trajectory run;

@@ -93,9 +93,12 @@ TEST(Prior, LongWindowsHaveTheClosedFormPosterior) {
   const VectorXd theta =
       (X.transpose() * X / 0.01 + P).ldlt().solve(VectorXd(X.transpose() * y / 0.01 + P * e.prior.mean));
   const double s2 = (y - X * theta).squaredNorm() / 22;
+  // Degrees of freedom that the data take: the trace of the hat matrix.
+  const double f = ((X.transpose() * X / 0.01 + P).inverse() * X.transpose() * X / 0.01).trace();
+  const double unbiased = (y - X * theta).squaredNorm() / (25 - f);
   const LocalModel model = fit(e, run, 0, 25, Loss::trivial);
   EXPECT_TRUE(near(model.theta, theta, prior_rounding));
-  EXPECT_TRUE(near(model.covariance, (X.transpose() * X / s2 + P).inverse(), prior_rounding));
+  EXPECT_TRUE(near(model.covariance, (X.transpose() * X / unbiased + P).inverse(), prior_rounding));
   EXPECT_NEAR(model.noise_variance(0), s2, prior_rounding);
 }
 

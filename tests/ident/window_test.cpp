@@ -2,6 +2,7 @@
 
 #include "ident/local_model.hpp"
 #include "ident/seed.hpp"
+#include "ident/window_summary.hpp"
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -42,13 +43,17 @@ TEST(WindowFits, GivesBackWhatWasSet) {
   fits.resize(3);
   LocalModel model;
   model.theta = Eigen::VectorXd::LinSpaced(6, 1, 6);
-  model.covariance = Eigen::MatrixXd::Random(6, 6);
+  model.covariance = 4.0 * Eigen::MatrixXd::Identity(6, 6);
+  model.covariance(0, 5) = model.covariance(5, 0) = 0.5;
   model.noise_variance = Eigen::Vector2d(0.1, 0.2);
   model.condition = 7;
   model.rank = 4;
   model.information = Eigen::VectorXd::LinSpaced(6, 0, 1);
   model.inlier_fraction = 0.75;
   model.status = FitStatus::rank_deficient;
+  model.r_squared = Eigen::Vector2d(0.8, 0.9);
+  model.aic = -12.5;
+  model.transitions = 24;
   fits.set(1, model);
   const LocalModel back = fits.at(1);
   EXPECT_EQ(fits.count(), 3);
@@ -60,6 +65,29 @@ TEST(WindowFits, GivesBackWhatWasSet) {
   EXPECT_EQ(back.rank, model.rank);
   EXPECT_EQ(back.inlier_fraction, model.inlier_fraction);
   EXPECT_EQ(back.status, model.status);
+  EXPECT_TRUE(test::near(back.r_squared, model.r_squared, 0));
+  EXPECT_EQ(back.aic, model.aic);
+  EXPECT_EQ(back.transitions, model.transitions);
+  EXPECT_TRUE(test::near(fits.standard_errors().col(1), Eigen::VectorXd::Constant(6, 2.0), 0));
+  EXPECT_TRUE(test::near(fits.t_values().col(1), model.theta / 2.0, 0));
+}
+
+TEST(WindowSummary, HoldsMediansOfWhatIsDefined) {
+  WindowFits fits;
+  fits.structure = {1, 0, false};
+  fits.resize(4);
+  fits.parameters << 1.0, -6.0, 3.0, 100.0;
+  fits.covariance << 1.0, 4.0, 9.0, std::nan("");  // t values 1, -3, 1
+  fits.r_squared << 0.2, 0.4, std::nan(""), 0.9;
+  fits.aic << 1.0, 2.0, 3.0, std::nan("");
+  const WindowSummary summary = summarize(fits);
+  EXPECT_EQ(summary.parameter(0), 2.0);
+  EXPECT_EQ(summary.standard_error(0), 2.0);
+  EXPECT_EQ(summary.significant(0), 1.0 / 3.0);
+  EXPECT_EQ(summary.r_squared(0), 0.4);
+  EXPECT_EQ(summary.aic, 2.0);
+  fits.covariance.setConstant(std::nan(""));
+  EXPECT_TRUE(std::isnan(summarize(fits).significant(0)));
 }
 
 TEST(Seed, HasTheStatedMixing) {

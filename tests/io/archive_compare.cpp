@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstring>
 
 #include "tests/io/archive_fixture.hpp"
@@ -26,6 +27,28 @@ void expect_same(const Recording& actual, const Recording& expected) {
     EXPECT_TRUE(same_bits(a.state, e.state));
     EXPECT_TRUE(same_bits(a.input, e.input));
     EXPECT_TRUE(same_bits(a.truth, e.truth));
+    EXPECT_TRUE(same_bits(a.weight, e.weight));
+  }
+}
+
+void expect_same(const LagReport& actual, const LagReport& expected) {
+  EXPECT_EQ(actual.correction, expected.correction);
+  EXPECT_EQ(actual.lag.mean, expected.lag.mean);
+  EXPECT_EQ(actual.lag.between_sd, expected.lag.between_sd);
+  EXPECT_EQ(actual.lag.count, expected.lag.count);
+  EXPECT_EQ(actual.drift.mean, expected.drift.mean);
+  EXPECT_EQ(std::isnan(actual.drift.standard_error), std::isnan(expected.drift.standard_error));
+  ASSERT_EQ(actual.scores.size(), expected.scores.size());
+  EXPECT_EQ(actual.scores.back().correction, expected.scores.back().correction);
+  EXPECT_EQ(actual.scores.back().gain_standard_error, expected.scores.back().gain_standard_error);
+  ASSERT_EQ(actual.runs.size(), expected.runs.size());
+  for (std::size_t r = 0; r < actual.runs.size(); ++r) {
+    EXPECT_EQ(actual.runs[r].run, expected.runs[r].run);
+    EXPECT_EQ(actual.runs[r].status, expected.runs[r].status);
+    EXPECT_EQ(std::isnan(actual.runs[r].lag_s), std::isnan(expected.runs[r].lag_s));
+    EXPECT_EQ(actual.runs[r].match_windows, expected.runs[r].match_windows);
+    EXPECT_EQ(actual.runs[r].applied_lag_s, expected.runs[r].applied_lag_s);
+    EXPECT_EQ(actual.runs[r].applied_clock_drift, expected.runs[r].applied_clock_drift);
   }
 }
 
@@ -47,11 +70,24 @@ void expect_same(const WindowFits& actual, const WindowFits& expected) {
   EXPECT_TRUE(same_bits(actual.information, expected.information));
   EXPECT_TRUE(same_bits(actual.inlier_fraction, expected.inlier_fraction));
   EXPECT_EQ(actual.status, expected.status);
+  EXPECT_TRUE(same_bits(actual.r_squared, expected.r_squared));
+  EXPECT_TRUE(same_bits(actual.aic, expected.aic));
+  EXPECT_EQ(actual.transitions, expected.transitions);
   EXPECT_TRUE(same_bits(actual.prior_sd, expected.prior_sd));
   EXPECT_TRUE(same_bits(actual.global.theta, expected.global.theta));
   EXPECT_TRUE(same_bits(actual.global.covariance, expected.global.covariance));
   EXPECT_TRUE(same_bits(actual.global.residual_covariance, expected.global.residual_covariance));
   EXPECT_EQ(actual.global.transitions, expected.global.transitions);
+}
+
+void expect_same(const ResidualTests& a, const ResidualTests& e) {
+  EXPECT_EQ(a.samples, e.samples);
+  EXPECT_EQ(a.level, e.level);
+  EXPECT_EQ(a.autocorrelation_band, e.autocorrelation_band);
+  EXPECT_TRUE(same_bits(a.autocorrelation, e.autocorrelation));
+  EXPECT_TRUE(same_bits(a.cross_correlation, e.cross_correlation));
+  EXPECT_TRUE(same_bits(a.cross_correlation_band, e.cross_correlation_band));
+  EXPECT_TRUE(same_bits(a.ljung_box_p, e.ljung_box_p));
 }
 
 void expect_same(const Candidate& a, const Candidate& e) {
@@ -179,6 +215,7 @@ void expect_same(const Archive& actual, const Archive& expected) {
   expect_same(actual.provenance, expected.provenance);
   EXPECT_EQ(actual.config, expected.config);
   expect_same_part(actual.recording, expected.recording, "recording");
+  expect_same_part(actual.lag, expected.lag, "lag");
   expect_same_part(actual.windows, expected.windows, "windows");
   expect_same_part(actual.mixture, expected.mixture, "mixture");
   expect_same_part(actual.bank, expected.bank, "bank");
@@ -190,6 +227,13 @@ void expect_same(const Archive& actual, const Archive& expected) {
     ASSERT_EQ(actual.evaluations[f].runs.size(), expected.evaluations[f].runs.size());
     for (std::size_t r = 0; r < actual.evaluations[f].runs.size(); ++r)
       expect_same(actual.evaluations[f].runs[r], expected.evaluations[f].runs[r]);
+  }
+  ASSERT_EQ(actual.residual_tests.size(), expected.residual_tests.size());
+  for (std::size_t s = 0; s < actual.residual_tests.size(); ++s) {
+    EXPECT_EQ(actual.residual_tests[s].model, expected.residual_tests[s].model);
+    ASSERT_EQ(actual.residual_tests[s].runs.size(), expected.residual_tests[s].runs.size());
+    for (std::size_t r = 0; r < actual.residual_tests[s].runs.size(); ++r)
+      expect_same(actual.residual_tests[s].runs[r], expected.residual_tests[s].runs[r]);
   }
   ASSERT_EQ(actual.summary.size(), expected.summary.size());
   for (std::size_t i = 0; i < actual.summary.size(); ++i) expect_same(actual.summary[i], expected.summary[i]);

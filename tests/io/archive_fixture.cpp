@@ -27,12 +27,32 @@ Recording make_recording(Index n, Index m) {
     run.time_s = Eigen::VectorXd::LinSpaced(samples, 0.1, 3.0);
     run.state = pattern(n, samples, 1000.0 * static_cast<double>(r));
     run.input = pattern(m, samples, 0.0);
+    if (r == 0) run.weight = pattern(samples, 1, 0.5);
     if (r != 2) run.truth = pattern(n, samples, 7.0);
     run.lag_s = 0.1 * static_cast<double>(r);
     recording.runs.push_back(run);
   }
   recording.runs[0].state(0, 3) = not_a_number;
   return recording;
+}
+
+LagReport make_lag_report(const std::vector<Trajectory>& runs) {
+  LagReport report;
+  report.correction = LagCorrection::per_run;
+  report.lag = {0.25, 0.125, 0.5, 2};
+  report.drift = {-1e-3, not_a_number, 0.0, 0};
+  report.scores = {{LagCorrection::none, 35, 1.5, 0.25, 0.0, 0.0},
+                   {LagCorrection::drift, 35, 1.75, 0.125, 0.25, 0.0625}};
+  for (const Trajectory& run : runs) {
+    RunLag& entry = report.runs.emplace_back();
+    entry.run = run.run;
+    entry.status = run.role == Role::train ? LagStatus::at_edge : LagStatus::not_estimated;
+    entry.lag_s = run.role == Role::train ? -0.75 : not_a_number;
+    entry.match_windows = 3;
+    entry.applied_lag_s = run.lag_s;
+    entry.applied_clock_drift = 2e-3;
+  }
+  return report;
 }
 
 WindowFits make_windows_fits(const LinearStructure& structure) {
@@ -53,6 +73,10 @@ WindowFits make_windows_fits(const LinearStructure& structure) {
   fits.information.col(1).setConstant(not_a_number);
   fits.inlier_fraction = pattern(count, 1, 6.0);
   fits.status = Eigen::VectorXi::LinSpaced(count, 0, 3);
+  fits.r_squared = pattern(n, count, 12.0);
+  fits.r_squared(0, 1) = not_a_number;
+  fits.aic = pattern(count, 1, 13.0);
+  fits.transitions = Eigen::VectorXi::Constant(count, length);
   fits.prior_sd = pattern(p, 1, 8.0);
   fits.global = {pattern(p, 1, 9.0), pattern(p, p, 10.0), pattern(n, n, 11.0), 35};
   return fits;
@@ -131,6 +155,18 @@ RunEvaluation make_evaluation(Index n, Index samples, Index count) {
   return evaluation;
 }
 
+ResidualTests make_residual_tests(Index n, Index m, Index run) {
+  constexpr Index lags = 4;
+  ResidualTests tests;
+  tests.samples = 10 + run;
+  tests.autocorrelation = pattern(n, lags, 90.0 + static_cast<double>(run));
+  tests.cross_correlation = pattern(n * m, lags, 91.0);
+  tests.autocorrelation_band = 0.25;
+  tests.cross_correlation_band = pattern(m, n, 92.0);
+  tests.ljung_box_p = pattern(n, 1, 93.0);
+  return tests;
+}
+
 SummaryRow make_row(const std::string& filter, Role role, const std::string& run, Index n) {
   return {filter, role, run, 123, 2.5, pattern(n, 1, 80.0), 0.9, 0.02, 0.03, 0.01, 0.04, 0.1, not_a_number};
 }
@@ -158,6 +194,7 @@ Archive full_archive(Index n, Index m) {
   archive.config = "[window]\nlength = 5  # fünf\n";
   const LinearStructure structure{n, m, m == 1};
   archive.recording = make_recording(n, m);
+  archive.lag = make_lag_report(archive.recording->runs);
   archive.windows = make_windows_fits(structure);
   archive.mixture = make_mixture(*archive.windows);
   archive.bank = make_bank(structure, modes, true);
@@ -171,6 +208,10 @@ Archive full_archive(Index n, Index m) {
     archive.evaluations.push_back(evaluation);
     archive.summary.push_back(make_row(filter, Role::train, "run 2", n));
     archive.summary.push_back(make_row(filter, Role::test, "*", n));
+  }
+  for (const char* model : {"global", "bank"}) {
+    archive.residual_tests.push_back({model, {}});
+    for (Index r = 0; r < 3; ++r) archive.residual_tests.back().runs.push_back(make_residual_tests(n, m, r));
   }
   return archive;
 }

@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <boost/random/uniform_01.hpp>
 
 #include "filter/evaluate.hpp"
 #include "ident/error.hpp"
+#include "ident/fit_window.hpp"
 #include "ident/seed.hpp"
 #include "io/archive.hpp"
 #include "tests/io/archive_fixture.hpp"
@@ -35,6 +37,52 @@ TEST(ArchiveRoundTrip, EveryFieldBitByBitForOneStateAndTwoInputs) {
 TEST(ArchiveRoundTrip, ThreeStatesWithoutInputs) {
   const Archive archive = full_archive(3, 0);
   expect_same(round_trip(archive), archive);
+}
+
+/// One run of the linear system with a name beyond ASCII, 300 samples.
+Recording streamed_recording() {
+  Recording recording;
+  recording.states = {{"wz", "rad/s"}};
+  recording.inputs = {{"left", "m/s"}, {"right", "m/s"}};
+  Trajectory run;
+  run.run = "fünf";
+  run.time_s = Eigen::VectorXd::LinSpaced(300, 0.0, 29.9);
+  run.state = run.time_s.array().sin().matrix().transpose();
+  run.input.resize(2, 300);
+  run.input.row(0) = (1.7 * run.time_s.array()).cos().matrix().transpose();
+  run.input.row(1) = (0.6 * run.time_s.array()).sin().matrix().transpose();
+  recording.runs = {run};
+  return recording;
+}
+
+TEST(ArchiveRoundTrip, WindowsWrittenPartByPartAreTheWholeArchive) {
+  const Recording recording = streamed_recording();
+  FitOptions options;
+  const WindowFits whole = fit_windows(recording, options);
+  Archive archive;
+  archive.recording = recording;
+  const test::TemporaryFolder folder;
+  write_archive(folder.path() / "parts.h5", archive, whole.count(), [&](const WindowSink& sink) {
+    WindowFits part = whole;
+    constexpr Index part_windows = 100;
+    for (Index first = 0; first < whole.count(); first += part_windows) {
+      const Index count = std::min(part_windows, whole.count() - first);
+      part.resize(count);
+      for (Index i = 0; i < count; ++i) {
+        part.windows[static_cast<std::size_t>(i)] = whole.windows[static_cast<std::size_t>(first + i)];
+        part.set(i, whole.at(first + i));
+      }
+      sink(part, first);
+    }
+    return whole;
+  });
+  archive.windows = whole;
+  write_archive(folder.path() / "whole.h5", archive);
+  EXPECT_EQ(verify_archive(folder.path() / "parts.h5").problems, std::vector<std::string>());
+  const WindowFits parts = read_archive(folder.path() / "parts.h5").windows.value();
+  expect_same(read_archive(folder.path() / "parts.h5"), read_archive(folder.path() / "whole.h5"));
+  EXPECT_EQ(parts.parameters, whole.parameters);
+  EXPECT_EQ(parts.count(), whole.count());
 }
 
 TEST(ArchiveRoundTrip, AnyStageMayBeAbsent) {

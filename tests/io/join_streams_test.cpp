@@ -1,4 +1,4 @@
-#include "io/join_streams.hpp"
+#include "ident/join_streams.hpp"
 
 #include <gtest/gtest.h>
 

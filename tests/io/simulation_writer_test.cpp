@@ -3,6 +3,7 @@
 #include "ident/seed.hpp"
 #include "io/csv.hpp"
 #include "io/read_file.hpp"
+#include "io/simulation_files.hpp"
 #include "tests/io/import_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -126,6 +127,37 @@ TEST_F(SimulationWriter, FolderThatCannotBeMade) {
   write("file", "");
   layout.folder = folder.path() / "file";
   EXPECT_THAT(error(), HasSubstr(layout.folder.string()));
+}
+
+TEST_F(SimulationWriter, AllFilesOrNone) {
+  write_simulation({make_run(3, 0)}, layout);
+  const std::string before = read_file(layout.folder / "imu_00.csv");
+  std::filesystem::create_directory(layout.folder / "pro_01.csv");
+  EXPECT_THAT(test::message_of<ConfigurationError>([&] {
+                write_simulation({make_run(9, 1), make_run(9, 2)}, layout);
+              }),
+              HasSubstr("pro_01.csv"));
+  EXPECT_THAT(files(), ElementsAre("imu_00.csv", "pro_00.csv", "pro_01.csv"));
+  EXPECT_EQ(read_file(layout.folder / "imu_00.csv"), before);
+}
+
+TEST_F(SimulationWriter, FailureHalfwayLeavesNothing) {
+  const SimulationTable table{{"time"}, Eigen::MatrixXd::Zero(1, 2)};
+  const auto fails_at_the_third = [&](std::size_t i) {
+    if (i == 2) throw std::runtime_error("out of luck");
+    return SimulationTables{table, table};
+  };
+  EXPECT_THROW(write_simulation_files(layout.folder, 4, fails_at_the_third), std::runtime_error);
+  EXPECT_FALSE(std::filesystem::exists(layout.folder));
+}
+
+TEST_F(SimulationWriter, RefusesToMixWithOtherRuns) {
+  write_simulation({make_run(3, 0), make_run(3, 1)}, layout);
+  test::write_file(layout.folder / "notes.txt", "not a run");
+  EXPECT_THAT(test::message_of<ConfigurationError>([&] { write_simulation({make_run(3, 0)}, layout); }),
+              HasSubstr("_01.csv"));
+  EXPECT_NO_THROW(write_simulation({make_run(4, 0), make_run(4, 1)}, layout));
+  EXPECT_EQ(import().recording.runs[1].samples(), 4);
 }
 
 TEST_F(SimulationWriter, LayoutThatDoesNotFit) {

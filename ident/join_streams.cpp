@@ -1,9 +1,11 @@
-#include "io/join_streams.hpp"
+#include "ident/join_streams.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
+
+#include "ident/trajectory.hpp"
 
 namespace modebank {
 
@@ -66,6 +68,12 @@ MatrixXd interpolate(const Stream& stream, const VectorXd& time_s) {
   return result;
 }
 
+VectorXd interpolate_weights(const Stream& weights, const VectorXd& time_s) {
+  const MatrixXd positive = (weights.values.array() > 0.0).cast<double>();
+  const MatrixXd share = interpolate({weights.time_s, positive}, time_s);
+  return (share.array() < 1.0).select(0.0, interpolate(weights, time_s)).transpose();
+}
+
 MatrixXd hold(const Stream& stream, const VectorXd& time_s) {
   assert(stream.time_s.size() >= 1 && stream.values.cols() == stream.time_s.size());
   const double tolerance = time_tolerance(stream.time_s);
@@ -78,11 +86,38 @@ MatrixXd hold(const Stream& stream, const VectorXd& time_s) {
   return result;
 }
 
+void blank_gaps(const VectorXd& stream_time_s, const VectorXd& time_s, MatrixXd& values) {
+  const double longest = gap_periods * median_period_s(stream_time_s);
+  Index j = 0;  // the stream's first sample at or after time_s(k)
+  for (Index k = 0; k < time_s.size(); ++k) {
+    while (j < stream_time_s.size() && stream_time_s(j) < time_s(k)) ++j;
+    const bool between = j > 0 && j < stream_time_s.size() && stream_time_s(j) != time_s(k);
+    if (between && stream_time_s(j) - stream_time_s(j - 1) > longest)
+      values.col(k).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+MatrixXd hold_mid_transition(const Stream& inputs, const VectorXd& time_s, const InputClock& clock) {
+  const Index N = time_s.size();
+  const double half_period = 0.5 * median_period_s(time_s);
+  VectorXd middle(N);
+  for (Index k = 0; k < N; ++k) {
+    const double t = time_s(k) + (k + 1 < N ? std::min(0.5 * (time_s(k + 1) - time_s(k)), half_period) : half_period);
+    middle(k) = t - clock.at(t);
+  }
+  return hold(inputs, middle);
+}
+
 VectorXd joint_times(const VectorXd& states_time_s, const VectorXd& inputs_time_s, const JoinTimes& options) {
-  const double first = std::max(states_time_s(0), inputs_time_s(0) + options.lag_s);
-  const double end = std::min(last(states_time_s), last(inputs_time_s) + options.lag_s);
+  // t - lag(t) = s at t = s + lag on the states' clock.
+  const auto acts_at = [&](double s) {
+    return options.drift == 0.0 ? s + options.lag_s
+                                : (s + options.lag_s - options.drift * options.reference_s) / (1.0 - options.drift);
+  };
+  const double first = std::max(states_time_s(0), acts_at(inputs_time_s(0)));
+  const double end = std::min(last(states_time_s), acts_at(last(inputs_time_s)));
   if (options.rate_hz > 0.0) return uniform_times(first, end, options.rate_hz);
-  if (options.lag_s == 0.0) return times_within(inputs_time_s, first, end);
+  if (options.lag_s == 0.0 && options.drift == 0.0) return times_within(inputs_time_s, first, end);
   const double rounding = time_tolerance(inputs_time_s);  // t - lag_s must not lose a sample by it
   return times_within(inputs_time_s, std::max(states_time_s(0), first - rounding),
                       std::min(last(states_time_s), end + rounding));

@@ -1,0 +1,239 @@
+#include "app/check.hpp"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "app/commands.hpp"
+#include "app/config_file.hpp"
+#include "app/pipeline.hpp"
+#include "ident/error.hpp"
+#include "ident/lag_choice.hpp"
+#include "ident/not_a_number.hpp"
+#include "ident/robust_scale.hpp"
+#include "io/import.hpp"
+#include "io/missing_values.hpp"
+
+namespace modebank::app {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double still_share = 0.005;  // of an input's largest value: what counts as zero
+
+constexpr double least_resolved = 0.25;  // sample periods: a shorter time constant is none
+
+/// All that is known of the data while the report is made.
+struct Material {
+  std::vector<RunStreams> recorded;
+  std::vector<RunPair> ordered;
+  std::vector<Trajectory> parts;  // joined, split at gaps; all of them, whatever the role
+  LinearStructure structure;
+};
+
+/// The runs as `run` would join them if it accepted all that can be mended.
+void join_parts(const Config& config, Material& material, DataCheck& check) {
+  DataOptions lenient = config.data;
+  lenient.missing = Missing::gap;
+  lenient.disorder = Disorder::sort;
+  lenient.lag_s = config.data.lag_auto ? 0.0 : config.data.lag_s;
+  lenient.lag_auto = false;
+  for (std::size_t i = 0; i < material.recorded.size(); ++i) {
+    RunStreams run = material.recorded[i];
+    run.states.stream = material.ordered[i].states;
+    run.inputs.stream = material.ordered[i].inputs;
+    run.truth.clear();
+    try {
+      for (Trajectory& part : split_at_gaps(join_run(run, lenient, {}), false)) {
+        RunReport& report = check.runs[i];
+        const DeficientWindows windows = count_deficient_windows(part, config.window.length, material.structure);
+        report.transitions += part.transitions();
+        report.windows.windows += windows.windows;
+        report.windows.deficient += windows.deficient;
+        material.parts.push_back(std::move(part));
+      }
+    } catch (const DataError& error) {
+      check.runs[i].problem = error.what();
+    }
+  }
+}
+
+std::vector<VectorXd> rows_of(const std::vector<RunPair>& runs, bool of_states, Index row) {
+  std::vector<VectorXd> rows;
+  for (const RunPair& run : runs) rows.push_back((of_states ? run.states : run.inputs).values.row(row));
+  return rows;
+}
+
+double share_beyond(const VectorXd& values, const SaturationLimits& limits) {
+  if (values.size() == 0) return 0.0;
+  const auto beyond = (values.array() <= limits.low || values.array() >= limits.high).count();  // false for NaN
+  return static_cast<double>(beyond) / static_cast<double>(values.size());
+}
+
+VectorXd joined(const std::vector<VectorXd>& rows) {
+  Index size = 0;
+  for (const VectorXd& row : rows) size += row.size();
+  VectorXd all(size);
+  for (Index first = 0; const VectorXd& row : rows) {
+    all.segment(first, row.size()) = row;
+    first += row.size();
+  }
+  return all;
+}
+
+/// One channel in every run, and over all of them.
+void check_channels(const Material& material, const std::string& name, const std::string& unit, bool is_state,
+                    Index row, DataCheck& check) {
+  ChannelSummary& summary = check.channels.emplace_back();
+  summary.channel = {name, unit};
+  summary.is_state = is_state;
+  const std::vector<VectorXd> rows = rows_of(material.ordered, is_state, row);
+  const VectorXd all = joined(rows);
+  summary.values = check_channel(all);
+  summary.values.outliers = 0;
+  summary.limits = saturation_limits(rows);
+  if (summary.limits.soft && is_state)  // smooth motion turns round slowly: that is no limiter
+    summary.limits = {not_a_number, not_a_number, false};
+  summary.saturated = share_beyond(all, summary.limits);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    RunReport& run = check.runs[i];
+    (is_state ? run.state : run.input).push_back(check_channel(rows[i]));
+    (is_state ? run.state_saturated : run.input_saturated).push_back(share_beyond(rows[i], summary.limits));
+    summary.values.outliers += (is_state ? run.state : run.input).back().outliers;
+  }
+}
+
+void check_all_channels(const DataOptions& data, const Material& material, DataCheck& check) {
+  const auto unit = [](const std::vector<std::string>& units, std::size_t i) {
+    return units.empty() ? "" : units[units.size() == 1 ? 0 : std::min(i, units.size() - 1)];
+  };
+  for (std::size_t i = 0; i < data.state.size(); ++i)
+    check_channels(material, data.state[i], unit(data.state_unit, i), true, static_cast<Index>(i), check);
+  for (std::size_t i = 0; i < data.input.size(); ++i)
+    check_channels(material, data.input[i], unit(data.input_unit, i), false, static_cast<Index>(i), check);
+}
+
+void check_runs(const Material& material, DataCheck& check) {
+  VectorXd still_level(material.structure.inputs);
+  for (Index i = 0; i < still_level.size(); ++i) {
+    const ChannelCheck& values = check.channels[static_cast<std::size_t>(material.structure.states + i)].values;
+    still_level(i) = still_share * std::max(std::abs(values.least), std::abs(values.largest));
+  }
+  tbb::parallel_for(std::size_t{0}, check.runs.size(), [&](std::size_t i) {
+    RunReport& run = check.runs[i];
+    const RunPair& pair = material.ordered[i];
+    run.inputs = check_sampling(material.recorded[i].inputs.stream);
+    run.states = check_sampling(material.recorded[i].states.stream);
+    if (still_level.size() == 0) return;
+    run.commands = check_commands(pair.inputs, still_level);
+    run.rest = check_rest(pair.states, pair.inputs, still_level);
+    run.excitation = excitation_order(pair.inputs.values);
+  });
+}
+
+void check_lags(const Config& config, const Material& material, DataCheck& check) {
+  const auto trains = [](const RunPair& run) { return run.role == Role::train; };
+  check.has_lag =
+      material.structure.inputs > 0 && std::any_of(material.ordered.begin(), material.ordered.end(), trains) &&
+      std::all_of(check.runs.begin(), check.runs.end(), [](const RunReport& r) { return r.problem.empty(); });
+  if (!check.has_lag) return;
+  try {
+    check.lag = choose_lag(material.ordered, {config.data.lag_range_s, config.data.rate_hz});
+  } catch (const DataError&) {  // nothing to fit: said elsewhere on the page
+    check.has_lag = false;
+    return;
+  }
+  tbb::parallel_for(std::size_t{0}, check.runs.size(), [&](std::size_t i) {
+    const bool estimated = material.ordered[i].role == Role::train;
+    check.runs[i].lag = estimated ? check.lag.runs[i] : estimate_run(material.ordered[i], config.data.lag_range_s);
+  });
+}
+
+double median_of(std::vector<double> values) {
+  return values.empty() ? 0.0 : median(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
+}
+
+void advise(const Material& material, DataCheck& check) {
+  std::vector<double> inputs_hz, states_hz, jitter, time_constants;
+  for (const RunReport& run : check.runs) {
+    inputs_hz.push_back(run.inputs.rate_hz);
+    states_hz.push_back(run.states.rate_hz);
+    jitter.push_back(run.inputs.jitter);
+    const bool resolved = run.lag.time_constant_s * run.inputs.rate_hz > least_resolved;
+    if (run.lag.status == LagStatus::converged && resolved) time_constants.push_back(run.lag.time_constant_s);
+  }
+  check.rate_facts = {median_of(inputs_hz), median_of(states_hz), median_of(jitter), 0.0, median_of(time_constants)};
+  for (const ChannelSummary& channel : check.channels)  // commands are coarse; measurements take many values
+    if (!channel.is_state && channel.values.quantum == 0.0)
+      check.rate_facts.repeated = std::max(check.rate_facts.repeated, channel.values.repeated);
+  check.rate = advise_rate(check.rate_facts);
+  check.length = advise_length(material.parts, material.structure);
+  Recording training;
+  for (const Trajectory& part : material.parts)
+    if (part.role == Role::train) training.runs.push_back(part);
+  if (!training.runs.empty()) check.loss = advise_loss(training, material.structure);
+}
+
+/// Why identification would fail; empty: it would not.
+std::string find_unusable(const Config& config, const Material& material, const DataCheck& check) {
+  for (const RunReport& run : check.runs)
+    if (!run.problem.empty()) return run.problem;
+  Index longest = 0;
+  for (const Trajectory& part : material.parts)
+    if (part.role == Role::train) longest = std::max(longest, part.transitions());
+  if (longest < config.window.length)
+    return fmt::format("the longest stretch of the training runs has {} transitions, window.length is {}", longest,
+                       config.window.length);
+  for (const ChannelSummary& channel : check.channels)
+    if (channel.is_state && !(channel.values.sd > 0.0))
+      return fmt::format("the state {} never changes", channel.channel.name);
+  return "";
+}
+
+}  // namespace
+
+DataCheck check_data(const Config& config) {
+  Material material;
+  material.recorded = read_streams(config.data);
+  material.structure = {static_cast<Index>(config.data.state.size()), static_cast<Index>(config.data.input.size()),
+                        config.window.intercept};
+  DataCheck check;
+  check.window_length = config.window.length;
+  for (const RunStreams& run : material.recorded) {
+    material.ordered.push_back({run.run, run.role, in_order(run.states.stream), in_order(run.inputs.stream)});
+    RunReport& report = check.runs.emplace_back();
+    report.run = run.run;
+    report.role = run.role;
+    if (material.ordered.back().states.time_s.size() < 2 || material.ordered.back().inputs.time_s.size() < 2)
+      throw DataError(fmt::format("run \"{}\" has fewer than two samples with a time of their own", run.run));
+  }
+  join_parts(config, material, check);
+  check_all_channels(config.data, material, check);
+  check_runs(material, check);
+  check_lags(config, material, check);
+  advise(material, check);
+  check.unusable = find_unusable(config, material, check);
+  check.findings = findings_of(check, config);
+  return check;
+}
+
+int run_check(const CommandLine& line) {
+  if (line.files.size() != 1) throw ConfigurationError("check needs one configuration file: modebank check CONFIG");
+  const Config config = load_config(line.files.front(), line.overrides);
+  validate(config);
+  const int threads =
+      config.job.threads > 0 ? config.job.threads : static_cast<int>(std::thread::hardware_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(std::max(threads, 1)));
+  const DataCheck check = check_data(config);
+  fmt::print("{}", line.json ? check_json(check).dump(2) + "\n" : check_text(check));
+  if (!check.unusable.empty()) throw DataError("unusable as configured: " + check.unusable);
+  return 0;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,86 @@
+#include "ident/fit_quality.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "ident/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+constexpr double log_two_pi = 1.8378770664093454836;
+
+Eigen::VectorXd sample_weights(const WhitenedProblem& problem) {
+  return problem.weight.size() > 0 ? problem.weight : Eigen::VectorXd::Ones(problem.samples);
+}
+
+/// Residuals of state i in units of sigma, each times the root of its sample weight.
+auto residuals_of(const WhitenedProblem& problem, const RobustTerms& terms, Index i) {
+  using Strided = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>>;
+  return Strided(terms.residual.data() + i, problem.samples, Eigen::InnerStride<>(problem.states));
+}
+
+double gaussian_deviance(const WhitenedProblem& problem, const RobustTerms& terms, const NoiseScale& scale) {
+  const double L = static_cast<double>(problem.samples);
+  double deviance = 0.0;
+  for (Index i = 0; i < problem.states; ++i) {
+    const double mean_square = residuals_of(problem, terms, i).squaredNorm() / L;
+    const double floor = scale.floor(i) / scale.sigma(i);
+    const double variance = std::max(mean_square, floor * floor);
+    deviance += L * (log_two_pi + std::log(variance) + 2.0 * std::log(scale.sigma(i)) + 1.0);
+  }
+  return deviance;
+}
+
+double robust_deviance(const WhitenedProblem& problem, const RobustTerms& terms, const RobustLoss& loss,
+                       const Eigen::VectorXd& sigma) {
+  const double L = static_cast<double>(problem.samples);
+  double deviance = L * (static_cast<double>(problem.states) * log_two_pi + 2.0 * sigma.array().log().sum());
+  for (Index k = 0; k < problem.samples; ++k) {
+    const double w = problem.sample_weight(k);
+    deviance += w * loss(terms.sample(k, problem.states).squaredNorm() / w).rho;
+  }
+  return deviance;
+}
+
+/// sum w psi^2 / sum w psi' over all samples and states.
+double price_of_a_parameter(const WhitenedProblem& problem, const RobustTerms& terms) {
+  double psi_square = 0.0, slope = 0.0;
+  for (Index k = 0; k < problem.samples; ++k) {
+    const double square = terms.sample(k, problem.states).squaredNorm();
+    psi_square += terms.weight(k) * terms.weight(k) * square;
+    const double trace = static_cast<double>(problem.states) * terms.weight(k) + 2.0 * terms.curvature(k) * square;
+    slope += problem.sample_weight(k) * trace;  // of the influence's slope
+  }
+  return slope > 0.0 ? psi_square / slope : not_a_number;
+}
+
+}  // namespace
+
+Eigen::VectorXd r_squared(const Transitions& transitions, const WhitenedProblem& problem, const RobustTerms& terms,
+                          const Eigen::VectorXd& sigma) {
+  const Eigen::ArrayXd root = sample_weights(problem).cwiseSqrt();  // the rows carry it already
+  const Eigen::ArrayXd omega = terms.weight;
+  Eigen::VectorXd result(problem.states);
+  for (Index i = 0; i < problem.states; ++i) {
+    const Eigen::ArrayXd d = transitions.increments.col(i);
+    const double mean = (omega * root * d).sum() / (omega * root.square()).sum();
+    const double total = (omega * (d - mean * root).square()).sum();
+    const double left = (omega * residuals_of(problem, terms, i).array().square()).sum() * sigma(i) * sigma(i);
+    result(i) = total > 0.0 ? 1.0 - left / total : not_a_number;
+  }
+  return result;
+}
+
+double akaike_criterion(const WhitenedProblem& problem, const RobustTerms& terms, const RobustLoss& loss,
+                        const NoiseScale& scale) {
+  const double n = static_cast<double>(problem.states);
+  const double parameters = problem.J.topRows(problem.sample_rows()).squaredNorm();  // J'J = I: sum of leverages
+  const double weights = n * sample_weights(problem).array().log().sum();
+  if (loss.kind() == Loss::trivial) return gaussian_deviance(problem, terms, scale) - weights + 2.0 * (parameters + n);
+  const double price = price_of_a_parameter(problem, terms);
+  return robust_deviance(problem, terms, loss, scale.sigma) - weights + 2.0 * (price * parameters + n);
+}
+
+}  // namespace modebank

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "ident/window.hpp"
+
+namespace modebank {
+
+/// The windows of make_windows by their index, without a list of them.
+class WindowPlan {
+ public:
+  WindowPlan(const Recording& recording, Index length, Index step, Index first);
+
+  Index count() const { return count_; }
+  Window window(Index i) const;
+
+  /// Consecutive windows of one run.
+  struct Stretch {
+    Index first = 0;  ///< index of the first window
+    Index count = 0;
+    Window window;  ///< the first one
+  };
+  /// Windows first .. first + count - 1, in stretches of at most `longest`.
+  std::vector<Stretch> stretches(Index first, Index count, Index longest) const;
+
+ private:
+  std::vector<Stretch> runs_;
+  Index step_;
+  Index count_ = 0;
+};
+
+}  // namespace modebank

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace modebank {
+
+/// One CSV file: a name and a row of values per column.
+struct SimulationTable {
+  std::vector<std::string> names;
+  Eigen::MatrixXd values;  ///< columns x samples
+};
+
+/// The two files of a run.
+struct SimulationTables {
+  SimulationTable inputs;  ///< pro_NN.csv
+  SimulationTable states;  ///< imu_NN.csv
+};
+
+/// Throws ConfigurationError when a column's name is empty or there twice.
+void check_column_names(const std::vector<std::string>& names);
+
+/// Writes pro_NN.csv and imu_NN.csv of `runs` runs, numbers in their shortest form that reads back exactly. All files
+/// or none: they are written to a folder beside the old ones and moved when all are complete. The folder is made if its
+/// parent exists. Throws ConfigurationError when it cannot be made, or holds pro_ or imu_ files that would stay,
+/// because `run` would read them as further runs.
+void write_simulation_files(const std::filesystem::path& folder, std::size_t runs,
+                            const std::function<SimulationTables(std::size_t)>& tables_of);
+
+}  // namespace modebank
