@@ -16,6 +16,7 @@ Eigen::MatrixXd all_regressors(const LinearStructure& structure, const Trajector
 Eigen::MatrixXd stacked_states(const LinearStructure& structure, const Trajectory& run) {
   LinearStructure states_only = structure;
   states_only.inputs = 0;
+  states_only.input_lags = 0;
   states_only.intercept = false;
   Eigen::MatrixXd z(structure.dimension(), run.samples());
   for (Index k = 0; k < run.samples(); ++k) fill_regressor(states_only, run, k, z.col(k));
