@@ -28,8 +28,8 @@ inline const std::vector<Loss> all_losses{Loss::trivial,  Loss::huber, Loss::cau
                                           Loss::softlone, Loss::tukey, Loss::arctan};
 
 inline bool same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+  if (a.size() != b.size()) return false;
+  return a.size() == 0 || std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
 }
 
 inline Trajectory make_run(const Eigen::MatrixXd& state, const Eigen::MatrixXd& input, Role role = Role::train) {
