@@ -66,6 +66,15 @@ HWY_INLINE void scatter_flags(M mask, Index count, bool (&flag)[widest]) {
 template <int Q>
 HWY_INLINE void write_verdicts(const Settings& settings, const Fit<Q>& fit, Index first, Index count,
                                const Output& out) {
+  const M rated = settings.prior ? fit.reached : hn::AndNot(fit.deficient, fit.reached);
+  const M solved = hn::And(hn::And(fit.enough, fit.clear), rated);
+  const bool plain = hn::CountTrue(D(), hn::AndNot(fit.deficient, solved)) == hn::Lanes(D());
+  if (plain && count == static_cast<Index>(hn::Lanes(D())) && !out.transitions) {  // as a rule
+    std::fill_n(out.verdict + first, count, Verdict::solved);
+    if (out.rank) std::fill_n(out.rank + first, count, Q);
+    if (out.status) std::fill_n(out.status + first, count, static_cast<int>(FitStatus::converged));
+    return;
+  }
   bool enough[widest], clear[widest], deficient[widest], reached[widest];
   scatter_flags(fit.enough, count, enough);
   scatter_flags(fit.clear, count, clear);

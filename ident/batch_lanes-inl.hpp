@@ -98,15 +98,23 @@ HWY_INLINE void solve(const Ldl<Q>& f, const V (&b)[Q], V (&x)[Q]) {
   }
 }
 
+/// (L^-1)' D^-1 L^-1.
 template <int Q>
 HWY_INLINE Symmetric<Q> inverse(const Ldl<Q>& f) {
-  Symmetric<Q> result;
-  for (int j = 0; j < Q; ++j) {
-    V e[Q], x[Q];
-    for (int i = 0; i < Q; ++i) e[i] = i == j ? splat(1.0) : zero();
-    solve(f, e, x);
-    for (int i = j; i < Q; ++i) result.a[at(i, j)] = x[i];
-  }
+  Symmetric<Q> root, result;  // L^-1, whose diagonal is one
+  for (int j = 0; j < Q; ++j)
+    for (int i = j + 1; i < Q; ++i) {
+      V sum = f.l[at(i, j)];
+      for (int k = j + 1; k < i; ++k) sum = hn::MulAdd(f.l[at(i, k)], root.a[at(k, j)], sum);
+      root.a[at(i, j)] = hn::Neg(sum);
+    }
+  for (int i = 0; i < Q; ++i)
+    for (int j = 0; j <= i; ++j) {
+      V sum = i == j ? f.inverse_d[i] : hn::Mul(f.inverse_d[i], root.a[at(i, j)]);
+      for (int k = i + 1; k < Q; ++k)
+        sum = hn::MulAdd(hn::Mul(f.inverse_d[k], root.a[at(k, i)]), root.a[at(k, j)], sum);
+      result.a[at(i, j)] = sum;
+    }
   return result;
 }
 

@@ -56,13 +56,22 @@ struct HuberLoss {
   };
 };
 
-struct SoftLOneLoss {
+/// What most losses are made from: D^2 and its inverse.
+struct ScaledLoss {
   static constexpr bool quadratic = false, binary_slope = false;
   V inverse_square, square;
-  explicit SoftLOneLoss(V scale) : SoftLOneLoss(hn::Mul(scale, scale), hn::Div(splat(1.0), hn::Mul(scale, scale))) {}
-  SoftLOneLoss(V scale_square, V inverse) : inverse_square(inverse), square(scale_square) {}
+  explicit ScaledLoss(const V& scale) : ScaledLoss(hn::Mul(scale, scale), hn::Div(splat(1.0), hn::Mul(scale, scale))) {}
+  ScaledLoss(const V& scale_square, const V& inverse) : inverse_square(inverse), square(scale_square) {}
+  /// t.
+  HWY_INLINE V relative_square(V r) const { return hn::Mul(hn::Mul(r, r), inverse_square); }
+  /// 1 + t.
+  HWY_INLINE V one_more(V r) const { return hn::MulAdd(hn::Mul(r, r), inverse_square, splat(1.0)); }
+};
+
+struct SoftLOneLoss : ScaledLoss {
+  using ScaledLoss::ScaledLoss;
   HWY_INLINE LossTerms terms(V r) const {
-    const V u = hn::MulAdd(hn::Mul(r, r), inverse_square, splat(1.0));
+    const V u = one_more(r);
     const V w = reciprocal_root(u);
     return {hn::Mul(w, r), hn::Mul(w, hn::Mul(w, w)), w};
   }
@@ -71,20 +80,17 @@ struct SoftLOneLoss {
     V sum;
     HWY_INLINE Cost() : sum(zero()) {}
     HWY_INLINE void add(const SoftLOneLoss& loss, V r, const LossTerms& at_r) {
-      const V u = hn::MulAdd(hn::Mul(r, r), loss.inverse_square, splat(1.0));
+      const V u = loss.one_more(r);
       sum = hn::MulAdd(u, at_r.weight, sum);
     }
     HWY_INLINE V value(const SoftLOneLoss& loss) const { return hn::Mul(hn::Add(loss.square, loss.square), sum); }
   };
 };
 
-struct CauchyLoss {
-  static constexpr bool quadratic = false, binary_slope = false;
-  V inverse_square, square;
-  explicit CauchyLoss(V scale) : CauchyLoss(hn::Mul(scale, scale), hn::Div(splat(1.0), hn::Mul(scale, scale))) {}
-  CauchyLoss(V scale_square, V inverse) : inverse_square(inverse), square(scale_square) {}
+struct CauchyLoss : ScaledLoss {
+  using ScaledLoss::ScaledLoss;
   HWY_INLINE LossTerms terms(V r) const {
-    const V t = hn::Mul(hn::Mul(r, r), inverse_square);
+    const V t = relative_square(r);
     const V w = reciprocal(hn::Add(t, splat(1.0)));
     return {hn::Mul(w, r), hn::Mul(hn::Sub(splat(1.0), t), hn::Mul(w, w)), w};
   }
@@ -96,7 +102,7 @@ struct CauchyLoss {
     int count = 0;
     HWY_INLINE Cost() : sum(zero()), product(splat(1.0)) {}
     HWY_INLINE void add(const CauchyLoss& loss, V r, const LossTerms&) {
-      const V u = hn::MulAdd(hn::Mul(r, r), loss.inverse_square, splat(1.0));
+      const V u = loss.one_more(r);
       product = hn::Mul(product, hn::Min(u, splat(largest)));
       if (++count == factors) {
         sum = hn::Add(sum, hn::Log(D(), product));
@@ -110,13 +116,10 @@ struct CauchyLoss {
   };
 };
 
-struct TukeyLoss {
-  static constexpr bool quadratic = false, binary_slope = false;
-  V inverse_square, square;
-  explicit TukeyLoss(V scale) : TukeyLoss(hn::Mul(scale, scale), hn::Div(splat(1.0), hn::Mul(scale, scale))) {}
-  TukeyLoss(V scale_square, V inverse) : inverse_square(inverse), square(scale_square) {}
+struct TukeyLoss : ScaledLoss {
+  using ScaledLoss::ScaledLoss;
   HWY_INLINE LossTerms terms(V r) const {
-    const V t = hn::Mul(hn::Mul(r, r), inverse_square);
+    const V t = relative_square(r);
     const V m = hn::Max(hn::Sub(splat(1.0), t), zero());
     const V w = hn::Mul(m, m);
     return {hn::Mul(w, r), hn::Mul(m, hn::NegMulAdd(splat(5.0), t, splat(1.0))), w};
@@ -126,7 +129,7 @@ struct TukeyLoss {
     V sum;
     HWY_INLINE Cost() : sum(zero()) {}
     HWY_INLINE void add(const TukeyLoss& loss, V r, const LossTerms& at_r) {
-      const V t = hn::Mul(hn::Mul(r, r), loss.inverse_square);
+      const V t = loss.relative_square(r);
       const V m = hn::Max(hn::Sub(splat(1.0), t), zero());
       sum = hn::Add(sum, hn::NegMulAdd(at_r.weight, m, splat(1.0)));
     }
@@ -134,13 +137,10 @@ struct TukeyLoss {
   };
 };
 
-struct ArctanLoss {
-  static constexpr bool quadratic = false, binary_slope = false;
-  V inverse_square, square;
-  explicit ArctanLoss(V scale) : ArctanLoss(hn::Mul(scale, scale), hn::Div(splat(1.0), hn::Mul(scale, scale))) {}
-  ArctanLoss(V scale_square, V inverse) : inverse_square(inverse), square(scale_square) {}
+struct ArctanLoss : ScaledLoss {
+  using ScaledLoss::ScaledLoss;
   HWY_INLINE LossTerms terms(V r) const {
-    const V t = hn::Mul(hn::Mul(r, r), inverse_square), t2 = hn::Mul(t, t);
+    const V t = relative_square(r), t2 = hn::Mul(t, t);
     const V w = hn::Div(splat(1.0), hn::Add(splat(1.0), t2));
     return {hn::Mul(w, r), hn::Mul(hn::Mul(w, w), hn::NegMulAdd(splat(3.0), t2, splat(1.0))), w};
   }
@@ -149,11 +149,18 @@ struct ArctanLoss {
     V sum;
     HWY_INLINE Cost() : sum(zero()) {}
     HWY_INLINE void add(const ArctanLoss& loss, V r, const LossTerms&) {
-      sum = hn::Add(sum, hn::Atan(D(), hn::Mul(hn::Mul(r, r), loss.inverse_square)));
+      sum = hn::Add(sum, hn::Atan(D(), loss.relative_square(r)));
     }
     HWY_INLINE V value(const ArctanLoss& loss) const { return hn::Mul(loss.square, sum); }
   };
 };
+
+template <class LossT>
+HWY_INLINE V rho_of(const LossT& loss, V r, const LossTerms& at_r) {
+  typename LossT::Cost cost;
+  cost.add(loss, r, at_r);
+  return cost.value(loss);
+}
 
 /// Any loss, chosen at run time; for shapes that are not worth a kernel per loss.
 struct AnyLoss {
@@ -181,12 +188,6 @@ struct AnyLoss {
         return ArctanLoss(square, inverse_square).terms(r);
     }
   }
-  template <class L>
-  static HWY_INLINE V rho_of(const L& loss, V r, const LossTerms& at_r) {
-    typename L::Cost cost;
-    cost.add(loss, r, at_r);
-    return cost.value(loss);
-  }
   HWY_INLINE V rho(V r, const LossTerms& at_r) const {
     switch (kind) {
       case Loss::trivial:
@@ -203,15 +204,18 @@ struct AnyLoss {
         return rho_of(ArctanLoss(square, inverse_square), r, at_r);
     }
   }
+  struct Cost {
+    V sum;
+    HWY_INLINE Cost() : sum(zero()) {}
+    HWY_INLINE void add(const AnyLoss& loss, V r, const LossTerms& at_r) { sum = hn::Add(sum, loss.rho(r, at_r)); }
+    HWY_INLINE V value(const AnyLoss&) const { return sum; }
+  };
 };
 
 /// rho without the offset of the loss' Cost.
 template <class LossT>
 HWY_INLINE V cost_above_zero(const LossT& loss, V r, const LossTerms& at_r) {
-  return hn::Sub(AnyLoss::rho_of(loss, r, at_r), AnyLoss::rho_of(loss, zero(), loss.terms(zero())));
-}
-HWY_INLINE V cost_above_zero(const AnyLoss& loss, V r, const LossTerms& at_r) {
-  return hn::Sub(loss.rho(r, at_r), loss.rho(zero(), loss.terms(zero())));
+  return hn::Sub(rho_of(loss, r, at_r), rho_of(loss, zero(), loss.terms(zero())));
 }
 
 }  // namespace modebank::batch::HWY_NAMESPACE

@@ -67,9 +67,9 @@ HWY_INLINE V add_prior(const Surroundings<Q>& around, const V (&theta)[Q], Sums<
 
 /// sum y^2 + sum_j theta_j^2 (X'X)_jj: what cancels in the residuals.
 template <int Q>
-HWY_INLINE V magnitude(const Surroundings<Q>& around, const V (&theta)[Q]) {
-  V sum = around.square_sum;
-  for (int j = 0; j < Q; ++j) sum = hn::MulAdd(hn::Mul(theta[j], theta[j]), around.gram.a[at(j, j)], sum);
+HWY_INLINE V magnitude(const Symmetric<Q>& gram, V square_sum, const V (&theta)[Q]) {
+  V sum = square_sum;
+  for (int j = 0; j < Q; ++j) sum = hn::MulAdd(hn::Mul(theta[j], theta[j]), gram.a[at(j, j)], sum);
   return sum;
 }
 
@@ -131,8 +131,8 @@ HWY_NOINLINE M minimise(const View& view, const LossT& loss, const Surroundings<
     V newton[Q];
     const M usable = next_step(view, loss, around, theta, s, accepted, newton);
     const V gain = dot(newton, s.gradient), scale = hn::Add(s.psi_square, prior_square);
-    const V enough =
-        hn::Max(hn::Mul(splat(stationary_square), scale), hn::Mul(splat(rounding_square), magnitude(around, theta)));
+    const V enough = hn::Max(hn::Mul(splat(stationary_square), scale),
+                             hn::Mul(splat(rounding_square), magnitude(around.gram, around.square_sum, theta)));
     const M done = hn::And(hn::And(accepted, usable), hn::Le(gain, enough));
     search.gradient = hn::IfThenElse(accepted, hn::Div(gain, scale), search.gradient);
     search.psi_square = hn::IfThenElse(accepted, s.psi_square, search.psi_square);

@@ -88,26 +88,6 @@ HWY_INLINE Sums<Q> evaluate(const View& view, const LossT& loss, const V (&theta
   return s;
 }
 
-/// The same for a loss that is chosen at run time.
-template <int Q>
-HWY_INLINE Sums<Q> evaluate(const View& view, const AnyLoss& loss, const V (&theta)[Q]) {
-  Sums<Q> s{{}, zero_matrix<Q>(), zero(), zero(), zero(), zero()};
-  for (V& entry : s.gradient) entry = zero();
-  for (Index i = 0; i < view.length; ++i) {
-    V x[Q];
-    for (int j = 0; j < Q; ++j) x[j] = row(view, view.regressors[j], i);
-    const V r = residual(row(view, view.increments, i), x, theta);
-    const LossTerms at_r = loss.terms(r);
-    for (int j = 0; j < Q; ++j) s.gradient[j] = hn::MulAdd(at_r.psi, x[j], s.gradient[j]);
-    s.psi_square = hn::MulAdd(at_r.psi, at_r.psi, s.psi_square);
-    s.cost = hn::Add(loss.rho(r, at_r), s.cost);
-    s.slope = hn::Add(s.slope, at_r.slope);
-    s.slope_square = hn::MulAdd(at_r.slope, at_r.slope, s.slope_square);
-    add_outer(at_r.slope, x, s.hessian);
-  }
-  return s;
-}
-
 /// sum rho' phi phi' at theta: the second derivative without rho''.
 template <int Q, class LossT>
 HWY_NOINLINE Symmetric<Q> reweighted_gram(const View& view, const LossT& loss, const V (&theta)[Q]) {
@@ -143,6 +123,28 @@ HWY_INLINE NormalEquations<Q> normal_equations(const View& view) {
     n.square_sum = hn::MulAdd(y, y, n.square_sum);
   }
   return n;
+}
+
+/// sum r phi and sum r^2 of the residuals at theta.
+template <int Q>
+struct Moments {
+  V moment[Q];
+  V square_sum;
+};
+
+template <int Q>
+HWY_INLINE Moments<Q> residual_moments(const View& view, const V (&theta)[Q]) {
+  Moments<Q> m;
+  for (V& entry : m.moment) entry = zero();
+  m.square_sum = zero();
+  for (Index i = 0; i < view.length; ++i) {
+    V x[Q];
+    for (int j = 0; j < Q; ++j) x[j] = row(view, view.regressors[j], i);
+    const V r = residual(row(view, view.increments, i), x, theta);
+    for (int j = 0; j < Q; ++j) m.moment[j] = hn::MulAdd(r, x[j], m.moment[j]);
+    m.square_sum = hn::MulAdd(r, r, m.square_sum);
+  }
+  return m;
 }
 
 /// Median of the first `count` of the ordered rows, per lane; the mean of the middle two for an even count.

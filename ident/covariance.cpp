@@ -31,23 +31,22 @@ auto sample_rows(const WhitenedProblem& problem, Index k) {
 /// f of the header: sum of the samples' leverages, per state (a state's columns are zero in the other states' rows).
 Eigen::ArrayXd determined_by_data(const WhitenedProblem& problem) {
   Eigen::ArrayXd f = Eigen::ArrayXd::Zero(problem.states);
-  for (Index k = 0; k < problem.samples; ++k) f += sample_rows(problem, k).rowwise().squaredNorm().array();
+  for (Index k = 0; k < problem.samples; ++k)
+    for (Index i = 0; i < problem.states; ++i) f(i) += problem.J.row(k * problem.states + i).squaredNorm();
   return f;
 }
 
 /// G^-1 of the header; zero (no information) where the mean slope of psi is not positive.
 Eigen::MatrixXd inverse_G(const CovarianceInput& in) {
   const Index L = in.problem.samples, n = in.problem.states;
-  Eigen::MatrixXd psi_square = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd slope = Eigen::VectorXd::Zero(n), slope_square = slope;
-  for (Index k = 0; k < L; ++k) {
-    const Eigen::VectorXd psi = in.terms.weight(k) * in.terms.sample(k, n);
-    psi_square += psi * psi.transpose();
-    const Eigen::ArrayXd d =
-        in.terms.weight(k) + 2.0 * in.terms.curvature(k) * in.terms.sample(k, n).array().square();  // influence_slope's
-    slope += (in.problem.sample_weight(k) * d).matrix();
-    slope_square += (in.problem.sample_weight(k) * d.square()).matrix();
-  }
+  const auto r = in.terms.samples(n);
+  const Eigen::MatrixXd psi = r.colwise() * in.terms.weight.array();
+  const Eigen::MatrixXd psi_square = psi.transpose().lazyProduct(psi);
+  const Eigen::ArrayXXd d =  // influence_slope's diagonals
+      (r.square().colwise() * (2.0 * in.terms.curvature.array())).colwise() + in.terms.weight.array();
+  const Eigen::VectorXd w = in.problem.weight.size() > 0 ? in.problem.weight : Eigen::VectorXd::Ones(L);
+  const Eigen::VectorXd slope = d.matrix().transpose().lazyProduct(w),
+                        slope_square = d.square().matrix().transpose().lazyProduct(w);
   if (!(slope.minCoeff() > 0.0)) return Eigen::MatrixXd::Zero(n, n);
   const Eigen::ArrayXd mean_slope = slope / static_cast<double>(L);
   const Eigen::ArrayXd variance = (slope_square.array() / static_cast<double>(L) - mean_slope.square()).max(0.0);
@@ -69,7 +68,7 @@ Eigen::MatrixXd from_information(const WhitenedProblem& problem, const Eigen::Ma
   Eigen::MatrixXd information = prior_information(problem);
   if (problem.states == 1) {
     const auto J = problem.J.topRows(problem.samples);
-    information.noalias() += G_inverse(0, 0) * J.transpose() * J;
+    information += G_inverse(0, 0) * J.transpose().lazyProduct(J);
   } else {
     for (Index k = 0; k < problem.samples; ++k)
       information += sample_rows(problem, k).transpose() * G_inverse * sample_rows(problem, k);

@@ -13,21 +13,14 @@ namespace {
 /// An inlier keeps at least this share of its least-squares weight.
 constexpr double inlier_weight = 0.5;
 
-/// Squares of the residuals summed per state, in units of sigma, each sample with its weight.
-Eigen::VectorXd sum_of_squares(const WhitenedProblem& problem, const RobustTerms& terms,
-                               const Eigen::VectorXd& weight) {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(problem.states);
-  for (Index k = 0; k < problem.samples; ++k) sum += weight(k) * terms.sample(k, problem.states).cwiseAbs2();
-  return sum;
-}
-
 /// Noise variance per state as fit_window states it.
 Eigen::VectorXd noise_variance(const SolvedWindow& s) {
   const auto L = static_cast<double>(s.problem.samples);
   const bool short_window = L <= s.unknowns_per_state;
   const double divisor = short_window ? L : (L - s.rank_per_state) * s.consistency;
-  const Eigen::VectorXd weight = short_window ? Eigen::VectorXd::Ones(s.problem.samples).eval() : s.terms.weight;
-  const Eigen::VectorXd sum = sum_of_squares(s.problem, s.terms, weight);
+  const Eigen::ArrayXXd squares = s.terms.samples(s.problem.states).square();
+  const Eigen::VectorXd sum = short_window ? squares.colwise().sum().matrix().transpose().eval()
+                                           : (squares.matrix().transpose() * s.terms.weight).eval();
   return (sum.array() / divisor * s.scale.sigma.array().square()).max(s.scale.floor.array().square());
 }
 

@@ -1,4 +1,3 @@
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "ident/parameter_prior.hpp"
 #include "ident/robust_scale.hpp"
 #include "ident/window_audit.hpp"
+#include "ident/window_plan.hpp"
 
 namespace modebank {
 
@@ -45,7 +45,6 @@ FitOptions solved_by_ceres(FitOptions options) {
 struct ModelContext {
   const Recording& recording;
   const FitOptions& options;
-  FitOptions ceres_options;
   const MotionModel& model;
   const GlobalModel& global;
   ModelEstimator estimator;
@@ -54,36 +53,25 @@ struct ModelContext {
   std::vector<Eigen::VectorXd> run_scale;
 };
 
-struct LeastSquaresFit {
-  Eigen::VectorXd theta;
-  Eigen::VectorXd scale;  ///< robust_scale of its residuals; NaN when there are too few
-};
-
-/// The window's least squares and the scale of its residuals, as robust_scale defines it.
-LeastSquaresFit least_squares_of(const ModelContext& context, const ModelResiduals& residuals,
-                                 const Eigen::VectorXd& sigma) {
-  const Index n = residuals.states(), p = context.model.parameter_count();
+/// robust_scale of the residuals of least squares; NaN when there are too few.
+Eigen::VectorXd least_squares_scale(const ModelContext& context, const ModelResiduals& residuals,
+                                    const Eigen::VectorXd& sigma) {
+  const Index n = residuals.states();
   const ModelMinimum minimum = minimise_model(residuals, sigma, context.least_squares, nullptr,
                                               context.estimator.search, residuals.unknowns_at(context.global.theta));
-  LeastSquaresFit fit{context.global.theta, Eigen::VectorXd::Constant(n, not_a_number)};
-  if (minimum.status == FitStatus::failed) return fit;
-  fit.theta = minimum.unknowns.head(p);
+  if (minimum.status == FitStatus::failed) return Eigen::VectorXd::Constant(n, not_a_number);
   Eigen::VectorXd r;
   RowMajorJacobian J;
   residuals.evaluate(minimum.unknowns.data(), r, &J);
   const double lost = static_cast<double>(decompose(J, excitation_tolerance).rank()) / static_cast<double>(n);
-  const auto samples = static_cast<double>(residuals.samples());
-  if (samples <= lost) return fit;
-  for (Index i = 0; i < n; ++i)
-    fit.scale(i) = normalised_mad(r(Eigen::seqN(i, residuals.samples(), n))) * std::sqrt(samples / (samples - lost));
-  return fit;
+  return robust_scale(r.reshaped(n, residuals.samples()).transpose(), residuals.weights(), lost);
 }
 
 Eigen::VectorXd scale_of_run(const ModelContext& context, const Trajectory& run) {
   const Eigen::VectorXd global_scale = positive_or_one(context.global.noise_variance().cwiseSqrt());
   const ModelResiduals residuals(context.model, {{&run, 0, run.transitions()}}, context.options.residual);
   if (residuals.samples() == 0) return global_scale;
-  const Eigen::VectorXd scale = least_squares_of(context, residuals, global_scale).scale;
+  const Eigen::VectorXd scale = least_squares_scale(context, residuals, global_scale);
   return (scale.allFinite() ? scale : global_scale).cwiseMax(context.floor);
 }
 
@@ -92,7 +80,6 @@ ModelContext make_model_context(const Recording& recording, const FitOptions& op
   const LinearStructure structure{model.states(), model.inputs(), false};
   ModelContext context{recording,
                        options,
-                       solved_by_ceres(options),
                        model,
                        global,
                        make_model_estimator(model, options),
@@ -110,7 +97,7 @@ Eigen::VectorXd sigma_of_window(const ModelContext& context, const Window& windo
   if (context.options.scale == ScaleSource::fixed)
     return Eigen::VectorXd::Constant(run_scale.size(), context.options.sigma);
   if (context.options.scale == ScaleSource::run || residuals.rows() <= residuals.unknowns()) return run_scale;
-  const Eigen::VectorXd scale = least_squares_of(context, residuals, run_scale).scale;
+  const Eigen::VectorXd scale = least_squares_scale(context, residuals, run_scale);
   return scale.allFinite() ? Eigen::VectorXd(scale.cwiseMax(context.floor)) : run_scale;
 }
 
@@ -125,7 +112,6 @@ LocalModel fit_model_window(const ModelContext& context, const Window& window, c
 /// A window searched both ways; the fit by Ceres, to take the other's place where that is above.
 AuditedWindow audit_model_window(const ModelContext& context, const Window& window, const ParameterPrior* prior,
                                  const LocalModel& fit) {
-  constexpr double negligible_cost = 1e-9;  // per sample: residuals of 1e-4 of their standard deviation
   const Trajectory& run = context.recording.runs[static_cast<std::size_t>(window.run)];
   const ModelResiduals residuals(context.model, {{&run, window.start, context.options.length}},
                                  context.options.residual);
@@ -138,39 +124,25 @@ AuditedWindow audit_model_window(const ModelContext& context, const Window& wind
                      theirs = minimise_model(residuals, sigma, estimator.loss, prior, by_ceres, start);
   if (ours.status == FitStatus::failed || theirs.status == FitStatus::failed) return result;
   result.compared = true;
-  const double least = negligible_cost * static_cast<double>(residuals.samples());
-  result.cost = (ours.cost - theirs.cost) / std::max(theirs.cost, least);
+  result.cost = relative_cost_above(ours.cost, theirs.cost, residuals.samples());
   const Eigen::ArrayXd difference = (ours.unknowns - theirs.unknowns).head(fit.theta.size()).cwiseAbs();
   const Eigen::ArrayXd errors = fit.covariance.diagonal().array().sqrt();
   if (errors.allFinite()) result.parameter = (difference / errors).maxCoeff();
   if (!(result.cost <= WindowAudit::tolerance))
-    result.ceres = fit_model(residuals, make_model_estimator(context.model, context.ceres_options), sigma,
+    result.ceres = fit_model(residuals, make_model_estimator(context.model, solved_by_ceres(context.options)), sigma,
                              context.floor, prior, start);
   return result;
 }
 
-template <class Body>
-void for_each_model_window(const std::vector<Window>& windows, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(windows.size())),
-                    [&](const tbb::blocked_range<Index>& range) {
-                      for (Index i = range.begin(); i < range.end(); ++i) body(i, windows[static_cast<std::size_t>(i)]);
-                    });
-}
-
-Eigen::VectorXd model_prior_sd(const ModelContext& context, const std::vector<Window>& windows) {
-  const Eigen::VectorXd& given = context.options.prior_sd;
+/// theta of windows fitted without prior, one per column; NaN where the rank is deficient.
+Eigen::MatrixXd unregularised_fits(const ModelContext& context, const std::vector<Window>& windows) {
   const Index p = context.global.theta.size();
-  if (given.size() == p) return given;
-  if (given.size() == 1) return Eigen::VectorXd::Constant(p, given(0));
   Eigen::MatrixXd all = Eigen::MatrixXd::Constant(p, static_cast<Index>(windows.size()), not_a_number);
-  for_each_model_window(windows, [&](Index i, const Window& window) {
-    const LocalModel fit = fit_model_window(context, window, nullptr);
-    if (fit.rank == p) all.col(i) = fit.theta;
+  tbb::parallel_for(std::size_t{0}, windows.size(), [&](std::size_t i) {
+    const LocalModel fit = fit_model_window(context, windows[i], nullptr);
+    if (fit.rank == p) all.col(static_cast<Index>(i)) = fit.theta;
   });
-  std::vector<Index> fitted;
-  for (Index i = 0; i < all.cols(); ++i)
-    if (all.col(i).allFinite()) fitted.push_back(i);
-  return default_prior_sd(all(Eigen::all, fitted), context.global, context.options.length);
+  return all;
 }
 
 void audit_model_windows(const ModelContext& context, const ParameterPrior* prior, WindowFits& fits) {
@@ -215,28 +187,22 @@ GlobalModel fit_global(const Recording& recording, const MotionModel& model) {
 }
 
 WindowFits fit_windows(const Recording& recording, const FitOptions& options, const MotionModel& model) {
-  WindowFits fits;
-  fits.model = options.model;
-  fits.structure = linear_structure(recording.state_count(), recording.input_count(), options);
+  const std::vector<Window> windows = make_windows(recording, options.length, options.step);
+  WindowFits fits = empty_fits(options, linear_structure(recording.state_count(), recording.input_count(), options),
+                               static_cast<Index>(windows.size()));
   if (!is_linear(options)) fits.model_parameters = model.parameters();
-  fits.residual = options.residual;
-  fits.length = options.length;
-  fits.step = options.step;
-  fits.loss = options.loss;
-  fits.windows = make_windows(recording, options.length, options.step);
-  if (fits.windows.empty())
-    throw DataError("no training run has the " + std::to_string(options.length) + " transitions of a window");
+  fits.windows = windows;
   fits.global = fit_global(recording, model);
 
   const ModelContext context = make_model_context(recording, options, model, fits.global);
   std::optional<ParameterPrior> prior;
   if (options.prior == Prior::global) {
-    fits.prior_sd = model_prior_sd(context, fits.windows);
+    fits.prior_sd = make_prior_sd(options, fits.global, [&] { return unregularised_fits(context, windows); });
     prior = ParameterPrior{fits.global.theta, fits.prior_sd};
   }
   fits.resize(fits.count());
-  for_each_model_window(fits.windows, [&](Index i, const Window& window) {
-    fits.set(i, fit_model_window(context, window, prior ? &*prior : nullptr));
+  tbb::parallel_for(std::size_t{0}, windows.size(), [&](std::size_t i) {
+    fits.set(static_cast<Index>(i), fit_model_window(context, windows[i], prior ? &*prior : nullptr));
   });
   if (context.estimator.search.newton_first) audit_model_windows(context, prior ? &*prior : nullptr, fits);
   return fits;

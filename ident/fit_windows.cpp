@@ -111,7 +111,7 @@ batch::Output columns_from(WindowFits& fits, Index i) {
   return out;
 }
 
-/// theta of full-rank windows fitted without prior, one per column.
+/// theta of windows fitted without prior, one per column; NaN where the rank is deficient.
 Eigen::MatrixXd unregularised_fits(const WindowContext& context, const WindowPlan& plan, Workers& workers) {
   const Index M = plan.count(), blocks = prior_windows / prior_block;
   std::vector<WindowPlan::Stretch> jobs;
@@ -146,19 +146,7 @@ Eigen::MatrixXd unregularised_fits(const WindowContext& context, const WindowPla
         all.col(column[j] + i) = context.unregularised_theta(plan.window(job.first + i));
     }
   });
-  std::vector<Index> fitted;
-  for (Index i = 0; i < all.cols(); ++i)
-    if (all.col(i).allFinite()) fitted.push_back(i);
-  return all(Eigen::all, fitted);
-}
-
-Eigen::VectorXd prior_sd(const WindowContext& context, const WindowPlan& plan, const GlobalModel& global,
-                         Workers& workers) {
-  const Eigen::VectorXd& given = context.options().prior_sd;
-  const Index p = global.theta.size();
-  if (given.size() == p) return given;
-  if (given.size() == 1) return Eigen::VectorXd::Constant(p, given(0));
-  return default_prior_sd(unregularised_fits(context, plan, workers), global, context.options().length);
+  return all;
 }
 
 /// All windows of a recording, to be fitted range by range.
@@ -166,17 +154,12 @@ class Fitting {
  public:
   Fitting(const Recording& recording, const FitOptions& options, const LinearStructure& structure)
       : plan_(recording, options.length, options.step, structure.first_transition()) {
-    if (plan_.count() == 0)
-      throw DataError("no training run has the " + std::to_string(options.length) + " transitions of a window");
-    common_.model = options.model;
-    common_.structure = structure;
-    common_.length = options.length;
-    common_.step = options.step;
-    common_.loss = options.loss;
+    common_ = empty_fits(options, structure, plan_.count());
     common_.global = fit_global(recording, structure);
     context_.emplace(recording, options, structure, common_.global);
     if (options.prior == Prior::global) {
-      common_.prior_sd = prior_sd(*context_, plan_, common_.global, workers_);
+      common_.prior_sd =
+          make_prior_sd(options, common_.global, [this] { return unregularised_fits(*context_, plan_, workers_); });
       prior_ = ParameterPrior{common_.global.theta, common_.prior_sd};
     }
     solver_ = make_batch_solver(*context_, prior());

@@ -4,6 +4,7 @@
 #include <ceres/solver.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -20,10 +21,11 @@ constexpr double largest_residual = 1e100;
 /// they do not, as far as the cost can be told apart.
 constexpr double near_tolerance = 1e-4;
 constexpr double far_tolerance = 1e-14;
-/// A gradient below this share of sqrt(samples) is rounding error; in theta it is as small a share of its standard
-/// error.
-constexpr double stationary_gradient = 1e-10;
-constexpr int max_newton_steps = 20;
+constexpr double stationary_gradient = 1e-10;  ///< of |psi|, of which the gradient is a projection
+constexpr double rounding_gradient = 1e-15;    ///< of the residuals that it is made from
+constexpr double cost_rounding = 1e-13;
+constexpr int max_newton_steps = 60;
+constexpr int max_halvings = 30;
 
 ceres::Problem::Options problem_options() {
   ceres::Problem::Options options;
@@ -65,27 +67,54 @@ FitStatus search(const WhitenedProblem& problem, const RobustLoss& loss, double 
   return summary.termination_type == ceres::NO_CONVERGENCE ? FitStatus::iteration_limit : FitStatus::failed;
 }
 
-bool stationary(const WhitenedProblem& problem, const Eigen::VectorXd& g) {
-  return g.norm() <= stationary_gradient * std::sqrt(static_cast<double>(problem.samples));
+/// 1/2 sum w rho(|r_k|^2 / w) + 1/2 |prior rows|^2.
+double half_cost(const WhitenedProblem& problem, const RobustLoss& loss, const RobustTerms& terms) {
+  double sum = terms.residual.tail(problem.prior_rows()).squaredNorm();
+  for (Index k = 0; k < problem.samples; ++k) {
+    const double w = problem.sample_weight(k);
+    sum += w * loss(terms.sample(k, problem.states).squaredNorm() / w).rho;
+  }
+  return 0.5 * sum;
 }
 
-/// Newton steps while they shrink the gradient; leaves z alone where the second derivative is not positive definite.
-/// Returns whether z is stationary.
+bool stationary(const WhitenedProblem& problem, const RobustTerms& terms, const Eigen::VectorXd& g) {
+  double psi_square = terms.residual.tail(problem.prior_rows()).squaredNorm();
+  for (Index k = 0; k < problem.samples; ++k)
+    psi_square += terms.weight(k) * terms.weight(k) * terms.sample(k, problem.states).squaredNorm();
+  return g.norm() <= std::max(stationary_gradient * std::sqrt(psi_square), rounding_gradient * problem.b.norm());
+}
+
+/// -H^-1 g; without rho'' where the second derivative is not positive definite. Empty where even that is not.
+Eigen::VectorXd newton_step(const WhitenedProblem& problem, const RobustTerms& terms, const Eigen::VectorXd& g) {
+  Eigen::LLT<Eigen::MatrixXd> factor(hessian(problem, terms));
+  if (factor.info() != Eigen::Success) factor.compute(weighted_information(problem, terms));
+  return factor.info() == Eigen::Success ? Eigen::VectorXd(-factor.solve(g)) : Eigen::VectorXd();
+}
+
+/// Newton steps, halved until the objective no longer grows, until z is stationary (true) or nothing is gained.
 bool polish(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::VectorXd& z) {
   RobustTerms terms = evaluate(problem, loss, z);
-  Eigen::VectorXd g = gradient(problem, terms);
-  for (int i = 0; i < max_newton_steps && g.norm() > 0.0; ++i) {
-    const Eigen::LLT<Eigen::MatrixXd> factor(hessian(problem, terms));
-    if (factor.info() != Eigen::Success) break;
-    const Eigen::VectorXd candidate = z - factor.solve(g);
-    RobustTerms candidate_terms = evaluate(problem, loss, candidate);
-    const Eigen::VectorXd candidate_g = gradient(problem, candidate_terms);
-    if (!(candidate_g.norm() < g.norm())) break;
-    z = candidate;
-    terms = std::move(candidate_terms);
-    g = candidate_g;
+  for (int i = 0; i < max_newton_steps; ++i) {
+    const Eigen::VectorXd g = gradient(problem, terms);
+    if (stationary(problem, terms, g)) return true;
+    Eigen::VectorXd step = newton_step(problem, terms, g);
+    if (step.size() == 0 || !step.allFinite()) return false;
+    const double allowed = half_cost(problem, loss, terms) * (1.0 + cost_rounding);
+    RobustTerms candidate = evaluate(problem, loss, z + step);
+    for (int halving = 0; !(half_cost(problem, loss, candidate) <= allowed); ++halving) {
+      if (halving == max_halvings) return false;
+      step *= 0.5;
+      candidate = evaluate(problem, loss, z + step);
+    }
+    z += step;
+    terms = std::move(candidate);
   }
-  return stationary(problem, g);
+  return stationary(problem, terms, gradient(problem, terms));
+}
+
+Minimum finite_or_failed(Minimum minimum) {
+  if (!minimum.z.allFinite()) minimum.status = FitStatus::failed;
+  return minimum;
 }
 
 }  // namespace
@@ -142,13 +171,14 @@ Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max
     const Minimum start = minimise(problem, RobustLoss(Loss::huber, 0.0), max_iterations);
     minimum.z = start.z;
   }
-  if (stationary(problem, gradient(problem, evaluate(problem, loss, minimum.z)))) return minimum;
+  const RobustTerms terms = evaluate(problem, loss, minimum.z);
+  if (stationary(problem, terms, gradient(problem, terms))) return minimum;
   for (const double tolerance : {near_tolerance, far_tolerance}) {
     minimum.status = search(problem, loss, tolerance, max_iterations, minimum.z);
-    if (minimum.status != FitStatus::converged || polish(problem, loss, minimum.z)) break;
+    if (minimum.status != FitStatus::converged || polish(problem, loss, minimum.z)) return finite_or_failed(minimum);
   }
-  if (!minimum.z.allFinite()) minimum.status = FitStatus::failed;
-  return minimum;
+  minimum.status = FitStatus::iteration_limit;  // Ceres gains nothing, and yet this is no stationary point
+  return finite_or_failed(minimum);
 }
 
 }  // namespace modebank

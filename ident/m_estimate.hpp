@@ -16,6 +16,11 @@ struct RobustTerms {
   Eigen::VectorXd curvature;  ///< L, rho''(|r_k|^2 / w) / w
 
   auto sample(Index k, Index states) const { return residual.segment(k * states, states); }
+  /// Residuals of the samples, L x n.
+  auto samples(Index states) const {
+    using Rows = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    return Eigen::Map<const Rows>(residual.data(), weight.size(), states);
+  }
   /// d psi_k / d r_k = rho' I + 2 rho'' r r', n x n.
   Eigen::MatrixXd influence_slope(Index k, Index states) const;
 };

@@ -1,6 +1,7 @@
 #include "ident/parameter_prior.hpp"
 
 #include <cmath>
+#include <vector>
 
 #include "ident/robust_scale.hpp"
 
@@ -16,11 +17,19 @@ double sample_sd(const Eigen::VectorXd& values) {
   return std::sqrt(square_sum / static_cast<double>(values.size() - 1));
 }
 
+Eigen::MatrixXd finite_columns(const Eigen::MatrixXd& all) {
+  std::vector<Index> finite;
+  for (Index i = 0; i < all.cols(); ++i)
+    if (all.col(i).allFinite()) finite.push_back(i);
+  return all(Eigen::all, finite);
+}
+
 bool usable(double sd) { return std::isfinite(sd) && sd > 0.0; }
 
 }  // namespace
 
-Eigen::VectorXd default_prior_sd(const Eigen::MatrixXd& parameters, const GlobalModel& global, Index length) {
+Eigen::VectorXd default_prior_sd(const Eigen::MatrixXd& all, const GlobalModel& global, Index length) {
+  const Eigen::MatrixXd parameters = finite_columns(all);
   const double windows_worth = static_cast<double>(global.transitions) / static_cast<double>(length);
   Eigen::VectorXd sd(global.theta.size());
   for (Index j = 0; j < sd.size(); ++j) {
@@ -30,6 +39,15 @@ Eigen::VectorXd default_prior_sd(const Eigen::MatrixXd& parameters, const Global
     sd(j) = usable(spread) ? widening * spread : 1.0;
   }
   return sd;
+}
+
+Eigen::VectorXd make_prior_sd(const FitOptions& options, const GlobalModel& global,
+                              const std::function<Eigen::MatrixXd()>& unregularised) {
+  const Eigen::VectorXd& given = options.prior_sd;
+  const Index p = global.theta.size();
+  if (given.size() == p) return given;
+  if (given.size() == 1) return Eigen::VectorXd::Constant(p, given(0));
+  return default_prior_sd(unregularised(), global, options.length);
 }
 
 }  // namespace modebank

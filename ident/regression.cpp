@@ -4,7 +4,9 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "ident/not_a_number.hpp"
@@ -66,6 +68,33 @@ Eigen::VectorXd column_scales(const Eigen::MatrixXd& X) {
     scales(j) = norm > 0.0 ? norm : 1.0;
   }
   return scales;
+}
+
+/// Largest over smallest of decreasing singular values.
+double condition_of(const Eigen::VectorXd& sigma) {
+  const Index q = sigma.size();
+  return q > 0 && sigma(q - 1) > 0.0 ? sigma(0) / sigma(q - 1) : std::numeric_limits<double>::infinity();
+}
+
+/// The common case, where no singular vectors are needed: any orthonormal basis of all directions will do, and
+/// Householder's is much cheaper. Nothing where the rank is deficient.
+std::optional<Decomposition> decompose_full_rank(const Eigen::MatrixXd& scaled, const Eigen::VectorXd& scales,
+                                                 double tolerance) {
+  using SmallSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 16, 16>;  // on the stack
+  const Index q = scaled.cols();
+  if (q == 0 || scaled.rows() < q) return std::nullopt;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
+  const Eigen::MatrixXd R = qr.matrixQR().topRows(q).triangularView<Eigen::Upper>();
+  const Eigen::VectorXd sigma = q <= SmallSquare::MaxRowsAtCompileTime
+                                    ? Eigen::VectorXd(Eigen::JacobiSVD<SmallSquare>(R).singularValues())
+                                    : Eigen::JacobiSVD<Eigen::MatrixXd>(R).singularValues();
+  if (!(sigma(q - 1) > tolerance * sigma(0))) return std::nullopt;
+  Decomposition d;
+  d.condition = condition_of(sigma);
+  d.U = qr.householderQ() * Eigen::MatrixXd::Identity(scaled.rows(), q);
+  d.basis = scales.cwiseInverse().asDiagonal();
+  R.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(d.basis);
+  return d;
 }
 
 /// basis with U S V' D basis = U, D = diag(scales), in the row space of U S V' D.
@@ -150,14 +179,12 @@ void for_each_training_block(const Recording& recording, const LinearStructure& 
 Decomposition decompose(const Eigen::MatrixXd& X, double tolerance) {
   const Eigen::VectorXd scales = column_scales(X);
   const Eigen::MatrixXd scaled = X * scales.cwiseInverse().asDiagonal();
+  if (std::optional<Decomposition> full = decompose_full_rank(scaled, scales, tolerance)) return *std::move(full);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::VectorXd& sigma = svd.singularValues();  // decreasing
-  const double largest = sigma.size() > 0 ? sigma(0) : 0.0;
-  const bool all_columns = X.rows() >= X.cols() && X.cols() > 0 && sigma(X.cols() - 1) > 0.0;
-
   Decomposition d;
-  d.condition = all_columns ? largest / sigma(X.cols() - 1) : std::numeric_limits<double>::infinity();
-  const Index rank = (sigma.array() > tolerance * largest).count();
+  d.condition = X.rows() >= X.cols() ? condition_of(sigma) : std::numeric_limits<double>::infinity();
+  const Index rank = sigma.size() > 0 ? (sigma.array() > tolerance * sigma(0)).count() : 0;
   d.U = svd.matrixU().leftCols(rank);
   d.basis = basis_of(scales, svd.matrixV().leftCols(rank), sigma.head(rank));
   return d;

@@ -41,7 +41,7 @@ void for_each_training_block(const Recording& recording, const LinearStructure& 
 /// Relative tolerance of a rank decision on the column-scaled regressors (method: section 2).
 inline constexpr double excitation_tolerance = 1e-6;
 
-/// X = U basis^+ by the singular value decomposition of X with its columns scaled to unit norm. U spans the excited
+/// X = U basis^+, its rank by the singular values of X with its columns scaled to unit norm. U spans the excited
 /// directions only, and coefficients beta = basis z in them have the smallest norm among all that give X beta = U z.
 struct Decomposition {
   Eigen::MatrixXd U;       ///< N x r, orthonormal columns

@@ -54,16 +54,19 @@ double normalised_mad(const Eigen::VectorXd& values, const Eigen::VectorXd& weig
   return mad_to_sd * weighted_median(distance, weights);
 }
 
+Eigen::VectorXd robust_scale(const Eigen::Ref<const Eigen::MatrixXd>& r, const Eigen::VectorXd& weights, double lost) {
+  const auto N = static_cast<double>(r.rows());
+  if (!(N > lost)) return Eigen::VectorXd::Constant(r.cols(), not_a_number);
+  Eigen::VectorXd scale(r.cols());
+  for (Index i = 0; i < r.cols(); ++i)
+    scale(i) = weights.size() > 0 ? normalised_mad(r.col(i), weights) : normalised_mad(r.col(i));
+  return scale * std::sqrt(N / (N - lost));
+}
+
 Eigen::VectorXd robust_scale(const Transitions& transitions, const Decomposition& decomposition) {
-  const Index N = transitions.count(), rank = decomposition.rank(), n = transitions.increments.cols();
-  if (N <= rank) return Eigen::VectorXd::Constant(n, not_a_number);
-  const Eigen::MatrixXd r = residuals(decomposition, transitions.increments);
-  const Eigen::VectorXd& weight = transitions.weight;
-  Eigen::VectorXd scale(n);
-  for (Index i = 0; i < n; ++i)
-    scale(i) = weight.size() > 0 ? normalised_mad(r.col(i).cwiseQuotient(weight.cwiseSqrt()), weight)
-                                 : normalised_mad(r.col(i));
-  return scale * std::sqrt(static_cast<double>(N) / static_cast<double>(N - rank));
+  Eigen::MatrixXd r = residuals(decomposition, transitions.increments);
+  if (transitions.weight.size() > 0) r.array().colwise() /= transitions.weight.array().sqrt();
+  return robust_scale(r, transitions.weight, static_cast<double>(decomposition.rank()));
 }
 
 Eigen::VectorXd scale_floor(const Recording& recording, const LinearStructure& structure,

@@ -14,9 +14,12 @@ double normalised_mad(const Eigen::VectorXd& values);
 /// The same of a sample in which value i stands for weights(i) > 0 values.
 double normalised_mad(const Eigen::VectorXd& values, const Eigen::VectorXd& weights);
 
-/// Residual standard deviation per state (n): normalised_mad of the least-squares residuals times sqrt(N / (N - rank)),
-/// with the sample weights where there are some (of the residuals themselves, not of those multiplied by sqrt(w)). NaN
-/// where N <= rank leaves no degree of freedom.
+/// Residual standard deviation per state from least-squares residuals r (N x n, not multiplied by roots of weights)
+/// that cost each state `lost` degrees of freedom: normalised_mad, with the sample weights where there are some (N, or
+/// none), times sqrt(N / (N - lost)). NaN where N <= lost.
+Eigen::VectorXd robust_scale(const Eigen::Ref<const Eigen::MatrixXd>& r, const Eigen::VectorXd& weights, double lost);
+
+/// The same of a linear regression.
 Eigen::VectorXd robust_scale(const Transitions& transitions, const Decomposition& decomposition);
 
 /// What no sigma may fall below, per state: 1e-3 of the global residual standard deviation. Noise-free data keep a

@@ -11,9 +11,8 @@ namespace modebank {
 namespace {
 
 constexpr Index least_audit = 200;
-constexpr Index audit_share = 1000;  ///< one window in so many
-/// Costs per sample below this are rounding error: residuals of 1e-4 of their standard deviation.
-constexpr double negligible_cost = 1e-9;
+constexpr Index audit_share = 1000;       ///< one window in so many
+constexpr double negligible_cost = 1e-9;  ///< per sample
 
 /// sum rho(|r_k / sigma|^2) + |(theta - mean) / sd|^2.
 double objective(const WindowContext::WindowData& data, const Estimator& estimator, const ParameterPrior* prior,
@@ -41,6 +40,10 @@ std::vector<Index> audited_windows(Index M, std::uint64_t seed) {
   return windows;
 }
 
+double relative_cost_above(double cost, double ceres_cost, Index samples) {
+  return (cost - ceres_cost) / std::max(ceres_cost, negligible_cost * static_cast<double>(samples));
+}
+
 AuditedWindow audit_window(const WindowContext& context, const Window& window, const ParameterPrior* prior,
                            const LocalModel& fit) {
   AuditedWindow result;
@@ -51,8 +54,7 @@ AuditedWindow audit_window(const WindowContext& context, const Window& window, c
   result.compared = true;
   const double ours = objective(*data, context.estimator(), prior, fit.theta),
                theirs = objective(*data, context.estimator(), prior, result.ceres.theta);
-  const double least = negligible_cost * static_cast<double>(data->transitions.count());
-  result.cost = (ours - theirs) / std::max(theirs, least);
+  result.cost = relative_cost_above(ours, theirs, data->transitions.count());
   const Eigen::ArrayXd difference = (fit.theta - result.ceres.theta).cwiseAbs();
   result.parameter = (difference / result.ceres.covariance.diagonal().array().sqrt()).maxCoeff();
   return result;

@@ -10,6 +10,10 @@ namespace modebank {
 /// strata.
 std::vector<Index> audited_windows(Index M, std::uint64_t seed);
 
+/// How far a window's cost is above Ceres', relative; differences of costs below 1e-9 per sample (residuals of some
+/// 1e-5 of their standard deviation) are rounding errors.
+double relative_cost_above(double cost, double ceres_cost, Index samples);
+
 /// One window solved again through Ceres.
 struct AuditedWindow {
   bool compared = false;

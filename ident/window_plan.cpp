@@ -1,6 +1,9 @@
 #include "ident/window_plan.hpp"
 
 #include <algorithm>
+#include <string>
+
+#include "ident/error.hpp"
 
 namespace modebank {
 
@@ -28,6 +31,19 @@ std::vector<WindowPlan::Stretch> WindowPlan::stretches(Index first, Index count,
       result.push_back({i, std::min(longest, end - i), window(i)});
   }
   return result;
+}
+
+WindowFits empty_fits(const FitOptions& options, const LinearStructure& structure, Index windows) {
+  if (windows == 0)
+    throw DataError("no training run has the " + std::to_string(options.length) + " transitions of a window");
+  WindowFits fits;
+  fits.model = options.model;
+  fits.structure = structure;
+  fits.residual = options.residual;
+  fits.length = options.length;
+  fits.step = options.step;
+  fits.loss = options.loss;
+  return fits;
 }
 
 }  // namespace modebank

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "ident/fit_options.hpp"
+#include "ident/local_model.hpp"
 #include "ident/window.hpp"
 
 namespace modebank {
@@ -28,5 +30,8 @@ class WindowPlan {
   Index step_;
   Index count_ = 0;
 };
+
+/// WindowFits without windows: what the options say of all of them. Throws DataError when there are to be none.
+WindowFits empty_fits(const FitOptions& options, const LinearStructure& structure, Index windows);
 
 }  // namespace modebank
