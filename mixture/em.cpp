@@ -9,10 +9,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "ident/seed.hpp"
+#include "mixture/em_iteration.hpp"
 #include "mixture/em_step.hpp"
 #include "mixture/feature_scale.hpp"
-#include "mixture/kmeans_start.hpp"
+#include "mixture/split_merge.hpp"
+#include "mixture/starts.hpp"
 
 namespace modebank {
 
@@ -25,15 +26,14 @@ constexpr double largest_coordinate = 1e150;
 /// Below this the floor is lost in the rounding of a covariance's largest eigenvalue.
 constexpr double smallest_floor = 1e-10;
 constexpr double agreement_per_point = 1e-4;
-/// Each restart goes on from the best of a few short runs, which miss a cluster far less often than a single start
-/// does.
-constexpr int short_runs = 5, short_run_iterations = 10;
 
 void check(const EmOptions& options) {
-  if (options.restarts < 1 || options.max_iterations < 0 || !(options.covariance_floor >= smallest_floor))
+  if (options.restarts < 1 || options.split_merge < 0 || options.max_iterations < 0 || !(options.covariance_floor >= smallest_floor))
     throw std::invalid_argument(
-        fmt::format("EM needs restarts >= 1, max_iterations >= 0 and covariance_floor >= {}; given {}, {} and {}",
-                    smallest_floor, options.restarts, options.max_iterations, options.covariance_floor));
+        fmt::format("EM needs restarts >= 1, split_merge and max_iterations >= 0 and covariance_floor >= {}; given {}, "
+                    "{}, {} and {}",
+                    smallest_floor, options.restarts, options.split_merge, options.max_iterations,
+                    options.covariance_floor));
 }
 
 /// The points' weights, checked; all one when none are given.
@@ -59,42 +59,6 @@ struct ScaledCloud {
       : scale(FeatureScale::of(physical, weights)), points(scale.to_scaled(physical), weights) {}
 };
 
-/// Iterates from `start` (scaled units). The result's log-likelihood belongs to the result's mixture: the last pass
-/// only measures it.
-EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptions& options) {
-  EmResult result;
-  result.mixture = std::move(start);
-  double previous = -std::numeric_limits<double>::infinity();
-  while (true) {
-    const MixtureMoments moments = expect(points, result.mixture);
-    result.log_likelihood = moments.log_likelihood;
-    result.converged = result.log_likelihood - previous < options.tolerance * points.total_weight();
-    if (result.converged || result.iterations == options.max_iterations) break;
-    previous = result.log_likelihood;
-    result.floor_active = maximise(moments, options.covariance_floor, result.mixture);
-    ++result.iterations;
-  }
-  return result;
-}
-
-/// emEM (Biernacki, Celeux & Govaert 2003, Comput. Stat. Data Anal. 41, section 2.2).
-EmResult restart(const PointBlocks& points, Index components, const EmOptions& options, std::mt19937_64& generator) {
-  EmOptions brief = options;
-  brief.max_iterations = std::min(short_run_iterations, options.max_iterations);
-  EmResult best;
-  for (int run = 0; run < (components == 1 ? 1 : short_runs); ++run) {
-    GaussianMixture start = kmeans_start(points, components, options.covariance, options.covariance_floor, generator);
-    EmResult result = iterate(points, std::move(start), brief);
-    if (run == 0 || result.log_likelihood > best.log_likelihood) best = std::move(result);
-  }
-  if (best.converged) return best;
-  EmOptions rest = options;
-  rest.max_iterations -= best.iterations;
-  EmResult result = iterate(points, std::move(best.mixture), rest);
-  result.iterations += best.iterations;
-  return result;
-}
-
 void order_by_weight(GaussianMixture& mixture) {
   std::vector<Index> order(mixture.components());
   std::iota(order.begin(), order.end(), Index(0));
@@ -111,6 +75,15 @@ void order_by_weight(GaussianMixture& mixture) {
 void to_physical(const ScaledCloud& cloud, EmResult& result) {
   result.mixture = cloud.scale.to_physical(result.mixture);
   result.log_likelihood += cloud.points.total_weight() * cloud.scale.log_jacobian();
+}
+
+/// From a start to an optimum that split-and-merge moves do not leave.
+EmResult restart(const PointBlocks& points, Start start, const EmOptions& options) {
+  EmOptions rest = options;
+  rest.max_iterations = std::max(0, options.max_iterations - start.iterations);
+  EmResult result = iterate(points, std::move(start.mixture), rest);
+  result.iterations += start.iterations;
+  return split_and_merge(points, std::move(result), options);
 }
 
 /// The best of the restarts, the first on a tie, with the number that agree with it.
@@ -140,22 +113,59 @@ GaussianMixture usable_start(const GaussianMixture& start, const FeatureScale& s
 
 }  // namespace
 
-EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Index components,
-                const EmOptions& options, std::uint64_t seed) {
+EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptions& options) {
+  EmResult result;
+  result.mixture = std::move(start);
+  double previous = -std::numeric_limits<double>::infinity();
+  while (true) {
+    const MixtureMoments moments = expect(points, result.mixture);
+    result.log_likelihood = moments.log_likelihood;
+    result.converged = result.log_likelihood - previous < options.tolerance * points.total_weight();
+    if (result.converged || result.iterations == options.max_iterations) break;
+    previous = result.log_likelihood;
+    result.floor_active = maximise(moments, options.covariance_floor, result.mixture);
+    ++result.iterations;
+  }
+  return result;
+}
+
+struct EmSweep::Prepared {
+  EmOptions options;
+  ScaledCloud cloud;
+  Starts starts;
+
+  Prepared(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const EmOptions& given)
+      : options(given), cloud(points, weights), starts(cloud.points, options) {}
+};
+
+EmSweep::EmSweep(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const EmOptions& options) {
   check(options);
-  if (components < 1 || components > points.cols())
+  prepared_ = std::make_unique<Prepared>(points, checked_weights(points, weights), options);
+}
+
+EmSweep::~EmSweep() = default;
+
+EmResult EmSweep::fit(Index components, std::uint64_t seed, const GaussianMixture* start) const {
+  const ScaledCloud& cloud = prepared_->cloud;
+  const EmOptions& options = prepared_->options;
+  if (components < 1 || components > cloud.points.count())
     throw std::invalid_argument(
-        fmt::format("EM of {} components needs 1 to {} (the number of points)", components, points.cols()));
-  const ScaledCloud cloud(points, checked_weights(points, weights));
-  std::vector<EmResult> restarts(options.restarts);
+        fmt::format("EM of {} components needs 1 to {} (the number of points)", components, cloud.points.count()));
+  std::vector<EmResult> restarts(static_cast<std::size_t>(options.restarts));
   tbb::parallel_for(0, options.restarts, [&](int i) {
-    std::mt19937_64 generator = make_generator(seed, "em restart", static_cast<std::uint64_t>(i));
-    restarts[i] = restart(cloud.points, components, options, generator);
+    Start own = i == 0 && start ? Start{usable_start(*start, cloud.scale, options), 0}
+                                : prepared_->starts.make(components, i, seed);
+    restarts[static_cast<std::size_t>(i)] = restart(cloud.points, std::move(own), options);
   });
   EmResult result = best_of(std::move(restarts), cloud.points.total_weight());
   order_by_weight(result.mixture);
   to_physical(cloud, result);
   return result;
+}
+
+EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Index components,
+                const EmOptions& options, std::uint64_t seed) {
+  return EmSweep(points, weights, options).fit(components, seed);
 }
 
 EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const GaussianMixture& start,

@@ -2,15 +2,28 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 
 #include "mixture/gaussian_mixture.hpp"
 
 namespace modebank {
 
+/// Where restarts begin. kmeans_plus_plus (Arthur & Vassilvitskii 2007) and random (points as centres): the best of five
+/// short runs each (emEM: Biernacki, Celeux & Govaert 2003). hierarchical: model-based agglomeration (Fraley 1998) of a
+/// subsample, another one for each restart. automatic: the first restart hierarchical, the others k-means++.
+enum class StartKind { automatic, kmeans_plus_plus, random, hierarchical };
+
+template <>
+struct EnumNames<StartKind> {
+  static constexpr Names<4> values{"auto", "kmeans++", "random", "hierarchical"};
+};
+
 /// Expectation-maximisation of a Gaussian mixture (Dempster, Laird & Rubin 1977), in the log domain.
 struct EmOptions {
   CovarianceType covariance = CovarianceType::full;
-  int restarts = 5;           ///< independent, >= 1; each goes on from the best of five short runs
+  StartKind start = StartKind::automatic;
+  int restarts = 5;           ///< independent, >= 1
+  int split_merge = 5;        ///< split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000)
   double tolerance = 1e-7;    ///< stop when the mean log-likelihood per unit weight gains less; negative: never
   int max_iterations = 1000;  ///< M steps, >= 0
   double covariance_floor =
@@ -27,7 +40,7 @@ struct EmResult {
   bool floor_active = false;  ///< whether the covariance floor held any component in the last iteration
 };
 
-/// Best of options.restarts runs from k-means++ starts (Arthur & Vassilvitskii 2007). `points` F x N finite, up to
+/// Best of options.restarts runs, improved by split-and-merge moves. `points` F x N finite, up to
 /// 1e150 in magnitude; `weights` N nonnegative or empty (all one). Fitted in units of each feature's standard
 /// deviation, so invariant to its units; a constant feature keeps its unit and is held by the floor, as are coinciding
 /// points. The floored M step is the exact constrained maximiser, so the likelihood never falls. A component that
@@ -35,6 +48,23 @@ struct EmResult {
 /// bad options, weights or points. Bitwise the same for any number of threads.
 EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Eigen::Index components,
                 const EmOptions& options, std::uint64_t seed);
+/// fit_em for several numbers of components over the same points, which are prepared once. fit() may be called from
+/// several threads; what it returns depends on its own arguments alone.
+class EmSweep {
+ public:
+  EmSweep(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const EmOptions& options);
+  ~EmSweep();
+  EmSweep(const EmSweep&) = delete;
+  EmSweep& operator=(const EmSweep&) = delete;
+
+  /// With `start` (physical units, of as many components) the first restart begins there.
+  EmResult fit(Eigen::Index components, std::uint64_t seed, const GaussianMixture* start = nullptr) const;
+
+ private:
+  struct Prepared;
+  std::unique_ptr<Prepared> prepared_;
+};
+
 /// From a given start, no restarts: the components keep the start's order; its covariances are raised to the floor, and
 /// reduced to their diagonals for CovarianceType::diagonal.
 EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const GaussianMixture& start,

@@ -33,7 +33,7 @@ FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowCh
     for (const Channel& state : states) cloud.names.push_back("log_noise_variance_" + state.name);
   Eigen::VectorXd point(p + (with_noise ? n : 0));
   Eigen::MatrixXd points(point.size(), fits.count());
-  const std::vector<bool> left_out = straddling == StraddlingWindows::leave_out
+  const std::vector<bool> left_out = straddling != StraddlingWindows::keep
                                          ? straddling_windows(fits)
                                          : std::vector<bool>(static_cast<std::size_t>(fits.count()), false);
   for (Index window = 0; window < fits.count(); ++window) {

@@ -22,12 +22,14 @@ struct EnumNames<WindowChoice> {
 };
 
 /// What becomes of windows that straddle a switch of mode: they follow no single model and are a population of their
-/// own, which would claim a component. `leave_out` takes them out of the cloud; `keep` clusters them like the others.
-enum class StraddlingWindows { leave_out, keep };
+/// own, which would claim a component. `leave_out` takes those out of the cloud whose residuals show it
+/// (straddling_windows); `trim` those, too, that the labels show (windows_at_switches), and clusters again until that
+/// changes nothing; `keep` clusters all like the others.
+enum class StraddlingWindows { leave_out, trim, keep };
 
 template <>
 struct EnumNames<StraddlingWindows> {
-  static constexpr Names<2> values{"leave_out", "keep"};
+  static constexpr Names<3> values{"leave_out", "trim", "keep"};
 };
 
 /// The cloud that is clustered: one point per clustered window.
@@ -37,6 +39,9 @@ struct FeatureCloud {
   std::vector<Eigen::Index> windows;  ///< N, which window each point is
   std::vector<Eigen::Index> runs;     ///< N, run of that window
 };
+
+/// The points at `positions` of the cloud, in that order.
+FeatureCloud subset(const FeatureCloud& cloud, const std::vector<Eigen::Index>& positions);
 
 /// Failed fits and non-finite windows are left out.
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
