@@ -140,13 +140,12 @@ GaussianMixture usable_start(const GaussianMixture& start, const FeatureScale& s
 
 }  // namespace
 
-EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Index components,
-                const EmOptions& options, std::uint64_t seed) {
+EmResult fit_em(const PointSet& points, Index components, const EmOptions& options, std::uint64_t seed) {
   check(options);
-  if (components < 1 || components > points.cols())
+  if (components < 1 || components > points.count())
     throw std::invalid_argument(
-        fmt::format("EM of {} components needs 1 to {} (the number of points)", components, points.cols()));
-  const ScaledCloud cloud(points, checked_weights(points, weights));
+        fmt::format("EM of {} components needs 1 to {} (the number of points)", components, points.count()));
+  const ScaledCloud cloud(points.points, checked_weights(points.points, points.weights));
   std::vector<EmResult> restarts(options.restarts);
   tbb::parallel_for(0, options.restarts, [&](int i) {
     std::mt19937_64 generator = make_generator(seed, "em restart", static_cast<std::uint64_t>(i));
@@ -158,14 +157,13 @@ EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, I
   return result;
 }
 
-EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const GaussianMixture& start,
-                const EmOptions& options) {
+EmResult fit_em(const PointSet& points, const GaussianMixture& start, const EmOptions& options) {
   check(options);
   check_sizes(start);
-  if (start.features() != points.rows())
+  if (start.features() != points.features())
     throw std::invalid_argument(
-        fmt::format("EM is given points of {} features and a start of {}", points.rows(), start.features()));
-  const ScaledCloud cloud(points, checked_weights(points, weights));
+        fmt::format("EM is given points of {} features and a start of {}", points.features(), start.features()));
+  const ScaledCloud cloud(points.points, checked_weights(points.points, points.weights));
   EmResult result = iterate(cloud.points, usable_start(start, cloud.scale, options), options);
   result.agreeing_restarts = 1;
   to_physical(cloud, result);

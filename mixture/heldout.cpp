@@ -61,10 +61,10 @@ double heldout_score(const FeatureCloud& cloud, Index components, const EmOption
   tbb::parallel_for(Index(0), count, [&](Index g) {
     const std::vector<Index> rest = rest_of(groups[g], cloud.points.cols());
     if (static_cast<Index>(rest.size()) < components) return;
-    const Eigen::MatrixXd training = cloud.points(Eigen::all, rest), left_out = cloud.points(Eigen::all, groups[g]);
+    const FeatureCloud training = subset(cloud, rest), left_out = subset(cloud, groups[g]);
     const std::uint64_t group_seed = derive_seed(seed, "held out", static_cast<std::uint64_t>(g));
-    const EmResult fit = fit_em(training, Eigen::VectorXd(), components, options, group_seed);
-    sums[g] = log_density(fit.mixture, left_out).sum();
+    const EmResult fit = fit_em(training.point_set(), components, options, group_seed);
+    sums[g] = log_density(fit.mixture, left_out.point_set()).sum();
   });
   double sum = 0.0;
   for (const double group_sum : sums) sum += group_sum;

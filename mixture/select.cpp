@@ -47,7 +47,7 @@ FittedCandidate fit_candidate(const WindowFits& fits, const FeatureCloud& cloud,
                               Index components, std::uint64_t seed) {
   // The seed depends on the candidate's size, not on its place in the table: other candidates do not change it.
   const std::uint64_t own_seed = derive_seed(seed, "mixture", static_cast<std::uint64_t>(components));
-  EmResult fit = fit_em(cloud.points, Eigen::VectorXd(), components, options.em, own_seed);
+  EmResult fit = fit_em(cloud.point_set(), components, options.em, own_seed);
   Candidate row;
   row.components = components;
   row.covariance = options.em.covariance;
@@ -57,7 +57,7 @@ FittedCandidate fit_candidate(const WindowFits& fits, const FeatureCloud& cloud,
   row.iterations = fit.iterations;
   row.converged = fit.converged;
   row.agreeing_restarts = fit.agreeing_restarts;
-  fill_criteria(row, cloud.points.cols(), entropy(responsibilities(fit.mixture, cloud.points)));
+  fill_criteria(row, cloud.points.cols(), classification_entropy(fit.mixture, cloud.point_set()));
   row.heldout =
       options.criterion == Criterion::heldout ? heldout_score(cloud, components, options.em, own_seed) : not_a_number;
   return {std::move(fit.mixture), row};
@@ -65,7 +65,7 @@ FittedCandidate fit_candidate(const WindowFits& fits, const FeatureCloud& cloud,
 
 /// The selected mixture's memberships, spread from the clustered windows over all windows.
 void fill_memberships(const FeatureCloud& cloud, Index windows, MixtureResult& result) {
-  const Eigen::MatrixXd memberships = responsibilities(result.mixture, cloud.points);
+  const Eigen::MatrixXd memberships = responsibilities(result.mixture, cloud.point_set());
   result.labels.setConstant(windows, -1);
   result.responsibilities.setConstant(result.mixture.components(), windows, not_a_number);
   for (Index i = 0; i < cloud.points.cols(); ++i) {
