@@ -50,6 +50,8 @@ Eigen::VectorXd checked_weights(const Eigen::MatrixXd& points, const Eigen::Vect
   return weights;
 }
 
+}  // namespace
+
 /// The cloud in the units it is fitted in.
 struct ScaledCloud {
   FeatureScale scale;
@@ -58,6 +60,8 @@ struct ScaledCloud {
   ScaledCloud(const Eigen::MatrixXd& physical, const Eigen::VectorXd& weights)
       : scale(FeatureScale::of(physical, weights)), points(scale.to_scaled(physical), weights) {}
 };
+
+namespace {
 
 void order_by_weight(GaussianMixture& mixture) {
   std::vector<Index> order(mixture.components());
@@ -134,13 +138,13 @@ struct EmSweep::Prepared {
   ScaledCloud cloud;
   Starts starts;
 
-  Prepared(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const EmOptions& given)
-      : options(given), cloud(points, weights), starts(cloud.points, options) {}
+  Prepared(const PointSet& points, const Eigen::VectorXd& weights, const EmOptions& given)
+      : options(given), cloud(points.points, weights), starts(cloud.points, options) {}
 };
 
-EmSweep::EmSweep(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const EmOptions& options) {
+EmSweep::EmSweep(const PointSet& points, const EmOptions& options) {
   check(options);
-  prepared_ = std::make_unique<Prepared>(points, checked_weights(points, weights), options);
+  prepared_ = std::make_unique<Prepared>(points, checked_weights(points.points, points.weights), options);
 }
 
 EmSweep::~EmSweep() = default;
@@ -163,19 +167,17 @@ EmResult EmSweep::fit(Index components, std::uint64_t seed, const GaussianMixtur
   return result;
 }
 
-EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Index components,
-                const EmOptions& options, std::uint64_t seed) {
-  return EmSweep(points, weights, options).fit(components, seed);
+EmResult fit_em(const PointSet& points, Index components, const EmOptions& options, std::uint64_t seed) {
+  return EmSweep(points, options).fit(components, seed);
 }
 
-EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const GaussianMixture& start,
-                const EmOptions& options) {
+EmResult fit_em(const PointSet& points, const GaussianMixture& start, const EmOptions& options) {
   check(options);
   check_sizes(start);
-  if (start.features() != points.rows())
+  if (start.features() != points.features())
     throw std::invalid_argument(
-        fmt::format("EM is given points of {} features and a start of {}", points.rows(), start.features()));
-  const ScaledCloud cloud(points, checked_weights(points, weights));
+        fmt::format("EM is given points of {} features and a start of {}", points.features(), start.features()));
+  const ScaledCloud cloud(points.points, checked_weights(points.points, points.weights));
   EmResult result = iterate(cloud.points, usable_start(start, cloud.scale, options), options);
   result.agreeing_restarts = 1;
   to_physical(cloud, result);

@@ -22,7 +22,7 @@ bool wanted(const WindowFits& fits, WindowChoice choice, Index window) {
 }  // namespace
 
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
-                           const std::vector<Channel>& states, StraddlingWindows straddling) {
+                           const std::vector<Channel>& states, StraddlingWindows straddling, WindowErrors) {
   const Index p = fits.parameter_count(), n = fits.structure.states;
   const bool with_noise = features == FeatureSet::parameters_and_noise;
   if (static_cast<Index>(states.size()) != n)
@@ -47,6 +47,18 @@ FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowCh
   }
   cloud.points = points.leftCols(static_cast<Index>(cloud.windows.size()));
   return cloud;
+}
+
+FeatureCloud subset(const FeatureCloud& cloud, const std::vector<Index>& positions) {
+  FeatureCloud part;
+  part.names = cloud.names;
+  part.points = cloud.points(Eigen::all, positions);
+  if (cloud.covariances.size() > 0) part.covariances = cloud.covariances(Eigen::all, positions);
+  for (const Index i : positions) {
+    part.windows.push_back(cloud.windows[static_cast<std::size_t>(i)]);
+    part.runs.push_back(cloud.runs[static_cast<std::size_t>(i)]);
+  }
+  return part;
 }
 
 }  // namespace modebank

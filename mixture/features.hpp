@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ident/local_model.hpp"
+#include "mixture/point_set.hpp"
 
 namespace modebank {
 
@@ -36,15 +37,25 @@ struct EnumNames<StraddlingWindows> {
 struct FeatureCloud {
   std::vector<std::string> names;     ///< F: parameter names, then "log_noise_variance_<state>" when noise is included
   Eigen::MatrixXd points;             ///< F x N, physical units
+  Eigen::MatrixXd covariances;        ///< F*F x N, of the points' errors; empty unless asked for
   std::vector<Eigen::Index> windows;  ///< N, which window each point is
   std::vector<Eigen::Index> runs;     ///< N, run of that window
+
+  PointSet point_set() const { return PointSet(points, detail::no_weights, covariances); }
 };
 
 /// The points at `positions` of the cloud, in that order.
 FeatureCloud subset(const FeatureCloud& cloud, const std::vector<Eigen::Index>& positions);
 
-/// Failed fits and non-finite windows are left out.
+/// Whether the cloud carries the windows' own covariances (error-aware clustering).
+enum class WindowErrors { ignore, include };
+
+/// Failed fits and non-finite windows are left out. With errors a point's covariance is that of theta, and 2 / (L -
+/// rank / n) for the logarithm of a noise variance (delta method: an estimate of sigma^2 on nu degrees of freedom has
+/// variance 2 sigma^4 / nu under Gaussian noise), uncorrelated with theta; windows whose covariance is not finite (rank
+/// deficient without a prior: their theta is no measurement) are then left out.
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
-                           const std::vector<Channel>& states, StraddlingWindows straddling = StraddlingWindows::keep);
+                           const std::vector<Channel>& states, StraddlingWindows straddling = StraddlingWindows::keep,
+                           WindowErrors errors = WindowErrors::ignore);
 
 }  // namespace modebank

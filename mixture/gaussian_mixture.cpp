@@ -16,19 +16,20 @@ using Eigen::Index;
 
 namespace {
 
-PointBlocks blocks_for(const GaussianMixture& mixture, const Eigen::MatrixXd& points) {
+PointBlocks blocks_for(const GaussianMixture& mixture, const PointSet& set) {
   check_sizes(mixture);
-  if (points.rows() != mixture.features())
+  if (set.features() != mixture.features())
     throw std::invalid_argument(
-        fmt::format("points have {} features, the mixture has {}", points.rows(), mixture.features()));
-  return PointBlocks(points, Eigen::VectorXd());
+        fmt::format("points have {} features, the mixture has {}", set.features(), mixture.features()));
+  if (set.has_errors() || mixture.noise.present()) throw std::logic_error("not on this commit yet");
+  return PointBlocks(set.points, Eigen::VectorXd());
 }
 
 }  // namespace
 
 Index GaussianMixture::parameter_count() const {
   const Index K = components(), F = features();
-  return K - 1 + K * F + (type == CovarianceType::full ? K * F * (F + 1) / 2 : K * F);
+  return K - 1 + K * F + (type == CovarianceType::full ? K * F * (F + 1) / 2 : K * F) + (noise.present() ? 2 : 0);
 }
 
 void check_sizes(const GaussianMixture& mixture) {
@@ -42,11 +43,11 @@ void check_sizes(const GaussianMixture& mixture) {
           fmt::format("mixture of {} features has a {} x {} covariance", F, covariance.rows(), covariance.cols()));
 }
 
-Eigen::VectorXd log_density(const GaussianMixture& mixture, const Eigen::MatrixXd& points) {
+Eigen::VectorXd log_density(const GaussianMixture& mixture, const PointSet& points) {
   const PointBlocks blocks = blocks_for(mixture, points);
   const ComponentFactors factors = factor(mixture);
   BlockDensity density;
-  Eigen::VectorXd result(points.cols());
+  Eigen::VectorXd result(points.count());
   for (Index b = 0; b < blocks.blocks(); ++b) {
     evaluate(factors, blocks.points(b), density);
     result.segment(b * block_size, blocks.points_in(b)) = density.log_density.head(blocks.points_in(b));
@@ -54,18 +55,36 @@ Eigen::VectorXd log_density(const GaussianMixture& mixture, const Eigen::MatrixX
   return result;
 }
 
-Eigen::MatrixXd responsibilities(const GaussianMixture& mixture, const Eigen::MatrixXd& points) {
+void visit_responsibilities(const GaussianMixture& mixture, const PointSet& points,
+                            const std::function<void(Index, const Eigen::Ref<const Eigen::MatrixXd>&)>& visit) {
   const PointBlocks blocks = blocks_for(mixture, points);
   const ComponentFactors factors = factor(mixture);
   BlockDensity density;
-  Eigen::MatrixXd result(mixture.components(), points.cols());
+  Eigen::MatrixXd columns;
   for (Index b = 0; b < blocks.blocks(); ++b) {
     evaluate(factors, blocks.points(b), density);
     density.relative.colwise() /= density.sum;
-    result.middleCols(b * block_size, blocks.points_in(b)) =
-        density.relative.topRows(blocks.points_in(b)).transpose().matrix();
+    columns = density.relative.topRows(blocks.points_in(b)).transpose().matrix();
+    visit(b * block_size, columns);
   }
+}
+
+Eigen::MatrixXd responsibilities(const GaussianMixture& mixture, const PointSet& points) {
+  Eigen::MatrixXd result(mixture.components(), points.count());
+  visit_responsibilities(mixture, points, [&](Index first, const Eigen::Ref<const Eigen::MatrixXd>& block) {
+    result.middleCols(first, block.cols()) = block;
+  });
   return result;
+}
+
+double classification_entropy(const GaussianMixture& mixture, const PointSet& points) {
+  const auto term = [](double r) { return r > 0.0 ? r * std::log(r) : 0.0; };
+  double sum = 0.0;
+  visit_responsibilities(mixture, points, [&](Index, const Eigen::Ref<const Eigen::MatrixXd>& block) {
+    sum -= block.unaryExpr(term).sum();
+    if (mixture.noise.present()) sum -= (1.0 - block.colwise().sum().array()).max(0.0).unaryExpr(term).sum();
+  });
+  return sum;
 }
 
 Eigen::MatrixXd sample(const GaussianMixture& mixture, Index count, std::mt19937_64& generator) {

@@ -1,11 +1,11 @@
 #include "mixture/split_merge.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "mixture/em_iteration.hpp"
@@ -18,110 +18,160 @@ using Eigen::Index;
 
 namespace {
 
-constexpr Index moves_are_ranked_on = 1000;  // points
-constexpr int short_run_iterations = 20;
-constexpr int most_rounds = 10;
-/// Each way of merging is tried with this many ways of splitting before the next one's turn.
-constexpr std::size_t splits_per_merge = 3;
+constexpr Index moves_are_ranked_on = 1500;  // points
+constexpr int partial_iterations = 15, move_iterations = 15;
+constexpr int most_move_rounds = 20;
 /// A gain below this per unit weight is the same optimum [nats].
 constexpr double least_gain = 1e-5;
 
-struct Pair {
-  double score;
-  Index first, second;
+double log_determinant(const Eigen::MatrixXd& covariance) {
+  return 2.0 * Eigen::LLT<Eigen::MatrixXd>(covariance).matrixLLT().diagonal().array().log().sum();
+}
+
+struct Part {
+  double weight;
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;
 };
 
-/// By the cosine between their responsibilities.
-std::vector<Pair> pairs_by_likeness(const Eigen::MatrixXd& memberships) {
-  const Eigen::MatrixXd products = memberships * memberships.transpose();
-  std::vector<Pair> pairs;
-  for (Index i = 0; i < products.rows(); ++i)
-    for (Index j = i + 1; j < products.rows(); ++j) {
-      const double norms = std::sqrt(products(i, i) * products(j, j));
-      pairs.push_back({norms > 0.0 ? products(i, j) / norms : 1.0, i, j});
-    }
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.score > b.score; });
-  return pairs;
+Part part_of(const GaussianMixture& mixture, Index k) {
+  return {mixture.weights(k), mixture.means.col(k), mixture.covariances[static_cast<std::size_t>(k)]};
 }
 
-/// By the divergence of the component's points, weighted by responsibility, from its density.
-std::vector<Index> splits_by_misfit(const GaussianMixture& mixture, const Eigen::MatrixXd& points,
-                                    const Eigen::MatrixXd& memberships) {
-  Eigen::VectorXd misfit = Eigen::VectorXd::Zero(mixture.components());
-  const Eigen::VectorXd density = log_density(mixture, points);
-  for (Index k = 0; k < mixture.components(); ++k) {
-    const double mass = memberships.row(k).sum();
-    if (!(mass > 0.0) || !(mixture.weights(k) > 0.0)) continue;
-    for (Index i = 0; i < points.cols(); ++i) {
-      const double r = memberships(k, i);
-      if (!(r > 0.0)) continue;
-      // Responsibility times density is weight times the component's density.
-      const double component = std::log(r) + density(i) - std::log(mixture.weights(k));
-      misfit(k) += r / mass * (std::log(r / mass) - component);
+void put(const Part& part, Index k, GaussianMixture& mixture) {
+  mixture.weights(k) = part.weight;
+  mixture.means.col(k) = part.mean;
+  mixture.covariances[static_cast<std::size_t>(k)] = part.covariance;
+}
+
+/// Both components as one of the same moments.
+Part merged(const GaussianMixture& mixture, Index i, Index j) {
+  const Part a = part_of(mixture, i), b = part_of(mixture, j);
+  const double weight = a.weight + b.weight, share = weight > 0.0 ? b.weight / weight : 0.5;
+  const Eigen::VectorXd gap = b.mean - a.mean;
+  Part result{weight, a.mean + share * gap,
+              (1.0 - share) * a.covariance + share * b.covariance + share * (1.0 - share) * gap * gap.transpose()};
+  if (mixture.type == CovarianceType::diagonal) {
+    const Eigen::VectorXd variances = result.covariance.diagonal();
+    result.covariance = variances.asDiagonal();
+  }
+  return result;
+}
+
+struct Merge {
+  Index first, second;
+  double loss;
+};
+
+std::vector<Merge> merges_by_loss(const GaussianMixture& mixture) {
+  std::vector<double> log_determinants;
+  for (const Eigen::MatrixXd& covariance : mixture.covariances)
+    log_determinants.push_back(log_determinant(covariance));
+  const auto share = [&](Index k) { return mixture.weights(k) * log_determinants[static_cast<std::size_t>(k)]; };
+  std::vector<Merge> merges;
+  for (Index i = 0; i < mixture.components(); ++i)
+    for (Index j = i + 1; j < mixture.components(); ++j) {
+      const Part both = merged(mixture, i, j);
+      merges.push_back({i, j, 0.5 * (both.weight * log_determinant(both.covariance) - share(i) - share(j))});
+    }
+  std::stable_sort(merges.begin(), merges.end(), [](const Merge& a, const Merge& b) { return a.loss < b.loss; });
+  return merges;
+}
+
+GaussianMixture pair_of(const GaussianMixture& mixture, Index k) {
+  GaussianMixture pair;
+  pair.type = mixture.type;
+  pair.weights = Eigen::Vector2d(0.5, 0.5);
+  pair.means = mixture.means.col(k).replicate(1, 2);
+  pair.covariances.assign(2, mixture.covariances[static_cast<std::size_t>(k)]);
+  return pair;
+}
+
+/// The moments of a Gaussian's halves on either side of a plane through its mean across its longest axis.
+GaussianMixture halves(const GaussianMixture& mixture, Index k) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(mixture.covariances[static_cast<std::size_t>(k)]);
+  const Index longest = mixture.features() - 1;
+  const Eigen::VectorXd offset = eigen.eigenvectors().col(longest) *
+                                 std::sqrt(2.0 / std::numbers::pi * std::max(0.0, eigen.eigenvalues()(longest)));
+  GaussianMixture pair = pair_of(mixture, k);
+  pair.means.col(0) += offset;
+  pair.means.col(1) -= offset;
+  for (Eigen::MatrixXd& covariance : pair.covariances) covariance -= offset * offset.transpose();
+  return pair;
+}
+
+/// For clouds with a dense centre and heavier tails than a Gaussian's.
+GaussianMixture core_and_shell(const GaussianMixture& mixture, Index k) {
+  constexpr double core = 0.1, shell = 1.9;  // variances; their mean is the component's
+  GaussianMixture pair = pair_of(mixture, k);
+  pair.covariances[0] *= core;
+  pair.covariances[1] *= shell;
+  return pair;
+}
+
+void raise_all(GaussianMixture& mixture, const EmOptions& options) {
+  for (Eigen::MatrixXd& covariance : mixture.covariances)
+    raise_to_floor(covariance, options.covariance_floor, options.covariance);
+}
+
+/// The better of both ways of splitting, with its gain over one component per unit weight of the whole mixture.
+SplitMergeMove best_split(const GaussianMixture& mixture, Index k, const Eigen::MatrixXd& points,
+                          const Eigen::VectorXd& memberships, EmOptions options) {
+  SplitMergeMove move;
+  move.split = k;
+  if (!((memberships.array() > 0.5).count() > 1)) return move;
+  const PointBlocks own(points, memberships);
+  GaussianMixture alone = mixture;
+  alone.weights = Eigen::VectorXd::Ones(1);
+  alone.means = mixture.means.col(k);
+  alone.covariances = {mixture.covariances[static_cast<std::size_t>(k)]};
+  options.max_iterations = 1;
+  const double before = iterate(own, std::move(alone), options).log_likelihood;
+  options.max_iterations = partial_iterations;
+  for (GaussianMixture pair : {halves(mixture, k), core_and_shell(mixture, k)}) {
+    raise_all(pair, options);
+    EmResult result = iterate(own, std::move(pair), options);
+    const double gain = (result.log_likelihood - before) / static_cast<double>(points.cols());
+    if (move.parts.components() == 0 || gain > move.gain) {
+      move.gain = gain;
+      move.parts = std::move(result.mixture);
     }
   }
-  std::vector<Index> order(static_cast<std::size_t>(mixture.components()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return misfit(a) > misfit(b); });
-  return order;
-}
-
-GaussianMixture pair_of(const GaussianMixture& mixture, Index i, Index j) {
-  const double weight = mixture.weights(i) + mixture.weights(j);
-  const double share = weight > 0.0 ? mixture.weights(j) / weight : 0.5;
-  const Eigen::VectorXd gap = mixture.means.col(j) - mixture.means.col(i);
-  GaussianMixture result;
-  result.weights = Eigen::VectorXd::Constant(1, weight);
-  result.means = mixture.means.col(i) + share * gap;
-  result.covariances = {(1.0 - share) * mixture.covariances[static_cast<std::size_t>(i)] +
-                        share * mixture.covariances[static_cast<std::size_t>(j)] +
-                        share * (1.0 - share) * gap * gap.transpose()};
-  if (mixture.type == CovarianceType::diagonal)
-    result.covariances[0] = Eigen::MatrixXd(result.covariances[0].diagonal().asDiagonal());
-  return result;
+  return move;
 }
 
 }  // namespace
 
 std::vector<SplitMergeMove> split_merge_moves(const GaussianMixture& mixture, const Eigen::MatrixXd& points,
-                                              Index most) {
+                                              const EmOptions& options, std::size_t most) {
   std::vector<SplitMergeMove> moves;
   if (mixture.components() < 3) return moves;
   const Eigen::MatrixXd memberships = responsibilities(mixture, points);
-  const std::vector<Index> splits = splits_by_misfit(mixture, points, memberships);
-  for (const Pair& pair : pairs_by_likeness(memberships)) {
-    std::size_t taken = 0;
-    for (const Index split : splits) {
-      if (std::ssize(moves) == most) return moves;
-      if (split == pair.first || split == pair.second || taken == splits_per_merge) continue;
-      moves.push_back({pair.first, pair.second, split});
-      ++taken;
+  const std::vector<Merge> merges = merges_by_loss(mixture);
+  for (Index k = 0; k < mixture.components(); ++k) {
+    const SplitMergeMove split = best_split(mixture, k, points, memberships.row(k), options);
+    if (split.parts.components() == 0) continue;
+    for (const Merge& merge : merges) {
+      if (merge.first == k || merge.second == k) continue;
+      moves.push_back(split);
+      moves.back().merged = merge.first;
+      moves.back().absorbed = merge.second;
+      moves.back().gain -= merge.loss;
     }
   }
+  std::stable_sort(moves.begin(), moves.end(),
+                   [](const SplitMergeMove& a, const SplitMergeMove& b) { return a.gain > b.gain; });
+  if (moves.size() > most) moves.resize(most);
   return moves;
 }
 
 GaussianMixture apply(const SplitMergeMove& move, const GaussianMixture& mixture) {
   GaussianMixture result = mixture;
-  const GaussianMixture merged = pair_of(mixture, move.merged, move.absorbed);
-  result.weights(move.merged) = merged.weights(0);
-  result.means.col(move.merged) = merged.means.col(0);
-  result.covariances[static_cast<std::size_t>(move.merged)] = merged.covariances[0];
-  const auto split = static_cast<std::size_t>(move.split);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(mixture.covariances[split]);
-  const Index last = mixture.features() - 1;
-  // The two halves of a Gaussian cut through its mean: their means are sqrt(2 / pi) standard deviations off it.
-  const double offset_squared = 2.0 / std::numbers::pi;
-  const Eigen::VectorXd axis = eigen.eigenvectors().col(last) * std::sqrt(eigen.eigenvalues()(last));
-  const Eigen::MatrixXd halved = mixture.covariances[split] - offset_squared * axis * axis.transpose();
-  const Eigen::VectorXd offset = std::sqrt(offset_squared) * axis;
-  result.means.col(move.split) = mixture.means.col(move.split) + offset;
-  result.means.col(move.absorbed) = mixture.means.col(move.split) - offset;
-  result.weights(move.split) = result.weights(move.absorbed) = 0.5 * mixture.weights(move.split);
-  result.covariances[split] = halved;
-  if (mixture.type == CovarianceType::diagonal)
-    result.covariances[split] = Eigen::MatrixXd(halved.diagonal().asDiagonal());
-  result.covariances[static_cast<std::size_t>(move.absorbed)] = result.covariances[split];
+  put(merged(mixture, move.merged, move.absorbed), move.merged, result);
+  for (const auto& [place, part] : {std::pair{move.split, Index{0}}, {move.absorbed, Index{1}}}) {
+    put(part_of(move.parts, part), place, result);
+    result.weights(place) *= mixture.weights(move.split);
+  }
   return result;
 }
 
@@ -129,21 +179,23 @@ EmResult split_and_merge(const PointBlocks& points, EmResult fit, const EmOption
   if (options.split_merge < 1 || fit.mixture.components() < 3) return fit;
   const Eigen::MatrixXd sample = systematic_sample(points, moves_are_ranked_on, 0.0);
   EmOptions brief = options;
-  brief.max_iterations = std::min(short_run_iterations, options.max_iterations);
-  for (int round = 0; round < most_rounds; ++round) {
+  brief.max_iterations = std::min(move_iterations, options.max_iterations);
+  for (int round = 0; round < most_move_rounds; ++round) {
     EmResult best;
     best.log_likelihood = -std::numeric_limits<double>::infinity();
-    for (const SplitMergeMove& move : split_merge_moves(fit.mixture, sample, options.split_merge)) {
+    for (const SplitMergeMove& move :
+         split_merge_moves(fit.mixture, sample, options, static_cast<std::size_t>(options.split_merge))) {
       GaussianMixture start = apply(move, fit.mixture);
-      for (Eigen::MatrixXd& covariance : start.covariances)
-        raise_to_floor(covariance, options.covariance_floor, options.covariance);
+      raise_all(start, options);
       EmResult result = iterate(points, std::move(start), brief);
       if (result.log_likelihood > best.log_likelihood) best = std::move(result);
     }
     if (best.mixture.components() == 0) return fit;
     const int spent = best.iterations;
-    if (!best.converged) best = iterate(points, std::move(best.mixture), options);
-    best.iterations += spent;
+    if (!best.converged) {
+      best = iterate(points, std::move(best.mixture), options);
+      best.iterations += spent;
+    }
     if (!(best.log_likelihood > fit.log_likelihood + least_gain * points.total_weight())) return fit;
     best.iterations += fit.iterations;
     fit = std::move(best);

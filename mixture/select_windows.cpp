@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "ident/error.hpp"
+#include "ident/not_a_number.hpp"
+#include "mixture/select.hpp"
+#include "mixture/straddling.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+namespace {
+
+constexpr int trimming_rounds = 4;
+
+void check_enough(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options) {
+  const auto fewest = std::min_element(options.components.begin(), options.components.end());
+  const Index points = cloud.points.cols();
+  if (fewest == options.components.end() || *fewest <= points) return;
+  const std::string fewer = points > 0 ? fmt::format("ask for at most {} components, or ", points) : "";
+  throw DataError(fmt::format(
+      "the fewest components asked for are {}, but {} of {} windows can be clustered: {}have more windows clustered (a "
+      "prior for windows that are not excited, mixture.windows = all, shorter windows, more data)",
+      *fewest, points, fits.count(), fewer));
+}
+
+Selection select_cloud(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options,
+                       std::uint64_t seed) {
+  return select(cloud.point_set(), {effective_samples(cloud, fits.length, fits.step), cloud.runs}, options, seed);
+}
+
+/// Of the cloud's windows; -1 elsewhere.
+Eigen::VectorXi labels_of(const FeatureCloud& cloud, Index windows, const GaussianMixture& mixture) {
+  Eigen::VectorXi labels = Eigen::VectorXi::Constant(windows, -1);
+  visit_responsibilities(mixture, cloud.point_set(),
+                         [&](Index first, const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+                           for (Index i = 0; i < columns.cols(); ++i)
+                             columns.col(i).maxCoeff(&labels(cloud.windows[static_cast<std::size_t>(first + i)]));
+                         });
+  return labels;
+}
+
+FeatureCloud without(const FeatureCloud& cloud, const std::vector<bool>& flagged) {
+  std::vector<Index> kept;
+  for (Index i = 0; i < cloud.points.cols(); ++i)
+    if (!flagged[static_cast<std::size_t>(cloud.windows[static_cast<std::size_t>(i)])]) kept.push_back(i);
+  return subset(cloud, kept);
+}
+
+/// The selected mixture's memberships, spread from the clustered windows over all windows.
+void fill_memberships(const FeatureCloud& cloud, Index windows, MixtureResult& result) {
+  result.labels = labels_of(cloud, windows, result.mixture);
+  result.responsibilities.setConstant(result.mixture.components(), windows, not_a_number);
+  visit_responsibilities(
+      result.mixture, cloud.point_set(), [&](Index first, const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+        for (Index i = 0; i < columns.cols(); ++i)
+          result.responsibilities.col(cloud.windows[static_cast<std::size_t>(first + i)]) = columns.col(i);
+      });
+}
+
+MixtureResult with_memberships(const FeatureCloud& cloud, Index windows, Selection selection) {
+  MixtureResult result;
+  result.mixture = std::move(selection.mixture);
+  result.feature_names = cloud.names;
+  result.candidates = std::move(selection.candidates);
+  result.weights_standard_error = std::move(selection.standard_error.weights);
+  result.means_standard_error = std::move(selection.standard_error.means);
+  fill_memberships(cloud, windows, result);
+  return result;
+}
+
+}  // namespace
+
+MixtureResult select_mixture(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options,
+                             std::uint64_t seed) {
+  check_enough(fits, cloud, options);
+  if (options.straddling != StraddlingWindows::trim)
+    return with_memberships(cloud, fits.count(), select_cloud(fits, cloud, options, seed));
+  SelectionOptions brief = options;
+  brief.bootstrap = 0;
+  brief.heldout = HeldoutChoice::never;
+  FeatureCloud kept = cloud;
+  std::vector<bool> flagged(static_cast<std::size_t>(fits.count()), false);
+  for (int round = 0; round < trimming_rounds; ++round) {
+    const GaussianMixture mixture = select_cloud(fits, kept, brief, seed).mixture;
+    const std::vector<bool> now = windows_at_switches(fits, labels_of(cloud, fits.count(), mixture));
+    if (now == flagged) break;
+    flagged = now;
+    kept = without(cloud, flagged);
+  }
+  return with_memberships(kept, fits.count(), select_cloud(fits, kept, options, seed));
+}
+
+}  // namespace modebank
