@@ -52,19 +52,25 @@ struct Interval {
   double first, last;  ///< start samples
 };
 
-/// Where the windows of one run are in transit between settled rows.
+/// Where the windows of one run are in transit between settled rows, or between one and the run's ends.
 std::vector<Interval> transits(const std::vector<Episode>& episodes, Index length) {
+  constexpr double everything = 1e300;
+  const double margin = 0.75 * static_cast<double>(length);
   std::vector<Interval> result;
   const Episode* before = nullptr;
   for (const Episode& episode : episodes) {
     if (episode.span() < length) continue;
+    const auto first = static_cast<double>(episode.first);
     if (before) {
-      const auto first = static_cast<double>(before->last), last = static_cast<double>(episode.first);
-      const double half = 0.5 * std::max(last - first, static_cast<double>(length));
+      const auto last = static_cast<double>(before->last);
+      const double half = std::max(0.5 * (first - last), margin);
       result.push_back({0.5 * (first + last) - half, 0.5 * (first + last) + half});
+    } else if (&episode != &episodes.front()) {
+      result.push_back({-everything, first + margin});
     }
     before = &episode;
   }
+  if (before && before != &episodes.back()) result.push_back({static_cast<double>(before->last) - margin, everything});
   return result;
 }
 

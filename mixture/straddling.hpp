@@ -14,11 +14,11 @@ namespace modebank {
 std::vector<bool> straddling_windows(const WindowFits& fits);
 
 /// Which windows straddle a switch of mode by the labels of all windows (M, -1: none), M flags. A label is settled where
-/// two windows without a shared transition lie in an unbroken row of it; shorter rows are windows in transit. Between
-/// two settled rows of different labels there was a switch: all windows between are flagged, and at least one window's
-/// length of them about the middle. Between two settled rows of one label they are flagged when they last for half a
-/// window's length or more; shorter ones count as doubtful windows of that label. None is flagged when more than half of
-/// the labelled windows would be: then labels do not last, and say nothing about switches.
+/// two windows without a shared transition lie in an unbroken row of it; shorter rows are windows in transit, but those
+/// of less than half a window's length between rows of one label count as doubtful windows of it. Between two settled
+/// rows there was a switch: all windows between are flagged, and at least 3/4 of a window's length to either side of
+/// their middle. So are windows in transit at a run's ends. None is flagged when more than half of the labelled windows
+/// would be: then labels do not last, and say nothing about switches.
 std::vector<bool> windows_at_switches(const WindowFits& fits, const Eigen::VectorXi& labels);
 
 }  // namespace modebank
