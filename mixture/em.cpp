@@ -28,6 +28,9 @@ constexpr double agreement_per_point = 1e-4;
 /// Each restart goes on from the best of a few short runs, which miss a cluster far less often than a single start
 /// does.
 constexpr int short_runs = 5, short_run_iterations = 10;
+/// Starts are chosen from this many points at most.
+constexpr Index start_points = 50000;
+constexpr double noise_start = 0.05;
 
 void check(const EmOptions& options) {
   if (options.restarts < 1 || options.max_iterations < 0 || !(options.covariance_floor >= smallest_floor))
@@ -36,27 +39,40 @@ void check(const EmOptions& options) {
                     smallest_floor, options.restarts, options.max_iterations, options.covariance_floor));
 }
 
-/// The points' weights, checked; all one when none are given.
-Eigen::VectorXd checked_weights(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights) {
-  if (points.rows() < 1 || points.cols() < 1)
-    throw std::invalid_argument(fmt::format("EM needs points, given {} x {}", points.rows(), points.cols()));
-  if (!(points.array().abs() <= largest_coordinate).all())
+void check(const PointSet& set) {
+  if (set.features() < 1 || set.count() < 1)
+    throw std::invalid_argument(fmt::format("EM needs points, given {} x {}", set.features(), set.count()));
+  if (!(set.points.array().abs() <= largest_coordinate).all())
     throw std::invalid_argument(fmt::format("EM needs finite points of magnitude up to {}", largest_coordinate));
-  if (weights.size() == 0) return Eigen::VectorXd::Ones(points.cols());
-  if (weights.size() != points.cols())
-    throw std::invalid_argument(fmt::format("EM is given {} points but {} weights", points.cols(), weights.size()));
-  if (!weights.allFinite() || weights.minCoeff() < 0.0 || !(weights.sum() > 0.0))
+  check_errors(set);
+  if (set.weights.size() == 0) return;
+  if (set.weights.size() != set.count())
+    throw std::invalid_argument(fmt::format("EM is given {} points but {} weights", set.count(), set.weights.size()));
+  if (!set.weights.allFinite() || set.weights.minCoeff() < 0.0 || !(set.weights.sum() > 0.0))
     throw std::invalid_argument("EM needs finite, nonnegative weights that are not all zero");
-  return weights;
 }
 
 /// The cloud in the units it is fitted in.
 struct ScaledCloud {
   FeatureScale scale;
   PointBlocks points;
+  UniformNoise noise;  ///< physical units; absent unless asked for
 
-  ScaledCloud(const Eigen::MatrixXd& physical, const Eigen::VectorXd& weights)
-      : scale(FeatureScale::of(physical, weights)), points(scale.to_scaled(physical), weights) {}
+  ScaledCloud(const PointSet& set, const EmOptions& options) : scale(FeatureScale::of(set)), points(set, scale) {
+    if (!options.noise_component) return;
+    noise = bounding_box(set, scale, options.covariance_floor);
+    noise.weight = noise_start;
+  }
+
+  /// Gives a mixture in scaled units the noise component that was asked for, and no other.
+  void set_noise(GaussianMixture& scaled) const {
+    const double kept = scaled.noise.present() ? scaled.noise.weight : noise.weight;
+    GaussianMixture box = scaled;
+    box.noise = noise;
+    scaled.noise = scale.to_scaled(box).noise;
+    if (noise.present()) scaled.noise.weight = kept;
+    scaled.weights *= (1.0 - (noise.present() ? kept : 0.0)) / scaled.weights.sum();
+  }
 };
 
 /// Iterates from `start` (scaled units). The result's log-likelihood belongs to the result's mixture: the last pass
@@ -78,12 +94,15 @@ EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptio
 }
 
 /// emEM (Biernacki, Celeux & Govaert 2003, Comput. Stat. Data Anal. 41, section 2.2).
-EmResult restart(const PointBlocks& points, Index components, const EmOptions& options, std::mt19937_64& generator) {
+EmResult restart(const ScaledCloud& cloud, Index components, const EmOptions& options, std::mt19937_64& generator) {
+  const PointBlocks& points = cloud.points;
+  const PointBlocks starts = points.for_starts(start_points, generator);
   EmOptions brief = options;
   brief.max_iterations = std::min(short_run_iterations, options.max_iterations);
   EmResult best;
   for (int run = 0; run < (components == 1 ? 1 : short_runs); ++run) {
-    GaussianMixture start = kmeans_start(points, components, options.covariance, options.covariance_floor, generator);
+    GaussianMixture start = kmeans_start(starts, components, options.covariance, options.covariance_floor, generator);
+    cloud.set_noise(start);
     EmResult result = iterate(points, std::move(start), brief);
     if (run == 0 || result.log_likelihood > best.log_likelihood) best = std::move(result);
   }
@@ -110,6 +129,10 @@ void order_by_weight(GaussianMixture& mixture) {
 
 void to_physical(const ScaledCloud& cloud, EmResult& result) {
   result.mixture = cloud.scale.to_physical(result.mixture);
+  if (cloud.noise.present()) {  // to the last bit
+    result.mixture.noise.lower = cloud.noise.lower;
+    result.mixture.noise.upper = cloud.noise.upper;
+  }
   result.log_likelihood += cloud.points.total_weight() * cloud.scale.log_jacobian();
 }
 
@@ -125,10 +148,10 @@ EmResult best_of(std::vector<EmResult> restarts, double total_weight) {
 }
 
 /// A start in scaled units that obeys the options: their covariance type and floor.
-GaussianMixture usable_start(const GaussianMixture& start, const FeatureScale& scale, const EmOptions& options) {
-  GaussianMixture scaled = scale.to_scaled(start);
+GaussianMixture usable_start(const GaussianMixture& start, const ScaledCloud& cloud, const EmOptions& options) {
+  GaussianMixture scaled = cloud.scale.to_scaled(start);
   scaled.type = options.covariance;
-  scaled.weights /= scaled.weights.sum();
+  cloud.set_noise(scaled);
   for (Eigen::MatrixXd& covariance : scaled.covariances) {
     if (!covariance.allFinite()) throw std::invalid_argument("EM is given a start whose covariance is not finite");
     raise_to_floor(covariance, options.covariance_floor, options.covariance);
@@ -145,11 +168,12 @@ EmResult fit_em(const PointSet& points, Index components, const EmOptions& optio
   if (components < 1 || components > points.count())
     throw std::invalid_argument(
         fmt::format("EM of {} components needs 1 to {} (the number of points)", components, points.count()));
-  const ScaledCloud cloud(points.points, checked_weights(points.points, points.weights));
+  check(points);
+  const ScaledCloud cloud(points, options);
   std::vector<EmResult> restarts(options.restarts);
   tbb::parallel_for(0, options.restarts, [&](int i) {
     std::mt19937_64 generator = make_generator(seed, "em restart", static_cast<std::uint64_t>(i));
-    restarts[i] = restart(cloud.points, components, options, generator);
+    restarts[i] = restart(cloud, components, options, generator);
   });
   EmResult result = best_of(std::move(restarts), cloud.points.total_weight());
   order_by_weight(result.mixture);
@@ -163,8 +187,9 @@ EmResult fit_em(const PointSet& points, const GaussianMixture& start, const EmOp
   if (start.features() != points.features())
     throw std::invalid_argument(
         fmt::format("EM is given points of {} features and a start of {}", points.features(), start.features()));
-  const ScaledCloud cloud(points.points, checked_weights(points.points, points.weights));
-  EmResult result = iterate(cloud.points, usable_start(start, cloud.scale, options), options);
+  check(points);
+  const ScaledCloud cloud(points, options);
+  EmResult result = iterate(cloud.points, usable_start(start, cloud, options), options);
   result.agreeing_restarts = 1;
   to_physical(cloud, result);
   return result;
