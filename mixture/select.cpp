@@ -63,18 +63,6 @@ FittedCandidate fit_candidate(const WindowFits& fits, const FeatureCloud& cloud,
   return {std::move(fit.mixture), row};
 }
 
-/// The selected mixture's memberships, spread from the clustered windows over all windows.
-void fill_memberships(const FeatureCloud& cloud, Index windows, MixtureResult& result) {
-  const Eigen::MatrixXd memberships = responsibilities(result.mixture, cloud.point_set());
-  result.labels.setConstant(windows, -1);
-  result.responsibilities.setConstant(result.mixture.components(), windows, not_a_number);
-  for (Index i = 0; i < cloud.points.cols(); ++i) {
-    const Index window = cloud.windows[i];
-    result.responsibilities.col(window) = memberships.col(i);
-    memberships.col(i).maxCoeff(&result.labels(window));
-  }
-}
-
 [[noreturn]] void report_no_choice(const FeatureCloud& cloud, const SelectionOptions& options) {
   if (options.criterion == Criterion::heldout)
     throw DataError(fmt::format(
@@ -107,7 +95,8 @@ MixtureResult select_mixture(const WindowFits& fits, const FeatureCloud& cloud, 
   result.candidates[best].selected = true;
   result.mixture = std::move(fitted[best].mixture);
   result.feature_names = cloud.names;
-  fill_memberships(cloud, fits.count(), result);
+  result.labels = most_probable(result.mixture, cloud, fits.count());
+  result.responsibilities = WindowResponsibilities(result.mixture, cloud, fits.count());
   return result;
 }
 

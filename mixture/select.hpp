@@ -6,6 +6,7 @@
 
 #include "mixture/em.hpp"
 #include "mixture/features.hpp"
+#include "mixture/window_responsibilities.hpp"
 
 namespace modebank {
 
@@ -41,8 +42,8 @@ struct Candidate {
 struct MixtureResult {
   GaussianMixture mixture;                 ///< physical units
   std::vector<std::string> feature_names;  ///< F
-  Eigen::VectorXi labels;                  ///< M, -1: not clustered
-  Eigen::MatrixXd responsibilities;        ///< K x M, NaN where not clustered
+  Eigen::VectorXi labels;                  ///< M, -1: not clustered, or noise
+  WindowResponsibilities responsibilities;
   std::vector<Candidate> candidates;
 };
 
