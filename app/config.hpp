@@ -22,6 +22,7 @@ struct MixtureConfig {
   FeatureSet features = FeatureSet::parameters_and_noise;
   WindowChoice windows = WindowChoice::automatic;
   StraddlingWindows straddling = StraddlingWindows::leave_out;
+  bool error_aware = false;
 };
 
 struct ArchiveConfig {

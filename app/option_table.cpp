@@ -227,6 +227,11 @@ std::vector<Option> mixture_options() {
               FIELD(mixture.selection.em.max_iterations)),
       numeric("mixture.covariance_floor", between(0, 1), "feature variance", "smallest variance of a component",
               FIELD(mixture.selection.em.covariance_floor)),
+      flag("mixture.error_aware",
+           "the windows' own covariances enter the fit, so that components describe windows without their errors",
+           FIELD(mixture.error_aware)),
+      flag("mixture.noise_component", "a uniform component for windows of no mode; they get the label -1",
+           FIELD(mixture.selection.em.noise_component)),
   };
 }
 

@@ -114,7 +114,8 @@ std::string identify_into_file(const Config& config, const Archive& archive) {
 void cluster_stage(const Config& config, Archive& archive) {
   const Stopwatch watch;
   const FeatureCloud cloud = make_features(*archive.windows, config.mixture.features, config.mixture.windows,
-                                           archive.recording->states, config.mixture.straddling);
+                                           archive.recording->states, config.mixture.straddling,
+                                           config.mixture.error_aware ? WindowErrors::include : WindowErrors::ignore);
   archive.mixture = select_mixture(*archive.windows, cloud, config.mixture.selection, config.job.seed);
   spdlog::info("mixture: {} components from {} windows in {:.2f} s", archive.mixture->mixture.components(),
                cloud.windows.size(), watch.seconds());

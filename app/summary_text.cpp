@@ -18,6 +18,18 @@ const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, 
   return nullptr;
 }
 
+/// Those labelled -1 as noise among them.
+Index clustered_windows(const MixtureResult& result) {
+  if (!result.mixture.noise.present()) return (result.labels.array() >= 0).count();
+  constexpr Index at_once = 16384;
+  Index count = 0;
+  for (Index first = 0; first < result.responsibilities.windows(); first += at_once) {
+    const Index windows = std::min(at_once, result.responsibilities.windows() - first);
+    count += (!result.responsibilities.block(first, windows).row(0).array().isNaN()).count();
+  }
+  return count;
+}
+
 std::string mixture_text(const MixtureResult& result) {
   const auto& candidates = result.candidates;
   const auto chosen = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.selected; });
@@ -25,7 +37,10 @@ std::string mixture_text(const MixtureResult& result) {
                                  fmt::join(result.feature_names, ", "));
   if (chosen == candidates.end()) return text + "\n";
   text += fmt::format("; BIC {:.1f} with N_eff {:.0f} of {} windows", chosen->bic, chosen->effective_samples,
-                      (result.labels.array() >= 0).count());
+                      clustered_windows(result));
+  if (result.mixture.noise.present())
+    text += fmt::format("; noise component {:.1f} %, label -1 for {} windows", 100 * result.mixture.noise.weight,
+                        clustered_windows(result) - (result.labels.array() >= 0).count());
   if (candidates.size() > 1)
     text += fmt::format("; chosen from {}..{}", candidates.front().components, candidates.back().components);
   if (!chosen->converged) text += "; not converged";

@@ -143,8 +143,11 @@ void exchange_mixture(Io& io, X& result, const Unit& parameters) {
       [&](auto& stored) {
         io.field("covariances", stored, {"K", "F", "F"}, outer(features));
       });
+  io.optional_attribute("noise_weight", result.mixture.noise.weight);
+  io.optional_field("noise_lower", result.mixture.noise.lower, {"F"}, features);
+  io.optional_field("noise_upper", result.mixture.noise.upper, {"F"}, features);
   io.field("labels", result.labels, {"M"});
-  io.field("responsibilities", result.responsibilities, {"M", "K"});
+  io.through_rows("responsibilities", result.responsibilities, {"M", "K"});
 }
 
 template <class Io, class P>

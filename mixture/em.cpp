@@ -12,6 +12,7 @@
 #include "mixture/em_iteration.hpp"
 #include "mixture/em_step.hpp"
 #include "mixture/feature_scale.hpp"
+#include "mixture/scaled_cloud.hpp"
 #include "mixture/split_merge.hpp"
 #include "mixture/starts.hpp"
 
@@ -28,7 +29,8 @@ constexpr double smallest_floor = 1e-10;
 constexpr double agreement_per_point = 1e-4;
 
 void check(const EmOptions& options) {
-  if (options.restarts < 1 || options.split_merge < 0 || options.max_iterations < 0 || !(options.covariance_floor >= smallest_floor))
+  if (options.restarts < 1 || options.split_merge < 0 || options.max_iterations < 0 ||
+      !(options.covariance_floor >= smallest_floor))
     throw std::invalid_argument(
         fmt::format("EM needs restarts >= 1, split_merge and max_iterations >= 0 and covariance_floor >= {}; given {}, "
                     "{}, {} and {}",
@@ -36,32 +38,18 @@ void check(const EmOptions& options) {
                     options.covariance_floor));
 }
 
-/// The points' weights, checked; all one when none are given.
-Eigen::VectorXd checked_weights(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights) {
-  if (points.rows() < 1 || points.cols() < 1)
-    throw std::invalid_argument(fmt::format("EM needs points, given {} x {}", points.rows(), points.cols()));
-  if (!(points.array().abs() <= largest_coordinate).all())
+void check(const PointSet& set) {
+  if (set.features() < 1 || set.count() < 1)
+    throw std::invalid_argument(fmt::format("EM needs points, given {} x {}", set.features(), set.count()));
+  if (!(set.points.array().abs() <= largest_coordinate).all())
     throw std::invalid_argument(fmt::format("EM needs finite points of magnitude up to {}", largest_coordinate));
-  if (weights.size() == 0) return Eigen::VectorXd::Ones(points.cols());
-  if (weights.size() != points.cols())
-    throw std::invalid_argument(fmt::format("EM is given {} points but {} weights", points.cols(), weights.size()));
-  if (!weights.allFinite() || weights.minCoeff() < 0.0 || !(weights.sum() > 0.0))
+  check_errors(set);
+  if (set.weights.size() == 0) return;
+  if (set.weights.size() != set.count())
+    throw std::invalid_argument(fmt::format("EM is given {} points but {} weights", set.count(), set.weights.size()));
+  if (!set.weights.allFinite() || set.weights.minCoeff() < 0.0 || !(set.weights.sum() > 0.0))
     throw std::invalid_argument("EM needs finite, nonnegative weights that are not all zero");
-  return weights;
 }
-
-}  // namespace
-
-/// The cloud in the units it is fitted in.
-struct ScaledCloud {
-  FeatureScale scale;
-  PointBlocks points;
-
-  ScaledCloud(const Eigen::MatrixXd& physical, const Eigen::VectorXd& weights)
-      : scale(FeatureScale::of(physical, weights)), points(scale.to_scaled(physical), weights) {}
-};
-
-namespace {
 
 void order_by_weight(GaussianMixture& mixture) {
   std::vector<Index> order(mixture.components());
@@ -78,6 +66,10 @@ void order_by_weight(GaussianMixture& mixture) {
 
 void to_physical(const ScaledCloud& cloud, EmResult& result) {
   result.mixture = cloud.scale.to_physical(result.mixture);
+  if (cloud.noise.present()) {  // to the last bit
+    result.mixture.noise.lower = cloud.noise.lower;
+    result.mixture.noise.upper = cloud.noise.upper;
+  }
   result.log_likelihood += cloud.points.total_weight() * cloud.scale.log_jacobian();
 }
 
@@ -102,10 +94,10 @@ EmResult best_of(std::vector<EmResult> restarts, double total_weight) {
 }
 
 /// A start in scaled units that obeys the options: their covariance type and floor.
-GaussianMixture usable_start(const GaussianMixture& start, const FeatureScale& scale, const EmOptions& options) {
-  GaussianMixture scaled = scale.to_scaled(start);
+GaussianMixture usable_start(const GaussianMixture& start, const ScaledCloud& cloud, const EmOptions& options) {
+  GaussianMixture scaled = cloud.scale.to_scaled(start);
   scaled.type = options.covariance;
-  scaled.weights /= scaled.weights.sum();
+  cloud.set_noise(scaled);
   for (Eigen::MatrixXd& covariance : scaled.covariances) {
     if (!covariance.allFinite()) throw std::invalid_argument("EM is given a start whose covariance is not finite");
     raise_to_floor(covariance, options.covariance_floor, options.covariance);
@@ -138,13 +130,14 @@ struct EmSweep::Prepared {
   ScaledCloud cloud;
   Starts starts;
 
-  Prepared(const PointSet& points, const Eigen::VectorXd& weights, const EmOptions& given)
-      : options(given), cloud(points.points, weights), starts(cloud.points, options) {}
+  Prepared(const PointSet& points, const EmOptions& given)
+      : options(given), cloud(points, options), starts(cloud, options) {}
 };
 
 EmSweep::EmSweep(const PointSet& points, const EmOptions& options) {
   check(options);
-  prepared_ = std::make_unique<Prepared>(points, checked_weights(points.points, points.weights), options);
+  check(points);
+  prepared_ = std::make_unique<Prepared>(points, options);
 }
 
 EmSweep::~EmSweep() = default;
@@ -157,7 +150,7 @@ EmResult EmSweep::fit(Index components, std::uint64_t seed, const GaussianMixtur
         fmt::format("EM of {} components needs 1 to {} (the number of points)", components, cloud.points.count()));
   std::vector<EmResult> restarts(static_cast<std::size_t>(options.restarts));
   tbb::parallel_for(0, options.restarts, [&](int i) {
-    Start own = i == 0 && start ? Start{usable_start(*start, cloud.scale, options), 0}
+    Start own = i == 0 && start ? Start{usable_start(*start, cloud, options), 0}
                                 : prepared_->starts.make(components, i, seed);
     restarts[static_cast<std::size_t>(i)] = restart(cloud.points, std::move(own), options);
   });
@@ -177,8 +170,9 @@ EmResult fit_em(const PointSet& points, const GaussianMixture& start, const EmOp
   if (start.features() != points.features())
     throw std::invalid_argument(
         fmt::format("EM is given points of {} features and a start of {}", points.features(), start.features()));
-  const ScaledCloud cloud(points.points, checked_weights(points.points, points.weights));
-  EmResult result = iterate(cloud.points, usable_start(start, cloud.scale, options), options);
+  check(points);
+  const ScaledCloud cloud(points, options);
+  EmResult result = iterate(cloud.points, usable_start(start, cloud, options), options);
   result.agreeing_restarts = 1;
   to_physical(cloud, result);
   return result;

@@ -49,7 +49,7 @@ struct EmResult {
 /// (Bovy, Hogg & Roweis 2011, Ann. Appl. Stat. 5, eq. 16); zero errors change nothing. Throws std::invalid_argument for
 /// K < 1, K > N, bad options, weights, points or error covariances. Bitwise the same for any number of threads.
 EmResult fit_em(const PointSet& points, Eigen::Index components, const EmOptions& options, std::uint64_t seed);
-/// fit_em for several numbers of components over the same points, which are prepared once. fit() may be called from
+/// fit_em for several numbers of components over the same points, which are prepared once and must outlive this. fit() may be called from
 /// several threads; what it returns depends on its own arguments alone.
 class EmSweep {
  public:

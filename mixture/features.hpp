@@ -50,10 +50,12 @@ FeatureCloud subset(const FeatureCloud& cloud, const std::vector<Eigen::Index>& 
 /// Whether the cloud carries the windows' own covariances (error-aware clustering).
 enum class WindowErrors { ignore, include };
 
-/// Failed fits and non-finite windows are left out. With errors a point's covariance is that of theta, and 2 / (L -
-/// rank / n) for the logarithm of a noise variance (delta method: an estimate of sigma^2 on nu degrees of freedom has
-/// variance 2 sigma^4 / nu under Gaussian noise), uncorrelated with theta; windows whose covariance is not finite (rank
-/// deficient without a prior: their theta is no measurement) are then left out.
+/// Failed fits and non-finite windows are left out. With errors, points are what the windows' data alone say: a prior
+/// is taken off again (otherwise clustering would count it once per window), as far as data determine a direction by 5
+/// % at least. A point's covariance is then that of theta, and 2 / (L - rank / n) for the logarithm of a noise variance
+/// (delta method: an estimate of sigma^2 on nu degrees of freedom has variance 2 sigma^4 / nu under Gaussian noise),
+/// uncorrelated with theta; windows whose covariance is not finite (rank deficient without a prior: their theta is no
+/// measurement) are left out.
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
                            const std::vector<Channel>& states, StraddlingWindows straddling = StraddlingWindows::keep,
                            WindowErrors errors = WindowErrors::ignore);

@@ -49,6 +49,10 @@ struct GaussianMixture {
 /// Throws std::invalid_argument when the parts of a mixture do not fit together, or it has no component or feature.
 void check_sizes(const GaussianMixture& mixture);
 
+/// Throws std::invalid_argument when the error covariances have the wrong sizes, or one is not finite, not symmetric or
+/// has a negative variance or a correlation beyond one.
+void check_errors(const PointSet& points);
+
 // The functions below throw std::invalid_argument for sizes that do not fit, for a covariance that is not positive
 // definite and for an error covariance that is none. A point with an error covariance S is seen through it: component k
 // is N(mu_k, Sigma_k + S) there (Bovy, Hogg & Roweis 2011, eq. 9). Weights of points are ignored.

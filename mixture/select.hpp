@@ -8,6 +8,7 @@
 
 #include "mixture/em.hpp"
 #include "mixture/features.hpp"
+#include "mixture/window_responsibilities.hpp"
 
 namespace modebank {
 
@@ -97,8 +98,8 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
 struct MixtureResult {
   GaussianMixture mixture;                 ///< physical units
   std::vector<std::string> feature_names;  ///< F
-  Eigen::VectorXi labels;                  ///< M, -1: not clustered
-  Eigen::MatrixXd responsibilities;        ///< K x M, NaN where not clustered
+  Eigen::VectorXi labels;                  ///< M, -1: not clustered, or noise
+  WindowResponsibilities responsibilities;
   std::vector<Candidate> candidates;
   Eigen::VectorXd weights_standard_error;  ///< K; empty without a bootstrap
   Eigen::MatrixXd means_standard_error;    ///< F x K; empty without a bootstrap

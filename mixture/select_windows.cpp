@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "ident/error.hpp"
-#include "ident/not_a_number.hpp"
 #include "mixture/select.hpp"
 #include "mixture/straddling.hpp"
 
@@ -32,33 +31,11 @@ Selection select_cloud(const WindowFits& fits, const FeatureCloud& cloud, const 
   return select(cloud.point_set(), {effective_samples(cloud, fits.length, fits.step), cloud.runs}, options, seed);
 }
 
-/// Of the cloud's windows; -1 elsewhere.
-Eigen::VectorXi labels_of(const FeatureCloud& cloud, Index windows, const GaussianMixture& mixture) {
-  Eigen::VectorXi labels = Eigen::VectorXi::Constant(windows, -1);
-  visit_responsibilities(mixture, cloud.point_set(),
-                         [&](Index first, const Eigen::Ref<const Eigen::MatrixXd>& columns) {
-                           for (Index i = 0; i < columns.cols(); ++i)
-                             columns.col(i).maxCoeff(&labels(cloud.windows[static_cast<std::size_t>(first + i)]));
-                         });
-  return labels;
-}
-
 FeatureCloud without(const FeatureCloud& cloud, const std::vector<bool>& flagged) {
   std::vector<Index> kept;
   for (Index i = 0; i < cloud.points.cols(); ++i)
     if (!flagged[static_cast<std::size_t>(cloud.windows[static_cast<std::size_t>(i)])]) kept.push_back(i);
   return subset(cloud, kept);
-}
-
-/// The selected mixture's memberships, spread from the clustered windows over all windows.
-void fill_memberships(const FeatureCloud& cloud, Index windows, MixtureResult& result) {
-  result.labels = labels_of(cloud, windows, result.mixture);
-  result.responsibilities.setConstant(result.mixture.components(), windows, not_a_number);
-  visit_responsibilities(
-      result.mixture, cloud.point_set(), [&](Index first, const Eigen::Ref<const Eigen::MatrixXd>& columns) {
-        for (Index i = 0; i < columns.cols(); ++i)
-          result.responsibilities.col(cloud.windows[static_cast<std::size_t>(first + i)]) = columns.col(i);
-      });
 }
 
 MixtureResult with_memberships(const FeatureCloud& cloud, Index windows, Selection selection) {
@@ -68,7 +45,8 @@ MixtureResult with_memberships(const FeatureCloud& cloud, Index windows, Selecti
   result.candidates = std::move(selection.candidates);
   result.weights_standard_error = std::move(selection.standard_error.weights);
   result.means_standard_error = std::move(selection.standard_error.means);
-  fill_memberships(cloud, windows, result);
+  result.labels = most_probable(result.mixture, cloud, windows);
+  result.responsibilities = WindowResponsibilities(result.mixture, cloud, windows);
   return result;
 }
 
@@ -86,7 +64,7 @@ MixtureResult select_mixture(const WindowFits& fits, const FeatureCloud& cloud, 
   std::vector<bool> flagged(static_cast<std::size_t>(fits.count()), false);
   for (int round = 0; round < trimming_rounds; ++round) {
     const GaussianMixture mixture = select_cloud(fits, kept, brief, seed).mixture;
-    const std::vector<bool> now = windows_at_switches(fits, labels_of(cloud, fits.count(), mixture));
+    const std::vector<bool> now = windows_at_switches(fits, most_probable(mixture, cloud, fits.count()));
     if (now == flagged) break;
     flagged = now;
     kept = without(cloud, flagged);

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "ident/seed.hpp"
 #include "mixture/em_iteration.hpp"
 #include "mixture/em_step.hpp"
 #include "mixture/starts.hpp"
@@ -120,8 +121,9 @@ SplitMergeMove best_split(const GaussianMixture& mixture, Index k, const Eigen::
   SplitMergeMove move;
   move.split = k;
   if (!((memberships.array() > 0.5).count() > 1)) return move;
-  const PointBlocks own(points, memberships);
-  GaussianMixture alone = mixture;
+  const PointBlocks own(PointSet(points, memberships), FeatureScale::identity(points.rows()));
+  GaussianMixture alone;
+  alone.type = mixture.type;
   alone.weights = Eigen::VectorXd::Ones(1);
   alone.means = mixture.means.col(k);
   alone.covariances = {mixture.covariances[static_cast<std::size_t>(k)]};
@@ -177,7 +179,8 @@ GaussianMixture apply(const SplitMergeMove& move, const GaussianMixture& mixture
 
 EmResult split_and_merge(const PointBlocks& points, EmResult fit, const EmOptions& options) {
   if (options.split_merge < 1 || fit.mixture.components() < 3) return fit;
-  const Eigen::MatrixXd sample = systematic_sample(points, moves_are_ranked_on, 0.0);
+  std::mt19937_64 generator = make_generator(0, "split and merge");
+  const Eigen::MatrixXd sample = sample_points(points, moves_are_ranked_on, generator);
   EmOptions brief = options;
   brief.max_iterations = std::min(move_iterations, options.max_iterations);
   for (int round = 0; round < most_move_rounds; ++round) {

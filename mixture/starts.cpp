@@ -15,32 +15,33 @@ namespace {
 
 /// Agglomeration takes time with the square of this.
 constexpr Index largest_subsample = 400;
+/// k-means++ and random starts are chosen from this many points at most.
+constexpr Index start_points = 50000;
 /// A restart goes on from the best of a few short runs, which miss a cluster far less often than a single start does.
 constexpr int short_runs = 5, short_run_iterations = 10;
 
 }  // namespace
 
-Eigen::MatrixXd systematic_sample(const PointBlocks& points, Index most, double shift) {
-  std::vector<Index> weighted;
-  for (Index i = 0; i < points.count(); ++i)
-    if (points.weight(i) > 0.0) weighted.push_back(i);
-  const Index count = std::ssize(weighted), taken = std::min(count, most);
-  Eigen::MatrixXd sample(points.features(), taken);
-  const double stride = static_cast<double>(count) / static_cast<double>(taken);
-  for (Index i = 0; i < taken; ++i) {
-    const Index point = weighted[static_cast<std::size_t>((static_cast<double>(i) + shift) * stride)];
-    for (Index f = 0; f < points.features(); ++f) sample(f, i) = points.coordinate(point, f);
+Eigen::MatrixXd sample_points(const PointBlocks& points, Index most, std::mt19937_64& generator) {
+  const PointBlocks chosen = points.for_starts(most, generator);
+  Eigen::MatrixXd sample(points.features(), chosen.count());
+  Index taken = 0;
+  for (Index i = 0; i < chosen.count(); ++i) {
+    if (!(chosen.weight(i) > 0.0)) continue;
+    for (Index f = 0; f < points.features(); ++f) sample(f, taken) = chosen.coordinate(i, f);
+    ++taken;
   }
-  return sample;
+  return sample.leftCols(taken);
 }
 
-Starts::Starts(const PointBlocks& points, const EmOptions& options) : points_(points), options_(options) {
+Starts::Starts(const ScaledCloud& cloud, const EmOptions& options) : cloud_(cloud), options_(options) {
   const int trees = options.start == StartKind::hierarchical ? options.restarts
                     : options.start == StartKind::automatic  ? 1
                                                              : 0;
+  // The same subsamples for every number of components.
+  std::mt19937_64 generator = make_generator(0, "agglomeration");
   for (int i = 0; i < trees; ++i) {
-    Eigen::MatrixXd subsample =
-        systematic_sample(points, largest_subsample, static_cast<double>(i) / static_cast<double>(trees));
+    Eigen::MatrixXd subsample = sample_points(cloud.points, largest_subsample, generator);
     Agglomeration merges = agglomerate(subsample);
     trees_.push_back({std::move(subsample), std::move(merges)});
   }
@@ -53,14 +54,17 @@ Start Starts::make(Index components, int restart, std::uint64_t seed) const {
 }
 
 GaussianMixture Starts::hierarchical(const Tree& tree, Index components) const {
-  const PointBlocks sample(tree.subsample, Eigen::VectorXd());
+  const PointBlocks sample(PointSet(tree.subsample), FeatureScale::identity(tree.subsample.rows()));
   const std::vector<int> clusters = tree.merges.labels(components);
   BlockLabels labels = BlockLabels::Zero(block_size, sample.blocks());
   std::copy(clusters.begin(), clusters.end(), labels.data());
   // With more components than points in the sample some are left over: they stay at its first points.
   Eigen::MatrixXd centers(sample.features(), components);
   for (Index k = 0; k < components; ++k) centers.col(k) = tree.subsample.col(k % sample.count());
-  return mixture_of_clusters(sample, labels, std::move(centers), options_.covariance, options_.covariance_floor);
+  GaussianMixture start =
+      mixture_of_clusters(sample, labels, std::move(centers), options_.covariance, options_.covariance_floor);
+  cloud_.set_noise(start);
+  return start;
 }
 
 /// emEM (Biernacki, Celeux & Govaert 2003, Comput. Stat. Data Anal. 41, section 2.2).
@@ -68,10 +72,12 @@ Start Starts::best_of_short_runs(Index components, std::mt19937_64& generator) c
   const auto start = options_.start == StartKind::random ? random_start : kmeans_start;
   EmOptions brief = options_;
   brief.max_iterations = std::min(short_run_iterations, options_.max_iterations);
+  const PointBlocks chosen = cloud_.points.for_starts(start_points, generator);
   EmResult best;
   for (int run = 0; run < (components == 1 ? 1 : short_runs); ++run) {
-    EmResult result = iterate(
-        points_, start(points_, components, options_.covariance, options_.covariance_floor, generator), brief);
+    GaussianMixture mixture = start(chosen, components, options_.covariance, options_.covariance_floor, generator);
+    cloud_.set_noise(mixture);
+    EmResult result = iterate(cloud_.points, std::move(mixture), brief);
     if (run == 0 || result.log_likelihood > best.log_likelihood) best = std::move(result);
   }
   return {std::move(best.mixture), best.iterations};

@@ -2,11 +2,12 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <random>
 #include <vector>
 
 #include "mixture/em.hpp"
 #include "mixture/hierarchical.hpp"
-#include "mixture/point_blocks.hpp"
+#include "mixture/scaled_cloud.hpp"
 
 namespace modebank {
 
@@ -20,8 +21,8 @@ struct Start {
 /// computed once, so that candidates share it. A start depends on components, restart and seed alone.
 class Starts {
  public:
-  /// `points` must outlive this.
-  Starts(const PointBlocks& points, const EmOptions& options);
+  /// `cloud` must outlive this.
+  Starts(const ScaledCloud& cloud, const EmOptions& options);
 
   /// Where restart number `restart` begins.
   Start make(Eigen::Index components, int restart, std::uint64_t seed) const;
@@ -35,12 +36,12 @@ class Starts {
   GaussianMixture hierarchical(const Tree& tree, Eigen::Index components) const;
   Start best_of_short_runs(Eigen::Index components, std::mt19937_64& generator) const;
 
-  const PointBlocks& points_;
+  const ScaledCloud& cloud_;
   EmOptions options_;
   std::vector<Tree> trees_;  // of the first restarts
 };
 
-/// At most `most` of the points with weight, evenly spread over their order, F x n; `shift` in [0, 1) chooses which.
-Eigen::MatrixXd systematic_sample(const PointBlocks& points, Eigen::Index most, double shift);
+/// At most `most` of the points with weight, evenly spread over their order, F x n.
+Eigen::MatrixXd sample_points(const PointBlocks& points, Eigen::Index most, std::mt19937_64& generator);
 
 }  // namespace modebank

@@ -111,9 +111,12 @@ void expect_same(const MixtureResult& actual, const MixtureResult& expected) {
   for (std::size_t k = 0; k < actual.mixture.covariances.size(); ++k)
     EXPECT_TRUE(same_bits(actual.mixture.covariances[k], expected.mixture.covariances[k]));
   EXPECT_EQ(actual.mixture.type, expected.mixture.type);
+  EXPECT_EQ(actual.mixture.noise.weight, expected.mixture.noise.weight);
+  EXPECT_TRUE(same_bits(actual.mixture.noise.lower, expected.mixture.noise.lower));
+  EXPECT_TRUE(same_bits(actual.mixture.noise.upper, expected.mixture.noise.upper));
   EXPECT_EQ(actual.feature_names, expected.feature_names);
   EXPECT_EQ(actual.labels, expected.labels);
-  EXPECT_TRUE(same_bits(actual.responsibilities, expected.responsibilities));
+  EXPECT_TRUE(same_bits(actual.responsibilities.all(), expected.responsibilities.all()));
   ASSERT_EQ(actual.candidates.size(), expected.candidates.size());
   for (std::size_t i = 0; i < actual.candidates.size(); ++i) expect_same(actual.candidates[i], expected.candidates[i]);
 }
