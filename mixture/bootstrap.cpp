@@ -86,8 +86,7 @@ MixtureErrors bootstrap_runs(const PointSet& points, const std::vector<Index>& r
     std::mt19937_64 generator = make_generator(seed, "bootstrap", static_cast<std::uint64_t>(b));
     const Eigen::VectorXd weights = resampled_weights(points, runs, generator);
     const GaussianMixture fit = fit_em(PointSet(points.points, weights, points.covariances), mixture, options).mixture;
-    const std::vector<Index> match =
-        best_assignment(chosen * responsibilities(fit, sample.set()).transpose());
+    const std::vector<Index> match = best_assignment(chosen * responsibilities(fit, sample.set()).transpose());
     // Less than one point's worth is no component any more.
     const double least = 1.0 / static_cast<double>((weights.array() > 0.0).count());
     for (Index k = 0; k < K; ++k) {

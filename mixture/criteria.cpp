@@ -81,7 +81,8 @@ std::string disagreement(const std::vector<Candidate>& candidates, const Candida
 
 std::vector<std::string> selection_warnings(const std::vector<Candidate>& candidates) {
   std::vector<std::string> warnings;
-  const auto selected = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.selected; });
+  const auto selected =
+      std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.selected; });
   if (selected == candidates.end()) return warnings;
   const Index components = selected->components;
   if (2 * selected->agreeing_restarts < selected->restarts)

@@ -31,11 +31,10 @@ constexpr double agreement_per_point = 1e-4;
 void check(const EmOptions& options) {
   if (options.restarts < 1 || options.split_merge < 0 || options.max_iterations < 0 ||
       !(options.covariance_floor >= smallest_floor))
-    throw std::invalid_argument(
-        fmt::format("EM needs restarts >= 1, split_merge and max_iterations >= 0 and covariance_floor >= {}; given {}, "
-                    "{}, {} and {}",
-                    smallest_floor, options.restarts, options.split_merge, options.max_iterations,
-                    options.covariance_floor));
+    throw std::invalid_argument(fmt::format(
+        "EM needs restarts >= 1, split_merge and max_iterations >= 0 and covariance_floor >= {}; given {}, "
+        "{}, {} and {}",
+        smallest_floor, options.restarts, options.split_merge, options.max_iterations, options.covariance_floor));
 }
 
 void check(const PointSet& set) {
@@ -150,8 +149,8 @@ EmResult EmSweep::fit(Index components, std::uint64_t seed, const GaussianMixtur
         fmt::format("EM of {} components needs 1 to {} (the number of points)", components, cloud.points.count()));
   std::vector<EmResult> restarts(static_cast<std::size_t>(options.restarts));
   tbb::parallel_for(0, options.restarts, [&](int i) {
-    Start own = i == 0 && start ? Start{usable_start(*start, cloud, options), 0}
-                                : prepared_->starts.make(components, i, seed);
+    Start own =
+        i == 0 && start ? Start{usable_start(*start, cloud, options), 0} : prepared_->starts.make(components, i, seed);
     restarts[static_cast<std::size_t>(i)] = restart(cloud.points, std::move(own), options);
   });
   EmResult result = best_of(std::move(restarts), cloud.points.total_weight());

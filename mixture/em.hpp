@@ -8,9 +8,9 @@
 
 namespace modebank {
 
-/// Where restarts begin. kmeans_plus_plus (Arthur & Vassilvitskii 2007) and random (points as centres): the best of five
-/// short runs each (emEM: Biernacki, Celeux & Govaert 2003). hierarchical: model-based agglomeration (Fraley 1998) of a
-/// subsample, another one for each restart. automatic: the first restart hierarchical, the others k-means++.
+/// Where restarts begin. kmeans_plus_plus (Arthur & Vassilvitskii 2007) and random (points as centres): the best of
+/// five short runs each (emEM: Biernacki, Celeux & Govaert 2003). hierarchical: model-based agglomeration (Fraley 1998)
+/// of a subsample, another one for each restart. automatic: the first restart hierarchical, the others k-means++.
 enum class StartKind { automatic, kmeans_plus_plus, random, hierarchical };
 
 template <>
@@ -49,8 +49,8 @@ struct EmResult {
 /// (Bovy, Hogg & Roweis 2011, Ann. Appl. Stat. 5, eq. 16); zero errors change nothing. Throws std::invalid_argument for
 /// K < 1, K > N, bad options, weights, points or error covariances. Bitwise the same for any number of threads.
 EmResult fit_em(const PointSet& points, Eigen::Index components, const EmOptions& options, std::uint64_t seed);
-/// fit_em for several numbers of components over the same points, which are prepared once and must outlive this. fit() may be called from
-/// several threads; what it returns depends on its own arguments alone.
+/// fit_em for several numbers of components over the same points, which are prepared once and must outlive this. fit()
+/// may be called from several threads; what it returns depends on its own arguments alone.
 class EmSweep {
  public:
   EmSweep(const PointSet& points, const EmOptions& options);

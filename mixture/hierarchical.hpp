@@ -7,8 +7,8 @@ namespace modebank {
 
 /// Model-based agglomeration (Fraley 1998, SIAM J. Sci. Comput. 20, 270-281, unconstrained covariances): starting from
 /// every point on its own, the two clusters are merged again and again that cost the classification likelihood least. A
-/// cluster of n points with scatter W costs n log(|W / n| + tr(W / n) + trace / F), where trace / F is the mean variance
-/// of a feature over all points: so also small clusters have a finite cost.
+/// cluster of n points with scatter W costs n log(|W / n| + tr(W / n) + trace / F), where trace / F is the mean
+/// variance of a feature over all points: so also small clusters have a finite cost.
 struct Agglomeration {
   struct Merge {
     int kept = 0, absorbed = 0;  ///< clusters are named after their first point

@@ -95,7 +95,8 @@ Eigen::VectorXd recenter(const PointBlocks& points, const BlockLabels& labels, E
 }
 
 /// Weighted scatter (sum of w d d') of each cluster about its centre.
-std::vector<Eigen::MatrixXd> scatter(const PointBlocks& points, const BlockLabels& labels, const Eigen::MatrixXd& centers) {
+std::vector<Eigen::MatrixXd> scatter(const PointBlocks& points, const BlockLabels& labels,
+                                     const Eigen::MatrixXd& centers) {
   const Index features = centers.rows();
   std::vector<Eigen::MatrixXd> result(centers.cols(), Eigen::MatrixXd::Zero(features, features));
   for (Index i = 0; i < points.count(); ++i) {

@@ -11,8 +11,8 @@ namespace modebank {
 using BlockLabels = Eigen::Array<int, block_size, Eigen::Dynamic>;
 
 /// The moments of clusters as a start for EM. Each cluster's covariance is drawn towards the pooled within-cluster one
-/// with the strength of F + 1 mean-weight points (and its weight towards 1/K with one), so an empty or one-point cluster
-/// is a usable start. An empty cluster stays at its column of `centers` (F x K).
+/// with the strength of F + 1 mean-weight points (and its weight towards 1/K with one), so an empty or one-point
+/// cluster is a usable start. An empty cluster stays at its column of `centers` (F x K).
 GaussianMixture mixture_of_clusters(const PointBlocks& points, const BlockLabels& labels, Eigen::MatrixXd centers,
                                     CovarianceType type, double floor);
 

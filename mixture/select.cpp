@@ -127,8 +127,8 @@ std::vector<FittedCandidate> fit_all(const Task& task, const std::vector<Index>&
     for_each_from_the_largest(std::ssize(components), [&](Index i) {
       Candidate& row = fitted[static_cast<std::size_t>(i)].row;
       if (row.status == CandidateStatus::fitted)
-        row.heldout = heldout_score(task.points, task.design.runs, row.components, task.options.em,
-                                    task.seed_of(row.components));
+        row.heldout =
+            heldout_score(task.points, task.design.runs, row.components, task.options.em, task.seed_of(row.components));
     });
   return fitted;
 }
@@ -158,8 +158,7 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
   if (!design.runs.empty() && std::ssize(design.runs) != points.count())
     throw std::invalid_argument(
         fmt::format("selection is given {} points and the runs of {}", points.count(), design.runs.size()));
-  const double weight =
-      points.weights.size() > 0 ? points.weights.sum() : static_cast<double>(points.count());
+  const double weight = points.weights.size() > 0 ? points.weights.sum() : static_cast<double>(points.count());
   const Task task{points, design, options, seed, weight, count_distinct(points, components.back())};
   std::vector<FittedCandidate> fitted = fit_all(task, components);
   Selection result;

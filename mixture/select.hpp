@@ -88,9 +88,9 @@ struct Selection {
 };
 
 /// Fits every candidate (in parallel over candidates and restarts, seeds split by both) and keeps the best by the
-/// criterion (the smaller on a tie). The table is sorted by components, each once. Throws DataError when every candidate
-/// asks for more components than there are distinct points, or none can be scored (held-out: fewer than two runs);
-/// std::invalid_argument for no candidate or one below 1.
+/// criterion (the smaller on a tie). The table is sorted by components, each once. Throws DataError when every
+/// candidate asks for more components than there are distinct points, or none can be scored (held-out: fewer than two
+/// runs); std::invalid_argument for no candidate or one below 1.
 Selection select(const PointSet& points, const SampleDesign& design, const SelectionOptions& options,
                  std::uint64_t seed);
 

@@ -66,8 +66,7 @@ struct Merge {
 
 std::vector<Merge> merges_by_loss(const GaussianMixture& mixture) {
   std::vector<double> log_determinants;
-  for (const Eigen::MatrixXd& covariance : mixture.covariances)
-    log_determinants.push_back(log_determinant(covariance));
+  for (const Eigen::MatrixXd& covariance : mixture.covariances) log_determinants.push_back(log_determinant(covariance));
   const auto share = [&](Index k) { return mixture.weights(k) * log_determinants[static_cast<std::size_t>(k)]; };
   std::vector<Merge> merges;
   for (Index i = 0; i < mixture.components(); ++i)

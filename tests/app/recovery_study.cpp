@@ -57,8 +57,10 @@ RecoveredSize recover_size(const RecoveryCase& recovery, int seed) {
   options.straddling = recovery.straddling;
   options.heldout = HeldoutChoice::never;
   options.em.restarts = 2;
-  const FeatureCloud cloud = make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::automatic,
-                                           recording.states, recovery.straddling);
+  options.em.noise_component = recovery.noise_component;
+  const FeatureCloud cloud =
+      make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::automatic, recording.states,
+                    recovery.straddling, recovery.error_aware ? WindowErrors::include : WindowErrors::ignore);
   const MixtureResult result = select_mixture(fits, cloud, options, static_cast<std::uint64_t>(seed));
   const Index naive = best_candidate(result.candidates, Criterion::bic_naive);
   return {static_cast<Index>(system.modes.size()), result.mixture.components(),
@@ -73,8 +75,8 @@ std::vector<RecoveredSize> recover_sizes(const RecoveryCase& recovery, int seeds
 }
 
 int right(const std::vector<RecoveredSize>& sizes, Index RecoveredSize::*choice) {
-  return static_cast<int>(std::count_if(sizes.begin(), sizes.end(),
-                                        [&](const RecoveredSize& size) { return size.*choice == size.truth; }));
+  return static_cast<int>(
+      std::count_if(sizes.begin(), sizes.end(), [&](const RecoveredSize& size) { return size.*choice == size.truth; }));
 }
 
 }  // namespace modebank::test

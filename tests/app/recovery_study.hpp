@@ -17,6 +17,8 @@ struct RecoveryCase {
   Index step = 1;
   StraddlingWindows straddling = StraddlingWindows::leave_out;
   Criterion criterion = Criterion::bic;
+  bool noise_component = false;
+  bool error_aware = false;
 };
 
 /// Like configs/simulate_linear.ini, with 2 to 6 modes (by seed), 40 runs of 500 samples and R = Q / 25.
@@ -31,8 +33,8 @@ Simulated simulate_recording(const SimulationOptions& options, int seed);
 /// What the criteria chose on one seed, from 1 to true K + 3.
 struct RecoveredSize {
   Index truth = 0;
-  Index chosen = 0;  ///< by the case's criterion
-  Index naive = 0;   ///< by BIC as if windows were independent
+  Index chosen = 0;        ///< by the case's criterion
+  Index naive = 0;         ///< by BIC as if windows were independent
   double clustered = 0.0;  ///< share of the windows that were clustered
 };
 RecoveredSize recover_size(const RecoveryCase& recovery, int seed);
