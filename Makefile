@@ -25,11 +25,14 @@ demo: build
 test: build packages-test
 	ctest --preset release -j $(JOBS)
 
-# The second program compares window fits with other people's, in Python too where it is installed.
+# The others compare window fits and EM with other people's, in Python too where it is installed.
 bench: build
 	build/bench_modebank
 	build/compare_windows 5 build/compare_windows.bin
 	-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 /usr/bin/python3 tests/bench/window_peers.py build/compare_windows.bin
+	OMP_NUM_THREADS=1 build/compare_em 5
+	build/compare_em memory
+	-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 /usr/bin/python3 tests/bench/em_peers.py build/compare_em
 
 # Coverage of the stated 95 % regions, as the README's table has it.
 uncertainty: build

@@ -21,7 +21,8 @@ struct MixtureConfig {
   SelectionOptions selection;
   FeatureSet features = FeatureSet::parameters_and_noise;
   WindowChoice windows = WindowChoice::automatic;
-  StraddlingWindows straddling = StraddlingWindows::leave_out;
+  bool error_aware = false;
+  std::string start_file;  ///< archive whose mixture is a start; empty: selection.em.start alone
 };
 
 struct ArchiveConfig {

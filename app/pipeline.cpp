@@ -22,6 +22,7 @@
 #include "ident/residual_tests.hpp"
 #include "ident/seed.hpp"
 #include "io/import.hpp"
+#include "mixture/criteria.hpp"
 #include "mixture/features.hpp"
 #include "mixture/select.hpp"
 
@@ -111,13 +112,35 @@ std::string identify_into_file(const Config& config, const Archive& archive) {
   return data_text(*archive.recording) + windows_text(common, counts);
 }
 
+/// The mixture of another archive, which must be over the same features.
+GaussianMixture stored_start(const Config& config, Archive& archive, const std::vector<std::string>& features) {
+  const std::string& file = config.mixture.start_file;
+  Archive stored = read_archive(file);
+  if (!stored.mixture) throw DataError(fmt::format("mixture.start: {} holds no mixture", file));
+  if (stored.mixture->feature_names != features)
+    throw DataError(fmt::format("mixture.start: the mixture of {} is over {}, this one over {}", file,
+                                fmt::join(stored.mixture->feature_names, ", "), fmt::join(features, ", ")));
+  const std::vector<Index>& sizes = config.mixture.selection.components;
+  const Index components = stored.mixture->mixture.components();
+  if (std::find(sizes.begin(), sizes.end(), components) == sizes.end())
+    spdlog::warn("mixture.start: the mixture of {} has {} components, which is not among the candidates", file,
+                 components);
+  archive.provenance.inputs.push_back(describe_file(file));
+  return std::move(stored.mixture->mixture);
+}
+
 void cluster_stage(const Config& config, Archive& archive) {
   const Stopwatch watch;
   const FeatureCloud cloud = make_features(*archive.windows, config.mixture.features, config.mixture.windows,
-                                           archive.recording->states, config.mixture.straddling);
-  archive.mixture = select_mixture(*archive.windows, cloud, config.mixture.selection, config.job.seed);
+                                           archive.recording->states, config.mixture.selection.straddling,
+                                           config.mixture.error_aware ? WindowErrors::include : WindowErrors::ignore);
+  SelectionOptions selection = config.mixture.selection;
+  if (!config.mixture.start_file.empty()) selection.start = stored_start(config, archive, cloud.names);
+  archive.mixture = select_mixture(*archive.windows, cloud, selection, config.job.seed);
   spdlog::info("mixture: {} components from {} windows in {:.2f} s", archive.mixture->mixture.components(),
                cloud.windows.size(), watch.seconds());
+  for (const std::string& warning : selection_warnings(archive.mixture->candidates))
+    spdlog::warn("mixture: {}", warning);
 }
 
 void bank_stage(const Config& config, Archive& archive) {

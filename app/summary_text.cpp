@@ -8,6 +8,7 @@
 
 #include "app/lag_text.hpp"
 #include "ident/window_summary.hpp"
+#include "mixture/criteria.hpp"
 
 namespace modebank::app {
 namespace {
@@ -18,6 +19,18 @@ const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, 
   return nullptr;
 }
 
+/// Those labelled -1 as noise among them.
+Index clustered_windows(const MixtureResult& result) {
+  if (!result.mixture.noise.present()) return (result.labels.array() >= 0).count();
+  constexpr Index at_once = 16384;
+  Index count = 0;
+  for (Index first = 0; first < result.responsibilities.windows(); first += at_once) {
+    const Index windows = std::min(at_once, result.responsibilities.windows() - first);
+    count += (!result.responsibilities.block(first, windows).row(0).array().isNaN()).count();
+  }
+  return count;
+}
+
 std::string mixture_text(const MixtureResult& result) {
   const auto& candidates = result.candidates;
   const auto chosen = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.selected; });
@@ -25,13 +38,15 @@ std::string mixture_text(const MixtureResult& result) {
                                  fmt::join(result.feature_names, ", "));
   if (chosen == candidates.end()) return text + "\n";
   text += fmt::format("; BIC {:.1f} with N_eff {:.0f} of {} windows", chosen->bic, chosen->effective_samples,
-                      (result.labels.array() >= 0).count());
+                      clustered_windows(result));
+  if (result.mixture.noise.present())
+    text += fmt::format("; noise component {:.1f} %, label -1 for {} windows", 100 * result.mixture.noise.weight,
+                        clustered_windows(result) - (result.labels.array() >= 0).count());
   if (candidates.size() > 1)
     text += fmt::format("; chosen from {}..{}", candidates.front().components, candidates.back().components);
-  if (!chosen->converged) text += "; not converged";
-  if (candidates.size() > 1 && (chosen == candidates.begin() || chosen + 1 == candidates.end()))
-    text += "; at the edge of the range";
-  return text + "\n";
+  text += fmt::format("; {} of {} restarts agree\n", chosen->agreeing_restarts, chosen->restarts);
+  for (const std::string& warning : selection_warnings(candidates)) text += "          warning: " + warning + "\n";
+  return text;
 }
 
 std::string bank_text(const Bank& bank) {
@@ -186,16 +201,42 @@ std::string provenance_text(const Archive& archive) {
   return text + fmt::format("\ninputs    {} files\n", p.inputs.size());
 }
 
-std::string candidates_text(const MixtureResult& mixture) {
-  std::string text =
-      fmt::format("{:>4} {:<8} {:>14} {:>6} {:>8} {:>12} {:>12} {:>12} {:>10} {:>6} {:>9} {:>8}\n", "K", "shape",
-                  "log likelihood", "q", "N_eff", "BIC", "AIC", "ICL", "held out", "iter", "converged", "agreeing");
-  for (const Candidate& c : mixture.candidates)
-    text += fmt::format(
-        "{:>4} {:<8} {:>14.3f} {:>6} {:>8.1f} {:>12.3f} {:>12.3f} {:>12.3f} {:>10.4f} {:>6} {:>9} {:>8}{}\n",
-        c.components, name_of(c.covariance), c.log_likelihood, c.parameters, c.effective_samples, c.bic, c.aic, c.icl,
-        c.heldout, c.iterations, c.converged ? "yes" : "no", c.agreeing_restarts, c.selected ? "  <- selected" : "");
+namespace {
+
+/// Weights and means with their standard errors, where a bootstrap made some.
+std::string component_errors_text(const MixtureResult& mixture) {
+  if (mixture.weights_standard_error.size() == 0) return "";
+  std::string text = "standard errors by bootstrap over runs\n";
+  for (Index k = 0; k < mixture.mixture.components(); ++k) {
+    text +=
+        fmt::format("{:>4} weight {:.3f} +- {:.2g}", k, mixture.mixture.weights(k), mixture.weights_standard_error(k));
+    for (Index f = 0; f < mixture.mixture.features(); ++f)
+      text += fmt::format("  {} {:.4g} +- {:.2g}", mixture.feature_names[static_cast<std::size_t>(f)],
+                          mixture.mixture.means(f, k), mixture.means_standard_error(f, k));
+    text += "\n";
+  }
   return text;
+}
+
+}  // namespace
+
+std::string candidates_text(const MixtureResult& mixture) {
+  std::string text = fmt::format(
+      "{:>4} {:<8} {:>14} {:>6} {:>8} {:>12} {:>12} {:>12} {:>12} {:>10} {:>6} {:>9} {:>8}\n", "K", "shape",
+      "log likelihood", "q", "N_eff", "BIC", "AIC", "ICL", "naive BIC", "held out", "iter", "converged", "agreeing");
+  for (const Candidate& c : mixture.candidates) {
+    if (c.status != CandidateStatus::fitted) {
+      text += fmt::format("{:>4} {:<8} {}\n", c.components, name_of(c.covariance), name_of(c.status));
+      continue;
+    }
+    text += fmt::format(
+        "{:>4} {:<8} {:>14.3f} {:>6} {:>8.1f} {:>12.3f} {:>12.3f} {:>12.3f} {:>12.3f} {:>10.4f} {:>6} {:>9} "
+        "{:>8}{}\n",
+        c.components, name_of(c.covariance), c.log_likelihood, c.parameters, c.effective_samples, c.bic, c.aic, c.icl,
+        c.bic_naive, c.heldout, c.iterations, c.converged ? "yes" : "no",
+        fmt::format("{}/{}", c.agreeing_restarts, c.restarts), c.selected ? "  <- selected" : "");
+  }
+  return text + component_errors_text(mixture);
 }
 
 std::string window_parameters_text(const WindowFits& fits) {

@@ -20,19 +20,6 @@ void check_writable(const std::filesystem::path& path) {
     throw ConfigurationError("cannot write " + path.string() + ": " + obstacle);
 }
 
-void write_archive(const std::filesystem::path& path, const Archive& archive) {
-  if (archive.recording) check_run_names(run_names(archive.recording->runs));
-  const hdf5::Quiet quiet;
-  const ArchiveImage image;
-  {
-    ArchiveWriter root(open_root(image.file()));
-    layout::exchange_archive(root, archive);
-  }
-  const std::string_view content = image.content();
-  const UserBlock block = make_user_block(sha256_hex(content));
-  replace_file(path, {std::string_view(block.data(), block.size()), content});
-}
-
 namespace {
 
 void stamp_hash(const std::filesystem::path& path) {
@@ -43,7 +30,41 @@ void stamp_hash(const std::filesystem::path& path) {
   if (!file) throw DataError("the hash could not be written");
 }
 
+/// Beyond this much an archive is made in the file system rather than in memory.
+bool is_large(const Archive& archive) {
+  constexpr Index most_in_memory = Index{32} << 20;  // doubles
+  if (!archive.mixture) return false;
+  const WindowResponsibilities& responsibilities = archive.mixture->responsibilities;
+  return responsibilities.windows() * responsibilities.components() > most_in_memory;
+}
+
+void write_large_archive(const std::filesystem::path& path, const Archive& archive) {
+  replace_file(path, [&](const std::filesystem::path& temporary) {
+    {
+      const hdf5::Handle file = create_archive_file(temporary);
+      ArchiveWriter root(open_root(file));
+      layout::exchange_archive(root, archive);
+      hdf5::check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "complete the archive");
+    }
+    stamp_hash(temporary);
+  });
+}
+
 }  // namespace
+
+void write_archive(const std::filesystem::path& path, const Archive& archive) {
+  if (archive.recording) check_run_names(run_names(archive.recording->runs));
+  const hdf5::Quiet quiet;
+  if (is_large(archive)) return write_large_archive(path, archive);
+  const ArchiveImage image;
+  {
+    ArchiveWriter root(open_root(image.file()));
+    layout::exchange_archive(root, archive);
+  }
+  const std::string_view content = image.content();
+  const UserBlock block = make_user_block(sha256_hex(content));
+  replace_file(path, {std::string_view(block.data(), block.size()), content});
+}
 
 WindowFits write_archive(const std::filesystem::path& path, const Archive& archive, Index count,
                          const std::function<WindowFits(const WindowSink&)>& produce) {

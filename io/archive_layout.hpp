@@ -124,7 +124,9 @@ void exchange_candidates(Io& io, C& candidates) {
            column("bic", &Candidate::bic), column("aic", &Candidate::aic), column("icl", &Candidate::icl),
            column("heldout", &Candidate::heldout, "nat"), column("iterations", &Candidate::iterations),
            column("converged", &Candidate::converged), column("agreeing_restarts", &Candidate::agreeing_restarts),
-           column("selected", &Candidate::selected));
+           column("selected", &Candidate::selected), column("bic_naive", &Candidate::bic_naive),
+           column("restarts", &Candidate::restarts), column("floor_active", &Candidate::floor_active),
+           column("status", &Candidate::status));
 }
 
 /// `parameters`: units of theta, the first features; the others are logarithms, without unit.
@@ -143,8 +145,13 @@ void exchange_mixture(Io& io, X& result, const Unit& parameters) {
       [&](auto& stored) {
         io.field("covariances", stored, {"K", "F", "F"}, outer(features));
       });
+  io.optional_field("weights_standard_error", result.weights_standard_error, {"K"});
+  io.optional_field("means_standard_error", result.means_standard_error, {"K", "F"}, features);
+  io.optional_attribute("noise_weight", result.mixture.noise.weight);
+  io.optional_field("noise_lower", result.mixture.noise.lower, {"F"}, features);
+  io.optional_field("noise_upper", result.mixture.noise.upper, {"F"}, features);
   io.field("labels", result.labels, {"M"});
-  io.field("responsibilities", result.responsibilities, {"M", "K"});
+  io.through_rows("responsibilities", result.responsibilities, {"M", "K"});
 }
 
 template <class Io, class P>

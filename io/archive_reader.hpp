@@ -75,6 +75,13 @@ class ArchiveReader {
       array.read(hdf5::memory_type<Stored>(), values.data());
     });
   }
+  /// One that is written block by block.
+  template <class Source>
+  void through_rows(const std::string& name, Source& values, const Letters& letters) {
+    Eigen::MatrixXd all;
+    field(name, all, letters);
+    values = Source(std::move(all));
+  }
   template <class Derived>
   void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>&, const Letters& letters,
                      const Unit& = {}) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -90,6 +91,18 @@ class ArchiveWriter {
     hdf5::write_array(group_.id(), hdf5::Place::dataset, name, hdf5::file_type<Stored>(), hdf5::memory_type<Stored>(),
                       shape, values.data());
     write_unit(name, unit, shape);
+  }
+  /// An array whose columns are made as they are written: `values` has windows(), components() and block(first, count).
+  template <class Source>
+  void through_rows(const std::string& name, const Source& values, const Letters& letters) {
+    constexpr Eigen::Index rows_at_once = 16384;
+    const hdf5::Shape shape{static_cast<hsize_t>(values.windows()), static_cast<hsize_t>(values.components())};
+    agree(name, letters, shape);
+    for (Eigen::Index first = 0; first == 0 || first < values.windows(); first += rows_at_once) {
+      const Eigen::MatrixXd block = values.block(first, std::min(rows_at_once, values.windows() - first));
+      hdf5::write_rows(group_.id(), name, hdf5::file_type<double>(), hdf5::memory_type<double>(), shape,
+                       static_cast<hsize_t>(first), static_cast<hsize_t>(block.cols()), block.data());
+    }
   }
   /// An array computed from others: for readers of the file, ignored when read back.
   template <class Derived>

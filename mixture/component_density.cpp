@@ -2,13 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-
-#include "mixture/block_arithmetic.hpp"
 
 namespace modebank {
 
@@ -16,119 +12,123 @@ using Eigen::Index;
 
 namespace {
 
-/// Squared distances beyond this (points so far out that squares overflow) count as this, so no density is ever NaN.
-constexpr double largest_distance = 2e300;
-/// Relative densities below exp(-600) count as that: no denormal numbers, which are slow, and nothing lost at double
-/// precision.
-constexpr double smallest_log_ratio = -600.0;
-/// Stands for the logarithm of a zero weight.
-constexpr double log_zero = -1e300;
-
-Eigen::MatrixXd inverse_cholesky(const Eigen::MatrixXd& covariance, bool diagonal, Index component) {
-  const Index features = covariance.rows();
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(features, features);
-  bool positive = covariance.diagonal().minCoeff() > 0.0;
-  if (diagonal) {
-    inverse.diagonal() = covariance.diagonal().cwiseSqrt().cwiseInverse();
-  } else {
-    const Eigen::LLT<Eigen::MatrixXd> cholesky(covariance);
-    positive = positive && cholesky.info() == Eigen::Success;
-    cholesky.matrixL().solveInPlace(inverse);
-  }
-  if (!positive || !inverse.allFinite())
-    throw std::invalid_argument(
-        fmt::format("covariance of mixture component {} of {} features is not positive definite (smallest variance {})",
-                    component, features, covariance.diagonal().minCoeff()));
-  return inverse;
-}
-
-/// |W (x - mu)|^2 of every point of a block. F features, or Dynamic: the same code, but only a known number of features
-/// lets the compiler unroll the inner loops and vectorise the outer one.
-template <int F>
-void squared_distance(const Eigen::MatrixXd& whitening, const double* mean, const double* points, Index features,
-                      double* distance) {
-  const Index count = F == Eigen::Dynamic ? features : F;
-  const double* W = whitening.data();
-  for (Index n = 0; n < block_size; ++n) {
-    double sum = 0.0;
-#pragma GCC unroll 8
-    for (Index i = 0; i < count; ++i) {
-      double whitened = 0.0;
-#pragma GCC unroll 8
-      for (Index j = 0; j <= i; ++j) whitened += W[i + j * count] * (points[n + j * block_size] - mean[j]);
-      sum += whitened * whitened;
+/// Lower Cholesky factor, by rows (Golub & Van Loan 2013, algorithm 4.2.2 in another order); false unless positive
+/// definite.
+bool cholesky(const Eigen::MatrixXd& covariance, bool diagonal, Eigen::MatrixXd& L) {
+  const Index F = covariance.rows();
+  L.setZero(F, F);
+  for (Index i = 0; i < F; ++i) {
+    double pivot = covariance(i, i);
+    for (Index j = 0; j < (diagonal ? 0 : i); ++j) {
+      double sum = covariance(i, j);
+      for (Index k = 0; k < j; ++k) sum -= L(i, k) * L(j, k);
+      L(i, j) = sum / L(j, j);
+      pivot -= L(i, j) * L(i, j);
     }
-    distance[n] = sum;
+    if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+    L(i, i) = std::sqrt(pivot);
+  }
+  return true;
+}
+
+/// Inverse of a lower triangle.
+void invert(const Eigen::MatrixXd& L, Eigen::MatrixXd& W) {
+  const Index F = L.rows();
+  W.setZero(F, F);
+  for (Index j = 0; j < F; ++j) {
+    W(j, j) = 1.0 / L(j, j);
+    for (Index i = j + 1; i < F; ++i) {
+      double sum = 0.0;
+      for (Index k = j; k < i; ++k) sum += L(i, k) * W(k, j);
+      W(i, j) = -sum / L(i, i);
+    }
   }
 }
 
-/// The kernel for a number of features.
-auto squared_distance_for(Index features) {
-  switch (features) {
-    case 1:
-      return squared_distance<1>;
-    case 2:
-      return squared_distance<2>;
-    case 3:
-      return squared_distance<3>;
-    case 4:
-      return squared_distance<4>;
-    case 5:
-      return squared_distance<5>;
-    case 6:
-      return squared_distance<6>;
-    case 7:
-      return squared_distance<7>;
-    case 8:
-      return squared_distance<8>;
-    default:
-      return squared_distance<Eigen::Dynamic>;
+void pack(const Eigen::MatrixXd& W, em::Packing packing, std::vector<double>& out) {
+  constexpr Index tile = 4;
+  const Index F = W.rows();
+  switch (packing) {
+    case em::Packing::diagonal:
+      for (Index i = 0; i < F; ++i) out.push_back(W(i, i));
+      break;
+    case em::Packing::rows:
+      for (Index i = 0; i < F; ++i)
+        for (Index j = 0; j <= i; ++j) out.push_back(W(i, j));
+      break;
+    case em::Packing::tiles:
+      for (Index row = 0; row < F; row += tile)
+        for (Index j = 0; j < std::min(row + tile, F); ++j)
+          for (Index i = row; i < row + tile; ++i) out.push_back(i < F && j <= i ? W(i, j) : 0.0);
   }
 }
 
 }  // namespace
 
-ComponentFactors factor(const GaussianMixture& mixture) {
-  const Index components = mixture.components();
-  ComponentFactors factors;
-  factors.means = mixture.means;
-  factors.diagonal = mixture.type == CovarianceType::diagonal;
-  factors.log_constants.resize(components);
-  const double log_normal = -0.5 * static_cast<double>(mixture.features()) * std::log(2.0 * std::numbers::pi);
-  for (Index k = 0; k < components; ++k) {
-    factors.whitening.push_back(inverse_cholesky(mixture.covariances[k], factors.diagonal, k));
+FactoredMixture::FactoredMixture(const GaussianMixture& mixture, bool errors)
+    : means_(mixture.means),
+      diagonal_(mixture.type == CovarianceType::diagonal),
+      noise_(mixture.noise.present()),
+      kernels_(errors ? em::error_kernels(static_cast<int>(mixture.features()))
+                      : em::plain_kernels(static_cast<int>(mixture.features()), diagonal_)),
+      log_constants_(mixture.components()) {
+  const Index F = mixture.features();
+  const double log_normal = -0.5 * static_cast<double>(F) * std::log(2.0 * std::numbers::pi);
+  Eigen::MatrixXd L, W;
+  for (Index k = 0; k < mixture.components(); ++k) {
+    const Eigen::MatrixXd& covariance = mixture.covariances[k];
+    const bool positive = cholesky(covariance, diagonal_, L);
+    if (positive) invert(L, W);
+    if (!positive || !W.allFinite())
+      throw std::invalid_argument(fmt::format(
+          "covariance of mixture component {} of {} features is not positive definite (smallest variance {})", k, F,
+          covariance.diagonal().minCoeff()));
+    pack(W, kernels_.packing, whitening_);
+    if (errors) cholesky_.push_back(L);
     const double log_weight = mixture.weights(k) > 0.0 ? std::log(mixture.weights(k)) : log_zero;
-    factors.log_constants(k) = log_weight + factors.whitening[k].diagonal().array().log().sum() + log_normal;
+    log_constants_(k) = log_weight + W.diagonal().array().log().sum() + log_normal;
   }
-  return factors;
+  stride_ = static_cast<Index>(whitening_.size()) / mixture.components();
+  if (noise_)
+    log_noise_ = mixture.noise.weight > 0.0 ? std::log(mixture.noise.weight) + mixture.noise.log_density() : log_zero;
 }
 
-void evaluate(const ComponentFactors& factors, const Eigen::Ref<const BlockColumns>& points, BlockDensity& out) {
-  const Index components = factors.log_constants.size(), features = factors.means.rows();
-  out.relative.resize(block_size, components);
-  assert(points.cols() == features && points.outerStride() == block_size);
-  const auto distance_kernel = squared_distance_for(features);
-  BlockColumn distance;
-  BlockColumn& largest = out.log_density;
-  for (Index k = 0; k < components; ++k) {
-    distance_kernel(factors.whitening[k], factors.means.col(k).data(), points.data(), features, distance.data());
-    // Where the parts of a distance overflow with different signs.
-    if (std::isnan(distance.sum())) distance = distance.isNaN().select(largest_distance, distance);
-    out.relative.col(k) = factors.log_constants(k) - 0.5 * distance.min(largest_distance);
-    if (k == 0)
-      largest = out.relative.col(k);
-    else
-      largest = largest.max(out.relative.col(k));
-  }
-  out.sum.setZero();
-  for (Index k = 0; k < components; ++k) {
-    auto relative = out.relative.col(k);
-    relative = (relative - largest).max(smallest_log_ratio);
-    block_exp(relative);
-    out.sum += relative;
-  }
-  // Not Eigen's log, which is slower than the C library's in a portable build.
-  out.log_density += out.sum.unaryExpr([](double sum) { return std::log(sum); });
+em::Components FactoredMixture::components() const {
+  em::Components result;
+  result.features = static_cast<int>(means_.rows());
+  result.count = static_cast<int>(means_.cols());
+  result.diagonal = diagonal_;
+  result.means = means_.data();
+  result.whitening = whitening_.data();
+  result.stride = stride_;
+  result.log_constants = log_constants_.data();
+  return result;
+}
+
+void FactoredMixture::to_scaled_units(Index component, Eigen::Ref<Eigen::VectorXd> sums) const {
+  const Eigen::MatrixXd& L = cholesky_[static_cast<std::size_t>(component)];
+  const Index F = L.rows();
+  sums.segment(1, F) = (L.triangularView<Eigen::Lower>() * sums.segment(1, F)).eval();
+  Eigen::MatrixXd second(F, F);
+  for (Index i = 0, row = 1 + F; i < F; ++i)
+    for (Index j = 0; j <= i; ++j) second(i, j) = second(j, i) = sums(row++);
+  second = (L * second * L.transpose()).eval();
+  for (Index i = 0, row = 1 + F; i < F; ++i)
+    for (Index j = 0; j <= i; ++j) sums(row++) = second(i, j);
+}
+
+KernelScratch::KernelScratch(const FactoredMixture& mixture) : components_(mixture.components().count) {
+  const em::Kernels& kernels = mixture.kernels();
+  const Index lanes = (2 + components_ * kernels.entries) * em::most_lanes;
+  const Index work = kernels.common_work + components_ * kernels.work;
+  const Index work_padded = (work + em::most_lanes - 1) / em::most_lanes * em::most_lanes;
+  memory_ = AlignedBuffer((components_ + 4) * block_size + lanes + work_padded);
+  scratch_.relative = memory_.data();
+  scratch_.sum = scratch_.relative + (components_ + 1) * block_size;
+  scratch_.log_density = scratch_.sum + block_size;
+  noise_ = scratch_.log_density + block_size;
+  scratch_.lanes = noise_ + block_size;
+  scratch_.work = scratch_.lanes + lanes;
 }
 
 }  // namespace modebank

@@ -3,31 +3,64 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "mixture/aligned_buffer.hpp"
+#include "mixture/em_kernels.hpp"
 #include "mixture/gaussian_mixture.hpp"
-#include "mixture/point_blocks.hpp"
 
 namespace modebank {
 
-/// A mixture with its covariances factored once: log w_k N(x; mu_k, Sigma_k) = log_constant_k - |W_k (x - mu_k)|^2 / 2,
-/// where W_k is the inverse of the lower Cholesky factor of Sigma_k.
-struct ComponentFactors {
-  Eigen::MatrixXd means;                   ///< F x K
-  std::vector<Eigen::MatrixXd> whitening;  ///< K of F x F, lower triangular
-  Eigen::VectorXd log_constants;           ///< K, log w_k + log det W_k - F/2 log(2 pi)
-  bool diagonal = false;                   ///< whether every W_k is diagonal
+/// A mixture with its covariances factored once, as the vector kernels read it, and the kernels that suit it.
+class FactoredMixture {
+ public:
+  /// Kernels for points with or without errors. Throws std::invalid_argument naming the first component whose
+  /// covariance is not positive definite.
+  FactoredMixture(const GaussianMixture& mixture, bool errors);
+
+  em::Components components() const;
+  const em::Kernels& kernels() const { return kernels_; }
+  bool has_noise() const { return noise_; }
+  double log_noise() const { return log_noise_; }  ///< log of weight times density of the noise component
+  /// Kernels with errors sum in units of W: turns a component's sums into those that kernels without errors yield (rows
+  /// of full mixtures, in place).
+  void to_scaled_units(Eigen::Index component, Eigen::Ref<Eigen::VectorXd> sums) const;
+
+ private:
+  Eigen::MatrixXd means_;
+  bool diagonal_;
+  bool noise_;
+  double log_noise_ = 0.0;
+  em::Kernels kernels_;
+  Eigen::Index stride_ = 0;
+  std::vector<double> whitening_;
+  std::vector<Eigen::MatrixXd> cholesky_;  ///< lower factors; with errors only
+  Eigen::VectorXd log_constants_;
 };
 
-/// Throws std::invalid_argument naming the first component whose covariance is not positive definite.
-ComponentFactors factor(const GaussianMixture& mixture);
+/// Memory that kernels work in, and the lane sums of a pass.
+class KernelScratch {
+ public:
+  explicit KernelScratch(const FactoredMixture& mixture);
 
-/// What the components say about one block of points.
-struct BlockDensity {
-  BlockColumns relative;    ///< block_size x K, w_k N_k(x) relative to the largest of the point, floored at exp(-600)
-  BlockColumn sum;          ///< of `relative` over the components: 1 to K
-  BlockColumn log_density;  ///< log sum_k w_k N_k(x); at least about -1e300, never NaN
+  const em::Scratch& scratch() const { return scratch_; }
+  Eigen::Map<const Eigen::Array<double, block_size, Eigen::Dynamic>> relative() const {
+    return {scratch_.relative, block_size, components_};
+  }
+  Eigen::Map<const Eigen::Array<double, block_size, 1>> sum() const {
+    return Eigen::Map<const Eigen::Array<double, block_size, 1>>(scratch_.sum);
+  }
+  Eigen::Map<const Eigen::Array<double, block_size, 1>> log_density() const {
+    return Eigen::Map<const Eigen::Array<double, block_size, 1>>(scratch_.log_density);
+  }
+  double* noise() { return noise_; }  ///< a column for em::Block::noise
+
+ private:
+  Eigen::Index components_;
+  AlignedBuffer memory_;
+  em::Scratch scratch_;
+  double* noise_;
 };
 
-/// Evaluates all components at `points` (block_size x F). `out` is reused between blocks.
-void evaluate(const ComponentFactors& factors, const Eigen::Ref<const BlockColumns>& points, BlockDensity& out);
+/// Stands for the logarithm of a zero weight.
+inline constexpr double log_zero = -1e300;
 
 }  // namespace modebank

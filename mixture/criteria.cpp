@@ -1,5 +1,7 @@
 #include "mixture/criteria.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,20 +23,17 @@ double effective_samples(const FeatureCloud& cloud, Index length, Index step) {
   return std::min(static_cast<double>(cloud.runs.size()), sum);
 }
 
-void fill_criteria(Candidate& candidate, Index points, double entropy) {
-  const double share = candidate.effective_samples / static_cast<double>(points);
+void fill_criteria(Candidate& candidate, double total_weight, double entropy) {
+  const double share = candidate.effective_samples / total_weight;
   const double q = static_cast<double>(candidate.parameters);
   const double deviance = -2.0 * share * candidate.log_likelihood;
   candidate.bic = deviance + q * std::log(candidate.effective_samples);
   candidate.aic = deviance + 2.0 * q;
   candidate.icl = candidate.bic + 2.0 * share * entropy;
+  candidate.bic_naive = -2.0 * candidate.log_likelihood + q * std::log(total_weight);
 }
 
-double entropy(const Eigen::MatrixXd& responsibilities) {
-  return -responsibilities.unaryExpr([](double r) { return r > 0.0 ? r * std::log(r) : 0.0; }).sum();
-}
-
-double badness(const Candidate& candidate, Criterion criterion, Index points) {
+double badness(const Candidate& candidate, Criterion criterion) {
   switch (criterion) {
     case Criterion::bic:
       return candidate.bic;
@@ -45,22 +44,61 @@ double badness(const Candidate& candidate, Criterion criterion, Index points) {
     case Criterion::heldout:
       return -candidate.heldout;
     case Criterion::bic_naive:
-      return -2.0 * candidate.log_likelihood +
-             static_cast<double>(candidate.parameters) * std::log(static_cast<double>(points));
+      return candidate.bic_naive;
   }
   return not_a_number;
 }
 
-Index best_candidate(const std::vector<Candidate>& candidates, Criterion criterion, Index points) {
+Index best_candidate(const std::vector<Candidate>& candidates, Criterion criterion) {
   Index best = -1;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const double value = badness(candidates[i], criterion, points);
+    const double value = badness(candidates[i], criterion);
     if (!std::isfinite(value) || value >= least) continue;
     least = value;
     best = static_cast<Index>(i);
   }
   return best;
+}
+
+namespace {
+
+std::string disagreement(const std::vector<Candidate>& candidates, const Candidate& selected) {
+  std::string choices;
+  bool differ = false;
+  // Naive BIC is in the table to be compared with, not to be heard.
+  for (const Criterion criterion : {Criterion::bic, Criterion::icl, Criterion::aic, Criterion::heldout}) {
+    const Index best = best_candidate(candidates, criterion);
+    if (best < 0) continue;
+    const Index components = candidates[static_cast<std::size_t>(best)].components;
+    choices += fmt::format("{}{} {}", choices.empty() ? "" : ", ", name_of(criterion), components);
+    differ = differ || components != selected.components;
+  }
+  return differ ? "the criteria choose different numbers of components: " + choices : "";
+}
+
+}  // namespace
+
+std::vector<std::string> selection_warnings(const std::vector<Candidate>& candidates) {
+  std::vector<std::string> warnings;
+  const auto selected =
+      std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.selected; });
+  if (selected == candidates.end()) return warnings;
+  const Index components = selected->components;
+  if (2 * selected->agreeing_restarts < selected->restarts)
+    warnings.push_back(
+        fmt::format("{} of {} restarts reached the best optimum of {} components: there may be a better one "
+                    "(mixture.restarts)",
+                    selected->agreeing_restarts, selected->restarts, components));
+  if (!selected->converged)
+    warnings.push_back(fmt::format("EM of {} components did not converge (mixture.max_iterations)", components));
+  if (candidates.size() < 2) return warnings;
+  const bool least = selected == candidates.begin() && components > 1;
+  if (least || selected + 1 == candidates.end())
+    warnings.push_back(fmt::format("{} components are the {} of the candidates: widen mixture.components", components,
+                                   least ? "fewest" : "most"));
+  if (std::string text = disagreement(candidates, *selected); !text.empty()) warnings.push_back(std::move(text));
+  return warnings;
 }
 
 }  // namespace modebank

@@ -9,10 +9,12 @@
 #include <stdexcept>
 #include <vector>
 
-#include "ident/seed.hpp"
+#include "mixture/em_iteration.hpp"
 #include "mixture/em_step.hpp"
 #include "mixture/feature_scale.hpp"
-#include "mixture/kmeans_start.hpp"
+#include "mixture/scaled_cloud.hpp"
+#include "mixture/split_merge.hpp"
+#include "mixture/starts.hpp"
 
 namespace modebank {
 
@@ -25,74 +27,27 @@ constexpr double largest_coordinate = 1e150;
 /// Below this the floor is lost in the rounding of a covariance's largest eigenvalue.
 constexpr double smallest_floor = 1e-10;
 constexpr double agreement_per_point = 1e-4;
-/// Each restart goes on from the best of a few short runs, which miss a cluster far less often than a single start
-/// does.
-constexpr int short_runs = 5, short_run_iterations = 10;
 
 void check(const EmOptions& options) {
-  if (options.restarts < 1 || options.max_iterations < 0 || !(options.covariance_floor >= smallest_floor))
-    throw std::invalid_argument(
-        fmt::format("EM needs restarts >= 1, max_iterations >= 0 and covariance_floor >= {}; given {}, {} and {}",
-                    smallest_floor, options.restarts, options.max_iterations, options.covariance_floor));
+  if (options.restarts < 1 || options.split_merge < 0 || options.max_iterations < 0 ||
+      !(options.covariance_floor >= smallest_floor))
+    throw std::invalid_argument(fmt::format(
+        "EM needs restarts >= 1, split_merge and max_iterations >= 0 and covariance_floor >= {}; given {}, "
+        "{}, {} and {}",
+        smallest_floor, options.restarts, options.split_merge, options.max_iterations, options.covariance_floor));
 }
 
-/// The points' weights, checked; all one when none are given.
-Eigen::VectorXd checked_weights(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights) {
-  if (points.rows() < 1 || points.cols() < 1)
-    throw std::invalid_argument(fmt::format("EM needs points, given {} x {}", points.rows(), points.cols()));
-  if (!(points.array().abs() <= largest_coordinate).all())
+void check(const PointSet& set) {
+  if (set.features() < 1 || set.count() < 1)
+    throw std::invalid_argument(fmt::format("EM needs points, given {} x {}", set.features(), set.count()));
+  if (!(set.points.array().abs() <= largest_coordinate).all())
     throw std::invalid_argument(fmt::format("EM needs finite points of magnitude up to {}", largest_coordinate));
-  if (weights.size() == 0) return Eigen::VectorXd::Ones(points.cols());
-  if (weights.size() != points.cols())
-    throw std::invalid_argument(fmt::format("EM is given {} points but {} weights", points.cols(), weights.size()));
-  if (!weights.allFinite() || weights.minCoeff() < 0.0 || !(weights.sum() > 0.0))
+  check_errors(set);
+  if (set.weights.size() == 0) return;
+  if (set.weights.size() != set.count())
+    throw std::invalid_argument(fmt::format("EM is given {} points but {} weights", set.count(), set.weights.size()));
+  if (!set.weights.allFinite() || set.weights.minCoeff() < 0.0 || !(set.weights.sum() > 0.0))
     throw std::invalid_argument("EM needs finite, nonnegative weights that are not all zero");
-  return weights;
-}
-
-/// The cloud in the units it is fitted in.
-struct ScaledCloud {
-  FeatureScale scale;
-  PointBlocks points;
-
-  ScaledCloud(const Eigen::MatrixXd& physical, const Eigen::VectorXd& weights)
-      : scale(FeatureScale::of(physical, weights)), points(scale.to_scaled(physical), weights) {}
-};
-
-/// Iterates from `start` (scaled units). The result's log-likelihood belongs to the result's mixture: the last pass
-/// only measures it.
-EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptions& options) {
-  EmResult result;
-  result.mixture = std::move(start);
-  double previous = -std::numeric_limits<double>::infinity();
-  while (true) {
-    const MixtureMoments moments = expect(points, result.mixture);
-    result.log_likelihood = moments.log_likelihood;
-    result.converged = result.log_likelihood - previous < options.tolerance * points.total_weight();
-    if (result.converged || result.iterations == options.max_iterations) break;
-    previous = result.log_likelihood;
-    result.floor_active = maximise(moments, options.covariance_floor, result.mixture);
-    ++result.iterations;
-  }
-  return result;
-}
-
-/// emEM (Biernacki, Celeux & Govaert 2003, Comput. Stat. Data Anal. 41, section 2.2).
-EmResult restart(const PointBlocks& points, Index components, const EmOptions& options, std::mt19937_64& generator) {
-  EmOptions brief = options;
-  brief.max_iterations = std::min(short_run_iterations, options.max_iterations);
-  EmResult best;
-  for (int run = 0; run < (components == 1 ? 1 : short_runs); ++run) {
-    GaussianMixture start = kmeans_start(points, components, options.covariance, options.covariance_floor, generator);
-    EmResult result = iterate(points, std::move(start), brief);
-    if (run == 0 || result.log_likelihood > best.log_likelihood) best = std::move(result);
-  }
-  if (best.converged) return best;
-  EmOptions rest = options;
-  rest.max_iterations -= best.iterations;
-  EmResult result = iterate(points, std::move(best.mixture), rest);
-  result.iterations += best.iterations;
-  return result;
 }
 
 void order_by_weight(GaussianMixture& mixture) {
@@ -110,7 +65,20 @@ void order_by_weight(GaussianMixture& mixture) {
 
 void to_physical(const ScaledCloud& cloud, EmResult& result) {
   result.mixture = cloud.scale.to_physical(result.mixture);
+  if (cloud.noise.present()) {  // to the last bit
+    result.mixture.noise.lower = cloud.noise.lower;
+    result.mixture.noise.upper = cloud.noise.upper;
+  }
   result.log_likelihood += cloud.points.total_weight() * cloud.scale.log_jacobian();
+}
+
+/// From a start to an optimum that split-and-merge moves do not leave.
+EmResult restart(const PointBlocks& points, Start start, const EmOptions& options) {
+  EmOptions rest = options;
+  rest.max_iterations = std::max(0, options.max_iterations - start.iterations);
+  EmResult result = iterate(points, std::move(start.mixture), rest);
+  result.iterations += start.iterations;
+  return split_and_merge(points, std::move(result), options);
 }
 
 /// The best of the restarts, the first on a tie, with the number that agree with it.
@@ -125,10 +93,10 @@ EmResult best_of(std::vector<EmResult> restarts, double total_weight) {
 }
 
 /// A start in scaled units that obeys the options: their covariance type and floor.
-GaussianMixture usable_start(const GaussianMixture& start, const FeatureScale& scale, const EmOptions& options) {
-  GaussianMixture scaled = scale.to_scaled(start);
+GaussianMixture usable_start(const GaussianMixture& start, const ScaledCloud& cloud, const EmOptions& options) {
+  GaussianMixture scaled = cloud.scale.to_scaled(start);
   scaled.type = options.covariance;
-  scaled.weights /= scaled.weights.sum();
+  cloud.set_noise(scaled);
   for (Eigen::MatrixXd& covariance : scaled.covariances) {
     if (!covariance.allFinite()) throw std::invalid_argument("EM is given a start whose covariance is not finite");
     raise_to_floor(covariance, options.covariance_floor, options.covariance);
@@ -140,17 +108,50 @@ GaussianMixture usable_start(const GaussianMixture& start, const FeatureScale& s
 
 }  // namespace
 
-EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Index components,
-                const EmOptions& options, std::uint64_t seed) {
+EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptions& options) {
+  EmResult result;
+  result.mixture = std::move(start);
+  double previous = -std::numeric_limits<double>::infinity();
+  while (true) {
+    const MixtureMoments moments = expect(points, result.mixture);
+    result.log_likelihood = moments.log_likelihood;
+    result.converged = result.log_likelihood - previous < options.tolerance * points.total_weight();
+    if (result.converged || result.iterations == options.max_iterations) break;
+    previous = result.log_likelihood;
+    result.floor_active = maximise(moments, options.covariance_floor, result.mixture);
+    ++result.iterations;
+  }
+  return result;
+}
+
+struct EmSweep::Prepared {
+  EmOptions options;
+  ScaledCloud cloud;
+  Starts starts;
+
+  Prepared(const PointSet& points, const EmOptions& given)
+      : options(given), cloud(points, options), starts(cloud, options) {}
+};
+
+EmSweep::EmSweep(const PointSet& points, const EmOptions& options) {
   check(options);
-  if (components < 1 || components > points.cols())
+  check(points);
+  prepared_ = std::make_unique<Prepared>(points, options);
+}
+
+EmSweep::~EmSweep() = default;
+
+EmResult EmSweep::fit(Index components, std::uint64_t seed, const GaussianMixture* start) const {
+  const ScaledCloud& cloud = prepared_->cloud;
+  const EmOptions& options = prepared_->options;
+  if (components < 1 || components > cloud.points.count())
     throw std::invalid_argument(
-        fmt::format("EM of {} components needs 1 to {} (the number of points)", components, points.cols()));
-  const ScaledCloud cloud(points, checked_weights(points, weights));
-  std::vector<EmResult> restarts(options.restarts);
+        fmt::format("EM of {} components needs 1 to {} (the number of points)", components, cloud.points.count()));
+  std::vector<EmResult> restarts(static_cast<std::size_t>(options.restarts));
   tbb::parallel_for(0, options.restarts, [&](int i) {
-    std::mt19937_64 generator = make_generator(seed, "em restart", static_cast<std::uint64_t>(i));
-    restarts[i] = restart(cloud.points, components, options, generator);
+    Start own =
+        i == 0 && start ? Start{usable_start(*start, cloud, options), 0} : prepared_->starts.make(components, i, seed);
+    restarts[static_cast<std::size_t>(i)] = restart(cloud.points, std::move(own), options);
   });
   EmResult result = best_of(std::move(restarts), cloud.points.total_weight());
   order_by_weight(result.mixture);
@@ -158,15 +159,19 @@ EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, I
   return result;
 }
 
-EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const GaussianMixture& start,
-                const EmOptions& options) {
+EmResult fit_em(const PointSet& points, Index components, const EmOptions& options, std::uint64_t seed) {
+  return EmSweep(points, options).fit(components, seed);
+}
+
+EmResult fit_em(const PointSet& points, const GaussianMixture& start, const EmOptions& options) {
   check(options);
   check_sizes(start);
-  if (start.features() != points.rows())
+  if (start.features() != points.features())
     throw std::invalid_argument(
-        fmt::format("EM is given points of {} features and a start of {}", points.rows(), start.features()));
-  const ScaledCloud cloud(points, checked_weights(points, weights));
-  EmResult result = iterate(cloud.points, usable_start(start, cloud.scale, options), options);
+        fmt::format("EM is given points of {} features and a start of {}", points.features(), start.features()));
+  check(points);
+  const ScaledCloud cloud(points, options);
+  EmResult result = iterate(cloud.points, usable_start(start, cloud, options), options);
   result.agreeing_restarts = 1;
   to_physical(cloud, result);
   return result;

@@ -2,19 +2,33 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 
 #include "mixture/gaussian_mixture.hpp"
 
 namespace modebank {
 
+/// Where restarts begin. kmeans_plus_plus (Arthur & Vassilvitskii 2007) and random (points as centres): the best of
+/// five short runs each (emEM: Biernacki, Celeux & Govaert 2003). hierarchical: model-based agglomeration (Fraley 1998)
+/// of a subsample, another one for each restart. automatic: the first restart hierarchical, the others k-means++.
+enum class StartKind { automatic, kmeans_plus_plus, random, hierarchical };
+
+template <>
+struct EnumNames<StartKind> {
+  static constexpr Names<4> values{"auto", "kmeans++", "random", "hierarchical"};
+};
+
 /// Expectation-maximisation of a Gaussian mixture (Dempster, Laird & Rubin 1977), in the log domain.
 struct EmOptions {
   CovarianceType covariance = CovarianceType::full;
-  int restarts = 5;           ///< independent, >= 1; each goes on from the best of five short runs
+  StartKind start = StartKind::automatic;
+  int restarts = 5;           ///< independent, >= 1
+  int split_merge = 5;        ///< split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000)
   double tolerance = 1e-7;    ///< stop when the mean log-likelihood per unit weight gains less; negative: never
   int max_iterations = 1000;  ///< M steps, >= 0
   double covariance_floor =
       1e-6;  ///< eigenvalues (variances) are kept above this share of the data's own variance per feature, >= 1e-10
+  bool noise_component = false;  ///< adds a uniform component over the points' bounding box (see UniformNoise)
 };
 
 /// A fitted mixture and how the fit ended.
@@ -27,17 +41,43 @@ struct EmResult {
   bool floor_active = false;  ///< whether the covariance floor held any component in the last iteration
 };
 
-/// Best of options.restarts runs from k-means++ starts (Arthur & Vassilvitskii 2007). `points` F x N finite, up to
-/// 1e150 in magnitude; `weights` N nonnegative or empty (all one). Fitted in units of each feature's standard
-/// deviation, so invariant to its units; a constant feature keeps its unit and is held by the floor, as are coinciding
-/// points. The floored M step is the exact constrained maximiser, so the likelihood never falls. A component that
-/// explains less than 1e-14 of the weight keeps its mean and covariance. Throws std::invalid_argument for K < 1, K > N,
-/// bad options, weights or points. Bitwise the same for any number of threads.
-EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Eigen::Index components,
-                const EmOptions& options, std::uint64_t seed);
+/// Best of options.restarts runs, improved by split-and-merge moves (Ueda et al. 2000). Points finite, up to 1e150 in
+/// magnitude. Fitted in units of each feature's standard deviation, so invariant to its units; a constant feature keeps
+/// its unit and is held by the floor, as are coinciding points. The floored M step is the exact constrained maximiser,
+/// so the likelihood never falls. A component that explains less than 1e-14 of the weight keeps its mean and
+/// covariance. Points with error covariances are deconvolved: the components describe the points without their errors
+/// (Bovy, Hogg & Roweis 2011, Ann. Appl. Stat. 5, eq. 16); zero errors change nothing. Throws std::invalid_argument for
+/// K < 1, K > N, bad options, weights, points or error covariances. Bitwise the same for any number of threads.
+EmResult fit_em(const PointSet& points, Eigen::Index components, const EmOptions& options, std::uint64_t seed);
+/// fit_em for several numbers of components over the same points, which are prepared once and must outlive this. fit()
+/// may be called from several threads; what it returns depends on its own arguments alone.
+class EmSweep {
+ public:
+  EmSweep(const PointSet& points, const EmOptions& options);
+  ~EmSweep();
+  EmSweep(const EmSweep&) = delete;
+  EmSweep& operator=(const EmSweep&) = delete;
+
+  /// With `start` (physical units, of as many components) the first restart begins there.
+  EmResult fit(Eigen::Index components, std::uint64_t seed, const GaussianMixture* start = nullptr) const;
+
+ private:
+  struct Prepared;
+  std::unique_ptr<Prepared> prepared_;
+};
+
 /// From a given start, no restarts: the components keep the start's order; its covariances are raised to the floor, and
-/// reduced to their diagonals for CovarianceType::diagonal.
-EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const GaussianMixture& start,
-                const EmOptions& options);
+/// reduced to their diagonals for CovarianceType::diagonal. A noise component wanted but missing in the start begins
+/// with a weight of 0.05; its box is always that of the points.
+EmResult fit_em(const PointSet& points, const GaussianMixture& start, const EmOptions& options);
+
+inline EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Eigen::Index components,
+                       const EmOptions& options, std::uint64_t seed) {
+  return fit_em(PointSet(points, weights), components, options, seed);
+}
+inline EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const GaussianMixture& start,
+                       const EmOptions& options) {
+  return fit_em(PointSet(points, weights), start, options);
+}
 
 }  // namespace modebank

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "mixture/block_arithmetic.hpp"
 #include "mixture/component_density.hpp"
 
 namespace modebank {
@@ -21,64 +20,50 @@ constexpr Index blocks_per_group = 32;
 constexpr Index parallel_points = 20000;
 constexpr double starved_share = 1e-14;
 
-Index second_moments(Index features, bool diagonal) { return diagonal ? features : features * (features + 1) / 2; }
-
-/// Adds a block's moments of one component; r = its weighted responsibilities.
-void add_component(const Eigen::Ref<const BlockColumns>& points, const Eigen::Ref<const Eigen::VectorXd>& mean,
-                   bool diagonal, const BlockColumn& r, BlockColumns& offsets, Eigen::Ref<Eigen::VectorXd> sums) {
-  const Index features = points.cols();
-  BlockColumn scaled;
-  sums(0) += r.sum();
-  Index row = 1 + features;
-  for (Index i = 0; i < features; ++i) {
-    offsets.col(i) = points.col(i) - mean(i);
-    scaled = r * offsets.col(i);
-    sums(1 + i) += block_dot(r, offsets.col(i));
-    for (Index j = diagonal ? i : 0; j <= i; ++j) sums(row++) += block_dot(scaled, offsets.col(j));
-  }
-}
-
-MixtureMoments expect_group(const PointBlocks& points, const ComponentFactors& factors, Index first, Index last) {
-  const Index features = points.features(), components = factors.log_constants.size();
-  MixtureMoments moments;
-  moments.sums.setZero(1 + features + second_moments(features, factors.diagonal), components);
-  BlockDensity density;
-  BlockColumns offsets(block_size, features);
-  BlockColumn scale, r;
+MixtureMoments expect_group(const PointBlocks& points, const FactoredMixture& mixture, Index first, Index last) {
+  const em::Components components = mixture.components();
+  const em::Kernels& kernels = mixture.kernels();
+  KernelScratch memory(mixture);
+  AlignedBuffer stage = points.stage();
+  if (mixture.has_noise()) std::fill_n(memory.noise(), block_size, mixture.log_noise());
   for (Index b = first; b < last; ++b) {
-    const auto block = points.points(b);
-    evaluate(factors, block, density);
-    moments.log_likelihood += (points.weights(b) * density.log_density).sum();
-    scale = points.weights(b) / density.sum;
-    for (Index k = 0; k < components; ++k) {
-      r = density.relative.col(k) * scale;
-      add_component(block, factors.means.col(k), factors.diagonal, r, offsets, moments.sums.col(k));
-    }
+    em::Block block = points.block(b, stage);
+    block.noise = mixture.has_noise() ? memory.noise() : nullptr;
+    kernels.accumulate(components, block, memory.scratch());
   }
+  MixtureMoments moments;
+  moments.sums.resize(kernels.entries, components.count);
+  const double* const lanes = memory.scratch().lanes;
+  const Index lane_count = em::lanes();
+  em::reduce_lanes(lanes, 1, &moments.log_likelihood);
+  em::reduce_lanes(lanes + lane_count, 1, &moments.noise);
+  em::reduce_lanes(lanes + 2 * lane_count, moments.sums.size(), moments.sums.data());
   return moments;
 }
 
-/// Mean and covariance of one component from its sums; `offset` is the new mean minus the old one.
+/// Mean and covariance of one component from its sums; `offset` is the new mean minus the old one. Diagonal mixtures on
+/// points with errors have the whole triangle among their sums.
 void update_component(const Eigen::Ref<const Eigen::VectorXd>& sums, bool diagonal, Eigen::VectorXd& offset,
                       Eigen::MatrixXd& covariance) {
   const Index features = offset.size();
+  const bool triangle = sums.size() > 1 + 2 * features || features == 1;
   offset = sums.segment(1, features) / sums(0);
   covariance.setZero(features, features);
   Index row = 1 + features;
   for (Index i = 0; i < features; ++i)
-    for (Index j = diagonal ? i : 0; j <= i; ++j)
-      covariance(i, j) = covariance(j, i) = sums(row++) / sums(0) - offset(i) * offset(j);
+    for (Index j = triangle ? 0 : i; j <= i; ++j, ++row)
+      if (!diagonal || i == j) covariance(i, j) = covariance(j, i) = sums(row) / sums(0) - offset(i) * offset(j);
 }
 
 }  // namespace
 
 MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture) {
-  const ComponentFactors factors = factor(mixture);
+  const FactoredMixture factored(mixture, points.has_errors());
   const Index groups = (points.blocks() + blocks_per_group - 1) / blocks_per_group;
   std::vector<MixtureMoments> partial(groups);
   const auto group = [&](Index g) {
     const Index first = g * blocks_per_group;
-    partial[g] = expect_group(points, factors, first, std::min(first + blocks_per_group, points.blocks()));
+    partial[g] = expect_group(points, factored, first, std::min(first + blocks_per_group, points.blocks()));
   };
   if (points.count() > parallel_points)
     tbb::parallel_for(Index(0), groups, group);
@@ -86,8 +71,11 @@ MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture)
     for (Index g = 0; g < groups; ++g) group(g);
   for (Index g = 1; g < groups; ++g) {
     partial[0].log_likelihood += partial[g].log_likelihood;
+    partial[0].noise += partial[g].noise;
     partial[0].sums += partial[g].sums;
   }
+  if (points.has_errors())
+    for (Index k = 0; k < mixture.components(); ++k) factored.to_scaled_units(k, partial[0].sums.col(k));
   return std::move(partial[0]);
 }
 
@@ -110,7 +98,8 @@ bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType ty
 
 bool maximise(const MixtureMoments& moments, double floor, GaussianMixture& mixture) {
   const Eigen::VectorXd mass = moments.sums.row(0);
-  const double total = mass.sum();
+  const double total = mass.sum() + moments.noise;
+  if (mixture.noise.present()) mixture.noise.weight = moments.noise / total;
   const bool diagonal = mixture.type == CovarianceType::diagonal;
   Eigen::VectorXd offset(mixture.features());
   bool floor_active = false;

@@ -10,6 +10,7 @@ namespace modebank {
 /// What one pass over the points yields: all an M step needs, without any N x K array.
 struct MixtureMoments {
   double log_likelihood = 0.0;  ///< sum of w_i log p(x_i) under the mixture the pass was made with
+  double noise = 0.0;           ///< sum of r of the noise component
   /// One column per component; rows: sum of r, sum of r d (F), sum of r d d' (lower triangle by rows, or its diagonal),
   /// with r = w_i times the responsibility and d the point's offset from the component's *old* mean, so that no second
   /// moment is a difference of large numbers.

@@ -1,6 +1,7 @@
 #include "mixture/feature_scale.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace modebank {
 
@@ -10,36 +11,71 @@ namespace {
 
 constexpr double rounding_share = 1e-13;
 constexpr double smallest_scale = 1e-150;
+/// Sums of sums of this many terms lose less to rounding.
+constexpr Index chunk = 4096;
+
+/// Weighted sums over points of what `term(i)` adds to a vector, chunk by chunk.
+template <class Term>
+Eigen::VectorXd sum_over(const PointSet& set, Index size, Term term) {
+  Eigen::VectorXd total = Eigen::VectorXd::Zero(size), part(size);
+  for (Index first = 0; first < set.count(); first += chunk) {
+    part.setZero();
+    for (Index i = first; i < std::min(first + chunk, set.count()); ++i) {
+      const double weight = set.weights.size() > 0 ? set.weights(i) : 1.0;
+      if (weight > 0.0) term(i, weight, part);
+    }
+    total += part;
+  }
+  return total;
+}
+
+bool counts(const PointSet& set, Index i) { return set.weights.size() == 0 || set.weights(i) > 0.0; }
 
 }  // namespace
 
-FeatureScale FeatureScale::of(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights) {
-  const Index features = points.rows();
-  FeatureScale result;
-  result.center.setZero(features);
-  result.scale.setOnes(features);
-  result.constant_.setConstant(features, true);
-  const Eigen::VectorXd shares = weights / weights.sum();
-  for (Index f = 0; f < features; ++f) {
-    const double magnitude = points.row(f).cwiseAbs().maxCoeff();
-    if (!(magnitude > 0.0)) continue;
-    // Relative to the magnitude, so that squares neither overflow nor underflow.
-    const Eigen::VectorXd relative = points.row(f).transpose() / magnitude;
-    const double mean = shares.dot(relative);
-    const double deviation = std::sqrt(shares.dot((relative.array() - mean).square().matrix()));
-    result.center(f) = magnitude * mean;
-    if (deviation <= rounding_share || magnitude * deviation < smallest_scale) continue;
-    result.scale(f) = magnitude * deviation;
-    result.constant_(f) = false;
+FeatureScale FeatureScale::identity(Index features) {
+  return {Eigen::VectorXd::Zero(features), Eigen::VectorXd::Ones(features), Eigen::VectorXd::Ones(features)};
+}
+
+FeatureScale FeatureScale::near_one(const GaussianMixture& mixture) {
+  FeatureScale result = identity(mixture.features());
+  for (Index f = 0; f < mixture.features(); ++f) {
+    double largest = 0.0;
+    for (const Eigen::MatrixXd& covariance : mixture.covariances) largest = std::max(largest, covariance(f, f));
+    if (!(largest > 0.0)) continue;
+    result.scale(f) = std::ldexp(1.0, std::ilogb(largest) / 2);
+    result.inverse(f) = 1.0 / result.scale(f);
   }
   return result;
 }
 
-Eigen::MatrixXd FeatureScale::to_scaled(const Eigen::MatrixXd& points) const {
-  Eigen::MatrixXd scaled = (points.colwise() - center).array().colwise() / scale.array();
-  for (Index f = 0; f < scale.size(); ++f)
-    if (constant_(f)) scaled.row(f).setZero();
-  return scaled;
+FeatureScale FeatureScale::of(const PointSet& set) {
+  const Index features = set.features();
+  Eigen::VectorXd magnitude = Eigen::VectorXd::Zero(features);
+  for (Index i = 0; i < set.count(); ++i)
+    if (counts(set, i)) magnitude = magnitude.cwiseMax(set.points.col(i).cwiseAbs());
+  // Relative to the magnitude, so that squares neither overflow nor underflow.
+  const auto relative = [&](Index i, Index f) { return magnitude(f) > 0.0 ? set.points(f, i) / magnitude(f) : 0.0; };
+  const Eigen::VectorXd sums = sum_over(set, features + 1, [&](Index i, double weight, Eigen::VectorXd& sum) {
+    sum(features) += weight;
+    for (Index f = 0; f < features; ++f) sum(f) += weight * relative(i, f);
+  });
+  const Eigen::VectorXd mean = sums.head(features) / sums(features);
+  const Eigen::VectorXd squares = sum_over(set, features, [&](Index i, double weight, Eigen::VectorXd& sum) {
+    for (Index f = 0; f < features; ++f) {
+      const double offset = relative(i, f) - mean(f);
+      sum(f) += weight * offset * offset;
+    }
+  });
+  FeatureScale result = identity(features);
+  for (Index f = 0; f < features; ++f) {
+    const double deviation = std::sqrt(squares(f) / sums(features));
+    result.center(f) = magnitude(f) * mean(f);
+    const bool constant = !(deviation > rounding_share) || magnitude(f) * deviation < smallest_scale;
+    if (!constant) result.scale(f) = magnitude(f) * deviation;
+    result.inverse(f) = constant ? 0.0 : 1.0 / result.scale(f);
+  }
+  return result;
 }
 
 GaussianMixture FeatureScale::to_scaled(const GaussianMixture& mixture) const {
@@ -47,6 +83,10 @@ GaussianMixture FeatureScale::to_scaled(const GaussianMixture& mixture) const {
   scaled.means = (mixture.means.colwise() - center).array().colwise() / scale.array();
   for (Eigen::MatrixXd& covariance : scaled.covariances)
     covariance = (covariance.array().colwise() / scale.array()).rowwise() / scale.transpose().array();
+  if (mixture.noise.present()) {
+    scaled.noise.lower = (mixture.noise.lower - center).cwiseQuotient(scale);
+    scaled.noise.upper = (mixture.noise.upper - center).cwiseQuotient(scale);
+  }
   return scaled;
 }
 
@@ -55,7 +95,26 @@ GaussianMixture FeatureScale::to_physical(const GaussianMixture& mixture) const 
   physical.means = (mixture.means.array().colwise() * scale.array()).colwise() + center.array();
   for (Eigen::MatrixXd& covariance : physical.covariances)
     covariance = (covariance.array().colwise() * scale.array()).rowwise() * scale.transpose().array();
+  if (mixture.noise.present()) {
+    physical.noise.lower = mixture.noise.lower.cwiseProduct(scale) + center;
+    physical.noise.upper = mixture.noise.upper.cwiseProduct(scale) + center;
+  }
   return physical;
+}
+
+UniformNoise bounding_box(const PointSet& set, const FeatureScale& scale, double floor) {
+  UniformNoise noise;
+  noise.lower.setConstant(set.features(), std::numeric_limits<double>::infinity());
+  noise.upper = -noise.lower;
+  for (Index i = 0; i < set.count(); ++i) {
+    if (!counts(set, i)) continue;
+    noise.lower = noise.lower.cwiseMin(set.points.col(i));
+    noise.upper = noise.upper.cwiseMax(set.points.col(i));
+  }
+  const Eigen::VectorXd middle = 0.5 * (noise.lower + noise.upper), half = std::sqrt(3.0 * floor) * scale.scale;
+  noise.lower = noise.lower.cwiseMin(middle - half);
+  noise.upper = noise.upper.cwiseMax(middle + half);
+  return noise;
 }
 
 }  // namespace modebank

@@ -8,21 +8,26 @@ namespace modebank {
 
 /// Affine map between physical units and the units mixtures are fitted in: zero mean, unit standard deviation.
 struct FeatureScale {
-  Eigen::VectorXd center;  ///< F, weighted mean [feature unit]
-  Eigen::VectorXd scale;   ///< F, weighted population standard deviation [feature unit]; 1 for a constant feature
+  Eigen::VectorXd center;   ///< F, weighted mean [feature unit]
+  Eigen::VectorXd scale;    ///< F, weighted population standard deviation [feature unit]; 1 for a constant feature
+  Eigen::VectorXd inverse;  ///< F, 1 / scale; 0 for a constant feature, whose scaled values are exactly zero
 
   /// A feature is constant when its spread is lost in rounding (1e-13 of its magnitude) or below 1e-150, where a
-  /// covariance cannot be represented; its scaled values are exactly zero. `weights` N.
-  static FeatureScale of(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights);
+  /// covariance cannot be represented. Points of weight zero do not count.
+  static FeatureScale of(const PointSet& points);
+  static FeatureScale identity(Eigen::Index features);
+  /// Powers of two near the largest standard deviation of the components: no rounding, but numbers near one.
+  static FeatureScale near_one(const GaussianMixture& mixture);
 
-  Eigen::MatrixXd to_scaled(const Eigen::MatrixXd& points) const;
+  double scaled(Eigen::Index feature, double value) const { return (value - center(feature)) * inverse(feature); }
   GaussianMixture to_scaled(const GaussianMixture& mixture) const;
   GaussianMixture to_physical(const GaussianMixture& mixture) const;
   /// log |d scaled / d physical| of one point: add (times the weight) to a scaled log density for the physical one.
   double log_jacobian() const { return -scale.array().log().sum(); }
-
- private:
-  Eigen::Array<bool, Eigen::Dynamic, 1> constant_;  ///< F
 };
+
+/// The noise component's box in physical units: that of the points of positive weight, and in each feature at least as
+/// wide as the uniform distribution of variance `floor` (in scaled units), so that its volume is never zero.
+UniformNoise bounding_box(const PointSet& points, const FeatureScale& scale, double floor);
 
 }  // namespace modebank

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "mixture/straddling.hpp"
@@ -19,34 +22,94 @@ bool wanted(const WindowFits& fits, WindowChoice choice, Index window) {
   return !full_rank_only || fits.rank(window) == fits.parameter_count();
 }
 
+/// Data with less than this share in what is known of a direction are treated as if they had it, so that a direction of
+/// which a window says nothing gets an error of 20 prior variances rather than an infinite one.
+constexpr double least_information = 0.05;
+
+/// What the window's data alone say of theta: the posterior without the prior (mean the global model, standard
+/// deviations prior_sd), as estimate and covariance. In units of the prior a posterior variance c along an eigenvector
+/// is a measurement of variance c / (1 - c), and the posterior's offset from the prior is 1 - c of the measured one.
+void take_off_prior(const WindowFits& fits, Eigen::VectorXd& theta, Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd &sd = fits.prior_sd, &mean = fits.global.theta;
+  const Eigen::VectorXd inverse = sd.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
+  const Eigen::ArrayXd known = (1.0 - eigen.eigenvalues().array()).max(least_information);
+  const Eigen::VectorXd measured =
+      eigen.eigenvectors() *
+      ((eigen.eigenvectors().transpose() * (theta - mean).cwiseQuotient(sd)).array() / known).matrix();
+  theta = mean + measured.cwiseProduct(sd);
+  const Eigen::VectorXd variance = eigen.eigenvalues().array().max(0.0) / known;
+  covariance = sd.asDiagonal() * eigen.eigenvectors() * variance.asDiagonal() * eigen.eigenvectors().transpose() *
+               sd.asDiagonal();
+  covariance = (0.5 * (covariance + covariance.transpose())).eval();
+}
+
+/// Of the logarithm of a noise variance estimated from what L transitions leave over after `rank` / n parameters.
+double log_variance_error(const WindowFits& fits, Index window) {
+  const double transitions = static_cast<double>(fits.transitions.size() > 0 ? fits.transitions(window) : fits.length);
+  const double unknowns = static_cast<double>(fits.rank(window)) / static_cast<double>(fits.structure.states);
+  return 2.0 / std::max(transitions - unknowns, 1.0);
+}
+
 }  // namespace
 
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
-                           const std::vector<Channel>& states, StraddlingWindows straddling) {
+                           const std::vector<Channel>& states, StraddlingWindows straddling, WindowErrors errors) {
   const Index p = fits.parameter_count(), n = fits.structure.states;
   const bool with_noise = features == FeatureSet::parameters_and_noise;
+  const bool with_errors = errors == WindowErrors::include;
   if (static_cast<Index>(states.size()) != n)
     throw std::invalid_argument(fmt::format("features of {} states are given {} state names", n, states.size()));
   FeatureCloud cloud;
   cloud.names = fits.parameter_names();
   if (with_noise)
     for (const Channel& state : states) cloud.names.push_back("log_noise_variance_" + state.name);
-  Eigen::VectorXd point(p + (with_noise ? n : 0));
-  Eigen::MatrixXd points(point.size(), fits.count());
-  const std::vector<bool> left_out = straddling == StraddlingWindows::leave_out
+  const Index F = p + (with_noise ? n : 0);
+  Eigen::MatrixXd points(F, fits.count()), covariances(F * F, with_errors ? fits.count() : 0);
+  Eigen::VectorXd point(F), theta(p);
+  Eigen::MatrixXd error = Eigen::MatrixXd::Zero(F, F), covariance(p, p);
+  const std::vector<bool> left_out = straddling != StraddlingWindows::keep
                                          ? straddling_windows(fits)
                                          : std::vector<bool>(static_cast<std::size_t>(fits.count()), false);
   for (Index window = 0; window < fits.count(); ++window) {
     if (!wanted(fits, choice, window) || left_out[static_cast<std::size_t>(window)]) continue;
-    point.head(p) = fits.parameters.col(window);
+    theta = fits.parameters.col(window);
+    if (with_errors) {
+      covariance = Eigen::Map<const Eigen::MatrixXd>(fits.covariance.col(window).data(), p, p);
+      if (!covariance.allFinite() || !theta.allFinite()) continue;
+      if (fits.prior_sd.size() > 0) take_off_prior(fits, theta, covariance);
+      error.topLeftCorner(p, p) = covariance;
+      if (with_noise) error.diagonal().tail(n).setConstant(log_variance_error(fits, window));
+    }
+    point.head(p) = theta;
     if (with_noise) point.tail(n) = fits.noise_variance.col(window).array().log();
     if (!point.allFinite()) continue;
-    points.col(static_cast<Index>(cloud.windows.size())) = point;
+    const Index position = static_cast<Index>(cloud.windows.size());
+    points.col(position) = point;
+    if (with_errors) covariances.col(position) = error.reshaped();
     cloud.windows.push_back(window);
     cloud.runs.push_back(fits.windows[window].run);
   }
-  cloud.points = points.leftCols(static_cast<Index>(cloud.windows.size()));
+  const Index count = static_cast<Index>(cloud.windows.size());
+  points.conservativeResize(F, count);
+  cloud.points = std::move(points);
+  if (with_errors) {
+    covariances.conservativeResize(F * F, count);
+    cloud.covariances = std::move(covariances);
+  }
   return cloud;
+}
+
+FeatureCloud subset(const FeatureCloud& cloud, const std::vector<Index>& positions) {
+  FeatureCloud part;
+  part.names = cloud.names;
+  part.points = cloud.points(Eigen::all, positions);
+  if (cloud.covariances.size() > 0) part.covariances = cloud.covariances(Eigen::all, positions);
+  for (const Index i : positions) {
+    part.windows.push_back(cloud.windows[static_cast<std::size_t>(i)]);
+    part.runs.push_back(cloud.runs[static_cast<std::size_t>(i)]);
+  }
+  return part;
 }
 
 }  // namespace modebank

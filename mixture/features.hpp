@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ident/local_model.hpp"
+#include "mixture/point_set.hpp"
 
 namespace modebank {
 
@@ -22,24 +23,41 @@ struct EnumNames<WindowChoice> {
 };
 
 /// What becomes of windows that straddle a switch of mode: they follow no single model and are a population of their
-/// own, which would claim a component. `leave_out` takes them out of the cloud; `keep` clusters them like the others.
-enum class StraddlingWindows { leave_out, keep };
+/// own, which would claim a component. `leave_out` takes those out of the cloud whose residuals show it
+/// (straddling_windows); `trim` those, too, that the labels show (windows_at_switches), and clusters again until that
+/// changes nothing; `keep` clusters all like the others.
+enum class StraddlingWindows { leave_out, trim, keep };
 
 template <>
 struct EnumNames<StraddlingWindows> {
-  static constexpr Names<2> values{"leave_out", "keep"};
+  static constexpr Names<3> values{"leave_out", "trim", "keep"};
 };
 
 /// The cloud that is clustered: one point per clustered window.
 struct FeatureCloud {
   std::vector<std::string> names;     ///< F: parameter names, then "log_noise_variance_<state>" when noise is included
   Eigen::MatrixXd points;             ///< F x N, physical units
+  Eigen::MatrixXd covariances;        ///< F*F x N, of the points' errors; empty unless asked for
   std::vector<Eigen::Index> windows;  ///< N, which window each point is
   std::vector<Eigen::Index> runs;     ///< N, run of that window
+
+  PointSet point_set() const { return PointSet(points, detail::no_weights, covariances); }
 };
 
-/// Failed fits and non-finite windows are left out.
+/// The points at `positions` of the cloud, in that order.
+FeatureCloud subset(const FeatureCloud& cloud, const std::vector<Eigen::Index>& positions);
+
+/// Whether the cloud carries the windows' own covariances (error-aware clustering).
+enum class WindowErrors { ignore, include };
+
+/// Failed fits and non-finite windows are left out. With errors, points are what the windows' data alone say: a prior
+/// is taken off again (otherwise clustering would count it once per window), as far as data determine a direction by 5
+/// % at least. A point's covariance is then that of theta, and 2 / (L - rank / n) for the logarithm of a noise variance
+/// (delta method: an estimate of sigma^2 on nu degrees of freedom has variance 2 sigma^4 / nu under Gaussian noise),
+/// uncorrelated with theta; windows whose covariance is not finite (rank deficient without a prior: their theta is no
+/// measurement) are left out.
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
-                           const std::vector<Channel>& states, StraddlingWindows straddling = StraddlingWindows::keep);
+                           const std::vector<Channel>& states, StraddlingWindows straddling = StraddlingWindows::keep,
+                           WindowErrors errors = WindowErrors::ignore);
 
 }  // namespace modebank

@@ -5,9 +5,11 @@
 #include <Eigen/Cholesky>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
+#include <cmath>
 #include <stdexcept>
 
 #include "mixture/component_density.hpp"
+#include "mixture/feature_scale.hpp"
 #include "mixture/point_blocks.hpp"
 
 namespace modebank {
@@ -16,19 +18,63 @@ using Eigen::Index;
 
 namespace {
 
-PointBlocks blocks_for(const GaussianMixture& mixture, const Eigen::MatrixXd& points) {
-  check_sizes(mixture);
-  if (points.rows() != mixture.features())
-    throw std::invalid_argument(
-        fmt::format("points have {} features, the mixture has {}", points.rows(), mixture.features()));
-  return PointBlocks(points, Eigen::VectorXd());
-}
+/// Evaluates a mixture block by block. With errors in units in which the mixture's numbers are near one.
+class BlockEvaluation {
+ public:
+  BlockEvaluation(const GaussianMixture& mixture, const PointSet& set)
+      : mixture_(mixture),
+        set_(set),
+        scale_(scale_for(mixture, set)),
+        points_(PointSet(set.points, detail::no_weights, set.covariances), scale_, 0),
+        factored_(scale_.to_scaled(mixture), set.has_errors()),
+        memory_(factored_),
+        stage_(points_.stage()) {}
+
+  /// visit(first, count): the kernels' memory then holds points first to first + count - 1.
+  template <class Visit>
+  void each(Visit visit) {
+    const em::Components components = factored_.components();
+    for (Index b = 0; b < points_.blocks(); ++b) {
+      em::Block block = points_.block(b, stage_);
+      if (factored_.has_noise()) block.noise = noise_of(b);
+      factored_.kernels().evaluate(components, block, memory_.scratch());
+      visit(b * block_size, points_.points_in(b));
+    }
+  }
+  const KernelScratch& memory() const { return memory_; }
+  double log_jacobian() const { return scale_.log_jacobian(); }
+
+ private:
+  static FeatureScale scale_for(const GaussianMixture& mixture, const PointSet& set) {
+    check_sizes(mixture);
+    if (set.features() != mixture.features())
+      throw std::invalid_argument(
+          fmt::format("points have {} features, the mixture has {}", set.features(), mixture.features()));
+    check_errors(set);
+    return set.has_errors() ? FeatureScale::near_one(mixture) : FeatureScale::identity(set.features());
+  }
+
+  const double* noise_of(Index block) {
+    const Index first = block * block_size;
+    for (Index i = 0; i < points_.points_in(block); ++i)
+      memory_.noise()[i] = mixture_.noise.contains(set_.points.col(first + i)) ? factored_.log_noise() : log_zero;
+    return memory_.noise();
+  }
+
+  const GaussianMixture& mixture_;
+  const PointSet& set_;
+  FeatureScale scale_;
+  PointBlocks points_;
+  FactoredMixture factored_;
+  KernelScratch memory_;
+  AlignedBuffer stage_;
+};
 
 }  // namespace
 
 Index GaussianMixture::parameter_count() const {
   const Index K = components(), F = features();
-  return K - 1 + K * F + (type == CovarianceType::full ? K * F * (F + 1) / 2 : K * F);
+  return K - 1 + K * F + (type == CovarianceType::full ? K * F * (F + 1) / 2 : K * F) + (noise.present() ? 2 : 0);
 }
 
 void check_sizes(const GaussianMixture& mixture) {
@@ -40,32 +86,66 @@ void check_sizes(const GaussianMixture& mixture) {
     if (covariance.rows() != F || covariance.cols() != F)
       throw std::invalid_argument(
           fmt::format("mixture of {} features has a {} x {} covariance", F, covariance.rows(), covariance.cols()));
+  if (mixture.noise.present() && (mixture.noise.lower.size() != F || mixture.noise.upper.size() != F ||
+                                  !(mixture.noise.upper.array() > mixture.noise.lower.array()).all()))
+    throw std::invalid_argument(fmt::format("mixture of {} features has a noise component without a box", F));
 }
 
-Eigen::VectorXd log_density(const GaussianMixture& mixture, const Eigen::MatrixXd& points) {
-  const PointBlocks blocks = blocks_for(mixture, points);
-  const ComponentFactors factors = factor(mixture);
-  BlockDensity density;
-  Eigen::VectorXd result(points.cols());
-  for (Index b = 0; b < blocks.blocks(); ++b) {
-    evaluate(factors, blocks.points(b), density);
-    result.segment(b * block_size, blocks.points_in(b)) = density.log_density.head(blocks.points_in(b));
+void check_errors(const PointSet& set) {
+  constexpr double rounding = 1e-8;
+  if (!set.has_errors()) return;
+  const Index F = set.features();
+  if (set.covariances.rows() != F * F || set.covariances.cols() != set.count())
+    throw std::invalid_argument(fmt::format("{} points of {} features are given {} x {} error covariances", set.count(),
+                                            F, set.covariances.rows(), set.covariances.cols()));
+  for (Index i = 0; i < set.count(); ++i) {
+    const Eigen::Map<const Eigen::MatrixXd> S(set.covariances.col(i).data(), F, F);
+    bool sound = S.allFinite() && S.diagonal().minCoeff() >= 0.0;
+    for (Index f = 0; f < F && sound; ++f)
+      for (Index g = 0; g < f && sound; ++g) {
+        const double most = std::sqrt(S(f, f)) * std::sqrt(S(g, g));
+        sound = std::abs(S(f, g) - S(g, f)) <= rounding * most && std::abs(S(f, g)) <= (1.0 + rounding) * most;
+      }
+    if (!sound) throw std::invalid_argument(fmt::format("the error covariance of point {} is no covariance", i));
   }
+}
+
+Eigen::VectorXd log_density(const GaussianMixture& mixture, const PointSet& points) {
+  BlockEvaluation evaluation(mixture, points);
+  Eigen::VectorXd result(points.count());
+  evaluation.each([&](Index first, Index count) {
+    result.segment(first, count) = evaluation.memory().log_density().head(count) + evaluation.log_jacobian();
+  });
   return result;
 }
 
-Eigen::MatrixXd responsibilities(const GaussianMixture& mixture, const Eigen::MatrixXd& points) {
-  const PointBlocks blocks = blocks_for(mixture, points);
-  const ComponentFactors factors = factor(mixture);
-  BlockDensity density;
-  Eigen::MatrixXd result(mixture.components(), points.cols());
-  for (Index b = 0; b < blocks.blocks(); ++b) {
-    evaluate(factors, blocks.points(b), density);
-    density.relative.colwise() /= density.sum;
-    result.middleCols(b * block_size, blocks.points_in(b)) =
-        density.relative.topRows(blocks.points_in(b)).transpose().matrix();
-  }
+void visit_responsibilities(const GaussianMixture& mixture, const PointSet& points,
+                            const std::function<void(Index, const Eigen::Ref<const Eigen::MatrixXd>&)>& visit) {
+  BlockEvaluation evaluation(mixture, points);
+  Eigen::MatrixXd columns;
+  evaluation.each([&](Index first, Index count) {
+    const KernelScratch& memory = evaluation.memory();
+    columns = (memory.relative().topRows(count).colwise() / memory.sum().head(count)).transpose().matrix();
+    visit(first, columns);
+  });
+}
+
+Eigen::MatrixXd responsibilities(const GaussianMixture& mixture, const PointSet& points) {
+  Eigen::MatrixXd result(mixture.components(), points.count());
+  visit_responsibilities(mixture, points, [&](Index first, const Eigen::Ref<const Eigen::MatrixXd>& block) {
+    result.middleCols(first, block.cols()) = block;
+  });
   return result;
+}
+
+double classification_entropy(const GaussianMixture& mixture, const PointSet& points) {
+  const auto term = [](double r) { return r > 0.0 ? r * std::log(r) : 0.0; };
+  double sum = 0.0;
+  visit_responsibilities(mixture, points, [&](Index, const Eigen::Ref<const Eigen::MatrixXd>& block) {
+    sum -= block.unaryExpr(term).sum();
+    if (mixture.noise.present()) sum -= (1.0 - block.colwise().sum().array()).max(0.0).unaryExpr(term).sum();
+  });
+  return sum;
 }
 
 Eigen::MatrixXd sample(const GaussianMixture& mixture, Index count, std::mt19937_64& generator) {
@@ -82,8 +162,15 @@ Eigen::MatrixXd sample(const GaussianMixture& mixture, Index count, std::mt19937
   boost::random::normal_distribution<double> normal;
   Eigen::MatrixXd points(mixture.features(), count);
   Eigen::VectorXd z(mixture.features());
+  const double noise = mixture.noise.present() ? mixture.noise.weight : 0.0;
   for (Index i = 0; i < count; ++i) {
-    double rest = uniform(generator) * mixture.weights.sum();
+    double rest = uniform(generator) * (mixture.weights.sum() + noise);
+    if (rest < noise) {
+      for (Index f = 0; f < mixture.features(); ++f)
+        points(f, i) = mixture.noise.lower(f) + uniform(generator) * (mixture.noise.upper(f) - mixture.noise.lower(f));
+      continue;
+    }
+    rest -= noise;
     Index k = 0;
     while (k + 1 < mixture.components() && rest >= mixture.weights(k)) rest -= mixture.weights(k++);
     for (double& entry : z) entry = normal(generator);

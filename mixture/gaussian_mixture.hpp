@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <random>
 #include <vector>
 
 #include "ident/enum_names.hpp"
+#include "mixture/point_set.hpp"
 
 namespace modebank {
 
@@ -15,31 +17,65 @@ struct EnumNames<CovarianceType> {
   static constexpr Names<2> values{"full", "diagonal"};
 };
 
-/// Weighted sum of K Gaussians over F features. Points are F x N, one point per column.
+/// The component for points that belong to no cluster: uniform over a box (Fraley & Raftery 1998, Comput. J. 41,
+/// section 3.3), of density 1 / volume inside it and 0 outside.
+struct UniformNoise {
+  double weight = 0.0;
+  Eigen::VectorXd lower, upper;  ///< F, corners of the box [feature unit]; empty: the mixture has no such component
+
+  bool present() const { return lower.size() > 0; }
+  double log_density() const { return -(upper - lower).array().log().sum(); }  ///< inside the box
+  bool contains(const Eigen::Ref<const Eigen::VectorXd>& point) const {
+    return (point.array() >= lower.array()).all() && (point.array() <= upper.array()).all();
+  }
+};
+
+/// Weighted sum of K Gaussians over F features, and of a uniform noise component where there is one. Points are F x N,
+/// one point per column.
 struct GaussianMixture {
-  Eigen::VectorXd weights;                   ///< K, sums to one
+  Eigen::VectorXd weights;                   ///< K, sums to 1 - noise.weight
   Eigen::MatrixXd means;                     ///< F x K
   std::vector<Eigen::MatrixXd> covariances;  ///< K of F x F
   CovarianceType type = CovarianceType::full;
+  UniformNoise noise;
 
   Eigen::Index components() const { return weights.size(); }
   Eigen::Index features() const { return means.rows(); }
-  /// Free parameters q of the information criteria: K - 1 + K F + K F (F + 1) / 2, or K - 1 + 2 K F when diagonal.
+  /// Free parameters q of the information criteria: K - 1 + K F + K F (F + 1) / 2, or K - 1 + 2 K F when diagonal; 2
+  /// more for a noise component, its weight and its volume (as mclust counts: nMclustParams, Scrucca et al. 2016).
   Eigen::Index parameter_count() const;
 };
 
 /// Throws std::invalid_argument when the parts of a mixture do not fit together, or it has no component or feature.
 void check_sizes(const GaussianMixture& mixture);
 
-// The functions below throw std::invalid_argument for sizes that do not fit and for a covariance that is not positive
-// definite.
+/// Throws std::invalid_argument when the error covariances have the wrong sizes, or one is not finite, not symmetric or
+/// has a negative variance or a correlation beyond one.
+void check_errors(const PointSet& points);
 
-/// log sum_k w_k N(x; mu_k, Sigma_k) of every point, in the log domain: N values, finite for finite points (about
-/// -1e300 where the distance itself overflows).
-Eigen::VectorXd log_density(const GaussianMixture& mixture, const Eigen::MatrixXd& points);
-/// Posterior component probabilities, K x N; each column sums to one.
-Eigen::MatrixXd responsibilities(const GaussianMixture& mixture, const Eigen::MatrixXd& points);
+// The functions below throw std::invalid_argument for sizes that do not fit, for a covariance that is not positive
+// definite and for an error covariance that is none. A point with an error covariance S is seen through it: component k
+// is N(mu_k, Sigma_k + S) there (Bovy, Hogg & Roweis 2011, eq. 9). Weights of points are ignored.
+
+/// log density of every point, in the log domain: N values, finite for finite points (about -1e300 where the distance
+/// itself overflows).
+Eigen::VectorXd log_density(const GaussianMixture& mixture, const PointSet& points);
+/// Posterior component probabilities, K x N; each column sums to one, or to one minus the probability of noise.
+Eigen::MatrixXd responsibilities(const GaussianMixture& mixture, const PointSet& points);
+/// The same block by block, in order, without an array of K x N: visit(first, block) gets the columns of points first,
+/// first + 1, ... (at most 128) and must not keep a reference to them.
+void visit_responsibilities(const GaussianMixture& mixture, const PointSet& points,
+                            const std::function<void(Eigen::Index, const Eigen::Ref<const Eigen::MatrixXd>&)>& visit);
+/// - sum r log r over all points and components, the noise component included [nats].
+double classification_entropy(const GaussianMixture& mixture, const PointSet& points);
 /// N points drawn from the mixture; the generator is the only source of randomness.
 Eigen::MatrixXd sample(const GaussianMixture& mixture, Eigen::Index count, std::mt19937_64& generator);
+
+inline Eigen::VectorXd log_density(const GaussianMixture& mixture, const Eigen::MatrixXd& points) {
+  return log_density(mixture, PointSet(points));
+}
+inline Eigen::MatrixXd responsibilities(const GaussianMixture& mixture, const Eigen::MatrixXd& points) {
+  return responsibilities(mixture, PointSet(points));
+}
 
 }  // namespace modebank

@@ -8,6 +8,7 @@
 
 #include "ident/not_a_number.hpp"
 #include "ident/seed.hpp"
+#include "mixture/point_part.hpp"
 
 namespace modebank {
 
@@ -18,20 +19,19 @@ namespace {
 constexpr Index most_groups = 5;
 
 /// The runs that have points, in run order.
-std::vector<Index> distinct_runs(const FeatureCloud& cloud) {
-  std::vector<Index> runs = cloud.runs;
+std::vector<Index> distinct(std::vector<Index> runs) {
   std::sort(runs.begin(), runs.end());
   runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
   return runs;
 }
 
 /// Positions of the points of every group.
-std::vector<std::vector<Index>> points_of_groups(const FeatureCloud& cloud) {
-  const std::vector<Index> runs = distinct_runs(cloud);
-  const Index count = heldout_groups(cloud);
+std::vector<std::vector<Index>> points_of_groups(const std::vector<Index>& run_of_point) {
+  const std::vector<Index> runs = distinct(run_of_point);
+  const Index count = heldout_groups(run_of_point);
   std::vector<std::vector<Index>> groups(count);
-  for (std::size_t i = 0; i < cloud.runs.size(); ++i) {
-    const Index position = std::distance(runs.begin(), std::lower_bound(runs.begin(), runs.end(), cloud.runs[i]));
+  for (std::size_t i = 0; i < run_of_point.size(); ++i) {
+    const Index position = std::distance(runs.begin(), std::lower_bound(runs.begin(), runs.end(), run_of_point[i]));
     groups[position % count].push_back(static_cast<Index>(i));
   }
   return groups;
@@ -49,26 +49,33 @@ std::vector<Index> rest_of(const std::vector<Index>& group, Index points) {
 
 }  // namespace
 
-Index heldout_groups(const FeatureCloud& cloud) {
-  return std::min(most_groups, static_cast<Index>(distinct_runs(cloud).size()));
+Index heldout_groups(const std::vector<Index>& runs) {
+  return std::min(most_groups, static_cast<Index>(distinct(runs).size()));
 }
 
-double heldout_score(const FeatureCloud& cloud, Index components, const EmOptions& options, std::uint64_t seed) {
-  const std::vector<std::vector<Index>> groups = points_of_groups(cloud);
-  const Index count = static_cast<Index>(groups.size());
+double heldout_score(const PointSet& points, const std::vector<Index>& runs, Index components, EmOptions options,
+                     std::uint64_t seed) {
+  const std::vector<std::vector<Index>> groups = points_of_groups(runs);
+  const Index count = std::ssize(groups);
   if (count < 2) return not_a_number;
-  std::vector<double> sums(count, not_a_number);
+  options.restarts = std::min(options.restarts, 2);
+  options.split_merge = 0;
+  Eigen::VectorXd sums = Eigen::VectorXd::Constant(count, not_a_number), weights = sums;
   tbb::parallel_for(Index(0), count, [&](Index g) {
-    const std::vector<Index> rest = rest_of(groups[g], cloud.points.cols());
-    if (static_cast<Index>(rest.size()) < components) return;
-    const Eigen::MatrixXd training = cloud.points(Eigen::all, rest), left_out = cloud.points(Eigen::all, groups[g]);
-    const std::uint64_t group_seed = derive_seed(seed, "held out", static_cast<std::uint64_t>(g));
-    const EmResult fit = fit_em(training, Eigen::VectorXd(), components, options, group_seed);
-    sums[g] = log_density(fit.mixture, left_out).sum();
+    const std::vector<Index>& group = groups[static_cast<std::size_t>(g)];
+    const std::vector<Index> rest = rest_of(group, points.count());
+    if (std::ssize(rest) < components) return;
+    const PointPart training(points, rest), left_out(points, group);
+    if (training.weights.size() > 0 && !(training.weights.sum() > 0.0)) return;
+    const EmResult fit =
+        fit_em(training.set(), components, options, derive_seed(seed, "held out", static_cast<std::uint64_t>(g)));
+    const Eigen::VectorXd density = log_density(fit.mixture, left_out.set());
+    const Eigen::VectorXd weight =
+        left_out.weights.size() > 0 ? left_out.weights : Eigen::VectorXd::Ones(density.size());
+    sums(g) = weight.dot(density);
+    weights(g) = weight.sum();
   });
-  double sum = 0.0;
-  for (const double group_sum : sums) sum += group_sum;
-  return sum / static_cast<double>(cloud.points.cols());
+  return sums.sum() / weights.sum();
 }
 
 }  // namespace modebank

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "ident/error.hpp"
 #include "ident/not_a_number.hpp"
 #include "ident/seed.hpp"
+#include "mixture/bootstrap.hpp"
 #include "mixture/criteria.hpp"
 #include "mixture/heldout.hpp"
 
@@ -20,94 +22,154 @@ using Eigen::Index;
 
 namespace {
 
+constexpr Index affordable_heldout = 20000;  // points
+
 struct FittedCandidate {
   GaussianMixture mixture;
   Candidate row;
 };
 
-/// The candidate numbers in increasing order, once each, without those above the number of points.
-std::vector<Index> usable_components(const SelectionOptions& options, const WindowFits& fits, Index points) {
+/// What all candidates share.
+struct Task {
+  const PointSet& points;
+  const SampleDesign& design;
+  const SelectionOptions& options;
+  std::uint64_t seed;
+  double total_weight;
+  Index distinct_points;
+
+  /// Depends on the candidate's size, not on its place in the table: other candidates do not change it.
+  std::uint64_t seed_of(Index components) const {
+    return derive_seed(seed, "mixture", static_cast<std::uint64_t>(components));
+  }
+};
+
+/// The number of different points with weight, counted no further than `enough`.
+Index count_distinct(const PointSet& set, Index enough) {
+  std::vector<Index> found;
+  for (Index i = 0; i < set.count() && std::ssize(found) < enough; ++i) {
+    const bool weighted = set.weights.size() == 0 || set.weights(i) > 0.0;
+    const auto same = [&](Index other) { return set.points.col(i) == set.points.col(other); };
+    if (weighted && std::none_of(found.begin(), found.end(), same)) found.push_back(i);
+  }
+  return std::ssize(found);
+}
+
+/// The candidate numbers in increasing order, once each.
+std::vector<Index> sorted_components(const SelectionOptions& options) {
   std::vector<Index> components = options.components;
   std::sort(components.begin(), components.end());
   components.erase(std::unique(components.begin(), components.end()), components.end());
   if (components.empty() || components.front() < 1)
     throw std::invalid_argument("selection needs candidate numbers of components, each at least 1");
-  if (components.front() > points) {
-    const std::string fewer = points > 0 ? fmt::format("ask for at most {} components, or ", points) : "";
-    throw DataError(fmt::format(
-        "the fewest components asked for are {}, but {} of {} windows can be clustered: {}have more windows clustered "
-        "(a prior for windows that are not excited, mixture.windows = all, shorter windows, more data)",
-        components.front(), points, fits.count(), fewer));
-  }
-  components.erase(std::upper_bound(components.begin(), components.end(), points), components.end());
   return components;
 }
 
-FittedCandidate fit_candidate(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options,
-                              Index components, std::uint64_t seed) {
-  // The seed depends on the candidate's size, not on its place in the table: other candidates do not change it.
-  const std::uint64_t own_seed = derive_seed(seed, "mixture", static_cast<std::uint64_t>(components));
-  EmResult fit = fit_em(cloud.points, Eigen::VectorXd(), components, options.em, own_seed);
+Candidate unfitted(Candidate row, CandidateStatus status) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  row.status = status;
+  row.log_likelihood = -infinity;
+  row.bic = row.aic = row.icl = row.bic_naive = infinity;
+  return row;
+}
+
+FittedCandidate fit_candidate(const Task& task, const EmSweep& sweep, Index components) {
+  const SelectionOptions& options = task.options;
   Candidate row;
   row.components = components;
   row.covariance = options.em.covariance;
+  row.heldout = not_a_number;
+  row.restarts = options.em.restarts;
+  row.effective_samples = task.design.effective_samples > 0.0 ? task.design.effective_samples : task.total_weight;
+  if (components > task.distinct_points) return {{}, unfitted(row, CandidateStatus::too_few_points)};
+  const bool given = options.start && options.start->components() == components;
+  EmResult fit;
+  try {
+    fit = sweep.fit(components, task.seed_of(components), given ? &*options.start : nullptr);
+  } catch (const std::exception&) {
+    return {{}, unfitted(row, CandidateStatus::failed)};
+  }
   row.log_likelihood = fit.log_likelihood;
   row.parameters = fit.mixture.parameter_count();
-  row.effective_samples = effective_samples(cloud, fits.length, fits.step);
   row.iterations = fit.iterations;
   row.converged = fit.converged;
   row.agreeing_restarts = fit.agreeing_restarts;
-  fill_criteria(row, cloud.points.cols(), entropy(responsibilities(fit.mixture, cloud.points)));
-  row.heldout =
-      options.criterion == Criterion::heldout ? heldout_score(cloud, components, options.em, own_seed) : not_a_number;
+  row.floor_active = fit.floor_active;
+  fill_criteria(row, task.total_weight, classification_entropy(fit.mixture, task.points));
+  if (!std::isfinite(row.icl)) return {{}, unfitted(row, CandidateStatus::failed)};
   return {std::move(fit.mixture), row};
 }
 
-/// The selected mixture's memberships, spread from the clustered windows over all windows.
-void fill_memberships(const FeatureCloud& cloud, Index windows, MixtureResult& result) {
-  const Eigen::MatrixXd memberships = responsibilities(result.mixture, cloud.points);
-  result.labels.setConstant(windows, -1);
-  result.responsibilities.setConstant(result.mixture.components(), windows, not_a_number);
-  for (Index i = 0; i < cloud.points.cols(); ++i) {
-    const Index window = cloud.windows[i];
-    result.responsibilities.col(window) = memberships.col(i);
-    memberships.col(i).maxCoeff(&result.labels(window));
-  }
+/// The largest candidates take longest and start first.
+template <class Do>
+void for_each_from_the_largest(Index count, Do action) {
+  tbb::parallel_for(
+      tbb::blocked_range<Index>(0, count, 1),
+      [&](const tbb::blocked_range<Index>& range) {
+        for (Index i = range.begin(); i < range.end(); ++i) action(count - 1 - i);
+      },
+      tbb::simple_partitioner());
 }
 
-[[noreturn]] void report_no_choice(const FeatureCloud& cloud, const SelectionOptions& options) {
-  if (options.criterion == Criterion::heldout)
+bool wants_heldout(const Task& task) {
+  if (task.design.runs.empty()) return false;
+  return task.options.criterion == Criterion::heldout || task.options.heldout == HeldoutChoice::always ||
+         (task.options.heldout == HeldoutChoice::automatic && task.points.count() <= affordable_heldout);
+}
+
+std::vector<FittedCandidate> fit_all(const Task& task, const std::vector<Index>& components) {
+  const EmSweep sweep(task.points, task.options.em);
+  std::vector<FittedCandidate> fitted(components.size());
+  for_each_from_the_largest(std::ssize(components), [&](Index i) {
+    fitted[static_cast<std::size_t>(i)] = fit_candidate(task, sweep, components[static_cast<std::size_t>(i)]);
+  });
+  if (wants_heldout(task))
+    for_each_from_the_largest(std::ssize(components), [&](Index i) {
+      Candidate& row = fitted[static_cast<std::size_t>(i)].row;
+      if (row.status == CandidateStatus::fitted)
+        row.heldout =
+            heldout_score(task.points, task.design.runs, row.components, task.options.em, task.seed_of(row.components));
+    });
+  return fitted;
+}
+
+[[noreturn]] void report_no_choice(const Task& task, const std::vector<Candidate>& candidates) {
+  const Index fewest = candidates.front().components;
+  if (fewest > task.distinct_points)
+    throw DataError(
+        fmt::format("the fewest components asked for are {}, but there are {} distinct points among {}: ask for at "
+                    "most {}",
+                    fewest, task.distinct_points, task.points.count(), task.distinct_points));
+  if (task.options.criterion == Criterion::heldout)
     throw DataError(fmt::format(
-        "the held-out criterion needs windows of at least two runs, and more windows than components without each "
-        "group of runs: there are {} windows in {} groups; use another criterion or more runs",
-        cloud.points.cols(), heldout_groups(cloud)));
-  throw DataError(fmt::format("no candidate mixture has a finite {} on {} windows", name_of(options.criterion),
-                              cloud.points.cols()));
+        "the held-out criterion needs points of at least two runs, and more points than components without each group "
+        "of runs: there are {} points in {} groups; use another criterion or more runs",
+        task.points.count(), heldout_groups(task.design.runs)));
+  throw DataError(fmt::format("no candidate mixture has a finite {} on {} points", name_of(task.options.criterion),
+                              task.points.count()));
 }
 
 }  // namespace
 
-MixtureResult select_mixture(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options,
-                             std::uint64_t seed) {
-  const std::vector<Index> components = usable_components(options, fits, cloud.points.cols());
-  const Index count = static_cast<Index>(components.size());
-  std::vector<FittedCandidate> fitted(count);
-  // The largest candidates take longest and start first.
-  tbb::parallel_for(
-      tbb::blocked_range<Index>(0, count, 1),
-      [&](const tbb::blocked_range<Index>& range) {
-        for (Index i = range.begin(); i < range.end(); ++i)
-          fitted[count - 1 - i] = fit_candidate(fits, cloud, options, components[count - 1 - i], seed);
-      },
-      tbb::simple_partitioner());
-  MixtureResult result;
+Selection select(const PointSet& points, const SampleDesign& design, const SelectionOptions& options,
+                 std::uint64_t seed) {
+  const std::vector<Index> components = sorted_components(options);
+  if (points.count() == 0) throw DataError("there are no points to be clustered");
+  if (!design.runs.empty() && std::ssize(design.runs) != points.count())
+    throw std::invalid_argument(
+        fmt::format("selection is given {} points and the runs of {}", points.count(), design.runs.size()));
+  const double weight = points.weights.size() > 0 ? points.weights.sum() : static_cast<double>(points.count());
+  const Task task{points, design, options, seed, weight, count_distinct(points, components.back())};
+  std::vector<FittedCandidate> fitted = fit_all(task, components);
+  Selection result;
   for (const FittedCandidate& candidate : fitted) result.candidates.push_back(candidate.row);
-  const Index best = best_candidate(result.candidates, options.criterion, cloud.points.cols());
-  if (best < 0) report_no_choice(cloud, options);
-  result.candidates[best].selected = true;
-  result.mixture = std::move(fitted[best].mixture);
-  result.feature_names = cloud.names;
-  fill_memberships(cloud, fits.count(), result);
+  const Index best = best_candidate(result.candidates, options.criterion);
+  if (best < 0) report_no_choice(task, result.candidates);
+  result.candidates[static_cast<std::size_t>(best)].selected = true;
+  result.mixture = std::move(fitted[static_cast<std::size_t>(best)].mixture);
+  if (options.bootstrap > 0)
+    result.standard_error = bootstrap_runs(points, design.runs, result.mixture, options.em, options.bootstrap,
+                                           derive_seed(seed, "mixture bootstrap"));
   return result;
 }
 

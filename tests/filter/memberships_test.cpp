@@ -74,11 +74,26 @@ TEST(Memberships, MissingSamplesBelongToNoMode) {
   EXPECT_TRUE(near(g.rowwise().sum(), expected, weight_rounding));
 }
 
+TEST(Memberships, NoiseTeachesNoMode) {
+  const Recording recording = two_runs(5, 3);
+  const WindowFits fits = test::windows_of(recording, 3, 1);
+  Eigen::MatrixXd gamma = Eigen::MatrixXd::Constant(2, fits.count(), 0.5);
+  gamma.col(fits.count() - 1) << 0.06, 0.02;  // the only window of the second run: noise with probability 0.92
+  MixtureResult mixture = test::mixture_of(fits, gamma);
+  mixture.mixture.noise = {0.1, -Eigen::VectorXd::Ones(3), Eigen::VectorXd::Ones(3)};
+  mixture.mixture.weights *= 0.9;
+  mixture.labels(fits.count() - 1) = -1;
+  const TrainingTransitions transitions = gather_training_transitions(recording, fits.structure);
+  const Eigen::MatrixXd g = transition_memberships(transitions, fits, mixture);
+  EXPECT_TRUE(near(g.topRows(5).rowwise().sum(), Eigen::VectorXd::Ones(5), weight_rounding));
+  EXPECT_TRUE(near(g.bottomRows(3), Eigen::RowVector2d(0.06, 0.02).replicate(3, 1), weight_rounding));
+}
+
 TEST(Memberships, ForeignMixturesAreRefused) {
   const Recording recording = two_runs(5, 3);
   const WindowFits fits = test::windows_of(recording, 3, 1);
   MixtureResult mixture = test::mixture_of(fits, Eigen::MatrixXd::Constant(2, fits.count(), 0.5));
-  mixture.responsibilities.conservativeResize(2, fits.count() - 1);
+  mixture.responsibilities = Eigen::MatrixXd::Constant(2, fits.count() - 1, 0.5);
   EXPECT_THROW(transition_memberships(gather_training_transitions(recording, fits.structure), fits, mixture),
                std::invalid_argument);
 }

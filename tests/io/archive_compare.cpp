@@ -98,6 +98,10 @@ void expect_same(const Candidate& a, const Candidate& e) {
   EXPECT_EQ(a.converged, e.converged);
   EXPECT_EQ(a.agreeing_restarts, e.agreeing_restarts);
   EXPECT_EQ(a.selected, e.selected);
+  EXPECT_EQ(a.bic_naive, e.bic_naive);
+  EXPECT_EQ(a.restarts, e.restarts);
+  EXPECT_EQ(a.floor_active, e.floor_active);
+  EXPECT_EQ(a.status, e.status);
   const auto reals = [](const Candidate& c) {
     return Eigen::Matrix<double, 6, 1>(c.log_likelihood, c.effective_samples, c.bic, c.aic, c.icl, c.heldout);
   };
@@ -111,9 +115,14 @@ void expect_same(const MixtureResult& actual, const MixtureResult& expected) {
   for (std::size_t k = 0; k < actual.mixture.covariances.size(); ++k)
     EXPECT_TRUE(same_bits(actual.mixture.covariances[k], expected.mixture.covariances[k]));
   EXPECT_EQ(actual.mixture.type, expected.mixture.type);
+  EXPECT_EQ(actual.mixture.noise.weight, expected.mixture.noise.weight);
+  EXPECT_TRUE(same_bits(actual.mixture.noise.lower, expected.mixture.noise.lower));
+  EXPECT_TRUE(same_bits(actual.mixture.noise.upper, expected.mixture.noise.upper));
   EXPECT_EQ(actual.feature_names, expected.feature_names);
+  EXPECT_TRUE(same_bits(actual.weights_standard_error, expected.weights_standard_error));
+  EXPECT_TRUE(same_bits(actual.means_standard_error, expected.means_standard_error));
   EXPECT_EQ(actual.labels, expected.labels);
-  EXPECT_TRUE(same_bits(actual.responsibilities, expected.responsibilities));
+  EXPECT_TRUE(same_bits(actual.responsibilities.all(), expected.responsibilities.all()));
   ASSERT_EQ(actual.candidates.size(), expected.candidates.size());
   for (std::size_t i = 0; i < actual.candidates.size(); ++i) expect_same(actual.candidates[i], expected.candidates[i]);
 }

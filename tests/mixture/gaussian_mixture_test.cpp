@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "mixture/block_arithmetic.hpp"
+#include "mixture/point_blocks.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -117,16 +117,27 @@ TEST(GaussianMixture, RejectsWhatDoesNotFit) {
   EXPECT_THROW(log_density(mixture, Eigen::MatrixXd::Zero(2, 5)), std::invalid_argument);
 }
 
-TEST(BlockArithmetic, ExpIsAsAccurateAsItsHeaderSays) {
-  BlockColumn values;
-  double worst = 0.0;
-  for (double first = -700.0; first < 700.0; first += 0.37) {
-    for (Eigen::Index i = 0; i < block_size; ++i) values(i) = std::min(first + 0.0029 * static_cast<double>(i), 700.0);
-    const BlockColumn exact = values.unaryExpr([](double x) { return std::exp(x); });
-    block_exp(values);
-    worst = std::max(worst, (values / exact - 1.0).abs().maxCoeff());
+TEST(Kernels, ExpAndLogAreAsAccurateAsTheirHeaderSays) {
+  AlignedBuffer values(block_size);
+  double worst_exp = 0.0, worst_log = 0.0;
+  for (double first = -690.0; first < 0.0; first += 0.37) {
+    for (Eigen::Index i = 0; i < block_size; ++i)
+      values.data()[i] = std::min(first + 0.0029 * static_cast<double>(i), 0.0);
+    Eigen::Map<BlockColumn> column(values.data());
+    const BlockColumn exact = column.unaryExpr([](double x) { return std::exp(x); });
+    em::exp_in_place(values.data(), block_size);
+    worst_exp = std::max(worst_exp, (column / exact - 1.0).abs().maxCoeff());
+    column = 1.0 / exact;
+    const BlockColumn exact_log = column.unaryExpr([](double x) { return std::log(x); });
+    em::log_in_place(values.data(), block_size);
+    worst_log = std::max(worst_log, ((column - exact_log) / exact_log.max(1.0)).abs().maxCoeff());
   }
-  EXPECT_LT(worst, 4e-16);
+  EXPECT_LT(worst_exp, 1e-15);
+  EXPECT_LT(worst_log, 1e-15);
+  values.data()[0] = -1e300;
+  em::exp_in_place(values.data(), 8);
+  EXPECT_GT(values.data()[0], 1e-300);
+  EXPECT_LT(values.data()[0], 1e-299);
 }
 
 }  // namespace

@@ -102,6 +102,50 @@ TEST_P(Robustness, StarvedComponentKeepsItsPlace) {
   EXPECT_TRUE(near(result.mixture.means.col(2), start.means.col(2), 1e-8));
 }
 
+TEST_P(Robustness, SinglePointComponents) {
+  Eigen::MatrixXd points(2, 43);
+  points.leftCols(40) = draw(three_clusters(1.0), 40, 6);
+  points.rightCols(3) << 1e3, -1e3, 0.0, 1e3, 1e3, -1e3;  // each far from all
+  const EmResult result = fit(points, 4);
+  expect_sound(result, points);
+  EXPECT_TRUE(result.floor_active);  // a single point has no spread of its own
+}
+
+TEST_P(Robustness, DensitiesBelowTheSmallestNumber) {
+  // Exponentials of less than -745 are zero in double precision: without the log domain all responsibilities were 0/0.
+  Eigen::MatrixXd points = draw(three_clusters(2.0), 200, 7);
+  points.col(5) << 60.0, -70.0;
+  const EmResult result = fit(points, 2);
+  expect_sound(result, points);
+  GaussianMixture narrow = three_clusters(2.0);
+  for (Eigen::MatrixXd& covariance : narrow.covariances) covariance *= 1e-4;
+  EXPECT_LT(log_density(narrow, points).minCoeff(), -1e6);
+  EXPECT_TRUE(near(responsibilities(narrow, points).colwise().sum(), Eigen::RowVectorXd::Ones(200), 1e-14));
+}
+
+TEST_P(Robustness, NoDegenerateCloudEndsTheSweep) {
+  std::vector<Eigen::MatrixXd> clouds{Eigen::Vector2d(1.0, 2.0).replicate(1, 30), draw(three_clusters(3.0), 30, 8),
+                                      draw(three_clusters(3.0), 30, 9), draw(three_clusters(3.0), 9, 10)};
+  clouds[1].col(0).setConstant(1e100);
+  clouds[2].row(1).setConstant(-3.0);
+  for (const bool noise : {false, true})
+    for (const bool errors : {false, true})
+      for (const Eigen::MatrixXd& points : clouds) {
+        FeatureCloud cloud = cloud_of(points, 3);
+        if (errors) cloud.covariances = Eigen::Vector4d(1e-3, 0.0, 0.0, 1e-3).replicate(1, points.cols());
+        SelectionOptions options;
+        options.components = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+        options.em.covariance = GetParam();
+        options.em.restarts = 2;
+        options.em.noise_component = noise;
+        const MixtureResult result = select_mixture(fits_of(cloud, 5, 1), cloud, options, 1);
+        EXPECT_EQ(result.candidates.size(), 9u);
+        EXPECT_TRUE(result.mixture.means.allFinite());
+        EXPECT_TRUE(result.responsibilities.all().allFinite());
+        for (const Candidate& row : result.candidates) EXPECT_TRUE(std::isfinite(row.log_likelihood)) << row.components;
+      }
+}
+
 TEST(RobustnessErrors, CallersMistakesThrow) {
   const Eigen::MatrixXd points = draw(three_clusters(3.0), 20, 1);
   const EmOptions options;

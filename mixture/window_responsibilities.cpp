@@ -1,0 +1,52 @@
+#include "mixture/window_responsibilities.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "ident/not_a_number.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+WindowResponsibilities::WindowResponsibilities(GaussianMixture mixture, FeatureCloud cloud, Index windows)
+    : windows_(windows) {
+  const bool increasing = std::is_sorted(cloud.windows.begin(), cloud.windows.end(), std::less_equal<>());
+  if (!increasing || (!cloud.windows.empty() && (cloud.windows.front() < 0 || cloud.windows.back() >= windows)))
+    throw std::invalid_argument("the windows of a cloud must be in increasing order, each once");
+  source_ = std::make_shared<const Source>(Source{std::move(mixture), std::move(cloud)});
+}
+
+Eigen::MatrixXd WindowResponsibilities::block(Index first, Index count) const {
+  if (first < 0 || count < 0 || first + count > windows_) throw std::invalid_argument("there are no such windows");
+  if (!source_) return stored_.middleCols(first, count);
+  const FeatureCloud& cloud = source_->cloud;
+  const auto begin = std::lower_bound(cloud.windows.begin(), cloud.windows.end(), first);
+  const auto end = std::lower_bound(begin, cloud.windows.end(), first + count);
+  const Index from = begin - cloud.windows.begin(), points = end - begin;
+  Eigen::MatrixXd result = Eigen::MatrixXd::Constant(components(), count, not_a_number);
+  if (points == 0) return result;
+  const Eigen::MatrixXd part = cloud.points.middleCols(from, points);
+  Eigen::MatrixXd errors;
+  if (cloud.covariances.size() > 0) errors = cloud.covariances.middleCols(from, points);
+  const PointSet set(part, detail::no_weights, errors);
+  visit_responsibilities(source_->mixture, set, [&](Index at, const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+    for (Index i = 0; i < columns.cols(); ++i) result.col(*(begin + at + i) - first) = columns.col(i);
+  });
+  return result;
+}
+
+Eigen::VectorXi most_probable(const GaussianMixture& mixture, const FeatureCloud& cloud, Index windows) {
+  Eigen::VectorXi labels = Eigen::VectorXi::Constant(windows, -1);
+  visit_responsibilities(mixture, cloud.point_set(), [&](Index first, const Eigen::Ref<const Eigen::MatrixXd>& block) {
+    for (Index i = 0; i < block.cols(); ++i) {
+      int component = 0;
+      const double largest = block.col(i).maxCoeff(&component);
+      const bool noise = mixture.noise.present() && 1.0 - block.col(i).sum() > largest;
+      if (!noise) labels(cloud.windows[static_cast<std::size_t>(first + i)]) = component;
+    }
+  });
+  return labels;
+}
+
+}  // namespace modebank

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "mixture/features.hpp"
+#include "mixture/gaussian_mixture.hpp"
+
+namespace modebank {
+
+/// Posterior component probabilities of all windows, K x M, NaN where a window was not clustered. Either stored (as
+/// read from an archive) or worked out anew, block by block, whenever they are looked at, so that they take no memory
+/// of K x M; both give the same bits.
+class WindowResponsibilities {
+ public:
+  WindowResponsibilities() = default;
+  WindowResponsibilities(Eigen::MatrixXd stored) : stored_(std::move(stored)), windows_(stored_.cols()) {}
+  /// Of the cloud's windows, which must be in increasing order, among `windows`. Throws std::invalid_argument
+  /// otherwise.
+  WindowResponsibilities(GaussianMixture mixture, FeatureCloud cloud, Eigen::Index windows);
+
+  Eigen::Index components() const { return source_ ? source_->mixture.components() : stored_.rows(); }
+  Eigen::Index windows() const { return windows_; }
+  /// Windows first to first + count - 1, K x count.
+  Eigen::MatrixXd block(Eigen::Index first, Eigen::Index count) const;
+  Eigen::MatrixXd all() const { return block(0, windows_); }
+
+ private:
+  struct Source {
+    GaussianMixture mixture;
+    FeatureCloud cloud;
+  };
+  Eigen::MatrixXd stored_;
+  std::shared_ptr<const Source> source_;
+  Eigen::Index windows_ = 0;
+};
+
+/// The most probable component of every window, M; -1: not clustered, or more probably noise than any component.
+Eigen::VectorXi most_probable(const GaussianMixture& mixture, const FeatureCloud& cloud, Eigen::Index windows);
+
+}  // namespace modebank

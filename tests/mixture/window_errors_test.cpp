@@ -1,0 +1,138 @@
+// Windows of unequal excitation: what their covariances do for the mixture of their parameters.
+#include <gtest/gtest.h>
+
+#include "ident/fit_window.hpp"
+#include "ident/not_a_number.hpp"
+#include "mixture/select.hpp"
+#include "tests/mixture/mixture_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank::test {
+namespace {
+
+using Eigen::Index;
+
+constexpr Index length = 25;
+
+/// Runs of windows' length: in each the parameters are drawn from one of two modes, and the inputs have an amplitude of
+/// their own, log-uniform from 0.03 to 1.
+struct Stretches {
+  GaussianMixture truth;
+  Recording recording;
+
+  explicit Stretches(Index count) {
+    truth.weights = Eigen::Vector2d(0.7, 0.3);
+    truth.means = (Eigen::MatrixXd(3, 2) << -0.5, -0.5, -0.6, -0.3, 0.6, 0.3).finished();
+    const Eigen::Matrix3d spread = (Eigen::Matrix3d() << 4e-4, 0.0, 0.0, 0.0, 9e-4, -3e-4, 0.0, -3e-4, 9e-4).finished();
+    truth.covariances = {spread, spread};
+    recording.states = {{"x", ""}};
+    recording.inputs = {{"left", ""}, {"right", ""}};
+    std::mt19937_64 generator(21);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> uniform(std::log(0.03), 0.0);
+    const Eigen::MatrixXd theta = sample(truth, count, generator);
+    for (Index i = 0; i < count; ++i) {
+      Trajectory run;
+      run.run = std::to_string(i);
+      run.role = Role::train;
+      const double amplitude = std::exp(uniform(generator));
+      run.input = Eigen::MatrixXd::NullaryExpr(2, length + 1, [&] { return amplitude * normal(generator); });
+      run.state.resize(1, length + 1);
+      run.time_s = Eigen::VectorXd::LinSpaced(length + 1, 0.0, static_cast<double>(length));
+      double x = 0.0;
+      for (Index k = 0; k <= length; ++k) {
+        run.state(0, k) = x;
+        x += theta(0, i) * x + theta(1, i) * run.input(0, k) + theta(2, i) * run.input(1, k) + 0.01 * normal(generator);
+      }
+      recording.runs.push_back(run);
+    }
+  }
+
+  WindowFits fits(Prior prior) const {
+    FitOptions options;
+    options.length = length;
+    options.loss = Loss::trivial;
+    options.prior = prior;
+    return fit_windows(recording, options);
+  }
+};
+
+FeatureCloud cloud_with(const WindowFits& fits, WindowErrors errors) {
+  return make_features(fits, FeatureSet::parameters, WindowChoice::all, {{"x", ""}}, StraddlingWindows::keep, errors);
+}
+
+/// Means and input parameters' covariances, against the truth.
+struct Misfit {
+  double mean;       ///< largest error of a mean in standard deviations of its component
+  double inflation;  ///< largest ratio of the spread of the input parameters to the true one
+};
+
+Misfit misfit(const GaussianMixture& fit, const GaussianMixture& truth) {
+  Misfit result{0.0, 0.0};
+  for (Index k = 0; k < 2; ++k) {
+    const Eigen::MatrixXd& spread = truth.covariances[static_cast<std::size_t>(k)];
+    const Eigen::ArrayXd off = (fit.means.col(k) - truth.means.col(k)).array() / spread.diagonal().array().sqrt();
+    result.mean = std::max(result.mean, off.abs().tail(2).maxCoeff());
+    const double trace = fit.covariances[static_cast<std::size_t>(k)].bottomRightCorner(2, 2).trace();
+    result.inflation = std::max(result.inflation, trace / spread.bottomRightCorner(2, 2).trace());
+  }
+  return result;
+}
+
+TEST(WindowErrors, RecoverModesOfUnequallyExcitedWindows) {
+  const Stretches stretches(1500);
+  for (const Prior prior : {Prior::none, Prior::global}) {
+    const WindowFits fits = stretches.fits(prior);
+    const FeatureCloud plain = cloud_with(fits, WindowErrors::ignore), aware = cloud_with(fits, WindowErrors::include);
+    EXPECT_EQ(plain.covariances.size(), 0);
+    const Misfit blurred = misfit(fit_em(plain.point_set(), 2, EmOptions(), 1).mixture, stretches.truth);
+    const Misfit recovered = misfit(fit_em(aware.point_set(), 2, EmOptions(), 1).mixture, stretches.truth);
+    EXPECT_LT(recovered.mean, 0.35);
+    EXPECT_LT(std::abs(recovered.inflation - 1.0), 0.4);
+    EXPECT_GT(blurred.mean, 0.7) << "the comparison shows nothing";
+    EXPECT_GT(blurred.inflation, 2.5) << "the comparison shows nothing";
+  }
+}
+
+TEST(WindowErrors, ThePriorIsTakenOffAgain) {
+  const Stretches stretches(40);
+  const WindowFits free = stretches.fits(Prior::none), held = stretches.fits(Prior::global);
+  const FeatureCloud a = cloud_with(free, WindowErrors::include), b = cloud_with(held, WindowErrors::include);
+  ASSERT_EQ(a.points.cols(), b.points.cols());
+  Index compared = 0;
+  for (Index i = 0; i < a.points.cols(); ++i) {
+    if (held.information.col(i).minCoeff() < 0.3) continue;  // where data say less the prior is not taken off in full
+    ++compared;
+    const Eigen::ArrayXd sd = a.covariances.col(i).reshaped(3, 3).diagonal().array().sqrt();
+    // The noise variance of the two fits differs a little; the prior's pull of up to 70 % is gone.
+    EXPECT_LT(((a.points.col(i) - b.points.col(i)).array() / sd).abs().maxCoeff(), 0.15) << i;
+  }
+  EXPECT_GT(compared, 10);
+}
+
+TEST(WindowErrors, LogVarianceAndUnknownCovariances) {
+  WindowFits fits;
+  fits.structure = LinearStructure{1, 2, false};
+  fits.length = 25;
+  fits.windows = {{0, 0}, {0, 1}, {0, 2}};
+  fits.parameters = Eigen::MatrixXd::Constant(3, 3, 0.5);
+  fits.noise_variance = Eigen::MatrixXd::Constant(1, 3, 0.01);
+  fits.covariance = Eigen::Matrix3d::Identity().eval().reshaped(9, 1).replicate(1, 3);
+  fits.covariance(4, 1) = not_a_number;
+  fits.rank = (Eigen::VectorXi(3) << 3, 2, 3).finished();
+  fits.status = (Eigen::VectorXi(3) << 0, 2, 0).finished();
+  const auto make = [&](WindowErrors errors) {
+    return make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::all, {{"x", ""}},
+                         StraddlingWindows::keep, errors);
+  };
+  EXPECT_EQ(make(WindowErrors::ignore).windows.size(), 3u);
+  const FeatureCloud cloud = make(WindowErrors::include);
+  EXPECT_EQ(cloud.windows, (std::vector<Index>{0, 2}));
+  Eigen::Matrix4d expected = Eigen::Matrix4d::Identity();
+  expected(3, 3) = 2.0 / 22.0;
+  EXPECT_TRUE(near(cloud.covariances.col(0).reshaped(4, 4), expected, 1e-15));
+  EXPECT_EQ(subset(cloud, {1}).covariances, cloud.covariances.col(1));
+}
+
+}  // namespace
+}  // namespace modebank::test
