@@ -240,12 +240,30 @@ std::vector<Option> bank_options() {
       numeric("bank.measurement_variance", above(0), "state unit^2", "R; empty: the baseline's",
               FIELD(bank.measurement_variance)),
       flag("bank.screen", "leave unstable and starved modes out of the bank", FIELD(bank.screen)),
+      numeric("bank.modes", between(0, 1000), "",
+              "at most so many modes: the closest components are merged by moments; 0: no limit", FIELD(bank.modes)),
+      words("bank.refine", "em: expectation-maximisation of the switching model from the mixture's start",
+            FIELD(bank.refine)),
+      words("bank.share",
+            "what refined modes have in common; best: what the runs left out in cross-validation like most",
+            FIELD(bank.em.share)),
+      numeric("bank.restarts", between(0, 1000), "",
+              "starts of em from random stretches of runs, besides the mixture's", FIELD(bank.em.restarts)),
+      numeric(
+          "bank.folds", between(1, 1000), "",
+          "parts of the training runs that em leaves out in turn to choose start, number of modes and of iterations; "
+          "1: none",
+          FIELD(bank.em.folds)),
+      numeric("bank.max_iterations", between(1, 1000), "", "limit of em", FIELD(bank.em.max_iterations)),
+      numeric("bank.tolerance", above(0), "nats/transition", "em stops when the objective gains less",
+              FIELD(bank.em.tolerance)),
   };
 }
 
 std::vector<Option> other_options() {
   return {
       words("filter.variant", "multiple-model filter", FIELD(filter.variant)),
+      words("filter.noise", "the modes' noise as learned, or times a scale that follows the run", FIELD(filter.noise)),
       flag("filter.parameter_noise", "add the modes' parameter spread to Q", FIELD(filter.parameter_noise)),
       text("archive.output", "a path", "archive to write; empty: this file's name with .h5, in the current folder",
            FIELD(archive.output)),

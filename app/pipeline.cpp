@@ -68,6 +68,57 @@ bool trained_on(const Recording& recording, const Trajectory& run) {
 
 }  // namespace
 
+namespace {
+
+double mean_log_score(const Bank& bank, const Recording& recording, Role role, const FilterOptions& options) {
+  double sum = 0.0;
+  for (const Trajectory& run : recording.runs)
+    if (run.role == role) sum += log_likelihood(bank, run, options);
+  return sum / static_cast<double>(recording.transitions(role));
+}
+
+/// The bank, refined if so configured.
+Refinement learn_modes_of(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion,
+                          const Archive& archive) {
+  BankOptions options = config.bank;
+  options.em.seed = config.job.seed;
+  if (options.refine == Refine::em)
+    return learn_refined_bank(*archive.recording, *archive.windows, *archive.mixture, options, R, config.filter);
+  return {learn_bank(*archive.recording, *archive.windows, *archive.mixture, options, R, motion), {}, {}, {}};
+}
+
+/// What a limit on the number of modes cost: the same bank without it, on the runs that were held out.
+void report_merging(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion, const Archive& archive) {
+  const Index components = archive.mixture->mixture.components(), limit = config.bank.modes;
+  if (limit == 0 || components <= limit) return;
+  const Recording& recording = *archive.recording;
+  Config unlimited = config;
+  unlimited.bank.modes = 0;
+  const Role role = recording.transitions(Role::test) > 0 ? Role::test : Role::train;
+  const Bank whole = learn_modes_of(unlimited, R, motion, archive).bank;
+  const double before = mean_log_score(whole, recording, role, config.filter);
+  const double after = mean_log_score(*archive.bank, recording, role, config.filter);
+  spdlog::info("bank.modes: {} components merged into {}: log score on {} runs {:.4f} -> {:.4f} ({:+.4f})", components,
+               limit, role == Role::test ? "held-out" : "training", before, after, after - before);
+}
+
+void report_refinement(const Refinement& refined) {
+  for (const RefineCandidate& c : refined.candidates)
+    spdlog::info(
+        "refine: {:<12} {:>3} modes, shared {}, Q prior {}: {:.4f} nats/sample left out, after {} iterations{}",
+        c.start, c.modes, name_of(c.shared), c.noise_transitions, c.score, c.iterations, c.selected ? " (chosen)" : "");
+}
+
+void learn_modes(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion, Archive& archive) {
+  Refinement learned = learn_modes_of(config, R, motion, archive);
+  archive.bank = std::move(learned.bank);
+  if (config.bank.refine == Refine::em) archive.unrefined = std::move(learned.start);
+  report_refinement(learned);
+  report_merging(config, R, motion, archive);
+}
+
+}  // namespace
+
 void import_stage(const Config& config, Archive& archive) {
   const Stopwatch watch;
   ImportedData data = import_data(config.data);
@@ -131,9 +182,10 @@ void bank_stage(const Config& config, Archive& archive) {
   if (!baseline.converged) spdlog::warn("baseline: its noise did not reach a maximum of the likelihood");
   archive.baseline = baseline.bank;
   archive.noise_only = learn_noise_only(recording, windows.structure, baseline.bank.R);
-  archive.bank = config.filter.variant == FilterVariant::kf
-                     ? baseline.bank
-                     : learn_bank(recording, windows, *archive.mixture, config.bank, baseline.bank.R, motion.get());
+  if (config.filter.variant == FilterVariant::kf)
+    archive.bank = baseline.bank;
+  else
+    learn_modes(config, baseline.bank.R, motion.get(), archive);
   spdlog::info("bank: {} modes, {} screened, in {:.2f} s", archive.bank->mode_count(), archive.bank->screened.size(),
                watch.seconds());
 }
@@ -171,6 +223,7 @@ void load_banks(const Config& config, Archive& archive) {
   archive.bank = std::move(stored.bank);
   archive.baseline = std::move(stored.baseline);
   archive.noise_only = std::move(stored.noise_only);
+  archive.unrefined = std::move(stored.unrefined);
 }
 
 void evaluate_stage(const Config& config, Archive& archive) {

@@ -16,9 +16,18 @@ struct EnumNames<FilterVariant> {
   static constexpr Names<4> values{"imm", "mmae", "salvi2025", "kf"};
 };
 
+/// gaussian: Q as learned. adaptive: Q times a scale that follows the run (noise_scale.hpp).
+enum class FilterNoise { gaussian, adaptive };
+
+template <>
+struct EnumNames<FilterNoise> {
+  static constexpr Names<2> values{"gaussian", "adaptive"};
+};
+
 struct FilterOptions {
   FilterVariant variant = FilterVariant::imm;
   bool parameter_noise = false;  ///< Q_k = Q + (I (x) phi') Sigma_theta (I (x) phi')' with the mode's spread
+  FilterNoise noise = FilterNoise::gaussian;
 };
 
 /// What a filter said about every sample of a run, one sample per column. Column 0 is the start: its scores are NaN.

@@ -7,17 +7,20 @@
 #include "filter/gaussian.hpp"
 #include "filter/imm.hpp"
 #include "filter/kalman.hpp"
+#include "filter/noise_scale.hpp"
 #include "filter/salvi2025.hpp"
 
 /// One step of the filters of FilterVariant, a function of model, state, input and measurement: nothing is remembered
 /// between calls but FilterState, and nothing is allocated once FilterState and FilterStep exist.
 namespace modebank {
 
-/// All that a filter knows: one Gaussian per mode and how probable each mode is.
+/// All that a filter knows: one Gaussian per mode, how probable each mode is, and the present scale of the noise.
 template <int N>
 struct FilterState {
   std::vector<Gaussian<N>> modes;    ///< K
   Eigen::VectorXd mode_probability;  ///< K
+  double noise_scale = 1.0;          ///< multiplies every mode's Q in the next prediction
+  double noise_samples = 0.0;        ///< how many samples the scale rests on (noise_scale.hpp)
 };
 
 /// What one step computes on the way, sized once.
@@ -52,6 +55,7 @@ FilterState<N> start(const FilterModel<N, NY>& model, const Y& y) {
   first.covariance = model.start_covariance;
   FilterState<N> state{std::vector<Gaussian<N>>(model.modes.size(), first), model.initial_probability};
   floor_probabilities(state.mode_probability);
+  state.noise_samples = model.noise_adaptation.prior_samples;
   return state;
 }
 
@@ -79,7 +83,7 @@ template <int N, int NY, class U>
 void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u, FilterStep<N, NY>& step) {
   const std::vector<Gaussian<N>>& from = mix(model, state, step);
   for (std::size_t j = 0; j < model.modes.size(); ++j) {
-    step.kalman[j].predict(from[j], model, model.modes[j], u);
+    step.kalman[j].predict(from[j], model, model.modes[j], u, state.noise_scale);
     step.kalman[j].expect(model);
   }
 }
@@ -101,6 +105,7 @@ double update(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& st
     step.kalman[j].correct(model, state.modes[j]);
     step.log_likelihood(static_cast<Eigen::Index>(j)) = step.kalman[j].log_density;
   }
+  if (model.adaptive) adapt_noise_scale(model, model, step.predicted_probability, step, state);
   if (model.mode_count() == 1) return step.log_likelihood(0);
   const double log_density = bayes(step.predicted_probability, step.log_likelihood, state.mode_probability);
   if (model.variant == FilterVariant::salvi2025) {

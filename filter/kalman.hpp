@@ -34,10 +34,10 @@ struct KalmanStep {
         NY_(n, n_y),
         phi_(regressors) {}
 
-  /// x = x + A x + B u + c, P = F P F' + Q (+ the spread of the parameters).
+  /// x = x + A x + B u + c, P = F P F' + noise_scale Q (+ the spread of the parameters).
   template <class U>
   void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
-               const U& u);
+               const U& u, double noise_scale = 1.0);
   /// What will be measured: S and its factor.
   void expect(const FilterModel<N, NY>& model);
   /// e and its log density.
@@ -100,10 +100,10 @@ bool is_finite(const Gaussian<N>& g) {
 template <int N, int NY>
 template <class U>
 void KalmanStep<N, NY>::predict(const Gaussian<N>& from, const FilterModel<N, NY>& model,
-                                const typename FilterModel<N, NY>::Mode& mode, const U& u) {
+                                const typename FilterModel<N, NY>::Mode& mode, const U& u, double noise_scale) {
   propagate(mode.A, mode.B, mode.c, from.mean, u, predicted.mean);
   small::multiply(NN_, mode.F, from.covariance);
-  predicted.covariance = mode.Q;
+  predicted.covariance = noise_scale * mode.Q;
   small::add_symmetric_product(predicted.covariance, NN_, mode.F);
   if (mode.spread.size() > 0) add_parameter_noise(model.structure, mode.spread, from.mean, u);
   make_usable(predicted);

@@ -52,6 +52,7 @@ struct Archive {
   std::optional<WindowFits> windows;
   std::optional<MixtureResult> mixture;
   std::optional<Bank> bank;
+  std::optional<Bank> unrefined;  ///< the bank that expectation-maximisation started from
   std::optional<Bank> baseline;
   std::optional<Bank> noise_only;
   std::vector<FilterEvaluation> evaluations;

@@ -48,6 +48,9 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.field("parameters", stored.parameters, {"K", "p"}, parameters);
   io.optional_field("parameter_covariance", stored.spread, {"K", "p", "p"}, outer(parameters));
   io.optional_field("parameter_standard_error", stored.standard_error, {"K", "p"}, parameters);
+  io.optional_field("Q_standard_error", stored.Q_standard_error, {"K", "n", "n"}, outer(states));
+  io.optional_field("R_standard_error", stored.R_standard_error, {"n_y", "n_y"}, measured ? outer(outputs) : Unit());
+  io.optional_field("transition_standard_error", stored.transition_standard_error, {"K", "K"});
   io.field("C", stored.C, {"n_y", "n"}, measured ? ratios(outputs, states) : Unit());
   io.field("R", stored.R, {"n_y", "n_y"}, measured ? outer(outputs) : Unit());
   io.field("transition", stored.transition, {"K", "K"});
@@ -65,6 +68,8 @@ void exchange_bank(Io& io, B& bank, const Units& units) {
   io.attribute_texts("state_names", bank.state_names);
   io.attribute_texts("input_names", bank.input_names);
   io.attribute("dt_s", bank.dt_s);
+  io.optional_attribute("noise_forgetting", bank.noise_adaptation.forgetting);
+  io.optional_attribute("noise_prior_samples", bank.noise_adaptation.prior_samples);
   exchange_model_parameters(io, bank.motion_parameters, "motion_parameter");
   io.table("screened", bank.screened, column("component", &ScreenedMode::component),
            column("weight", &ScreenedMode::weight), column("spectral_radius", &ScreenedMode::spectral_radius),
