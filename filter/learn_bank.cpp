@@ -179,11 +179,14 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
                               const BankOptions& options, const Eigen::MatrixXd& R, const FilterOptions& filter) {
   BankOptions of_start = options;
   std::vector<Bank> starts{learn_bank(recording, fits, mixture, options, R)};
-  for (Index modes = starts.front().mode_count() * 2 / 3; modes >= 2; modes = modes * 2 / 3) {
+  for (Index modes = starts.front().mode_count() * 3 / 4; modes >= 2; modes = modes * 3 / 4) {
     of_start.modes = modes;
     starts.push_back(learn_bank(recording, fits, mixture, of_start, R));
   }
-  return refine_bank(recording, fits, starts, options.em, filter);
+  RefineOptions em = options.em;
+  em.screen = options.screen;
+  em.measurement_noise = em.measurement_noise && !options.measurement_variance;
+  return refine_bank(recording, fits, starts, em, filter);
 }
 
 }  // namespace modebank

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "filter/bank_frame.hpp"
+#include "filter/refine_noise.hpp"
 #include "filter/refine_screening.hpp"
 #include "filter/refine_start.hpp"
 #include "filter/validation_split.hpp"
@@ -21,7 +22,8 @@ namespace {
 constexpr std::array<Index, 12> checkpoints{1, 2, 4, 7, 12, 20, 35, 60, 100, 200, 500, 1000};
 constexpr std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
 constexpr std::array<double, 3> prior_samples{2.0, 5.0, 20.0};
-constexpr std::array<double, 3> prior_strengths{1.0, 4.0, 16.0};  // transitions of the prior on Q
+constexpr double prior_strength = 4.0;  // transitions that the prior on Q is worth, at first
+constexpr std::array<double, 2> other_strengths{1.0, 16.0};
 
 /// The modes of a bank put in place of another's, everything else as there.
 Bank with_modes(const Bank& frame, const SwitchingRegression& model) {
@@ -95,12 +97,6 @@ std::vector<SharedParts> ways_to_share(Sharing share) {
   return {SharedParts::none, SharedParts::theta, SharedParts::noise};
 }
 
-double score(const Bank& bank, const Recording& left_out, const FilterOptions& filter) {
-  double sum = 0.0;
-  for (const Trajectory& run : left_out.runs) sum += log_likelihood(bank, run, filter);
-  return std::isnan(sum) ? -std::numeric_limits<double>::infinity() : sum;
-}
-
 /// The banks of one start on one split, at each checkpoint up to the limit.
 std::vector<Bank> climb_split(const Bank& frame, const Start& start, const WindowFits& fits, const Recording& training,
                               const RefineOptions& options) {
@@ -118,84 +114,117 @@ std::vector<Bank> climb_split(const Bank& frame, const Start& start, const Windo
   return banks;
 }
 
-struct Choice {
-  std::size_t start = 0;
-  Index iterations = 0;
-  NoiseAdaptation adaptation;
-};
-
 /// Scores of training runs left out, for every start, number of iterations and way to adapt.
 class CrossValidation {
  public:
-  CrossValidation(const Recording& recording, const WindowFits& fits, const Bank& frame,
-                  const std::vector<Start>& starts, const RefineOptions& options, const FilterOptions& filter)
-      : splits_(validation_splits(recording, options.folds)), filter_(filter) {
+  CrossValidation(const Recording& recording, const WindowFits& fits, const Bank& frame, const RefineOptions& options,
+                  const FilterOptions& filter)
+      : splits_(validation_splits(recording, options.folds)),
+        fits_(fits),
+        frame_(frame),
+        options_(options),
+        filter_(filter) {
     for (const ValidationSplit& split : splits_) samples_ += split.left_out.transitions(Role::train);
-    banks_.assign(starts.size() * splits_.size(), {});
-    tbb::parallel_for(std::size_t{0}, banks_.size(), [&](std::size_t i) {
-      banks_[i] = climb_split(frame, starts[i / splits_.size()], fits, splits_[i % splits_.size()].training, options);
-    });
   }
 
-  bool possible() const { return !splits_.empty(); }
-
-  /// Mean score at each checkpoint of one start.
-  std::vector<double> scores(std::size_t start) const {
-    std::vector<double> sums(banks_[start * splits_.size()].size());
-    tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t c) {
-      for (std::size_t s = 0; s < splits_.size(); ++s)
-        sums[c] += score(banks_[start * splits_.size() + s][c], splits_[s].left_out, filter_);
-      sums[c] /= static_cast<double>(samples_);
+  /// Tries all and remembers the best of these and earlier ones; adds a row for each to the table. Without anything to
+  /// leave out the first one is the best, run to convergence.
+  void consider(const std::vector<Start>& candidates) {
+    std::vector<std::vector<Bank>> banks(candidates.size() * splits_.size());
+    tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t i) {
+      banks[i] =
+          climb_split(frame_, candidates[i / splits_.size()], fits_, splits_[i % splits_.size()].training, options_);
     });
-    return sums;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const auto first = banks.begin() + static_cast<std::ptrdiff_t>(i * splits_.size());
+      add(candidates[i], {first, first + static_cast<std::ptrdiff_t>(splits_.size())});
+    }
   }
 
-  /// The best way to adapt at one checkpoint of one start.
-  NoiseAdaptation best_adaptation(std::size_t start, std::size_t checkpoint) const {
+  const Start& best() const { return best_; }
+  Index iterations() const { return table_[selected_].iterations; }
+
+  std::vector<RefineCandidate> table() const {
+    std::vector<RefineCandidate> rows = table_;
+    rows[selected_].selected = true;
+    return rows;
+  }
+
+  /// How the noise scale should move in the best one's filter.
+  NoiseAdaptation adaptation() const {
+    if (splits_.empty() || filter_.noise != FilterNoise::adaptive) return {};
     std::vector<NoiseAdaptation> ways;
     for (const double forgetting : forgettings)
       for (const double prior : prior_samples) ways.push_back({forgetting, prior});
-    std::vector<double> sums(ways.size());
+    std::vector<double> scores(ways.size());
     tbb::parallel_for(std::size_t{0}, ways.size(), [&](std::size_t w) {
-      for (std::size_t s = 0; s < splits_.size(); ++s) {
-        Bank bank = banks_[start * splits_.size() + s][checkpoint];
-        bank.noise_adaptation = ways[w];
-        sums[w] += score(bank, splits_[s].left_out, filter_);
-      }
+      std::vector<Bank> banks = best_banks_;
+      for (Bank& bank : banks) bank.noise_adaptation = ways[w];
+      scores[w] = score(banks);
     });
-    return ways[std::max_element(sums.begin(), sums.end()) - sums.begin()];
+    return ways[std::max_element(scores.begin(), scores.end()) - scores.begin()];
   }
 
  private:
+  /// Mean over the samples left out; `banks`: one per split.
+  double score(const std::vector<Bank>& banks) const {
+    double sum = 0.0;
+    for (std::size_t s = 0; s < splits_.size(); ++s)
+      for (const Trajectory& run : splits_[s].left_out.runs) sum += log_likelihood(banks[s], run, filter_);
+    return std::isnan(sum) ? -std::numeric_limits<double>::infinity() : sum / static_cast<double>(samples_);
+  }
+
+  static std::vector<Bank> at_checkpoint(const std::vector<std::vector<Bank>>& by_split, std::size_t checkpoint) {
+    std::vector<Bank> banks;
+    for (const std::vector<Bank>& of_split : by_split) banks.push_back(of_split[checkpoint]);
+    return banks;
+  }
+
+  void add(const Start& candidate, const std::vector<std::vector<Bank>>& by_split) {
+    RefineCandidate row{candidate.name,          candidate.model.modes(),
+                        candidate.shared,        candidate.noise_transitions,
+                        options_.max_iterations, not_a_number};
+    std::size_t checkpoint = 0;
+    if (!splits_.empty()) {
+      std::vector<double> scores(by_split.front().size());
+      tbb::parallel_for(std::size_t{0}, scores.size(),
+                        [&](std::size_t c) { scores[c] = score(at_checkpoint(by_split, c)); });
+      checkpoint = std::max_element(scores.begin(), scores.end()) - scores.begin();
+      row.iterations = checkpoints[checkpoint];
+      row.score = scores[checkpoint];
+    }
+    table_.push_back(row);
+    if (table_.size() > 1 && !(row.score > table_[selected_].score)) return;
+    selected_ = table_.size() - 1;
+    best_ = candidate;
+    if (!splits_.empty()) best_banks_ = at_checkpoint(by_split, checkpoint);
+  }
+
   std::vector<ValidationSplit> splits_;
+  const WindowFits& fits_;
+  const Bank& frame_;
+  RefineOptions options_;
   FilterOptions filter_;
-  std::vector<std::vector<Bank>> banks_;  // start by start, split by split
   Index samples_ = 0;
+  std::vector<RefineCandidate> table_;
+  std::size_t selected_ = 0;
+  Start best_;
+  std::vector<Bank> best_banks_;
 };
 
-Choice choose(const CrossValidation& validation, const std::vector<Start>& starts, const RefineOptions& options,
-              const FilterOptions& filter, std::vector<RefineCandidate>& table) {
-  Choice choice{0, options.max_iterations, {}};
-  double best = -std::numeric_limits<double>::infinity();
-  std::size_t best_checkpoint = 0, selected = 0;
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    table.push_back({starts[i].name, starts[i].model.modes(), starts[i].shared, starts[i].noise_transitions,
-                     options.max_iterations, not_a_number});
-    if (!validation.possible()) continue;
-    const std::vector<double> scores = validation.scores(i);
-    const std::size_t checkpoint = std::max_element(scores.begin(), scores.end()) - scores.begin();
-    table.back().iterations = checkpoints[checkpoint];
-    table.back().score = scores[checkpoint];
-    if (!(scores[checkpoint] > best)) continue;
-    best = scores[checkpoint];
-    best_checkpoint = checkpoint;
-    selected = i;
-    choice = {i, checkpoints[checkpoint], {}};
+/// Which start, what its modes share and how many iterations first; then how strong the prior on Q is.
+CrossValidation cross_validate(const Recording& recording, const WindowFits& fits, const std::vector<Start>& candidates,
+                               const Bank& frame, const RefineOptions& options, const FilterOptions& filter) {
+  CrossValidation validation(recording, fits, frame, options, filter);
+  validation.consider(candidates);
+  if (std::isnan(validation.table().front().score)) return validation;  // nothing was left out
+  std::vector<Start> by_strength;
+  for (const double strength : other_strengths) {
+    by_strength.push_back(validation.best());
+    by_strength.back().noise_transitions = strength;
   }
-  table[selected].selected = true;
-  if (validation.possible() && filter.noise == FilterNoise::adaptive)
-    choice.adaptation = validation.best_adaptation(choice.start, best_checkpoint);
-  return choice;
+  validation.consider(by_strength);
+  return validation;
 }
 
 /// Standard errors given the smoothed modes: of theta by its posterior covariance, of Q by the normal scatter's (Q_ii
@@ -234,10 +263,7 @@ std::vector<Start> all_starts(const WindowFits& fits, const std::vector<Bank>& b
   std::vector<Start> starts;
   for (const auto& [name, model] : models)
     for (const SharedParts shared : ways_to_share(options.share))
-      for (const double strength : prior_strengths) {
-        starts.push_back({name, model, shared, strength});
-        if (options.folds < 2) break;  // nothing could choose among them
-      }
+      starts.push_back({name, model, shared, prior_strength});
   return starts;
 }
 
@@ -250,23 +276,23 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   if (!frame.motion_parameters.empty())
     throw std::invalid_argument("a bank of the motion model " + frame.model + " cannot be refined, a linear one can");
   const TrainingTransitions transitions = gather_training_transitions(recording, frame.structure);
-  SwitchingPrior prior = switching_prior(transitions, fits.global, fits.prior_sd, prior_strengths.front());
-  const std::vector<Start> starts = all_starts(fits, banks, transitions, prior, options);
+  SwitchingPrior prior = switching_prior(transitions, fits.global, fits.prior_sd, prior_strength);
+  const CrossValidation validation =
+      cross_validate(recording, fits, all_starts(fits, banks, transitions, prior, options), frame, options, filter);
 
   Refinement result;
   result.start = frame;
-  const CrossValidation validation(recording, fits, frame, starts, options, filter);
-  const Choice choice = choose(validation, starts, options, filter, result.candidates);
-  const Start& start = starts[choice.start];
+  result.candidates = validation.table();
+  const Start& start = validation.best();
   prior.noise_transitions = start.noise_transitions;
   Climb climb(transitions, prior, start.shared, options.tolerance, start.model);
-  for (Index i = 0; i < choice.iterations && !climb.converged(); ++i) climb.step();
+  for (Index i = 0; i < validation.iterations() && !climb.converged(); ++i) climb.step();
   result.objective = climb.objective();
 
   SwitchingRegression model = climb.model();
   ModePosterior posterior = climb.posterior();
   std::vector<ScreenedMode> screened = frame.screened;
-  while (screen_worst_mode(frame.structure, transitions, posterior, start.shared, model, screened)) {
+  while (options.screen && screen_worst_mode(frame.structure, transitions, posterior, start.shared, model, screened)) {
     Climb rest(transitions, prior, start.shared, options.tolerance, model);
     for (Index i = 0; i < iterations_after_screening; ++i) rest.step();
     model = rest.model();
@@ -274,8 +300,9 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   }
   result.bank = with_modes(frame, model);
   result.bank.screened = std::move(screened);
-  result.bank.noise_adaptation = choice.adaptation;
+  result.bank.noise_adaptation = validation.adaptation();
   set_standard_errors(transitions, prior, model, posterior, result.bank);
+  if (options.measurement_noise) estimate_measurement_noise(recording, filter, result.bank);
   return result;
 }
 

@@ -29,6 +29,7 @@ struct RefineOptions {
   Index restarts = 2;             ///< starts from random stretches of the runs besides the mixture's
   Index folds = 6;                ///< parts of the cross-validation; 1: none, every start runs to convergence
   bool measurement_noise = true;  ///< R by maximum likelihood of the filter on the training runs; false: the start's R
+  bool screen = true;             ///< take unstable, starved and duplicate modes out
   std::uint64_t seed = 1;
 };
 
@@ -60,7 +61,8 @@ struct Refinement {
 /// covariance were seen, whichever the cross-validation likes most; 0.1 on every count of T and of first modes.
 ///
 /// The state counts as measured exactly in the fit of theta, Q and T, which is exact for R = 0 and an approximation for
-/// R > 0 that leaves measurement noise in Q. The bank keeps the start's R.
+/// R > 0: it leaves measurement noise in Q and draws theta to errors-in-variables. R, and with it how much of Q is
+/// left, is then estimated by the filter's likelihood (refine_noise.hpp), and kept where that is better.
 /// Requires linear or lagged linear banks of one structure; throws std::invalid_argument for a motion model's.
 Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& starts,
                        const RefineOptions& options, const FilterOptions& filter);
