@@ -267,8 +267,10 @@ void smooth_run(const Bank& bank, const Trajectory& run, const FilterOptions& op
   check_run(bank, run);
   evaluation.viterbi_mode = viterbi(bank, run, options);
   if (options.variant == FilterVariant::salvi2025) return;
+  FilterOptions forward = options;
+  if (options.variant == FilterVariant::gpb1) forward.variant = FilterVariant::gpb2;
   with_sizes(bank.structure.dimension(), bank.C.rows(),
-             [&]<int N, int NY>() { smooth<N, NY>(bank, run, options, evaluation); });
+             [&]<int N, int NY>() { smooth<N, NY>(bank, run, forward, evaluation); });
 }
 
 }  // namespace modebank
