@@ -265,6 +265,13 @@ std::vector<Option> other_options() {
       words("filter.variant", "multiple-model filter", FIELD(filter.variant)),
       words("filter.noise", "the modes' noise as learned, or times a scale that follows the run", FIELD(filter.noise)),
       flag("filter.parameter_noise", "add the modes' parameter spread to Q", FIELD(filter.parameter_noise)),
+      words("filter.time_steps",
+            "a longer time between samples: as many prediction steps as fit, the input held; or one step always",
+            FIELD(filter.time_steps)),
+      numeric("filter.horizon", each(between(1, 10'000)), "samples",
+              "predictions this far ahead are scored, too: a number, a range such as 1..10, or a list; empty: none",
+              FIELD(scoring.horizon)),
+      flag("filter.smooth", "smoothed states and the most probable sequence of modes, too", FIELD(scoring.smooth)),
       text("archive.output", "a path", "archive to write; empty: this file's name with .h5, in the current folder",
            FIELD(archive.output)),
       text("archive.input", "an archive", "supplies the earlier stages of identify, cluster and evaluate",
@@ -274,6 +281,22 @@ std::vector<Option> other_options() {
       numeric("job.threads", between(0, 1024), "", "0: all cores; never changes a number", FIELD(job.threads)),
       option("job.seed", "a whole number >= 0", "", "the one seed; every use of randomness derives from it",
              FIELD(job.seed)),
+  };
+}
+
+std::vector<Option> track_options() {
+  return {
+      words("track.filter", "which of the archive's filters runs", FIELD(track.filter)),
+      words("track.format", "of lines in and out: CSV under a header, or a JSON object each; auto: by the first line",
+            FIELD(track.format)),
+      numeric("track.level", inside(0, 1), "", "probability of the interval about the prediction", FIELD(track.level)),
+      numeric("track.alarm", inside(0, 1), "",
+              "alarm when a measurement lies further out than this share of a true filter's would", FIELD(track.alarm)),
+      text("track.checkpoint", "a path", "where the filter's state is kept at the end of the input or on SIGINT",
+           FIELD(track.checkpoint)),
+      numeric("track.checkpoint_interval", at_least(0), "samples", "and this often; 0: at the end only",
+              FIELD(track.checkpoint_interval)),
+      text("track.resume", "a checkpoint", "go on from there", FIELD(track.resume)),
   };
 }
 
@@ -408,8 +431,8 @@ Config default_config() {
 const std::vector<Option>& option_table() {
   static const std::vector<Option> table = [] {
     std::vector<Option> all;
-    for (auto section : {data_options, window_options, mixture_options, bank_options, other_options, simulate_options,
-                         simulate_linear_options, simulate_robot_options})
+    for (auto section : {data_options, window_options, mixture_options, bank_options, other_options, track_options,
+                         simulate_options, simulate_linear_options, simulate_robot_options})
       for (Option& entry : section()) all.push_back(std::move(entry));
     return all;
   }();

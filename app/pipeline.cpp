@@ -11,10 +11,13 @@
 
 #include "app/summary_text.hpp"
 #include "filter/bank_frame.hpp"
+#include "filter/diagnostics.hpp"
 #include "filter/evaluate.hpp"
+#include "filter/horizon.hpp"
 #include "filter/innovation_tests.hpp"
 #include "filter/learn.hpp"
 #include "filter/scores.hpp"
+#include "filter/smoother.hpp"
 #include "ident/error.hpp"
 #include "ident/fit_window.hpp"
 #include "ident/linearise.hpp"
@@ -37,10 +40,20 @@ class Stopwatch {
 };
 
 std::vector<RunEvaluation> evaluate_runs(const Bank& bank, const std::vector<Trajectory>& runs,
-                                         const FilterOptions& options) {
+                                         const FilterOptions& options, bool smooth) {
   std::vector<RunEvaluation> evaluations(runs.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
+    evaluations[i] = evaluate_run(bank, runs[i], options);
+    if (smooth) smooth_run(bank, runs[i], options, evaluations[i]);
+  });
+  return evaluations;
+}
+
+std::vector<HorizonEvaluation> look_ahead(const Bank& bank, const std::vector<Trajectory>& runs,
+                                          const FilterOptions& options, const std::vector<Index>& horizons) {
+  std::vector<HorizonEvaluation> evaluations(runs.size());
   tbb::parallel_for(std::size_t{0}, runs.size(),
-                    [&](std::size_t i) { evaluations[i] = evaluate_run(bank, runs[i], options); });
+                    [&](std::size_t i) { evaluations[i] = evaluate_horizons(bank, runs[i], options, horizons); });
   return evaluations;
 }
 
@@ -228,18 +241,28 @@ void load_banks(const Config& config, Archive& archive) {
 
 void evaluate_stage(const Config& config, Archive& archive) {
   const Stopwatch watch;
+  const std::vector<Trajectory>& runs = archive.recording->runs;
   archive.evaluations.clear();
   archive.summary.clear();
+  archive.horizons.clear();
+  archive.diagnostics.clear();
+  const auto append = [](auto& list, auto rows) {
+    list.insert(list.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
+  };
   auto evaluate = [&](const char* name, const std::optional<Bank>& bank, const FilterOptions& options) {
     if (!bank) return;
-    archive.evaluations.push_back({name, evaluate_runs(*bank, archive.recording->runs, options)});
-    for (SummaryRow& row : summarize(name, archive.recording->runs, archive.evaluations.back().runs))
-      archive.summary.push_back(std::move(row));
+    archive.evaluations.push_back({name, evaluate_runs(*bank, runs, options, config.scoring.smooth)});
+    const std::vector<RunEvaluation>& evaluations = archive.evaluations.back().runs;
+    append(archive.summary, summarize(name, runs, evaluations));
+    append(archive.diagnostics, diagnose(name, *bank, runs, evaluations));
+    if (!config.scoring.horizon.empty())
+      append(archive.horizons,
+             summarize_horizons(name, runs, look_ahead(*bank, runs, options, config.scoring.horizon)));
   };
   evaluate("bank", archive.bank, config.filter);
   // The competitors stay what they are, whatever filter the bank runs in.
-  evaluate("baseline", archive.baseline, FilterOptions{FilterVariant::kf, false});
-  evaluate("noise_only", archive.noise_only, FilterOptions{FilterVariant::imm, false});
+  evaluate("baseline", archive.baseline, FilterOptions{FilterVariant::kf, false, config.filter.time_steps});
+  evaluate("noise_only", archive.noise_only, FilterOptions{FilterVariant::imm, false, config.filter.time_steps});
   spdlog::info("evaluation: {} filters in {:.2f} s", archive.evaluations.size(), watch.seconds());
 }
 

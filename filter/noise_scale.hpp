@@ -13,8 +13,8 @@
 ///   weight  <- f weight + (1 - f) n0 + sum_j mu_j tr(G_j) / n_y,      G_j = S_j^-1 C s Q_j C'
 ///   squares <- f squares + (1 - f) n0 + s sum_j mu_j e_j' S_j^-1 C s Q_j C' S_j^-1 e_j / n_y,   s = squares / weight.
 /// With R = 0 and a known state the squares are those of the standardised innovations; what measurement noise or an
-/// uncertain state explains is left out in proportion. The plug-in s takes the place of the Student t of the exact
-/// conjugate update.
+/// uncertain state explains is left out in proportion, and n_y counts the signals that are not missing. The plug-in s
+/// takes the place of the Student t of the exact conjugate update.
 namespace modebank {
 
 /// Innovations count as no larger than this many standard deviations, so that one outlier does not blow up the scale.
@@ -66,7 +66,7 @@ template <class Model, class Sensor, class Step, class State>
 void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::VectorXd& prior, Step& step,
                        State& state) {
   const double f = model.noise_adaptation.forgetting, n0 = model.noise_adaptation.prior_samples;
-  const double s = state.noise_scale, n_y = static_cast<double>(step.residual.size());
+  const double s = state.noise_scale, n_y = static_cast<double>(step.residual.size() - step.partial.missing);
   const std::size_t per_mode = step.kalman.size() / model.modes.size();
   const double largest = step.log_likelihood.maxCoeff();
   double total = 0.0, share = 0.0, square = 0.0;
