@@ -33,7 +33,7 @@ void validate(const Config& config) {
           "window.scale = fixed needs window.sigma, the residual standard deviation, above 0");
   require(config.bank.refine == Refine::none || is_linear(config.window),
           fmt::format("bank.refine = em needs window.model = linear or varx, not {}: it fits linear modes",
-                      name_of(config.window.model)));
+                      config.window.model));
 }
 
 }  // namespace modebank::app

@@ -30,8 +30,8 @@ struct EnumNames<FilterNoise> {
 struct FilterOptions {
   FilterVariant variant = FilterVariant::imm;
   bool parameter_noise = false;  ///< Q_k = Q + (I (x) phi') Sigma_theta (I (x) phi')' with the mode's spread
-  FilterNoise noise = FilterNoise::gaussian;
   TimeSteps time_steps = TimeSteps::repeat;
+  FilterNoise noise = FilterNoise::gaussian;
 };
 
 /// What a filter said about every sample of a run, one sample per column. Column 0 is the start: its scores are NaN.

@@ -14,12 +14,15 @@
 #include "filter/refine_screening.hpp"
 #include "filter/refine_start.hpp"
 #include "filter/validation_split.hpp"
+#include "ident/fit_window.hpp"
 #include "ident/not_a_number.hpp"
 
 namespace modebank {
 namespace {
 
-constexpr std::array<Index, 12> checkpoints{1, 2, 4, 7, 12, 20, 35, 60, 100, 200, 500, 1000};
+// Iterations after which the runs left out are scored. Not before 10: the start has seen all training runs, and it
+// takes the fit to the others a while to forget that. The last one counts as the limit where that is lower.
+constexpr std::array<Index, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
 constexpr std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
 constexpr std::array<double, 3> prior_samples{2.0, 5.0, 20.0};
 constexpr double prior_strength = 4.0;  // transitions that the prior on Q is worth, at first
@@ -97,6 +100,14 @@ std::vector<SharedParts> ways_to_share(Sharing share) {
   return {SharedParts::none, SharedParts::theta, SharedParts::noise};
 }
 
+std::vector<Index> checkpoints_up_to(Index limit) {
+  std::vector<Index> list;
+  for (const Index checkpoint : checkpoints)
+    if (checkpoint < limit) list.push_back(checkpoint);
+  list.push_back(limit);
+  return list;
+}
+
 /// The banks of one start on one split, at each checkpoint up to the limit.
 std::vector<Bank> climb_split(const Bank& frame, const Start& start, const WindowFits& fits, const Recording& training,
                               const RefineOptions& options) {
@@ -106,8 +117,7 @@ std::vector<Bank> climb_split(const Bank& frame, const Start& start, const Windo
   Climb climb(transitions, prior, start.shared, options.tolerance, start.model);
   std::vector<Bank> banks;
   Index done = 0;
-  for (const Index checkpoint : checkpoints) {
-    if (checkpoint > options.max_iterations) break;
+  for (const Index checkpoint : checkpoints_up_to(options.max_iterations)) {
     for (; done < checkpoint; ++done) climb.step();
     banks.push_back(with_modes(frame, climb.model()));
   }
@@ -190,7 +200,7 @@ class CrossValidation {
       tbb::parallel_for(std::size_t{0}, scores.size(),
                         [&](std::size_t c) { scores[c] = score(at_checkpoint(by_split, c)); });
       checkpoint = std::max_element(scores.begin(), scores.end()) - scores.begin();
-      row.iterations = checkpoints[checkpoint];
+      row.iterations = checkpoints_up_to(options_.max_iterations)[checkpoint];
       row.score = scores[checkpoint];
     }
     table_.push_back(row);

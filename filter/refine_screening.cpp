@@ -104,7 +104,36 @@ double radius(const LinearStructure& structure, const SwitchingRegression& model
   return spectral_radius(unpack(structure, model.theta.col(j)));
 }
 
+/// Slack above 1 for growth that power iteration knows to no more digits: an integrator stays.
+constexpr double growth_slack = 1e-4;
+
 }  // namespace
+
+double mean_square_growth(const LinearStructure& structure, const SwitchingRegression& model) {
+  constexpr int most = 2000;
+  constexpr double tolerance = 1e-7;
+  const Index n = structure.dimension(), K = model.modes();
+  std::vector<Eigen::MatrixXd> F, X(static_cast<std::size_t>(K), Eigen::MatrixXd::Identity(n, n));
+  for (Index j = 0; j < K; ++j) F.push_back(unpack(structure, model.theta.col(j)).full_form());
+  double growth = 0.0;
+  for (int iteration = 0; iteration < most; ++iteration) {
+    std::vector<Eigen::MatrixXd> next(X.size(), Eigen::MatrixXd::Zero(n, n));
+    double trace = 0.0, trace_before = 0.0;
+    for (std::size_t i = 0; i < X.size(); ++i) {
+      const Eigen::MatrixXd moved = F[i] * X[i] * F[i].transpose();
+      for (std::size_t j = 0; j < X.size(); ++j)
+        next[j] += model.transition(static_cast<Index>(i), static_cast<Index>(j)) * moved;
+      trace_before += X[i].trace();
+      trace += moved.trace();
+    }
+    if (!(trace > 0.0)) return 0.0;
+    const double before = growth;
+    growth = trace / trace_before;
+    for (std::size_t j = 0; j < X.size(); ++j) X[j] = next[j] / trace;
+    if (std::abs(growth - before) <= tolerance * growth) break;
+  }
+  return growth;
+}
 
 bool screen_worst_mode(const LinearStructure& structure, const TrainingTransitions& transitions,
                        const ModePosterior& posterior, SharedParts shared, SwitchingRegression& model,
@@ -127,6 +156,7 @@ bool screen_worst_mode(const LinearStructure& structure, const TrainingTransitio
       unstable = j;
     }
   }
+  if (unstable >= 0 && mean_square_growth(structure, model) <= 1.0 + growth_slack) unstable = -1;
   if (const Index j = starved >= 0 ? starved : unstable; j >= 0) {
     list(j, starved >= 0 ? "starved after refinement" : "unstable after refinement");
     drop_mode(j, model);

@@ -33,8 +33,9 @@ void read_root(const std::filesystem::path& path, Body body) {
 Bank load_bank(const std::filesystem::path& path, const std::string& which) {
   std::optional<Bank> bank;
   read_root(path, [&](ArchiveReader& root) {
-    layout::exchange_part(root, which, bank, {},
-                          [](ArchiveReader& member, Bank& part) { layout::exchange_bank(member, part, Units({})); });
+    layout::exchange_part(root, which, bank, {}, [](ArchiveReader& member, Bank& part) {
+      layout::exchange_bank(member, part, Units(Recording()));
+    });
     if (!bank) throw DataError("holds no " + which);
   });
   return *bank;

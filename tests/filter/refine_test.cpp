@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <Eigen/Eigenvalues>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <random>
 
 #include "filter/bank_frame.hpp"
+#include "filter/refine_screening.hpp"
 #include "filter/validation_split.hpp"
 #include "tests/filter/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -55,6 +57,12 @@ Bank start_bank(const Recording& recording, const Eigen::MatrixXd& theta) {
     bank.modes.push_back(make_mode(structure, theta.col(j), Eigen::MatrixXd::Constant(1, 1, 0.02), {}, {}, 1.0));
   set_mode_sequence(bank, TransitionMatrix::sticky(theta.cols(), 0.9));
   return bank;
+}
+
+FilterOptions adaptive_imm() {
+  FilterOptions options;
+  options.noise = FilterNoise::adaptive;
+  return options;
 }
 
 RefineOptions quick() {
@@ -119,8 +127,7 @@ TEST_F(Refine, ChoiceRestsOnTrainingRunsAloneForAnyNumberOfThreads) {
   options.restarts = 1;
   options.share = modebank::Sharing::best;
   const auto refine = [&](const Recording& data) {
-    return refine_bank(data, test::windows_of(data, 25, 1), {start_bank(data, truth.theta)}, options,
-                       {FilterVariant::imm, false, FilterNoise::adaptive});
+    return refine_bank(data, test::windows_of(data, 25, 1), {start_bank(data, truth.theta)}, options, adaptive_imm());
   };
   const Refinement alone = refine(recording);
   const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
@@ -156,9 +163,23 @@ TEST_F(Refine, AdaptiveNoiseIsWorthItWhereARunIsQuieter) {
     known.transition = TransitionMatrix(truth.T);
     return known;
   }();
-  const FilterOptions adaptive{FilterVariant::imm, false, FilterNoise::adaptive};
-  const double gain = log_likelihood(bank, quiet.runs[0], adaptive) - log_likelihood(bank, quiet.runs[0], {});
+  ;
+  const double gain = log_likelihood(bank, quiet.runs[0], adaptive_imm()) - log_likelihood(bank, quiet.runs[0], {});
   EXPECT_GT(gain / 399.0, 0.2);
+}
+
+TEST(RefineScreening, SecondMomentsGrowAsTheJumpSystemSays) {
+  const LinearStructure scalar{1, 1, false};
+  SwitchingRegression model{Eigen::MatrixXd{{-0.5, 0.2}, {0.0, 0.0}},
+                            {Eigen::MatrixXd::Ones(1, 1), Eigen::MatrixXd::Ones(1, 1)},
+                            Eigen::MatrixXd{{0.7, 0.3}, {0.7, 0.3}},
+                            Eigen::Vector2d(0.5, 0.5)};
+  EXPECT_NEAR(mean_square_growth(scalar, model), 0.7 * 0.25 + 0.3 * 1.44, 1e-6);  // independent draws: sum p_j f_j^2
+  model.transition = Eigen::Matrix2d{{0.5, 0.5}, {0.01, 0.99}};
+  EXPECT_GT(mean_square_growth(scalar, model), 1.0);
+  model.transition = Eigen::Matrix2d{{0.9, 0.1}, {0.8, 0.2}};
+  const Eigen::Matrix2d moments = (model.transition.transpose() * Eigen::Vector2d(0.25, 1.44).asDiagonal());
+  EXPECT_NEAR(mean_square_growth(scalar, model), moments.eigenvalues().cwiseAbs().maxCoeff(), 1e-6);
 }
 
 TEST(NoiseScale, IsTheDiscountedMeanOfStandardisedSquares) {
@@ -172,7 +193,7 @@ TEST(NoiseScale, IsTheDiscountedMeanOfStandardisedSquares) {
   bank.modes.push_back(
       make_mode(structure, Eigen::Vector2d(-0.5, 0.0), Eigen::MatrixXd::Constant(1, 1, Q), {}, {}, 1.0));
   bank.noise_adaptation = {f, n0};
-  const RunEvaluation e = evaluate_run(bank, recording.runs[0], {FilterVariant::imm, false, FilterNoise::adaptive});
+  const RunEvaluation e = evaluate_run(bank, recording.runs[0], adaptive_imm());
   double weight = n0, squares = n0;
   for (Index k = 1; k < 8; ++k) {
     EXPECT_NEAR(e.innovation_covariance(0, k), squares / weight * Q, 1e-14);
@@ -190,7 +211,7 @@ TEST(NoiseScale, StaysWhereMeasurementNoiseExplainsEverything) {
   bank.modes.push_back(
       make_mode(structure, Eigen::Vector2d(0.0, 0.0), Eigen::MatrixXd::Constant(1, 1, 1e-12), {}, {}, 1.0));
   const RunEvaluation plain = evaluate_run(bank, recording.runs[0], {});
-  const RunEvaluation e = evaluate_run(bank, recording.runs[0], {FilterVariant::imm, false, FilterNoise::adaptive});
+  const RunEvaluation e = evaluate_run(bank, recording.runs[0], adaptive_imm());
   EXPECT_TRUE(near(e.innovation_covariance.rightCols(49), plain.innovation_covariance.rightCols(49), 1e-9));
 }
 
