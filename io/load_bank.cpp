@@ -34,7 +34,7 @@ Bank load_bank(const std::filesystem::path& path, const std::string& which) {
   std::optional<Bank> bank;
   read_root(path, [&](ArchiveReader& root) {
     layout::exchange_part(root, which, bank, {},
-                          [](ArchiveReader& member, Bank& part) { layout::exchange_bank(member, part, Units({})); });
+                          [](ArchiveReader& member, Bank& part) { layout::exchange_bank(member, part, Units(Recording())); });
     if (!bank) throw DataError("holds no " + which);
   });
   return *bank;
