@@ -90,7 +90,7 @@ bool SampleReader::read_csv(std::string_view line) {
   const std::size_t fields = for_each_field(line, [&](std::size_t position, std::string_view field) {
     for (std::size_t i = 0; i < positions_.size(); ++i) {
       if (positions_[i] != position) continue;
-      const ParsedNumber number = parse_number(field);
+      const ParsedNumber number = modebank::parse_number(field);
       slot(i) = number.status == NumberStatus::ok ? number.value : not_a_number;
       if (number.status == NumberStatus::text || number.status == NumberStatus::out_of_range) bad = i;
     }

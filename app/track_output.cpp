@@ -23,14 +23,14 @@ Index likeliest(const FilterEstimate& estimate) {
   return mode;
 }
 
-std::string quoted(const std::string& name) { return nlohmann::json(name).dump(); }
+std::string json_quoted(const std::string& name) { return nlohmann::json(name).dump(); }
 
 }  // namespace
 
 EstimateWriter::EstimateWriter(std::vector<std::string> states, Index modes, bool json)
     : states_(std::move(states)), modes_(modes), json_(json) {
   if (json_)
-    for (std::string& state : states_) state = quoted(state);
+    for (std::string& state : states_) state = json_quoted(state);
 }
 
 void EstimateWriter::header(fmt::memory_buffer& out) const {

@@ -1,8 +1,11 @@
 #include "filter/evaluate.hpp"
 
+#include <stdexcept>
+
 #include "filter/bank_filter.hpp"
 #include "filter/filter_step.hpp"
 #include "filter/run_samples.hpp"
+#include "filter/scalar_imm.hpp"
 #include "ident/not_a_number.hpp"
 
 namespace modebank {
@@ -69,8 +72,39 @@ RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const Filter
   return evaluation;
 }
 
+std::vector<double> log_likelihoods(const std::vector<const Bank*>& banks, const std::vector<const Trajectory*>& runs,
+                                    const FilterOptions& options) {
+  if (banks.size() != runs.size()) throw std::invalid_argument("as many banks as runs are needed");
+  std::vector<double> result(runs.size());
+  std::vector<std::size_t> in_lanes;
+  std::vector<scalar_imm::Parameters> parameters;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    check_run(*banks[i], *runs[i]);
+    const bool fits = scalar_imm::can_step(*banks[i], options) && scalar_imm::can_take(*banks[i], *runs[i], options) &&
+                      banks[i]->mode_count() == banks[0]->mode_count() &&
+                      runs[i]->input.rows() == runs[0]->input.rows();
+    if (!fits) {
+      result[i] = log_likelihood(*banks[i], *runs[i], options);
+      continue;
+    }
+    in_lanes.push_back(i);
+    parameters.emplace_back(*banks[i]);
+  }
+  std::vector<scalar_imm::Job> jobs;
+  for (std::size_t j = 0; j < in_lanes.size(); ++j) {
+    const Trajectory& run = *runs[in_lanes[j]];
+    jobs.push_back({&parameters[j], {run.state.data(), run.input.data(), run.samples()}});
+  }
+  const std::vector<double> values = scalar_imm::log_likelihoods(jobs);
+  for (std::size_t j = 0; j < in_lanes.size(); ++j) result[in_lanes[j]] = values[j];
+  return result;
+}
+
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   check_run(bank, run);
+  if (scalar_imm::can_step(bank, options) && scalar_imm::can_take(bank, run, options))
+    return scalar_imm::log_likelihood(scalar_imm::Parameters(bank),
+                                      {run.state.data(), run.input.data(), run.samples()});
   return with_sizes(bank.structure.dimension(), bank.C.rows(),
                     [&]<int N, int NY>() { return sum_log_density<N, NY>(bank, run, options); });
 }

@@ -24,15 +24,15 @@ SampleFeed::SampleFeed(const Bank& bank, TimeSteps time_steps)
 
 void SampleFeed::clear() { samples_ = whole_ = 0; }
 
-Index SampleFeed::count_steps(double time_s) const {
-  const double periods = (time_s - time_s_) / dt_s_;
-  if (samples_ == 0 || time_steps_ == TimeSteps::single || !(dt_s_ > 0.0) || !std::isfinite(periods)) return 1;
+Index SampleFeed::steps_between(double from_s, double to_s, double dt_s, TimeSteps time_steps) {
+  const double periods = (to_s - from_s) / dt_s;
+  if (time_steps == TimeSteps::single || !(dt_s > 0.0) || !std::isfinite(periods)) return 1;
   return static_cast<Index>(std::clamp(std::round(periods), 1.0, static_cast<double>(longest_gap_steps + 1)));
 }
 
 void SampleFeed::push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                       const Eigen::Ref<const Eigen::VectorXd>& measurement) {
-  steps_ = count_steps(time_s);
+  steps_ = samples_ == 0 ? 1 : steps_between(time_s_, time_s, dt_s_, time_steps_);
   if (steps_ > longest_gap_steps) clear();
   for (Index i = recent_.cols() - 1; i > 0; --i) recent_.col(i) = recent_.col(i - 1);
   recent_.col(0) = input;

@@ -31,6 +31,8 @@ class SampleFeed {
   /// The next sample: its time (NaN: one step after the last), the input recorded at it (m) and the measurement (n_y).
   void push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
             const Eigen::Ref<const Eigen::VectorXd>& measurement);
+  /// Model steps from one time to the next, at most longest_gap_steps + 1; 1 when there is no clock.
+  static Eigen::Index steps_between(double from_s, double to_s, double dt_s, TimeSteps time_steps);
   /// Forgets all samples.
   void clear();
 
@@ -64,8 +66,6 @@ class SampleFeed {
   Eigen::VectorXd acting_;
   Eigen::Index samples_ = 0, whole_ = 0, steps_ = 1;
   double time_s_ = 0.0;
-
-  Eigen::Index count_steps(double time_s) const;
 };
 
 }  // namespace modebank
