@@ -30,6 +30,8 @@ constexpr Command commands[] = {
     {"check", "CONFIG", "advice on the data before identification, run by run; --json", run_check},
     {"simulate", "CONFIG", "write runs with known truth in the CSV layout that run reads", run_simulate},
     {"show", "ARCHIVE [PATH]", "provenance, candidates, modes, summary; or one object; --json; --form full", run_show},
+    {"track", "ARCHIVE", "live filter: samples in on standard input, estimates out on standard output, line by line",
+     run_track},
     {"verify", "ARCHIVE...", "check hash, schema and completeness of archives", run_verify},
 };
 

@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/track_input.hpp"
 #include "filter/evaluate.hpp"
 #include "filter/learn.hpp"
 #include "ident/fit_options.hpp"
@@ -23,6 +24,25 @@ struct MixtureConfig {
   WindowChoice windows = WindowChoice::automatic;
   bool error_aware = false;
   std::string start_file;  ///< archive whose mixture is a start; empty: selection.em.start alone
+};
+
+/// What of the [filter] section is about scoring a filter, not about how it steps.
+struct ScoringConfig {
+  std::vector<Index> horizon;  ///< samples ahead; empty: one step alone
+  bool smooth = true;
+};
+
+/// Which filter of an archive `track` runs.
+enum class TrackedFilter { bank, baseline, noise_only };
+
+struct TrackConfig {
+  TrackedFilter filter = TrackedFilter::bank;
+  LineFormat format = LineFormat::automatic;
+  double level = 0.95;
+  double alarm = 0.999;
+  std::string checkpoint;
+  Index checkpoint_interval = 0;
+  std::string resume;
 };
 
 struct ArchiveConfig {
@@ -58,6 +78,8 @@ struct Config {
   MixtureConfig mixture;
   BankOptions bank;
   FilterOptions filter;
+  ScoringConfig scoring;
+  TrackConfig track;
   ArchiveConfig archive;
   JobConfig job;
   SimulateConfig simulate;
@@ -67,6 +89,11 @@ struct Config {
 Config default_config();
 
 }  // namespace modebank::app
+
+template <>
+struct modebank::EnumNames<modebank::app::TrackedFilter> {
+  static constexpr Names<3> values{"bank", "baseline", "noise_only"};
+};
 
 template <>
 struct modebank::EnumNames<modebank::app::SimulatedSystem> {

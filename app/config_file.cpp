@@ -89,6 +89,15 @@ void apply(Config& config, const std::string& where, const std::string& key, con
   }
 }
 
+void apply_overrides(Config& config, const KeyValues& overrides) {
+  for (const auto& [key, value] : overrides) {
+    if (value.find('#') != std::string::npos)
+      throw ConfigurationError(fmt::format(
+          "--{}: '{}' holds a #, which starts a comment in configuration files, so no value can hold one", key, value));
+    apply(config, "--" + key, key, boost::trim_copy(value), false);
+  }
+}
+
 std::filesystem::path default_root(const std::filesystem::path& config_path) {
   const char* environment = std::getenv("MODEBANK_DATA");
   if (environment && *environment) return environment;
@@ -121,15 +130,19 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
     if (entry.key == "data.root" && !config.data.root.empty())
       config.data.root = (std::filesystem::absolute(path).parent_path() / config.data.root).string();
   }
-  for (const auto& [key, value] : overrides) {
-    if (value.find('#') != std::string::npos)
-      throw ConfigurationError(fmt::format(
-          "--{}: '{}' holds a #, which starts a comment in configuration files, so no value can hold one", key, value));
-    apply(config, "--" + key, key, boost::trim_copy(value), false);
-  }
+  apply_overrides(config, overrides);
   if (config.data.root.empty()) config.data.root = default_root(path).string();
   config.data.root = std::filesystem::absolute(config.data.root).lexically_normal().string();
   if (config.archive.output.empty()) config.archive.output = path.stem().string() + ".h5";
+  return config;
+}
+
+Config stored_config(const std::string& resolved, const KeyValues& overrides) {
+  Config config = default_config();
+  for (const auto& [key, value] : resolved_values(resolved))
+    if ((key.rfind("data.", 0) == 0 || key.rfind("filter.", 0) == 0) && find_option(key))
+      apply(config, "stored configuration", key, value, false);
+  apply_overrides(config, overrides);
   return config;
 }
 
@@ -152,7 +165,7 @@ std::map<std::string, std::string> resolved_values(const std::string& resolved) 
 }
 
 bool decides_numbers(const std::string& key) {
-  return key != "data.root" && key.rfind("archive.", 0) != 0 && key != "job.threads";
+  return key != "data.root" && key.rfind("archive.", 0) != 0 && key.rfind("track.", 0) != 0 && key != "job.threads";
 }
 
 std::string config_hash(const Config& config) {

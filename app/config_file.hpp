@@ -17,6 +17,10 @@ using KeyValues = std::vector<std::pair<std::string, std::string>>;
 /// naming line, key and, for an unknown key, the nearest known one.
 Config load_config(const std::filesystem::path& path, const KeyValues& overrides);
 
+/// The [data] and [filter] keys of a configuration that an archive holds, then the overrides. Keys that this version
+/// does not know are left out.
+Config stored_config(const std::string& resolved, const KeyValues& overrides);
+
 /// Every key with its value, itself a valid configuration file.
 std::string resolved_text(const Config& config);
 

@@ -132,7 +132,7 @@ Option start_option() {
       words("mixture.start",
             "where EM begins: auto (the first restart hierarchical, the others k-means++), one way for all, "
             "or the mixture of an archive for the candidate of its size (the others as auto)",
-            FIELD(mixture.selection.em.start));
+            MODEBANK_FIELD(mixture.selection.em.start));
   result.range += " | an archive";
   result.set = [](Config& config, const std::string& text) {
     const std::optional<StartKind> kind = parse_name<StartKind>(text);
@@ -197,13 +197,41 @@ std::vector<Option> bank_options() {
       numeric("bank.measurement_variance", above(0), "state unit^2", "R; empty: the baseline's",
               MODEBANK_FIELD(bank.measurement_variance)),
       flag("bank.screen", "leave unstable and starved modes out of the bank", MODEBANK_FIELD(bank.screen)),
+      numeric("bank.modes", between(0, 1000), "",
+              "at most so many modes: the closest components are merged by moments; 0: no limit",
+              MODEBANK_FIELD(bank.modes)),
+      words("bank.refine", "em: expectation-maximisation of the switching model from the mixture's start",
+            MODEBANK_FIELD(bank.refine)),
+      words("bank.share",
+            "what refined modes have in common; best: what the runs left out in cross-validation like most",
+            MODEBANK_FIELD(bank.em.share)),
+      numeric("bank.restarts", between(0, 1000), "",
+              "starts of em from random stretches of runs, besides the mixture's", MODEBANK_FIELD(bank.em.restarts)),
+      numeric(
+          "bank.folds", between(1, 1000), "",
+          "parts of the training runs that em leaves out in turn to choose start, number of modes and of iterations; "
+          "1: none",
+          MODEBANK_FIELD(bank.em.folds)),
+      numeric("bank.max_iterations", between(1, 1000), "", "limit of em", MODEBANK_FIELD(bank.em.max_iterations)),
+      numeric("bank.tolerance", above(0), "nats/transition", "em stops when the objective gains less",
+              MODEBANK_FIELD(bank.em.tolerance)),
   };
 }
 
 std::vector<Option> other_options() {
   return {
       words("filter.variant", "multiple-model filter", MODEBANK_FIELD(filter.variant)),
+      words("filter.noise", "the modes' noise as learned, or times a scale that follows the run",
+            MODEBANK_FIELD(filter.noise)),
       flag("filter.parameter_noise", "add the modes' parameter spread to Q", MODEBANK_FIELD(filter.parameter_noise)),
+      words("filter.time_steps",
+            "a longer time between samples: as many prediction steps as fit, the input held; or one step always",
+            MODEBANK_FIELD(filter.time_steps)),
+      numeric("filter.horizon", each(between(1, 10'000)), "samples",
+              "predictions this far ahead are scored, too: a number, a range such as 1..10, or a list; empty: none",
+              MODEBANK_FIELD(scoring.horizon)),
+      flag("filter.smooth", "smoothed states and the most probable sequence of modes, too",
+           MODEBANK_FIELD(scoring.smooth)),
       text("archive.output", "a path", "archive to write; empty: this file's name with .h5, in the current folder",
            MODEBANK_FIELD(archive.output)),
       text("archive.input", "an archive", "supplies the earlier stages of identify, cluster and evaluate",
@@ -213,6 +241,24 @@ std::vector<Option> other_options() {
       numeric("job.threads", between(0, 1024), "", "0: all cores; never changes a number", MODEBANK_FIELD(job.threads)),
       option("job.seed", "a whole number >= 0", "", "the one seed; every use of randomness derives from it",
              MODEBANK_FIELD(job.seed)),
+  };
+}
+
+std::vector<Option> track_options() {
+  return {
+      words("track.filter", "which of the archive's filters runs", MODEBANK_FIELD(track.filter)),
+      words("track.format", "of lines in and out: CSV under a header, or a JSON object each; auto: by the first line",
+            MODEBANK_FIELD(track.format)),
+      numeric("track.level", inside(0, 1), "", "probability of the interval about the prediction",
+              MODEBANK_FIELD(track.level)),
+      numeric("track.alarm", inside(0, 1), "",
+              "alarm when a measurement lies further out than this share of a true filter's would",
+              MODEBANK_FIELD(track.alarm)),
+      text("track.checkpoint", "a path", "where the filter's state is kept at the end of the input or on SIGINT",
+           MODEBANK_FIELD(track.checkpoint)),
+      numeric("track.checkpoint_interval", at_least(0), "samples", "and this often; 0: at the end only",
+              MODEBANK_FIELD(track.checkpoint_interval)),
+      text("track.resume", "a checkpoint", "go on from there", MODEBANK_FIELD(track.resume)),
   };
 }
 
@@ -227,7 +273,8 @@ Config default_config() {
 const std::vector<Option>& option_table() {
   static const std::vector<Option> table = [] {
     std::vector<Option> all;
-    for (auto section : {data_options, window_options, mixture_options, bank_options, other_options, simulate_options})
+    for (auto section :
+         {data_options, window_options, mixture_options, bank_options, other_options, track_options, simulate_options})
       for (Option& entry : section()) all.push_back(std::move(entry));
     return all;
   }();

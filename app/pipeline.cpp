@@ -11,10 +11,13 @@
 
 #include "app/summary_text.hpp"
 #include "filter/bank_frame.hpp"
+#include "filter/diagnostics.hpp"
 #include "filter/evaluate.hpp"
+#include "filter/horizon.hpp"
 #include "filter/innovation_tests.hpp"
 #include "filter/learn.hpp"
 #include "filter/scores.hpp"
+#include "filter/smoother.hpp"
 #include "ident/error.hpp"
 #include "ident/fit_window.hpp"
 #include "ident/linearise.hpp"
@@ -38,10 +41,20 @@ class Stopwatch {
 };
 
 std::vector<RunEvaluation> evaluate_runs(const Bank& bank, const std::vector<Trajectory>& runs,
-                                         const FilterOptions& options) {
+                                         const FilterOptions& options, bool smooth) {
   std::vector<RunEvaluation> evaluations(runs.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
+    evaluations[i] = evaluate_run(bank, runs[i], options);
+    if (smooth) smooth_run(bank, runs[i], options, evaluations[i]);
+  });
+  return evaluations;
+}
+
+std::vector<HorizonEvaluation> look_ahead(const Bank& bank, const std::vector<Trajectory>& runs,
+                                          const FilterOptions& options, const std::vector<Index>& horizons) {
+  std::vector<HorizonEvaluation> evaluations(runs.size());
   tbb::parallel_for(std::size_t{0}, runs.size(),
-                    [&](std::size_t i) { evaluations[i] = evaluate_run(bank, runs[i], options); });
+                    [&](std::size_t i) { evaluations[i] = evaluate_horizons(bank, runs[i], options, horizons); });
   return evaluations;
 }
 
@@ -65,6 +78,57 @@ bool trained_on(const Recording& recording, const Trajectory& run) {
     return other.role == Role::train && other.samples() == run.samples() && other.state == run.state &&
            other.input == run.input;
   });
+}
+
+}  // namespace
+
+namespace {
+
+double mean_log_score(const Bank& bank, const Recording& recording, Role role, const FilterOptions& options) {
+  double sum = 0.0;
+  for (const Trajectory& run : recording.runs)
+    if (run.role == role) sum += log_likelihood(bank, run, options);
+  return sum / static_cast<double>(recording.transitions(role));
+}
+
+/// The bank, refined if so configured.
+Refinement learn_modes_of(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion,
+                          const Archive& archive) {
+  BankOptions options = config.bank;
+  options.em.seed = config.job.seed;
+  if (options.refine == Refine::em)
+    return learn_refined_bank(*archive.recording, *archive.windows, *archive.mixture, options, R, config.filter);
+  return {learn_bank(*archive.recording, *archive.windows, *archive.mixture, options, R, motion), {}, {}, {}};
+}
+
+/// What a limit on the number of modes cost: the same bank without it, on the runs that were held out.
+void report_merging(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion, const Archive& archive) {
+  const Index components = archive.mixture->mixture.components(), limit = config.bank.modes;
+  if (limit == 0 || components <= limit) return;
+  const Recording& recording = *archive.recording;
+  Config unlimited = config;
+  unlimited.bank.modes = 0;
+  const Role role = recording.transitions(Role::test) > 0 ? Role::test : Role::train;
+  const Bank whole = learn_modes_of(unlimited, R, motion, archive).bank;
+  const double before = mean_log_score(whole, recording, role, config.filter);
+  const double after = mean_log_score(*archive.bank, recording, role, config.filter);
+  spdlog::info("bank.modes: {} components merged into {}: log score on {} runs {:.4f} -> {:.4f} ({:+.4f})", components,
+               limit, role == Role::test ? "held-out" : "training", before, after, after - before);
+}
+
+void report_refinement(const Refinement& refined) {
+  for (const RefineCandidate& c : refined.candidates)
+    spdlog::info(
+        "refine: {:<12} {:>3} modes, shared {}, Q prior {}: {:.4f} nats/sample left out, after {} iterations{}",
+        c.start, c.modes, name_of(c.shared), c.noise_transitions, c.score, c.iterations, c.selected ? " (chosen)" : "");
+}
+
+void learn_modes(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion, Archive& archive) {
+  Refinement learned = learn_modes_of(config, R, motion, archive);
+  archive.bank = std::move(learned.bank);
+  if (config.bank.refine == Refine::em) archive.unrefined = std::move(learned.start);
+  report_refinement(learned);
+  report_merging(config, R, motion, archive);
 }
 
 }  // namespace
@@ -154,9 +218,10 @@ void bank_stage(const Config& config, Archive& archive) {
   if (!baseline.converged) spdlog::warn("baseline: its noise did not reach a maximum of the likelihood");
   archive.baseline = baseline.bank;
   archive.noise_only = learn_noise_only(recording, windows.structure, baseline.bank.R);
-  archive.bank = config.filter.variant == FilterVariant::kf
-                     ? baseline.bank
-                     : learn_bank(recording, windows, *archive.mixture, config.bank, baseline.bank.R, motion.get());
+  if (config.filter.variant == FilterVariant::kf)
+    archive.bank = baseline.bank;
+  else
+    learn_modes(config, baseline.bank.R, motion.get(), archive);
   spdlog::info("bank: {} modes, {} screened, in {:.2f} s", archive.bank->mode_count(), archive.bank->screened.size(),
                watch.seconds());
 }
@@ -194,22 +259,33 @@ void load_banks(const Config& config, Archive& archive) {
   archive.bank = std::move(stored.bank);
   archive.baseline = std::move(stored.baseline);
   archive.noise_only = std::move(stored.noise_only);
+  archive.unrefined = std::move(stored.unrefined);
 }
 
 void evaluate_stage(const Config& config, Archive& archive) {
   const Stopwatch watch;
+  const std::vector<Trajectory>& runs = archive.recording->runs;
   archive.evaluations.clear();
   archive.summary.clear();
+  archive.horizons.clear();
+  archive.diagnostics.clear();
+  const auto append = [](auto& list, auto rows) {
+    list.insert(list.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
+  };
   auto evaluate = [&](const char* name, const std::optional<Bank>& bank, const FilterOptions& options) {
     if (!bank) return;
-    archive.evaluations.push_back({name, evaluate_runs(*bank, archive.recording->runs, options)});
-    for (SummaryRow& row : summarize(name, archive.recording->runs, archive.evaluations.back().runs))
-      archive.summary.push_back(std::move(row));
+    archive.evaluations.push_back({name, evaluate_runs(*bank, runs, options, config.scoring.smooth)});
+    const std::vector<RunEvaluation>& evaluations = archive.evaluations.back().runs;
+    append(archive.summary, summarize(name, runs, evaluations));
+    append(archive.diagnostics, diagnose(name, *bank, runs, evaluations));
+    if (!config.scoring.horizon.empty())
+      append(archive.horizons,
+             summarize_horizons(name, runs, look_ahead(*bank, runs, options, config.scoring.horizon)));
   };
   evaluate("bank", archive.bank, config.filter);
   // The competitors stay what they are, whatever filter the bank runs in.
-  evaluate("baseline", archive.baseline, FilterOptions{FilterVariant::kf, false});
-  evaluate("noise_only", archive.noise_only, FilterOptions{FilterVariant::imm, false});
+  evaluate("baseline", archive.baseline, FilterOptions{FilterVariant::kf, false, config.filter.time_steps});
+  evaluate("noise_only", archive.noise_only, FilterOptions{FilterVariant::imm, false, config.filter.time_steps});
   spdlog::info("evaluation: {} filters in {:.2f} s", archive.evaluations.size(), watch.seconds());
 }
 

@@ -19,6 +19,7 @@ void print_overview(const std::string& file, bool full_form) {
   if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(*archive.windows));
   if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture));
   if (archive.bank) fmt::print("\nmodes\n{}", modes_text(*archive.bank, full_form));
+  fmt::print("{}", mode_diagnostics_text(archive));
 }
 
 /// I + A instead of A, for datasets A (K, n, n).

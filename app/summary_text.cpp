@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "app/lag_text.hpp"
@@ -102,6 +103,44 @@ std::string scores_text(const Archive& archive) {
   return text + "A true filter has 2.5 % in each pit tail; log score in nats per sample, higher is better.\n";
 }
 
+/// Whether each filter's stated uncertainty is true, with the numbers that say so, and what else stands out.
+std::string verdicts_text(const Archive& archive) {
+  std::string text;
+  const Role role = pooled_row(archive, "bank", Role::test) ? Role::test : Role::train;
+  for (const DiagnosticsRow& row : archive.diagnostics) {
+    if (row.mode >= 0 || row.role != role) continue;
+    text += fmt::format("{:<11} {:<14} tails {:.2f} % [{:.2f}, {:.2f}] above, {:.2f} % [{:.2f}, {:.2f}] below; ",
+                        row.filter, name_of(row.verdict), 100 * row.tail_above, 100 * row.tail_above_lower,
+                        100 * row.tail_above_upper, 100 * row.tail_below, 100 * row.tail_below_lower,
+                        100 * row.tail_below_upper);
+    text += fmt::format("mean NIS {:.3f} [{:.3f}, {:.3f}]", row.nis_mean, row.nis_lower, row.nis_upper);
+    if (!std::isnan(row.nees_mean))
+      text += fmt::format("; NEES {:.3f} [{:.3f}, {:.3f}], state RMSE {:.4g}", row.nees_mean, row.nees_lower,
+                          row.nees_upper, fmt::join(row.state_rmse, " "));
+    text += row.flags.empty() ? "\n" : fmt::format("\n{:>11} {}\n", "", row.flags);
+  }
+  if (text.empty()) return "";
+  return fmt::format(
+      "\nUncertainty on {} runs (calibrated: both tails between {:g} and {:g} %; brackets: 95 % intervals, for NIS "
+      "and\n"
+      "NEES where a true filter's mean lies)\n{}",
+      role == Role::test ? "held-out" : "training", 100 * least_tail, 100 * largest_tail, text);
+}
+
+/// Predictions several samples ahead, on held-out runs if there are any.
+std::string horizon_text(const Archive& archive) {
+  if (archive.horizons.empty()) return "";
+  const Role role = pooled_row(archive, "bank", Role::test) ? Role::test : Role::train;
+  std::string text =
+      fmt::format("\nPredictions ahead, {} runs\n{:<11} {:>8} {:>8} {:>10} {:>10}\n",
+                  role == Role::test ? "held-out" : "training", "filter", "samples", "scored", "log score", "rmse");
+  for (const HorizonRow& row : archive.horizons)
+    if (row.run == "*" && row.role == role)
+      text += fmt::format("{:<11} {:>8} {:>8} {:>10.4f} {:>10.5f}\n", row.filter, row.horizon, row.samples,
+                          row.log_score, fmt::join(row.rmse, " "));
+  return text;
+}
+
 std::string gain_text(const Archive& archive) {
   const Role role = pooled_row(archive, "bank", Role::test) ? Role::test : Role::train;
   const SummaryRow* bank = pooled_row(archive, "bank", role);
@@ -189,7 +228,8 @@ std::string summary_text(const Archive& archive) {
   if (archive.mixture) text += mixture_text(*archive.mixture);
   if (archive.bank) text += bank_text(*archive.bank);
   text += residuals_text(archive);
-  if (!archive.summary.empty()) text += scores_text(archive) + gain_text(archive);
+  if (!archive.summary.empty())
+    text += scores_text(archive) + verdicts_text(archive) + horizon_text(archive) + gain_text(archive);
   return text;
 }
 
@@ -250,6 +290,20 @@ std::string window_parameters_text(const WindowFits& fits) {
   }
   return text + fmt::format("R^2 of the increments {:.3f}, AIC {:.2f} (medians)\n", fmt::join(summary.r_squared, " "),
                             summary.aic);
+}
+
+std::string mode_diagnostics_text(const Archive& archive) {
+  const Role role = pooled_row(archive, "bank", Role::test) ? Role::test : Role::train;
+  std::string text;
+  for (const DiagnosticsRow& row : archive.diagnostics)
+    if (row.filter == "bank" && row.role == role && row.mode >= 0)
+      text += fmt::format("{:>4} {:>7.3f} {:>8} {:>8.1f} {:>8.1f} {:>9.2f} % {:>6.2f} % {:>8.3f} {:>8.2g} {}\n",
+                          row.mode, row.usage, row.samples, row.dwell, row.dwell_model, 100 * row.tail_above,
+                          100 * row.tail_below, row.nis_mean, row.whiteness_p, name_of(row.verdict));
+  if (text.empty()) return "";
+  return fmt::format("\nmodes on {} runs\n{:>4} {:>7} {:>8} {:>8} {:>8} {:>20} {:>8} {:>8} {}\n{}",
+                     role == Role::test ? "held-out" : "training", "mode", "usage", "expected", "dwell", "by T",
+                     "pit tails +/-", "mean NIS", "white p", "verdict", text);
 }
 
 namespace {

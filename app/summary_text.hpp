@@ -32,6 +32,10 @@ std::string candidates_text(const MixtureResult& mixture);
 /// What windows say of the parameters: medians over the windows of estimate, standard error and t value, R^2 and AIC.
 std::string window_parameters_text(const WindowFits& fits);
 
+/// How the bank's modes were used on the held-out runs (without any: the training runs), and whether they are
+/// calibrated.
+std::string mode_diagnostics_text(const Archive& archive);
+
 /// One line per mode: parameters, noise, weight. `full_form` prints I + A instead of A.
 std::string modes_text(const Bank& bank, bool full_form);
 

@@ -21,6 +21,13 @@ struct Mode {
   /// Of banks of a motion model: its parameters and their standard errors; what stands above is then its linearisation.
   Eigen::VectorXd motion_theta = {};
   Eigen::VectorXd motion_standard_error = {};
+  Eigen::MatrixXd Q_standard_error = {};  ///< n x n; of refined banks, empty otherwise
+};
+
+/// How fast the scale of the noise follows a run (filter/noise_scale.hpp).
+struct NoiseAdaptation {
+  double forgetting = 0.98;  ///< per sample, in (0, 1]: 1 / (1 - forgetting) samples are remembered; 1: all of the run
+  double prior_samples = 5;  ///< how many samples at scale one a run's start is worth, > 0
 };
 
 /// A mode that was left out of the bank, and why.
@@ -45,6 +52,9 @@ struct Bank {
   double dt_s = 0.0;  ///< median sample period of the training data
   std::vector<ScreenedMode> screened;
   std::vector<ModelParameter> motion_parameters;  ///< of a motion model; empty for linear ones
+  NoiseAdaptation noise_adaptation;               ///< for filters whose noise is adaptive
+  Eigen::MatrixXd R_standard_error;               ///< n_y x n_y; empty unless R was estimated with the bank
+  Eigen::MatrixXd transition_standard_error;      ///< K x K; of refined banks, empty otherwise
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
   Eigen::VectorXd theta(Eigen::Index mode) const { return pack(structure, modes[mode].model); }

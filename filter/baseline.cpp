@@ -24,7 +24,7 @@ constexpr double bound_tolerance = 1e-7;      // nats per sample that R at its b
 constexpr double difference_step = 1e-5;      // of log coordinates: truncation and rounding both near 1e-10
 constexpr double stationary_gradient = 1e-5;  // nats per sample and unit of a log coordinate
 constexpr double least_gain = 1e-9;           // nats per sample: a better start has to be better than rounding
-constexpr std::array<std::pair<double, double>, 2> starts{{{1.0, 0.1}, {0.01, 0.5}}};  // shares of Q, R
+constexpr std::array<std::pair<double, double>, 2> noise_starts{{{1.0, 0.1}, {0.01, 0.5}}};  // shares of Q, R
 
 /// A point of the search and the mean log-likelihood per sample there.
 struct NoiseEstimate {
@@ -106,7 +106,7 @@ NoiseEstimate maximise(const Bank& bank, const Recording& training, NoiseEstimat
 /// The likelihood can have one maximum with the noise in Q and another with it in R: the best of several starts.
 NoiseEstimate best_of_starts(const Bank& bank, const Recording& training, const NoiseParametrisation& parametrisation) {
   std::optional<NoiseEstimate> best;
-  for (const auto& [q_share, r_share] : starts) {
+  for (const auto& [q_share, r_share] : noise_starts) {
     NoiseEstimate end = maximise(bank, training, {parametrisation, parametrisation.coordinates(q_share, r_share)});
     if (!best || end.mean_log_likelihood > best->mean_log_likelihood + least_gain) best = std::move(end);
   }

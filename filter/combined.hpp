@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "filter/filter_step.hpp"
@@ -18,39 +20,55 @@ struct CombinedPrediction {
   Eigen::Matrix<double, N, 1> state;                    ///< x
   Eigen::Matrix<double, NY, 1> innovation;              ///< e = y - C x
   Eigen::Matrix<double, NY, NY> innovation_covariance;  ///< S
-  double nis = 0.0;                                     ///< e' S^-1 e
-  small::Cholesky<NY> cholesky;                         ///< of S
+  double nis = 0.0;                                     ///< e' S^-1 e, of the signals that are there
+  double spread_share = 0.0;     ///< trace of the spread of the modes' predictions within S, over trace of S
+  small::Cholesky<NY> cholesky;  ///< of S
 
   CombinedPrediction(Eigen::Index n, Eigen::Index n_y)
-      : state(n), innovation(n_y), innovation_covariance(n_y, n_y), cholesky(n_y) {}
+      : state(n), innovation(n_y), innovation_covariance(n_y, n_y), cholesky(n_y), observed_(n_y, n_y) {}
 
   /// x and S after `predict`.
   void expect(const FilterModel<N, NY>& model, FilterStep<N, NY>& step) {
     state.setZero();
     for (std::size_t j = 0; j < step.kalman.size(); ++j) state += weight(step, j) * step.kalman[j].predicted.mean;
     innovation_covariance.setZero();
+    double spread = 0.0;
     for (std::size_t j = 0; j < step.kalman.size(); ++j) {
       step.difference = step.kalman[j].predicted.mean - state;
       small::multiply(step.residual, model.C, step.difference);
       small::add_spread(innovation_covariance, weight(step, j), step.kalman[j].innovation_covariance, step.residual);
+      for (Eigen::Index i = 0; i < step.residual.size(); ++i)
+        spread += weight(step, j) * step.residual(i) * step.residual(i);
     }
+    const double total = innovation_covariance.diagonal().sum();
+    spread_share = total > 0.0 ? std::min(1.0, spread / total) : 0.0;
   }
 
-  /// e and its normalised square after `expect`.
+  /// e (NaN where a signal is missing) and its normalised square after `expect` and `update`.
   template <class Y>
   void observe(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step) {
     small::multiply(innovation, model.C, state);
     innovation = y - innovation;
-    cholesky.factorise(innovation_covariance);
+    observed_ = innovation_covariance;
     step.residual = innovation;
+    if (step.partial.missing > 0)
+      for (Eigen::Index i = 0; i < y.size(); ++i)
+        if (is_missing(y(i))) {
+          PartialSensor<N, NY>::detach(observed_, i);
+          step.residual(i) = 0.0;
+          innovation(i) = std::numeric_limits<double>::quiet_NaN();
+        }
+    cholesky.factorise(observed_);
     cholesky.decorrelate(step.residual);
     nis = cholesky.squared_distance(step.residual);
     if (!(nis < largest_nis)) nis = largest_nis;
   }
 
  private:
+  Eigen::Matrix<double, NY, NY> observed_;
+
   static double weight(const FilterStep<N, NY>& step, std::size_t j) {
-    return step.predicted_probability(static_cast<Eigen::Index>(j));
+    return step.hypothesis_probability()(static_cast<Eigen::Index>(j));
   }
 };
 
@@ -58,12 +76,16 @@ struct CombinedPrediction {
 inline double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
 /// Probability integral transform of the measurement taken in last (Rosenblatt 1952): component i is the predictive
-/// distribution function of y_i given y_1 .. y_(i-1), whose mixture weights those components have updated. Overwrites
-/// step.log_likelihood; `weights` is workspace of size K.
-template <int N, int NY, class Pit>
-void probability_transform(FilterStep<N, NY>& step, Eigen::VectorXd& weights, Pit&& pit) {
-  weights = step.predicted_probability;
+/// distribution function of y_i given y_1 .. y_(i-1), whose mixture weights those components have updated; NaN where
+/// y_i is missing. Overwrites step.log_likelihood; `weights` is workspace, one per hypothesis.
+template <int N, int NY, class Y, class Pit>
+void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights, Pit&& pit) {
+  weights = step.hypothesis_probability();
   for (Eigen::Index i = 0; i < pit.size(); ++i) {
+    if (is_missing(y(i))) {
+      pit(i) = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
     double sum = 0.0;
     for (std::size_t j = 0; j < step.kalman.size(); ++j) {
       const double z = step.kalman[j].decorrelated(i), variance = step.kalman[j].cholesky.D(i);

@@ -24,7 +24,9 @@ struct FilterModel {
 
   LinearStructure structure;
   FilterVariant variant;
-  std::vector<Mode> modes;  ///< K
+  bool adaptive;                     ///< whether the noise scale follows the run
+  NoiseAdaptation noise_adaptation;  ///< how, if it does
+  std::vector<Mode> modes;           ///< K
   Eigen::Matrix<double, NY, N> C;
   Eigen::Matrix<double, NY, NY> R;
   TransitionMatrix transition;
@@ -40,7 +42,12 @@ struct FilterModel {
 
 template <int N, int NY>
 FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
-    : structure(bank.structure), variant(options.variant), C(bank.C), R(bank.R) {
+    : structure(bank.structure),
+      variant(options.variant),
+      adaptive(options.noise == FilterNoise::adaptive),
+      noise_adaptation(bank.noise_adaptation),
+      C(bank.C),
+      R(bank.R) {
   const bool single = variant == FilterVariant::kf;
   if (!single) transition = bank.transition;
   initial_probability = single ? Eigen::VectorXd::Ones(1).eval() : bank.initial_probability;

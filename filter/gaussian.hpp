@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 namespace modebank {
@@ -21,7 +23,7 @@ struct Gaussian {
 /// about the finished mean. Weights need not sum to one: [S25, eq. 12-13] is the same sum with other weights.
 /// (One sum after the other, not one part after the other: sums then live in registers.)
 template <int N, class Weights>
-void merge(const std::vector<Gaussian<N>>& parts, const Weights& weights, Gaussian<N>& merged) {
+void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weights& weights, Gaussian<N>& merged) {
   const Eigen::Index n = merged.mean.size(), count = static_cast<Eigen::Index>(parts.size());
   const Gaussian<N>* part = parts.data();
   for (Eigen::Index a = 0; a < n; ++a) {

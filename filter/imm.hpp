@@ -40,7 +40,9 @@ inline void mixing_weights(const TransitionMatrix& transition, const Eigen::Vect
 
 /// Bayes' rule in the log domain: posterior_j proportional to prior_j exp(log_likelihood_j). Returns
 /// log sum_j prior_j exp(log_likelihood_j). The largest term is taken out first, so nothing underflows to 0/0.
-inline double bayes(const Eigen::VectorXd& prior, const Eigen::VectorXd& log_likelihood, Eigen::VectorXd& posterior) {
+/// Requires at least one possible mode.
+template <class Prior, class LogLikelihood>
+double bayes(const Prior& prior, const LogLikelihood& log_likelihood, Eigen::VectorXd& posterior) {
   double largest = -std::numeric_limits<double>::infinity();
   for (Eigen::Index j = 0; j < prior.size(); ++j)
     if (prior(j) >= impossible_probability) largest = std::max(largest, log_likelihood(j));

@@ -15,6 +15,7 @@ namespace modebank {
 template <int N, int NY>
 struct KalmanStep {
   Gaussian<N> predicted;                                ///< x, P before the measurement
+  Eigen::Matrix<double, N, N> process_noise;            ///< Q as it entered P
   Eigen::Matrix<double, NY, 1> innovation;              ///< e = y - C x
   Eigen::Matrix<double, NY, 1> decorrelated;            ///< L^-1 e, of variance cholesky.D
   Eigen::Matrix<double, NY, NY> innovation_covariance;  ///< S = C P C' + R
@@ -23,6 +24,7 @@ struct KalmanStep {
 
   KalmanStep(Eigen::Index n, Eigen::Index n_y, Eigen::Index regressors)
       : predicted(n),
+        process_noise(n, n),
         innovation(n_y),
         decorrelated(n_y),
         innovation_covariance(n_y, n_y),
@@ -34,17 +36,20 @@ struct KalmanStep {
         NY_(n, n_y),
         phi_(regressors) {}
 
-  /// x = x + A x + B u + c, P = F P F' + Q (+ the spread of the parameters).
+  /// x = x + A x + B u + c, P = F P F' + noise_scale Q (+ the spread of the parameters).
   template <class U>
   void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
-               const U& u);
-  /// What will be measured: S and its factor.
-  void expect(const FilterModel<N, NY>& model);
+               const U& u, double noise_scale = 1.0);
+  /// What will be measured: S and its factor. Here and below `sensor` has C and R: the model, or what is left of it
+  /// when parts of a measurement are missing.
+  template <class Sensor>
+  void expect(const Sensor& sensor);
   /// e and its log density.
-  template <class Y>
-  void observe(const FilterModel<N, NY>& model, const Y& y);
+  template <class Sensor, class Y>
+  void observe(const Sensor& sensor, const Y& y);
   /// The state after the measurement, covariance in Joseph's form.
-  void correct(const FilterModel<N, NY>& model, Gaussian<N>& posterior);
+  template <class Sensor>
+  void correct(const Sensor& sensor, Gaussian<N>& posterior);
   /// log N(residual; 0, S) of any residual; `residual` is decorrelated in place.
   template <class Vector>
   double log_normal(Vector& residual) const;
@@ -100,12 +105,13 @@ bool is_finite(const Gaussian<N>& g) {
 template <int N, int NY>
 template <class U>
 void KalmanStep<N, NY>::predict(const Gaussian<N>& from, const FilterModel<N, NY>& model,
-                                const typename FilterModel<N, NY>::Mode& mode, const U& u) {
+                                const typename FilterModel<N, NY>::Mode& mode, const U& u, double noise_scale) {
   propagate(mode.A, mode.B, mode.c, from.mean, u, predicted.mean);
-  small::multiply(NN_, mode.F, from.covariance);
-  predicted.covariance = mode.Q;
-  small::add_symmetric_product(predicted.covariance, NN_, mode.F);
+  process_noise = noise_scale * mode.Q;
   if (mode.spread.size() > 0) add_parameter_noise(model.structure, mode.spread, from.mean, u);
+  small::multiply(NN_, mode.F, from.covariance);
+  predicted.covariance = process_noise;
+  small::add_symmetric_product(predicted.covariance, NN_, mode.F);
   make_usable(predicted);
 }
 
@@ -121,23 +127,24 @@ void KalmanStep<N, NY>::add_parameter_noise(const LinearStructure& s, const Eige
       double sum = 0.0;
       for (Eigen::Index j = 0; j < q; ++j)
         for (Eigen::Index i = 0; i < q; ++i) sum += phi_(i) * spread(a * q + i, b * q + j) * phi_(j);
-      predicted.covariance(a, b) += sum;
-      if (a != b) predicted.covariance(b, a) = predicted.covariance(a, b);
+      process_noise(a, b) += sum;
+      if (a != b) process_noise(b, a) = process_noise(a, b);
     }
 }
 
 template <int N, int NY>
-void KalmanStep<N, NY>::expect(const FilterModel<N, NY>& model) {
-  small::multiply_transposed(PCt_, predicted.covariance, model.C);
-  innovation_covariance = model.R;
-  small::add_symmetric_product(innovation_covariance, model.C, PCt_.transpose());
+template <class Sensor>
+void KalmanStep<N, NY>::expect(const Sensor& sensor) {
+  small::multiply_transposed(PCt_, predicted.covariance, sensor.C);
+  innovation_covariance = sensor.R;
+  small::add_symmetric_product(innovation_covariance, sensor.C, PCt_.transpose());
   cholesky.factorise(innovation_covariance);
 }
 
 template <int N, int NY>
-template <class Y>
-void KalmanStep<N, NY>::observe(const FilterModel<N, NY>& model, const Y& y) {
-  small::multiply(innovation, model.C, predicted.mean);
+template <class Sensor, class Y>
+void KalmanStep<N, NY>::observe(const Sensor& sensor, const Y& y) {
+  small::multiply(innovation, sensor.C, predicted.mean);
   innovation = y - innovation;
   decorrelated = innovation;
   log_density = log_normal(decorrelated);
@@ -154,20 +161,21 @@ double KalmanStep<N, NY>::log_normal(Vector& residual) const {
 }
 
 template <int N, int NY>
-void KalmanStep<N, NY>::correct(const FilterModel<N, NY>& model, Gaussian<N>& posterior) {
+template <class Sensor>
+void KalmanStep<N, NY>::correct(const Sensor& sensor, Gaussian<N>& posterior) {
   for (Eigen::Index i = 0; i < gain_.rows(); ++i) {  // row i of K = P C' S^-1, as S is symmetric
     gain_.row(i) = PCt_.row(i);
     cholesky.solve(gain_.row(i));
   }
   small::multiply(posterior.mean, gain_, innovation);
   posterior.mean += predicted.mean;
-  small::multiply(closed_loop_, gain_, model.C);
+  small::multiply(closed_loop_, gain_, sensor.C);
   closed_loop_ = -closed_loop_;
   closed_loop_.diagonal().array() += 1.0;
   small::multiply(NN_, closed_loop_, predicted.covariance);
   posterior.covariance.setZero();
   small::add_symmetric_product(posterior.covariance, NN_, closed_loop_);
-  small::multiply(NY_, gain_, model.R);
+  small::multiply(NY_, gain_, sensor.R);
   small::add_symmetric_product(posterior.covariance, NY_, gain_);
   if (!is_finite(posterior)) posterior = predicted;  // an overflowing correction is no information
 }

@@ -5,6 +5,7 @@
 
 #include "filter/bank.hpp"
 #include "filter/evaluate.hpp"
+#include "filter/refine.hpp"
 #include "ident/local_model.hpp"
 #include "ident/trajectory.hpp"
 #include "mixture/select.hpp"
@@ -14,6 +15,7 @@ namespace modebank {
 enum class ThetaSource { pooled, mean };
 enum class NoiseSource { per_mode, shared, fixed };
 enum class TransitionSource { labels, stay };
+enum class Refine { none, em };
 
 template <>
 struct EnumNames<ThetaSource> {
@@ -30,6 +32,11 @@ struct EnumNames<TransitionSource> {
   static constexpr Names<2> values{"labels", "stay"};
 };
 
+template <>
+struct EnumNames<Refine> {
+  static constexpr Names<2> values{"none", "em"};
+};
+
 struct BankOptions {
   ThetaSource theta = ThetaSource::pooled;
   NoiseSource noise = NoiseSource::per_mode;
@@ -38,6 +45,9 @@ struct BankOptions {
   double process_variance = 0.01;              ///< Q diagonal for NoiseSource::fixed [state unit^2]
   std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; empty: the baseline's R
   bool screen = true;                          ///< leave unstable and starved modes out
+  Index modes = 0;                             ///< at most so many: the closest components are merged; 0: no limit
+  Refine refine = Refine::none;                ///< em: refine_bank takes over from the mixture's bank
+  RefineOptions em;
 };
 
 /// One Kalman filter on the global model, Q and R by maximum likelihood, and how that ended.
@@ -60,5 +70,11 @@ Bank learn_noise_only(const Recording& recording, const LinearStructure& structu
 /// state and input. Throws DataError when every mode is screened.
 Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                 const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion = nullptr);
+
+/// learn_bank, then refine_bank from it and from what is left of the mixture when its closest components are merged
+/// (merge_components) down to three quarters of the modes, again and again while there are two. The mixture's own bank is
+/// `start` of the result.
+Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
+                              const BankOptions& options, const Eigen::MatrixXd& R, const FilterOptions& filter);
 
 }  // namespace modebank

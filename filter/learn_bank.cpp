@@ -13,6 +13,7 @@
 #include "filter/screening.hpp"
 #include "filter/transition_learning.hpp"
 #include "ident/error.hpp"
+#include "mixture/merge_components.hpp"
 
 namespace modebank {
 namespace {
@@ -145,9 +146,10 @@ std::vector<Index> all_positions(Index count) {
 
 }  // namespace
 
-Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
+Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& whole,
                 const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion) {
-  check(options, fits, mixture);
+  check(options, fits, whole);
+  const MixtureResult mixture = options.modes > 0 ? merge_components(whole, options.modes) : whole;
   const GaussianMixture& components = mixture.mixture;
   const std::vector<ComponentEstimate> estimates =
       estimate_components({recording, fits, mixture, options.theta}, motion);
@@ -171,6 +173,20 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
                                    components.weights(kept[j]) / kept_weight));
   set_mode_sequence(bank, learn_transition(fits, mixture.labels, kept, options));
   return bank;
+}
+
+Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
+                              const BankOptions& options, const Eigen::MatrixXd& R, const FilterOptions& filter) {
+  BankOptions of_start = options;
+  std::vector<Bank> starts{learn_bank(recording, fits, mixture, options, R)};
+  for (Index modes = starts.front().mode_count() * 3 / 4; modes >= 2; modes = modes * 3 / 4) {
+    of_start.modes = modes;
+    starts.push_back(learn_bank(recording, fits, mixture, of_start, R));
+  }
+  RefineOptions em = options.em;
+  em.screen = options.screen;
+  em.measurement_noise = em.measurement_noise && !options.measurement_variance;
+  return refine_bank(recording, fits, starts, em, filter);
 }
 
 }  // namespace modebank

@@ -14,10 +14,10 @@ inline void mixing_weights(const TransitionMatrix& transition, const Eigen::Vect
 }
 
 /// log L_j = log N(C xhat_j - z; 0, S_j) with the residual taken after the update, as printed in [S25, eq. 16].
-template <int N, int NY, class Y>
-double log_likelihood(const FilterModel<N, NY>& model, const KalmanStep<N, NY>& step, const Gaussian<N>& posterior,
-                      const Y& z, Eigen::Matrix<double, NY, 1>& residual) {
-  small::multiply(residual, model.C, posterior.mean);
+template <int N, int NY, class Sensor, class Y>
+double log_likelihood(const Sensor& sensor, const KalmanStep<N, NY>& step, const Gaussian<N>& posterior, const Y& z,
+                      Eigen::Matrix<double, NY, 1>& residual) {
+  small::multiply(residual, sensor.C, posterior.mean);
   residual -= z;
   return step.log_normal(residual);
 }

@@ -20,11 +20,13 @@ struct ChiSquareRegion {
       : lower(chi_square_quantile(0.025, degrees_of_freedom)), upper(chi_square_quantile(0.975, degrees_of_freedom)) {}
 };
 
-/// Sums over scored samples of one or more runs.
+/// Sums over scored samples of one or more runs. A sample is scored by the signals that it has.
 class ScoreSums {
  public:
   explicit ScoreSums(Index measurements)
-      : squared_error_(Eigen::ArrayXd::Zero(measurements)), nis_region_(static_cast<double>(measurements)) {}
+      : squared_error_(Eigen::ArrayXd::Zero(measurements)), errors_(Eigen::ArrayXd::Zero(measurements)) {
+    for (Index i = 1; i <= measurements; ++i) nis_regions_.emplace_back(static_cast<double>(i));
+  }
 
   /// Adds one run and its whiteness: Ljung-Box per component over the scored samples in order, components pooled.
   void add(const RunEvaluation& run) {
@@ -40,9 +42,9 @@ class ScoreSums {
     SummaryRow row;
     row.samples = samples_;
     const double N = samples_ > 0 ? static_cast<double>(samples_) : not_a_number;
-    const double components = N * static_cast<double>(squared_error_.size());
+    const double components = pit_.empty() ? not_a_number : static_cast<double>(pit_.size());
     row.log_score = log_density_ / N;
-    row.rmse = (squared_error_ / N).sqrt();
+    row.rmse = (squared_error_ / errors_).sqrt();
     row.nis_mean = nis_ / N;
     row.nis_above = static_cast<double>(nis_above_) / N;
     row.nis_below = static_cast<double>(nis_below_) / N;
@@ -56,18 +58,23 @@ class ScoreSums {
  private:
   Index samples_ = 0, nis_above_ = 0, nis_below_ = 0, tail_above_ = 0, tail_below_ = 0;
   double log_density_ = 0.0, nis_ = 0.0;
-  Eigen::ArrayXd squared_error_;
+  Eigen::ArrayXd squared_error_, errors_;
   std::vector<double> pit_, whiteness_;
-  ChiSquareRegion nis_region_, z_region_{1.0};
+  std::vector<ChiSquareRegion> nis_regions_;  ///< of one signal, two, ...
+  ChiSquareRegion z_region_{1.0};
 
   void add_sample(const RunEvaluation& run, Index k, std::vector<std::vector<double>>& z) {
     ++samples_;
     log_density_ += run.log_density(k);
-    squared_error_ += run.innovation.col(k).array().square();
+    const auto there = (!run.pit.col(k).array().isNaN()).eval();
+    squared_error_ += there.select(run.innovation.col(k).array().square(), 0.0);
+    errors_ += there.cast<double>();
+    const ChiSquareRegion& nis_region = nis_regions_[static_cast<std::size_t>(there.count() - 1)];
     nis_ += run.nis(k);
-    nis_above_ += run.nis(k) > nis_region_.upper;
-    nis_below_ += run.nis(k) < nis_region_.lower;
+    nis_above_ += run.nis(k) > nis_region.upper;
+    nis_below_ += run.nis(k) < nis_region.lower;
     for (Index i = 0; i < run.pit.rows(); ++i) {
+      if (!there(i)) continue;
       const double score = normal_score(run.pit(i, k));
       tail_above_ += score * score > z_region_.upper;
       tail_below_ += score * score < z_region_.lower;

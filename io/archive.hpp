@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "filter/bank.hpp"
+#include "filter/diagnostics.hpp"
 #include "filter/evaluate.hpp"
+#include "filter/horizon.hpp"
 #include "filter/scores.hpp"
 #include "ident/fit_window.hpp"
 #include "ident/lag_report.hpp"
@@ -52,10 +54,13 @@ struct Archive {
   std::optional<WindowFits> windows;
   std::optional<MixtureResult> mixture;
   std::optional<Bank> bank;
+  std::optional<Bank> unrefined;  ///< the bank that expectation-maximisation started from
   std::optional<Bank> baseline;
   std::optional<Bank> noise_only;
   std::vector<FilterEvaluation> evaluations;
   std::vector<SummaryRow> summary;
+  std::vector<HorizonRow> horizons;  ///< with filter.horizon
+  std::vector<DiagnosticsRow> diagnostics;
   std::vector<ResidualTestSet> residual_tests;
 };
 

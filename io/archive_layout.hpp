@@ -204,7 +204,10 @@ void exchange_archive(Io& io, A& archive) {
   exchange_part(io, "mixture", archive.mixture, known,
                 [&](auto& member, auto& part) { exchange_mixture(member, part, parameters); });
   const auto exchange_one = [&](auto& member, auto& part) { exchange_bank(member, part, units); };
-  exchange_part(io, "bank", archive.bank, {}, exchange_one);
+  exchange_part(io, "bank", archive.bank, {}, [&](auto& member, auto& part) {
+    exchange_one(member, part);
+    exchange_part(member, "unrefined", archive.unrefined, {}, exchange_one);
+  });
   exchange_part(io, "baseline", archive.baseline, {}, exchange_one);
   exchange_part(io, "noise_only", archive.noise_only, {}, exchange_one);
   io.optional_group("residual_tests", !archive.residual_tests.empty(), {},

@@ -48,6 +48,9 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.field("parameters", stored.parameters, {"K", "p"}, parameters);
   io.optional_field("parameter_covariance", stored.spread, {"K", "p", "p"}, outer(parameters));
   io.optional_field("parameter_standard_error", stored.standard_error, {"K", "p"}, parameters);
+  io.optional_field("Q_standard_error", stored.Q_standard_error, {"K", "n", "n"}, outer(states));
+  io.optional_field("R_standard_error", stored.R_standard_error, {"n_y", "n_y"}, measured ? outer(outputs) : Unit());
+  io.optional_field("transition_standard_error", stored.transition_standard_error, {"K", "K"});
   io.field("C", stored.C, {"n_y", "n"}, measured ? ratios(outputs, states) : Unit());
   io.field("R", stored.R, {"n_y", "n_y"}, measured ? outer(outputs) : Unit());
   io.field("transition", stored.transition, {"K", "K"});
@@ -65,6 +68,8 @@ void exchange_bank(Io& io, B& bank, const Units& units) {
   io.attribute_texts("state_names", bank.state_names);
   io.attribute_texts("input_names", bank.input_names);
   io.attribute("dt_s", bank.dt_s);
+  io.optional_attribute("noise_forgetting", bank.noise_adaptation.forgetting);
+  io.optional_attribute("noise_prior_samples", bank.noise_adaptation.prior_samples);
   exchange_model_parameters(io, bank.motion_parameters, "motion_parameter");
   io.table("screened", bank.screened, column("component", &ScreenedMode::component),
            column("weight", &ScreenedMode::weight), column("spectral_radius", &ScreenedMode::spectral_radius),
@@ -87,6 +92,10 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.field("log_density", evaluation.log_density, {"N"}, {"nat"});
   io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"N", "K"});
   io.field("mode_probability", evaluation.mode_probability, {"N", "K"});
+  io.optional_field("spread_share", evaluation.spread_share, {"N"});
+  io.optional_field("smoothed_state", evaluation.smoothed_state, {"N", "n"}, states);
+  io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"N", "n", "n"}, outer(states));
+  io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"N"});
 }
 
 /// One filter's evaluation of every run of the recording.
@@ -116,6 +125,31 @@ void exchange_summary(Io& io, S& summary, const Unit& states) {
                     column("pit_distance", &SummaryRow::pit_distance), column("whiteness_p", &SummaryRow::whiteness_p));
 }
 
+template <class Io, class R>
+void exchange_horizon(Io& io, R& rows, const Unit& states) {
+  io.optional_table("horizon", rows, column("filter", &HorizonRow::filter), column("role", &HorizonRow::role),
+                    column("run", &HorizonRow::run), column("horizon", &HorizonRow::horizon, "samples"),
+                    column("samples", &HorizonRow::samples), column("log_score", &HorizonRow::log_score, "nat"),
+                    column("rmse", &HorizonRow::rmse, joined(states)));
+}
+
+template <class Io, class R>
+void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
+  using Row = DiagnosticsRow;
+  io.optional_table(
+      "diagnostics", rows, column("filter", &Row::filter), column("role", &Row::role), column("mode", &Row::mode),
+      column("samples", &Row::samples), column("usage", &Row::usage), column("entropy", &Row::entropy),
+      column("dwell", &Row::dwell, "samples"), column("dwell_model", &Row::dwell_model, "samples"),
+      column("tail_above", &Row::tail_above), column("tail_above_lower", &Row::tail_above_lower),
+      column("tail_above_upper", &Row::tail_above_upper), column("tail_below", &Row::tail_below),
+      column("tail_below_lower", &Row::tail_below_lower), column("tail_below_upper", &Row::tail_below_upper),
+      column("nis_mean", &Row::nis_mean), column("nis_lower", &Row::nis_lower), column("nis_upper", &Row::nis_upper),
+      column("nees_mean", &Row::nees_mean), column("nees_lower", &Row::nees_lower),
+      column("nees_upper", &Row::nees_upper), column("state_rmse", &Row::state_rmse, joined(states)),
+      column("whiteness_p", &Row::whiteness_p), column("spread_share", &Row::spread_share),
+      column("verdict", &Row::verdict), column("flags", &Row::flags));
+}
+
 template <class Io, class A>
 void exchange_evaluation(Io& io, A& archive, const Recording& recording, const Units& units) {
   const auto names = [](const std::vector<FilterEvaluation>& list) {
@@ -133,6 +167,8 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
     io.group(evaluation.filter, {},
              [&](auto& member) { exchange_filter(member, evaluation, recording, units.states()); });
   exchange_summary(io, archive.summary, units.states());
+  exchange_horizon(io, archive.horizons, units.states());
+  exchange_diagnostics(io, archive.diagnostics, units.states());
 }
 
 }  // namespace modebank::layout

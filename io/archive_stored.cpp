@@ -168,6 +168,10 @@ StoredBank store_bank(const Bank& bank) {
   if (!absent(spread)) stored.spread = columns(p, p, "parameter covariance", spread);
   const auto standard_error = [](const Mode& mode) -> const auto& { return mode.standard_error; };
   if (!absent(standard_error)) stored.standard_error = columns(p, 1, "parameter standard error", standard_error);
+  const auto Q_error = [](const Mode& mode) -> const auto& { return mode.Q_standard_error; };
+  if (!absent(Q_error)) stored.Q_standard_error = columns(n, n, "Q standard error", Q_error);
+  stored.R_standard_error = bank.R_standard_error.transpose();
+  stored.transition_standard_error = bank.transition_standard_error.transpose();
   stored.parameters.resize(p, bank.mode_count());
   stored.weight.resize(bank.mode_count());
   for (Index k = 0; k < bank.mode_count(); ++k) {
@@ -199,6 +203,7 @@ Bank restore_bank(const StoredBank& stored, Bank bank) {
     mode.Q = one_of(stored.Q, k, n, n);
     if (stored.spread.size() > 0) mode.spread = one_of(stored.spread, k, p, p);
     if (stored.standard_error.size() > 0) mode.standard_error = stored.standard_error.col(k);
+    if (stored.Q_standard_error.size() > 0) mode.Q_standard_error = one_of(stored.Q_standard_error, k, n, n);
     mode.weight = stored.weight(k);
     if (stored.motion_parameters.size() > 0) {
       mode.motion_theta = stored.motion_parameters.col(k);
@@ -210,6 +215,8 @@ Bank restore_bank(const StoredBank& stored, Bank bank) {
   bank.R = stored.R.transpose();
   bank.transition = TransitionMatrix(stored.transition.transpose());
   bank.initial_probability = stored.initial_probability;
+  bank.R_standard_error = stored.R_standard_error.transpose();
+  bank.transition_standard_error = stored.transition_standard_error.transpose();
   check_sizes(bank);
   return bank;
 }

@@ -49,19 +49,22 @@ std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, 
 struct StoredBank {
   std::string model;
   LinearStructure structure;
-  Eigen::MatrixXd motion_parameters;      ///< p_motion x K, empty for linear models
-  Eigen::MatrixXd motion_standard_error;  ///< p_motion x K
-  Eigen::VectorXd weight;                 ///< K
-  Eigen::MatrixXd c;                      ///< n x K
-  Eigen::MatrixXd A;                      ///< n*n x K
-  Eigen::MatrixXd B;                      ///< n*m x K
-  Eigen::MatrixXd Q;                      ///< n*n x K
-  Eigen::MatrixXd parameters;             ///< p x K
-  Eigen::MatrixXd spread;                 ///< p*p x K, empty without
-  Eigen::MatrixXd standard_error;         ///< p x K, empty without
-  Eigen::MatrixXd C;                      ///< transposed
-  Eigen::MatrixXd R;                      ///< transposed
-  Eigen::MatrixXd transition;             ///< transposed
+  Eigen::MatrixXd motion_parameters;          ///< p_motion x K, empty for linear models
+  Eigen::MatrixXd motion_standard_error;      ///< p_motion x K
+  Eigen::VectorXd weight;                     ///< K
+  Eigen::MatrixXd c;                          ///< n x K
+  Eigen::MatrixXd A;                          ///< n*n x K
+  Eigen::MatrixXd B;                          ///< n*m x K
+  Eigen::MatrixXd Q;                          ///< n*n x K
+  Eigen::MatrixXd parameters;                 ///< p x K
+  Eigen::MatrixXd spread;                     ///< p*p x K, empty without
+  Eigen::MatrixXd standard_error;             ///< p x K, empty without
+  Eigen::MatrixXd Q_standard_error;           ///< n*n x K, empty without
+  Eigen::MatrixXd R_standard_error;           ///< transposed, empty without
+  Eigen::MatrixXd transition_standard_error;  ///< transposed, empty without
+  Eigen::MatrixXd C;                          ///< transposed
+  Eigen::MatrixXd R;                          ///< transposed
+  Eigen::MatrixXd transition;                 ///< transposed
   Eigen::VectorXd initial_probability;
 };
 StoredBank store_bank(const Bank& bank);

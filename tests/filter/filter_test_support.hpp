@@ -74,6 +74,37 @@ inline Trajectory simulate_bank(const Bank& bank, Eigen::Index samples, std::uin
   return run;
 }
 
+/// A run of the bank with its true states and modes.
+struct SimulatedTruth {
+  Trajectory run;
+  Eigen::VectorXi mode;
+};
+
+inline SimulatedTruth simulate_truth(const Bank& bank, Eigen::Index samples, std::uint64_t seed) {
+  SimulatedTruth result;
+  Trajectory& run = result.run;
+  std::mt19937_64 generator(seed);
+  boost::random::uniform_01<double> uniform;
+  run.run = "simulated";
+  run.time_s = Eigen::VectorXd::LinSpaced(samples, 0.0, static_cast<double>(samples - 1));
+  run.truth.resize(bank.structure.states, samples);
+  run.state.resize(bank.C.rows(), samples);
+  run.input.resize(bank.structure.inputs, samples);
+  result.mode.resize(samples);
+  for (double& value : run.input.reshaped()) value = uniform(generator) - 0.5;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(bank.structure.states);
+  Eigen::Index s = draw_index(bank.initial_probability, generator);
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    run.truth.col(k) = x;
+    result.mode(k) = static_cast<int>(s);  // of the transition into sample k
+    run.state.col(k) = bank.C * x + draw_normal(bank.R, generator);
+    s = draw_index(bank.transition.matrix().row(s), generator);
+    const Mode& mode = bank.modes[static_cast<std::size_t>(s)];
+    x = mode.model.next(x, run.input.col(k)) + draw_normal(mode.Q, generator);
+  }
+  return result;
+}
+
 /// The bank that holds only mode `j`.
 inline Bank single_mode(Bank bank, std::size_t j) {
   bank.modes = {bank.modes[j]};

@@ -74,7 +74,8 @@ TEST_P(GoldenFilter, AgreesWithTheIndependentReference) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, GoldenFilter,
                          testing::Values("imm_scalar", "imm_vector", "imm_partial", "imm_missing",
-                                         "imm_parameter_noise", "mmae_scalar", "salvi2025_scalar", "salvi2025_vector"),
+                                         "imm_parameter_noise", "imm_three", "gpb1_three", "gpb2_three", "gpb2_scalar",
+                                         "mmae_scalar", "salvi2025_scalar", "salvi2025_vector"),
                          [](const auto& parameter) { return std::string(parameter.param); });
 
 }  // namespace

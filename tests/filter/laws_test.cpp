@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <stdexcept>
 
+#include "filter/bank_filter.hpp"
 #include "filter/evaluate.hpp"
 #include "filter/imm.hpp"
 #include "ident/error.hpp"
@@ -155,6 +156,7 @@ TEST(Start, WaitsForTheFirstWholeMeasurement) {
   const Bank bank = example_bank(2, 1, 2);
   Trajectory run = simulate_bank(bank, 20, 8);
   Trajectory tail = run;
+  tail.time_s = run.time_s.tail(17).eval();
   tail.state = run.state.rightCols(17).eval();
   tail.input = run.input.rightCols(17).eval();
   run.state.leftCols(2).setConstant(std::nan(""));
@@ -170,7 +172,7 @@ TEST(Start, WaitsForTheFirstWholeMeasurement) {
 TEST(MissingMeasurement, IsAPredictionOnlyStep) {
   const Bank bank = example_bank(2, 1, 2);
   Trajectory run = simulate_bank(bank, 10, 9);
-  run.state(0, 6) = std::nan("");
+  run.state.col(6).setConstant(std::nan(""));
   const RunEvaluation result = evaluate_run(bank, run, imm);
   EXPECT_TRUE(near(result.state.col(6), result.prediction.col(6), rounding));
   EXPECT_TRUE(near(result.mode_probability.col(6), result.mode_probability_predicted.col(6), rounding));
@@ -180,9 +182,145 @@ TEST(MissingMeasurement, IsAPredictionOnlyStep) {
   EXPECT_TRUE(std::isfinite(result.log_density(7)));
 }
 
+/// The bank that measures only the signals `rows`.
+Bank measuring(Bank bank, const std::vector<Eigen::Index>& rows) {
+  bank.C = bank.C(rows, Eigen::all).eval();
+  bank.R = bank.R(rows, rows).eval();
+  return bank;
+}
+
+TEST(MissingMeasurement, OfSomeSignalsLeavesTheOthers) {
+  Bank bank = example_bank(3, 1, 2);
+  bank.R(0, 1) = bank.R(1, 0) = 0.4 * bank.R(0, 0);
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2, FilterVariant::salvi2025}) {
+    Trajectory run = simulate_bank(bank, 3, 9);
+    run.state(1, 2) = std::nan("");
+    const RunEvaluation partial = evaluate_run(bank, run, {variant});
+    // The same step with a sensor that has no such signal, from the same start.
+    BankFilter filter(bank, {variant}), reduced(measuring(bank, {0, 2}), {variant});
+    filter.step(0.0, run.input.col(0), run.state.col(0));
+    filter.step(1.0, run.input.col(1), run.state.col(1));
+    reduced.step(0.0, run.input.col(0), run.state.col(0)(std::vector<int>{0, 2}));
+    reduced.step(1.0, run.input.col(1), run.state.col(1)(std::vector<int>{0, 2}));
+    FilterSnapshot snapshot = reduced.snapshot();
+    const FilterSnapshot whole = filter.snapshot();
+    snapshot.means = whole.means;
+    snapshot.covariances = whole.covariances;
+    snapshot.mode_probability = whole.mode_probability;
+    reduced.restore(snapshot);
+    const FilterEstimate& e = reduced.step(2.0, run.input.col(2), run.state.col(2)(std::vector<int>{0, 2}));
+    EXPECT_TRUE(near(partial.state.col(2), e.state, rounding)) << name_of(variant);
+    EXPECT_TRUE(near(partial.covariance.col(2), e.covariance.reshaped(), rounding));
+    EXPECT_TRUE(near(partial.mode_probability.col(2), e.mode_probability, rounding));
+    EXPECT_NEAR(partial.log_density(2), e.log_density, rounding * 10);
+    EXPECT_NEAR(partial.nis(2), e.nis, rounding * 10);
+    EXPECT_TRUE(near(partial.pit.col(2), Eigen::Vector3d(e.pit(0), std::nan(""), e.pit(1)), rounding));
+    EXPECT_TRUE(std::isnan(partial.innovation(1, 2)) && !std::isnan(partial.innovation(2, 2)));
+  }
+}
+
+TEST(TimeSteps, ALongerTimeIsSeveralPredictionsWithTheInputHeld) {
+  Bank bank = example_bank(2, 1, 3);
+  bank.dt_s = 0.1;
+  Trajectory run = simulate_bank(bank, 12, 13), every = run;
+  run.time_s *= 0.1;
+  // The run that had all samples, but measured nothing at two of them and held the input.
+  every.time_s = run.time_s;
+  every.state.middleCols(5, 2).setConstant(std::nan(""));
+  every.input.col(5) = every.input.col(6) = every.input.col(4);
+  Trajectory gap = run;
+  const std::vector<int> kept{0, 1, 2, 3, 4, 7, 8, 9, 10, 11};
+  gap.time_s = run.time_s(kept).eval();
+  gap.state = run.state(Eigen::all, kept).eval();
+  gap.input = run.input(Eigen::all, kept).eval();
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::gpb2}) {
+    const RunEvaluation filled = evaluate_run(bank, every, {variant}), short_run = evaluate_run(bank, gap, {variant});
+    EXPECT_TRUE(near(short_run.state.rightCols(5), filled.state.rightCols(5), rounding)) << name_of(variant);
+    EXPECT_TRUE(near(short_run.log_density.tail(5), filled.log_density.tail(5), rounding * 10));
+    EXPECT_NEAR(log_likelihood(bank, gap, {variant}), log_likelihood(bank, every, {variant}), 1e-10);
+  }
+  // Who does not look at the clock takes one step.
+  Trajectory steady = gap;
+  steady.time_s = run.time_s.head(10);
+  const FilterOptions single{FilterVariant::imm, false, TimeSteps::single};
+  EXPECT_TRUE(near(evaluate_run(bank, gap, single).state, evaluate_run(bank, steady, imm).state, 0.0));
+  EXPECT_FALSE(near(evaluate_run(bank, gap, imm).state, evaluate_run(bank, steady, imm).state, 1e-6));
+}
+
+TEST(TimeSteps, AVeryLongTimeIsANewStart) {
+  Bank bank = example_bank(2, 1, 3);
+  bank.dt_s = 1.0;
+  Trajectory run = simulate_bank(bank, 12, 13), tail = run;
+  run.time_s.tail(5).array() += longest_gap_steps;
+  tail.time_s = run.time_s.tail(5).eval();
+  tail.state = run.state.rightCols(5).eval();
+  tail.input = run.input.rightCols(5).eval();
+  const RunEvaluation all = evaluate_run(bank, run, imm), fresh = evaluate_run(bank, tail, imm);
+  EXPECT_TRUE(std::isnan(all.log_density(7)));
+  EXPECT_TRUE(near(all.state.rightCols(5), fresh.state, 0.0));
+  EXPECT_TRUE(near(all.log_density.tail(5), fresh.log_density, 0.0));
+}
+
+TEST(BankFilter, GoesOnFromASnapshotAsIfNothingHadHappened) {
+  Bank bank = example_bank(2, 1, 3);
+  const Trajectory run = simulate_bank(bank, 20, 14);
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2, FilterVariant::kf}) {
+    BankFilter first(bank, {variant}), second(bank, {variant});
+    for (Eigen::Index k = 0; k < 10; ++k) first.step(run.time_s(k), run.input.col(k), run.state.col(k));
+    second.restore(first.snapshot());
+    for (Eigen::Index k = 10; k < 20; ++k) {
+      const FilterEstimate& a = first.step(run.time_s(k), run.input.col(k), run.state.col(k));
+      const FilterEstimate& b = second.step(run.time_s(k), run.input.col(k), run.state.col(k));
+      EXPECT_EQ(a.log_density, b.log_density);
+      EXPECT_TRUE(near(a.state, b.state, 0.0));
+    }
+  }
+  BankFilter other(example_bank(2, 1, 2), {});
+  EXPECT_THROW(other.restore(BankFilter(bank, {}).snapshot()), std::invalid_argument);
+}
+
+TEST(Gpb, OneModeIsTheKalmanFilterAndIdenticalModesAreOneFilter) {
+  for (const FilterVariant variant : {FilterVariant::gpb1, FilterVariant::gpb2}) {
+    const Bank one = single_mode(example_bank(2, 1, 2), 1);
+    const Trajectory run = simulate_bank(one, 60, 3);
+    expect_same_estimates(evaluate_run(one, run, {variant}), evaluate_run(one, run, imm));
+    Bank same = example_bank(3, 2, 3);
+    same.modes[1] = same.modes[2] = same.modes[0];
+    const Trajectory other = simulate_bank(same, 60, 4);
+    expect_same_estimates(evaluate_run(same, other, {variant}), evaluate_run(same, other, kf));
+  }
+}
+
+TEST(Gpb2, IsExactForTwoSteps) {
+  // All histories of two steps, each a Kalman filter of its own: GPB2 merges only after the second.
+  const Bank bank = example_bank(2, 1, 3);
+  const Trajectory run = simulate_bank(bank, 3, 15);
+  double evidence = 0.0, first = 0.0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      Bank path = single_mode(bank, i);
+      BankFilter filter(path, kf);
+      filter.step(0.0, run.input.col(0), run.state.col(0));
+      const double l1 = filter.step(1.0, run.input.col(1), run.state.col(1)).log_density;
+      BankFilter second(single_mode(bank, j), kf);
+      second.restore(filter.snapshot());
+      const double l2 = second.step(2.0, run.input.col(2), run.state.col(2)).log_density;
+      double c = 0.0;
+      for (Eigen::Index h = 0; h < 3; ++h)
+        c += bank.initial_probability(h) * bank.transition.matrix()(h, static_cast<Eigen::Index>(i));
+      evidence +=
+          c * bank.transition.matrix()(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) * std::exp(l1 + l2);
+      if (j == 0) first += c * std::exp(l1);
+    }
+  const RunEvaluation gpb2 = evaluate_run(bank, run, {FilterVariant::gpb2});
+  EXPECT_NEAR(gpb2.log_density(1), std::log(first), rounding * 10);
+  EXPECT_NEAR(gpb2.log_density(2), std::log(evidence) - std::log(first), rounding * 10);
+}
+
 TEST(LogLikelihood, IsTheSumOfLogDensities) {
   for (const Eigen::Index n : {1, 2, 3, 4})
-    for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::mmae, FilterVariant::salvi2025}) {
+    for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::mmae, FilterVariant::gpb1,
+                                        FilterVariant::gpb2, FilterVariant::salvi2025}) {
       const Bank bank = example_bank(n, 1, 3);
       Trajectory run = simulate_bank(bank, 50, 10);
       run.state(0, 20) = std::nan("");

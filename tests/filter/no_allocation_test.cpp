@@ -13,6 +13,7 @@ int failed_assertions = 0;
 #include <cstdlib>
 #include <new>
 
+#include "filter/bank_filter.hpp"
 #include "filter/combined.hpp"
 #include "filter/filter_step.hpp"
 #include "tests/filter/filter_test_support.hpp"
@@ -51,13 +52,13 @@ class NoAllocationScope {
 
 template <int N, int NY>
 void step_without_allocation(const Bank& bank, const FilterOptions& options) {
-  const Trajectory run = test::simulate_bank(bank, 30, 1);
+  Trajectory run = test::simulate_bank(bank, 30, 1);
   const FilterModel<N, NY> model(bank, options);
   FilterStep<N, NY> step(model);
   FilterState<N> state = start(model, run.state.col(0));
   CombinedPrediction<N, NY> combined(bank.structure.states, bank.C.rows());
   Gaussian<N> estimate(bank.structure.states);
-  Eigen::VectorXd pit(bank.C.rows()), weights(model.mode_count());
+  Eigen::VectorXd pit(bank.C.rows()), weights(step.hypothesis_probability().size());
   const NoAllocationScope scope;
   for (Eigen::Index k = 1; k < run.samples(); ++k) {
     predict(model, state, run.input.col(k - 1), step);
@@ -65,9 +66,10 @@ void step_without_allocation(const Bank& bank, const FilterOptions& options) {
     if (k % 7 == 0) {
       skip_measurement(step, state);
     } else {
+      if (k % 5 == 0 && run.state.rows() > 1) run.state(0, k) = std::nan("");
       update(model, run.state.col(k), step, state);
       combined.observe(model, run.state.col(k), step);
-      probability_transform(step, weights, pit);
+      probability_transform(run.state.col(k), step, weights, pit);
     }
     merge(state.modes, state.mode_probability, estimate);
   }
@@ -83,9 +85,26 @@ TEST(NoAllocation, GuardsSeeAllocations) {
   EXPECT_GE(news, 1) << by_new.size();
 }
 
+TEST(NoAllocation, TheBankFilter) {
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2})
+    for (const Eigen::Index n : {1, 3, 5}) {
+      Bank bank = test::example_bank(n, 2, 3);
+      bank.dt_s = 1.0;
+      Trajectory run = test::simulate_bank(bank, 30, 1);
+      run.time_s.tail(10).array() += 3.0;
+      run.time_s.tail(5).array() += 2.0 * longest_gap_steps;
+      run.state(0, 12) = std::nan("");
+      BankFilter filter(bank, {variant});
+      const NoAllocationScope scope;
+      for (Eigen::Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
+      EXPECT_EQ(news, 0) << name_of(variant) << ", n = " << n;
+      EXPECT_EQ(failed_assertions, 0) << name_of(variant) << ", n = " << n;
+    }
+}
+
 TEST(NoAllocation, EveryVariantAndSize) {
-  for (const FilterVariant variant :
-       {FilterVariant::imm, FilterVariant::mmae, FilterVariant::salvi2025, FilterVariant::kf})
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::mmae, FilterVariant::gpb1, FilterVariant::gpb2,
+                                      FilterVariant::salvi2025, FilterVariant::kf})
     for (const bool parameter_noise : {false, true}) {
       const FilterOptions options{variant, parameter_noise};
       step_without_allocation<1, 1>(test::example_bank(1, 2, 3), options);

@@ -12,8 +12,8 @@ namespace {
 using test::example_bank;
 using test::simulate_bank;
 
-constexpr FilterVariant all_variants[] = {FilterVariant::imm, FilterVariant::mmae, FilterVariant::salvi2025,
-                                          FilterVariant::kf};
+constexpr FilterVariant all_variants[] = {FilterVariant::imm,  FilterVariant::mmae,      FilterVariant::gpb1,
+                                          FilterVariant::gpb2, FilterVariant::salvi2025, FilterVariant::kf};
 
 /// Everything from sample 1 on must be finite when every measurement is there.
 void expect_finite(const Bank& bank, const Trajectory& run, const std::string& what) {
@@ -97,6 +97,21 @@ TEST(NeverNaN, AnUnstableModeWithoutMeasurementsStaysFinite) {
     EXPECT_TRUE(result.state.allFinite() && result.covariance.allFinite()) << name_of(variant);
     EXPECT_TRUE(result.log_density.tail(90).allFinite()) << name_of(variant);
   }
+}
+
+TEST(NeverNaN, AMillionStepsAtConstantInput) {
+  Bank bank = example_bank(1, 1, 3);
+  bank.modes[1].model.A(0, 0) = 0.0;  // an integrator
+  Trajectory run;
+  constexpr Eigen::Index samples = 1'000'001;
+  run.state = Eigen::MatrixXd::Constant(1, samples, 0.3);
+  run.input = Eigen::MatrixXd::Constant(1, samples, 0.5);
+  const RunEvaluation result = evaluate_run(bank, run, {});
+  EXPECT_TRUE(result.state.allFinite() && result.covariance.allFinite() && result.mode_probability.allFinite());
+  EXPECT_TRUE(result.log_density.tail(samples - 1).allFinite());
+  EXPECT_GT(result.covariance.minCoeff(), 0.0);
+  // Long settled: the same numbers for ever.
+  EXPECT_NEAR(result.log_density(samples - 1), result.log_density(1000), 1e-9);
 }
 
 TEST(NeverNaN, InfinityCountsAsMissing) {

@@ -239,6 +239,13 @@ def check_evaluation(file):
             expect_array(group["mode_probability"], (N, modes), "<f8")
             expect(f"{name} {run} mode_probability", group["mode_probability"][()], pattern(N, modes, 79.0))
             expect(f"{name} {run} nis[0]", np.isnan(group["nis"][0]), True)
+            expect_array(group["spread_share"], (N,), "<f8")
+            expect(f"{name} {run} smoothed", "smoothed_state" in group, modes > 1)
+            if modes > 1:
+                expect_array(group["smoothed_state"], (N, n), "<f8", STATE_UNITS)
+                expect_array(group["smoothed_covariance"], (N, n, n), "<f8", outer(STATE_UNITS))
+                expect_array(group["viterbi_mode"], (N,), "<i4")
+                expect(f"{name} {run} viterbi_mode", group["viterbi_mode"][()], np.arange(N) - 1)
     table = file["evaluation/summary"]
     expect("summary columns", table.dtype.names,
            ("filter", "role", "run", "samples", "log_score", "rmse", "nis_mean", "nis_above", "nis_below",
@@ -247,6 +254,12 @@ def check_evaluation(file):
     expect("summary filter", table["filter"], np.repeat([b"bank", b"baseline", b"noise_only"], 2))
     expect("summary role", table["role"], np.array([b"train", b"test"] * 3))
     expect("summary run", table["run"], np.array([b"run 2", b"*"] * 3))
+    expect("horizon columns", file["evaluation/horizon"].dtype.names,
+           ("filter", "role", "run", "horizon", "samples", "log_score", "rmse"))
+    diagnostics = file["evaluation/diagnostics"]
+    expect("diagnostics verdict", diagnostics["verdict"], np.array([b"overconfident"] * 3))
+    expect("diagnostics flags", diagnostics["flags"], np.array([b"probabilities flat; heavy tails"] * 3))
+    expect("diagnostics tail_above_upper", diagnostics["tail_above_upper"], np.array([0.06] * 3))
     expect("summary units", dict(zip(table.dtype.names, table.attrs["units"]))["rmse"], b"rad/s, m/s")
 
 

@@ -3,10 +3,12 @@
 
     /usr/bin/python3 tests/golden/imm_reference.py
 
-writes imm_scalar.json, imm_vector.json, imm_partial.json, imm_missing.json, mmae_scalar.json, salvi2025_scalar.json,
-salvi2025_vector.json, imm_parameter_noise.json and scores.json beside itself. Written from the textbook (Bar-Shalom, Li
-& Kirubarajan 2001, section 11.6.6) in the linear domain with explicit inverses and scipy's multivariate normal; the
-filter that prints eq. 12-18 of Salvi et al. (2025) follows the paper. Nothing here is shared with the C++ code.
+writes imm_scalar.json, imm_vector.json, imm_partial.json, imm_missing.json, imm_three.json, mmae_scalar.json,
+gpb1_three.json, gpb2_three.json, gpb2_scalar.json, salvi2025_scalar.json, salvi2025_vector.json,
+imm_parameter_noise.json and scores.json beside itself. Written from the textbook (Bar-Shalom, Li & Kirubarajan 2001,
+sections 11.6.4 to 11.6.6) in the linear domain with explicit inverses and scipy's multivariate normal; signals that are
+missing are left out of C, R and y. The filter that prints eq. 12-18 of Salvi et al. (2025) follows the paper. Nothing
+here is shared with the C++ code.
 """
 import json
 import pathlib
@@ -92,6 +94,49 @@ def floored(mu):
     return mu / mu.sum()
 
 
+def step_gpb2(bank, u, y, x, P, mu, out, k):
+    """One step of GPB2 (section 11.6.5): K^2 filters, then one estimate per mode. Updates x, P and mu in place."""
+    K, C, R, T = len(bank['modes']), bank['C'], bank['R'], bank['T']
+    n = C.shape[1]
+    pairs, weight, xp, Pp = [(i, j) for j in range(K) for i in range(K)], [], [], []
+    for i, j in pairs:
+        M = bank['modes'][j]
+        F = np.eye(n) + M['A']
+        weight.append(T[i, j] * mu[i])
+        xp.append(F @ x[i] + M['B'] @ u + M['c'])
+        Pp.append(F @ P[i] @ F.T + M['Q'])
+    weight = np.array(weight)
+    xc = sum(w * v for w, v in zip(weight, xp))
+    S = [C @ Q @ C.T + R for Q in Pp]
+    Sc = sum(w * (s + np.outer(C @ (v - xc), C @ (v - xc))) for w, s, v in zip(weight, S, xp))
+    out['prediction'][k], out['innovation_covariance'][k], out['predicted'][k] = xc, Sc, T.T @ mu
+    m = ~np.isnan(y)
+    after = np.log(weight)
+    if m.any():
+        Cm, z, Sm = C[m], y[m], [s[np.ix_(m, m)] for s in S]
+        logs = np.array([multivariate_normal.logpdf(z, Cm @ v, s) for v, s in zip(xp, Sm)])
+        L = np.exp(logs)
+        e = z - Cm @ xc
+        out['innovation'][k, m], out['nis'][k] = e, e @ np.linalg.inv(Sc[np.ix_(m, m)]) @ e
+        out['log_density'][k] = np.log(weight @ L)
+        out['pit'][k, m] = rosenblatt(weight, [Cm @ v for v in xp], Sm, z)
+        for h in range(K * K):
+            G = Pp[h] @ Cm.T @ np.linalg.inv(Sm[h])
+            xp[h], Pp[h] = xp[h] + G @ (z - Cm @ xp[h]), Pp[h] - G @ Sm[h] @ G.T
+        after = after + logs - np.log(weight @ L)
+    for j in range(K):
+        logs = after[j * K:(j + 1) * K]  # a mode's weights may all underflow
+        w = np.exp(logs - logs.max())
+        v, Q = xp[j * K:(j + 1) * K], Pp[j * K:(j + 1) * K]
+        x[j] = sum(a * b for a, b in zip(w / w.sum(), v))
+        P[j] = sum(a * (q + np.outer(b - x[j], b - x[j])) for a, b, q in zip(w / w.sum(), v, Q))
+        mu[j] = w.sum() * np.exp(logs.max())
+    mu[:] = floored(mu)
+    xs = sum(mu[j] * x[j] for j in range(K))
+    out['state'][k], out['mu'][k] = xs, mu
+    out['covariance'][k] = sum(mu[j] * (P[j] + np.outer(x[j] - xs, x[j] - xs)) for j in range(K))
+
+
 def run_filter(bank, u, y, variant, spreads=None):
     K, C, R, T = len(bank['modes']), bank['C'], bank['R'], bank['T']
     n, N, n_y = C.shape[1], y.shape[1], y.shape[0]
@@ -105,9 +150,15 @@ def run_filter(bank, u, y, variant, spreads=None):
     out['state'][0], out['covariance'][0], out['predicted'][0], out['mu'][0] = x0, P0, mu, mu
     for k in range(1, N):
         # start of each mode
+        if variant == 'gpb2':
+            step_gpb2(bank, u[:, k - 1], y[:, k], x, P, mu, out, k)
+            continue
         if variant == 'imm':
             c = T.T @ mu
             W = T * mu[:, None] / c[None, :]
+        elif variant == 'gpb1':  # all modes from the one combined estimate
+            c = T.T @ mu
+            W = np.tile(mu[:, None], (1, K))
         elif variant == 'mmae':
             c, W = mu.copy(), np.eye(K)
         else:  # as printed: sum_i mu_i T_ij (...), no division; scores weigh with w(k-1)
@@ -129,21 +180,23 @@ def run_filter(bank, u, y, variant, spreads=None):
         xc = sum(c[j] * xp[j] for j in range(K))
         Sc = sum(c[j] * (S[j] + np.outer(C @ (xp[j] - xc), C @ (xp[j] - xc))) for j in range(K))
         out['prediction'][k], out['innovation_covariance'][k], out['predicted'][k] = xc, Sc, c
-        if np.isnan(y[:, k]).any():
+        m = ~np.isnan(y[:, k])  # signals that are there
+        if not m.any():
             x, P, mu = xp, Pp, floored(c)
         else:
-            L = np.array([multivariate_normal.pdf(y[:, k], C @ xp[j], S[j]) for j in range(K)])
-            e = y[:, k] - C @ xc
-            out['innovation'][k], out['nis'][k] = e, e @ np.linalg.inv(Sc) @ e
+            Cm, z, Sm = C[m], y[m, k], [s[np.ix_(m, m)] for s in S]
+            L = np.array([multivariate_normal.pdf(z, Cm @ xp[j], Sm[j]) for j in range(K)])
+            e = z - Cm @ xc
+            out['innovation'][k, m], out['nis'][k] = e, e @ np.linalg.inv(Sc[np.ix_(m, m)]) @ e
             out['log_density'][k] = np.log(c @ L)
-            out['pit'][k] = rosenblatt(c, [C @ v for v in xp], S, y[:, k])
+            out['pit'][k, m] = rosenblatt(c, [Cm @ v for v in xp], Sm, z)
             x, P = [], []
             for j in range(K):
-                G = Pp[j] @ C.T @ np.linalg.inv(S[j])
-                x.append(xp[j] + G @ (y[:, k] - C @ xp[j]))
-                P.append(Pp[j] - G @ S[j] @ G.T)
+                G = Pp[j] @ Cm.T @ np.linalg.inv(Sm[j])
+                x.append(xp[j] + G @ (z - Cm @ xp[j]))
+                P.append(Pp[j] - G @ Sm[j] @ G.T)
             if variant == 'salvi2025':
-                L = np.array([multivariate_normal.pdf(C @ x[j] - y[:, k], np.zeros(n_y), S[j]) for j in range(K)])
+                L = np.array([multivariate_normal.pdf(Cm @ x[j] - z, np.zeros(m.sum()), Sm[j]) for j in range(K)])
             mu = floored(L * c / (L @ c))
         xs = sum(mu[j] * x[j] for j in range(K))
         out['state'][k], out['mu'][k] = xs, mu
@@ -170,8 +223,9 @@ def case(name, seed, n, m, n_y, K, variant, N=40, C=None, missing=(), spread=Fal
     rng = np.random.default_rng(seed)
     bank = random_bank(rng, n, m, n_y, K, C)
     u, y = simulate(rng, bank, N, m)
-    for k in missing:
-        y[0, k] = np.nan
+    for entry in missing:  # a sample (its first signal), or a sample and its signals
+        k, signals = entry if isinstance(entry, tuple) else (entry, [0])
+        y[signals, k] = np.nan
     spreads = None
     if spread:
         p = n * (n + m + 1)
@@ -203,6 +257,11 @@ if __name__ == '__main__':
     case('imm_partial.json', 3, 2, 1, 1, 2, 'imm', C=np.array([[1.0, 0.0]]))
     case('imm_missing.json', 4, 1, 2, 1, 3, 'imm', missing=(5, 6, 7, 20, 39))
     case('imm_parameter_noise.json', 5, 2, 1, 2, 2, 'imm', spread=True)
+    gaps = ((4, [1]), (9, [0, 2]), (10, [0, 1, 2]), (11, [0, 1, 2]), (12, [2]), (39, [0]))
+    case('imm_three.json', 9, 3, 2, 3, 3, 'imm', missing=gaps)
+    case('gpb1_three.json', 10, 3, 2, 3, 3, 'gpb1', missing=gaps)
+    case('gpb2_three.json', 11, 3, 2, 3, 3, 'gpb2', missing=gaps)
+    case('gpb2_scalar.json', 12, 1, 2, 1, 3, 'gpb2')
     case('mmae_scalar.json', 6, 1, 2, 1, 3, 'mmae')
     case('salvi2025_scalar.json', 7, 1, 2, 1, 3, 'salvi2025')
     case('salvi2025_vector.json', 8, 2, 1, 2, 2, 'salvi2025')

@@ -142,6 +142,34 @@ void expect_same(const SummaryRow& a, const SummaryRow& e) {
   EXPECT_TRUE(same_bits(reals(a), reals(e)));
 }
 
+void expect_same(const HorizonRow& actual, const HorizonRow& expected) {
+  EXPECT_EQ(actual.filter, expected.filter);
+  EXPECT_EQ(actual.role, expected.role);
+  EXPECT_EQ(actual.run, expected.run);
+  EXPECT_EQ(actual.horizon, expected.horizon);
+  EXPECT_EQ(actual.samples, expected.samples);
+  EXPECT_EQ(actual.log_score, expected.log_score);
+  EXPECT_TRUE(same_bits(actual.rmse, expected.rmse));
+}
+
+void expect_same(const DiagnosticsRow& actual, const DiagnosticsRow& expected) {
+  EXPECT_EQ(actual.filter, expected.filter);
+  EXPECT_EQ(actual.role, expected.role);
+  EXPECT_EQ(actual.mode, expected.mode);
+  EXPECT_EQ(actual.samples, expected.samples);
+  for (const auto member :
+       {&DiagnosticsRow::usage, &DiagnosticsRow::entropy, &DiagnosticsRow::dwell, &DiagnosticsRow::dwell_model,
+        &DiagnosticsRow::tail_above, &DiagnosticsRow::tail_above_lower, &DiagnosticsRow::tail_above_upper,
+        &DiagnosticsRow::tail_below, &DiagnosticsRow::tail_below_lower, &DiagnosticsRow::tail_below_upper,
+        &DiagnosticsRow::nis_mean, &DiagnosticsRow::nis_lower, &DiagnosticsRow::nis_upper, &DiagnosticsRow::nees_mean,
+        &DiagnosticsRow::nees_lower, &DiagnosticsRow::nees_upper, &DiagnosticsRow::whiteness_p,
+        &DiagnosticsRow::spread_share})
+    EXPECT_EQ(actual.*member, expected.*member);
+  EXPECT_TRUE(same_bits(actual.state_rmse, expected.state_rmse));
+  EXPECT_EQ(actual.verdict, expected.verdict);
+  EXPECT_EQ(actual.flags, expected.flags);
+}
+
 void expect_same(const Provenance& actual, const Provenance& expected) {
   EXPECT_EQ(actual.modebank_version, expected.modebank_version);
   EXPECT_EQ(actual.created, expected.created);
@@ -189,6 +217,10 @@ void expect_same(const RunEvaluation& a, const RunEvaluation& e) {
   EXPECT_TRUE(same_bits(a.log_density, e.log_density));
   EXPECT_TRUE(same_bits(a.mode_probability_predicted, e.mode_probability_predicted));
   EXPECT_TRUE(same_bits(a.mode_probability, e.mode_probability));
+  EXPECT_TRUE(same_bits(a.spread_share, e.spread_share));
+  EXPECT_TRUE(same_bits(a.smoothed_state, e.smoothed_state));
+  EXPECT_TRUE(same_bits(a.smoothed_covariance, e.smoothed_covariance));
+  EXPECT_EQ(a.viterbi_mode, e.viterbi_mode);
 }
 
 void expect_same(const Bank& actual, const Bank& expected) {
@@ -246,6 +278,11 @@ void expect_same(const Archive& actual, const Archive& expected) {
   }
   ASSERT_EQ(actual.summary.size(), expected.summary.size());
   for (std::size_t i = 0; i < actual.summary.size(); ++i) expect_same(actual.summary[i], expected.summary[i]);
+  ASSERT_EQ(actual.horizons.size(), expected.horizons.size());
+  for (std::size_t i = 0; i < actual.horizons.size(); ++i) expect_same(actual.horizons[i], expected.horizons[i]);
+  ASSERT_EQ(actual.diagnostics.size(), expected.diagnostics.size());
+  for (std::size_t i = 0; i < actual.diagnostics.size(); ++i)
+    expect_same(actual.diagnostics[i], expected.diagnostics[i]);
 }
 
 }  // namespace modebank::test

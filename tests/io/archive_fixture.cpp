@@ -156,6 +156,11 @@ RunEvaluation make_evaluation(Index n, Index samples, Index count) {
   evaluation.log_density = pattern(samples, 1, 77.0);
   evaluation.mode_probability_predicted = pattern(count, samples, 78.0);
   evaluation.mode_probability = pattern(count, samples, 79.0);
+  evaluation.spread_share = pattern(samples, 1, 81.0);
+  if (count == 1) return evaluation;  // as without filter.smooth
+  evaluation.smoothed_state = pattern(n, samples, 82.0);
+  evaluation.smoothed_covariance = pattern(n * n, samples, 83.0);
+  evaluation.viterbi_mode = Eigen::VectorXi::LinSpaced(samples, -1, static_cast<int>(samples) - 2);
   return evaluation;
 }
 
@@ -173,6 +178,34 @@ ResidualTests make_residual_tests(Index n, Index m, Index run) {
 
 SummaryRow make_row(const std::string& filter, Role role, const std::string& run, Index n) {
   return {filter, role, run, 123, 2.5, pattern(n, 1, 80.0), 0.9, 0.02, 0.03, 0.01, 0.04, 0.1, not_a_number};
+}
+
+DiagnosticsRow make_diagnostics(const std::string& filter, Index n) {
+  return {filter,
+          Role::test,
+          2,
+          123,
+          0.25,
+          0.5,
+          12.5,
+          20.0,
+          0.03,
+          0.01,
+          0.06,
+          0.02,
+          0.005,
+          0.05,
+          1.1,
+          0.9,
+          1.2,
+          2.1,
+          1.8,
+          2.2,
+          pattern(n, 1, 85.0),
+          0.4,
+          0.1,
+          Verdict::overconfident,
+          "probabilities flat; heavy tails"};
 }
 
 }  // namespace
@@ -212,6 +245,8 @@ Archive full_archive(Index n, Index m) {
     archive.evaluations.push_back(evaluation);
     archive.summary.push_back(make_row(filter, Role::train, "run 2", n));
     archive.summary.push_back(make_row(filter, Role::test, "*", n));
+    archive.horizons.push_back({filter, Role::test, "*", 5, 118, 1.5, pattern(n, 1, 84.0)});
+    archive.diagnostics.push_back(make_diagnostics(filter, n));
   }
   for (const char* model : {"global", "bank"}) {
     archive.residual_tests.push_back({model, {}});

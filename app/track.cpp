@@ -1,0 +1,144 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "app/commands.hpp"
+#include "app/config_file.hpp"
+#include "app/line_stream.hpp"
+#include "app/track_input.hpp"
+#include "app/track_output.hpp"
+#include "filter/bank_filter.hpp"
+#include "filter/live_verdict.hpp"
+#include "ident/error.hpp"
+#include "io/filter_checkpoint.hpp"
+#include "io/load_bank.hpp"
+#include "io/replace_file.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// The competitors of the bank run as evaluate runs them.
+FilterOptions filter_options(const Config& config) {
+  if (config.track.filter == TrackedFilter::bank) return config.filter;
+  const bool single = config.track.filter == TrackedFilter::baseline;
+  return {single ? FilterVariant::kf : FilterVariant::imm, false, config.filter.time_steps};
+}
+
+/// A live filter between standard input and standard output.
+class Tracker {
+ public:
+  Tracker(const std::string& archive, const Config& config)
+      : config_(config),
+        bank_(load_bank(archive, std::string(name_of(config.track.filter)))),
+        filter_(bank_, filter_options(config)),
+        judge_(bank_, config.track.level, config.track.alarm),
+        reader_({config.data.time, config.data.input, config.data.state}, config.track.format) {
+    if (std::ssize(config.data.state) != bank_.C.rows() || std::ssize(config.data.input) != bank_.structure.inputs)
+      throw ConfigurationError(fmt::format(
+          "data.state and data.input name {} and {} columns, the bank of {} has {} states and {} inputs",
+          config.data.state.size(), config.data.input.size(), archive, bank_.C.rows(), bank_.structure.inputs));
+    const FilterOptions options = filter_options(config);
+    identity_ = fmt::format("{} {} {} {} {}", archive_digest(archive), name_of(config.track.filter),
+                            name_of(options.variant), options.parameter_noise, name_of(options.time_steps));
+    if (!config.track.checkpoint.empty())
+      if (const std::string obstacle = write_obstacle(config.track.checkpoint); !obstacle.empty())
+        throw ConfigurationError(
+            fmt::format("track.checkpoint: cannot write {}: {}", config.track.checkpoint, obstacle));
+    if (!config.track.resume.empty()) {
+      const FilterSnapshot snapshot = load_checkpoint(config.track.resume, identity_);
+      filter_.restore(snapshot);
+      if (snapshot.samples.samples > 0) last_time_s_ = snapshot.samples.time_s;
+    }
+  }
+
+  void run() {
+    LineStream lines;
+    std::string_view line;
+    for (auto got = lines.next(line); got != LineStream::Got::end; got = lines.next(line)) {
+      if (got == LineStream::Got::waiting) {
+        if (!flush()) break;
+        continue;
+      }
+      ++line_number_;
+      if (got == LineStream::Got::overlong)
+        complain("is too long for a sample");
+      else
+        take(line);
+    }
+    flush();
+    if (!config_.track.checkpoint.empty()) save();
+  }
+
+ private:
+  const Config& config_;
+  Bank bank_;
+  BankFilter filter_;
+  LiveJudge judge_;
+  SampleReader reader_;
+  std::optional<EstimateWriter> writer_;
+  std::string identity_;
+  std::optional<double> last_time_s_;
+  std::size_t line_number_ = 0, samples_ = 0;
+  fmt::memory_buffer out_;
+
+  bool flush() {
+    const bool read = write_out({out_.data(), out_.size()});
+    out_.clear();
+    return read;
+  }
+
+  void save() const { save_checkpoint(config_.track.checkpoint, identity_, filter_.snapshot()); }
+
+  void complain(const std::string& reason) const {
+    fmt::print(stderr, "modebank: line {}: {}; skipped\n", line_number_, reason);
+  }
+
+  void take(std::string_view line) {
+    const SampleReader::Line kind = reader_.read(line);
+    if (kind == SampleReader::Line::blank) return;
+    if (kind == SampleReader::Line::malformed) return complain(reader_.reason());
+    if (!writer_) {
+      writer_.emplace(config_.data.state, bank_.mode_count(), reader_.format() == LineFormat::ndjson);
+      writer_->header(out_);
+    }
+    if (kind == SampleReader::Line::sample && comes_in_time(reader_.sample().time_s)) step(reader_.sample());
+  }
+
+  /// A clock that goes back by more than a filter remembers is another clock.
+  bool comes_in_time(double time_s) {
+    if (!last_time_s_ || time_s > *last_time_s_) return true;
+    if (*last_time_s_ - time_s > static_cast<double>(longest_gap_steps) * bank_.dt_s) {
+      fmt::print(stderr, "modebank: line {}: time goes back from {} s to {} s: the filter starts anew\n", line_number_,
+                 *last_time_s_, time_s);
+      filter_.restart();
+      return true;
+    }
+    complain(fmt::format("time {} s is not after {} s", time_s, *last_time_s_));
+    return false;
+  }
+
+  void step(const LiveSample& sample) {
+    const bool was_started = filter_.started();
+    const FilterEstimate& estimate = filter_.step(sample.time_s, sample.input, sample.measurement);
+    if (was_started && estimate.steps == 0)
+      fmt::print(stderr, "modebank: line {}: {} s without a sample: the filter starts anew\n", line_number_,
+                 sample.time_s - *last_time_s_);
+    last_time_s_ = sample.time_s;
+    writer_->line(sample.time_s, estimate, judge_.judge(estimate), out_);
+    const auto interval = static_cast<std::size_t>(config_.track.checkpoint_interval);
+    if (++samples_; interval > 0 && samples_ % interval == 0 && !config_.track.checkpoint.empty()) save();
+  }
+};
+
+}  // namespace
+
+int run_track(const CommandLine& line) {
+  if (line.files.size() != 1) throw ConfigurationError("track needs one archive: modebank track ARCHIVE");
+  const std::string& archive = line.files.front();
+  const Config config = stored_config(load_configuration(archive), line.overrides);
+  Tracker(archive, config).run();
+  return 0;
+}
+
+}  // namespace modebank::app

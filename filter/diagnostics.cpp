@@ -1,0 +1,273 @@
+#include "filter/diagnostics.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <cmath>
+
+#include "filter/calibration.hpp"
+#include "ident/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr double takes_all = 0.99;         // usage of one mode
+constexpr double unused = 1e-3;            // usage
+constexpr double flat_entropy = 0.95;      // of log K
+constexpr double dominating_spread = 0.5;  // share of trace S
+constexpr double coloured = 0.01;          // whiteness p
+constexpr double outer_probability = 0.025;
+
+using Series = std::vector<std::vector<double>>;  // run by run
+
+/// Autocorrelation time: variance of the mean over that of as many independent terms.
+double autocorrelation_time(const Series& stretches) {
+  double mean = 0.0, count = 0.0;
+  std::size_t longest = 0;
+  for (const auto& x : stretches) {
+    for (const double value : x) mean += value;
+    count += static_cast<double>(x.size());
+    longest = std::max(longest, x.size());
+  }
+  mean /= count;
+  const auto autocovariance = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (const auto& x : stretches)
+      for (std::size_t k = lag; k < x.size(); ++k) sum += (x[k] - mean) * (x[k - lag] - mean);
+    return sum;
+  };
+  const double variance = autocovariance(0);
+  if (!(variance > 0.0)) return 1.0;
+  double time = -1.0;
+  for (std::size_t lag = 0; lag + 1 < longest; lag += 2) {
+    const double pair = (lag == 0 ? variance : autocovariance(lag)) + autocovariance(lag + 1);
+    if (pair <= 0.0) break;
+    time += 2.0 * pair / variance;
+  }
+  return std::max(1.0, time);
+}
+
+double mean_of(const Series& stretches) {
+  double sum = 0.0, count = 0.0;
+  for (const auto& x : stretches)
+    for (const double value : x) {
+      sum += value;
+      count += 1.0;
+    }
+  return count > 0.0 ? sum / count : not_a_number;
+}
+
+/// What is known of the samples that belong to one row.
+struct Collected {
+  Index samples = 0, scores = 0, above = 0, below = 0, entropy_samples = 0;
+  double usage = 0.0, entropy = 0.0, spread = 0.0, visits = 0.0, visited = 0.0;
+  Series nis, nees;
+  std::vector<double> whiteness;
+  Eigen::VectorXd squared_state_error;
+  Index state_errors = 0;
+};
+
+/// Collects over runs for the whole filter (mode -1) or one mode.
+class Collector {
+ public:
+  Collector(const Bank& bank, Index mode)
+      : bank_(bank),
+        mode_(mode),
+        lower_(chi_square_quantile(outer_probability, 1.0)),
+        upper_(chi_square_quantile(1.0 - outer_probability, 1.0)) {
+    sums.squared_state_error.setZero(bank.C.rows());
+  }
+
+  Collected sums;
+
+  void add(const Trajectory& run, const RunEvaluation& e) {
+    sums.nis.emplace_back();
+    sums.nees.emplace_back();
+    std::vector<std::vector<double>> z(static_cast<std::size_t>(e.pit.rows()));
+    for (Index k = 0; k < e.log_density.size(); ++k) {
+      if (std::isnan(e.log_density(k))) continue;
+      add_probabilities(e, k);
+      if (!belongs(e, k)) continue;
+      add_scores(e, k, z);
+      if (run.truth.size() > 0) add_truth(run, e, k);
+    }
+    std::vector<double> p_values;
+    for (const auto& component : z) p_values.push_back(ljung_box_p(component));
+    sums.whiteness.push_back(fisher_p(p_values));
+    add_visits(e);
+  }
+
+ private:
+  const Bank& bank_;
+  Index mode_;
+  double lower_, upper_;
+
+  bool belongs(const RunEvaluation& e, Index k) const {
+    Index likeliest = 0;
+    if (mode_ >= 0) e.mode_probability_predicted.col(k).maxCoeff(&likeliest);
+    return mode_ < 0 || likeliest == mode_;
+  }
+
+  void add_probabilities(const RunEvaluation& e, Index k) {
+    const auto mu = e.mode_probability.col(k);
+    ++sums.entropy_samples;
+    sums.usage += mode_ < 0 ? mu.maxCoeff() : mu(mode_);
+    if (mu.size() < 2) return;
+    double entropy = 0.0;
+    for (const double p : mu) entropy -= p > 0.0 ? p * std::log(p) : 0.0;
+    sums.entropy += entropy / std::log(static_cast<double>(mu.size()));
+  }
+
+  void add_scores(const RunEvaluation& e, Index k, std::vector<std::vector<double>>& z) {
+    ++sums.samples;
+    if (e.spread_share.size() > 0) sums.spread += e.spread_share(k);
+    Index signals = 0;
+    for (Index i = 0; i < e.pit.rows(); ++i) {
+      if (std::isnan(e.pit(i, k))) continue;
+      const double score = normal_score(e.pit(i, k));
+      ++signals;
+      ++sums.scores;
+      sums.above += score * score > upper_;
+      sums.below += score * score < lower_;
+      z[static_cast<std::size_t>(i)].push_back(score);
+    }
+    // Of fewer signals it has fewer degrees of freedom: scaled to the same mean.
+    sums.nis.back().push_back(e.nis(k) * static_cast<double>(e.pit.rows()) / static_cast<double>(signals));
+  }
+
+  void add_truth(const Trajectory& run, const RunEvaluation& e, Index k) {
+    const Index n = run.truth.rows(), all = e.state.rows();
+    const Eigen::VectorXd error = e.state.col(k).head(n) - run.truth.col(k);
+    if (!error.allFinite()) return;
+    const Eigen::MatrixXd P = e.covariance.col(k).reshaped(all, all).topLeftCorner(n, n);
+    sums.nees.back().push_back(error.dot(P.ldlt().solve(error)));
+    sums.squared_state_error += error.cwiseAbs2();
+    ++sums.state_errors;
+  }
+
+  int mode_at(const RunEvaluation& e, Index k) const {
+    if (e.viterbi_mode.size() > 0) return e.viterbi_mode(k);
+    int likeliest = 0;
+    e.mode_probability.col(k).maxCoeff(&likeliest);
+    return std::isnan(e.state(0, k)) ? -1 : likeliest;
+  }
+
+  void add_visits(const RunEvaluation& e) {
+    int before = -1;
+    for (Index k = 0; k < e.log_density.size(); ++k) {
+      const int mode = mode_at(e, k);
+      if (mode >= 0 && (mode_ < 0 || mode == mode_)) {
+        sums.visited += 1.0;
+        sums.visits += mode != before ? 1.0 : 0.0;
+      }
+      before = mode;
+    }
+  }
+};
+
+Verdict judge(const DiagnosticsRow& row) {
+  if (row.samples == 0) return Verdict::undecided;
+  if (row.tail_above_lower > largest_tail) return Verdict::overconfident;
+  if (row.tail_above_upper < least_tail || row.tail_below_lower > largest_tail) return Verdict::underconfident;
+  if (row.tail_below_upper < least_tail) return Verdict::overconfident;
+  return Verdict::calibrated;
+}
+
+void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
+
+DiagnosticsRow make_row(const Collected& c, const Bank& bank) {
+  DiagnosticsRow row;
+  const double N = c.samples > 0 ? static_cast<double>(c.samples) : not_a_number;
+  const double all = c.entropy_samples > 0 ? static_cast<double>(c.entropy_samples) : not_a_number;
+  row.samples = c.samples;
+  row.usage = c.usage / all;
+  row.entropy = c.entropy / all;
+  row.dwell = c.visits > 0.0 ? c.visited / c.visits : not_a_number;
+  row.dwell_model = not_a_number;
+  const double scores = c.scores > 0 ? static_cast<double>(c.scores) : not_a_number;
+  row.tail_above = static_cast<double>(c.above) / scores;
+  row.tail_below = static_cast<double>(c.below) / scores;
+  const Interval above = binomial_interval(c.above, c.scores), below = binomial_interval(c.below, c.scores);
+  row.tail_above_lower = above.lower;
+  row.tail_above_upper = above.upper;
+  row.tail_below_lower = below.lower;
+  row.tail_below_upper = below.upper;
+  row.nis_mean = mean_of(c.nis);
+  const auto n_y = static_cast<double>(bank.C.rows());
+  const Interval nis = chi_square_mean_interval(c.nis, n_y), nees = chi_square_mean_interval(c.nees, n_y);
+  row.nis_lower = nis.lower;
+  row.nis_upper = nis.upper;
+  row.nees_mean = mean_of(c.nees);
+  row.nees_lower = nees.lower;
+  row.nees_upper = nees.upper;
+  row.state_rmse =
+      (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
+  row.whiteness_p = fisher_p(c.whiteness);
+  row.spread_share = c.spread / N;
+  row.verdict = judge(row);
+  return row;
+}
+
+/// `modes`: rows of the same filter's modes.
+std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes) {
+  std::string flags;
+  for (const DiagnosticsRow& mode : modes) {
+    if (mode.usage > takes_all) add_flag(flags, "one mode takes all (" + std::to_string(mode.mode) + ")");
+    if (mode.usage < unused) add_flag(flags, "mode " + std::to_string(mode.mode) + " unused");
+  }
+  if (!modes.empty() && all.entropy > flat_entropy) add_flag(flags, "probabilities flat");
+  if (all.spread_share > dominating_spread) add_flag(flags, "spread dominates S");
+  if (all.tail_above_lower > largest_tail && all.tail_below_lower > largest_tail) add_flag(flags, "heavy tails");
+  if (all.whiteness_p < coloured) add_flag(flags, "innovations not white");
+  return flags;
+}
+
+}  // namespace
+
+Interval binomial_interval(Index count, Index samples) {
+  if (samples == 0) return {not_a_number, not_a_number};
+  using boost::math::binomial;
+  const auto n = static_cast<double>(samples), k = static_cast<double>(count);
+  return {count == 0 ? 0.0 : binomial::find_lower_bound_on_p(n, k, outer_probability),
+          count == samples ? 1.0 : binomial::find_upper_bound_on_p(n, k, outer_probability)};
+}
+
+Interval chi_square_mean_interval(const Series& stretches, double degrees) {
+  double count = 0.0;
+  for (const auto& x : stretches) count += static_cast<double>(x.size());
+  if (count == 0.0) return {not_a_number, not_a_number};
+  const double total = std::max(1.0, count * degrees / autocorrelation_time(stretches));
+  return {degrees * chi_square_quantile(outer_probability, total) / total,
+          degrees * chi_square_quantile(1.0 - outer_probability, total) / total};
+}
+
+std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const std::vector<Trajectory>& runs,
+                                     const std::vector<RunEvaluation>& evaluations) {
+  std::vector<DiagnosticsRow> rows;
+  for (const Role role : {Role::train, Role::test}) {
+    if (std::none_of(runs.begin(), runs.end(), [role](const Trajectory& run) { return run.role == role; })) continue;
+    const auto row_of = [&](Index mode) {
+      Collector collector(bank, mode);
+      for (std::size_t i = 0; i < runs.size(); ++i)
+        if (runs[i].role == role) collector.add(runs[i], evaluations.at(i));
+      DiagnosticsRow row = make_row(collector.sums, bank);
+      row.filter = filter;
+      row.role = role;
+      row.mode = mode;
+      if (mode >= 0) row.dwell_model = 1.0 / (1.0 - bank.transition.matrix()(mode, mode));
+      return row;
+    };
+    DiagnosticsRow all = row_of(-1);
+    std::vector<DiagnosticsRow> modes;
+    for (Index mode = 0; bank.mode_count() > 1 && mode < bank.mode_count(); ++mode) modes.push_back(row_of(mode));
+    all.flags = flags_of(all, modes);
+    rows.push_back(std::move(all));
+    rows.insert(rows.end(), modes.begin(), modes.end());
+  }
+  return rows;
+}
+
+}  // namespace modebank

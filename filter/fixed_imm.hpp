@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <stdexcept>
+#include <string>
+
+#include "filter/combined.hpp"
+#include "filter/filter_step.hpp"
+
+namespace modebank {
+
+/// A bank at work with sizes known to the compiler: N states, M inputs, K modes, NY measurements, each fixed or
+/// Eigen::Dynamic; all forms give the same numbers to the bit. For loops that know their robot: one call per sample,
+/// which allocates nothing. Lags, gaps and the clock are BankFilter's; here every sample is one step.
+template <int N, int M, int K, int NY = N>
+class Imm {
+ public:
+  using State = Eigen::Matrix<double, N, 1>;
+  using Input = Eigen::Matrix<double, M, 1>;
+  using Measurement = Eigen::Matrix<double, NY, 1>;
+  using Modes = Eigen::Matrix<double, K, 1>;
+
+  /// Throws std::invalid_argument when the bank has other sizes.
+  explicit Imm(const Bank& bank, const FilterOptions& options = {})
+      : model_(checked(bank), options),
+        step_(model_),
+        state_(initial_state(model_)),
+        combined_(model_.structure.dimension(), model_.C.rows()),
+        estimate_(model_.structure.dimension()) {}
+
+  /// Starts at the first measurement.
+  void start(const Measurement& y) {
+    modebank::start(model_, y, state_);
+    merge(state_.modes, state_.mode_probability, estimate_);
+  }
+  /// From the sample before, whose input was `u`, to this one, which measured `y` (NaN: not). Returns the measurement's
+  /// log predictive density [nats], NaN when there was none.
+  double step(const Input& u, const Measurement& y) {
+    predict(model_, state_, u, step_);
+    combined_.expect(model_, step_);
+    const double log_density = update(model_, y, step_, state_);
+    combined_.observe(model_, y, step_);
+    merge(state_.modes, state_.mode_probability, estimate_);
+    return log_density;
+  }
+
+  const State& state() const { return estimate_.mean; }            ///< after the measurement
+  const auto& covariance() const { return estimate_.covariance; }  ///< of state()
+  const State& prediction() const { return combined_.state; }      ///< before the measurement
+  const Measurement& innovation() const { return combined_.innovation; }
+  const auto& innovation_covariance() const { return combined_.innovation_covariance; }
+  double nis() const { return combined_.nis; }
+  Modes mode_probability() const { return state_.mode_probability; }
+  Modes mode_probability_predicted() const { return step_.predicted_probability; }
+
+ private:
+  FilterModel<N, NY> model_;
+  FilterStep<N, NY> step_;
+  FilterState<N> state_;
+  CombinedPrediction<N, NY> combined_;
+  Gaussian<N> estimate_;
+
+  static const Bank& checked(const Bank& bank) {
+    check_sizes(bank);
+    const auto require = [](const char* what, int fixed, Eigen::Index is) {
+      if (fixed != Eigen::Dynamic && fixed != is)
+        throw std::invalid_argument("the bank has " + std::to_string(is) + " " + what + ", this filter is built for " +
+                                    std::to_string(fixed));
+    };
+    require("states", N, bank.structure.dimension());
+    require("inputs", M, bank.structure.acting_inputs());
+    require("modes", K, bank.mode_count());
+    require("measurements", NY, bank.C.rows());
+    return bank;
+  }
+};
+
+}  // namespace modebank

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "filter/bank.hpp"
+#include "filter/evaluate.hpp"
+#include "filter/switching_regression.hpp"
+#include "ident/enum_names.hpp"
+#include "ident/local_model.hpp"
+#include "ident/trajectory.hpp"
+
+namespace modebank {
+
+/// What the modes of a refined bank have in common; best: whichever the cross-validation likes most.
+enum class Sharing { none, theta, noise, best };
+
+template <>
+struct EnumNames<Sharing> {
+  static constexpr Names<4> values{"none", "theta", "noise", "best"};
+};
+
+struct RefineOptions {
+  Sharing share = Sharing::none;
+  Index max_iterations = 100;     ///< of expectation-maximisation
+  double tolerance = 1e-6;        ///< nats per transition: stop when the objective gains less
+  Index restarts = 2;             ///< starts from random stretches of the runs besides the mixture's
+  Index folds = 6;                ///< parts of the cross-validation; 1: none, every start runs to convergence
+  bool measurement_noise = true;  ///< R by maximum likelihood of the filter on the training runs; false: the start's R
+  bool screen = true;             ///< take unstable, starved and duplicate modes out
+  std::uint64_t seed = 1;
+};
+
+/// One row of the cross-validation inside the training runs.
+struct RefineCandidate {
+  std::string start;  ///< "mixture" or "stretches 1"
+  Index modes = 0;
+  SharedParts shared = SharedParts::none;
+  double noise_transitions = 0.0;  ///< how many transitions the prior on Q is worth
+  Index iterations = 0;
+  double score = 0.0;  ///< mean log score of the runs left out, nats per sample; NaN without cross-validation
+  bool selected = false;
+};
+
+struct Refinement {
+  Bank bank;
+  Bank start;                               ///< the mixture's bank
+  std::vector<RefineCandidate> candidates;  ///< the best number of iterations of each start
+  std::vector<double> objective;  ///< penalised log-likelihood of the training transitions before each iteration
+};
+
+/// Expectation-maximisation of the switching model (switching_regression.hpp) from banks of mixtures. Which start, what
+/// the modes share, how many iterations and, for an adaptive filter, how the noise scale moves is decided by the score
+/// of training runs that were left out, each in the filter that will run the bank; test runs never enter. The last fit
+/// uses all training runs; unstable, starved and duplicate modes are then screened and listed, and the rest refined on.
+///
+/// The prior: theta normal about the global model with the windows' prior_sd, or worth one transition where there is
+/// none (unit information: Kass & Wasserman 1995); Q as if 1, 4 or 16 more transitions of the global residual
+/// covariance were seen, whichever the cross-validation likes most; 0.1 on every count of T and of first modes.
+///
+/// The state counts as measured exactly in the fit of theta, Q and T, which is exact for R = 0 and an approximation for
+/// R > 0: it leaves measurement noise in Q and draws theta to errors-in-variables. R, and with it how much of Q is
+/// left, is then estimated by the filter's likelihood (refine_noise.hpp), and kept where that is better.
+/// Requires linear or lagged linear banks of one structure; throws std::invalid_argument for a motion model's.
+Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& starts,
+                       const RefineOptions& options, const FilterOptions& filter);
+
+}  // namespace modebank

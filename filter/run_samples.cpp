@@ -1,0 +1,35 @@
+#include "filter/run_samples.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "ident/error.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+void check_bank(const Bank& bank) {
+  check_sizes(bank);
+  if (bank.structure.state_lags > 1 && bank.C.rows() != bank.structure.states)
+    throw std::invalid_argument("a bank with lagged states must measure each of its " +
+                                std::to_string(bank.structure.states) + " states");
+}
+
+void check_run(const Bank& bank, const Trajectory& run) {
+  check_bank(bank);
+  const auto mismatch = [&](const std::string& what, Index is, Index expected) {
+    if (is != expected)
+      throw std::invalid_argument("run " + run.run + " has " + std::to_string(is) + " " + what + ", the bank needs " +
+                                  std::to_string(expected));
+  };
+  mismatch("measured signals", run.state.rows(), bank.C.rows());
+  mismatch("inputs", run.input.rows(), bank.structure.inputs);
+  mismatch("input samples", run.input.cols(), run.samples());
+  if (run.time_s.size() > 0) mismatch("times", run.time_s.size(), run.samples());
+  for (Index k = 0; k < run.transitions(); ++k)
+    if (!run.input.col(k).allFinite())
+      throw DataError("run " + run.run + ": the input of sample " + std::to_string(k) + " is not a finite number");
+}
+
+}  // namespace modebank

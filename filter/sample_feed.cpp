@@ -1,0 +1,58 @@
+#include "filter/sample_feed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "filter/measurement.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+SampleFeed::SampleFeed(const Bank& bank, TimeSteps time_steps)
+    : inputs_(bank.structure.inputs),
+      input_lags_(bank.structure.input_lags),
+      input_delay_(bank.structure.input_delay),
+      first_transition_(bank.structure.first_transition()),
+      time_steps_(time_steps),
+      dt_s_(bank.dt_s),
+      // v holds u[k-d], u[k-d-1], ... of sample k: input_lags of them from d back.
+      recent_(Eigen::MatrixXd::Zero(inputs_, input_delay_ + input_lags_)),
+      measurements_(Eigen::MatrixXd::Zero(bank.C.rows(), bank.structure.state_lags)),
+      acting_(Eigen::VectorXd::Zero(bank.structure.acting_inputs())) {}
+
+void SampleFeed::clear() { samples_ = whole_ = 0; }
+
+Index SampleFeed::steps_between(double from_s, double to_s, double dt_s, TimeSteps time_steps) {
+  const double periods = (to_s - from_s) / dt_s;
+  if (time_steps == TimeSteps::single || !(dt_s > 0.0) || !std::isfinite(periods)) return 1;
+  return static_cast<Index>(std::clamp(std::round(periods), 1.0, static_cast<double>(longest_gap_steps + 1)));
+}
+
+void SampleFeed::push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
+                      const Eigen::Ref<const Eigen::VectorXd>& measurement) {
+  steps_ = samples_ == 0 ? 1 : steps_between(time_s_, time_s, dt_s_, time_steps_);
+  if (steps_ > longest_gap_steps) clear();
+  for (Index i = recent_.cols() - 1; i > 0; --i) recent_.col(i) = recent_.col(i - 1);
+  recent_.col(0) = input;
+  for (Index i = measurements_.cols() - 1; i > 0; --i) measurements_.col(i) = measurements_.col(i - 1);
+  measurements_.col(0) = measurement;
+  for (Index j = 0; j < input_lags_; ++j) acting_.segment(j * inputs_, inputs_) = recent_.col(input_delay_ + j);
+  whole_ = missing_entries(measurement) == 0 ? whole_ + 1 : 0;
+  ++samples_;
+  time_s_ = time_s;
+}
+
+void SampleFeed::restore(const Memory& memory) {
+  if (memory.inputs.rows() != recent_.rows() || memory.inputs.cols() != recent_.cols() ||
+      memory.measurements.rows() != measurements_.rows() || memory.measurements.cols() != measurements_.cols())
+    throw std::invalid_argument("the remembered samples are not those of this bank");
+  recent_ = memory.inputs;
+  measurements_ = memory.measurements;
+  samples_ = memory.samples;
+  whole_ = memory.whole;
+  time_s_ = memory.time_s;
+}
+
+}  // namespace modebank

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+
+/// Between scalar_imm.cpp and its kernels, which are compiled once per instruction set. Pointers are aligned to 64
+/// bytes and hold `stride` numbers per row.
+namespace modebank::scalar_imm {
+
+/// One run, a mode per lane. Modes beyond the bank's have F = Q = 0, variance 1 and are never reached.
+struct ModeLanes {
+  std::size_t modes, stride, inputs, count;  ///< count: samples
+  double C, R;
+  const double *F, *c, *Q;                ///< stride
+  const double* B;                        ///< inputs x stride
+  const double* transition;               ///< modes x stride, row: from
+  const double* measurement;              ///< count
+  const double* v;                        ///< inputs x (count - 1), one transition after the other
+  double *mean, *variance, *probability;  ///< stride: the start, overwritten
+};
+using ModeKernel = double (*)(const ModeLanes&);
+/// Null where the bank needs more registers than there are.
+ModeKernel mode_kernel(std::size_t modes);
+
+/// A run with its bank per lane.
+struct RunLanes {
+  std::size_t modes, inputs, count;       ///< count: samples of the longest run
+  const double *C, *R;                    ///< lanes
+  const double *F, *c, *Q;                ///< modes x lanes
+  const double* B;                        ///< inputs x modes x lanes
+  const double* transition;               ///< modes x modes x lanes, first index: from
+  const double* measurement;              ///< count x lanes; NaN after a run's end
+  const double* v;                        ///< (count - 1) x inputs x lanes
+  double *mean, *variance, *probability;  ///< modes x lanes: the start, overwritten
+  double* workspace;                      ///< 5 x modes x lanes
+  double* log_likelihood;                 ///< lanes
+};
+void run_lanes(const RunLanes& lanes);
+std::size_t lane_count();
+
+}  // namespace modebank::scalar_imm

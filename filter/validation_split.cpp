@@ -1,0 +1,73 @@
+#include "filter/validation_split.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+namespace modebank {
+namespace {
+
+constexpr Index fewest_runs = 3;
+constexpr Index shortest_stretch = 20;  // samples; shorter ones would mostly be starts
+
+Trajectory stretch(const Trajectory& run, Index first, Index count) {
+  Trajectory part;
+  part.run = run.run + "[" + std::to_string(first) + "]";
+  part.role = run.role;
+  part.lag_s = run.lag_s;
+  part.time_s = run.time_s.segment(first, count);
+  part.state = run.state.middleCols(first, count);
+  part.input = run.input.middleCols(first, count);
+  if (run.truth.size() > 0) part.truth = run.truth.middleCols(first, count);
+  if (run.weight.size() > 0) part.weight = run.weight.segment(first, count);
+  return part;
+}
+
+std::vector<Trajectory> training_stretches_of(const Recording& recording, Index pieces) {
+  std::vector<Trajectory> runs;
+  for (const Trajectory& run : recording.runs)
+    if (run.role == Role::train && run.transitions() > 0) runs.push_back(run);
+  if (std::ssize(runs) >= fewest_runs) return runs;
+  std::vector<Trajectory> parts;
+  for (const Trajectory& run : runs) {
+    const Index count = std::clamp(run.samples() / shortest_stretch, Index{1}, pieces);
+    for (Index i = 0; i < count; ++i) {
+      const Index first = run.samples() * i / count;
+      parts.push_back(stretch(run, first, run.samples() * (i + 1) / count - first));
+    }
+  }
+  return parts;
+}
+
+/// Which part each run is left out with: the longest first, each to the part that is shortest so far.
+std::vector<Index> deal(const std::vector<Trajectory>& runs, Index parts) {
+  std::vector<Index> order(runs.size()), part(runs.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return runs[a].transitions() > runs[b].transitions(); });
+  std::vector<Index> length(parts, 0);
+  for (const Index i : order) {
+    part[i] = std::min_element(length.begin(), length.end()) - length.begin();
+    length[part[i]] += runs[i].transitions();
+  }
+  return part;
+}
+
+}  // namespace
+
+std::vector<ValidationSplit> validation_splits(const Recording& recording, Index most) {
+  const std::vector<Trajectory> runs = training_stretches_of(recording, most);
+  if (runs.size() < 2 || most < 2) return {};
+  const Index parts = std::min(most, std::ssize(runs));
+  const std::vector<Index> part = deal(runs, parts);
+  std::vector<ValidationSplit> splits(parts);
+  for (Index s = 0; s < parts; ++s) {
+    splits[s].training = {recording.states, recording.inputs, {}};
+    splits[s].left_out = splits[s].training;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      (part[i] == s ? splits[s].left_out : splits[s].training).runs.push_back(runs[i]);
+  }
+  return splits;
+}
+
+}  // namespace modebank

@@ -1,0 +1,206 @@
+// compare_imm [ROUNDS]: the filter's step beside the plain program with dynamic Eigen matrices that everybody writes
+// first (the project's peer imm_eigen.cpp: filters in a vector, S.inverse(), Joseph's form, likelihoods in the linear
+// domain). Interleaved rounds on one thread, medians; every number is checked against the peer's.
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <numbers>
+
+#include "filter/evaluate.hpp"
+#include "filter/fixed_imm.hpp"
+#include "tests/bench/bench_data.hpp"
+
+namespace {
+
+using namespace modebank;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index steps = 4000;
+
+/// The peer's models: the first state switches, others follow it; the first is measured.
+Bank make_bank(Index n, Index K) {
+  Bank bank;
+  bank.structure = {n, 2, false};
+  for (Index j = 0; j < K; ++j) {
+    const double s = (static_cast<double>(j) + 0.5) / static_cast<double>(K);
+    Mode mode;
+    mode.model = {MatrixXd::Zero(n, n), MatrixXd::Zero(n, 2), VectorXd::Zero(n)};
+    mode.model.A(0, 0) = -0.1 - 0.75 * s;
+    for (Index i = 1; i < n; ++i) {
+      mode.model.A(i, i) = -0.1;
+      mode.model.A(i - 1, i) += 0.1;
+    }
+    mode.model.B(0, 0) = -0.2 - s + 0.1 * std::sin(9 * s);
+    mode.model.B(0, 1) = 0.2 + 0.9 * s;
+    mode.Q = MatrixXd::Identity(n, n) * (0.0009 * (1 + s));
+    bank.modes.push_back(mode);
+  }
+  bank.C = MatrixXd::Zero(1, n);
+  bank.C(0, 0) = 1.0;
+  bank.R = MatrixXd::Constant(1, 1, 0.25);
+  bank.transition = TransitionMatrix::sticky(K, 0.95);
+  bank.initial_probability = VectorXd::Constant(K, 1.0 / static_cast<double>(K));
+  return bank;
+}
+
+Trajectory make_run(Index samples) {
+  Trajectory run = bench::make_recording(1, samples).runs[0];
+  run.state *= 10.0;
+  run.state += 0.5 * Eigen::MatrixXd::NullaryExpr(
+                         1, samples, [](Index, Index k) { return std::sin(0.7 * static_cast<double>(k * k)); });
+  return run;
+}
+
+struct PlainFilter {
+  VectorXd x;
+  MatrixXd P, F, B, H, Q, R;
+  double likelihood = 0.0;
+
+  void predict(const VectorXd& u) {
+    x = F * x + B * u;
+    P = F * P * F.transpose() + Q;
+  }
+  void update(const VectorXd& z) {
+    const VectorXd y = z - H * x;
+    const MatrixXd S = H * P * H.transpose() + R, S_inverse = S.inverse(), gain = P * H.transpose() * S_inverse;
+    x = x + gain * y;
+    const MatrixXd I_KH = MatrixXd::Identity(x.size(), x.size()) - gain * H;
+    P = I_KH * P * I_KH.transpose() + gain * R * gain.transpose();
+    likelihood = std::exp(-0.5 * y.dot(S_inverse * y)) /
+                 std::sqrt(std::pow(2 * std::numbers::pi, static_cast<double>(z.size())) * S.determinant());
+  }
+};
+
+/// Log likelihood by the plain program, started as ours.
+double plain(const Bank& bank, const Trajectory& run) {
+  const Index K = bank.mode_count(), n = bank.structure.states;
+  const StartMoments first = start_moments(bank);
+  std::vector<PlainFilter> f(static_cast<std::size_t>(K));
+  for (std::size_t j = 0; j < f.size(); ++j)
+    f[j] = {first.gain * run.state.col(0),
+            first.covariance,
+            bank.modes[j].model.full_form(),
+            bank.modes[j].model.B,
+            bank.C,
+            bank.modes[j].Q,
+            bank.R};
+  VectorXd mu = bank.initial_probability;
+  const MatrixXd T = bank.transition.matrix();
+  std::vector<VectorXd> xs(f.size());
+  std::vector<MatrixXd> Ps(f.size());
+  double result = 0.0;
+  for (Index k = 1; k < run.samples(); ++k) {
+    const VectorXd c = T.transpose() * mu;
+    for (Index j = 0; j < K; ++j) {
+      VectorXd x = VectorXd::Zero(n);
+      for (Index i = 0; i < K; ++i) x += f[static_cast<std::size_t>(i)].x * (T(i, j) * mu(i) / c(j));
+      MatrixXd P = MatrixXd::Zero(n, n);
+      for (Index i = 0; i < K; ++i) {
+        const VectorXd y = f[static_cast<std::size_t>(i)].x - x;
+        P += (T(i, j) * mu(i) / c(j)) * (f[static_cast<std::size_t>(i)].P + y * y.transpose());
+      }
+      xs[static_cast<std::size_t>(j)] = x;
+      Ps[static_cast<std::size_t>(j)] = P;
+    }
+    const VectorXd u = run.input.col(k - 1), z = run.state.col(k);
+    double sum = 0.0;
+    for (Index j = 0; j < K; ++j) {
+      PlainFilter& filter = f[static_cast<std::size_t>(j)];
+      filter.x = xs[static_cast<std::size_t>(j)];
+      filter.P = Ps[static_cast<std::size_t>(j)];
+      filter.predict(u);
+      filter.update(z);
+      mu(j) = c(j) * filter.likelihood;
+      sum += mu(j);
+    }
+    mu /= sum;
+    result += std::log(sum);
+  }
+  return result;
+}
+
+template <int N, int K>
+double fixed(const Bank& bank, const Trajectory& run) {
+  Imm<N, 2, K, 1> filter(bank);
+  filter.start(run.state.col(0));
+  double sum = 0.0;
+  for (Index k = 1; k < run.samples(); ++k) sum += filter.step(run.input.col(k - 1), run.state.col(k));
+  return sum;
+}
+
+/// The step without what only a summary needs.
+template <int N>
+double bare(const Bank& bank, const Trajectory& run) {
+  const FilterModel<N, 1> model(bank, {});
+  FilterStep<N, 1> step(model);
+  FilterState<N> state = start(model, run.state.col(0));
+  double sum = 0.0;
+  for (Index k = 1; k < run.samples(); ++k) {
+    predict(model, state, run.input.col(k - 1), step);
+    sum += update(model, run.state.col(k), step, state);
+  }
+  return sum;
+}
+
+struct Contestant {
+  std::string name;
+  double runs;
+  std::function<double()> run;  ///< returns the log likelihood of one run
+  std::vector<double> ns = {};
+};
+
+void compare(const std::string& title, int rounds, std::vector<Contestant> contestants) {
+  double expected = 0.0;
+  for (int round = 0; round < rounds; ++round)
+    for (Contestant& c : contestants) {
+      const auto begin = std::chrono::steady_clock::now();
+      const double value = c.run();
+      const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - begin;
+      if (&c == &contestants.front()) expected = value;
+      bench::check(std::abs(value - expected) <= 1e-9 * std::abs(expected), title + ", " + c.name);
+      c.ns.push_back(spent.count() / (c.runs * static_cast<double>(steps - 1)));
+    }
+  fmt::print("{}\n", title);
+  const auto median = [](std::vector<double> v) {
+    std::nth_element(v.begin(), v.begin() + std::ssize(v) / 2, v.end());
+    return v[v.size() / 2];
+  };
+  for (const Contestant& c : contestants)
+    fmt::print("  {:<34} {:>9.1f} ns/step {:>8.1f} x\n", c.name, median(c.ns),
+               median(contestants.front().ns) / median(c.ns));
+}
+
+template <int N>
+void compare_states(int rounds, const Trajectory& run) {
+  const Bank bank = make_bank(N, 9);
+  compare(fmt::format("K = 9, n = {}", N), rounds,
+          {{"plain dynamic Eigen", 1, [&] { return plain(bank, run); }},
+           {"predict, update", 1, [&] { return bare<N>(bank, run); }},
+           {"Imm<n, 2, 9, 1>, estimate and NIS", 1, [&] { return fixed<N, 9>(bank, run); }}});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int rounds = argc > 1 ? std::atoi(argv[1]) : 7;
+  const Trajectory run = make_run(steps);
+  for (const Index K : {3, 9, 25}) {
+    const Bank bank = make_bank(1, K);
+    const std::vector<const Bank*> banks(32, &bank);
+    const std::vector<const Trajectory*> runs(32, &run);
+    compare(fmt::format("K = {}, n = 1", K), rounds,
+            {{"plain dynamic Eigen", 1, [&] { return plain(bank, run); }},
+             {"predict, update", 1, [&] { return bare<1>(bank, run); }},
+             {"log_likelihood, one run", 1, [&] { return log_likelihood(bank, run, {}); }},
+             {"log_likelihoods, 32 runs in lanes", 32, [&] { return log_likelihoods(banks, runs, {}).back(); }}});
+  }
+  compare_states<2>(rounds, run);
+  compare_states<3>(rounds, run);
+  return 0;
+}

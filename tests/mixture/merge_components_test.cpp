@@ -1,0 +1,62 @@
+// Mixture reduction: moments are kept, the closest pair goes first, windows follow.
+#include "mixture/merge_components.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace modebank {
+namespace {
+
+MixtureResult four_components() {
+  MixtureResult result;
+  result.mixture.weights = Eigen::Vector4d(0.4, 0.1, 0.3, 0.2);
+  result.mixture.means.resize(2, 4);
+  result.mixture.means << 0.0, 5.0, 0.3, -4.0, 0.0, 1.0, 0.1, 2.0;
+  for (const double scale : {1.0, 0.5, 1.2, 2.0})
+    result.mixture.covariances.push_back(scale * Eigen::Matrix2d{{1.0, 0.2}, {0.2, 0.7}});
+  result.responsibilities.resize(4, 3);
+  result.responsibilities << 0.7, 0.1, NAN, 0.1, 0.1, NAN, 0.1, 0.2, NAN, 0.1, 0.6, NAN;
+  result.labels = Eigen::Vector3i(0, 3, -1);
+  return result;
+}
+
+Eigen::Vector2d mean_of(const GaussianMixture& m) { return m.means * m.weights; }
+
+Eigen::Matrix2d covariance_of(const GaussianMixture& m) {
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (Eigen::Index k = 0; k < m.components(); ++k) {
+    const Eigen::Vector2d d = m.means.col(k) - mean_of(m);
+    sum += m.weights(k) * (m.covariances[static_cast<std::size_t>(k)] + d * d.transpose());
+  }
+  return sum;
+}
+
+TEST(MergeComponents, KeepsTheMomentsOfTheMixture) {
+  const MixtureResult before = four_components();
+  for (const Eigen::Index most : {3, 2, 1}) {
+    const MixtureResult after = merge_components(before, most);
+    ASSERT_EQ(after.mixture.components(), most);
+    EXPECT_NEAR(after.mixture.weights.sum(), 1.0, 1e-14);
+    EXPECT_LT((mean_of(after.mixture) - mean_of(before.mixture)).norm(), 1e-13);
+    EXPECT_LT((covariance_of(after.mixture) - covariance_of(before.mixture)).norm(), 1e-12);
+    EXPECT_NEAR(after.responsibilities.col(0).sum(), 1.0, 1e-14);
+  }
+}
+
+TEST(MergeComponents, TakesTheClosestPairFirstAndWindowsFollow) {
+  const MixtureResult after = merge_components(four_components(), 3);  // 0 and 2 overlap almost wholly
+  EXPECT_NEAR(after.mixture.weights(0), 0.7, 1e-14);
+  EXPECT_NEAR(after.responsibilities(0, 0), 0.8, 1e-14);
+  EXPECT_NEAR(after.responsibilities(2, 1), 0.6, 1e-14);
+  EXPECT_TRUE(std::isnan(after.responsibilities(0, 2)));
+  EXPECT_EQ(after.labels, Eigen::Vector3i(0, 2, -1));
+}
+
+TEST(MergeComponents, LeavesSmallerMixturesAlone) {
+  EXPECT_EQ(merge_components(four_components(), 9).mixture.components(), 4);
+  EXPECT_THROW(merge_components(four_components(), 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace modebank

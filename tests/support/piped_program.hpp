@@ -1,0 +1,39 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/support/paths.hpp"
+
+namespace modebank::test {
+
+/// A program with pipes on its standard input and output, for tests that talk to it line by line.
+class PipedProgram {
+ public:
+  explicit PipedProgram(const std::vector<std::string>& arguments);
+  ~PipedProgram();  ///< kills what is left
+  PipedProgram(const PipedProgram&) = delete;
+  PipedProgram& operator=(const PipedProgram&) = delete;
+
+  void write(const std::string& text);
+  /// The next line of its output without the newline; nothing at the end of the output or after ten seconds.
+  std::optional<std::string> read_line();
+  void close_input();
+  void close_output();
+  void send_signal(int signal) const;
+  /// Exit status; 128 + signal when killed.
+  int wait();
+  std::string errors() const;
+
+ private:
+  TemporaryFolder folder_;
+  pid_t child_ = -1;
+  int to_ = -1, from_ = -1;
+  std::string buffer_;
+};
+
+}  // namespace modebank::test
