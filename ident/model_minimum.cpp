@@ -19,7 +19,9 @@ constexpr double cost_rounding = 1e-13;
 constexpr int max_newton_iterations = 60;
 constexpr int max_halvings = 8;
 constexpr int iterations_without_curvature = 8;
-constexpr double difference_share = 1e-6;  // of a parameter, or of its standard error
+constexpr double damping = 1e-8;  // where parameters cannot be told apart
+constexpr int steps_of_a_linear_model = 2;
+constexpr double gradient_difference = 1e-6;  // of a parameter, or of its standard error
 
 /// The whole window as one block for Ceres: a block per sample would cost more than the arithmetic.
 class WindowCost final : public ceres::CostFunction {
@@ -85,6 +87,11 @@ void move_within_bounds(const MotionModel& model, Eigen::VectorXd& at) {
   }
 }
 
+Eigen::VectorXd within_bounds(const MotionModel& model, Eigen::VectorXd at) {
+  move_within_bounds(model, at);
+  return at;
+}
+
 /// Newton's steps on one objective; its memory is used again by the next search. Parameters at a bound that the
 /// objective falls beyond stay there (projected Newton: Bertsekas 1982, SIAM J. Control Optim. 20).
 class NewtonSearch {
@@ -96,22 +103,25 @@ class NewtonSearch {
   bool operator()(const RobustLoss& loss, Eigen::VectorXd& at) {
     objective_.expand(at, loss, LossCurvature::taken, here_);
     if (!std::isfinite(here_.cost)) return false;
-    for (int i = 0; i < max_newton_iterations; ++i) {
+    for (steps_ = 0; steps_ < max_newton_iterations; ++steps_) {
       find_free(at);
       double decrement = find_step();
       if (decrement >= 0.0 && decrement <= stationary_share * stationary_share * here_.psi_square) return true;
-      if (i >= iterations_without_curvature) {
+      if (steps_ >= iterations_without_curvature) {
         const double exact = find_exact_step(loss, at);
         if (exact >= 0.0) decrement = exact;
       }
       if (decrement < 0.0) {
         objective_.expand(at, loss, LossCurvature::left_out, here_);
-        decrement = find_step();
+        decrement = find_step(damping);
+        if (decrement >= 0.0 && decrement <= stationary_share * stationary_share * here_.psi_square) return true;
       }
-      if (decrement < 0.0 || !step_.allFinite() || !take_step(loss, at)) return false;
+      if (decrement < 0.0 || !advance(loss, at)) return false;
     }
     return false;
   }
+
+  int steps() const { return steps_; }  ///< of the last search
 
  private:
   using LossCurvature = ModelObjective::LossCurvature;
@@ -124,12 +134,14 @@ class NewtonSearch {
       const auto j = static_cast<Index>(k);
       const bool held = (at(j) <= parameters[k].lower && here_.gradient(j) > 0.0) ||
                         (at(j) >= parameters[k].upper && here_.gradient(j) < 0.0);
-      if (held) free_(j) = 0.0;
+      const bool without_effect = here_.gradient(j) == 0.0 && here_.hessian(j, j) == 0.0;
+      if (held || without_effect) free_(j) = 0.0;
     }
   }
 
-  /// The Newton step -H^-1 g; returns its decrement g' H^-1 g, negative where H is not positive definite.
-  double find_step() {
+  /// The Newton step -H^-1 g; returns its decrement g' H^-1 g, negative where H is not positive definite. `more`: added
+  /// to H as a share of its diagonal.
+  double find_step(double more = 0.0) {
     const Eigen::MatrixXd& H = here_.hessian;
     const Index u = H.cols();
     if (!H.allFinite()) return -1.0;
@@ -141,7 +153,7 @@ class NewtonSearch {
     factor_.resize(u, u);
     for (Index j = 0; j < u; ++j) {
       for (Index i = j; i < u; ++i) factor_(i, j) = H(i, j) * scale_(i) * scale_(j);
-      if (free_(j) == 0.0) factor_(j, j) = 1.0;
+      factor_(j, j) = free_(j) == 0.0 ? 1.0 : factor_(j, j) + more;
     }
     const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(factor_);  // in place
     if (factor.info() != Eigen::Success) return -1.0;
@@ -159,7 +171,8 @@ class NewtonSearch {
     for (Index j = 0; j < at.size(); ++j) {
       const bool bounded = j < static_cast<Index>(parameters.size());
       const double upper = bounded ? parameters[static_cast<std::size_t>(j)].upper : HUGE_VAL;
-      double h = difference_share * std::max(std::abs(at(j)), 1.0 / std::sqrt(std::max(here_.hessian(j, j), 1e-300)));
+      double h =
+          gradient_difference * std::max(std::abs(at(j)), 1.0 / std::sqrt(std::max(here_.hessian(j, j), 1e-300)));
       if (at(j) + h > upper) h = -h;
       candidate_ = at;
       candidate_(j) += h;
@@ -173,8 +186,18 @@ class NewtonSearch {
     return decrement;
   }
 
+  /// Moves along step_; where that leads nowhere (a bound bends it, or parameters can hardly be told apart) along
+  /// Levenberg's and Marquardt's.
+  bool advance(const RobustLoss& loss, Eigen::VectorXd& at) {
+    if (take_step(loss, at)) return true;
+    for (const double more : {1e-3, 1e-1, 1e1, 1e3})
+      if (find_step(more) >= 0.0 && take_step(loss, at)) return true;
+    return false;
+  }
+
   /// Moves along step_, halved until the objective no longer grows; false where it cannot.
   bool take_step(const RobustLoss& loss, Eigen::VectorXd& at) {
+    if (!step_.allFinite()) return false;
     const double allowed = here_.cost * (1.0 + cost_rounding);
     for (int halving = 0;; ++halving) {
       candidate_ = at + step_;
@@ -192,9 +215,19 @@ class NewtonSearch {
 
   const ModelObjective& objective_;
   ModelObjective::Expansion here_, there_;
+  int steps_ = 0;
   Eigen::VectorXd free_, scale_, step_, candidate_;
   Eigen::MatrixXd factor_, exact_;
 };
+
+/// A model that is not linear may have a lower minimum near where the search began than near least squares, or a higher
+/// one: `at` moves to the lower.
+void take_lower_start(const ModelObjective& objective, const RobustLoss& loss, NewtonSearch& newton,
+                      Eigen::VectorXd other, Eigen::VectorXd& at) {
+  newton(loss, at);
+  newton(loss, other);
+  if (!(objective.cost(at, loss) <= objective.cost(other, loss))) at.swap(other);
+}
 
 /// From `at`, by `search`.
 FitStatus find_minimum(const ModelObjective& objective, const RobustLoss& loss, const ModelSearch& search,
@@ -220,11 +253,14 @@ ModelMinimum minimise_model(const ModelResiduals& residuals, const Eigen::Vector
   static const RobustLoss squares(Loss::trivial, 0.0), huber(Loss::huber, 0.0);
   const ModelObjective objective(residuals, sigma, prior);
   NewtonSearch newton(objective);
-  ModelMinimum minimum{start, FitStatus::failed};
+  ModelMinimum minimum{within_bounds(residuals.model(), start), FitStatus::failed};
   Eigen::VectorXd& at = minimum.unknowns;
-  move_within_bounds(residuals.model(), at);
-  // From afar most samples would seem to be outliers, and each of Newton's steps on a robust loss be short.
-  if (search.newton_first && loss.kind() != Loss::trivial) newton(squares, at);
+  if (search.newton_first && loss.kind() != Loss::trivial) {
+    // From afar most samples would seem to be outliers, and each of Newton's steps on a robust loss be short.
+    newton(squares, at);
+    if (newton.steps() > steps_of_a_linear_model)
+      take_lower_start(objective, loss.convex() ? loss : huber, newton, within_bounds(residuals.model(), start), at);
+  }
   if (!loss.convex()) find_minimum(objective, huber, search, newton, at);
   if (!std::isfinite(objective.cost(at, loss))) return minimum;
   minimum.status = find_minimum(objective, loss, search, newton, at);
