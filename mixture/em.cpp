@@ -13,6 +13,7 @@
 #include "mixture/em_step.hpp"
 #include "mixture/feature_scale.hpp"
 #include "mixture/kmeans_start.hpp"
+#include "mixture/noise_start.hpp"
 
 namespace modebank {
 
@@ -66,7 +67,7 @@ struct ScaledCloud {
 
   /// Gives a mixture in scaled units the noise component that was asked for, and no other.
   void set_noise(GaussianMixture& scaled) const {
-    const double kept = scaled.noise.present() ? scaled.noise.weight : noise.weight;
+    const double kept = scaled.noise.weight > 0.0 ? scaled.noise.weight : noise.weight;
     GaussianMixture box = scaled;
     box.noise = noise;
     scaled.noise = scale.to_scaled(box).noise;
@@ -100,8 +101,12 @@ EmResult restart(const ScaledCloud& cloud, Index components, const EmOptions& op
   EmOptions brief = options;
   brief.max_iterations = std::min(short_run_iterations, options.max_iterations);
   EmResult best;
-  for (int run = 0; run < (components == 1 ? 1 : short_runs); ++run) {
-    GaussianMixture start = kmeans_start(starts, components, options.covariance, options.covariance_floor, generator);
+  const bool one_start = components == 1 && !options.noise_component;
+  for (int run = 0; run < (one_start ? 1 : short_runs); ++run) {
+    const Index spare = options.noise_component ? spare_components(components) : 0;
+    GaussianMixture start =
+        kmeans_start(starts, components + spare, options.covariance, options.covariance_floor, generator);
+    if (spare > 0) start = keep_densest(start, components);
     cloud.set_noise(start);
     EmResult result = iterate(points, std::move(start), brief);
     if (run == 0 || result.log_likelihood > best.log_likelihood) best = std::move(result);
