@@ -15,7 +15,7 @@ using Eigen::Index;
 namespace {
 
 /// Agglomeration takes time with the square of this.
-constexpr Index largest_subsample = 400;
+constexpr Index largest_subsample = 300;
 /// k-means++ and random starts are chosen from this many points at most.
 constexpr Index start_points = 50000;
 /// A restart goes on from the best of a few short runs, which miss a cluster far less often than a single start does.
