@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all build demo test bench uncertainty check format strict seeds sanitize coverage picture readme clean
+.PHONY: all build demo test bench uncertainty recovery check format strict seeds sanitize coverage picture readme clean
 
 all: build
 
@@ -37,6 +37,10 @@ bench: build
 # Coverage of the stated 95 % regions, as the README's table has it.
 uncertainty: build
 	build/measure_coverage
+
+# How often the true number of modes is found, as the README's table has it.
+recovery: build
+	build/measure_recovery
 
 # Everything CI runs beside `make test`.
 check: format strict seeds sanitize

@@ -23,13 +23,25 @@ double effective_samples(const FeatureCloud& cloud, Index length, Index step) {
   return std::min(static_cast<double>(cloud.runs.size()), sum);
 }
 
-void fill_criteria(Candidate& candidate, double total_weight, double entropy) {
+double classification_cost(const GaussianMixture& mixture, const PointSet& points) {
+  double cost = 0.0;
+  visit_responsibilities(mixture, points, [&](Index first, const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+    for (Index i = 0; i < columns.cols(); ++i) {
+      const double noise = mixture.noise.present() ? 1.0 - columns.col(i).sum() : 0.0;
+      const double weight = points.weights.size() > 0 ? points.weights(first + i) : 1.0;
+      cost -= weight * std::log(std::max(noise, columns.col(i).maxCoeff()));
+    }
+  });
+  return std::max(0.0, cost);
+}
+
+void fill_criteria(Candidate& candidate, double total_weight, double cost) {
   const double share = candidate.effective_samples / total_weight;
   const double q = static_cast<double>(candidate.parameters);
   const double deviance = -2.0 * share * candidate.log_likelihood;
   candidate.bic = deviance + q * std::log(candidate.effective_samples);
   candidate.aic = deviance + 2.0 * q;
-  candidate.icl = candidate.bic + 2.0 * share * entropy;
+  candidate.icl = candidate.bic + 2.0 * share * cost;
   candidate.bic_naive = -2.0 * candidate.log_likelihood + q * std::log(total_weight);
 }
 

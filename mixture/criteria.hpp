@@ -8,12 +8,15 @@
 
 namespace modebank {
 
+/// - sum over the points of w log max_k r: what it costs the likelihood that points are assigned outright [nats]. Zero
+/// where no point is doubtful. With a noise component that counts as a class.
+double classification_cost(const GaussianMixture& mixture, const PointSet& points);
+
 /// Fills bic (Schwarz 1978), aic (Akaike 1974), icl (Biernacki, Celeux & Govaert 2000) and bic_naive of a row from its
 /// log_likelihood, parameters and effective_samples (method: section 3):
-/// BIC = -2 (N_eff / N) log L + q log N_eff,  AIC = -2 (N_eff / N) log L + 2 q,  ICL = BIC + 2 (N_eff / N) entropy;
-/// bic_naive is BIC with N in place of N_eff. N is the points' total weight, `entropy` that of the responsibilities
-/// (classification_entropy), summed over the points.
-void fill_criteria(Candidate& candidate, double total_weight, double entropy);
+/// BIC = -2 (N_eff / N) log L + q log N_eff,  AIC = -2 (N_eff / N) log L + 2 q,  ICL = BIC + 2 (N_eff / N) cost;
+/// bic_naive is BIC with N in place of N_eff. N is the points' total weight, `cost` the classification_cost.
+void fill_criteria(Candidate& candidate, double total_weight, double cost);
 
 /// What the criterion says of a row, lower is better for every criterion.
 double badness(const Candidate& candidate, Criterion criterion);

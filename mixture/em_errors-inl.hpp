@@ -17,6 +17,9 @@ namespace modebank::em::HWY_NAMESPACE {
 /// No product of eight pivots beyond double precision.
 inline constexpr double largest_pivot = 1e37;
 inline constexpr int pivots_per_log = 8;
+/// Of an error so large in some direction that less than this of T's diagonal is left in another, rounding has the say;
+/// such a point counts as unknown there, too.
+inline constexpr double smallest_pivot_ratio = 1e-12;
 
 constexpr int triangle(int features) { return features * (features + 1) / 2; }
 constexpr int at(int i, int j) { return i * (i + 1) / 2 + j; }
@@ -71,6 +74,7 @@ template <class Arrays>
 HWY_INLINE V factor(int n, Arrays& v) {
   V product = splat(1.0), log_determinant = zero();
   for (int j = 0; j < n; ++j) {
+    const V noticeable = hn::Max(hn::Mul(v.t[at(j, j)], splat(smallest_pivot_ratio)), splat(1.0));
     for (int k = 0; k < j; ++k) {
       V sum = v.t[at(j, k)];
       for (int i = 0; i < k; ++i) sum = hn::NegMulAdd(v.z[i], v.t[at(k, i)], sum);
@@ -82,7 +86,7 @@ HWY_INLINE V factor(int n, Arrays& v) {
       v.t[at(j, k)] = l;
       pivot = hn::NegMulAdd(v.z[k], l, pivot);
     }
-    pivot = hn::Min(hn::Max(pivot, splat(1.0)), splat(largest_pivot));
+    pivot = hn::Min(hn::Max(pivot, noticeable), splat(largest_pivot));
     v.inverse_pivot[j] = hn::Div(splat(1.0), pivot);
     product = hn::Mul(product, pivot);
     if (j % pivots_per_log == pivots_per_log - 1 || j == n - 1) {

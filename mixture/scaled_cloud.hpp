@@ -21,7 +21,7 @@ struct ScaledCloud {
 
   /// Gives a mixture in scaled units the noise component that was asked for, and no other.
   void set_noise(GaussianMixture& scaled) const {
-    const double kept = scaled.noise.present() ? scaled.noise.weight : noise.weight;
+    const double kept = scaled.noise.weight > 0.0 ? scaled.noise.weight : noise.weight;
     GaussianMixture box = scaled;
     box.noise = noise;
     scaled.noise = scale.to_scaled(box).noise;

@@ -95,7 +95,7 @@ FittedCandidate fit_candidate(const Task& task, const EmSweep& sweep, Index comp
   row.converged = fit.converged;
   row.agreeing_restarts = fit.agreeing_restarts;
   row.floor_active = fit.floor_active;
-  fill_criteria(row, task.total_weight, classification_entropy(fit.mixture, task.points));
+  fill_criteria(row, task.total_weight, classification_cost(fit.mixture, task.points));
   if (!std::isfinite(row.icl)) return {{}, unfitted(row, CandidateStatus::failed)};
   return {std::move(fit.mixture), row};
 }

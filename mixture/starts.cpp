@@ -6,6 +6,7 @@
 #include "ident/seed.hpp"
 #include "mixture/em_iteration.hpp"
 #include "mixture/kmeans_start.hpp"
+#include "mixture/noise_start.hpp"
 
 namespace modebank {
 
@@ -14,7 +15,7 @@ using Eigen::Index;
 namespace {
 
 /// Agglomeration takes time with the square of this.
-constexpr Index largest_subsample = 400;
+constexpr Index largest_subsample = 300;
 /// k-means++ and random starts are chosen from this many points at most.
 constexpr Index start_points = 50000;
 /// A restart goes on from the best of a few short runs, which miss a cluster far less often than a single start does.
@@ -55,14 +56,20 @@ Start Starts::make(Index components, int restart, std::uint64_t seed) const {
 
 GaussianMixture Starts::hierarchical(const Tree& tree, Index components) const {
   const PointBlocks sample(PointSet(tree.subsample), FeatureScale::identity(tree.subsample.rows()));
-  const std::vector<int> clusters = tree.merges.labels(components);
+  const Index clusters_taken = components + (options_.noise_component ? spare_components(components) : 0);
+  const std::vector<int> clusters = tree.merges.labels(clusters_taken);
   BlockLabels labels = BlockLabels::Zero(block_size, sample.blocks());
   std::copy(clusters.begin(), clusters.end(), labels.data());
   // With more components than points in the sample some are left over: they stay at its first points.
-  Eigen::MatrixXd centers(sample.features(), components);
-  for (Index k = 0; k < components; ++k) centers.col(k) = tree.subsample.col(k % sample.count());
+  Eigen::MatrixXd centers(sample.features(), clusters_taken);
+  for (Index k = 0; k < clusters_taken; ++k) centers.col(k) = tree.subsample.col(k % sample.count());
   GaussianMixture start =
       mixture_of_clusters(sample, labels, std::move(centers), options_.covariance, options_.covariance_floor);
+  return with_noise(std::move(start), components);
+}
+
+GaussianMixture Starts::with_noise(GaussianMixture start, Index components) const {
+  if (start.components() > components) start = keep_densest(start, components);
   cloud_.set_noise(start);
   return start;
 }
@@ -74,9 +81,10 @@ Start Starts::best_of_short_runs(Index components, std::mt19937_64& generator) c
   brief.max_iterations = std::min(short_run_iterations, options_.max_iterations);
   const PointBlocks chosen = cloud_.points.for_starts(start_points, generator);
   EmResult best;
-  for (int run = 0; run < (components == 1 ? 1 : short_runs); ++run) {
-    GaussianMixture mixture = start(chosen, components, options_.covariance, options_.covariance_floor, generator);
-    cloud_.set_noise(mixture);
+  const Index clusters = components + (options_.noise_component ? spare_components(components) : 0);
+  for (int run = 0; run < (clusters == 1 ? 1 : short_runs); ++run) {
+    GaussianMixture mixture =
+        with_noise(start(chosen, clusters, options_.covariance, options_.covariance_floor, generator), components);
     EmResult result = iterate(cloud_.points, std::move(mixture), brief);
     if (run == 0 || result.log_likelihood > best.log_likelihood) best = std::move(result);
   }

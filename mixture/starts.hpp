@@ -34,6 +34,8 @@ class Starts {
   };
 
   GaussianMixture hierarchical(const Tree& tree, Eigen::Index components) const;
+  /// Of more components than wanted the densest, and the noise component that was asked for.
+  GaussianMixture with_noise(GaussianMixture start, Eigen::Index components) const;
   Start best_of_short_runs(Eigen::Index components, std::mt19937_64& generator) const;
 
   const ScaledCloud& cloud_;

@@ -13,8 +13,9 @@
 #include "ident/simulate.hpp"
 #include "mixture/features.hpp"
 #include "mixture/select.hpp"
+#include "tests/app/recovery_study.hpp"
 
-namespace modebank {
+namespace modebank::test {
 namespace {
 
 constexpr int seeds = 50;
@@ -34,23 +35,6 @@ SimulationOptions system_of(int seed) {
   options.runs = 40;
   options.samples = 500;
   return options;
-}
-
-struct Simulated {
-  Recording recording;
-  std::vector<SimulatedRun> runs;
-};
-
-Simulated make_recording(const SimulationOptions& options, int seed) {
-  Simulated result;
-  result.runs = simulate(options, static_cast<std::uint64_t>(seed));
-  result.recording.states = {{"wz", "rad/s"}};
-  result.recording.inputs = {{"left", "m/s"}, {"right", "m/s"}};
-  for (std::size_t i = 0; i < result.runs.size(); ++i) {
-    result.recording.runs.push_back(result.runs[i].measured);
-    result.recording.runs.back().role = i % 2 == 0 ? Role::train : Role::test;
-  }
-  return result;
 }
 
 MixtureResult cluster(const Recording& recording, const WindowFits& fits, std::vector<Index> components, int seed) {
@@ -97,7 +81,7 @@ struct Stationary {
 Stationary stationary_seed(int seed) {
   const SimulationOptions system = system_of(seed);
   const auto modes = static_cast<Index>(system.modes.size());
-  const Simulated simulated = make_recording(system, seed);
+  const Simulated simulated = simulate_recording(system, seed);
   const WindowFits fits = fit(simulated.recording);
   Stationary result;
   const MixtureResult chosen = cluster(simulated.recording, fits, {1, 2, 3, 4, 5, 6}, seed);
@@ -171,7 +155,7 @@ Switching switching_seed(int seed) {
   SimulationOptions system = system_of(seed);
   system.dwell_samples = 20.0 * window_length;
   const auto modes = static_cast<Index>(system.modes.size());
-  const Simulated simulated = make_recording(system, seed);
+  const Simulated simulated = simulate_recording(system, seed);
   const WindowFits fits = fit(simulated.recording);
   Switching result;
   result.overshoot = cluster(simulated.recording, fits, {1, 2, 3, 4, 5, 6, 7}, seed).mixture.components() - modes;
@@ -199,5 +183,30 @@ TEST(Recovery, SwitchesInsideRuns) {
              one_more, more, switching_seeds);
 }
 
+/// At least this share of a few seeds; measure_recovery does all 50 of the README's table.
+void expect_recovery(const RecoveryCase& recovery, int few_seeds, double share) {
+  const std::vector<RecoveredSize> sizes = recover_sizes(recovery, few_seeds);
+  fmt::print("{}: {} of {}, naive BIC {}\n", recovery.name, right(sizes, &RecoveredSize::chosen), few_seeds,
+             right(sizes, &RecoveredSize::naive));
+  EXPECT_GE(right(sizes, &RecoveredSize::chosen), share * few_seeds) << recovery.name;
+}
+
+TEST(Recovery, NumberOfModes) {
+  RecoveryCase recovery{.name = "runs in one mode, step 1"};
+  expect_recovery(recovery, 5, 0.8);
+  recovery.name = "runs in one mode, step L";
+  recovery.step = window_length;
+  expect_recovery(recovery, 10, 0.8);
+  recovery = {.name = "switches every 20 L, noise component", .dwell_windows = 20.0, .step = window_step};
+  recovery.noise_component = true;
+  expect_recovery(recovery, 10, 0.7);
+  recovery.name = "the same with held inputs";
+  recovery.hold_samples = 5;
+  expect_recovery(recovery, 10, 0.7);
+  recovery = {.name = "switches every 20 L, trimmed", .dwell_windows = 20.0, .step = window_step};
+  recovery.straddling = StraddlingWindows::trim;
+  expect_recovery(recovery, 10, 0.7);
+}
+
 }  // namespace
-}  // namespace modebank
+}  // namespace modebank::test

@@ -160,6 +160,9 @@ EmRun sweep(const EmCase& problem, int threads, int most, int restarts) {
   EmOptions options;
   options.covariance = problem.type;
   options.restarts = restarts;
+  // What scikit-learn does: it knows no agglomeration and no moves.
+  options.start = StartKind::kmeans_plus_plus;
+  options.split_merge = 0;
   options.tolerance = 1e-3;
   options.max_iterations = 100;
   std::vector<double> log_likelihoods(static_cast<std::size_t>(most));
@@ -195,6 +198,7 @@ void measure_memory() {
   EmOptions options;
   options.restarts = 1;
   options.max_iterations = 2;
+  options.split_merge = 0;
   const EmResult fit = fit_em(PointSet(points), components, options, 1);
   double sum = 0.0;
   visit_responsibilities(fit.mixture, PointSet(points), [&](Index, const auto& block) { sum += block.sum(); });

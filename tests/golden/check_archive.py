@@ -167,7 +167,9 @@ def check_mixture(file):
     table = group["candidates"]
     expect("candidates columns", table.dtype.names,
            ("components", "covariance", "log_likelihood", "parameters", "effective_samples", "bic", "aic", "icl",
-            "heldout", "iterations", "converged", "agreeing_restarts", "selected"))
+            "heldout", "iterations", "converged", "agreeing_restarts", "selected", "bic_naive", "restarts",
+            "floor_active", "status"))
+    expect("status", table["status"], np.array([b"fitted", b"failed"]))
     expect("converged dtype", table.dtype["converged"].str, "|i1")
     expect("selected", table["selected"], np.array([0, 1]))
     expect("covariance", table["covariance"], np.array([b"full", b"diagonal"]))
@@ -182,6 +184,9 @@ def check_mixture(file):
     # C++ fills covariance(i, j) of component k with base + 100 j + i + 1/3.
     for k in range(K):
         expect(f"covariances[{k}]", group["covariances"][k], pattern(F, F, 30.0 + k).T)
+    expect_array(group["weights_standard_error"], (K,), "<f8")
+    expect_array(group["means_standard_error"], (K, F), "<f8", PARAMETER_UNITS + [b"1"])
+    expect("means_standard_error", group["means_standard_error"][()], pattern(K, F, 50.0))
     expect("labels", group["labels"][()], np.array([0, 2, 1, -1, -1, -1, -1, -1, -1]))
     expect("responsibilities", group["responsibilities"][:3], pattern(3, K, 40.0))
     expect("responsibilities", np.isnan(group["responsibilities"][3:]).all(), True)

@@ -27,14 +27,6 @@ void expect_same(const GaussianMixture& actual, const GaussianMixture& expected,
     EXPECT_TRUE(near(actual.covariances[k], expected.covariances[k], tolerance)) << "component " << k;
 }
 
-EmOptions fixed_iterations(int iterations, CovarianceType type = CovarianceType::full) {
-  EmOptions options;
-  options.covariance = type;
-  options.tolerance = -1.0;
-  options.max_iterations = iterations;
-  return options;
-}
-
 GaussianMixture permuted_features(const GaussianMixture& mixture) {
   GaussianMixture result = mixture;
   result.means = mixture.means.colwise().reverse();

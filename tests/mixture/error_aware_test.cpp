@@ -16,11 +16,8 @@ namespace {
 using Eigen::Index;
 using nlohmann::json;
 
-EmOptions fixed_iterations(int iterations, CovarianceType type = CovarianceType::full) {
-  EmOptions options;
-  options.covariance = type;
-  options.tolerance = -1.0;
-  options.max_iterations = iterations;
+EmOptions unfloored(int iterations, CovarianceType type = CovarianceType::full) {
+  EmOptions options = fixed_iterations(iterations, type);
   options.covariance_floor = 1e-10;
   return options;
 }
@@ -87,7 +84,7 @@ TEST(ErrorAware, AgreesWithAnIndependentExtremeDeconvolution) {
     SCOPED_TRACE(expected["covariance"].get<std::string>() + " " + expected["iterations"].dump());
     const auto type = expected["covariance"] == "full" ? CovarianceType::full : CovarianceType::diagonal;
     const EmResult fit = fit_em(PointSet(points, importance, errors), mixture(file["start"]),
-                                fixed_iterations(expected["iterations"].get<int>(), type));
+                                unfloored(expected["iterations"].get<int>(), type));
     const GaussianMixture reference = mixture(expected);
     EXPECT_FALSE(fit.floor_active);
     EXPECT_NEAR(fit.log_likelihood, expected["log_likelihood"].get<double>(), 1e-8);
@@ -106,8 +103,8 @@ TEST(ErrorAware, ZeroErrorsGiveThePlainFit) {
     for (const CovarianceType type : {CovarianceType::full, CovarianceType::diagonal}) {
       const GaussianMixture truth = any_mixture(features, 3);
       const Eigen::MatrixXd points = draw(truth, 333, 5), none = Eigen::MatrixXd::Zero(features * features, 333);
-      const EmResult plain = fit_em(PointSet(points), truth, fixed_iterations(30, type));
-      const EmResult aware = fit_em(PointSet(points, unweighted, none), truth, fixed_iterations(30, type));
+      const EmResult plain = fit_em(PointSet(points), truth, unfloored(30, type));
+      const EmResult aware = fit_em(PointSet(points, unweighted, none), truth, unfloored(30, type));
       EXPECT_LT(difference(aware, plain), 1e-13 * 30) << features;  // rounding of thirty iterations
       EXPECT_NEAR(aware.log_likelihood / plain.log_likelihood, 1.0, 1e-13) << features;
       EXPECT_TRUE(
@@ -137,7 +134,7 @@ TEST(ErrorAware, LogLikelihoodNeverFalls) {
     GaussianMixture mixture = three_clusters(3.0);
     double previous = -std::numeric_limits<double>::infinity();
     for (int iteration = 0; iteration < 60; ++iteration) {
-      const EmResult step = fit_em(PointSet(points, unweighted, errors), mixture, fixed_iterations(1, type));
+      const EmResult step = fit_em(PointSet(points, unweighted, errors), mixture, unfloored(1, type));
       ASSERT_FALSE(step.floor_active);
       EXPECT_GE(step.log_likelihood, previous - 1e-11 * std::abs(previous)) << iteration;
       previous = step.log_likelihood;

@@ -28,6 +28,15 @@ inline Eigen::MatrixXd draw(const GaussianMixture& mixture, Eigen::Index count, 
   return sample(mixture, count, generator);
 }
 
+/// That many iterations, converged or not.
+inline EmOptions fixed_iterations(int iterations, CovarianceType type = CovarianceType::full) {
+  EmOptions options;
+  options.covariance = type;
+  options.tolerance = -1.0;
+  options.max_iterations = iterations;
+  return options;
+}
+
 /// Every entry finite, weights a distribution.
 inline bool is_finite(const GaussianMixture& mixture) {
   bool finite = mixture.weights.allFinite() && mixture.means.allFinite();

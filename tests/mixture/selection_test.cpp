@@ -1,0 +1,166 @@
+// Selection without windows, its warnings, and what it makes of bad clouds.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ident/error.hpp"
+#include "mixture/criteria.hpp"
+#include "tests/mixture/mixture_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank::test {
+namespace {
+
+using Eigen::Index;
+
+SelectionOptions from_one_to(Index most) {
+  SelectionOptions options;
+  for (Index k = 1; k <= most; ++k) options.components.push_back(k);
+  return options;
+}
+
+Index chosen(const std::vector<Candidate>& candidates) {
+  for (const Candidate& row : candidates)
+    if (row.selected) return row.components;
+  return 0;
+}
+
+/// No NaN but in a held-out score that was not asked for, and a status that says why there is no fit.
+void expect_stated(const Selection& result) {
+  EXPECT_TRUE(is_finite(result.mixture));
+  for (const Candidate& row : result.candidates) {
+    for (const double value : {row.log_likelihood, row.bic, row.aic, row.icl, row.bic_naive, row.effective_samples})
+      EXPECT_FALSE(std::isnan(value)) << row.components;
+    EXPECT_EQ(std::isfinite(row.log_likelihood), row.status == CandidateStatus::fitted) << row.components;
+  }
+  EXPECT_GE(chosen(result.candidates), 1);
+}
+
+TEST(Selection, FindsThreeClustersAmongIndependentPoints) {
+  const Eigen::MatrixXd points = draw(three_clusters(12.0), 600, 1);
+  const Selection result = select(points, {}, from_one_to(5), 1);
+  EXPECT_EQ(chosen(result.candidates), 3);
+  // Independent points: N_eff = N, and BIC is the naive one.
+  for (const Candidate& row : result.candidates) {
+    EXPECT_DOUBLE_EQ(row.effective_samples, 600.0);
+    EXPECT_DOUBLE_EQ(row.bic, row.bic_naive);
+    EXPECT_TRUE(std::isnan(row.heldout));  // no runs, nothing to leave out
+  }
+}
+
+TEST(Selection, OverlapTakesEvidenceAway) {
+  // Clusters that 600 independent points show, but points worth 30 do not.
+  const Eigen::MatrixXd points = draw(three_clusters(3.0), 600, 2);
+  SampleDesign design;
+  design.effective_samples = 30.0;
+  EXPECT_EQ(chosen(select(points, {}, from_one_to(4), 1).candidates), 3);
+  EXPECT_LT(chosen(select(points, design, from_one_to(4), 1).candidates), 3);
+  SelectionOptions naive = from_one_to(4);
+  naive.criterion = Criterion::bic_naive;
+  EXPECT_EQ(chosen(select(points, design, naive, 1).candidates), 3);
+}
+
+TEST(Selection, WholeWeightsAreCopies) {
+  const Eigen::MatrixXd points = draw(three_clusters(8.0), 200, 3);
+  const Eigen::VectorXd twice = Eigen::VectorXd::Constant(200, 2.0);
+  SelectionOptions options = from_one_to(1);  // one component: no starts enter
+  const Candidate weighted = select(PointSet(points, twice), {}, options, 1).candidates[0];
+  const Candidate copied = select(Eigen::MatrixXd(points.replicate(1, 2)), {}, options, 1).candidates[0];
+  EXPECT_NEAR(weighted.bic, copied.bic, 1e-9 * std::abs(copied.bic));
+  EXPECT_NEAR(weighted.icl, copied.icl, 1e-9 * std::abs(copied.icl));
+}
+
+TEST(Selection, SamePartitionInAnyUnits) {
+  const Eigen::MatrixXd points = draw(three_clusters(6.0), 400, 4);
+  const Selection plain = select(points, {}, from_one_to(4), 1);
+  const Eigen::MatrixXd memberships = responsibilities(plain.mixture, points);
+  for (const double unit : {1e-6, 1e6}) {
+    Eigen::MatrixXd scaled = points;
+    scaled.row(1) *= unit;
+    const Selection result = select(scaled, {}, from_one_to(4), 1);
+    ASSERT_EQ(result.mixture.components(), plain.mixture.components());
+    EXPECT_TRUE(near(responsibilities(result.mixture, scaled), memberships, 1e-6)) << unit;
+    EXPECT_TRUE(near(result.mixture.means.row(1) / unit, plain.mixture.means.row(1), 1e-6)) << unit;
+    for (std::size_t i = 0; i < plain.candidates.size(); ++i)
+      EXPECT_NEAR(result.candidates[i].log_likelihood, plain.candidates[i].log_likelihood - 400.0 * std::log(unit),
+                  1e-4);
+  }
+}
+
+TEST(Selection, StartsFromAGivenMixture) {
+  const Eigen::MatrixXd points = draw(three_clusters(12.0), 300, 5);
+  SelectionOptions options = from_one_to(3);
+  options.em.restarts = 1;
+  options.em.split_merge = 0;
+  options.em.max_iterations = 0;  // what comes out is the start
+  options.start = three_clusters(12.0);
+  const Selection result = select(points, {}, options, 1);
+  EXPECT_NEAR(result.candidates[2].log_likelihood, log_density(three_clusters(12.0), points).sum(), 1e-8);
+}
+
+TEST(SelectionWarnings, NameWhatSpeaksAgainstTheChoice) {
+  std::vector<Candidate> rows(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    rows[i].components = static_cast<Index>(i) + 1;
+    rows[i].restarts = rows[i].agreeing_restarts = 5;
+    rows[i].converged = true;
+    rows[i].bic = rows[i].aic = rows[i].icl = i == 1 ? 1.0 : 2.0;
+    rows[i].heldout = i == 1 ? 1.0 : 0.0;
+  }
+  rows[1].selected = true;
+  EXPECT_TRUE(selection_warnings(rows).empty());
+  rows[1].agreeing_restarts = 2;
+  rows[1].converged = false;
+  rows[2].aic = 0.0;
+  const std::vector<std::string> warnings = selection_warnings(rows);
+  ASSERT_EQ(warnings.size(), 3u);
+  EXPECT_NE(warnings[0].find("2 of 5 restarts"), std::string::npos);
+  EXPECT_NE(warnings[1].find("did not converge"), std::string::npos);
+  EXPECT_NE(warnings[2].find("bic 2, icl 2, aic 3, heldout 2"), std::string::npos);
+}
+
+TEST(SelectionWarnings, TheEdgeOfTheRange) {
+  std::vector<Candidate> rows(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    rows[i].components = static_cast<Index>(i) + 1;
+    rows[i].converged = true;
+    rows[i].bic = rows[i].aic = rows[i].icl = i == 0 ? 1.0 : 2.0;
+    rows[i].heldout = -rows[i].bic;
+  }
+  rows[0].selected = true;
+  EXPECT_TRUE(selection_warnings(rows).empty());  // there are no fewer than one
+  rows[0].components = 2;
+  rows[1].components = 3;
+  EXPECT_NE(selection_warnings(rows).at(0).find("fewest"), std::string::npos);
+}
+
+TEST(SelectionRobustness, BadCloudsGiveStatedRows) {
+  Eigen::MatrixXd constant(3, 200);
+  constant.topRows(2) = draw(three_clusters(10.0), 200, 1);
+  constant.row(2).setConstant(7.0);
+  Eigen::MatrixXd few(2, 60);
+  for (Index i = 0; i < 60; ++i) few.col(i) << static_cast<double>(i % 3), static_cast<double>((i % 3) * 2);
+  Eigen::MatrixXd outlier = draw(three_clusters(5.0), 200, 2);
+  outlier.col(7).setConstant(1e100);
+  SampleDesign design;
+  for (const Eigen::MatrixXd& points : {constant, few, outlier, Eigen::MatrixXd(few.leftCols(1).replicate(1, 50))}) {
+    design.runs.assign(static_cast<std::size_t>(points.cols()), 0);
+    for (std::size_t i = 0; i < design.runs.size(); ++i) design.runs[i] = static_cast<Index>(i % 3);
+    for (const CovarianceType type : {CovarianceType::full, CovarianceType::diagonal}) {
+      SelectionOptions options = from_one_to(6);
+      options.em.covariance = type;
+      expect_stated(select(points, design, options, 1));
+    }
+  }
+  design.runs.clear();
+  const Selection three = select(few, design, from_one_to(6), 1);
+  EXPECT_EQ(three.candidates[2].status, CandidateStatus::fitted);
+  EXPECT_EQ(three.candidates[3].status, CandidateStatus::too_few_points);
+  SelectionOptions too_many;
+  too_many.components = {4, 5};
+  EXPECT_THROW(select(few, design, too_many, 1), DataError);
+  EXPECT_THROW(select(Eigen::MatrixXd(2, 0), design, too_many, 1), DataError);
+}
+
+}  // namespace
+}  // namespace modebank::test
