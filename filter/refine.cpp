@@ -25,7 +25,8 @@ namespace {
 constexpr std::array<Index, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
 constexpr std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
 constexpr std::array<double, 3> prior_samples{2.0, 5.0, 20.0};
-constexpr double prior_strength = 4.0;  // transitions that the prior on Q is worth, at first
+// Transitions that the prior on Q is worth: at first, and where nothing is left out to choose by.
+constexpr double prior_strength = 4.0, unit_strength = 1.0;
 constexpr std::array<double, 2> other_strengths{1.0, 16.0};
 
 /// The modes of a bank put in place of another's, everything else as there.
@@ -273,7 +274,7 @@ std::vector<Start> all_starts(const WindowFits& fits, const std::vector<Bank>& b
   std::vector<Start> starts;
   for (const auto& [name, model] : models)
     for (const SharedParts shared : ways_to_share(options.share))
-      starts.push_back({name, model, shared, prior_strength});
+      starts.push_back({name, model, shared, options.folds > 1 ? prior_strength : unit_strength});
   return starts;
 }
 
@@ -286,7 +287,7 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   if (!frame.motion_parameters.empty())
     throw std::invalid_argument("a bank of the motion model " + frame.model + " cannot be refined, a linear one can");
   const TrainingTransitions transitions = gather_training_transitions(recording, frame.structure);
-  SwitchingPrior prior = switching_prior(transitions, fits.global, fits.prior_sd, prior_strength);
+  SwitchingPrior prior = switching_prior(transitions, fits.global, fits.prior_sd, unit_strength);
   const CrossValidation validation =
       cross_validate(recording, fits, all_starts(fits, banks, transitions, prior, options), frame, options, filter);
 

@@ -109,9 +109,7 @@ TEST_F(Refine, ModesThatTheDataDoNotTellApartAreScreenedAsDuplicates) {
   truth.Q(2) = truth.Q(1);
   learn_from(5, 300);
   const WindowFits fits = test::windows_of(recording, 25, 1);
-  Eigen::MatrixXd theta = truth.theta;
-  theta(1, 1) += 0.02;
-  const Refinement refined = refine_bank(recording, fits, {start_bank(recording, theta)}, quick(), {});
+  const Refinement refined = refine_bank(recording, fits, {start_bank(recording, truth.theta)}, quick(), {});
   EXPECT_EQ(refined.bank.mode_count(), 2);
   ASSERT_EQ(refined.bank.screened.size(), 1u);
   EXPECT_THAT(refined.bank.screened[0].reason, testing::HasSubstr("duplicate of mode"));
@@ -192,6 +190,7 @@ TEST(NoiseScale, IsTheDiscountedMeanOfStandardisedSquares) {
   const double Q = 0.09, f = 0.9, n0 = 3.0;
   bank.modes.push_back(
       make_mode(structure, Eigen::Vector2d(-0.5, 0.0), Eigen::MatrixXd::Constant(1, 1, Q), {}, {}, 1.0));
+  set_mode_sequence(bank, TransitionMatrix());
   bank.noise_adaptation = {f, n0};
   const RunEvaluation e = evaluate_run(bank, recording.runs[0], adaptive_imm());
   double weight = n0, squares = n0;
@@ -210,6 +209,7 @@ TEST(NoiseScale, StaysWhereMeasurementNoiseExplainsEverything) {
   Bank bank = bank_frame(recording, structure, Eigen::MatrixXd::Ones(1, 1));
   bank.modes.push_back(
       make_mode(structure, Eigen::Vector2d(0.0, 0.0), Eigen::MatrixXd::Constant(1, 1, 1e-12), {}, {}, 1.0));
+  set_mode_sequence(bank, TransitionMatrix());
   const RunEvaluation plain = evaluate_run(bank, recording.runs[0], {});
   const RunEvaluation e = evaluate_run(bank, recording.runs[0], adaptive_imm());
   EXPECT_TRUE(near(e.innovation_covariance.rightCols(49), plain.innovation_covariance.rightCols(49), 1e-9));
