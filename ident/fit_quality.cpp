@@ -77,7 +77,7 @@ double akaike_criterion(const WhitenedProblem& problem, const RobustTerms& terms
                         const NoiseScale& scale) {
   const double n = static_cast<double>(problem.states);
   const double parameters = problem.J.topRows(problem.sample_rows()).squaredNorm();  // J'J = I: sum of leverages
-  const double weights = n * sample_weights(problem).array().log().sum();
+  const double weights = problem.weight.size() > 0 ? n * problem.weight.array().log().sum() : 0.0;
   if (loss.kind() == Loss::trivial) return gaussian_deviance(problem, terms, scale) - weights + 2.0 * (parameters + n);
   const double price = price_of_a_parameter(problem, terms);
   return robust_deviance(problem, terms, loss, scale.sigma) - weights + 2.0 * (price * parameters + n);

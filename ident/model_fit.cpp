@@ -20,10 +20,15 @@ struct LinearisedFit {
 LinearisedFit linearise(const ModelResiduals& residuals, const Eigen::VectorXd& sigma, const Eigen::VectorXd& at) {
   LinearisedFit fit;
   residuals.evaluate(at.data(), fit.r, &fit.J);
-  for (Index row = 0; row < fit.r.size(); ++row) {
-    const double scale = std::sqrt(residuals.weight(row / residuals.states())) / sigma(row % residuals.states());
-    fit.r(row) *= scale;
-    fit.J.row(row) *= scale;
+  const Index n = residuals.states(), u = fit.J.cols();
+  double *r = fit.r.data(), *J = fit.J.data();
+  for (Index k = 0; k < residuals.samples(); ++k) {
+    const double root_weight = std::sqrt(residuals.weight(k));
+    for (Index i = 0; i < n; ++i) {
+      const double scale = root_weight / sigma(i);
+      *r++ *= scale;
+      for (Index j = 0; j < u; ++j) *J++ *= scale;
+    }
   }
   return fit;
 }
@@ -67,12 +72,11 @@ ModelEstimator make_model_estimator(const MotionModel& model, const FitOptions& 
 LocalModel fit_model(const ModelResiduals& residuals, const ModelEstimator& estimator, const Eigen::VectorXd& sigma,
                      const Eigen::VectorXd& floor, const ParameterPrior* prior, const Eigen::VectorXd& start) {
   const Index p = residuals.model().parameter_count(), n = residuals.states();
-  const LocalModel failed = failed_fit(p, n);
-  if (residuals.samples() == 0) return failed;
+  if (residuals.samples() == 0) return failed_fit(p, n);
   const ModelMinimum minimum = minimise_model(residuals, sigma, estimator.loss, prior, estimator.search, start);
-  if (minimum.status == FitStatus::failed) return failed;
+  if (minimum.status == FitStatus::failed) return failed_fit(p, n);
   const LinearisedFit at_solution = linearise(residuals, sigma, minimum.unknowns);
-  if (!at_solution.J.allFinite() || !at_solution.r.allFinite()) return failed;
+  if (!at_solution.J.allFinite() || !at_solution.r.allFinite()) return failed_fit(p, n);
 
   const Decomposition excitation = decompose(at_solution.J, excitation_tolerance);
   const WhitenedProblem problem = whiten_at(at_solution, residuals, minimum.unknowns, excitation, prior);

@@ -36,9 +36,9 @@ struct ModelMinimum {
 };
 
 /// Minimises 1/2 sum rho(|r_k / sigma|^2) + 1/2 |(theta - m) / sd|^2 within the parameters' bounds from `start`
-/// (unknowns), by `search`; Newton's steps take the loss' exact curvature and the model's Gauss-Newton one, and end
-/// where the gradient is below 1e-10 of its standard deviation. `sigma`: n positive entries; `prior` may be null.
-/// Non-convex losses start from the Huber optimum.
+/// (unknowns), by `search`. Newton's steps (NewtonSearch) end where the gradient, but for parameters that a bound
+/// holds, is below 1e-10 of |psi|. `sigma`: n positive entries; `prior` may be null. Non-convex losses start from the
+/// Huber optimum, and models that are not linear near the lower of two: from `start`, and from their least squares.
 ModelMinimum minimise_model(const ModelResiduals& residuals, const Eigen::VectorXd& sigma, const RobustLoss& loss,
                             const ParameterPrior* prior, const ModelSearch& search, const Eigen::VectorXd& start);
 

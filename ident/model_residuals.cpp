@@ -1,6 +1,7 @@
 #include "ident/model_residuals.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace modebank {
 
@@ -8,8 +9,14 @@ namespace {
 
 double period_s(const Trajectory& run, Index k) { return run.time_s(k + 1) - run.time_s(k); }
 
+/// Column k of signals, entry by entry: there are few.
+bool finite_sample(const Eigen::MatrixXd& signals, Index k) {
+  const double* const sample = signals.data() + k * signals.rows();
+  return std::all_of(sample, sample + signals.rows(), [](double value) { return std::isfinite(value); });
+}
+
 bool finite_transition(const Trajectory& run, Index k) {
-  return run.state.col(k).allFinite() && run.state.col(k + 1).allFinite() && run.input.col(k).allFinite();
+  return finite_sample(run.state, k) && finite_sample(run.state, k + 1) && finite_sample(run.input, k);
 }
 
 double sample_weight(const Trajectory& run, Index k) { return run.weight.size() > 0 ? run.weight(k) : 1.0; }
@@ -46,7 +53,10 @@ ModelResiduals::ModelResiduals(const MotionModel& model, const std::vector<Stret
 
 void ModelResiduals::take_transitions(const std::vector<Stretch>& stretches, const Eigen::VectorXd& weights) {
   std::vector<double> kept;
-  Index position = 0;
+  Index position = 0, all = 0;
+  for (const Stretch& s : stretches) all += s.length;
+  kept.reserve(static_cast<std::size_t>(all));
+  transitions_.reserve(static_cast<std::size_t>(all));
   for (const Stretch& s : stretches)
     for (Index k = s.start; k < s.start + s.length; ++k, ++position) {
       const double weight = weights.size() > 0 ? weights(position) : sample_weight(*s.run, k + 1);

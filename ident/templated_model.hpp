@@ -38,17 +38,14 @@ class TemplatedModel final : public MotionModel {
       equation_.template predict<double>(theta, x, u, dt_s, next);
   }
 
-  /// The same without a call of an unknown function per transition.
+  /// The same without a call of an unknown function per transition, nor theta made dual in each.
   void residuals(const double* theta, const Transition* transitions, Eigen::Index count, double* r,
                  double* by_theta) const override {
-    for (Eigen::Index k = 0; k < count; ++k) {
+    if (by_theta) return residuals_with_derivatives(theta, transitions, count, r, by_theta);
+    for (Eigen::Index k = 0; k < count; ++k, r += N) {
       const Transition& t = transitions[k];
-      double* const out = r + k * N;
-      if (by_theta)
-        differentiate<P>(theta, t.x, t.u, t.dt_s, out, {by_theta + k * N * P, nullptr, nullptr});
-      else
-        equation_.template predict<double>(theta, t.x, t.u, t.dt_s, out);
-      for (int i = 0; i < N; ++i) out[i] = t.next[i] - out[i];
+      equation_.template predict<double>(theta, t.x, t.u, t.dt_s, r);
+      for (int i = 0; i < N; ++i) r[i] = t.next[i] - r[i];
     }
   }
 
@@ -58,6 +55,25 @@ class TemplatedModel final : public MotionModel {
   Equation equation_;
   std::string name_;
   std::vector<ModelParameter> table_;
+
+  void residuals_with_derivatives(const double* theta, const Transition* transitions, Eigen::Index count, double* r,
+                                  double* by_theta) const {
+    using Jet = ceres::Jet<double, P>;
+    std::array<Jet, P> dual_theta;
+    std::array<Jet, N> x, next;
+    std::array<Jet, M> u;
+    for (int j = 0; j < P; ++j) dual_theta[j] = Jet(theta[j], j);
+    for (Eigen::Index k = 0; k < count; ++k, r += N) {
+      const Transition& t = transitions[k];
+      for (int i = 0; i < N; ++i) x[i].a = t.x[i];
+      for (int i = 0; i < M; ++i) u[i].a = t.u[i];
+      equation_.template predict<Jet>(dual_theta.data(), x.data(), u.data(), t.dt_s, next.data());
+      for (int i = 0; i < N; ++i) {
+        r[i] = t.next[i] - next[i].a;
+        for (int j = 0; j < P; ++j) *by_theta++ = next[i].v[j];
+      }
+    }
+  }
 
   /// Values as dual numbers; the first `Directions` of theta, x, u one after the other are differentiated.
   template <int Directions>

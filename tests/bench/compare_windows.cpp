@@ -1,4 +1,5 @@
-// Window fits beside other people's programs in one run: one thread, the programs in turn, medians over the rounds.
+// Window fits beside other people's programs in one run: CPU time of one thread, the programs in turn, medians over the
+// rounds.
 // Bare: fixed scale, no prior; theta, `model` covariance and status, as the peers compute. usage:
 // compare_windows [ROUNDS]
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -82,8 +84,8 @@ FitOptions bare_options(Loss loss) {
 /// Results of a job, used again by the next.
 struct JobResults {
   Eigen::MatrixXd theta{3, job}, covariance{9, job}, information{3, job};
-  Eigen::VectorXd noise{job}, condition{job}, inliers{job};
-  Eigen::VectorXi rank{job}, status{job};
+  Eigen::VectorXd noise{job}, condition{job}, inliers{job}, r_squared{job}, aic{job};
+  Eigen::VectorXi rank{job}, status{job}, transitions{job};
   std::vector<batch::Verdict> verdict = std::vector<batch::Verdict>(job);
 };
 
@@ -103,6 +105,9 @@ void run_batch(const Trajectory& run, const BatchSolver& solver, bool full, Inde
     out.information = results.information.data();
     out.inlier_fraction = results.inliers.data();
     out.rank = results.rank.data();
+    out.r_squared = results.r_squared.data();
+    out.aic = results.aic.data();
+    out.transitions = results.transitions.data();
   }
   for (Index first = 0; first < windows; first += job) {
     const Index count = std::min(job, windows - first);
@@ -124,13 +129,19 @@ struct Entry {
   }
 };
 
+/// Of this program's one thread, so that a neighbour on the machine is not measured, too.
+double cpu_time_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
+}
+
 void measure(std::vector<Entry>& entries, int rounds) {
   for (int round = 0; round < rounds; ++round)
     for (Entry& entry : entries) {
-      const auto start = std::chrono::steady_clock::now();
+      const double start = cpu_time_ns();
       entry.run();
-      const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - start;
-      entry.ns.push_back(time.count() / static_cast<double>(entry.windows));
+      entry.ns.push_back((cpu_time_ns() - start) / static_cast<double>(entry.windows));
     }
 }
 
