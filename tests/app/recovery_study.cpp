@@ -9,11 +9,6 @@
 #include "mixture/criteria.hpp"
 
 namespace modebank::test {
-namespace {
-
-constexpr Index window_length = 25;
-
-}  // namespace
 
 SimulationOptions recovery_system(const RecoveryCase& recovery, int seed) {
   static const std::vector<Eigen::Vector3d> modes{{-0.60, -0.72, 0.72}, {-0.25, -0.20, 0.20}, {-0.45, -0.10, 0.50},

@@ -19,7 +19,6 @@ namespace modebank::test {
 namespace {
 
 constexpr int seeds = 50;
-constexpr Index window_length = 25;
 constexpr Index window_step = 5;  // a fifth of the windows, so that the suite stays short; N_eff hardly changes
 
 /// 2..4 well separated modes with R = Q / 25; the number of modes follows the seed.
