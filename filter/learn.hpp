@@ -72,8 +72,8 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
                 const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion = nullptr);
 
 /// learn_bank, then refine_bank from it and from what is left of the mixture when its closest components are merged
-/// (merge_components) down to three quarters of the modes, again and again while there are two. The mixture's own bank is
-/// `start` of the result.
+/// (merge_components) down to three quarters of the modes, again and again while there are two. The mixture's own bank
+/// is `start` of the result.
 Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                               const BankOptions& options, const Eigen::MatrixXd& R, const FilterOptions& filter);
 

@@ -79,6 +79,8 @@ class Climb {
   bool converged_ = false;
 };
 
+double first_strength(const RefineOptions& options) { return options.folds > 1 ? prior_strength : unit_strength; }
+
 /// What is refined from where.
 struct Start {
   std::string name;
@@ -274,7 +276,7 @@ std::vector<Start> all_starts(const WindowFits& fits, const std::vector<Bank>& b
   std::vector<Start> starts;
   for (const auto& [name, model] : models)
     for (const SharedParts shared : ways_to_share(options.share))
-      starts.push_back({name, model, shared, options.folds > 1 ? prior_strength : unit_strength});
+      starts.push_back({name, model, shared, first_strength(options)});
   return starts;
 }
 
@@ -287,7 +289,7 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   if (!frame.motion_parameters.empty())
     throw std::invalid_argument("a bank of the motion model " + frame.model + " cannot be refined, a linear one can");
   const TrainingTransitions transitions = gather_training_transitions(recording, frame.structure);
-  SwitchingPrior prior = switching_prior(transitions, fits.global, fits.prior_sd, unit_strength);
+  SwitchingPrior prior = switching_prior(transitions, fits.global, fits.prior_sd, first_strength(options));
   const CrossValidation validation =
       cross_validate(recording, fits, all_starts(fits, banks, transitions, prior, options), frame, options, filter);
 

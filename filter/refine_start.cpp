@@ -1,5 +1,6 @@
 #include "filter/refine_start.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <random>

@@ -40,16 +40,7 @@ def run(program, config, options, archive):
         raise RuntimeError(done.stderr.strip().splitlines()[-1] if done.stderr.strip() else "failed")
     shown = subprocess.run([program, "show", archive, "/evaluation/summary", "--json"], capture_output=True, text=True,
                            check=True)
-    return rows_of(json.loads(shown.stdout))
-
-
-def rows_of(table):
-    """Rows as dictionaries, however the table is laid out."""
-    value = table.get("value", table)
-    if isinstance(value, list):
-        return value
-    names = list(value)
-    return [dict(zip(names, row)) for row in zip(*(value[name] for name in names))]
+    return json.loads(shown.stdout)["value"]
 
 
 def pooled(rows, filter_name):

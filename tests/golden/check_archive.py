@@ -225,6 +225,11 @@ def check_bank(group, modes, uncertain):
     if uncertain:
         expect_array(group["parameter_covariance"], (modes, p, p), "<f8", outer(PARAMETER_UNITS))
         expect_array(group["parameter_standard_error"], (modes, p), "<f8", PARAMETER_UNITS)
+        expect_array(group["Q_standard_error"], (modes, n, n), "<f8", outer(STATE_UNITS))
+        expect_array(group["R_standard_error"], (n_y, n_y), "<f8", outer(STATE_UNITS))
+        expect_array(group["transition_standard_error"], (modes, modes), "<f8")
+        expect(f"{name} noise_forgetting", group.attrs["noise_forgetting"], 0.995)
+        check_bank(group["unrefined"], 1, False)
         expect(f"{name} reason", group["screened"]["reason"][0], b"unstable: spectral radius 1.25")
 
 

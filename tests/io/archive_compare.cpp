@@ -234,12 +234,17 @@ void expect_same(const Bank& actual, const Bank& expected) {
     EXPECT_TRUE(same_bits(a.Q, e.Q));
     EXPECT_TRUE(same_bits(a.spread, e.spread));
     EXPECT_TRUE(same_bits(a.standard_error, e.standard_error));
+    EXPECT_TRUE(same_bits(a.Q_standard_error, e.Q_standard_error));
     EXPECT_EQ(a.weight, e.weight);
   }
   EXPECT_TRUE(same_bits(actual.C, expected.C));
   EXPECT_TRUE(same_bits(actual.R, expected.R));
   EXPECT_TRUE(same_bits(actual.transition.matrix(), expected.transition.matrix()));
   EXPECT_TRUE(same_bits(actual.initial_probability, expected.initial_probability));
+  EXPECT_TRUE(same_bits(actual.R_standard_error, expected.R_standard_error));
+  EXPECT_TRUE(same_bits(actual.transition_standard_error, expected.transition_standard_error));
+  EXPECT_EQ(actual.noise_adaptation.forgetting, expected.noise_adaptation.forgetting);
+  EXPECT_EQ(actual.noise_adaptation.prior_samples, expected.noise_adaptation.prior_samples);
   EXPECT_EQ(actual.state_names, expected.state_names);
   EXPECT_EQ(actual.input_names, expected.input_names);
   EXPECT_EQ(actual.dt_s, expected.dt_s);
@@ -260,6 +265,7 @@ void expect_same(const Archive& actual, const Archive& expected) {
   expect_same_part(actual.windows, expected.windows, "windows");
   expect_same_part(actual.mixture, expected.mixture, "mixture");
   expect_same_part(actual.bank, expected.bank, "bank");
+  expect_same_part(actual.unrefined, expected.unrefined, "unrefined");
   expect_same_part(actual.baseline, expected.baseline, "baseline");
   expect_same_part(actual.noise_only, expected.noise_only, "noise_only");
   ASSERT_EQ(actual.evaluations.size(), expected.evaluations.size());

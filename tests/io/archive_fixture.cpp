@@ -125,6 +125,7 @@ Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
     mode.Q(n - 1, 0) += 0.125;
     if (uncertain) mode.spread = pattern(p, p, 50.0);
     if (uncertain) mode.standard_error = pattern(p, 1, 60.0 + scale);
+    if (uncertain) mode.Q_standard_error = pattern(n, n, 70.0 + scale);
     mode.weight = 1.0 / scale;
     bank.modes.push_back(mode);
   }
@@ -139,6 +140,11 @@ Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
   for (Index i = 0; i < n; ++i) bank.state_names.push_back("x" + std::to_string(i));
   for (Index i = 0; i < m; ++i) bank.input_names.push_back("u" + std::to_string(i));
   bank.dt_s = 2.0 / 13.0;
+  if (uncertain) {
+    bank.R_standard_error = pattern(n, n, 80.0);
+    bank.transition_standard_error = pattern(count, count, 90.0);
+    bank.noise_adaptation = {0.995, 20.0};
+  }
   if (uncertain) bank.screened.push_back({4, 0.01, 1.25, "unstable: spectral radius 1.25"});
   return bank;
 }
@@ -235,6 +241,7 @@ Archive full_archive(Index n, Index m) {
   archive.windows = make_windows_fits(structure);
   archive.mixture = make_mixture(*archive.windows);
   archive.bank = make_bank(structure, modes, true);
+  archive.unrefined = make_bank(structure, 1, false);
   archive.baseline = make_bank(structure, 1, false);
   archive.noise_only = make_bank(structure, modes, false);
   for (const char* filter : {"bank", "baseline", "noise_only"}) {
