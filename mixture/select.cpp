@@ -66,10 +66,10 @@ std::vector<Index> sorted_components(const SelectionOptions& options) {
 }
 
 Candidate unfitted(Candidate row, CandidateStatus status) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr double worst = std::numeric_limits<double>::infinity();
   row.status = status;
-  row.log_likelihood = -infinity;
-  row.bic = row.aic = row.icl = row.bic_naive = infinity;
+  row.log_likelihood = -worst;
+  row.bic = row.aic = row.icl = row.bic_naive = worst;
   return row;
 }
 

@@ -1,6 +1,5 @@
 #include "mixture/split_merge.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "ident/seed.hpp"
+#include "mixture/component_merge.hpp"
 #include "mixture/em_iteration.hpp"
 #include "mixture/em_step.hpp"
 #include "mixture/starts.hpp"
@@ -24,59 +24,6 @@ constexpr int partial_iterations = 15, move_iterations = 15;
 constexpr int most_move_rounds = 20;
 /// A gain below this per unit weight is the same optimum [nats].
 constexpr double least_gain = 1e-5;
-
-double log_determinant(const Eigen::MatrixXd& covariance) {
-  return 2.0 * Eigen::LLT<Eigen::MatrixXd>(covariance).matrixLLT().diagonal().array().log().sum();
-}
-
-struct Part {
-  double weight;
-  Eigen::VectorXd mean;
-  Eigen::MatrixXd covariance;
-};
-
-Part part_of(const GaussianMixture& mixture, Index k) {
-  return {mixture.weights(k), mixture.means.col(k), mixture.covariances[static_cast<std::size_t>(k)]};
-}
-
-void put(const Part& part, Index k, GaussianMixture& mixture) {
-  mixture.weights(k) = part.weight;
-  mixture.means.col(k) = part.mean;
-  mixture.covariances[static_cast<std::size_t>(k)] = part.covariance;
-}
-
-/// Both components as one of the same moments.
-Part merged(const GaussianMixture& mixture, Index i, Index j) {
-  const Part a = part_of(mixture, i), b = part_of(mixture, j);
-  const double weight = a.weight + b.weight, share = weight > 0.0 ? b.weight / weight : 0.5;
-  const Eigen::VectorXd gap = b.mean - a.mean;
-  Part result{weight, a.mean + share * gap,
-              (1.0 - share) * a.covariance + share * b.covariance + share * (1.0 - share) * gap * gap.transpose()};
-  if (mixture.type == CovarianceType::diagonal) {
-    const Eigen::VectorXd variances = result.covariance.diagonal();
-    result.covariance = variances.asDiagonal();
-  }
-  return result;
-}
-
-struct Merge {
-  Index first, second;
-  double loss;
-};
-
-std::vector<Merge> merges_by_loss(const GaussianMixture& mixture) {
-  std::vector<double> log_determinants;
-  for (const Eigen::MatrixXd& covariance : mixture.covariances) log_determinants.push_back(log_determinant(covariance));
-  const auto share = [&](Index k) { return mixture.weights(k) * log_determinants[static_cast<std::size_t>(k)]; };
-  std::vector<Merge> merges;
-  for (Index i = 0; i < mixture.components(); ++i)
-    for (Index j = i + 1; j < mixture.components(); ++j) {
-      const Part both = merged(mixture, i, j);
-      merges.push_back({i, j, 0.5 * (both.weight * log_determinant(both.covariance) - share(i) - share(j))});
-    }
-  std::stable_sort(merges.begin(), merges.end(), [](const Merge& a, const Merge& b) { return a.loss < b.loss; });
-  return merges;
-}
 
 GaussianMixture pair_of(const GaussianMixture& mixture, Index k) {
   GaussianMixture pair;
@@ -170,7 +117,7 @@ GaussianMixture apply(const SplitMergeMove& move, const GaussianMixture& mixture
   GaussianMixture result = mixture;
   put(merged(mixture, move.merged, move.absorbed), move.merged, result);
   for (const auto& [place, part] : {std::pair{move.split, Index{0}}, {move.absorbed, Index{1}}}) {
-    put(part_of(move.parts, part), place, result);
+    put(component_of(move.parts, part), place, result);
     result.weights(place) *= mixture.weights(move.split);
   }
   return result;

@@ -18,8 +18,7 @@ struct SplitMergeMove {
 /// The moves that promise most, best first, at most `most`; none for fewer than three components. Splitting gains what
 /// EM with two components gains on the points of one (weighted by responsibility: the partial EM of Ueda, Nakano,
 /// Ghahramani & Hinton 2000, Neural Comput. 12, section 3), from its halves or from a dense core and a wide shell.
-/// Merging by moments costs at most (Runnalls 2007, IEEE Trans. Aerosp. Electron. Syst. 43, eq. 16)
-/// ((w_i + w_j) log |P_ij| - w_i log |P_i| - w_j log |P_j|) / 2.
+/// Merging costs what merges_by_loss says.
 /// `points` F x n, a sample; the options' covariance type and floor hold.
 std::vector<SplitMergeMove> split_merge_moves(const GaussianMixture& mixture, const Eigen::MatrixXd& points,
                                               const EmOptions& options, std::size_t most);

@@ -17,14 +17,30 @@ WindowResponsibilities::WindowResponsibilities(GaussianMixture mixture, FeatureC
   source_ = std::make_shared<const Source>(Source{std::move(mixture), std::move(cloud)});
 }
 
+Index WindowResponsibilities::components() const { return sums_.size() > 0 ? sums_.rows() : fitted(); }
+
 Eigen::MatrixXd WindowResponsibilities::block(Index first, Index count) const {
+  const Eigen::MatrixXd result = fitted_block(first, count);
+  return sums_.size() > 0 ? Eigen::MatrixXd(sums_ * result) : result;
+}
+
+WindowResponsibilities WindowResponsibilities::merged(Index into, Index absorbed) && {
+  Eigen::MatrixXd sums = sums_.size() > 0 ? sums_ : Eigen::MatrixXd(Eigen::MatrixXd::Identity(fitted(), fitted()));
+  sums.row(into) += sums.row(absorbed);
+  const Index later = sums.rows() - absorbed - 1;
+  sums.middleRows(absorbed, later) = sums.bottomRows(later).eval();
+  sums_ = sums.topRows(sums.rows() - 1);
+  return std::move(*this);
+}
+
+Eigen::MatrixXd WindowResponsibilities::fitted_block(Index first, Index count) const {
   if (first < 0 || count < 0 || first + count > windows_) throw std::invalid_argument("there are no such windows");
   if (!source_) return stored_.middleCols(first, count);
   const FeatureCloud& cloud = source_->cloud;
   const auto begin = std::lower_bound(cloud.windows.begin(), cloud.windows.end(), first);
   const auto end = std::lower_bound(begin, cloud.windows.end(), first + count);
   const Index from = begin - cloud.windows.begin(), points = end - begin;
-  Eigen::MatrixXd result = Eigen::MatrixXd::Constant(components(), count, not_a_number);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Constant(fitted(), count, not_a_number);
   if (points == 0) return result;
   const Eigen::MatrixXd part = cloud.points.middleCols(from, points);
   Eigen::MatrixXd errors;

@@ -19,11 +19,13 @@ class WindowResponsibilities {
   /// otherwise.
   WindowResponsibilities(GaussianMixture mixture, FeatureCloud cloud, Eigen::Index windows);
 
-  Eigen::Index components() const { return source_ ? source_->mixture.components() : stored_.rows(); }
+  Eigen::Index components() const;
   Eigen::Index windows() const { return windows_; }
   /// Windows first to first + count - 1, K x count.
   Eigen::MatrixXd block(Eigen::Index first, Eigen::Index count) const;
   Eigen::MatrixXd all() const { return block(0, windows_); }
+  /// Those of component `absorbed` added to those of `into`; later components move up.
+  WindowResponsibilities merged(Eigen::Index into, Eigen::Index absorbed) &&;
 
  private:
   struct Source {
@@ -32,7 +34,11 @@ class WindowResponsibilities {
   };
   Eigen::MatrixXd stored_;
   std::shared_ptr<const Source> source_;
+  Eigen::MatrixXd sums_;  ///< merged components x fitted ones, of ones and zeros; empty: none are merged
   Eigen::Index windows_ = 0;
+
+  Eigen::Index fitted() const { return source_ ? source_->mixture.components() : stored_.rows(); }
+  Eigen::MatrixXd fitted_block(Eigen::Index first, Eigen::Index count) const;
 };
 
 /// The most probable component of every window, M; -1: not clustered, or more probably noise than any component.

@@ -1,0 +1,55 @@
+#include "mixture/component_merge.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+namespace modebank {
+
+using Eigen::Index;
+
+namespace {
+
+double log_determinant(const Eigen::MatrixXd& covariance) {
+  return 2.0 * Eigen::LLT<Eigen::MatrixXd>(covariance).matrixLLT().diagonal().array().log().sum();
+}
+
+}  // namespace
+
+Component component_of(const GaussianMixture& mixture, Index k) {
+  return {mixture.weights(k), mixture.means.col(k), mixture.covariances[static_cast<std::size_t>(k)]};
+}
+
+void put(const Component& component, Index k, GaussianMixture& mixture) {
+  mixture.weights(k) = component.weight;
+  mixture.means.col(k) = component.mean;
+  mixture.covariances[static_cast<std::size_t>(k)] = component.covariance;
+}
+
+Component merged(const GaussianMixture& mixture, Index i, Index j) {
+  const Component a = component_of(mixture, i), b = component_of(mixture, j);
+  const double weight = a.weight + b.weight, share = weight > 0.0 ? b.weight / weight : 0.5;
+  const Eigen::VectorXd gap = b.mean - a.mean;
+  Component result{weight, a.mean + share * gap,
+                   (1.0 - share) * a.covariance + share * b.covariance + share * (1.0 - share) * gap * gap.transpose()};
+  if (mixture.type == CovarianceType::diagonal) {
+    const Eigen::VectorXd variances = result.covariance.diagonal();
+    result.covariance = variances.asDiagonal();
+  }
+  return result;
+}
+
+std::vector<Merge> merges_by_loss(const GaussianMixture& mixture) {
+  std::vector<double> log_determinants;
+  for (const Eigen::MatrixXd& covariance : mixture.covariances) log_determinants.push_back(log_determinant(covariance));
+  const auto share = [&](Index k) { return mixture.weights(k) * log_determinants[static_cast<std::size_t>(k)]; };
+  std::vector<Merge> merges;
+  for (Index i = 0; i < mixture.components(); ++i)
+    for (Index j = i + 1; j < mixture.components(); ++j) {
+      const Component both = merged(mixture, i, j);
+      merges.push_back({i, j, 0.5 * (both.weight * log_determinant(both.covariance) - share(i) - share(j))});
+    }
+  std::stable_sort(merges.begin(), merges.end(), [](const Merge& a, const Merge& b) { return a.loss < b.loss; });
+  return merges;
+}
+
+}  // namespace modebank
