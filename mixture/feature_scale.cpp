@@ -55,8 +55,7 @@ FeatureScale FeatureScale::of(const PointSet& set) {
   for (Index i = 0; i < set.count(); ++i)
     if (counts(set, i)) magnitude = magnitude.cwiseMax(set.points.col(i).cwiseAbs());
   // Relative to the magnitude, so that squares neither overflow nor underflow.
-  const Eigen::VectorXd unit = (magnitude.array() >= smallest_scale).select(magnitude.cwiseInverse(), 0.0);
-  const auto relative = [&](Index i, Index f) { return set.points(f, i) * unit(f); };
+  const auto relative = [&](Index i, Index f) { return magnitude(f) > 0.0 ? set.points(f, i) / magnitude(f) : 0.0; };
   const Eigen::VectorXd sums = sum_over(set, features + 1, [&](Index i, double weight, Eigen::VectorXd& sum) {
     sum(features) += weight;
     for (Index f = 0; f < features; ++f) sum(f) += weight * relative(i, f);
