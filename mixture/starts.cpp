@@ -56,13 +56,12 @@ Start Starts::make(Index components, int restart, std::uint64_t seed) const {
 
 GaussianMixture Starts::hierarchical(const Tree& tree, Index components) const {
   const PointBlocks sample(PointSet(tree.subsample), FeatureScale::identity(tree.subsample.rows()));
-  const Index clusters_taken = components + (options_.noise_component ? spare_components(components) : 0);
-  const std::vector<int> clusters = tree.merges.labels(clusters_taken);
+  const std::vector<int> clusters = tree.merges.labels(components);
   BlockLabels labels = BlockLabels::Zero(block_size, sample.blocks());
   std::copy(clusters.begin(), clusters.end(), labels.data());
   // With more components than points in the sample some are left over: they stay at its first points.
-  Eigen::MatrixXd centers(sample.features(), clusters_taken);
-  for (Index k = 0; k < clusters_taken; ++k) centers.col(k) = tree.subsample.col(k % sample.count());
+  Eigen::MatrixXd centers(sample.features(), components);
+  for (Index k = 0; k < components; ++k) centers.col(k) = tree.subsample.col(k % sample.count());
   GaussianMixture start =
       mixture_of_clusters(sample, labels, std::move(centers), options_.covariance, options_.covariance_floor);
   return with_noise(std::move(start), components);
@@ -81,10 +80,12 @@ Start Starts::best_of_short_runs(Index components, std::mt19937_64& generator) c
   brief.max_iterations = std::min(short_run_iterations, options_.max_iterations);
   const PointBlocks chosen = cloud_.points.for_starts(start_points, generator);
   EmResult best;
-  const Index clusters = components + (options_.noise_component ? spare_components(components) : 0);
-  for (int run = 0; run < (clusters == 1 ? 1 : short_runs); ++run) {
-    GaussianMixture mixture =
-        with_noise(start(chosen, clusters, options_.covariance, options_.covariance_floor, generator), components);
+  const bool one_start = components == 1 && !options_.noise_component;
+  for (int run = 0; run < (one_start ? 1 : short_runs); ++run) {
+    // Every other run thins more clusters out: it finds the noise where there is much, but may lose a mode.
+    const Index spare = options_.noise_component && run % 2 == 1 ? spare_components(components) : 0;
+    GaussianMixture mixture = with_noise(
+        start(chosen, components + spare, options_.covariance, options_.covariance_floor, generator), components);
     EmResult result = iterate(cloud_.points, std::move(mixture), brief);
     if (run == 0 || result.log_likelihood > best.log_likelihood) best = std::move(result);
   }

@@ -11,7 +11,8 @@ namespace modebank::test {
 
 inline constexpr Index window_length = 25;
 
-/// A kind of simulated recording and a way to choose K on it; windows of window_length transitions, features parameters+noise.
+/// A kind of simulated recording and a way to choose K on it; windows of window_length transitions, features
+/// parameters+noise.
 struct RecoveryCase {
   std::string name;
   Index hold_samples = 1;      ///< inputs are redrawn every so many samples
