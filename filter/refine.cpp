@@ -26,6 +26,7 @@ constexpr std::array<Index, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
 constexpr std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
 constexpr std::array<double, 3> prior_samples{2.0, 5.0, 20.0};
 // Transitions that the prior on Q is worth: at first, and where nothing is left out to choose by.
+constexpr double least_measurement_share = 1e-9;  // of the global residual variance: R that is as good as none
 constexpr double prior_strength = 4.0, unit_strength = 1.0;
 constexpr std::array<double, 2> other_strengths{1.0, 16.0};
 
@@ -285,7 +286,10 @@ std::vector<Start> all_starts(const WindowFits& fits, const std::vector<Bank>& b
 Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& banks,
                        const RefineOptions& options, const FilterOptions& filter) {
   if (banks.empty()) throw std::invalid_argument("no bank to refine");
-  const Bank& frame = banks.front();
+  Bank frame = banks.front();
+  // The fit takes the state as measured exactly: a start's R would count what Q then holds twice.
+  if (options.measurement_noise)
+    frame.R = least_measurement_share * fits.global.noise_variance().asDiagonal().toDenseMatrix();
   if (!frame.motion_parameters.empty())
     throw std::invalid_argument("a bank of the motion model " + frame.model + " cannot be refined, a linear one can");
   const TrainingTransitions transitions = gather_training_transitions(recording, frame.structure);
@@ -294,7 +298,7 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
       cross_validate(recording, fits, all_starts(fits, banks, transitions, prior, options), frame, options, filter);
 
   Refinement result;
-  result.start = frame;
+  result.start = banks.front();
   result.candidates = validation.table();
   const Start& start = validation.best();
   prior.noise_transitions = start.noise_transitions;
