@@ -23,6 +23,8 @@ struct FilterOptions {
   FilterVariant variant = FilterVariant::imm;
   bool parameter_noise = false;  ///< Q_k = Q + (I (x) phi') Sigma_theta (I (x) phi')' with the mode's spread
   TimeSteps time_steps = TimeSteps::repeat;
+
+  bool operator==(const FilterOptions&) const = default;
 };
 
 /// What a filter said about every sample of a run, one sample per column. Column 0 is the start: its scores are NaN.
