@@ -29,6 +29,8 @@ test: build packages-test
 bench: build
 	build/bench_modebank
 	build/compare_windows 5 build/compare_windows.bin
+	build/compare_imm
+	build/track_latency build/modebank
 	-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 /usr/bin/python3 tests/bench/window_peers.py build/compare_windows.bin
 	OMP_NUM_THREADS=1 build/compare_em 5
 	build/compare_em memory

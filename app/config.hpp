@@ -28,7 +28,7 @@ struct MixtureConfig {
 
 /// What of the [filter] section is about scoring a filter, not about how it steps.
 struct ScoringConfig {
-  std::vector<Index> horizon;  ///< samples ahead; empty: one step alone
+  std::vector<Index> horizon{1};  ///< samples ahead; 1 alone is what the summary scores anyway
   bool smooth = true;
 };
 

@@ -228,7 +228,8 @@ std::vector<Option> other_options() {
             "a longer time between samples: as many prediction steps as fit, the input held; or one step always",
             MODEBANK_FIELD(filter.time_steps)),
       numeric("filter.horizon", each(between(1, 10'000)), "samples",
-              "predictions this far ahead are scored, too: a number, a range such as 1..10, or a list; empty: none",
+              "predictions this far ahead are scored, too: a number, a range such as 1..10, or a list; 1: the summary "
+              "alone",
               MODEBANK_FIELD(scoring.horizon)),
       flag("filter.smooth", "smoothed states and the most probable sequence of modes, too",
            MODEBANK_FIELD(scoring.smooth)),

@@ -278,7 +278,7 @@ void evaluate_stage(const Config& config, Archive& archive) {
     const std::vector<RunEvaluation>& evaluations = archive.evaluations.back().runs;
     append(archive.summary, summarize(name, runs, evaluations));
     append(archive.diagnostics, diagnose(name, *bank, runs, evaluations));
-    if (!config.scoring.horizon.empty())
+    if (config.scoring.horizon != std::vector<Index>{1})
       append(archive.horizons,
              summarize_horizons(name, runs, look_ahead(*bank, runs, options, config.scoring.horizon)));
   };

@@ -32,6 +32,8 @@ struct FilterOptions {
   bool parameter_noise = false;  ///< Q_k = Q + (I (x) phi') Sigma_theta (I (x) phi')' with the mode's spread
   TimeSteps time_steps = TimeSteps::repeat;
   FilterNoise noise = FilterNoise::gaussian;
+
+  bool operator==(const FilterOptions&) const = default;
 };
 
 /// What a filter said about every sample of a run, one sample per column. Column 0 is the start: its scores are NaN.

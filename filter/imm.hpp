@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "filter/bounds.hpp"
 #include "filter/transition_matrix.hpp"
 
 /// The probabilities of the interacting multiple model filter, Blom & Bar-Shalom (1988), "The interacting multiple
@@ -16,12 +17,6 @@ namespace modebank {
 struct MixingWeights {
   Eigen::MatrixXd matrix;  ///< K x K
 };
-
-/// No mode ever dies for good: probabilities after a measurement are kept above this, then renormalised.
-inline constexpr double mode_probability_floor = 1e-12;
-
-/// A mode whose probability is below this before a measurement is impossible (T forbids it): it takes no part.
-inline constexpr double impossible_probability = 1e-100;
 
 /// c_j = sum_i T_ij mu_i and mu_{i|j} = T_ij mu_i / c_j. An impossible mode keeps its own state.
 inline void mixing_weights(const TransitionMatrix& transition, const Eigen::VectorXd& mu, Eigen::VectorXd& c,

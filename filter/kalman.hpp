@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filter/bounds.hpp"
 #include "filter/filter_model.hpp"
 #include "filter/gaussian.hpp"
 #include "filter/small_matrix.hpp"
@@ -65,12 +66,6 @@ struct KalmanStep {
   void add_parameter_noise(const LinearStructure& s, const Eigen::MatrixXd& spread,
                            const Eigen::Matrix<double, N, 1>& x, const U& u);
 };
-
-/// Beyond this variance, or its root for the mean, a diverging prediction stops growing, so that squares stay finite.
-inline constexpr double largest_variance = 1e60;
-inline constexpr double largest_mean = 1e30;
-/// Log densities below this are not told apart.
-inline constexpr double lowest_log_density = -1e300;
 
 /// Keeps a prediction usable: what diverges is scaled down, and a covariance that rounding made indefinite (possible
 /// when variances differ by more than double precision) keeps its variances and loses its correlations.

@@ -3,10 +3,9 @@
 #include <Eigen/Core>
 #include <cmath>
 
-namespace modebank {
+#include "filter/bounds.hpp"
 
-/// Measurements at or beyond this magnitude, infinite or NaN count as missing: nothing can be learned from them.
-inline constexpr double largest_measurement = 1e30;
+namespace modebank {
 
 inline bool is_missing(double y) { return !(std::abs(y) < largest_measurement); }
 

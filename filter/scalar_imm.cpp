@@ -98,8 +98,10 @@ Parameters::Parameters(const Bank& bank)
 
 bool can_step(const Bank& bank, const FilterOptions& options) {
   const auto has_spread = [](const Mode& mode) { return mode.spread.size() > 0; };
-  return bank.structure.dimension() == 1 && bank.C.rows() == 1 && bank.mode_count() > 1 &&
-         options.variant == FilterVariant::imm && options.noise == FilterNoise::gaussian &&
+  FilterOptions known;  // whatever else an option may ask for is the general filter's
+  known.parameter_noise = options.parameter_noise;
+  known.time_steps = options.time_steps;
+  return options == known && bank.structure.dimension() == 1 && bank.C.rows() == 1 && bank.mode_count() > 1 &&
          !(options.parameter_noise && std::any_of(bank.modes.begin(), bank.modes.end(), has_spread));
 }
 

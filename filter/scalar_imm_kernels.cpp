@@ -8,9 +8,7 @@
 
 #include <cmath>
 
-#include "filter/imm.hpp"
-#include "filter/kalman.hpp"
-#include "filter/measurement.hpp"
+#include "filter/bounds.hpp"
 #include "filter/scalar_imm_kernels.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -22,7 +20,6 @@ using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 
 constexpr double log_two_pi = 1.8378770664093454836;
-constexpr double least_variance = small::Cholesky<1>::absolute_pivot_floor;
 
 HWY_INLINE V splat(double value) { return hn::Set(D(), value); }
 HWY_INLINE V load(const double* p) { return hn::Load(D(), p); }
@@ -106,7 +103,7 @@ double one_run(const ModeLanes& p) {
       }
     }
     const double* v = p.v + (k - 1) * p.inputs;
-    const bool measured = !is_missing(p.measurement[k]);
+    const bool measured = std::abs(p.measurement[k]) < largest_measurement;
     const V y = splat(measured ? p.measurement[k] : 0.0);
     V nis[NV], inverse_S[NV], posterior[NV], posterior_variance[NV];
     V least = splat(1e300);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filter/bounds.hpp"
+
 /// Products and factorisation of small matrices in one fixed order of summation. Eigen's own products add in another
 /// order for fixed than for dynamic sizes; with these, both give the same bits, and no call allocates.
 namespace modebank::small {
@@ -65,8 +67,6 @@ struct Cholesky {
   /// Pivots below this share of their diagonal entry are rounding noise: they are raised to it, which is the same as
   /// adding that much to the diagonal of S.
   static constexpr double relative_pivot_floor = 1e-14;
-  /// The least variance (a standard deviation of 1e-20 in the signal's unit), for S = 0.
-  static constexpr double absolute_pivot_floor = 1e-40;
 
   explicit Cholesky(Index size) : L(size, size), D(size), D_inverse(size) {}
 
@@ -75,7 +75,7 @@ struct Cholesky {
     for (Index j = 0; j < D.size(); ++j) {
       double pivot = S(j, j);
       for (Index k = 0; k < j; ++k) pivot -= L(j, k) * L(j, k) * D(k);
-      D(j) = std::max({pivot, relative_pivot_floor * std::abs(S(j, j)), absolute_pivot_floor});
+      D(j) = std::max({pivot, relative_pivot_floor * std::abs(S(j, j)), least_variance});
       D_inverse(j) = 1.0 / D(j);
       for (Index i = j + 1; i < D.size(); ++i) {
         double sum = S(i, j);

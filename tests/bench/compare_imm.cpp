@@ -5,9 +5,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <numbers>
 
@@ -155,16 +155,23 @@ struct Contestant {
   std::vector<double> ns = {};
 };
 
+/// Processor time of this thread, which other programs do not lengthen.
+double processor_ns() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
+}
+
 void compare(const std::string& title, int rounds, std::vector<Contestant> contestants) {
   double expected = 0.0;
   for (int round = 0; round < rounds; ++round)
     for (Contestant& c : contestants) {
-      const auto begin = std::chrono::steady_clock::now();
+      const double begin = processor_ns();
       const double value = c.run();
-      const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - begin;
+      const double spent = processor_ns() - begin;
       if (&c == &contestants.front()) expected = value;
       bench::check(std::abs(value - expected) <= 1e-9 * std::abs(expected), title + ", " + c.name);
-      c.ns.push_back(spent.count() / (c.runs * static_cast<double>(steps - 1)));
+      c.ns.push_back(spent / (c.runs * static_cast<double>(steps - 1)));
     }
   fmt::print("{}\n", title);
   const auto median = [](std::vector<double> v) {

@@ -1,6 +1,7 @@
 // track_latency PROGRAM [SECONDS]: how long `modebank track` takes from a line in to the line out, over pipes at 1 kHz,
 // a bank of 25 modes, beside a program that only sends lines back; both are asked in every millisecond, in turn first.
 // Then the filter's step alone at the same pace.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -25,8 +25,11 @@ double evaluated(const Bank& bank, const Trajectory& run) {
 
 Bank scalar_bank(Index modes) {
   Bank bank = example_bank(1, 2, modes);
-  for (Index j = 0; j < modes; ++j)
-    bank.modes[static_cast<std::size_t>(j)].Q.setConstant(1e-4 * static_cast<double>(1 + j));
+  for (Index j = 0; j < modes; ++j) {
+    Mode& mode = bank.modes[static_cast<std::size_t>(j)];
+    mode.model.A.setConstant(-0.1 - 0.8 * static_cast<double>(j) / static_cast<double>(modes));  // stable ones
+    mode.Q.setConstant(1e-4 * static_cast<double>(1 + j));
+  }
   return bank;
 }
 

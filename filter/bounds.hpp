@@ -1,0 +1,26 @@
+#pragma once
+
+/// The numbers that keep a filter's arithmetic sound, whatever it is fed: of the general step and of the vector
+/// kernels.
+namespace modebank {
+
+/// No mode ever dies for good: probabilities after a measurement are kept above this, then renormalised.
+inline constexpr double mode_probability_floor = 1e-12;
+
+/// A mode whose probability is below this before a measurement is impossible (T forbids it): it takes no part.
+inline constexpr double impossible_probability = 1e-100;
+
+/// Beyond this variance, or its root for the mean, a diverging prediction stops growing, so that squares stay finite.
+inline constexpr double largest_variance = 1e60;
+inline constexpr double largest_mean = 1e30;
+
+/// The least variance (a standard deviation of 1e-20 in the signal's unit), for S = 0.
+inline constexpr double least_variance = 1e-40;
+
+/// Log densities below this are not told apart.
+inline constexpr double lowest_log_density = -1e300;
+
+/// Measurements at or beyond this magnitude, infinite or NaN count as missing: nothing can be learned from them.
+inline constexpr double largest_measurement = 1e30;
+
+}  // namespace modebank
