@@ -39,8 +39,9 @@ class Tracker {
           "data.state and data.input name {} and {} columns, the bank of {} has {} states and {} inputs",
           config.data.state.size(), config.data.input.size(), archive, bank_.C.rows(), bank_.structure.inputs));
     const FilterOptions options = filter_options(config);
-    identity_ = fmt::format("{} {} {} {} {}", archive_digest(archive), name_of(config.track.filter),
-                            name_of(options.variant), options.parameter_noise, name_of(options.time_steps));
+    identity_ = fmt::format("{} {} {} {} {} {}", archive_digest(archive), name_of(config.track.filter),
+                            name_of(options.variant), name_of(options.noise), options.parameter_noise,
+                            name_of(options.time_steps));
     if (!config.track.checkpoint.empty())
       if (const std::string obstacle = write_obstacle(config.track.checkpoint); !obstacle.empty())
         throw ConfigurationError(

@@ -8,13 +8,13 @@
 namespace modebank {
 namespace {
 
-constexpr Index samples = 3000;
+constexpr Index white_samples = 3000;
 
 TEST(InnovationTests, OfTheTrueFilterStayInsideTheirBands) {
   const Bank bank = test::example_bank(1, 2, 1);
-  const Trajectory run = test::simulate_bank(bank, samples, 4);
+  const Trajectory run = test::simulate_bank(bank, white_samples, 4);
   const ResidualTests tests = test_innovations(run, evaluate_run(bank, run, FilterOptions{}));
-  EXPECT_EQ(tests.samples, samples - 1) << "the first sample has no prediction";
+  EXPECT_EQ(tests.samples, white_samples - 1) << "the first sample has no prediction";
   EXPECT_LE(tests.autocorrelation_outside(), 2.0 / 25);
   EXPECT_LE(tests.cross_correlation_outside(), 4.0 / 52);
   EXPECT_GT(tests.ljung_box_p(0), 1e-3);
@@ -23,7 +23,7 @@ TEST(InnovationTests, OfTheTrueFilterStayInsideTheirBands) {
 /// An input that the bank ignores shows at lag 0, that of the predicted transition.
 TEST(InnovationTests, ShowAnInputThatTheBankIgnores) {
   const Bank truth = test::example_bank(1, 2, 1);
-  const Trajectory run = test::simulate_bank(truth, samples, 5);
+  const Trajectory run = test::simulate_bank(truth, white_samples, 5);
   Bank blind = truth;
   blind.modes[0].model.B.col(1).setZero();
   const ResidualTests tests = test_innovations(run, evaluate_run(blind, run, FilterOptions{}));
@@ -36,9 +36,9 @@ TEST(InnovationTests, ShowAnInputThatTheBankIgnores) {
 
 TEST(InnovationTests, LeaveOutMissingMeasurements) {
   const Bank bank = test::example_bank(1, 2, 1);
-  Trajectory run = test::simulate_bank(bank, samples, 6);
+  Trajectory run = test::simulate_bank(bank, white_samples, 6);
   run.state(0, 50) = not_a_number;
-  EXPECT_EQ(test_innovations(run, evaluate_run(bank, run, FilterOptions{})).samples, samples - 2);
+  EXPECT_EQ(test_innovations(run, evaluate_run(bank, run, FilterOptions{})).samples, white_samples - 2);
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ TEST_P(Sharing, EveryIterationRaisesTheObjective) {
 
 INSTANTIATE_TEST_SUITE_P(SwitchingRegression, Sharing,
                          testing::Values(SharedParts::none, SharedParts::theta, SharedParts::noise),
-                         [](const auto& info) { return std::string(name_of(info.param)); });
+                         [](const auto& test) { return std::string(name_of(test.param)); });
 
 TEST(SwitchingRegression, OneModeWithoutPriorIsTheGlobalModel) {
   const Recording recording = noisy_runs(2, {100, 80});
