@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// Whether FitOptions name one model that fits n states and m inputs. Throws ConfigurationError for lags of a model that
-/// has none, residuals that the model does not have, an unknown model, and as make_motion_model does.
+/// Whether FitOptions name one model that fits n states and m inputs. Throws ConfigurationError for lags of a model
+/// that has none, residuals that the model does not have, an unknown model, and as make_motion_model does.
 void check_model(const FitOptions& options, Index states, Index inputs);
 
 /// The motion model that the options name; null for linear models.
