@@ -124,9 +124,9 @@ void exchange_candidates(Io& io, C& candidates) {
            column("bic", &Candidate::bic), column("aic", &Candidate::aic), column("icl", &Candidate::icl),
            column("heldout", &Candidate::heldout, "nat"), column("iterations", &Candidate::iterations),
            column("converged", &Candidate::converged), column("agreeing_restarts", &Candidate::agreeing_restarts),
-           column("selected", &Candidate::selected), column("bic_naive", &Candidate::bic_naive),
-           column("restarts", &Candidate::restarts), column("floor_active", &Candidate::floor_active),
-           column("status", &Candidate::status));
+           column("selected", &Candidate::selected), later_column("bic_naive", &Candidate::bic_naive),
+           later_column("restarts", &Candidate::restarts), later_column("floor_active", &Candidate::floor_active),
+           later_column("status", &Candidate::status));
 }
 
 /// `parameters`: units of theta, the first features; the others are logarithms, without unit.

@@ -131,6 +131,10 @@ void write_table(hid_t group, const std::string& name, const std::vector<TableCo
   }
 }
 
+bool has_column(const StoredArray& table, const std::string& name) {
+  return table.type_class() == H5T_COMPOUND && H5Tget_member_index(table.type(), name.c_str()) >= 0;
+}
+
 void read_column(const StoredArray& table, TableColumn& column) {
   std::visit([&](auto& values) { read_values(table, column.name, values); }, column.values);
 }

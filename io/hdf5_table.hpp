@@ -22,6 +22,9 @@ struct TableColumn {
 /// Writes a 1-D compound dataset of `rows` packed rows.
 void write_table(hid_t group, const std::string& name, const std::vector<TableColumn>& columns, hsize_t rows);
 
+/// Whether a compound dataset has a member of that name.
+bool has_column(const StoredArray& table, const std::string& name);
+
 /// Fills `column.values`, whose alternative says what is expected, from the member of that name. Throws DataError when
 /// the member is missing or of another kind. Members nobody asks for are ignored.
 void read_column(const StoredArray& table, TableColumn& column);

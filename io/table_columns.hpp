@@ -16,11 +16,17 @@ struct Column {
   std::string name;
   T Row::*member;
   std::string unit = {};
+  bool optional = false;  ///< archives of earlier minor versions lack it; their rows keep the member's default
 };
 
 template <class Row, class T>
 Column<Row, T> column(std::string name, T Row::*member, std::string unit = {}) {
-  return {std::move(name), member, std::move(unit)};
+  return {std::move(name), member, std::move(unit), false};
+}
+
+template <class Row, class T>
+Column<Row, T> later_column(std::string name, T Row::*member) {
+  return {std::move(name), member, {}, true};
 }
 
 /// What a value is in the file: booleans are 8-bit integers (MATLAB and Octave read HDF5's own as enumerations),
@@ -72,6 +78,7 @@ hdf5::TableColumn encode(const std::vector<Row>& rows, const Column<Row, T>& col
 /// Reads one column into the rows, of which there are as many as the table has.
 template <class Row, class T>
 void decode(const hdf5::StoredArray& table, const Column<Row, T>& column, std::vector<Row>& rows) {
+  if (column.optional && !hdf5::has_column(table, column.name)) return;
   hdf5::TableColumn stored = encode(std::vector<Row>(), column);
   hdf5::read_column(table, stored);
   for (std::size_t i = 0; i < rows.size(); ++i) {

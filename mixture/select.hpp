@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ident/not_a_number.hpp"
 #include "mixture/em.hpp"
 #include "mixture/features.hpp"
 #include "mixture/window_responsibilities.hpp"
@@ -60,7 +61,7 @@ struct Candidate {
   bool converged = false;
   int agreeing_restarts = 0;
   bool selected = false;
-  double bic_naive = 0.0;  ///< BIC as if the points were independent: for comparison
+  double bic_naive = not_a_number;  ///< BIC as if the points were independent: for comparison
   int restarts = 0;
   bool floor_active = false;  ///< whether the covariance floor holds any component: a cluster without extent
   CandidateStatus status = CandidateStatus::fitted;

@@ -76,6 +76,20 @@ TEST_F(ArchiveDamage, ForeignHdf5AndNewerSchemasAreNamed) {
   expect_unreadable("not a modebank archive");
 }
 
+// What the first release with archives wrote: the table of candidates has grown at its end since.
+TEST_F(ArchiveDamage, AnArchiveOfAnEarlierMinorVersionOpens) {
+  const Archive whole = test::full_archive(2, 1);
+  write_archive(path, whole);
+  test::keep_columns(path, "/mixture/candidates", 13);
+  EXPECT_NO_THROW(verify_archive(path));
+  const std::vector<Candidate>& rows = read_archive(path).mixture->candidates;
+  ASSERT_EQ(rows.size(), whole.mixture->candidates.size());
+  EXPECT_EQ(rows.back().selected, whole.mixture->candidates.back().selected);
+  EXPECT_TRUE(std::isnan(rows.back().bic_naive));
+  test::keep_columns(path, "/mixture/candidates", 12);
+  expect_unreadable("column 'selected' is missing");
+}
+
 TEST_F(ArchiveDamage, MissingMembersAreAllListed) {
   test::remove_member(path, "/windows/parameters");
   test::remove_member(path, "/bank/transition");

@@ -82,6 +82,31 @@ void remove_member(const std::filesystem::path& path, const std::string& member)
   sign(path);
 }
 
+void keep_columns(const std::filesystem::path& path, const std::string& table, unsigned columns) {
+  const hid_t file = open_for_change(path);
+  const hid_t old = must(H5Dopen2(file, table.c_str(), H5P_DEFAULT));
+  const hid_t whole = must(H5Dget_type(old)), space = must(H5Dget_space(old));
+  const hid_t kept = must(H5Tcreate(H5T_COMPOUND, H5Tget_member_offset(whole, columns)));
+  for (unsigned i = 0; i < columns; ++i) {
+    char* const name = H5Tget_member_name(whole, i);
+    const hid_t member = must(H5Tget_member_type(whole, i));
+    must(H5Tinsert(kept, name, H5Tget_member_offset(whole, i), member));
+    H5Tclose(member);
+    H5free_memory(name);
+  }
+  std::vector<char> rows(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)) * H5Tget_size(kept));
+  must(H5Dread(old, kept, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()));
+  H5Dclose(old);
+  must(H5Ldelete(file, table.c_str(), H5P_DEFAULT));
+  const hid_t shorter = must(H5Dcreate2(file, table.c_str(), kept, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  must(H5Dwrite(shorter, kept, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()));
+  H5Dclose(shorter);
+  for (const hid_t type : {kept, whole}) H5Tclose(type);
+  H5Sclose(space);
+  must(H5Fclose(file));
+  sign(path);
+}
+
 void replace_by_zeros(const std::filesystem::path& path, const std::string& member,
                       const std::vector<unsigned long long>& shape, Kind kind) {
   const hid_t creation = must(H5Pcreate(H5P_DATASET_CREATE));

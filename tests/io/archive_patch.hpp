@@ -16,6 +16,8 @@ void write_foreign_hdf5(const std::filesystem::path& path, unsigned long long us
 void patch_text_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name,
                           const std::string& value);
 void remove_member(const std::filesystem::path& path, const std::string& member);
+/// The table keeps its first columns only.
+void keep_columns(const std::filesystem::path& path, const std::string& table, unsigned columns);
 /// The member becomes a dataset without stored content: as large as declared, all zeros.
 void replace_by_zeros(const std::filesystem::path& path, const std::string& member,
                       const std::vector<unsigned long long>& shape, Kind kind);
