@@ -82,7 +82,7 @@ TEST_F(ArchiveDamage, AnArchiveOfAnEarlierMinorVersionOpens) {
   write_archive(path, whole);
   test::keep_columns(path, "/mixture/candidates", 13);
   EXPECT_NO_THROW(verify_archive(path));
-  const std::vector<Candidate>& rows = read_archive(path).mixture->candidates;
+  const std::vector<Candidate> rows = read_archive(path).mixture->candidates;
   ASSERT_EQ(rows.size(), whole.mixture->candidates.size());
   EXPECT_EQ(rows.back().selected, whole.mixture->candidates.back().selected);
   EXPECT_TRUE(std::isnan(rows.back().bic_naive));
