@@ -4,24 +4,13 @@
 #include <numeric>
 #include <string>
 
+#include "ident/stretch.hpp"
+
 namespace modebank {
 namespace {
 
 constexpr Index fewest_runs = 3;
 constexpr Index shortest_stretch = 20;  // samples; shorter ones would mostly be starts
-
-Trajectory stretch(const Trajectory& run, Index first, Index count) {
-  Trajectory part;
-  part.run = run.run + "[" + std::to_string(first) + "]";
-  part.role = run.role;
-  part.lag_s = run.lag_s;
-  part.time_s = run.time_s.segment(first, count);
-  part.state = run.state.middleCols(first, count);
-  part.input = run.input.middleCols(first, count);
-  if (run.truth.size() > 0) part.truth = run.truth.middleCols(first, count);
-  if (run.weight.size() > 0) part.weight = run.weight.segment(first, count);
-  return part;
-}
 
 std::vector<Trajectory> training_stretches_of(const Recording& recording, Index pieces) {
   std::vector<Trajectory> runs;
@@ -34,6 +23,7 @@ std::vector<Trajectory> training_stretches_of(const Recording& recording, Index 
     for (Index i = 0; i < count; ++i) {
       const Index first = run.samples() * i / count;
       parts.push_back(stretch(run, first, run.samples() * (i + 1) / count - first));
+      parts.back().run += "[" + std::to_string(first) + "]";
     }
   }
   return parts;

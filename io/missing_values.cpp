@@ -4,23 +4,11 @@
 
 #include "ident/error.hpp"
 #include "ident/join_streams.hpp"
+#include "ident/stretch.hpp"
 
 namespace modebank {
 
 namespace {
-
-Trajectory stretch(const Trajectory& run, Index first, Index samples) {
-  Trajectory part;
-  part.run = run.run;
-  part.role = run.role;
-  part.lag_s = run.lag_s;
-  part.time_s = run.time_s.segment(first, samples);
-  part.state = run.state.middleCols(first, samples);
-  part.input = run.input.middleCols(first, samples);
-  if (run.weight.size() > 0) part.weight = run.weight.segment(first, samples);
-  if (run.truth.cols() > 0) part.truth = run.truth.middleCols(first, samples);
-  return part;
-}
 
 bool known(const Trajectory& run, Index k) { return run.state.col(k).allFinite() && run.input.col(k).allFinite(); }
 
