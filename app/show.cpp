@@ -3,7 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
+#include "app/sparkline.hpp"
+#include "app/summary_tables.hpp"
 #include "app/summary_text.hpp"
+#include "app/terminal.hpp"
 #include "ident/error.hpp"
 #include "io/archive.hpp"
 #include "io/inspect.hpp"
@@ -15,11 +18,14 @@ using nlohmann::json;
 
 void print_overview(const std::string& file, bool full_form) {
   const Archive archive = read_archive(file);
-  fmt::print("{}\n{}", provenance_text(archive), summary_text(archive));
-  if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(*archive.windows));
-  if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture));
-  if (archive.bank) fmt::print("\nmodes\n{}", modes_text(*archive.bank, full_form));
-  fmt::print("{}", mode_diagnostics_text(archive));
+  const Terminal terminal = standard_output();
+  const int width = terminal.width;
+  fmt::print("{}\n{}", wrapped(provenance_text(archive), width), summary_text(archive, width));
+  if (const std::string strip = mode_strip_text(archive, terminal); !strip.empty()) fmt::print("\n{}", strip);
+  if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(*archive.windows, width));
+  if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture, width));
+  if (archive.bank) fmt::print("\nmodes\n{}", modes_text(*archive.bank, full_form, width));
+  fmt::print("{}", mode_diagnostics_text(archive, width));
 }
 
 /// I + A instead of A, for datasets A (K, n, n).

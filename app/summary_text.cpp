@@ -7,18 +7,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "app/judged_runs.hpp"
 #include "app/lag_text.hpp"
-#include "ident/window_summary.hpp"
+#include "app/summary_tables.hpp"
+#include "app/terminal.hpp"
 #include "mixture/criteria.hpp"
 
 namespace modebank::app {
 namespace {
-
-const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role) {
-  for (const SummaryRow& row : archive.summary)
-    if (row.filter == filter && row.role == role && row.run == "*") return &row;
-  return nullptr;
-}
 
 /// Those labelled -1 as noise among them.
 Index clustered_windows(const MixtureResult& result) {
@@ -82,31 +78,10 @@ std::string residuals_text(const Archive& archive) {
   return text;
 }
 
-std::string unit_suffix(const Recording& recording) {
-  return recording.states.size() == 1 && !recording.states.front().unit.empty()
-             ? " [" + recording.states.front().unit + "]"
-             : "";
-}
-
-std::string scores_text(const Archive& archive) {
-  const std::string unit = archive.recording ? unit_suffix(*archive.recording) : "";
-  std::string text =
-      fmt::format("\n{:<11} {:<5} {:>8} {:>10} {:>14}  {:>17}  {:>17} {:>8} {:>8}\n", "filter", "role", "samples",
-                  "log score", "rmse" + unit, "pit tails +/-", "NIS above/below", "mean NIS", "white p");
-  for (const SummaryRow& row : archive.summary) {
-    if (row.run != "*") continue;
-    text += fmt::format(
-        "{:<11} {:<5} {:>8} {:>10.4f} {:>14.5f}  {:>7.2f} % {:>5.2f} %  {:>7.2f} % {:>5.2f} % {:>8.3f} {:>8.2g}\n",
-        row.filter, name_of(row.role), row.samples, row.log_score, fmt::join(row.rmse, " "), 100 * row.tail_above,
-        100 * row.tail_below, 100 * row.nis_above, 100 * row.nis_below, row.nis_mean, row.whiteness_p);
-  }
-  return text + "A true filter has 2.5 % in each pit tail; log score in nats per sample, higher is better.\n";
-}
-
 /// Whether each filter's stated uncertainty is true, with the numbers that say so, and what else stands out.
 std::string verdicts_text(const Archive& archive) {
   std::string text;
-  const Role role = pooled_row(archive, "bank", Role::test) ? Role::test : Role::train;
+  const Role role = judged_role(archive);
   for (const DiagnosticsRow& row : archive.diagnostics) {
     if (row.mode >= 0 || row.role != role) continue;
     text += fmt::format("{:<11} {:<14} tails {:.2f} % [{:.2f}, {:.2f}] above, {:.2f} % [{:.2f}, {:.2f}] below; ",
@@ -124,16 +99,15 @@ std::string verdicts_text(const Archive& archive) {
       "\nUncertainty on {} runs (calibrated: both tails between {:g} and {:g} %; brackets: 95 % intervals, for NIS "
       "and\n"
       "NEES where a true filter's mean lies)\n{}",
-      role == Role::test ? "held-out" : "training", 100 * least_tail, 100 * largest_tail, text);
+      words_for(role), 100 * least_tail, 100 * largest_tail, text);
 }
 
 /// Predictions several samples ahead, on held-out runs if there are any.
 std::string horizon_text(const Archive& archive) {
   if (archive.horizons.empty()) return "";
-  const Role role = pooled_row(archive, "bank", Role::test) ? Role::test : Role::train;
-  std::string text =
-      fmt::format("\nPredictions ahead, {} runs\n{:<11} {:>8} {:>8} {:>10} {:>10}\n",
-                  role == Role::test ? "held-out" : "training", "filter", "samples", "scored", "log score", "rmse");
+  const Role role = judged_role(archive);
+  std::string text = fmt::format("\nPredictions ahead, {} runs\n{:<11} {:>8} {:>8} {:>10} {:>10}\n", words_for(role),
+                                 "filter", "samples", "scored", "log score", "rmse");
   for (const HorizonRow& row : archive.horizons)
     if (row.run == "*" && row.role == role)
       text += fmt::format("{:<11} {:>8} {:>8} {:>10.4f} {:>10.5f}\n", row.filter, row.horizon, row.samples,
@@ -142,7 +116,7 @@ std::string horizon_text(const Archive& archive) {
 }
 
 std::string gain_text(const Archive& archive) {
-  const Role role = pooled_row(archive, "bank", Role::test) ? Role::test : Role::train;
+  const Role role = judged_role(archive);
   const SummaryRow* bank = pooled_row(archive, "bank", role);
   const SummaryRow* baseline = pooled_row(archive, "baseline", role);
   const SummaryRow* noise_only = pooled_row(archive, "noise_only", role);
@@ -151,7 +125,7 @@ std::string gain_text(const Archive& archive) {
   return fmt::format(
       "\nOn {} runs the bank gains {:+.3f} nats/sample over one Kalman filter (baseline) and {:+.3f} over noise\n"
       "switching alone (noise_only): {}.\n",
-      role == Role::test ? "held-out" : "training", bank->log_score - baseline->log_score, over_noise,
+      words_for(role), bank->log_score - baseline->log_score, over_noise,
       role == Role::train ? "nothing was held out, so neither is evidence"
       : over_noise > 0    ? "that excess is its evidence for modes of motion"
                           : "no evidence for modes of motion beyond changing noise");
@@ -216,7 +190,7 @@ std::string windows_text(const WindowFits& fits, const WindowCounts& counts) {
   return text + fmt::format(", residual variance {:.4g}\n", fmt::join(fits.global.noise_variance(), " "));
 }
 
-std::string summary_text(const Archive& archive) {
+std::string summary_text(const Archive& archive, int width) {
   std::string text;
   if (archive.recording) text += data_text(*archive.recording);
   if (archive.lag) text += lag_text(*archive.lag);
@@ -229,8 +203,8 @@ std::string summary_text(const Archive& archive) {
   if (archive.bank) text += bank_text(*archive.bank);
   text += residuals_text(archive);
   if (!archive.summary.empty())
-    text += scores_text(archive) + verdicts_text(archive) + horizon_text(archive) + gain_text(archive);
-  return text;
+    text += "\n" + scores_text(archive, width) + verdicts_text(archive) + horizon_text(archive) + gain_text(archive);
+  return wrapped(text, width);
 }
 
 std::string provenance_text(const Archive& archive) {
@@ -239,109 +213,6 @@ std::string provenance_text(const Archive& archive) {
                                  p.modebank_version, p.created, p.command_line, p.config_hash, p.data_hash);
   for (const auto& [name, version] : p.versions) text += fmt::format("{} {}  ", name, version);
   return text + fmt::format("\ninputs    {} files\n", p.inputs.size());
-}
-
-namespace {
-
-/// Weights and means with their standard errors, where a bootstrap made some.
-std::string component_errors_text(const MixtureResult& mixture) {
-  if (mixture.weights_standard_error.size() == 0) return "";
-  std::string text = "standard errors by bootstrap over runs\n";
-  for (Index k = 0; k < mixture.mixture.components(); ++k) {
-    text +=
-        fmt::format("{:>4} weight {:.3f} +- {:.2g}", k, mixture.mixture.weights(k), mixture.weights_standard_error(k));
-    for (Index f = 0; f < mixture.mixture.features(); ++f)
-      text += fmt::format("  {} {:.4g} +- {:.2g}", mixture.feature_names[static_cast<std::size_t>(f)],
-                          mixture.mixture.means(f, k), mixture.means_standard_error(f, k));
-    text += "\n";
-  }
-  return text;
-}
-
-}  // namespace
-
-std::string candidates_text(const MixtureResult& mixture) {
-  std::string text = fmt::format(
-      "{:>4} {:<8} {:>14} {:>6} {:>8} {:>12} {:>12} {:>12} {:>12} {:>10} {:>6} {:>9} {:>8}\n", "K", "shape",
-      "log likelihood", "q", "N_eff", "BIC", "AIC", "ICL", "naive BIC", "held out", "iter", "converged", "agreeing");
-  for (const Candidate& c : mixture.candidates) {
-    if (c.status != CandidateStatus::fitted) {
-      text += fmt::format("{:>4} {:<8} {}\n", c.components, name_of(c.covariance), name_of(c.status));
-      continue;
-    }
-    text += fmt::format(
-        "{:>4} {:<8} {:>14.3f} {:>6} {:>8.1f} {:>12.3f} {:>12.3f} {:>12.3f} {:>12.3f} {:>10.4f} {:>6} {:>9} "
-        "{:>8}{}\n",
-        c.components, name_of(c.covariance), c.log_likelihood, c.parameters, c.effective_samples, c.bic, c.aic, c.icl,
-        c.bic_naive, c.heldout, c.iterations, c.converged ? "yes" : "no",
-        fmt::format("{}/{}", c.agreeing_restarts, c.restarts), c.selected ? "  <- selected" : "");
-  }
-  return text + component_errors_text(mixture);
-}
-
-std::string window_parameters_text(const WindowFits& fits) {
-  const WindowSummary summary = summarize(fits);
-  const auto names = fits.parameter_names();
-  std::string text = fmt::format("{:>9} {:>12} {:>16} {:>12}\n", "parameter", "median", "standard error", "|t| > 2");
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto j = static_cast<Index>(i);
-    text += fmt::format("{:>9} {:>12.4g} {:>16.3g} {:>10.0f} %\n", names[i], summary.parameter(j),
-                        summary.standard_error(j), 100 * summary.significant(j));
-  }
-  return text + fmt::format("R^2 of the increments {:.3f}, AIC {:.2f} (medians)\n", fmt::join(summary.r_squared, " "),
-                            summary.aic);
-}
-
-std::string mode_diagnostics_text(const Archive& archive) {
-  const Role role = pooled_row(archive, "bank", Role::test) ? Role::test : Role::train;
-  std::string text;
-  for (const DiagnosticsRow& row : archive.diagnostics)
-    if (row.filter == "bank" && row.role == role && row.mode >= 0)
-      text += fmt::format("{:>4} {:>7.3f} {:>8} {:>8.1f} {:>8.1f} {:>9.2f} % {:>6.2f} % {:>8.3f} {:>8.2g} {}\n",
-                          row.mode, row.usage, row.samples, row.dwell, row.dwell_model, 100 * row.tail_above,
-                          100 * row.tail_below, row.nis_mean, row.whiteness_p, name_of(row.verdict));
-  if (text.empty()) return "";
-  return fmt::format("\nmodes on {} runs\n{:>4} {:>7} {:>8} {:>8} {:>8} {:>20} {:>8} {:>8} {}\n{}",
-                     role == Role::test ? "held-out" : "training", "mode", "usage", "expected", "dwell", "by T",
-                     "pit tails +/-", "mean NIS", "white p", "verdict", text);
-}
-
-namespace {
-
-/// The modes in a motion model's own parameters; empty for linear models, whose table says all.
-std::string motion_parameters_text(const Bank& bank) {
-  if (bank.motion_parameters.empty()) return "";
-  std::string text = fmt::format("\nmodes as {}\n{:>4}", bank.model, "mode");
-  for (const ModelParameter& parameter : bank.motion_parameters) text += fmt::format(" {:>20}", parameter.name);
-  for (Index k = 0; k < bank.mode_count(); ++k) {
-    const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
-    text += fmt::format("\n{:>4}", k);
-    for (Index i = 0; i < mode.motion_theta.size(); ++i)
-      text +=
-          fmt::format(" {:>20}", fmt::format("{:.4f} +- {:.4f}", mode.motion_theta(i), mode.motion_standard_error(i)));
-  }
-  return text + "\n";
-}
-
-}  // namespace
-
-std::string modes_text(const Bank& bank, bool full_form) {
-  const auto names = bank.structure.parameter_names();
-  std::string text = fmt::format("{:>4} {:>7}", "mode", "weight");
-  for (const std::string& name : names)
-    text += fmt::format(" {:>20}", name + (full_form && name[0] == 'A' ? " (full)" : ""));
-  text += fmt::format(" {:>12}\n", "sqrt diag Q");
-  for (Index k = 0; k < bank.mode_count(); ++k) {
-    const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
-    LinearModel model = mode.model;
-    if (full_form) model.A.diagonal().array() += 1.0;
-    const Eigen::VectorXd theta = pack(bank.structure, model);
-    text += fmt::format("{:>4} {:>7.3f}", k, mode.weight);
-    for (Index i = 0; i < theta.size(); ++i)
-      text += fmt::format(" {:>20}", fmt::format("{:.4f} +- {:.4f}", theta(i), mode.standard_error(i)));
-    text += fmt::format(" {:>12.4g}\n", fmt::join(mode.Q.diagonal().cwiseSqrt().eval(), " "));
-  }
-  return text + motion_parameters_text(bank);
 }
 
 }  // namespace modebank::app

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace modebank::app {
+
+/// A table of text that fits a terminal: what is too wide goes on below, its key columns repeated.
+class TextTable {
+ public:
+  enum class Align { left, right };
+  struct Column {
+    std::string title;
+    int width;  ///< at least, where nothing limits the table; wider cells widen it
+    Align align = Align::right;
+  };
+
+  /// The first `keys` columns are repeated in every part.
+  TextTable(std::vector<Column> columns, std::size_t keys = 1) : columns_(std::move(columns)), keys_(keys) {}
+
+  /// One cell per column, or fewer: a row that ends early. `remark` follows the row.
+  void add(std::vector<std::string> cells, std::string remark = {});
+
+  /// width 0: no limit.
+  std::string text(int width) const;
+
+ private:
+  struct Row {
+    std::vector<std::string> cells;
+    std::string remark;
+  };
+  std::vector<int> widths(bool limited) const;
+  std::string part(const std::vector<std::size_t>& shown, const std::vector<int>& widths) const;
+
+  std::vector<Column> columns_;
+  std::size_t keys_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace modebank::app
