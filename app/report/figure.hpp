@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace modebank::app::report {
+
+/// A figure for a paper: a gnuplot script of app/report/figures, what it is told, and what it draws.
+class Figure {
+ public:
+  Figure(std::string name, std::string_view script) : name_(std::move(name)), script_(script) {}
+
+  /// Variables of the script. Texts may hold anything: they are quoted for gnuplot, line breaks become spaces.
+  void set(const std::string& variable, double value);
+  void set(const std::string& variable, Eigen::Index value);
+  void set(const std::string& variable, const std::string& text);
+  void set(const std::string& variable, const std::vector<std::string>& texts);
+
+  /// A block of the data file: what it holds, its columns' names, and a point per row; an empty one becomes a row of
+  /// NaN, so that blocks keep their numbers.
+  void add_block(const std::string& title, const std::vector<std::string>& columns,
+                 const Eigen::Ref<const Eigen::MatrixXd>& rows);
+
+  const std::string& name() const { return name_; }
+  std::string script() const;  ///< complete: settings, common style, drawing
+  const std::string& data() const { return data_; }
+
+ private:
+  std::string name_;
+  std::string_view script_;
+  std::string settings_;
+  std::string data_;
+};
+
+}  // namespace modebank::app::report

@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+
+#include "app/judged_runs.hpp"
+#include "app/report/assets.hpp"
+#include "app/report/run_figures.hpp"
+#include "filter/calibration.hpp"
+
+namespace modebank::app::report {
+namespace {
+
+constexpr Index bins = 20;
+constexpr double level = 0.95;
+constexpr std::array<const char*, 3> filters{"baseline", "noise_only", "bank"};
+
+std::string title_of(const Archive& archive, const std::string& filter) {
+  return filter == "baseline" ? "one filter" : filter == "noise_only" ? "noise only" : bank_title(archive);
+}
+
+/// PIT values of the judged runs, all signals; NaN where nothing was scored.
+std::vector<double> pit_values(const Archive& archive, const FilterEvaluation& evaluation) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < evaluation.runs.size(); ++i)
+    if (archive.recording->runs[i].role == judged_role(archive))
+      values.insert(values.end(), evaluation.runs[i].pit.reshaped().begin(), evaluation.runs[i].pit.reshaped().end());
+  return values;
+}
+
+Figure pit(const Archive& archive) {
+  Figure figure("pit", assets::figure_pit());
+  std::vector<std::string> titles;
+  for (const char* filter : filters) {
+    const FilterEvaluation* evaluation = evaluation_of(archive, filter);
+    if (!evaluation) continue;
+    const std::vector<Index> counts = uniform_counts(pit_values(archive, *evaluation), bins);
+    double total = 0.0;
+    for (const Index count : counts) total += static_cast<double>(count);
+    const double scale = static_cast<double>(bins) / total;
+    Eigen::MatrixXd rows(bins, 2);
+    for (Index i = 0; i < bins; ++i)
+      rows.row(i) << (static_cast<double>(i) + 0.5) / bins,
+          scale * static_cast<double>(counts[static_cast<std::size_t>(i)]);
+    figure.add_block(title_of(archive, filter), {"PIT", "density"}, rows);
+    titles.push_back(title_of(archive, filter));
+    const CountInterval interval = uniform_count_interval(static_cast<Index>(total), bins, level);
+    if (titles.size() > 1) continue;
+    figure.set("uniform_low", scale * interval.lower);
+    figure.set("uniform_high", scale * interval.upper);
+  }
+  figure.set("filters", static_cast<Index>(titles.size()));
+  figure.set("filter_title", titles);
+  return figure;
+}
+
+Figure coverage(const Archive& archive) {
+  Figure figure("coverage", assets::figure_coverage());
+  std::vector<std::string> titles;
+  Eigen::MatrixXd rows(0, 5);
+  for (const char* filter : filters) {
+    const SummaryRow* train = pooled_row(archive, filter, Role::train);
+    const SummaryRow* test = pooled_row(archive, filter, Role::test);
+    if (!train && !test) continue;
+    titles.push_back(title_of(archive, filter));
+    rows.conservativeResize(rows.rows() + 1, 5);
+    const auto percent = [](const SummaryRow* row, double SummaryRow::*member) {
+      return row ? 100 * row->*member : std::numeric_limits<double>::quiet_NaN();
+    };
+    rows.bottomRows(1) << static_cast<double>(titles.size()), percent(train, &SummaryRow::nis_above),
+        percent(train, &SummaryRow::nis_below), percent(test, &SummaryRow::nis_above),
+        percent(test, &SummaryRow::nis_below);
+  }
+  figure.set("filters", static_cast<Index>(titles.size()));
+  figure.set("filter_title", titles);
+  figure.add_block("NIS outside its 95 % interval [%]",
+                   {"position", "train above", "train below", "test above", "test below"}, rows);
+  return figure;
+}
+
+}  // namespace
+
+void add_score_figures(const Archive& archive, FigureSet& set) {
+  if (archive.summary.empty() || !archive.recording) {
+    set.left_out.emplace_back("pit and coverage: the archive holds no scores");
+    return;
+  }
+  set.figures.push_back(pit(archive));
+  set.figures.push_back(coverage(archive));
+}
+
+std::string bank_title(const Archive& archive) { return fmt::format("bank, K = {}", archive.bank->mode_count()); }
+
+const FilterEvaluation* evaluation_of(const Archive& archive, const std::string& filter) {
+  for (const FilterEvaluation& evaluation : archive.evaluations)
+    if (evaluation.filter == filter) return &evaluation;
+  return nullptr;
+}
+
+FigureSet run_figures(const Archive& archive, const std::string& run) {
+  FigureSet set;
+  add_window_figures(archive, set);
+  add_time_figures(archive, run, set);
+  add_score_figures(archive, set);
+  return set;
+}
+
+}  // namespace modebank::app::report
