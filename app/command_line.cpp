@@ -21,6 +21,7 @@ po::options_description describe_options(CommandLine& line) {
   add("markdown", po::bool_switch(&line.markdown));
   add("json", po::bool_switch(&line.json));
   add("form", po::value(&line.form));
+  add("output,o", po::value(&line.output));
   add("words", po::value<std::vector<std::string>>());
   for (const Option& option : option_table())
     add(option.key.c_str(), po::value<std::vector<std::string>>()->composing());  // given twice, the last wins

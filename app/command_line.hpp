@@ -16,6 +16,7 @@ struct CommandLine {
   bool markdown = false;  ///< help: the table of keys as README holds it
   bool json = false;
   std::string form = "increment";  ///< of models that `show` prints: increment or full
+  std::string output;              ///< -o: the file that `report` writes
   std::string typed;               ///< the whole line, for provenance
 };
 

@@ -32,6 +32,7 @@ constexpr Command commands[] = {
     {"show", "ARCHIVE [PATH]", "provenance, candidates, modes, summary; or one object; --json; --form full", run_show},
     {"track", "ARCHIVE", "live filter: samples in on standard input, estimates out on standard output, line by line",
      run_track},
+    {"report", "ARCHIVE", "an interactive page that opens offline in a browser (-o page.html)", run_report},
     {"verify", "ARCHIVE...", "check hash, schema and completeness of archives", run_verify},
 };
 
@@ -71,9 +72,9 @@ std::string help_text() {
   for (const Command& command : commands)
     text += fmt::format("  {:<24} {}\n", fmt::format("{} {}", command.name, command.arguments), command.help);
   text +=
-      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show). Every configuration key is an "
-      "option\n"
-      "too, and wins over the file. Exit status: 0 done; 2 usage, configuration or path; 1 content or run failure.\n";
+      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report). Every\n"
+      "configuration key is an option too, and wins over the file. Exit status: 0 done; 2 usage, configuration or "
+      "path; 1 content or run failure.\n";
   return text + option_help();
 }
 

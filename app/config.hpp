@@ -45,6 +45,11 @@ struct TrackConfig {
   std::string resume;
 };
 
+/// The [report] section: what a page may hold.
+struct ReportConfig {
+  double size_mb = 64.0;  ///< largest page [1e6 bytes]
+};
+
 struct ArchiveConfig {
   std::string output;  ///< empty: the configuration file's name with .h5, in the current folder
   std::string input;   ///< archive that supplies earlier stages
@@ -80,6 +85,7 @@ struct Config {
   FilterOptions filter;
   ScoringConfig scoring;
   TrackConfig track;
+  ReportConfig report;
   ArchiveConfig archive;
   JobConfig job;
   SimulateConfig simulate;

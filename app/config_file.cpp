@@ -165,7 +165,8 @@ std::map<std::string, std::string> resolved_values(const std::string& resolved) 
 }
 
 bool decides_numbers(const std::string& key) {
-  return key != "data.root" && key.rfind("archive.", 0) != 0 && key.rfind("track.", 0) != 0 && key != "job.threads";
+  return key != "data.root" && key.rfind("archive.", 0) != 0 && key.rfind("track.", 0) != 0 &&
+         key.rfind("report.", 0) != 0 && key != "job.threads";
 }
 
 std::string config_hash(const Config& config) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "app/option_builders.hpp"
+#include "app/report/report_options.hpp"
 #include "app/simulate_options.hpp"
 #include "ident/motion_model.hpp"
 
@@ -274,8 +275,8 @@ Config default_config() {
 const std::vector<Option>& option_table() {
   static const std::vector<Option> table = [] {
     std::vector<Option> all;
-    for (auto section :
-         {data_options, window_options, mixture_options, bank_options, other_options, track_options, simulate_options})
+    for (auto section : {data_options, window_options, mixture_options, bank_options, other_options, track_options,
+                         report_options, simulate_options})
       for (Option& entry : section()) all.push_back(std::move(entry));
     return all;
   }();

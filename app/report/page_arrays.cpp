@@ -1,0 +1,75 @@
+#include "app/report/page_arrays.hpp"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+#include <zlib.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace modebank::app::report {
+namespace {
+
+template <class T>
+std::string byte_planes(const T* values, std::size_t count) {
+  std::string planes(count * sizeof(T), '\0');
+  const char* bytes = reinterpret_cast<const char*>(values);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t b = 0; b < sizeof(T); ++b) planes[b * count + i] = bytes[i * sizeof(T) + b];
+  return planes;
+}
+
+std::string deflated(const std::string& bytes) {
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string result(size, '\0');
+  const int status = compress2(reinterpret_cast<Bytef*>(result.data()), &size,
+                               reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()), 3);
+  if (status != Z_OK) throw std::runtime_error(fmt::format("zlib's compress2 failed with status {}", status));
+  result.resize(size);
+  return result;
+}
+
+std::string base64(const std::string& bytes) {
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // and the zero that EVP_EncodeBlock writes
+  const int length =
+      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                      reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
+  text.resize(static_cast<std::size_t>(length));
+  return text;
+}
+
+}  // namespace
+
+template <class T>
+nlohmann::json PageArrays::store(const T* values, std::size_t count, const char* type) {
+  nlohmann::json place = {{"id", fmt::format("a{}", stored_.size())}, {"type", type}, {"size", count}};
+  stored_.push_back(base64(deflated(byte_planes(values, count))));
+  return place;
+}
+
+nlohmann::json PageArrays::add(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  const Eigen::VectorXf rounded = values.cast<float>();
+  return store(rounded.data(), static_cast<std::size_t>(rounded.size()), "f4");
+}
+
+nlohmann::json PageArrays::add_exact(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  return store(values.data(), static_cast<std::size_t>(values.size()), "f8");
+}
+
+nlohmann::json PageArrays::add(const std::vector<float>& values) { return store(values.data(), values.size(), "f4"); }
+
+nlohmann::json PageArrays::add(const std::vector<std::int32_t>& values) {
+  return store(values.data(), values.size(), "i4");
+}
+
+nlohmann::json PageArrays::add(const std::vector<std::uint8_t>& values) {
+  return store(values.data(), values.size(), "u1");
+}
+
+std::size_t PageArrays::bytes() const {
+  std::size_t sum = 0;
+  for (const std::string& array : stored_) sum += array.size();
+  return sum;
+}
+
+}  // namespace modebank::app::report

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace modebank::app::report {
+
+/// The arrays a page draws. Each is stored by byte planes (all first bytes, all second bytes, ...; neighbours are alike
+/// there), deflated and in base64; the page unpacks one when it first needs it.
+class PageArrays {
+ public:
+  /// Each returns what the page finds the array by: {"id", "type": "f4" | "f8" | "i4" | "u1", "size"}.
+  nlohmann::json add(const Eigen::Ref<const Eigen::VectorXd>& values);        ///< as float32: for drawing
+  nlohmann::json add_exact(const Eigen::Ref<const Eigen::VectorXd>& values);  ///< as float64: times
+  nlohmann::json add(const std::vector<float>& values);
+  nlohmann::json add(const std::vector<std::int32_t>& values);
+  nlohmann::json add(const std::vector<std::uint8_t>& values);
+
+  /// The stored arrays in order; array i has the id "a<i>".
+  const std::vector<std::string>& stored() const { return stored_; }
+  /// Bytes that all of them take in the page.
+  std::size_t bytes() const;
+
+ private:
+  template <class T>
+  nlohmann::json store(const T* values, std::size_t count, const char* type);
+
+  std::vector<std::string> stored_;
+};
+
+}  // namespace modebank::app::report

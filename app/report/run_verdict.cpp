@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include "app/report/numbers.hpp"
+#include "app/report/run_sections.hpp"
+#include "app/report/unit_text.hpp"
+
+namespace modebank::app::report {
+namespace {
+
+using nlohmann::json;
+
+const SummaryRow* pooled(const Archive& archive, const std::string& filter, Role role) {
+  for (const SummaryRow& row : archive.summary)
+    if (row.filter == filter && row.role == role && row.run == "*") return &row;
+  return nullptr;
+}
+
+const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filter, Role role) {
+  for (const DiagnosticsRow& row : archive.diagnostics)
+    if (row.filter == filter && row.role == role && row.mode < 0) return &row;
+  return nullptr;
+}
+
+/// One of the numbers that decide, for every filter.
+json decisive(const Archive& archive, Role role, const std::string& name, const std::string& unit,
+              const std::string& better, json (*of)(const SummaryRow&)) {
+  json values = json::object();
+  for (const char* filter : {"bank", "baseline", "noise_only"})
+    if (const SummaryRow* row = pooled(archive, filter, role)) values[filter] = of(*row);
+  return {{"name", name}, {"unit", unit}, {"better", better}, {"values", values}};
+}
+
+std::string calibration_words(const DiagnosticsRow& row) {
+  switch (row.verdict) {
+    case Verdict::calibrated:
+      return "its stated uncertainty is true";
+    case Verdict::overconfident:
+      return "it claims more certainty than it has";
+    case Verdict::underconfident:
+      return "it claims less certainty than it has";
+    case Verdict::undecided:
+      break;
+  }
+  return "whether its stated uncertainty is true is undecided";
+}
+
+/// The finding in one sentence, from the archive's own verdict.
+json sentence(const Archive& archive, Role role) {
+  const SummaryRow* bank = pooled(archive, "bank", role);
+  const SummaryRow* baseline = pooled(archive, "baseline", role);
+  const SummaryRow* noise_only = pooled(archive, "noise_only", role);
+  if (!bank) return {{"text", "No bank was scored, so there is nothing to judge yet."}, {"good", nullptr}};
+  std::string text = fmt::format("On {} runs the bank of {} modes", role == Role::test ? "held-out" : "training",
+                                 archive.bank ? archive.bank->mode_count() : 0);
+  bool good = role == Role::test;
+  if (baseline) {
+    const double gain = bank->log_score - baseline->log_score;
+    text += fmt::format(" predicts {} than one Kalman filter ({:+.3f} nats per sample)",
+                        gain > 0 ? "better" : "no better", gain);
+    good = good && gain > 0;
+  }
+  if (noise_only) {
+    const double gain = bank->log_score - noise_only->log_score;
+    text += fmt::format(", {} evidence for modes of motion beyond changing noise ({:+.3f})",
+                        gain > 0 ? "with" : "without", gain);
+    good = good && gain > 0;
+  }
+  if (const DiagnosticsRow* row = diagnosis(archive, "bank", role)) {
+    text += fmt::format("; {}", calibration_words(*row));
+    good = good && row->verdict == Verdict::calibrated;
+  }
+  text += role == Role::test ? "." : ". Nothing was held out, so none of this is evidence.";
+  return {{"text", text}, {"good", good}};
+}
+
+}  // namespace
+
+nlohmann::json verdict_section(const Archive& archive) {
+  const Role role = pooled(archive, "bank", Role::test) ? Role::test : Role::train;
+  json section = sentence(archive, role);
+  section["role"] = name_of(role);
+  section["numbers"] = {
+      decisive(archive, role, "Log score", "nats per sample", "higher is better",
+               [](const SummaryRow& row) { return number(row.log_score); }),
+      decisive(archive, role, "One-step RMSE", archive.recording ? common_unit(archive.recording->states) : "",
+               "lower is better", [](const SummaryRow& row) { return number_list(row.rmse); }),
+      decisive(archive, role, "PIT tail above", "", "2.5 % is true",
+               [](const SummaryRow& row) { return percent(row.tail_above); }),
+      decisive(archive, role, "PIT tail below", "", "2.5 % is true",
+               [](const SummaryRow& row) { return percent(row.tail_below); }),
+  };
+  return section;
+}
+
+}  // namespace modebank::app::report

@@ -1,0 +1,77 @@
+// Plotly as the report uses it: one theme, one palette, text that stays text.
+import palette from './palette.json';
+import { dark, h, onTheme } from './common.js';
+
+const Plotly = window.Plotly;
+export { palette, Plotly };
+
+// Plotly reads <b>, <a> and &entities; in texts: what comes from an archive must not be read so.
+export const plain = (text) => String(text).replace(/&/g, '&amp;').replace(/</g, '&lt;').replace(/>/g, '&gt;');
+
+export const ink = () => (dark() ? '#e8eaee' : '#16181d');
+const faint = () => (dark() ? '#343a45' : '#dfe3e8');
+const ground = () => (dark() ? '#14161a' : '#ffffff');
+
+const mixed = (colour, other, share) => {
+  const at = (text, i) => parseInt(text.slice(1 + 2 * i, 3 + 2 * i), 16);
+  return '#' + [0, 1, 2].map((i) => Math.round((1 - share) * at(colour, i) + share * at(other, i)).toString(16).padStart(2, '0')).join('');
+};
+// Colour of mode k, the same in every plot; from the eighth on the palette comes again, darker, then lighter.
+export function modeColour(k) {
+  if (k < 0) return palette.unclustered;
+  const base = palette.modes[k % palette.modes.length], round = Math.floor(k / palette.modes.length) % 3;
+  return round === 0 ? base : mixed(base, round === 1 ? '#000000' : '#ffffff', 0.45);
+}
+export const filterColour = (name) => palette.filters[name] || ink();
+export const translucent = (colour, alpha) => colour + Math.round(255 * alpha).toString(16).padStart(2, '0');
+
+const axisTheme = () => ({ gridcolor: faint(), zerolinecolor: faint(), linecolor: faint(), tickcolor: faint(), color: ink() });
+
+// The layout with the theme's colours put into each of its axes and scenes.
+function themed(layout) {
+  const result = { ...layout, paper_bgcolor: ground(), plot_bgcolor: ground(),
+    font: { family: 'system-ui, "Segoe UI", "DejaVu Sans", sans-serif', size: 12, color: ink() },
+    hoverlabel: { bgcolor: ground(), bordercolor: ink(), font: { color: ink() }, align: 'left', ...layout.hoverlabel } };
+  for (const key of new Set([...Object.keys(layout), 'xaxis', 'yaxis'])) {
+    if (/^[xy]axis\d*$/.test(key)) result[key] = { automargin: true, ...axisTheme(), ...layout[key] };
+    if (/^scene\d*$/.test(key)) {
+      result[key] = { bgcolor: ground(), ...layout[key] };
+      for (const axis of ['xaxis', 'yaxis', 'zaxis']) result[key][axis] = { ...axisTheme(), showbackground: false, ...(layout[key] || {})[axis] };
+    }
+  }
+  return result;
+}
+
+// A figure: `make` returns {traces, layout} and is called again when the theme changes. `label` is what a screen reader
+// says. Returns the element; element.redraw() calls `make` anew and keeps zoom (layout.uirevision).
+export function figure(label, make, caption) {
+  const plot = h('div', { class: 'plot', role: 'img', 'aria-label': label });
+  const element = h('figure', {}, plot, caption ? h('figcaption', { class: 'caption' }, caption) : null);
+  const config = { responsive: true, displaylogo: false, scrollZoom: false, modeBarButtonsToRemove: ['select2d', 'lasso2d', 'autoScale2d'],
+    toImageButtonOptions: { format: 'svg' } };
+  let drawn = null;
+  element.plot = plot;
+  element.redraw = async () => {
+    const { traces, layout } = await make();
+    const full = themed({ margin: { l: 60, r: 12, t: 12, b: 44 }, uirevision: 'kept', hovermode: 'closest', ...layout });
+    plot.style.height = `${full.height || 320}px`;
+    await (drawn ? Plotly.react(plot, traces, full, config) : Plotly.newPlot(plot, traces, full, config));
+    drawn = true;
+  };
+  // Drawn when it comes near the window: a page of many figures opens at once. Printing draws the rest.
+  element.ready = new Promise((resolve, reject) => {
+    const begin = () => {
+      if (drawn !== null) return;
+      drawn = false;
+      watcher.disconnect();
+      element.redraw().then(resolve, (error) => { plot.dataset.failed = 'true'; reject(error); });
+    };
+    const watcher = new IntersectionObserver((entries) => { if (entries.some((entry) => entry.isIntersecting)) begin(); }, { rootMargin: '600px' });
+    plot.style.minHeight = '200px';
+    watcher.observe(plot);
+    window.addEventListener('beforeprint', begin);
+    element.begin = begin;
+  });
+  onTheme(() => { if (drawn) element.redraw(); });
+  return element;
+}
