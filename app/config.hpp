@@ -45,9 +45,13 @@ struct TrackConfig {
   std::string resume;
 };
 
-/// The [report] section: what a page may hold.
+/// The [report] section: what a page may hold, and figures for papers.
 struct ReportConfig {
   double size_mb = 64.0;  ///< largest page [1e6 bytes]
+  std::string figures;    ///< folder for figures; empty: none
+  bool png = false;
+  bool sources = false;
+  std::string run;  ///< of the figures; empty: the first judged one
 };
 
 struct ArchiveConfig {

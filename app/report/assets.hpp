@@ -2,12 +2,24 @@
 
 #include <string_view>
 
-/// Files of app/report/web, bundled and embedded at build time.
+/// Files of app/report/web, bundled, and of app/report/figures, embedded at build time.
 namespace modebank::app::assets {
 
 std::string_view page_html();  ///< the skeleton of every page, see html_page.hpp
 std::string_view page_css();
 std::string_view plotly_js();  ///< Plotly with its licence
 std::string_view run_js();     ///< what draws the page of a run
+std::string_view palette_json();
+
+// Gnuplot scripts of the figures for papers, see gnuplot.hpp.
+std::string_view figure_style();
+std::string_view figure_strip();
+std::string_view figure_local_models();
+std::string_view figure_estimates();
+std::string_view figure_prediction();
+std::string_view figure_nis();
+std::string_view figure_selection();
+std::string_view figure_pit();
+std::string_view figure_coverage();
 
 }  // namespace modebank::app::assets

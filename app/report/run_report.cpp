@@ -1,9 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 
 #include "app/commands.hpp"
 #include "app/config_file.hpp"
+#include "app/report/gnuplot.hpp"
+#include "app/report/run_figures.hpp"
 #include "app/report/run_page.hpp"
 #include "ident/error.hpp"
 #include "io/archive.hpp"
@@ -27,18 +30,35 @@ void write_page(const std::filesystem::path& path, const report::Page& page) {
   fmt::print("{}: {:.1f} MB; open it in a browser\n", path.string(), static_cast<double>(html.size()) / bytes_per_MB);
 }
 
+/// Figures of one archive; prints what was written and what could not be.
+void write_figures(const Archive& archive, const ReportConfig& options) {
+  const report::FigureSet set = report::run_figures(archive, options.run);
+  const auto files = report::draw_figures(set.figures, {options.figures, options.png, options.sources});
+  fmt::print("{}: {}\n", options.figures, fmt::join(files, ", "));
+  for (const std::string& reason : set.left_out) fmt::print("left out: {}\n", reason);
+}
+
+void check_output(const std::filesystem::path& path, const std::filesystem::path& file) {
+  if (const std::string obstacle = write_obstacle(path); !obstacle.empty()) throw ConfigurationError("-o: " + obstacle);
+  std::error_code none;
+  if (std::filesystem::equivalent(path, file, none))
+    throw ConfigurationError(fmt::format("-o: {} is the archive itself", path.string()));
+}
+
 }  // namespace
 
 int run_report(const CommandLine& line) {
   if (line.files.size() != 1)
     throw ConfigurationError("report needs one archive: modebank report ARCHIVE [-o page.html]");
   const Config config = stored_config("", line.overrides);
-  const std::filesystem::path path = page_path(line), file = line.files.front();
-  if (const std::string obstacle = write_obstacle(path); !obstacle.empty()) throw ConfigurationError("-o: " + obstacle);
-  std::error_code none;
-  if (std::filesystem::equivalent(path, file, none))
-    throw ConfigurationError(fmt::format("-o: {} is the archive itself", path.string()));
-  write_page(path, report::run_page(read_archive(file), file.filename().string(), config.report));
+  const ReportConfig& options = config.report;
+  const std::filesystem::path file = line.files.front();
+  // Figures alone, unless a page is asked for.
+  const bool with_page = options.figures.empty() || !line.output.empty();
+  if (with_page) check_output(page_path(line), file);
+  const Archive archive = read_archive(file);
+  if (!options.figures.empty()) write_figures(archive, options);
+  if (with_page) write_page(page_path(line), report::run_page(archive, file.filename().string(), options));
   return 0;
 }
 

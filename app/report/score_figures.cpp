@@ -5,18 +5,24 @@
 
 #include "app/judged_runs.hpp"
 #include "app/report/assets.hpp"
+#include "app/report/palette.hpp"
 #include "app/report/run_figures.hpp"
 #include "filter/calibration.hpp"
 
 namespace modebank::app::report {
 namespace {
 
-constexpr Index bins = 20;
-constexpr double level = 0.95;
-constexpr std::array<const char*, 3> filters{"baseline", "noise_only", "bank"};
+constexpr Index pit_bins = 20;
+constexpr double uniform_level = 0.95;
+constexpr std::array<const char*, 3> drawn_filters{"baseline", "noise_only", "bank"};
+
+std::string colour_of(const std::string& filter) {
+  const Palette colours = palette(0);
+  return filter == "baseline" ? colours.baseline : filter == "noise_only" ? colours.noise_only : colours.bank;
+}
 
 std::string title_of(const Archive& archive, const std::string& filter) {
-  return filter == "baseline" ? "one filter" : filter == "noise_only" ? "noise only" : bank_title(archive);
+  return filter == "baseline" ? "baseline" : filter == "noise_only" ? "noise only" : bank_title(archive);
 }
 
 /// PIT values of the judged runs, all signals; NaN where nothing was scored.
@@ -30,27 +36,29 @@ std::vector<double> pit_values(const Archive& archive, const FilterEvaluation& e
 
 Figure pit(const Archive& archive) {
   Figure figure("pit", assets::figure_pit());
-  std::vector<std::string> titles;
-  for (const char* filter : filters) {
+  std::vector<std::string> titles, colours;
+  for (const char* filter : drawn_filters) {
     const FilterEvaluation* evaluation = evaluation_of(archive, filter);
     if (!evaluation) continue;
-    const std::vector<Index> counts = uniform_counts(pit_values(archive, *evaluation), bins);
+    const std::vector<Index> counts = uniform_counts(pit_values(archive, *evaluation), pit_bins);
     double total = 0.0;
     for (const Index count : counts) total += static_cast<double>(count);
-    const double scale = static_cast<double>(bins) / total;
-    Eigen::MatrixXd rows(bins, 2);
-    for (Index i = 0; i < bins; ++i)
-      rows.row(i) << (static_cast<double>(i) + 0.5) / bins,
+    const double scale = static_cast<double>(pit_bins) / total;
+    Eigen::MatrixXd rows(pit_bins, 2);
+    for (Index i = 0; i < pit_bins; ++i)
+      rows.row(i) << (static_cast<double>(i) + 0.5) / pit_bins,
           scale * static_cast<double>(counts[static_cast<std::size_t>(i)]);
     figure.add_block(title_of(archive, filter), {"PIT", "density"}, rows);
     titles.push_back(title_of(archive, filter));
-    const CountInterval interval = uniform_count_interval(static_cast<Index>(total), bins, level);
+    colours.push_back(colour_of(filter));
+    const CountInterval interval = uniform_count_interval(static_cast<Index>(total), pit_bins, uniform_level);
     if (titles.size() > 1) continue;
     figure.set("uniform_low", scale * interval.lower);
     figure.set("uniform_high", scale * interval.upper);
   }
   figure.set("filters", static_cast<Index>(titles.size()));
   figure.set("filter_title", titles);
+  figure.set("filter_colour", colours);
   return figure;
 }
 
@@ -58,7 +66,7 @@ Figure coverage(const Archive& archive) {
   Figure figure("coverage", assets::figure_coverage());
   std::vector<std::string> titles;
   Eigen::MatrixXd rows(0, 5);
-  for (const char* filter : filters) {
+  for (const char* filter : drawn_filters) {
     const SummaryRow* train = pooled_row(archive, filter, Role::train);
     const SummaryRow* test = pooled_row(archive, filter, Role::test);
     if (!train && !test) continue;

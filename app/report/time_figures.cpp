@@ -17,7 +17,7 @@ namespace modebank::app::report {
 namespace {
 
 constexpr Index most_samples = 2000;  // of a run, from its start: more than a column of print can show
-constexpr double level = 0.95;
+constexpr double band_level = 0.95;
 
 /// One run and what both filters said of it.
 struct DrawnRun {
@@ -78,8 +78,9 @@ Figure estimates(const DrawnRun& drawn, Index state) {
   Eigen::MatrixXd rows(3, drawn.run.samples());
   rows.row(0) = drawn.run.state.row(state);
   rows.row(1).setConstant(std::numeric_limits<double>::quiet_NaN());
-  if (drawn.baseline) rows.row(1) = prediction_band(*drawn.archive.baseline, *drawn.baseline, level).centre.row(state);
-  rows.row(2) = prediction_band(*drawn.archive.bank, drawn.bank, level).centre.row(state);
+  if (drawn.baseline)
+    rows.row(1) = prediction_band(*drawn.archive.baseline, *drawn.baseline, band_level).centre.row(state);
+  rows.row(2) = prediction_band(*drawn.archive.bank, drawn.bank, band_level).centre.row(state);
   set_time(drawn, figure);
   figure.set("state_label", state_label(drawn, state));
   figure.set("bank_title", bank_title(drawn.archive));
@@ -96,8 +97,8 @@ Figure nis(const DrawnRun& drawn) {
   if (drawn.baseline) rows.row(0) = drawn.baseline->nis;
   rows.row(1) = drawn.bank.nis;
   set_time(drawn, figure);
-  figure.set("lower_bound", chi_square_quantile((1 - level) / 2, degrees));
-  figure.set("upper_bound", chi_square_quantile((1 + level) / 2, degrees));
+  figure.set("lower_bound", chi_square_quantile((1 - band_level) / 2, degrees));
+  figure.set("upper_bound", chi_square_quantile((1 + band_level) / 2, degrees));
   figure.set("bank_title", bank_title(drawn.archive));
   figure.add_block("NIS of run " + drawn.run.run, {"time [s]", "baseline", "bank"}, with_time(drawn, rows));
   add_strip(drawn, figure);
@@ -106,7 +107,7 @@ Figure nis(const DrawnRun& drawn) {
 
 Figure prediction(const DrawnRun& drawn, Index state) {
   Figure figure(numbered("prediction", state), assets::figure_prediction());
-  const PredictionBand band = prediction_band(*drawn.archive.bank, drawn.bank, level);
+  const PredictionBand band = prediction_band(*drawn.archive.bank, drawn.bank, band_level);
   Eigen::MatrixXd rows(4, drawn.run.samples());
   rows << drawn.run.state.row(state), band.lower.row(state), band.upper.row(state), drawn.run.state.row(state);
   Index outside = 0;

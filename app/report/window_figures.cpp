@@ -5,6 +5,7 @@
 
 #include "app/report/assets.hpp"
 #include "app/report/run_figures.hpp"
+#include "app/report/unit_text.hpp"
 #include "mixture/confidence_ellipse.hpp"
 
 namespace modebank::app::report {
@@ -12,7 +13,7 @@ namespace {
 
 constexpr Index most_points = 6000;  // of local_models: more would only make the file large
 constexpr Index ellipse_points = 97;
-constexpr double level = 0.95;
+constexpr double ellipse_level = 0.95;
 
 /// A parameter of A and two of B as in the paper; other parameters where there are none.
 std::vector<Index> projection_axes(const std::vector<std::string>& names) {
@@ -50,28 +51,36 @@ void add_ellipses(const GaussianMixture& mixture, const std::vector<Index>& axes
       Eigen::MatrixXd boundary(0, 2);
       if (second < axes.size()) {
         const std::vector<Index> at{axes[first], axes[second]};
-        boundary = confidence_ellipse(mixture.means.col(k)(at),
-                                      mixture.covariances[static_cast<std::size_t>(k)](at, at), level, ellipse_points)
-                       .transpose();
+        boundary =
+            confidence_ellipse(mixture.means.col(k)(at), mixture.covariances[static_cast<std::size_t>(k)](at, at),
+                               ellipse_level, ellipse_points)
+                .transpose();
       }
       figure.add_block(fmt::format("95 % ellipse of component {}, axes {} and {}", k, first + 1, second + 1),
                        {"first", "second"}, boundary);
     }
 }
 
+/// Parameters of linear models act per sample; those of a motion model have units of their own.
+std::string label_of(const WindowFits& fits, std::size_t parameter) {
+  const std::string name = fits.parameter_names()[parameter];
+  return fits.model_parameters.empty() ? name + " [per sample]"
+                                       : with_unit(name, fits.model_parameters[parameter].unit);
+}
+
 Figure local_models(const Archive& archive, const std::vector<Index>& axes) {
-  const std::vector<std::string> names = archive.windows->parameter_names();
   const GaussianMixture& mixture = archive.mixture->mixture;
   Figure figure("local_models", assets::figure_local_models());
   std::vector<std::string> labels, titles;
-  for (const Index axis : axes) labels.push_back(names[static_cast<std::size_t>(axis)] + " [per sample]");
+  for (const Index axis : axes) labels.push_back(label_of(*archive.windows, static_cast<std::size_t>(axis)));
   for (Index k = 0; k < mixture.components(); ++k)
-    titles.push_back(fmt::format("component {} ({:.0f} %)", k, 100 * mixture.weights(k)));
+    titles.push_back(fmt::format("{} ({:.0f} %)", k, 100 * mixture.weights(k)));
   figure.set("K", mixture.components());
   figure.set("axes", static_cast<Index>(axes.size()));
   figure.set("axis_label", labels);
   figure.set("component_title", titles);
-  figure.set("rest_title", std::string("in none"));
+  figure.set("key_title", std::string("component (weight)"));
+  figure.set("rest_title", std::string("none"));
   const Index stride = (archive.windows->count() + most_points - 1) / most_points;
   for (Index k = 0; k <= mixture.components(); ++k) {
     const int label = k < mixture.components() ? static_cast<int>(k) : -1;

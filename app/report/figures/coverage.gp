@@ -2,22 +2,29 @@
 # runs, by filter. Data: a row per filter: position, train above, train below, test above, test below [%].
 eval open(220)
 set output figure.'.'.format
-set lmargin at screen 0.13
-set rmargin at screen 0.985
-set tmargin at screen 0.88
-set bmargin at screen 0.16
+set lmargin at screen left_edge
+set rmargin at screen right_edge
+set tmargin at screen 0.85
+set bmargin at screen filters > 5 ? 0.25 : 0.11
 set xrange [0.4:filters+0.6]
-set yrange [*:*]
-set ytics format '%g'
-set ylabel 'outside [%]: below | above' offset 1.6,0
-set xtics scale 0
-do for [f = 1:filters] { set xtics add (filter_title[f] f) }
-set key above left Left reverse horizontal samplen 0.8
+stats figure.'.dat' index 0 using ($2 > $4 || $4 != $4 ? $2 : $4) nooutput
+highest = STATS_max > 2.5 ? STATS_max : 2.5
+stats figure.'.dat' index 0 using ($3 > $5 || $5 != $5 ? $3 : $5) nooutput
+lowest = STATS_max > 2.5 ? STATS_max : 2.5
+step = round_tic(highest + lowest, 8)
+set yrange [-1.05*lowest:1.05*highest]
+set ytics ('0' 0)
+do for [i = 1:10] { set ytics add (sprintf('%g', i * step) i * step, sprintf('%g', i * step) -i * step) }
+set ylabel 'NIS below | above [%]' offset 1.0,0
+set xtics scale 0 rotate by (filters > 5 ? -35 : 0)
+set xtics (filter_title[1] 1)
+do for [f = 2:filters] { set xtics add (filter_title[f] f) }
+eval legend(0.99)
 set boxwidth 0.34
 set xzeroaxis linetype -1 linewidth 0.6
-plot figure.'.dat' index 0 using ($1-0.19):2 with boxes linecolor rgb mode_colour(0) title 'training runs', \
-     '' index 0 using ($1-0.19):(-$3) with boxes linecolor rgb mode_colour(0) notitle, \
-     '' index 0 using ($1+0.19):4 with boxes linecolor rgb mode_colour(1) title 'held-out runs', \
-     '' index 0 using ($1+0.19):(-$5) with boxes linecolor rgb mode_colour(1) notitle, \
-     2.5 with lines linewidth 0.8 dashtype (4,2) linecolor rgb '#000000' title '2.5 % of a true filter', \
-     -2.5 with lines linewidth 0.8 dashtype (4,2) linecolor rgb '#000000' notitle
+plot figure.'.dat' index 0 using ($1-0.19):2 with boxes linecolor rgb palette[1] title 'training', \
+     '' index 0 using ($1-0.19):(-$3) with boxes linecolor rgb palette[1] notitle, \
+     '' index 0 using ($1+0.19):4 with boxes linecolor rgb palette[2] title 'held out', \
+     '' index 0 using ($1+0.19):(-$5) with boxes linecolor rgb palette[2] notitle, \
+     2.5 with lines linewidth 0.8 dashtype (8,4) linecolor rgb '#000000' title 'true filter: 2.5 %', \
+     -2.5 with lines linewidth 0.8 dashtype (8,4) linecolor rgb '#000000' notitle

@@ -3,16 +3,16 @@
 eval open(270)
 set output figure.'.'.format
 set multiplot
-set lmargin at screen 0.13
-set rmargin at screen 0.985
+set lmargin at screen left_edge
+set rmargin at screen right_edge
 set xrange [start:end]
-set tmargin at screen 0.93
-set bmargin at screen 0.47
+set tmargin at screen 0.875
+set bmargin at screen 0.48
 set format x ''
-set ylabel state_label offset 1.6,0
-set key above left Left reverse horizontal
-plot figure.'.dat' index 0 using 1:2 with lines linewidth 1.6 linecolor rgb '#000000' title 'measured', \
-     '' index 0 using 1:3 with lines linewidth 0.9 dashtype (4,2) linecolor rgb mode_colour(0) title 'one Kalman filter', \
-     '' index 0 using 1:4 with lines linewidth 0.9 linecolor rgb mode_colour(1) title bank_title
+set ylabel state_label offset 1.0,0
+eval legend(0.99)
+plot figure.'.dat' index 0 using 1:2 with lines linewidth 2.2 linecolor rgb '#b0b0b0' title 'measured', \
+     '' index 0 using 1:3 with lines linewidth 0.8 linecolor rgb baseline_colour title 'baseline', \
+     '' index 0 using 1:4 with lines linewidth 0.8 linecolor rgb bank_colour title bank_title
 load 'strip.gp'
 unset multiplot

@@ -9,39 +9,60 @@ array low[3]
 array high[3]
 do for [i = 1:axes] {
   stats figure.'.dat' index 0:K using i nooutput
-  # Stray windows do not shrink the cloud: quartiles and twice their distance, never more than there is.
-  spread = STATS_up_quartile - STATS_lo_quartile
-  low[i] = STATS_min > STATS_lo_quartile - 2.5 * spread ? STATS_min : STATS_lo_quartile - 2.5 * spread
-  high[i] = STATS_max < STATS_up_quartile + 2.5 * spread ? STATS_max : STATS_up_quartile + 2.5 * spread
+  # Stray windows do not shrink the cloud: the range holds the quartiles and 2.5 times their distance, and two standard
+  # deviations, where there are windows; ellipses may widen it by a quarter.
+  spread = 2.5 * (STATS_up_quartile - STATS_lo_quartile)
+  lowest = STATS_lo_quartile - spread < STATS_mean - 2 * STATS_stddev ? STATS_lo_quartile - spread : STATS_mean - 2 * STATS_stddev
+  highest = STATS_up_quartile + spread > STATS_mean + 2 * STATS_stddev ? STATS_up_quartile + spread : STATS_mean + 2 * STATS_stddev
+  low[i] = STATS_min > lowest ? STATS_min : lowest
+  high[i] = STATS_max < highest ? STATS_max : highest
+  room = 0.25 * (high[i] - low[i])
+  below = low[i]
+  above = high[i]
+  do for [k = 0:K-1] {
+    stats figure.'.dat' index K+1+3*k+(i == 3 ? 1 : 0) using (i == 1 ? $1 : $2) nooutput
+    if (STATS_min < below) { below = STATS_min }
+    if (STATS_max > above) { above = STATS_max }
+  }
+  low[i] = below > low[i] - room ? below : low[i] - room
+  high[i] = above < high[i] + room ? above : high[i] + room
   if (high[i] <= low[i]) { low[i] = low[i] - 0.5; high[i] = high[i] + 0.5 }
   margin = 0.04 * (high[i] - low[i])
   low[i] = low[i] - margin
   high[i] = high[i] + margin
 }
 unset key
-if (panels == 3) { set multiplot layout 2,2 margins 0.13,0.985,0.11,0.985 spacing 0.14,0.13 } else { set multiplot layout 1,1 }
+if (panels == 3) { set multiplot layout 2,2 margins 0.15,0.985,0.11,0.985 spacing 0.155,0.13 } else { set multiplot layout 1,1 margins 0.15,0.985,0.15,0.985 }
 do for [p = 1:panels] {
   set xrange [low[first[p]]:high[first[p]]]
   set yrange [low[second[p]]:high[second[p]]]
+  set xtics round_tic(high[first[p]] - low[first[p]], 5)
+  set ytics round_tic(high[second[p]] - low[second[p]], 6)
   set xlabel axis_label[first[p]] offset 0,0.9
-  set ylabel axis_label[second[p]] offset 1.6,0
-  set xtics autofreq (high[first[p]] - low[first[p]]) / 4 > 0.5 ? 1 : 0.5
-  set xtics autofreq
-  set xtics maxrev 5
-  plot figure.'.dat' index K using first[p]:second[p] with points pointtype 1 pointsize 0.15 linecolor rgb grey notitle, \
-       for [k = 0:K-1] '' index k using first[p]:second[p] with points pointtype mode_point(k) pointsize 0.12 linecolor rgb mode_colour(k) notitle, \
+  set ylabel axis_label[second[p]] offset 1.4,0
+  plot figure.'.dat' index K using first[p]:second[p] with points pointtype 1 pointsize dot(0.15) linecolor rgb grey notitle, \
+       for [k = 0:K-1] '' index k using first[p]:second[p] with points pointtype mode_point(k) pointsize dot(0.12) linecolor rgb palette[k+1] notitle, \
        for [k = 0:K-1] '' index K+1+3*k+p-1 using 1:2 with lines linewidth 2.2 linecolor rgb '#ffffff' notitle, \
-       for [k = 0:K-1] '' index K+1+3*k+p-1 using 1:2 with lines linewidth 1.2 linecolor rgb mode_colour(k) notitle
+       for [k = 0:K-1] '' index K+1+3*k+p-1 using 1:2 with lines linewidth 1.2 linecolor rgb palette[k+1] notitle
 }
 if (panels == 3) {
   unset border
   unset tics
   unset xlabel
   unset ylabel
-  set key at graph 0.0, graph 1.0 left top Left reverse maxrows 9 samplen 0.6
+  unset key
   set xrange [0:1]
   set yrange [0:1]
-  plot for [k = 0:K-1] NaN with points pointtype mode_point(k) pointsize 0.6 linecolor rgb mode_colour(k) title component_title[k+1], \
-       NaN with points pointtype 1 pointsize 0.6 linecolor rgb grey title rest_title
+  # More than nine components go into two columns.
+  set label 1 key_title at graph 0.0, graph 0.97
+  do for [k = 0:K] {
+    x = K < 9 ? 0.05 : 0.05 + 0.5 * (k / 9)
+    y = 0.86 - 0.1 * (k % 9)
+    name = k < K ? component_title[k+1] : rest_title
+    colour = k < K ? palette[k+1] : grey
+    kind = k < K ? mode_point(k) : 1
+    set label k+2 name at graph x, graph y left offset 0.8,-0.1 point pointtype kind pointsize dot(0.4) linecolor rgb colour
+  }
+  plot NaN notitle
 }
 unset multiplot

@@ -2,15 +2,15 @@
 # Data: per filter a block of bin centre, density.
 eval open(200)
 set output figure.'.'.format
-set lmargin at screen 0.13
-set rmargin at screen 0.985
-set tmargin at screen 0.88
+set lmargin at screen left_edge
+set rmargin at screen right_edge
+set tmargin at screen 0.84
 set bmargin at screen 0.17
 set xrange [0:1]
 set yrange [0:*]
 set xlabel 'PIT of the one-step prediction' offset 0,0.9
-set ylabel 'density' offset 1.6,0
-set key above left Left reverse horizontal
-set object 1 rectangle from graph 0, first uniform_low to graph 1, first uniform_high behind fillcolor rgb '#e6e6e6' fillstyle solid noborder
-plot for [f = 1:filters] figure.'.dat' index f-1 using 1:2 with histeps linewidth 1.1 linecolor rgb mode_colour(f-1) title filter_title[f], \
-     1/0 with lines linewidth 5 linecolor rgb '#e6e6e6' title '95 % if uniform'
+set ylabel 'density' offset 1.0,0
+eval legend(0.99)
+set object 1 rectangle from graph 0, first uniform_low to graph 1, first uniform_high behind fillcolor rgb accepted_colour fillstyle solid noborder
+plot for [f = 1:filters] figure.'.dat' index f-1 using 1:2 with histeps linewidth 1.1 linecolor rgb filter_colour[f] title filter_title[f], \
+     1/0 with lines linewidth 5 linecolor rgb accepted_colour title '95 % if uniform'

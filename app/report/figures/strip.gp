@@ -1,13 +1,13 @@
 # Mode probabilities as a strip over time, in the lower part of a figure.
-set tmargin at screen 0.40
-set bmargin at screen 0.14
+set tmargin at screen 0.41
+set bmargin at screen 0.125
 set format x '% h'
 set format y '% h'
 unset logscale y
 unset arrow
 set xlabel 'time [s]' offset 0,0.9
-set ylabel 'P(mode)' offset 1.6,0
+set ylabel 'P(mode)' offset 1.0,0
 set yrange [0:1]
 set ytics 0,0.5,1
 unset key
-plot for [k = 0:K-1] figure.'.dat' index 1 using 1:(column(k+2)):(column(k+3)) with filledcurves linecolor rgb mode_colour(k) notitle
+plot for [k = 0:K-1] figure.'.dat' index 1 using 1:(column(k+2)):(column(k+3)) with filledcurves linecolor rgb palette[k+1] notitle

@@ -13,9 +13,20 @@ set border 3 linewidth 0.6 linecolor rgb '#444444'
 set tics nomirror out scale 0.4
 set xtics offset 0,0.4
 set ytics offset 0.4,0
-set key samplen 1.2 spacing 1.0 width 0
 set style fill solid noborder
-mode_colour(k) = palette[k % |palette| + 1]
-mode_point(k) = (k / |palette|) % 3 == 0 ? 7 : (k / |palette|) % 3 == 1 ? 9 : 5
+# A legend in two rows above a plot, at this height of the picture.
+legend(height) = sprintf("set key at screen left_edge,%g left top Left reverse vertical maxrows 2 samplen 1.2 width -0.5 font ',%g'", \
+                         height, format eq 'png' ? 7 * dots : 9.3)
+left_edge = 0.15
+right_edge = 0.985
+# Sizes of points are not scaled alike by the two terminals.
+dot(size) = format eq 'png' ? size : 1.7 * size
+mode_point(k) = (k / 7) % 3 == 0 ? 7 : (k / 7) % 3 == 1 ? 9 : 5
 grey = '#9a9a9a'
 band_colour = '#d0d0d0'
+accepted_colour = '#e6e6e6'
+# A round distance between tics, about `count` of them in `range`.
+power(range, count) = 10.0 ** floor(log10(range / count))
+round_tic(range, count) = range / count / power(range, count) > 5 ? 10 * power(range, count) \
+  : range / count / power(range, count) > 2 ? 5 * power(range, count) \
+  : range / count / power(range, count) > 1 ? 2 * power(range, count) : power(range, count)

@@ -1,0 +1,137 @@
+"""Headless Chromium as the report's tests use it: every page it opens is checked for console errors and requests."""
+import base64
+import json
+import pathlib
+import time
+
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+
+CHROMIUM = "/usr/bin/chromium"
+DRIVER = "/usr/bin/chromedriver"
+
+
+class Browser:
+    def __init__(self, artefacts, width=1200, height=900):
+        self.artefacts = pathlib.Path(artefacts)
+        self.artefacts.mkdir(parents=True, exist_ok=True)
+        options = Options()
+        options.binary_location = CHROMIUM
+        for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--hide-scrollbars",
+                         "--disable-dev-shm-usage", "--force-prefers-reduced-motion", f"--window-size={width},{height}"):
+            options.add_argument(argument)
+        options.set_capability("goog:loggingPrefs", {"performance": "ALL", "browser": "ALL"})
+        self.driver = webdriver.Chrome(service=Service(DRIVER), options=options)
+        self.driver.set_script_timeout(60)
+        self.size(width, height)
+
+    def close(self):
+        self.driver.quit()
+
+    def size(self, width, height):
+        """Of the window's inside, as a phone has it, too."""
+        self.cdp("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+
+    def cdp(self, command, **parameters):
+        return self.driver.execute_cdp_cmd(command, parameters)
+
+    def scheme(self, name):
+        self.cdp("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": name}])
+
+    def run(self, script, *arguments):
+        return self.driver.execute_script(script, *arguments)
+
+    def wait(self, script, *arguments, seconds=30, what=None):
+        """Until the script's value is true; returns it."""
+        end = time.monotonic() + seconds
+        while True:
+            value = self.run(script, *arguments)
+            if value:
+                return value
+            if time.monotonic() > end:
+                raise AssertionError(f"waited {seconds} s for: {what or script}")
+            time.sleep(0.05)
+
+    def open(self, page, seconds=30):
+        """Opens a file and waits until the page says it has drawn itself; returns the seconds that took."""
+        self.messages()
+        start = time.monotonic()
+        self.driver.get(pathlib.Path(page).resolve().as_uri())
+        self.wait("return document.documentElement.dataset.ready === 'true' || document.querySelector('.failure')", seconds=seconds,
+                  what=f"{page} to draw itself")
+        return time.monotonic() - start
+
+    def draw_all(self):
+        """Scrolls through the page until every plot is drawn; plots draw when they come near the window. Returns how many."""
+        for _ in range(60):
+            pending = self.run("""
+                const open = [...document.querySelectorAll('details:not([open])')];
+                const pending = [...document.querySelectorAll('.plot')].filter((p) => p.offsetParent && !p.dataset.failed && !p.querySelector('.main-svg'));
+                if (pending.length) pending[0].scrollIntoView({block: 'center'});
+                return pending.length;""")
+            if not pending:
+                break
+            time.sleep(0.1)
+        failed = self.run("return [...document.querySelectorAll('.plot[data-failed]')].map((p) => p.getAttribute('aria-label'))")
+        assert not failed, f"plots that failed: {failed}"
+        assert not pending, f"{pending} plots were never drawn"
+        return self.run("return document.querySelectorAll('.plot .main-svg').length")
+
+    def messages(self):
+        """Console errors and requests to anywhere but this file since the last call."""
+        errors = [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
+        requests = []
+        for entry in self.driver.get_log("performance"):
+            message = json.loads(entry["message"])["message"]
+            if message["method"] == "Network.requestWillBeSent":
+                url = message["params"]["request"]["url"]
+                if not url.startswith(("file:", "data:", "blob:", "about:", "chrome:")):
+                    requests.append(url)
+        return errors, requests
+
+    def files_requested(self):
+        """Files other than the page that it refers to."""
+        return self.run("return performance.getEntriesByType('resource').map((e) => e.name).filter((n) => !/^(data|blob):/.test(n))")
+
+    def screenshot(self, name, whole=True):
+        if whole:
+            self.run("window.scrollTo(0, 0)")
+        size = self.run("return [document.documentElement.clientWidth, document.documentElement.scrollHeight]")
+        clip = {"x": 0, "y": 0, "width": size[0], "height": min(size[1], 12000), "scale": 1}
+        shot = self.cdp("Page.captureScreenshot", format="png", captureBeyondViewport=whole, **({"clip": clip} if whole else {}))
+        path = self.artefacts / f"{name}.png"
+        path.write_bytes(base64.b64decode(shot["data"]))
+        return path
+
+    # Mouse events go through the protocol, as a user's would.
+    def mouse(self, kind, x, y, **more):
+        self.cdp("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def move(self, x, y):
+        self.mouse("mouseMoved", x, y)
+
+    def click(self, x, y):
+        self.move(x, y)
+        self.mouse("mousePressed", x, y, button="left", clickCount=1, buttons=1)
+        self.mouse("mouseReleased", x, y, button="left", clickCount=1)
+
+    def drag(self, x, y, to_x, to_y):
+        self.move(x, y)
+        self.mouse("mousePressed", x, y, button="left", clickCount=1, buttons=1)
+        for step in range(1, 6):
+            self.mouse("mouseMoved", x + (to_x - x) * step / 5, y + (to_y - y) * step / 5, button="left", buttons=1)
+        self.mouse("mouseReleased", to_x, to_y, button="left", clickCount=1)
+
+    def key(self, key):
+        for kind in ("keyDown", "keyUp"):
+            self.cdp("Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode={"Tab": 9, "Enter": 13}.get(key, 0),
+                     **({"text": "\r"} if key == "Enter" and kind == "keyDown" else {}))
+
+    def box(self, selector):
+        """Of the first element that fits, in the window, scrolled into it."""
+        return self.run("""
+            const element = document.querySelector(arguments[0]);
+            element.scrollIntoView({block: 'center'});
+            const box = element.getBoundingClientRect();
+            return {x: box.x, y: box.y, width: box.width, height: box.height};""", selector)
