@@ -1,12 +1,10 @@
 #include "filter/calibration.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "ident/not_a_number.hpp"
 
@@ -69,26 +67,6 @@ double fisher_p(const std::vector<double>& p_values) {
     degrees_of_freedom += 2.0;
   }
   return degrees_of_freedom > 0.0 ? chi_square_upper(statistic, degrees_of_freedom) : not_a_number;
-}
-
-std::vector<Eigen::Index> uniform_counts(const std::vector<double>& values, Eigen::Index bins) {
-  if (bins < 1) throw std::invalid_argument("uniform_counts: bins must be at least 1");
-  std::vector<Eigen::Index> counts(static_cast<std::size_t>(bins), 0);
-  for (const double value : values) {
-    if (!(value >= 0.0 && value <= 1.0)) continue;
-    const auto bin = std::min(bins - 1, static_cast<Eigen::Index>(value * static_cast<double>(bins)));
-    ++counts[static_cast<std::size_t>(bin)];
-  }
-  return counts;
-}
-
-CountInterval uniform_count_interval(Eigen::Index samples, Eigen::Index bins, double level) {
-  if (bins < 1 || samples < 0) throw std::invalid_argument("uniform_count_interval: bins must be at least 1");
-  if (samples == 0) return {0.0, 0.0};
-  // Quantiles are rounded outwards by Boost's default policy, so the interval holds at least `level`.
-  const boost::math::binomial count(static_cast<double>(samples), 1.0 / static_cast<double>(bins));
-  const double outside = (1.0 - level) / 2.0;
-  return {boost::math::quantile(count, outside), boost::math::quantile(boost::math::complement(count, outside))};
 }
 
 }  // namespace modebank

@@ -22,15 +22,4 @@ double ljung_box_p(const std::vector<double>& series);
 /// are left out; NaN when none is left.
 double fisher_p(const std::vector<double>& p_values);
 
-/// How many of the values fall into each of `bins` equal parts of [0, 1]; the last one holds 1. Values that are not
-/// finite or lie outside are not counted. Throws std::invalid_argument for bins < 1.
-std::vector<Eigen::Index> uniform_counts(const std::vector<double>& values, Eigen::Index bins);
-
-/// Between which counts a bin of `bins` equal ones lies with probability `level` when `samples` independent values are
-/// uniform: the binomial's quantiles, (1 - level) / 2 outside on either side at most.
-struct CountInterval {
-  double lower, upper;
-};
-CountInterval uniform_count_interval(Eigen::Index samples, Eigen::Index bins, double level);
-
 }  // namespace modebank

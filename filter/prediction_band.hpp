@@ -1,19 +1,25 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "filter/bank.hpp"
 #include "filter/evaluate.hpp"
 
 namespace modebank {
 
-/// Where each measurement was expected, in its unit, n_y x N; NaN where nothing was predicted.
+/// Where a filter expected each measurement of a run: center +- half_width holds it with `level`, by the first two
+/// moments of the predicted mixture. NaN where the filter predicted nothing.
 struct PredictionBand {
-  Eigen::MatrixXd centre, lower, upper;
+  Eigen::MatrixXd center;      ///< n_y x N [state unit]
+  Eigen::MatrixXd half_width;  ///< n_y x N [state unit]
 };
 
-/// C x[k|k-1] +- z sqrt(diag S), z the normal quantile that leaves the share `level` inside; S is the combined
-/// prediction's, of a mixture its first two moments.
+/// Throws std::invalid_argument when sizes disagree or level is not inside (0, 1).
 PredictionBand prediction_band(const Bank& bank, const RunEvaluation& evaluation, double level);
+
+/// Samples of which some signal lies further out than a share `level` of a true filter's measurements would, by the
+/// probability transform: those outliers are not judged by a Gaussian.
+std::vector<Eigen::Index> outlying_samples(const RunEvaluation& evaluation, double level);
 
 }  // namespace modebank

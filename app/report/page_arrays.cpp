@@ -29,8 +29,10 @@ std::string deflated(const std::string& bytes) {
   return result;
 }
 
+std::size_t base64_size(std::size_t bytes) { return 4 * ((bytes + 2) / 3); }
+
 std::string base64(const std::string& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // and the zero that EVP_EncodeBlock writes
+  std::string text(base64_size(bytes.size()) + 1, '\0');  // and the zero that EVP_EncodeBlock writes
   const int length =
       EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
                       reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
@@ -43,7 +45,13 @@ std::string base64(const std::string& bytes) {
 template <class T>
 nlohmann::json PageArrays::store(const T* values, std::size_t count, const char* type) {
   nlohmann::json place = {{"id", fmt::format("a{}", stored_.size())}, {"type", type}, {"size", count}};
-  stored_.push_back(base64(deflated(byte_planes(values, count))));
+  constexpr std::size_t element = 100;  // of the page that holds it, and where it is mentioned
+  if (kind_ == Kind::measure) {
+    bytes_ += base64_size(compressBound(static_cast<uLong>(count * sizeof(T)))) + element;
+  } else {
+    stored_.push_back(base64(deflated(byte_planes(values, count))));
+    bytes_ += stored_.back().size() + element;
+  }
   return place;
 }
 
@@ -64,12 +72,6 @@ nlohmann::json PageArrays::add(const std::vector<std::int32_t>& values) {
 
 nlohmann::json PageArrays::add(const std::vector<std::uint8_t>& values) {
   return store(values.data(), values.size(), "u1");
-}
-
-std::size_t PageArrays::bytes() const {
-  std::size_t sum = 0;
-  for (const std::string& array : stored_) sum += array.size();
-  return sum;
 }
 
 }  // namespace modebank::app::report

@@ -7,13 +7,12 @@
 #include "app/report/assets.hpp"
 #include "app/report/palette.hpp"
 #include "app/report/run_figures.hpp"
-#include "filter/calibration.hpp"
+#include "filter/pit_histogram.hpp"
 
 namespace modebank::app::report {
 namespace {
 
-constexpr Index pit_bins = 20;
-constexpr double uniform_level = 0.95;
+constexpr Index bins_of_figure = 20;
 constexpr std::array<const char*, 3> drawn_filters{"baseline", "noise_only", "bank"};
 
 std::string colour_of(const std::string& filter) {
@@ -25,13 +24,11 @@ std::string title_of(const Archive& archive, const std::string& filter) {
   return filter == "baseline" ? "baseline" : filter == "noise_only" ? "noise only" : bank_title(archive);
 }
 
-/// PIT values of the judged runs, all signals; NaN where nothing was scored.
-std::vector<double> pit_values(const Archive& archive, const FilterEvaluation& evaluation) {
-  std::vector<double> values;
+PitHistogram judged_histogram(const Archive& archive, const FilterEvaluation& evaluation) {
+  std::vector<const RunEvaluation*> runs;
   for (std::size_t i = 0; i < evaluation.runs.size(); ++i)
-    if (archive.recording->runs[i].role == judged_role(archive))
-      values.insert(values.end(), evaluation.runs[i].pit.reshaped().begin(), evaluation.runs[i].pit.reshaped().end());
-  return values;
+    if (archive.recording->runs[i].role == judged_role(archive)) runs.push_back(&evaluation.runs[i]);
+  return pit_histogram(runs, bins_of_figure);
 }
 
 Figure pit(const Archive& archive) {
@@ -40,21 +37,17 @@ Figure pit(const Archive& archive) {
   for (const char* filter : drawn_filters) {
     const FilterEvaluation* evaluation = evaluation_of(archive, filter);
     if (!evaluation) continue;
-    const std::vector<Index> counts = uniform_counts(pit_values(archive, *evaluation), pit_bins);
-    double total = 0.0;
-    for (const Index count : counts) total += static_cast<double>(count);
-    const double scale = static_cast<double>(pit_bins) / total;
-    Eigen::MatrixXd rows(pit_bins, 2);
-    for (Index i = 0; i < pit_bins; ++i)
-      rows.row(i) << (static_cast<double>(i) + 0.5) / pit_bins,
-          scale * static_cast<double>(counts[static_cast<std::size_t>(i)]);
+    const PitHistogram histogram = judged_histogram(archive, *evaluation);
+    Eigen::MatrixXd rows(bins_of_figure, 2);
+    for (Index i = 0; i < bins_of_figure; ++i)
+      rows.row(i) << (static_cast<double>(i) + 0.5) / static_cast<double>(bins_of_figure),
+          histogram.counts(i) / histogram.expected;
     figure.add_block(title_of(archive, filter), {"PIT", "density"}, rows);
     titles.push_back(title_of(archive, filter));
     colours.push_back(colour_of(filter));
-    const CountInterval interval = uniform_count_interval(static_cast<Index>(total), pit_bins, uniform_level);
     if (titles.size() > 1) continue;
-    figure.set("uniform_low", scale * interval.lower);
-    figure.set("uniform_high", scale * interval.upper);
+    figure.set("uniform_low", histogram.band.lower / histogram.expected);
+    figure.set("uniform_high", histogram.band.upper / histogram.expected);
   }
   figure.set("filters", static_cast<Index>(titles.size()));
   figure.set("filter_title", titles);

@@ -79,8 +79,8 @@ Figure estimates(const DrawnRun& drawn, Index state) {
   rows.row(0) = drawn.run.state.row(state);
   rows.row(1).setConstant(std::numeric_limits<double>::quiet_NaN());
   if (drawn.baseline)
-    rows.row(1) = prediction_band(*drawn.archive.baseline, *drawn.baseline, band_level).centre.row(state);
-  rows.row(2) = prediction_band(*drawn.archive.bank, drawn.bank, band_level).centre.row(state);
+    rows.row(1) = prediction_band(*drawn.archive.baseline, *drawn.baseline, band_level).center.row(state);
+  rows.row(2) = prediction_band(*drawn.archive.bank, drawn.bank, band_level).center.row(state);
   set_time(drawn, figure);
   figure.set("state_label", state_label(drawn, state));
   figure.set("bank_title", bank_title(drawn.archive));
@@ -109,7 +109,8 @@ Figure prediction(const DrawnRun& drawn, Index state) {
   Figure figure(numbered("prediction", state), assets::figure_prediction());
   const PredictionBand band = prediction_band(*drawn.archive.bank, drawn.bank, band_level);
   Eigen::MatrixXd rows(4, drawn.run.samples());
-  rows << drawn.run.state.row(state), band.lower.row(state), band.upper.row(state), drawn.run.state.row(state);
+  rows << drawn.run.state.row(state), band.center.row(state) - band.half_width.row(state),
+      band.center.row(state) + band.half_width.row(state), drawn.run.state.row(state);
   Index outside = 0;
   for (Index k = 0; k < drawn.samples(); ++k) {
     const bool marked = rows(0, k) < rows(1, k) || rows(0, k) > rows(2, k);

@@ -7,9 +7,10 @@ set rmargin at screen right_edge
 set tmargin at screen 0.85
 set bmargin at screen filters > 5 ? 0.25 : 0.11
 set xrange [0.4:filters+0.6]
-stats figure.'.dat' index 0 using ($2 > $4 || $4 != $4 ? $2 : $4) nooutput
+larger(a, b) = a == a && (b != b || a > b) ? a : b  # of two of which one may be NaN
+stats figure.'.dat' index 0 using (larger(column(2), column(4))) nooutput
 highest = STATS_max > 2.5 ? STATS_max : 2.5
-stats figure.'.dat' index 0 using ($3 > $5 || $5 != $5 ? $3 : $5) nooutput
+stats figure.'.dat' index 0 using (larger(column(3), column(5))) nooutput
 lowest = STATS_max > 2.5 ? STATS_max : 2.5
 step = round_tic(highest + lowest, 8)
 set yrange [-1.05*lowest:1.05*highest]
