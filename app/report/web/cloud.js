@@ -66,7 +66,7 @@ export async function cloud(windows, runs, goTo) {
   const [run, begin, end, label, mode] = await Promise.all([windows.run, windows.begin, windows.end, windows.label, windows.mode].map(array));
   const covariance = windows.covariance ? await Promise.all(windows.covariance.map(array)) : null;
   const features = windows.components ? windows.axes.map((axis) => windows.components.features.indexOf(axis.name)) : [];
-  const dims = Math.min(3, names.length), state = { axes: [0, 1, 2].slice(0, dims), by: label ? 'component' : mode ? 'mode' : 'none', all: false, errors: false, bank: true, picked: -1, hidden: new Set() };
+  const dims = Math.min(3, names.length), state = { axes: windows.default_axes, shells: (windows.components?.list.length || 0) <= 6, by: label ? 'component' : mode ? 'mode' : 'none', all: false, errors: false, bank: true, picked: -1, hidden: new Set() };
   const colourOf = () => (state.by === 'component' ? label : state.by === 'mode' ? mode : null);
   const digits = (v) => (Number.isFinite(v) ? Number(v.toPrecision(most)).toString() : '–');
   const place = (i) => `run ${plain(runs[run[i]])}, ${begin[i].toFixed(2)} to ${end[i].toFixed(2)} s`;
@@ -121,7 +121,7 @@ export async function cloud(windows, runs, goTo) {
   const solid = dims < 3 ? null : figure('Local models of all windows in three parameters; the tables of modes below hold the same information', () => {
     const axes = state.axes, scene = { dragmode: 'orbit', aspectmode: 'cube', camera: { eye: { x: 1.45, y: 1.45, z: 0.9 } }, uirevision: axes.join() };
     ['xaxis', 'yaxis', 'zaxis'].forEach((name, j) => { scene[name] = { title: { text: plain(names[axes[j]]) }, range: rangeOf(axes[j]), nticks: 5 }; });
-    const meshes = shownComponents(axes).map((c) => surface(c.mean, c.covariance, windows.limit3, modeColour(c.k))).filter(Boolean);
+    const meshes = (state.shells ? shownComponents(axes) : []).map((c) => surface(c.mean, c.covariance, windows.limit3, modeColour(c.k))).filter(Boolean);
     return { traces: [...points(axes, 'scatter3d'), ...meshes, ...errorWires(axes), ...bankPoints(axes, 'scatter3d')], layout: { height: 520, margin: { l: 0, r: 0, t: 0, b: 0 }, scene, showlegend: false } };
   }, `Turn with the mouse or a finger. Shells hold ${100 * windows.level} % of a mixture component; wires are the error ellipsoid of a window's estimate; diamonds are the modes of the bank.`);
 
@@ -185,6 +185,7 @@ export async function cloud(windows, runs, goTo) {
     names.length > 3 ? state.axes.map((a, j) => choice('XYZ'[j], names, a, (chosen) => { state.axes[j] = chosen; redraw(); })) : null,
     bys.length > 1 ? choice('Colour by', bys.map((name) => (name === 'mode' ? 'mode of the filter' : 'mixture component')), bys.indexOf(state.by), (i) => { state.by = bys[i]; state.hidden.clear(); fillLegend(); redraw(); }) : null,
     check('Outlying windows, too', false, (on) => { state.all = on; redraw(); }),
+    windows.components && dims === 3 ? check('Shells of components', state.shells, (on) => { state.shells = on; redraw(); }) : null,
     covariance && dims === 3 ? check('Error ellipsoids of 60 windows', false, (on) => { state.errors = on; redraw(); }) : null,
     windows.bank ? check('Modes of the bank', true, (on) => { state.bank = on; redraw(); }) : null);
   return { elements: [controls, legend, solid, info, flat], pick };
