@@ -24,6 +24,21 @@ json changed_settings(const std::string& config) {
   return changed;
 }
 
+std::string roles_text(const Recording& recording) {
+  const auto runs = [&](Role role) {
+    return std::count_if(recording.runs.begin(), recording.runs.end(),
+                         [role](const Trajectory& run) { return run.role == role; });
+  };
+  return fmt::format("{} training ({} transitions), {} held out ({})", runs(Role::train),
+                     count_text(recording.transitions(Role::train)), runs(Role::test),
+                     count_text(recording.transitions(Role::test)));
+}
+
+std::string windows_line(const WindowFits& fits) {
+  return fmt::format("{} of {} transitions, model {}, loss {}", count_text(fits.count()), fits.length, fits.model,
+                     name_of(fits.loss));
+}
+
 json inputs_of(const Provenance& provenance) {
   json inputs = json::array();
   for (const InputFile& file : provenance.inputs)
@@ -38,7 +53,14 @@ nlohmann::json origin_section(const Archive& archive) {
   const Provenance& provenance = archive.provenance;
   json versions = json::array();
   for (const auto& [name, version] : provenance.versions) versions.push_back({name, version});
+  json known = json::array();
+  if (archive.recording) {
+    known.push_back({"Runs", roles_text(*archive.recording)});
+    known.push_back({"Sample period", number_text(archive.recording->median_period_s()) + " s (median)"});
+  }
+  if (archive.windows) known.push_back({"Windows", windows_line(*archive.windows)});
   return {{"created", provenance.created},
+          {"facts", known},
           {"version", provenance.modebank_version},
           {"command", provenance.command_line},
           {"config_hash", provenance.config_hash},

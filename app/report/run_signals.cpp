@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "app/report/run_sections.hpp"
 #include "app/report/series.hpp"
 #include "app/report/unit_text.hpp"
@@ -80,6 +82,20 @@ json run_signals(const Archive& archive, std::size_t i, PageArrays& arrays, cons
   return entry;
 }
 
+/// What the page says of samples it does not draw one by one; empty where it draws all.
+std::string detail_note(const Detail& detail) {
+  std::string text;
+  if (detail.finest > 1)
+    text = fmt::format("To keep the page small, signals are drawn by the extremes of every {} samples at the finest",
+                       detail.finest);
+  if (detail.finest_others > detail.finest)
+    text += fmt::format("{} of {} samples",
+                        text.empty() ? "To keep the page small, filters other than the bank are drawn by the extremes"
+                                     : ", other filters' by those",
+                        detail.finest_others);
+  return text.empty() ? text : text + " (report.size_mb).";
+}
+
 }  // namespace
 
 nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const Detail& detail) {
@@ -91,8 +107,7 @@ nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const De
   const auto n_y = static_cast<double>(archive.recording->state_count());
   return {{"states", channels_of(archive.recording->states)},
           {"inputs", channels_of(archive.recording->inputs)},
-          {"finest", detail.finest},
-          {"finest_others", detail.finest_others},
+          {"note", detail_note(detail)},
           {"level", drawn_level},
           {"outlier_level", outlier_level},
           {"nis_bounds", {chi_square_quantile(outer, n_y), chi_square_quantile(1.0 - outer, n_y)}},

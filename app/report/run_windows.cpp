@@ -31,6 +31,15 @@ json axes_of(const FeatureCloud& cloud, const Unit& units) {
   return axes;
 }
 
+/// The axes to begin with: the paper's A, B1, B2, which with lags are the first of each.
+std::vector<Index> default_axes(const WindowFits& fits, Index axes) {
+  const Index inputs = fits.structure.dimension();
+  std::vector<Index> chosen{0, 1, 2};
+  if (fits.model_parameters.empty() && fits.structure.inputs >= 2) chosen = {0, inputs, inputs + 1};
+  chosen.resize(static_cast<std::size_t>(std::min<Index>(axes, 3)));
+  return chosen;
+}
+
 /// The lower triangle of each drawn window's covariance, entry by entry, rows first.
 json covariances_of(PageArrays& arrays, const WindowFits& fits, const std::vector<Index>& drawn) {
   const Index p = fits.parameter_count(), count = static_cast<Index>(drawn.size());
@@ -137,6 +146,7 @@ nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
                   {"model", fits.model},
                   {"parameters", fits.parameter_count()},
                   {"axes", axes_of(cloud, units_of_parameters(archive))},
+                  {"default_axes", default_axes(fits, cloud.points.rows())},
                   {"values", values},
                   {"covariance", covariances_of(arrays, fits, drawn.windows)},
                   {"level", drawn_level},

@@ -57,16 +57,17 @@ const compare = (a, b) => {
   return typeof x === 'number' && typeof y === 'number' ? x - y : String(x).localeCompare(String(y), 'en', { numeric: true });
 };
 
-// columns: {name, text: true for words, of: row => cell, swatch: row => colour}. options: caption, chosen: row => bool,
+// columns: {name, text: true for words, prose: true for sentences, of: row => cell, swatch: row => colour}. options: caption, chosen: row => bool,
 // sortable, onclick: row => {}.
 export function table(columns, rows, options = {}) {
   const body = h('tbody');
-  const headers = columns.map((column) => h('th', { scope: 'col', class: column.text ? 'text' : null }));
+  const headers = columns.map((column) => h('th', { scope: 'col', class: column.text || column.prose ? 'text' : null }));
   const fill = (list) => body.replaceChildren(...list.map((row) => {
     const line = h('tr', { class: options.chosen && options.chosen(row) ? 'chosen' : null });
     for (const column of columns) {
       const cell = value(column.of(row), 'td');
       if (column.text) cell.classList.add('text');
+      if (column.prose) cell.classList.add('text', 'prose');
       if (column.swatch) cell.prepend(h('span', { class: 'swatch', style: `background:${column.swatch(row)}` }));
       line.append(cell);
     }
