@@ -11,6 +11,7 @@ int run_pipeline(const CommandLine& line);  ///< run, identify, cluster, evaluat
 int run_check(const CommandLine& line);
 int run_simulate(const CommandLine& line);
 int run_report(const CommandLine& line);
+int run_study(const CommandLine& line);
 int run_show(const CommandLine& line);
 int run_track(const CommandLine& line);
 int run_verify(const CommandLine& line);

@@ -9,6 +9,7 @@
 #include "app/option_builders.hpp"
 #include "app/report/report_options.hpp"
 #include "app/simulate_options.hpp"
+#include "app/study/study_options.hpp"
 #include "ident/motion_model.hpp"
 
 namespace modebank::app {
@@ -275,12 +276,18 @@ Config default_config() {
 const std::vector<Option>& option_table() {
   static const std::vector<Option> table = [] {
     std::vector<Option> all;
-    for (auto section : {data_options, window_options, mixture_options, bank_options, other_options, track_options,
-                         report_options, simulate_options})
+    for (auto section : {data_options, window_options, mixture_options, bank_options, other_options, study_options,
+                         track_options, report_options, simulate_options})
       for (Option& entry : section()) all.push_back(std::move(entry));
     return all;
   }();
   return table;
+}
+
+const Option* find_option(const std::string& key) {
+  const std::vector<Option>& table = option_table();
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Option& option) { return option.key == key; });
+  return found == table.end() ? nullptr : &*found;
 }
 
 }  // namespace modebank::app

@@ -16,8 +16,9 @@ set xtics tick
 left_edge = 0.1
 eval legend(0.99)
 set arrow 1 from chosen, graph 0 to chosen, graph 1 nohead back linewidth 5 linecolor rgb accepted_colour
+if (!heldout) { set y2range [0:1] }  # an axis without any point is an error
 plot figure.'.dat' index 0 using 1:2 with linespoints pointtype 7 pointsize dot(0.3) linewidth 1 linecolor rgb palette[1] title 'BIC', \
      '' index 0 using 1:3 with linespoints pointtype 5 pointsize dot(0.3) linewidth 1 linecolor rgb palette[2] title 'ICL', \
      '' index 0 using 1:4 with linespoints pointtype 9 pointsize dot(0.3) linewidth 1 linecolor rgb palette[3] title 'AIC', \
-     for [once = 1:heldout] '' index 0 using 1:5 axes x1y2 with linespoints pointtype 13 pointsize dot(0.3) linewidth 1 dashtype (8,4) linecolor rgb palette[4] title 'held out', \
+     '' index 0 using 1:(heldout ? $5 : NaN) axes x1y2 with linespoints pointtype 13 pointsize dot(0.3) linewidth 1 dashtype (8,4) linecolor rgb palette[4] title (heldout ? 'held out' : ''), \
      1/0 with lines linewidth 5 linecolor rgb accepted_colour title 'chosen'
