@@ -29,6 +29,8 @@ constexpr Command commands[] = {
      run_pipeline},
     {"check", "CONFIG", "advice on the data before identification, run by run; --json", run_check},
     {"simulate", "CONFIG", "write runs with known truth in the CSV layout that run reads", run_simulate},
+    {"study", "CONFIG", "a parameter study: plans, runs and merges, resuming what is done; --study.stage does one step",
+     run_study},
     {"show", "ARCHIVE [PATH]", "provenance, candidates, modes, summary; or one object; --json; --form full", run_show},
     {"track", "ARCHIVE", "live filter: samples in on standard input, estimates out on standard output, line by line",
      run_track},

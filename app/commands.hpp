@@ -10,6 +10,7 @@ int run_command(const CommandLine& line);
 int run_pipeline(const CommandLine& line);  ///< run, identify, cluster, evaluate
 int run_check(const CommandLine& line);
 int run_simulate(const CommandLine& line);
+int run_study(const CommandLine& line);
 int run_show(const CommandLine& line);
 int run_track(const CommandLine& line);
 int run_verify(const CommandLine& line);

@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/study/study_config.hpp"
 #include "app/track_input.hpp"
 #include "filter/evaluate.hpp"
 #include "filter/learn.hpp"
@@ -83,6 +84,7 @@ struct Config {
   ArchiveConfig archive;
   JobConfig job;
   SimulateConfig simulate;
+  StudyConfig study;
 };
 
 /// Defaults that are not those of the library's own structs.

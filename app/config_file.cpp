@@ -89,7 +89,14 @@ void apply(Config& config, const std::string& where, const std::string& key, con
   }
 }
 
+/// The command line's values of a repeatable key take the place of all of the file's.
+void clear_overridden(Config& config, const KeyValues& overrides) {
+  for (const auto& [key, value] : overrides)
+    if (const Option* option = find_option(key); option && option->repeatable) option->set(config, "");
+}
+
 void apply_overrides(Config& config, const KeyValues& overrides) {
+  clear_overridden(config, overrides);
   for (const auto& [key, value] : overrides) {
     if (value.find('#') != std::string::npos)
       throw ConfigurationError(fmt::format(
@@ -120,7 +127,9 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
   std::map<std::string, int> seen;
   for (const FileEntry& entry : parse_lines(stream, path.string())) {
     const std::string where = fmt::format("{}:{}", path.string(), entry.line);
-    if (const auto [earlier, fresh] = seen.emplace(entry.key, entry.line); !fresh)
+    const Option* option = find_option(entry.key);
+    const auto [earlier, fresh] = seen.emplace(entry.key, entry.line);
+    if (!fresh && !(option && option->repeatable))
       throw ConfigurationError(fmt::format("{}: {} is already set in line {}", where, entry.key, earlier->second));
     apply(config, where, entry.key, entry.value, entry.has_comment);
     if (entry.comment_touches_value)
@@ -134,6 +143,7 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
   if (config.data.root.empty()) config.data.root = default_root(path).string();
   config.data.root = std::filesystem::absolute(config.data.root).lexically_normal().string();
   if (config.archive.output.empty()) config.archive.output = path.stem().string() + ".h5";
+  if (config.study.output.empty()) config.study.output = path.stem().string() + ".study";
   return config;
 }
 
@@ -151,8 +161,9 @@ std::string resolved_text(const Config& config) {
   for (const Option& option : option_table()) {
     if (option.section() != section) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", option.section());
     section = option.section();
-    const std::string value = option.get(config);
-    text += option.name() + " =" + (value.empty() ? "" : " " + value) + "\n";
+    std::vector<std::string> values;
+    boost::split(values, option.get(config), [](char c) { return c == '\n'; });
+    for (const std::string& value : values) text += option.name() + " =" + (value.empty() ? "" : " " + value) + "\n";
   }
   return text;
 }
@@ -160,12 +171,16 @@ std::string resolved_text(const Config& config) {
 std::map<std::string, std::string> resolved_values(const std::string& resolved) {
   std::istringstream stream(resolved);
   std::map<std::string, std::string> values;
-  for (const FileEntry& entry : parse_lines(stream, "stored configuration")) values[entry.key] = entry.value;
+  for (const FileEntry& entry : parse_lines(stream, "stored configuration")) {
+    std::string& value = values[entry.key];
+    value += (value.empty() ? "" : "\n") + entry.value;
+  }
   return values;
 }
 
 bool decides_numbers(const std::string& key) {
-  return key != "data.root" && key.rfind("archive.", 0) != 0 && key.rfind("track.", 0) != 0 && key != "job.threads";
+  return key != "data.root" && key.rfind("archive.", 0) != 0 && key.rfind("track.", 0) != 0 &&
+         key.rfind("study.", 0) != 0 && key != "job.threads";
 }
 
 std::string config_hash(const Config& config) {

@@ -69,10 +69,7 @@ Option option(std::string key, std::string range, std::string unit, std::string 
             parse_value(text, value);
             field(config) = value;
           },
-          [field](const Config& config) {
-            Config copy = config;
-            return format_value(field(copy));
-          },
+          [field](const Config& config) { return format_value(field(config)); },
           {}};
 }
 
@@ -106,6 +103,6 @@ Option text(std::string key, std::string what, std::string help, Field field) {
 
 /// The member of a Config that an option reads and writes.
 #define MODEBANK_FIELD(expression) \
-  [](Config & c) -> auto& { return c.expression; }
+  [](auto& c) -> auto& { return c.expression; }
 
 }  // namespace modebank::app

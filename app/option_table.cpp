@@ -8,6 +8,7 @@
 
 #include "app/option_builders.hpp"
 #include "app/simulate_options.hpp"
+#include "app/study/study_options.hpp"
 #include "ident/motion_model.hpp"
 
 namespace modebank::app {
@@ -274,8 +275,8 @@ Config default_config() {
 const std::vector<Option>& option_table() {
   static const std::vector<Option> table = [] {
     std::vector<Option> all;
-    for (auto section :
-         {data_options, window_options, mixture_options, bank_options, other_options, track_options, simulate_options})
+    for (auto section : {data_options, window_options, mixture_options, bank_options, other_options, study_options,
+                         track_options, simulate_options})
       for (Option& entry : section()) all.push_back(std::move(entry));
     return all;
   }();

@@ -19,6 +19,7 @@ struct Option {
   std::function<void(Config&, const std::string&)> set;  ///< throws std::invalid_argument when the text is not in range
   std::function<std::string(const Config&)> get;         ///< text that `set` reads back to the same value
   std::optional<SimulatedSystem> only_for = {};          ///< the simulated system that has this key; empty: all
+  bool repeatable = false;  ///< may stand in several lines of a file; `get` joins them by newlines
 
   std::string section() const { return key.substr(0, key.find('.')); }
   std::string name() const { return key.substr(key.find('.') + 1); }
