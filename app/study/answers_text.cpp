@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <vector>
+
+#include "app/study/value_groups.hpp"
 
 namespace modebank::app {
 namespace {
@@ -39,6 +42,32 @@ std::vector<KeyInfluence> ranked_influences(const Answers& answers) {
   return ranked;
 }
 
+/// The other keys that were varied in step with one: their effects are the same effects.
+std::vector<std::string> keys_in_step(const StudyTable& table, std::size_t key) {
+  const std::vector<ValueGroup> groups = value_groups(table, key);
+  const auto same_rows = [](const ValueGroup& a, const ValueGroup& b) { return a.rows == b.rows; };
+  std::vector<std::string> names;
+  for (std::size_t other = 0; other < table.varied_keys.size(); ++other) {
+    const std::vector<ValueGroup> theirs = value_groups(table, other);
+    if (other != key && groups.size() > 1 &&
+        std::equal(groups.begin(), groups.end(), theirs.begin(), theirs.end(), same_rows))
+      names.push_back(table.varied_keys[other]);
+  }
+  return names;
+}
+
+/// The key with those varied in step with it; empty when one of these was printed before.
+std::string effect_heading(const StudyTable& table, const KeyInfluence& influence, std::set<std::string>& printed) {
+  const auto key = std::find(table.varied_keys.begin(), table.varied_keys.end(), influence.key);
+  std::string heading = influence.key;
+  for (const std::string& name : keys_in_step(table, static_cast<std::size_t>(key - table.varied_keys.begin()))) {
+    if (printed.count(name)) return "";
+    heading += " with " + name;
+  }
+  printed.insert(influence.key);
+  return heading + (std::isnan(influence.share) ? "" : fmt::format(" (share {:.0f} %)", 100 * influence.share));
+}
+
 std::string effects_text(const StudyTable& table, const Answers& answers) {
   const std::vector<std::string> scores = shown_scores(table, answers.headline);
   std::string text = fmt::format(
@@ -47,9 +76,11 @@ std::string effects_text(const StudyTable& table, const Answers& answers) {
       answers.headline, "", "trials", "log_score", "sd");
   for (std::size_t i = 1; i < scores.size(); ++i)
     text += fmt::format(" {:>10}", heading_of(scores[i], answers.headline));
+  std::set<std::string> printed;
   for (const KeyInfluence& influence : ranked_influences(answers)) {
-    text += std::isnan(influence.share) ? fmt::format("\n{}", influence.key)
-                                        : fmt::format("\n{} (share {:.0f} %)", influence.key, 100 * influence.share);
+    const std::string heading = effect_heading(table, influence, printed);
+    if (heading.empty()) continue;
+    text += "\n" + heading;
     for (const MainEffect& effect : answers.main_effects) {
       if (effect.key != influence.key || effect.score != answers.headline) continue;
       text += fmt::format("\n  {:<26} {:>7} {:>10.4f} {:>9.4f}", effect.value.empty() ? "''" : effect.value,
