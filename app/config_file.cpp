@@ -28,12 +28,6 @@ struct FileEntry {
   bool has_comment = false, comment_touches_value = false;
 };
 
-const Option* find_option(const std::string& key) {
-  const auto& table = option_table();
-  const auto found = std::find_if(table.begin(), table.end(), [&](const Option& option) { return option.key == key; });
-  return found == table.end() ? nullptr : &*found;
-}
-
 /// One line at a time through Boost's parser: its grammar, and a line number for every message.
 std::vector<FileEntry> parse_lines(std::istream& stream, const std::string& path) {
   static const po::options_description no_options;

@@ -283,4 +283,10 @@ const std::vector<Option>& option_table() {
   return table;
 }
 
+const Option* find_option(const std::string& key) {
+  const std::vector<Option>& table = option_table();
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Option& option) { return option.key == key; });
+  return found == table.end() ? nullptr : &*found;
+}
+
 }  // namespace modebank::app

@@ -28,4 +28,7 @@ struct Option {
 /// All options, section by section, in the order of the help text.
 const std::vector<Option>& option_table();
 
+/// The option of that key; null when there is none.
+const Option* find_option(const std::string& key);
+
 }  // namespace modebank::app

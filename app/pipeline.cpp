@@ -207,21 +207,31 @@ void cluster_stage(const Config& config, Archive& archive) {
     spdlog::warn("mixture: {}", warning);
 }
 
-void bank_stage(const Config& config, Archive& archive) {
-  const Stopwatch watch;
+void competitors_stage(const Config& config, Archive& archive) {
   const Recording& recording = *archive.recording;
   const WindowFits& windows = *archive.windows;
-  const auto motion = motion_model(config.window, recording.state_count(), recording.input_count());
   Baseline baseline = learn_baseline(recording, linear_global(config, archive), windows.structure);
   baseline.bank.model = windows.model;
   if (baseline.at_bound) spdlog::info("baseline: R is at its lower bound: the data show no measurement noise");
   if (!baseline.converged) spdlog::warn("baseline: its noise did not reach a maximum of the likelihood");
-  archive.baseline = baseline.bank;
   archive.noise_only = learn_noise_only(recording, windows.structure, baseline.bank.R);
+  archive.baseline = std::move(baseline.bank);
+}
+
+void modes_stage(const Config& config, Archive& archive) {
+  const Recording& recording = *archive.recording;
+  const auto motion = motion_model(config.window, recording.state_count(), recording.input_count());
+  archive.unrefined.reset();
   if (config.filter.variant == FilterVariant::kf)
-    archive.bank = baseline.bank;
+    archive.bank = archive.baseline;
   else
-    learn_modes(config, baseline.bank.R, motion.get(), archive);
+    learn_modes(config, archive.baseline->R, motion.get(), archive);
+}
+
+void bank_stage(const Config& config, Archive& archive) {
+  const Stopwatch watch;
+  competitors_stage(config, archive);
+  modes_stage(config, archive);
   spdlog::info("bank: {} modes, {} screened, in {:.2f} s", archive.bank->mode_count(), archive.bank->screened.size(),
                watch.seconds());
 }
@@ -262,47 +272,77 @@ void load_banks(const Config& config, Archive& archive) {
   archive.unrefined = std::move(stored.unrefined);
 }
 
-void evaluate_stage(const Config& config, Archive& archive) {
-  const Stopwatch watch;
+FilterScores score_filter(const Config& config, const Archive& archive, const std::string& name) {
   const std::vector<Trajectory>& runs = archive.recording->runs;
+  // The competitors stay what they are, whatever filter the bank runs in.
+  const bool competitor = name != "bank";
+  const FilterVariant variant = name == "baseline" ? FilterVariant::kf : FilterVariant::imm;
+  const FilterOptions options = competitor ? FilterOptions{variant, false, config.filter.time_steps} : config.filter;
+  const Bank& bank = *(!competitor ? archive.bank : name == "baseline" ? archive.baseline : archive.noise_only);
+  FilterScores scores;
+  scores.evaluation = {name, evaluate_runs(bank, runs, options, config.scoring.smooth)};
+  scores.summary = summarize(name, runs, scores.evaluation.runs);
+  scores.diagnostics = diagnose(name, bank, runs, scores.evaluation.runs);
+  if (config.scoring.horizon != std::vector<Index>{1})
+    scores.horizons = summarize_horizons(name, runs, look_ahead(bank, runs, options, config.scoring.horizon));
+  return scores;
+}
+
+void take_scores(std::vector<FilterScores> scores, Archive& archive) {
   archive.evaluations.clear();
   archive.summary.clear();
   archive.horizons.clear();
   archive.diagnostics.clear();
-  const auto append = [](auto& list, auto rows) {
+  const auto append = [](auto& list, auto& rows) {
     list.insert(list.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
   };
-  auto evaluate = [&](const char* name, const std::optional<Bank>& bank, const FilterOptions& options) {
-    if (!bank) return;
-    archive.evaluations.push_back({name, evaluate_runs(*bank, runs, options, config.scoring.smooth)});
-    const std::vector<RunEvaluation>& evaluations = archive.evaluations.back().runs;
-    append(archive.summary, summarize(name, runs, evaluations));
-    append(archive.diagnostics, diagnose(name, *bank, runs, evaluations));
-    if (config.scoring.horizon != std::vector<Index>{1})
-      append(archive.horizons,
-             summarize_horizons(name, runs, look_ahead(*bank, runs, options, config.scoring.horizon)));
-  };
-  evaluate("bank", archive.bank, config.filter);
-  // The competitors stay what they are, whatever filter the bank runs in.
-  evaluate("baseline", archive.baseline, FilterOptions{FilterVariant::kf, false, config.filter.time_steps});
-  evaluate("noise_only", archive.noise_only, FilterOptions{FilterVariant::imm, false, config.filter.time_steps});
+  for (FilterScores& filter : scores) {
+    archive.evaluations.push_back(std::move(filter.evaluation));
+    append(archive.summary, filter.summary);
+    append(archive.diagnostics, filter.diagnostics);
+    append(archive.horizons, filter.horizons);
+  }
+}
+
+void evaluate_stage(const Config& config, Archive& archive) {
+  const Stopwatch watch;
+  std::vector<FilterScores> scores;
+  if (archive.bank) scores.push_back(score_filter(config, archive, "bank"));
+  if (archive.baseline) scores.push_back(score_filter(config, archive, "baseline"));
+  if (archive.noise_only) scores.push_back(score_filter(config, archive, "noise_only"));
+  take_scores(std::move(scores), archive);
   spdlog::info("evaluation: {} filters in {:.2f} s", archive.evaluations.size(), watch.seconds());
 }
 
-void residual_test_stage(const Config& config, Archive& archive) {
+namespace {
+
+template <class Test>
+ResidualTestSet test_runs(const std::string& model, std::size_t runs, Test test) {
+  ResidualTestSet set{model, std::vector<ResidualTests>(runs)};
+  tbb::parallel_for(std::size_t{0}, runs, [&](std::size_t i) { set.runs[i] = test(i); });
+  return set;
+}
+
+}  // namespace
+
+ResidualTestSet test_global(const Config& config, const Archive& archive) {
   const std::vector<Trajectory>& runs = archive.recording->runs;
+  const Eigen::VectorXd theta = linear_global(config, archive).theta;
+  return test_runs("global", runs.size(),
+                   [&](std::size_t i) { return test_residuals(runs[i], archive.windows->structure, theta); });
+}
+
+ResidualTestSet test_filter(const Archive& archive, const FilterEvaluation& evaluation) {
+  const std::vector<Trajectory>& runs = archive.recording->runs;
+  return test_runs(evaluation.filter, runs.size(),
+                   [&](std::size_t i) { return test_innovations(runs[i], evaluation.runs[i]); });
+}
+
+void residual_test_stage(const Config& config, Archive& archive) {
   archive.residual_tests.clear();
-  const auto add = [&](const std::string& model, auto test) {
-    ResidualTestSet set{model, std::vector<ResidualTests>(runs.size())};
-    tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) { set.runs[i] = test(i); });
-    archive.residual_tests.push_back(std::move(set));
-  };
-  if (archive.windows) {
-    const Eigen::VectorXd theta = linear_global(config, archive).theta;
-    add("global", [&](std::size_t i) { return test_residuals(runs[i], archive.windows->structure, theta); });
-  }
+  if (archive.windows) archive.residual_tests.push_back(test_global(config, archive));
   for (const FilterEvaluation& evaluation : archive.evaluations)
-    add(evaluation.filter, [&](std::size_t i) { return test_innovations(runs[i], evaluation.runs[i]); });
+    archive.residual_tests.push_back(test_filter(archive, evaluation));
 }
 
 }  // namespace modebank::app

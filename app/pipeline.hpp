@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/config.hpp"
 #include "io/archive.hpp"
@@ -20,6 +21,24 @@ void evaluate_stage(const Config& config, Archive& archive);
 
 /// Residual tests of the global model and of every evaluated filter, on all runs.
 void residual_test_stage(const Config& config, Archive& archive);
+
+/// The two halves of bank_stage: baseline and noise_only depend on the windows alone; the bank takes the baseline's R.
+void competitors_stage(const Config& config, Archive& archive);
+void modes_stage(const Config& config, Archive& archive);
+
+/// What evaluate_stage finds for one filter.
+struct FilterScores {
+  FilterEvaluation evaluation;
+  std::vector<SummaryRow> summary;
+  std::vector<HorizonRow> horizons;
+  std::vector<DiagnosticsRow> diagnostics;
+};
+/// `name`: bank, baseline or noise_only.
+FilterScores score_filter(const Config& config, const Archive& archive, const std::string& name);
+/// Replaces an archive's evaluations and their rows, in the order given.
+void take_scores(std::vector<FilterScores> scores, Archive& archive);
+ResidualTestSet test_global(const Config& config, const Archive& archive);
+ResidualTestSet test_filter(const Archive& archive, const FilterEvaluation& evaluation);
 
 /// Replaces the banks by those stored in config.archive.bank. Throws DataError when its channels do not fit the data's.
 void load_banks(const Config& config, Archive& archive);

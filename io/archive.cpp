@@ -1,7 +1,5 @@
 #include "io/archive.hpp"
 
-#include <fstream>
-
 #include "ident/error.hpp"
 #include "io/archive_file.hpp"
 #include "io/archive_layout.hpp"
@@ -21,14 +19,6 @@ void check_writable(const std::filesystem::path& path) {
 }
 
 namespace {
-
-void stamp_hash(const std::filesystem::path& path) {
-  const UserBlock block = make_user_block(content_hash(path));
-  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
-  file.write(block.data(), block.size());
-  file.close();
-  if (!file) throw DataError("the hash could not be written");
-}
 
 /// Beyond this much an archive is made in the file system rather than in memory.
 bool is_large(const Archive& archive) {

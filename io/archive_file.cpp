@@ -128,4 +128,12 @@ std::string_view ArchiveImage::content() const {
   return {reinterpret_cast<const char*>(begin), static_cast<std::size_t>(bytes)};
 }
 
+void stamp_hash(const std::filesystem::path& path) {
+  const UserBlock block = make_user_block(content_hash(path));
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.write(block.data(), block.size());
+  file.close();
+  if (!file) throw DataError("the hash could not be written");
+}
+
 }  // namespace modebank

@@ -23,6 +23,8 @@ hdf5::Handle open_root(const hdf5::Handle& file);
 
 /// An empty archive in a file of its own, to be filled piece by piece; its user block is zero until the hash is known.
 hdf5::Handle create_archive_file(const std::filesystem::path& path);
+/// Fills in the user block of such a file once it is closed.
+void stamp_hash(const std::filesystem::path& path);
 
 /// An archive in the making. It lives in memory, so a full disk cannot leave HDF5 with a half-flushed file, and its
 /// bytes depend on its content alone.

@@ -59,7 +59,6 @@ Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_
 std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data,
                                  bool as_they_stand) {
   std::vector<RunStreams> runs;
-  Sha256 hash;
   std::vector<Outcome> outcomes(plans.size());  // the pipeline passes positions on: it would leak objects on an error
   std::size_t next = 0;
   const auto take = [&](tbb::flow_control& flow) {
@@ -73,7 +72,6 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
   const auto collect = [&](std::size_t plan) {
     Outcome outcome = std::exchange(outcomes[plan], {});
     if (outcome.error) std::rethrow_exception(outcome.error);
-    for (const InputFile& file : outcome.content.files) hash.update(file.sha256);
     std::move(outcome.content.files.begin(), outcome.content.files.end(), std::back_inserter(data.files));
     std::move(outcome.content.runs.begin(), outcome.content.runs.end(), std::back_inserter(runs));
   };
@@ -82,7 +80,7 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
   tbb::parallel_pipeline(in_flight, tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, take) &
                                         tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, read) &
                                         tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, collect));
-  data.data_hash = hash.hex();
+  data.data_hash = data_hash(data.files);
   return runs;
 }
 
@@ -169,6 +167,12 @@ std::vector<std::filesystem::path> data_files(const DataOptions& options) {
   std::vector<std::filesystem::path> files;
   for (const FilePlan& plan : plan_import(options)) files.insert(files.end(), plan.paths.begin(), plan.paths.end());
   return files;
+}
+
+std::string data_hash(const std::vector<InputFile>& files) {
+  Sha256 hash;
+  for (const InputFile& file : files) hash.update(file.sha256);
+  return hash.hex();
 }
 
 InputFile describe_file(const std::filesystem::path& path) {

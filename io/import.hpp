@@ -42,6 +42,9 @@ std::vector<RunStreams> read_streams(const DataOptions& options);
 /// The files that import_data would read. Throws ConfigurationError as it does.
 std::vector<std::filesystem::path> data_files(const DataOptions& options);
 
+/// ImportedData::data_hash of files in that order.
+std::string data_hash(const std::vector<InputFile>& files);
+
 /// Path, size and hash of any file, for provenance. Throws ConfigurationError when it cannot be read.
 InputFile describe_file(const std::filesystem::path& path);
 

@@ -6,6 +6,7 @@
 #include <boost/algorithm/string.hpp>
 
 #include "app/option_builders.hpp"
+#include "app/study/study_space.hpp"
 
 namespace modebank::app {
 namespace {
@@ -13,18 +14,22 @@ namespace {
 /// A key that may stand in several lines. Its text has one line per value; setting it adds lines, the empty text
 /// clears.
 template <class Field>
-Option lines(const std::string& key, const std::string& what, const std::string& help, Field field) {
+Option lines(const std::string& key, const std::string& what, const std::string& help,
+             const std::function<void(const std::string&)>& check, Field field) {
   Option result;
   result.key = key;
   result.range = what;
   result.help = help + " (repeatable)";
   result.repeatable = true;
-  result.set = [field](Config& config, const std::string& text) {
+  result.set = [field, check](Config& config, const std::string& text) {
     std::vector<std::string>& values = field(config);
     if (boost::trim_copy(text).empty()) return values.clear();
     std::vector<std::string> added;
     boost::split(added, text, [](char c) { return c == '\n'; });
-    for (const std::string& line : added) values.push_back(boost::trim_copy(line));
+    for (const std::string& line : added) {
+      check(line);
+      values.push_back(boost::trim_copy(line));
+    }
   };
   result.get = [field](const Config& config) { return boost::join(field(config), "\n"); };
   return result;
@@ -56,11 +61,11 @@ std::vector<Option> space_options() {
       lines("study.vary", "KEY = v1 | v2 | ...",
             "values of a key; {3..12}, {2..20 step 2}, {0..1 lin 5} and {0.001..1 log 7} expand; with sample also the "
             "ranges {0..1} and {0.001..1 log}",
-            MODEBANK_FIELD(study.vary)),
+            parse_vary, MODEBANK_FIELD(study.vary)),
       lines("study.together", "KEY, KEY, ...", "varied keys whose values go in step: first with first, and so on",
-            MODEBANK_FIELD(study.together)),
+            parse_together, MODEBANK_FIELD(study.together)),
       lines("study.when", "KEY if OTHER = v1 | v2",
-            "the key is varied only where another one has such a value; elsewhere it stays as configured",
+            "the key is varied only where another one has such a value; elsewhere it stays as configured", parse_when,
             MODEBANK_FIELD(study.when)),
       numeric("study.sample", between(0, 1e6), "", "so many points instead of the full grid; 0: the grid",
               MODEBANK_FIELD(study.sample)),

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+namespace modebank::app {
+
+/// Named locks among the processes that work on one study, on one machine or over a network file system: each name is a
+/// byte of one lock file (POSIX record locks, by the name's SHA-256). The kernel releases what a killed process held.
+/// A process has one object of these and its locks do not pass on to children.
+class FileLocks {
+ public:
+  /// Creates the file if need be. Throws DataError.
+  explicit FileLocks(const std::filesystem::path& path);
+  ~FileLocks();
+  FileLocks(const FileLocks&) = delete;
+  FileLocks& operator=(const FileLocks&) = delete;
+
+  /// Holds a name until it goes.
+  class Hold {
+   public:
+    Hold() = default;
+    Hold(const FileLocks* locks, long long place) : locks_(locks), place_(place) {}
+    Hold(Hold&& other) noexcept : locks_(std::exchange(other.locks_, nullptr)), place_(other.place_) {}
+    Hold& operator=(Hold&& other) noexcept {
+      std::swap(locks_, other.locks_);
+      std::swap(place_, other.place_);
+      return *this;
+    }
+    ~Hold();
+    explicit operator bool() const { return locks_ != nullptr; }
+
+   private:
+    const FileLocks* locks_ = nullptr;
+    long long place_ = 0;
+  };
+
+  /// Empty when another process holds the name.
+  Hold try_lock(const std::string& name) const;
+  /// Waits for it.
+  Hold lock(const std::string& name) const;
+  /// Whether another process holds it.
+  bool is_held_elsewhere(const std::string& name) const;
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace modebank::app

@@ -1,0 +1,180 @@
+#include "app/study/worker_pool.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include "ident/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// One packet from worker to parent; the message follows it.
+struct ReportHead {
+  int outcome = 0;
+  double seconds = 0.0, log_score = 0.0;
+  std::array<double, trial_stage_count> stage_seconds{};
+};
+
+constexpr std::size_t longest_message = 4096;
+
+std::string pack_report(const TrialReport& report) {
+  const ReportHead head{static_cast<int>(report.outcome), report.seconds, report.log_score, report.stage_seconds};
+  std::string packet(sizeof head, '\0');
+  std::memcpy(packet.data(), &head, sizeof head);
+  return packet + report.message.substr(0, longest_message);
+}
+
+TrialReport unpack_report(const std::string& packet) {
+  ReportHead head;
+  std::memcpy(&head, packet.data(), sizeof head);
+  return {static_cast<TrialOutcome>(head.outcome), packet.substr(sizeof head), head.seconds, head.stage_seconds,
+          head.log_score};
+}
+
+ssize_t receive(int channel, void* data, std::size_t bytes) {
+  ssize_t received = 0;
+  do {
+    received = ::recv(channel, data, bytes, 0);
+  } while (received < 0 && errno == EINTR);
+  return received;
+}
+
+/// The life of a worker: trials in, reports out, until the parent closes its end.
+[[noreturn]] void serve(int channel, const std::function<WorkerPool::Work()>& make_work) {
+  int status = 0;
+  try {
+    const WorkerPool::Work work = make_work();
+    std::size_t trial = 0;
+    while (receive(channel, &trial, sizeof trial) == sizeof trial) {
+      const std::string packet = pack_report(work(trial));
+      if (::send(channel, packet.data(), packet.size(), MSG_NOSIGNAL) < 0) break;
+    }
+  } catch (const std::exception& error) {
+    const std::string packet = pack_report({TrialOutcome::broken, error.what(), 0.0, {}, 0.0});
+    static_cast<void>(::send(channel, packet.data(), packet.size(), MSG_NOSIGNAL));
+    status = 1;
+  }
+  ::_exit(status);  // what the parent will do at its exit is not ours to do
+}
+
+std::string how_it_ended(int status) {
+  if (WIFSIGNALED(status))
+    return fmt::format("its process was ended by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+  return fmt::format("its process ended with status {}", WEXITSTATUS(status));
+}
+
+}  // namespace
+
+WorkerPool::WorkerPool(std::size_t workers, double timeout_s, std::function<Work()> make_work)
+    : timeout_s_(timeout_s), make_work_(std::move(make_work)), workers_(workers) {}
+
+WorkerPool::~WorkerPool() {
+  for (Worker& worker : workers_)
+    if (worker.process >= 0) end(worker, worker.trial.has_value());
+}
+
+bool WorkerPool::is_working() const {
+  return std::any_of(workers_.begin(), workers_.end(), [](const Worker& worker) { return worker.trial.has_value(); });
+}
+
+void WorkerPool::start(Worker& worker) {
+  int channels[2];
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, channels) != 0)
+    throw DataError("cannot make a socket for a worker: " + std::generic_category().message(errno));
+  const pid_t parent = ::getpid();
+  std::fflush(nullptr);
+  const pid_t child = ::fork();
+  if (child < 0) throw DataError("cannot start a worker: " + std::generic_category().message(errno));
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) ::_exit(1);  // it was gone before that took effect
+    ::close(channels[0]);
+    for (const Worker& other : workers_)
+      if (other.channel >= 0) ::close(other.channel);
+    serve(channels[1], make_work_);
+  }
+  ::close(channels[1]);
+  worker = {child, channels[0], {}, {}};
+}
+
+std::string WorkerPool::end(Worker& worker, bool by_force) {
+  if (by_force) ::kill(worker.process, SIGKILL);
+  ::close(worker.channel);
+  int status = 0;
+  while (::waitpid(worker.process, &status, 0) < 0 && errno == EINTR) continue;
+  worker = {};
+  return how_it_ended(status);
+}
+
+void WorkerPool::give(std::size_t index, std::size_t trial) {
+  Worker& worker = workers_[index];
+  if (worker.process < 0) start(worker);
+  worker.trial = trial;
+  worker.since = Clock::now();
+  // A worker that is gone shows when its answer is awaited.
+  static_cast<void>(::send(worker.channel, &trial, sizeof trial, MSG_NOSIGNAL));
+}
+
+WorkerPool::Finished WorkerPool::collect(std::size_t index) {
+  Worker& worker = workers_[index];
+  const std::size_t trial = *worker.trial;
+  std::string packet(sizeof(ReportHead) + longest_message, '\0');
+  const ssize_t received = receive(worker.channel, packet.data(), packet.size());
+  if (received < static_cast<ssize_t>(sizeof(ReportHead))) {
+    const std::string why = end(worker, false);
+    return {index, trial, {TrialOutcome::failed, why, 0.0, {}, 0.0}, true};
+  }
+  worker.trial.reset();
+  packet.resize(static_cast<std::size_t>(received));
+  return {index, trial, unpack_report(packet), false};
+}
+
+std::optional<std::size_t> WorkerPool::overdue() const {
+  if (timeout_s_ <= 0.0) return std::nullopt;
+  for (std::size_t i = 0; i < workers_.size(); ++i)
+    if (workers_[i].trial && Clock::now() - workers_[i].since > std::chrono::duration<double>(timeout_s_)) return i;
+  return std::nullopt;
+}
+
+WorkerPool::Finished WorkerPool::stop_overdue(std::size_t index) {
+  const std::size_t trial = *workers_[index].trial;
+  end(workers_[index], true);
+  TrialReport report;
+  report.outcome = TrialOutcome::failed;
+  report.message = fmt::format("it took longer than study.timeout_s = {}", timeout_s_);
+  report.seconds = timeout_s_;
+  return {index, trial, report, true};
+}
+
+std::optional<WorkerPool::Finished> WorkerPool::wait(double patience_s) {
+  const auto until = Clock::now() + std::chrono::duration<double>(patience_s);
+  for (;;) {
+    if (const auto late = overdue()) return stop_overdue(*late);
+    std::vector<pollfd> channels;
+    std::vector<std::size_t> owners;
+    for (std::size_t i = 0; i < workers_.size(); ++i)
+      if (workers_[i].trial) {
+        channels.push_back({workers_[i].channel, POLLIN, 0});
+        owners.push_back(i);
+      }
+    const double left = std::chrono::duration<double>(until - Clock::now()).count();
+    if (left <= 0.0) return std::nullopt;
+    constexpr double tick_s = 0.1;  // so that timeouts are seen
+    const int wait_ms = static_cast<int>(1000.0 * std::min(left, timeout_s_ > 0.0 ? tick_s : left)) + 1;
+    if (::poll(channels.data(), channels.size(), wait_ms) <= 0) continue;
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      if (channels[c].revents != 0) return collect(owners[c]);
+  }
+}
+
+}  // namespace modebank::app

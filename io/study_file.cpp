@@ -1,0 +1,190 @@
+#include "io/study_file.hpp"
+
+#include <algorithm>
+
+#include "ident/error.hpp"
+#include "io/archive_file.hpp"
+#include "io/archive_layout.hpp"
+#include "io/archive_reader.hpp"
+#include "io/archive_writer.hpp"
+#include "io/hdf5_table.hpp"
+#include "io/replace_file.hpp"
+#include "io/user_block.hpp"
+
+namespace modebank {
+
+namespace {
+
+constexpr const char* trials_group = "trials";
+
+std::size_t row_count(const StudyFile& study) {
+  if (study.columns.empty()) return 0;
+  return std::visit([](const auto& values) { return values.size(); }, study.columns.front().values);
+}
+
+/// Everything but the archives.
+void write_table_of_runs(const hdf5::Handle& file, const StudyFile& study) {
+  Archive origin;
+  origin.provenance = study.provenance;
+  origin.config = study.config;
+  ArchiveWriter root(open_root(file));
+  layout::exchange_origin(root, origin);
+  std::vector<hdf5::TableColumn> columns;
+  for (const NamedColumn& column : study.columns)
+    columns.push_back(
+        {column.name, std::visit([](const auto& values) { return hdf5::TableColumn::Values(values); }, column.values)});
+  hdf5::write_table(open_root(file).id(), study.table, columns, row_count(study));
+}
+
+hdf5::Handle make_trials(const hdf5::Handle& file) {
+  const hdf5::Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, "prepare the group of trials");
+  hdf5::check(H5Pset_obj_track_times(creation.id(), false), "prepare the group of trials");
+  return {H5Gcreate2(file.id(), trials_group, H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose,
+          "create the group of trials"};
+}
+
+void link_archives(const hdf5::Handle& file, const StudyFile& study, const std::filesystem::path& folder) {
+  const hdf5::Handle trials = make_trials(file);
+  for (const auto& [name, path] : study.archives)
+    hdf5::check(H5Lcreate_external(std::filesystem::proximate(path, folder).c_str(), "/", trials.id(), name.c_str(),
+                                   H5P_DEFAULT, H5P_DEFAULT),
+                "link to " + path.string());
+}
+
+void copy_archives(const hdf5::Handle& file, const StudyFile& study) {
+  const hdf5::Handle trials = make_trials(file);
+  for (const auto& [name, path] : study.archives) {
+    const hdf5::Handle archive = open_archive(path);
+    hdf5::check(H5Ocopy(archive.id(), "/", trials.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                "copy " + path.string());
+  }
+}
+
+NamedColumn::Values empty_column(const hdf5::StoredArray& table, unsigned member) {
+  const hdf5::Handle type(H5Tget_member_type(table.type(), member), H5Tclose, "read a column's type");
+  switch (H5Tget_class(type.id())) {
+    case H5T_FLOAT:
+      return std::vector<double>();
+    case H5T_STRING:
+      return std::vector<std::string>();
+    default:
+      if (H5Tget_sign(type.id()) == H5T_SGN_NONE) return std::vector<std::uint64_t>();
+      return std::vector<std::int64_t>();
+  }
+}
+
+std::string member_name(const hdf5::StoredArray& table, unsigned member) {
+  char* name = H5Tget_member_name(table.type(), member);
+  const std::string text = name ? name : "";
+  H5free_memory(name);
+  return text;
+}
+
+std::vector<NamedColumn> read_columns(const hdf5::StoredArray& table) {
+  if (table.type_class() != H5T_COMPOUND) throw DataError("it is not a table");
+  std::vector<NamedColumn> columns;
+  for (unsigned member = 0; member < static_cast<unsigned>(H5Tget_nmembers(table.type())); ++member) {
+    NamedColumn column{member_name(table, member), empty_column(table, member)};
+    std::visit(
+        [&](auto& values) {
+          hdf5::TableColumn stored{column.name, values};
+          hdf5::read_column(table, stored);
+          values = std::get<std::decay_t<decltype(values)>>(stored.values);
+        },
+        column.values);
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+}  // namespace
+
+void write_study_file(const std::filesystem::path& path, const StudyFile& study, ArchiveUse use) {
+  const hdf5::Quiet quiet;
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  replace_file(path, [&](const std::filesystem::path& temporary) {
+    {
+      const hdf5::Handle file = create_archive_file(temporary);
+      write_table_of_runs(file, study);
+      if (use == ArchiveUse::link) {
+        link_archives(file, study, folder);
+      } else {
+        copy_archives(file, study);
+      }
+      hdf5::check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "complete the file");
+    }
+    stamp_hash(temporary);
+  });
+}
+
+StudyFile read_study_file(const std::filesystem::path& path, const std::string& table) {
+  const hdf5::Quiet quiet;
+  const hdf5::Handle file = open_archive(path);
+  try {
+    if (const std::vector<std::string> problems = hash_problems(path); !problems.empty())
+      throw DataError("damaged: " + problems.front());
+    Archive origin;
+    ArchiveReader root(open_root(file), nullptr);
+    layout::exchange_origin(root, origin);
+    StudyFile study{std::move(origin.provenance), std::move(origin.config), table, {}, {}};
+    study.columns = read_columns(hdf5::StoredArray(open_root(file).id(), hdf5::Place::dataset, table));
+    return study;
+  } catch (const DataError& error) {
+    throw DataError(path.string() + ": " + error.what());
+  }
+}
+
+namespace {
+
+/// Goes through the layout of the summary as writer and reader do, so the scores' names are the columns'.
+struct ScoreCollector {
+  const std::vector<std::string>& states;
+  std::vector<std::pair<std::string, double>> scores = {};
+
+  template <class... Columns>
+  void optional_table(const std::string&, const std::vector<SummaryRow>& rows, const Columns&... columns) {
+    for (const SummaryRow& row : rows)
+      if (row.run == "*") (add(row, columns), ...);
+  }
+
+  template <class T>
+  void add(const SummaryRow& row, const Column<SummaryRow, T>& column) {
+    const std::string name = row.filter + "_" + std::string(name_of(row.role)) + "_" + column.name;
+    if constexpr (std::is_same_v<T, Eigen::VectorXd>) {
+      const Eigen::VectorXd& values = row.*column.member;
+      for (Eigen::Index i = 0; i < values.size(); ++i)
+        scores.emplace_back(name + "_" + states.at(static_cast<std::size_t>(i)), values(i));
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      scores.emplace_back(name, static_cast<double>(row.*column.member));
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> pooled_scores(const std::vector<SummaryRow>& summary,
+                                                          const std::vector<std::string>& state_names) {
+  ScoreCollector collector{state_names};
+  layout::exchange_summary(collector, summary, {});
+  return std::move(collector.scores);
+}
+
+TrialScores read_trial_scores(const std::filesystem::path& path) {
+  const hdf5::Quiet quiet;
+  const hdf5::Handle file = open_archive(path);
+  try {
+    const hdf5::Handle root = open_root(file);
+    const hdf5::Handle data = hdf5::open_group(root.id(), "data");
+    const hdf5::Handle bank = hdf5::open_group(root.id(), "bank");
+    std::vector<SummaryRow> summary;
+    ArchiveReader evaluation(hdf5::open_group(root.id(), "evaluation"), nullptr);
+    layout::exchange_summary(evaluation, summary, {});
+    const std::vector<std::string> states = hdf5::StoredArray(data.id(), hdf5::Place::attribute, "state_names").texts();
+    const hdf5::StoredArray weights(bank.id(), hdf5::Place::dataset, "weight");
+    return {static_cast<std::int64_t>(weights.elements()), pooled_scores(summary, states)};
+  } catch (const DataError& error) {
+    throw DataError(path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace modebank
