@@ -92,6 +92,12 @@ std::vector<Option> work_options() {
       shard_option(),
       flag("study.flat", "merge: copy the archives into study.h5 instead of linking to them",
            MODEBANK_FIELD(study.flat)),
+      numeric("study.slurm_tasks", between(0, 1'000'000), "",
+              "submit: tasks of the job array, each a share of the runs; 0: one per ten runs, at most 100",
+              MODEBANK_FIELD(study.slurm_tasks)),
+      text("study.slurm_options", "options by commas",
+           "submit: further options of sbatch, such as --partition=main, --time=60, --cpus-per-task=4",
+           MODEBANK_FIELD(study.slurm_options)),
   };
 }
 

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// The ids of a study's Slurm jobs: one line "role id" each in its folder, in the order of submission.
+namespace modebank::app {
+
+struct SlurmJob {
+  std::string role;  ///< run (an array) or merge
+  std::string id;
+};
+
+std::filesystem::path slurm_folder(const std::filesystem::path& study);
+void remember_job(const std::filesystem::path& study, const SlurmJob& job);
+std::vector<SlurmJob> remembered_jobs(const std::filesystem::path& study);
+
+}  // namespace modebank::app

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+
+/// A study of 24 runs of some hundredths of a second each on the two small runs of CliTest, in one or several folders.
+class StudyTest : public CliTest {
+ protected:
+  StudyTest();
+
+  std::vector<std::string> study_line(const std::string& folder, const std::vector<std::string>& options = {}) const;
+  ProgramResult study(const std::string& folder, const std::vector<std::string>& options = {}) const;
+  /// Every number of the table of a study's folder, and every answer, as text that round-trips.
+  std::string numbers(const std::string& folder) const;
+  /// Archives of a study under their final names, in byte order.
+  std::vector<std::filesystem::path> archives(const std::string& folder) const;
+  /// Files in a study's folder and its trials that are neither archives nor known by name: what a killed process left.
+  std::vector<std::string> temporaries(const std::string& folder) const;
+
+  /// The study done without any trouble, in a folder of its own.
+  static constexpr const char* undisturbed = "undisturbed";
+  void run_undisturbed() const;
+
+  static constexpr std::size_t trials = 24;
+};
+
+/// A program in a process group of its own, its output thrown away.
+class Process {
+ public:
+  explicit Process(const std::vector<std::string>& arguments);
+  ~Process();  ///< kills the group
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  void kill_alone() const;  ///< SIGKILL to the program itself, not to its children
+  void kill_with_children() const;
+  int wait();  ///< exit status; 128 + signal when killed
+
+ private:
+  pid_t child_;
+  bool ended_ = false;
+};
+
+}  // namespace modebank::test
