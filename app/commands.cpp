@@ -34,7 +34,8 @@ constexpr Command commands[] = {
     {"show", "ARCHIVE [PATH]", "provenance, candidates, modes, summary; or one object; --json; --form full", run_show},
     {"track", "ARCHIVE", "live filter: samples in on standard input, estimates out on standard output, line by line",
      run_track},
-    {"report", "ARCHIVE", "an interactive page that opens offline in a browser (-o page.html)", run_report},
+    {"report", "ARCHIVE|STUDY [ARCHIVE]",
+     "an interactive page that opens offline in a browser (-o page.html): of a run, a study, or two runs", run_report},
     {"verify", "ARCHIVE...", "check hash, schema and completeness of archives", run_verify},
 };
 

@@ -49,6 +49,7 @@ struct TrackConfig {
 /// The [report] section: what a page may hold, and figures for papers.
 struct ReportConfig {
   double size_mb = 64.0;  ///< largest page [1e6 bytes]
+  Index runs = 10;        ///< of a study, with pages of their own
   std::string figures;    ///< folder for figures; empty: none
   bool png = false;
   bool sources = false;

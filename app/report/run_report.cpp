@@ -8,9 +8,9 @@
 #include "app/report/gnuplot.hpp"
 #include "app/report/run_figures.hpp"
 #include "app/report/run_page.hpp"
+#include "app/report/write_page.hpp"
 #include "ident/error.hpp"
 #include "io/archive.hpp"
-#include "io/replace_file.hpp"
 
 namespace modebank::app {
 namespace {
@@ -23,13 +23,6 @@ std::filesystem::path page_path(const CommandLine& line) {
   return named.stem().string() + ".html";
 }
 
-void write_page(const std::filesystem::path& path, const report::Page& page) {
-  constexpr double bytes_per_MB = 1e6;
-  const std::string html = report::html_of(page);
-  replace_file(path, {html});
-  fmt::print("{}: {:.1f} MB; open it in a browser\n", path.string(), static_cast<double>(html.size()) / bytes_per_MB);
-}
-
 /// Figures of one archive; prints what was written and what could not be.
 void write_figures(const Archive& archive, const ReportConfig& options) {
   const report::FigureSet set = report::run_figures(archive, options.run);
@@ -38,27 +31,32 @@ void write_figures(const Archive& archive, const ReportConfig& options) {
   for (const std::string& reason : set.left_out) fmt::print("left out: {}\n", reason);
 }
 
-void check_output(const std::filesystem::path& path, const std::filesystem::path& file) {
-  if (const std::string obstacle = write_obstacle(path); !obstacle.empty()) throw ConfigurationError("-o: " + obstacle);
-  std::error_code none;
-  if (std::filesystem::equivalent(path, file, none))
-    throw ConfigurationError(fmt::format("-o: {} is the archive itself", path.string()));
+void report_run(const CommandLine& line, const ReportConfig& options) {
+  const std::filesystem::path file = line.files.front();
+  // Figures alone, unless a page is asked for.
+  const bool with_page = options.figures.empty() || !line.output.empty();
+  if (with_page) report::check_page_path(page_path(line), {file});
+  const Archive archive = read_archive(file);
+  if (!options.figures.empty()) write_figures(archive, options);
+  if (with_page) report::write_page(page_path(line), report::run_page(archive, file.filename().string(), options));
 }
 
 }  // namespace
 
 int run_report(const CommandLine& line) {
-  if (line.files.size() != 1)
-    throw ConfigurationError("report needs one archive: modebank report ARCHIVE [-o page.html]");
-  const Config config = stored_config("", line.overrides);
-  const ReportConfig& options = config.report;
-  const std::filesystem::path file = line.files.front();
-  // Figures alone, unless a page is asked for.
-  const bool with_page = options.figures.empty() || !line.output.empty();
-  if (with_page) check_output(page_path(line), file);
-  const Archive archive = read_archive(file);
-  if (!options.figures.empty()) write_figures(archive, options);
-  if (with_page) write_page(page_path(line), report::run_page(archive, file.filename().string(), options));
+  if (line.files.empty() || line.files.size() > 2)
+    throw ConfigurationError(
+        "report needs an archive, a study's folder, or two archives to compare: modebank report ARCHIVE [ARCHIVE] [-o "
+        "page.html]");
+  const ReportConfig options = stored_config("", line.overrides).report;
+  const bool one_run = line.files.size() == 1 && !report::is_study(line.files.front());
+  if (!one_run && !options.figures.empty()) throw ConfigurationError("report.figures are drawn of one archive");
+  if (line.files.size() == 2)
+    report::report_comparison(line.files[0], line.files[1], page_path(line), options);
+  else if (one_run)
+    report_run(line, options);
+  else
+    report::report_study(line.files.front(), page_path(line), options);
   return 0;
 }
 

@@ -6,6 +6,7 @@
 #include "app/report/assets.hpp"
 #include "app/report/run_figures.hpp"
 #include "app/report/unit_text.hpp"
+#include "io/archive_units.hpp"
 #include "mixture/confidence_ellipse.hpp"
 
 namespace modebank::app::report {
@@ -61,18 +62,20 @@ void add_ellipses(const GaussianMixture& mixture, const std::vector<Index>& axes
     }
 }
 
-/// Parameters of linear models act per sample; those of a motion model have units of their own.
-std::string label_of(const WindowFits& fits, std::size_t parameter) {
-  const std::string name = fits.parameter_names()[parameter];
-  return fits.model_parameters.empty() ? name + " [per sample]"
-                                       : with_unit(name, fits.model_parameters[parameter].unit);
+std::string label_of(const Archive& archive, std::size_t parameter) {
+  const WindowFits& fits = *archive.windows;
+  const Units units(archive.recording.value_or(Recording()));
+  const Unit all = fits.model_parameters.empty() ? parameter_units(fits.structure, units.states(), units.inputs())
+                                                 : unit_of(fits.model_parameters);
+  const std::string unit = parameter < all.size() && all[parameter] != "1" ? all[parameter] : "";
+  return with_unit(fits.parameter_names()[parameter], unit);
 }
 
 Figure local_models(const Archive& archive, const std::vector<Index>& axes) {
   const GaussianMixture& mixture = archive.mixture->mixture;
   Figure figure("local_models", assets::figure_local_models());
   std::vector<std::string> labels, titles;
-  for (const Index axis : axes) labels.push_back(label_of(*archive.windows, static_cast<std::size_t>(axis)));
+  for (const Index axis : axes) labels.push_back(label_of(archive, static_cast<std::size_t>(axis)));
   for (Index k = 0; k < mixture.components(); ++k)
     titles.push_back(fmt::format("{} ({:.0f} %)", k, 100 * mixture.weights(k)));
   figure.set("K", mixture.components());

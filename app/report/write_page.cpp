@@ -1,0 +1,26 @@
+#include "app/report/write_page.hpp"
+
+#include <fmt/format.h>
+
+#include "ident/error.hpp"
+#include "io/replace_file.hpp"
+
+namespace modebank::app::report {
+
+void check_page_path(const std::filesystem::path& path, const std::vector<std::filesystem::path>& sources) {
+  if (const std::string obstacle = write_obstacle(path); !obstacle.empty()) throw ConfigurationError("-o: " + obstacle);
+  for (const std::filesystem::path& source : sources) {
+    std::error_code none;
+    if (std::filesystem::equivalent(path, source, none))
+      throw ConfigurationError(fmt::format("-o: {} is the archive itself", path.string()));
+  }
+}
+
+void write_page(const std::filesystem::path& path, const Page& page) {
+  constexpr double bytes_per_MB = 1e6;
+  const std::string html = html_of(page);
+  replace_file(path, {html});
+  fmt::print("{}: {:.1f} MB; open it in a browser\n", path.string(), static_cast<double>(html.size()) / bytes_per_MB);
+}
+
+}  // namespace modebank::app::report

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+
+#include "app/config.hpp"
+#include "app/report/html_page.hpp"
+
+namespace modebank::app::report {
+
+/// Throws ConfigurationError when the page cannot be written to `path`, or `path` is one of the files it is made from.
+void check_page_path(const std::filesystem::path& path, const std::vector<std::filesystem::path>& sources);
+
+/// Writes the page under a temporary name and renames it; says how large it is.
+void write_page(const std::filesystem::path& path, const Page& page);
+
+/// The commands: `files` are what the user named.
+void report_study(const std::filesystem::path& study, const std::filesystem::path& page, const ReportConfig& options);
+void report_comparison(const std::filesystem::path& first, const std::filesystem::path& second,
+                       const std::filesystem::path& page, const ReportConfig& options);
+
+/// Whether the path is a study's folder or its study.h5; throws as read_archive does for a file that cannot be opened.
+bool is_study(const std::filesystem::path& path);
+
+}  // namespace modebank::app::report
