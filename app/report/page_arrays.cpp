@@ -4,6 +4,8 @@
 #include <openssl/evp.h>
 #include <zlib.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -64,14 +66,20 @@ nlohmann::json PageArrays::add_exact(const Eigen::Ref<const Eigen::VectorXd>& va
   return store(values.data(), static_cast<std::size_t>(values.size()), "f8");
 }
 
-nlohmann::json PageArrays::add(const std::vector<float>& values) { return store(values.data(), values.size(), "f4"); }
+nlohmann::json PageArrays::add_shares(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  constexpr double whole = 65534.0;
+  constexpr std::uint16_t unknown = 65535;
+  std::vector<std::uint16_t> steps(static_cast<std::size_t>(values.size()));
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const double share = values(static_cast<Eigen::Index>(i));
+    steps[i] =
+        std::isnan(share) ? unknown : static_cast<std::uint16_t>(std::lround(whole * std::clamp(share, 0.0, 1.0)));
+  }
+  return store(steps.data(), steps.size(), "share");
+}
 
 nlohmann::json PageArrays::add(const std::vector<std::int32_t>& values) {
   return store(values.data(), values.size(), "i4");
-}
-
-nlohmann::json PageArrays::add(const std::vector<std::uint8_t>& values) {
-  return store(values.data(), values.size(), "u1");
 }
 
 }  // namespace modebank::app::report

@@ -15,12 +15,12 @@ class PageArrays {
   enum class Kind { store, measure };  ///< measure: only how much room the arrays would take at most
   explicit PageArrays(Kind kind = Kind::store) : kind_(kind) {}
 
-  /// Each returns what the page finds the array by: {"id", "type": "f4" | "f8" | "i4" | "u1", "size"}.
+  /// Each returns what the page finds the array by: {"id", "type": "f4" | "f8" | "i4" | "share", "size"}.
   nlohmann::json add(const Eigen::Ref<const Eigen::VectorXd>& values);        ///< as float32: for drawing
   nlohmann::json add_exact(const Eigen::Ref<const Eigen::VectorXd>& values);  ///< as float64: times
-  nlohmann::json add(const std::vector<float>& values);
+  /// Shares from 0 to 1 to 1.5e-5, in half the room: for drawing probabilities.
+  nlohmann::json add_shares(const Eigen::Ref<const Eigen::VectorXd>& values);
   nlohmann::json add(const std::vector<std::int32_t>& values);
-  nlohmann::json add(const std::vector<std::uint8_t>& values);
 
   /// The stored arrays in order; array i has the id "a<i>".
   const std::vector<std::string>& stored() const { return stored_; }

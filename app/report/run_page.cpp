@@ -35,8 +35,7 @@ Page run_page(const Archive& archive, const std::string& file, const ReportConfi
                {"selection", selection_section(archive)},
                {"bank", bank_section(archive)},
                {"filter", filter_section(archive)}};
-  const Detail detail = affordable_detail(archive, room_for_signals(page, options));
-  page.data["data"] = runs_section(archive, page.arrays, detail);
+  page.data["data"] = affordable_runs_section(archive, page.arrays, room_for_signals(page, options));
   return page;
 }
 

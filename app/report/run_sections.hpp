@@ -22,8 +22,8 @@ struct Detail {
 };
 /// Every run's signals over time, and what each filter said of them.
 nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const Detail& detail);
-/// The finest detail with which the runs take at most so many bytes.
-Detail affordable_detail(const Archive& archive, std::size_t bytes);
+/// The same in as fine a detail as at most so many bytes allow.
+nlohmann::json affordable_runs_section(const Archive& archive, PageArrays& arrays, std::size_t bytes);
 
 nlohmann::json windows_section(const Archive& archive, PageArrays& arrays);
 nlohmann::json selection_section(const Archive& archive);

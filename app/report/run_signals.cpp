@@ -53,7 +53,7 @@ json filter_signals(PageArrays& arrays, const Bank& bank, const RunEvaluation& e
                   {"lower", rows_of(arrays, band.center - band.half_width, finest, Bucket::lowest)},
                   {"upper", rows_of(arrays, band.center + band.half_width, finest, Bucket::highest)}};
   if (bank.mode_count() > 1)
-    signals["probability"] = rows_of(arrays, evaluation.mode_probability, finest, Bucket::mean);
+    signals["probability"] = rows_of(arrays, evaluation.mode_probability, finest, Bucket::share);
   return signals;
 }
 
@@ -114,18 +114,24 @@ nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const De
           {"runs", runs}};
 }
 
-Detail affordable_detail(const Archive& archive, std::size_t bytes) {
+nlohmann::json affordable_runs_section(const Archive& archive, PageArrays& arrays, std::size_t bytes) {
   constexpr Index coarser_others = 16, coarsest = Index{1} << 40;
-  const auto fits = [&](const Detail& detail) {
-    PageArrays arrays(PageArrays::Kind::measure);
-    runs_section(archive, arrays, detail);
-    return arrays.bytes() <= bytes;
+  // Signals of noise compress to no less than this share: below it only trying tells whether they fit.
+  constexpr double least_share = 0.5;
+  const auto may_fit = [&](const Detail& detail) {
+    PageArrays most(PageArrays::Kind::measure);
+    runs_section(archive, most, detail);
+    return least_share * static_cast<double>(most.bytes()) <= static_cast<double>(bytes);
   };
-  Detail detail;
-  if (fits(detail)) return detail;
-  for (detail.finest_others = coarser_others; !fits(detail) && detail.finest < coarsest; detail.finest_others *= 2)
-    detail.finest *= 2;
-  return detail;
+  for (Detail detail;; detail = {detail.finest * (detail.finest_others > 1 ? 2 : 1),
+                                 detail.finest_others > 1 ? detail.finest_others * 2 : coarser_others}) {
+    if (!may_fit(detail) && detail.finest < coarsest) continue;
+    PageArrays with_runs = arrays;
+    json section = runs_section(archive, with_runs, detail);
+    if (with_runs.bytes() - arrays.bytes() > bytes && detail.finest < coarsest) continue;
+    arrays = std::move(with_runs);
+    return section;
+  }
 }
 
 }  // namespace modebank::app::report

@@ -72,14 +72,16 @@ json components_of(const MixtureResult& result) {
   return {{"features", result.feature_names}, {"list", components}};
 }
 
-json bank_points(const Bank& bank) {
-  json points = json::array();
-  for (Index k = 0; k < bank.mode_count(); ++k) {
-    const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
-    const Eigen::VectorXd theta = bank.motion_parameters.empty() ? bank.theta(k) : mode.motion_theta;
-    points.push_back(std::vector<double>(theta.begin(), theta.end()));
+/// The bank's modes in the cloud's coordinates; their spread over the windows where the model is linear.
+json modes_of(const Bank& bank) {
+  json modes = json::array();
+  for (const Mode& mode : bank.modes) {
+    const bool linear = bank.motion_parameters.empty();
+    const Eigen::VectorXd theta = linear ? pack(bank.structure, mode.model) : mode.motion_theta;
+    modes.push_back({{"mean", std::vector<double>(theta.begin(), theta.end())},
+                     {"covariance", linear && mode.spread.size() > 0 ? rows_of_matrix(mode.spread) : json()}});
   }
-  return points;
+  return modes;
 }
 
 json labels_of(PageArrays& arrays, const Eigen::VectorXi& labels, const std::vector<Index>& drawn) {
@@ -149,6 +151,7 @@ nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
                   {"default_axes", default_axes(fits, cloud.points.rows())},
                   {"values", values},
                   {"covariance", covariances_of(arrays, fits, drawn.windows)},
+                  {"refined", archive.unrefined.has_value()},
                   {"level", drawn_level},
                   {"limit2", chi_square_quantile(drawn_level, 2.0)},
                   {"limit3", chi_square_quantile(drawn_level, 3.0)}};
@@ -157,7 +160,7 @@ nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
     section["label"] = labels_of(arrays, archive.mixture->labels, drawn.windows);
     section["components"] = components_of(*archive.mixture);
   }
-  if (archive.bank) section["bank"] = bank_points(*archive.bank);
+  if (archive.bank) section["bank"] = modes_of(*archive.bank);
   if (const FilterEvaluation* evaluation = bank_evaluation(archive))
     section["mode"] = labels_of(arrays, window_modes(fits.windows, fits.length, evaluation->runs), drawn.windows);
   return section;

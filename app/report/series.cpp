@@ -25,8 +25,8 @@ std::vector<Index> level_buckets(Index samples, Index finest) {
 
 json level(PageArrays& arrays, const Eigen::Ref<const Eigen::VectorXd>& values, Index size, Bucket kind) {
   json entry = {{"bucket", size}};
-  if (kind == Bucket::mean) {
-    entry["low"] = arrays.add(bucket_means(values, size));
+  if (kind == Bucket::share) {
+    entry["low"] = arrays.add_shares(bucket_means(values, size));
     return entry;
   }
   const BucketExtremes extremes = bucket_extremes(values, size);
@@ -49,7 +49,9 @@ nlohmann::json series(PageArrays& arrays, const Eigen::Ref<const Eigen::VectorXd
   json levels = json::array();
   for (const Index size : level_buckets(values.size(), finest)) levels.push_back(level(arrays, values, size, kind));
   const bool edge = kind == Bucket::lowest || kind == Bucket::highest;
-  return {{"raw", finest == 1 && !edge ? arrays.add(values) : json()}, {"levels", levels}};
+  json raw;
+  if (finest == 1 && !edge) raw = kind == Bucket::share ? arrays.add_shares(values) : arrays.add(values);
+  return {{"raw", raw}, {"levels", levels}};
 }
 
 nlohmann::json time_axis(PageArrays& arrays, const Eigen::VectorXd& time_s, Index finest) {

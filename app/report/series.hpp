@@ -7,8 +7,8 @@
 
 namespace modebank::app::report {
 
-/// What a bucket of samples is drawn by.
-enum class Bucket { extremes, lowest, highest, mean };
+/// What a bucket of samples is drawn by; shares by their mean, so that they go on adding up to one.
+enum class Bucket { extremes, lowest, highest, share };
 
 /// One signal over a run's samples for the page's time plots: sample by sample where `finest` is 1, and by ever larger
 /// buckets (16 times as large from level to level), so that the page never handles more than it can show.

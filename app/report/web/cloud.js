@@ -66,11 +66,10 @@ export async function cloud(windows, runs, goTo) {
   const [run, begin, end, label, mode] = await Promise.all([windows.run, windows.begin, windows.end, windows.label, windows.mode].map(array));
   const covariance = windows.covariance ? await Promise.all(windows.covariance.map(array)) : null;
   const features = windows.components ? windows.axes.map((axis) => windows.components.features.indexOf(axis.name)) : [];
-  const dims = Math.min(3, names.length), state = { axes: windows.default_axes, shells: (windows.components?.list.length || 0) <= 6, by: label ? 'component' : mode ? 'mode' : 'none', all: false, errors: false, bank: true, picked: -1, hidden: new Set() };
+  const dims = Math.min(3, names.length), state = { axes: windows.default_axes, shells: Math.max(windows.components?.list.length || 0, windows.bank?.length || 0) <= 6, by: mode && (windows.refined || !label) ? 'mode' : label ? 'component' : 'none', all: false, errors: false, bank: true, picked: -1, hidden: new Set() };
   const colourOf = () => (state.by === 'component' ? label : state.by === 'mode' ? mode : null);
   const digits = (v) => (Number.isFinite(v) ? Number(v.toPrecision(most)).toString() : '–');
-  const place = (i) => `run ${plain(runs[run[i]])}, ${begin[i].toFixed(2)} to ${end[i].toFixed(2)} s`;
-  const describe = (i) => `${place(i)}<br>` + state.axes.map((a) => `${plain(windows.axes[a].name)} = ${digits(values[a][i])}`).join('<br>');
+  const place = (i) => `run ${runs[run[i]]}, ${begin[i].toFixed(3)} to ${end[i].toFixed(3)} s`;
 
   // Window numbers group by group: components or modes in order, those without one first.
   function groups() {
@@ -87,13 +86,17 @@ export async function cloud(windows, runs, goTo) {
   const entry = (i, a, b) => { const [row, column] = a >= b ? [a, b] : [b, a]; return covariance[(row * (row + 1)) / 2 + column][i]; };
   const windowMatrix = (i, axes) => axes.map((a) => axes.map((b) => entry(i, a, b)));
   const within = (axes) => axes.every((a) => a < windows.parameters);
-  const shownComponents = (axes) => (!windows.components || state.by !== 'component' ? [] : windows.components.list.map((component, k) => ({ ...component, k }))
-    .filter(({ k }) => !state.hidden.has(k) && axes.every((a) => features[a] >= 0))
-    .map((component) => ({ k: component.k, mean: axes.map((a) => component.mean[features[a]]), covariance: sub(component.covariance, axes.map((a) => features[a])) })));
+  // The Gaussians behind the groups that are shown: mixture components, or the spread of the bank's modes.
+  function shownEllipses(axes) {
+    const from = state.by === 'component' ? windows.components.list : state.by === 'mode' ? windows.bank || [] : [];
+    const position = (a) => (state.by === 'component' ? features[a] : a < windows.parameters ? a : -1);
+    return from.map((group, k) => ({ ...group, k })).filter(({ k, covariance: c }) => c && !state.hidden.has(k) && axes.every((a) => position(a) >= 0))
+      .map((group) => ({ k: group.k, mean: axes.map((a) => group.mean[position(a)]), covariance: sub(group.covariance, axes.map(position)) }));
+  }
 
   function points(axes, type) {
     return groups().filter(([key]) => !state.hidden.has(key)).map(([key, list]) => {
-      const trace = { type, mode: 'markers', name: groupName(key), ids: undefined, customdata: list, hovertext: list.map(describe), hoverinfo: 'text',
+      const trace = { type, mode: 'markers', name: groupName(key), customdata: list, hoverinfo: 'none',
         marker: { size: type === 'scatter3d' ? 2.2 : 4, color: groupColour(key), opacity: key < 0 ? 0.3 : run.length > 20000 ? 0.35 : 0.65, line: { width: 0 } } };
       axes.forEach((a, j) => { trace['xyz'[j]] = Float32Array.from(list, (i) => values[a][i]); });
       return trace;
@@ -103,7 +106,7 @@ export async function cloud(windows, runs, goTo) {
     if (!windows.bank || !state.bank || !within(axes)) return [];
     const trace = { type, mode: 'markers', customdata: windows.bank.map(() => -1), hovertext: windows.bank.map((_, k) => `mode ${k} of the bank`), hoverinfo: 'text',
       marker: { symbol: 'diamond', size: type === 'scatter3d' ? 6 : 11, color: windows.bank.map((_, k) => modeColour(k)), line: { width: type === 'scatter3d' ? 1 : 1.5, color: ink() } } };
-    axes.forEach((a, j) => { trace['xyz'[j]] = windows.bank.map((theta) => theta[a]); });
+    axes.forEach((a, j) => { trace['xyz'[j]] = windows.bank.map((group) => group.mean[a]); });
     return [trace];
   }
   // Error ellipsoids: of the picked window, and of some dozens spread over all when asked for.
@@ -119,11 +122,11 @@ export async function cloud(windows, runs, goTo) {
   const rangeOf = (a) => (state.all ? undefined : usualRange(values[a]));
 
   const solid = dims < 3 ? null : figure('Local models of all windows in three parameters; the tables of modes below hold the same information', () => {
-    const axes = state.axes, scene = { dragmode: 'orbit', aspectmode: 'cube', camera: { eye: { x: 1.45, y: 1.45, z: 0.9 } }, uirevision: axes.join() };
+    const axes = state.axes, scene = { dragmode: 'orbit', aspectmode: 'cube', camera: { eye: { x: 1.5, y: 1.5, z: 1 }, center: { x: 0, y: 0, z: -0.12 } }, uirevision: axes.join() };
     ['xaxis', 'yaxis', 'zaxis'].forEach((name, j) => { scene[name] = { title: { text: plain(names[axes[j]]) }, range: rangeOf(axes[j]), nticks: 5 }; });
-    const meshes = (state.shells ? shownComponents(axes) : []).map((c) => surface(c.mean, c.covariance, windows.limit3, modeColour(c.k))).filter(Boolean);
+    const meshes = (state.shells ? shownEllipses(axes) : []).map((c) => surface(c.mean, c.covariance, windows.limit3, modeColour(c.k))).filter(Boolean);
     return { traces: [...points(axes, 'scatter3d'), ...meshes, ...errorWires(axes), ...bankPoints(axes, 'scatter3d')], layout: { height: 520, margin: { l: 0, r: 0, t: 0, b: 0 }, scene, showlegend: false } };
-  }, `Turn with the mouse or a finger. Shells hold ${100 * windows.level} % of a mixture component; wires are the error ellipsoid of a window's estimate; diamonds are the modes of the bank.`);
+  }, `Turn with the mouse or a finger. Shells hold ${100 * windows.level} % of a mixture component (of the spread of a mode, when coloured so); wires are the error ellipsoid of a window's estimate; diamonds are the modes of the bank.`);
 
   function ellipsePath(mean, matrix, limit) {
     const L = factor(matrix);
@@ -140,7 +143,7 @@ export async function cloud(windows, runs, goTo) {
       layout[`xaxis${n}`] = { title: { text: plain(names[a]) }, range: rangeOf(a), anchor: `y${n}`, domain: stacked ? [0, 1] : span, nticks: 6, zeroline: false };
       layout[`yaxis${n}`] = { title: { text: plain(names[b]), standoff: 4 }, range: rangeOf(b), anchor: `x${n}`, domain: stacked ? [1 - span[1], 1 - span[0]] : [0, 1], nticks: 6, zeroline: false };
       for (const trace of [...points([a, b], type), ...bankPoints([a, b], type)]) traces.push({ ...trace, xaxis: `x${n}`, yaxis: `y${n}` });
-      for (const c of shownComponents([a, b])) {
+      for (const c of shownEllipses([a, b])) {
         const path = ellipsePath(c.mean, c.covariance, windows.limit2);
         if (path) layout.shapes.push({ type: 'path', path, xref: `x${n}`, yref: `y${n}`, line: { color: modeColour(c.k), width: 2 }, layer: 'above' });
       }
@@ -150,13 +153,15 @@ export async function cloud(windows, runs, goTo) {
       }
     });
     return { traces, layout };
-  }, `Ellipses hold ${100 * windows.level} % of a component.`);
+  }, `Ellipses hold ${100 * windows.level} % of a mixture component, or of the spread of a mode’s windows.`);
 
   const figures = [solid, flat].filter(Boolean), redraw = () => Promise.all(figures.filter((f) => f.plot.on).map((f) => f.redraw()));
   const info = h('p', { class: 'note', id: 'window-info', 'aria-live': 'polite' }, 'Point at a window to read it; click it to see its stretch of the data.');
-  const tell = (i) => info.replaceChildren(`Window in run ${runs[run[i]]}, ${begin[i].toFixed(3)} to ${end[i].toFixed(3)} s: `,
+  const tell = (i) => info.replaceChildren(`Window in ${place(i)}: `,
     windows.axes.map((axis, a) => `${axis.name} = ${digits(values[a][i])}` + (covariance && a < windows.parameters ? ` ± ${digits(Number(Math.sqrt(entry(i, a, a)).toPrecision(2)))}` : '')).join(', '),
     label ? `; component ${label[i] < 0 ? 'none' : label[i]}` : '', mode ? `; mode of the filter ${mode[i] < 0 ? 'none' : mode[i]}` : '');
+  const tip = h('div', { class: 'tip', hidden: true });
+  document.body.append(tip);
   const pick = (i) => { state.picked = i; tell(i); redraw(); goTo(run[i], begin[i], end[i]); };
   for (const element of figures) {
     const first = element.redraw;
@@ -165,7 +170,17 @@ export async function cloud(windows, runs, goTo) {
       await first();
       if (!fresh) return;
       const numberOf = (event) => { const p = event.points?.[0]; if (!p) return -1; const i = p.customdata ?? p.data.customdata?.[p.pointNumber]; return Number.isInteger(i) ? i : -1; };
-      element.plot.on('plotly_hover', (event) => { const i = numberOf(event); if (i >= 0) tell(i); });
+      // A text per point would take seconds for many windows: the tip is made when it is needed.
+      element.plot.on('plotly_hover', (event) => {
+        const i = numberOf(event);
+        if (i < 0) return;
+        tell(i);
+        tip.replaceChildren(place(i), ...state.axes.map((a) => h('div', {}, `${windows.axes[a].name} = ${digits(values[a][i])}`)));
+        tip.hidden = false;
+      });
+      element.plot.on('plotly_unhover', () => { tip.hidden = true; });
+      element.plot.addEventListener('mousemove', (event) => { tip.style.left = `${Math.min(event.clientX + 14, window.innerWidth - 240)}px`; tip.style.top = `${event.clientY + 14}px`; });
+      element.plot.addEventListener('mouseleave', () => { tip.hidden = true; });
       element.plot.on('plotly_click', (event) => { const i = numberOf(event); if (i >= 0) pick(i); });
     };
   }
@@ -185,7 +200,7 @@ export async function cloud(windows, runs, goTo) {
     names.length > 3 ? state.axes.map((a, j) => choice('XYZ'[j], names, a, (chosen) => { state.axes[j] = chosen; redraw(); })) : null,
     bys.length > 1 ? choice('Colour by', bys.map((name) => (name === 'mode' ? 'mode of the filter' : 'mixture component')), bys.indexOf(state.by), (i) => { state.by = bys[i]; state.hidden.clear(); fillLegend(); redraw(); }) : null,
     check('Outlying windows, too', false, (on) => { state.all = on; redraw(); }),
-    windows.components && dims === 3 ? check('Shells of components', state.shells, (on) => { state.shells = on; redraw(); }) : null,
+    (windows.components || windows.bank) && dims === 3 ? check('Shells', state.shells, (on) => { state.shells = on; redraw(); }) : null,
     covariance && dims === 3 ? check('Error ellipsoids of 60 windows', false, (on) => { state.errors = on; redraw(); }) : null,
     windows.bank ? check('Modes of the bank', true, (on) => { state.bank = on; redraw(); }) : null);
   return { elements: [controls, legend, solid, info, flat], pick };

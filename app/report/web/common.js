@@ -3,7 +3,7 @@
 
 export const data = JSON.parse(document.getElementById('page-data').textContent);
 
-const types = { f4: [Float32Array, 4], f8: [Float64Array, 8], i4: [Int32Array, 4], u1: [Uint8Array, 1] };
+const types = { f4: [Float32Array, 4], f8: [Float64Array, 8], i4: [Int32Array, 4], share: [Uint16Array, 2] };
 const unpacked = new Map();
 
 function bytesOf(base64) {
@@ -20,7 +20,8 @@ async function unpack(place) {
   const [Type, width] = types[place.type], count = place.size, bytes = new Uint8Array(count * width);
   for (let b = 0; b < width; ++b)
     for (let i = 0, from = b * count, to = b; i < count; ++i, ++from, to += width) bytes[to] = planes[from];
-  return new Type(bytes.buffer);
+  const values = new Type(bytes.buffer);
+  return place.type === 'share' ? Float32Array.from(values, (v) => (v === 65535 ? NaN : v / 65534)) : values;
 }
 
 // The typed array that C++ (page_arrays.hpp) put into the page; unpacked once, on first need.

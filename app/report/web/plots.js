@@ -22,7 +22,9 @@ export function modeColour(k) {
   const base = palette.modes[k % palette.modes.length], round = Math.floor(k / palette.modes.length) % 3;
   return round === 0 ? base : mixed(base, round === 1 ? '#000000' : '#ffffff', 0.45);
 }
-export const filterColour = (name) => palette.filters[name] || ink();
+// For thin lines: lighter on a dark ground.
+export const lineColour = (colour) => (dark() && /^#[0-9a-f]{6}$/i.test(colour) ? mixed(colour, '#ffffff', 0.35) : colour);
+export const filterColour = (name) => lineColour(palette.filters[name] || ink());
 export const translucent = (colour, alpha) => colour + Math.round(255 * alpha).toString(16).padStart(2, '0');
 
 const axisTheme = () => ({ gridcolor: faint(), zerolinecolor: faint(), linecolor: faint(), tickcolor: faint(), color: ink() });

@@ -14,10 +14,12 @@ function modeColumns(bank) {
 }
 
 function dwellFigure(bank) {
+  const stays = bank.modes.flatMap((row) => [row.dwell?.v, row.dwell_model?.v]).filter((v) => v > 0);
+  const wide = Math.max(...stays) > 20 * Math.min(...stays);
   return figure('Mean stay in each mode; the table below holds the same numbers', () => {
     const x = bank.modes.map((row) => `mode ${row.mode}`), bar = (key, name, opacity) => ({ type: 'bar', name, x, y: bank.modes.map((row) => row[key]?.v ?? null), text: bank.modes.map((row) => `${name}: ${row[key]?.t ?? '–'} samples`), textposition: 'none', hoverinfo: 'text+x',
       marker: { color: bank.modes.map((row) => modeColour(row.mode)), opacity, pattern: { shape: opacity < 1 ? '/' : '' } } });
-    return { traces: [bar('dwell', 'seen', 1), bar('dwell_model', 'by T', 0.55)], layout: { height: 300, barmode: 'group', showlegend: false, yaxis: { title: { text: 'mean stay [samples]' }, type: 'log', dtick: 'D2' }, xaxis: { type: 'category' } } };
+    return { traces: [bar('dwell', 'seen', 1), bar('dwell_model', 'by T', 0.55)], layout: { height: 300, barmode: 'group', showlegend: false, yaxis: { title: { text: 'mean stay [samples]' }, type: wide ? 'log' : 'linear', dtick: wide ? 'D2' : undefined }, xaxis: { type: 'category' } } };
   }, `Full: mean stay along the most probable sequence, ${roleNames[bank.role]}. Hatched: what the transition matrix says, 1 / (1 − T).`);
 }
 

@@ -11,7 +11,7 @@ function histogram(filter) {
   const roles = present(filter.histograms, 'role'), state = { role: roles[0] };
   const list = () => filter.histograms.filter((row) => row.role === state.role);
   const plot = figure('Histogram of probability integral transforms for each filter; equal bars mean true uncertainty', () => {
-    const rows = list(), layout = { height: 210 * rows.length, margin: { l: 60, r: 12, t: 24, b: 44 }, showlegend: false, shapes: [], annotations: [], bargap: 0.06 }, traces = [];
+    const rows = list(), layout = { height: 200 * rows.length + 40, margin: { l: 64, r: 12, t: 40, b: 44 }, showlegend: false, shapes: [], annotations: [], bargap: 0.06 }, traces = [];
     rows.forEach((row, i) => {
       const n = i ? i + 1 : '', bins = row.counts.length, top = 1 - i / rows.length, bottom = 1 - (i + 1) / rows.length;
       layout[`yaxis${n}`] = { title: { text: 'samples' }, domain: [bottom + (i < rows.length - 1 ? 0.1 : 0), top - 0.02], rangemode: 'tozero', nticks: 4 };
@@ -35,7 +35,7 @@ function autocorrelation(filter, states) {
       return { type: 'scatter', mode: 'lines+markers', name: shortNames[row.model] || row.model, x: y.map((_, lag) => lag + 1), y, line: { color: filterColour(row.model), width: 1.5 }, marker: { size: 5 }, hovertemplate: 'lag %{x}: %{y:.3f}' };
     });
     const band = rows[0].band;
-    const layout = { height: 320, legend: { orientation: 'h', y: 1.02, yanchor: 'bottom' }, showlegend: true, xaxis: { title: { text: 'lag [samples]' } }, yaxis: { title: { text: 'autocorrelation' } },
+    const layout = { height: 350, margin: { l: 64, r: 12, t: 60, b: 44 }, legend: { orientation: 'h', y: 1.02, yanchor: 'bottom' }, showlegend: true, xaxis: { title: { text: 'lag [samples]' } }, yaxis: { title: { text: 'autocorrelation' } },
       shapes: [{ type: 'rect', xref: 'paper', x0: 0, x1: 1, y0: -band, y1: band, fillcolor: ink(), opacity: 0.14, line: { width: 0 }, layer: 'below' }] };
     return { traces, layout };
   }, `Grey: ${100 * filter.autocorrelations[0].level} % band of white residuals. Filters: normal scores of the PIT; global model: its one-step residuals.`);
@@ -54,7 +54,7 @@ function outside(filter) {
         traces.push({ type: 'bar', name: `${side}, ${role === 'test' ? 'held out' : 'training'}`, x: rows.map((row) => shortNames[row.filter]), y: rows.map((row) => 100 * row[`${key}_${side}`].v), text: rows.map((row) => `${side}, ${roleNames[role]}: ${row[`${key}_${side}`].t}`), textposition: 'none', hoverinfo: 'text',
           marker: { color: palette.modes[side === 'above' ? 3 : 5], opacity: role === 'test' ? 1 : 0.65, pattern: { shape: role === 'test' ? '' : '/' } } });
       }
-    return { traces, layout: { height: 340, barmode: 'group', showlegend: true, legend: { orientation: 'h', y: 1.02, yanchor: 'bottom' }, xaxis: { type: 'category' }, yaxis: { title: { text: 'samples outside [%]' }, rangemode: 'tozero' },
+    return { traces, layout: { height: 380, margin: { l: 64, r: 12, t: 76, b: 40 }, barmode: 'group', showlegend: true, legend: { orientation: 'h', y: 1.02, yanchor: 'bottom' }, xaxis: { type: 'category' }, yaxis: { title: { text: 'samples outside [%]' }, rangemode: 'tozero' },
       shapes: [{ type: 'line', xref: 'paper', x0: 0, x1: 1, y0: 100 * filter.tail, y1: 100 * filter.tail, line: { color: ink(), width: 1.2, dash: 'dash' } }] } };
   }, 'Dashed: a true filter’s 2.5 % on each side.');
   return [h('h3', {}, 'Samples outside the interval'), h('div', { class: 'controls' }, choice('By', measures.map(([, name]) => name), 0, (i) => { state.measure = i; plot.redraw(); })), plot];

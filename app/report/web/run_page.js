@@ -2,7 +2,7 @@
 import { choice, copyButton, data, draw, facts, h, head, note, section, table, value } from './common.js';
 import { cloud } from './cloud.js';
 import { filterNames } from './filters.js';
-import { modeColour, palette, ink } from './plots.js';
+import { lineColour, modeColour, palette, ink } from './plots.js';
 import { drawBank } from './run_bank.js';
 import { drawFilter } from './run_filter.js';
 import { drawSelection } from './run_selection.js';
@@ -52,7 +52,7 @@ function drawData(runs, state, options, picker) {
   const filtered = Object.keys(runs.runs[0].filters).length > 0, truth = runs.runs.some((run) => run.truth);
   const rows = () => [...runs.states.map((_, i) => stateRow(runs, i, options)), ...inputRows(runs), ...(state.current.filters[options.filter()]?.probability ? [probabilityRow(options)] : [])];
   const plot = timePlot(state, 'State with prediction, and inputs, of one run over time', rows, runs.note);
-  const legend = () => swatches([[ink(), 'measured'], ...(filtered ? [[palette.prediction, 'predicted one sample ahead'], [palette.band, `${100 * runs.level} % band`], [palette.outlier, `outliers (1 in ${Math.round(1 / (1 - runs.outlier_level))} of a true filter)`]] : []), ...(truth ? [[palette.truth, 'truth']] : [])], 'Colours');
+  const legend = () => swatches([[ink(), 'measured'], ...(filtered ? [[lineColour(palette.prediction), 'predicted one sample ahead'], [palette.band, `${100 * runs.level} % band`], [palette.outlier, `outliers (1 in ${Math.round(1 / (1 - runs.outlier_level))} of a true filter)`]] : []), ...(truth ? [[lineColour(palette.truth), 'truth']] : [])], 'Colours');
   section('data', 'The data', filtered ? null : note('No filter was run, so there is no prediction to compare with.'),
     h('div', { class: 'controls' }, picker(), timeControls(state)), legend(), plot);
 }

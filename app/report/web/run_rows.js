@@ -1,10 +1,10 @@
 // The rows of a run's time plots: data with prediction, inputs, mode probabilities, innovations, NIS.
 import { array } from './common.js';
-import { ink, modeColour, palette, plain, translucent } from './plots.js';
+import { ink, lineColour, modeColour, palette, plain, translucent } from './plots.js';
 import { band, bounds, line, share } from './signals.js';
 
 const named = (channel) => plain(channel.unit ? `${channel.name} [${channel.unit}]` : channel.name);
-const stroke = (color, width = 1.2, dash) => ({ color, width, dash, simplify: true });
+const stroke = (color, width = 1.2, dash) => ({ color: lineColour(color), width, dash, simplify: true });
 const step = (per) => (per === 1 ? 'hv' : 'linear');
 
 // Measured state i with the filter's band, prediction, truth and outliers.
@@ -22,7 +22,7 @@ export function stateRow(runs, i, options) {
     if (filter && filter.outliers.count) {
       const span = range[1] - range[0], all = await array(filter.outliers.time), values = await array(filter.outliers.values[i]), x = [], y = [];
       for (let k = 0; k < all.length && x.length < 3000; ++k) if (all[k] >= range[0] - span / 2 && all[k] <= range[1] + span / 2) { x.push(all[k]); y.push(values[k]); }
-      traces.push({ x, y, type: 'scatter', mode: 'markers', marker: { symbol: 'circle-open', size: 9, color: palette.outlier, line: { width: 2 } }, name: 'outlier' });
+      traces.push({ x, y, type: 'scatter', mode: 'markers', marker: { symbol: 'circle-open', size: 9, color: lineColour(palette.outlier), line: { width: 2 } }, name: 'outlier' });
     }
     return traces;
   } };
@@ -33,7 +33,7 @@ export function inputRows(runs) {
   const units = [...new Set(runs.inputs.map((channel) => channel.unit))];
   return units.map((unit) => {
     const which = runs.inputs.map((channel, j) => j).filter((j) => runs.inputs[j].unit === unit);
-    const title = which.length <= 3 ? which.map((j) => plain(runs.inputs[j].name)).join(', ') : 'inputs';
+    const title = which.length <= 3 ? which.map((j) => plain(runs.inputs[j].name)).join(',<br>') : 'inputs';
     return { title: unit ? `${title} [${plain(unit)}]` : title, height: 130, draw: async ({ run, clock, shown }) => Promise.all(which.map(async (j, position) => {
       const curve = await line(run.input[j], clock, shown);
       return { ...curve, type: 'scatter', mode: 'lines', line: { ...stroke(palette.inputs[position % palette.inputs.length], 1.3, ['solid', 'dash', 'dot'][position % 3]), shape: step(curve.per) }, name: plain(runs.inputs[j].name) };
@@ -53,7 +53,7 @@ export function probabilityRow(options) {
 }
 
 export function innovationRow(runs, i, options) {
-  return { title: `innovation ${named(runs.states[i])}`, height: 150, draw: async ({ run, clock, shown }) => {
+  return { title: `innovation<br>${named(runs.states[i])}`, height: 150, draw: async ({ run, clock, shown }) => {
     const filter = run.filters[options.filter()];
     if (!filter) return [];
     const { up, down } = await bounds(filter.half_width[i], clock, shown), edge = { type: 'scatter', mode: 'lines', line: stroke(palette.prediction, 1), hoverinfo: 'skip' };
@@ -63,7 +63,7 @@ export function innovationRow(runs, i, options) {
 }
 
 export function nisRow(runs, options) {
-  const bound = (value) => ({ type: 'line', y0: value, y1: value, line: { color: palette.outlier, width: 1.2, dash: 'dash' } });
+  const bound = (value) => ({ type: 'line', y0: value, y1: value, line: { color: lineColour(palette.outlier), width: 1.2, dash: 'dash' } });
   return { title: 'NIS', height: 150, axis: { type: 'log', exponentformat: 'power', dtick: 2, range: [-4, 2.5] }, shapes: () => runs.nis_bounds.map(bound), draw: async ({ run, clock, shown }) => {
     const filter = run.filters[options.filter()];
     if (!filter) return [];

@@ -18,7 +18,7 @@ function panels(candidates) {
   const list = criteria.filter(([key]) => curves(candidates, key).length), chosen = candidates.find((row) => row.selected);
   const make = () => {
     const columns = window.innerWidth < 700 ? 1 : Math.min(3, list.length), lines = Math.ceil(list.length / columns);
-    const layout = { height: 230 * lines + 40, margin: { l: 64, r: 12, t: 8, b: 44 }, showlegend: list.some(([key]) => curves(candidates, key).length > 1), legend: { orientation: 'h', y: 1.02, yanchor: 'bottom' }, shapes: [] };
+    const layout = { height: 230 * lines + 40, margin: { l: 64, r: 12, t: 36, b: 44 }, showlegend: list.some(([key]) => curves(candidates, key).length > 1), legend: { orientation: 'h', y: 1.02, yanchor: 'bottom' }, shapes: [] };
     const traces = [];
     list.forEach(([key, name], i) => {
       const n = i ? i + 1 : '', column = i % columns, row = Math.floor(i / columns), wide = 1 / columns, high = 1 / lines;

@@ -48,9 +48,9 @@ export function timePlot(state, label, rows, caption) {
   const rowsNow = () => (typeof rows === 'function' ? rows() : rows);
   const make = async () => {
     const list = rowsNow(), total = list.reduce((sum, row) => sum + row.height, 0), run = state.current;
-    const gap = 26, below = 46, above = 8, height = total + gap * (list.length - 1) + below + above, inner = height - below - above;
+    const gap = 26, below = 46, above = 30, height = total + gap * (list.length - 1) + below + above, inner = height - below - above;
     const clockOf = await state.clock(), range = state.shown(), shown = view(clockOf, range);
-    const traces = [], layout = { height, margin: { l: 74, r: 14, t: above, b: below }, showlegend: false, shapes: [], annotations: [],
+    const traces = [], layout = { height, margin: { l: 82, r: 14, t: above, b: below }, showlegend: false, shapes: [], annotations: [],
       uirevision: `run ${state.run}`, dragmode: 'zoom', hovermode: 'closest' };
     let top = 1;
     for (let i = 0; i < list.length; ++i) {
