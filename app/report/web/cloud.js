@@ -136,7 +136,7 @@ export async function cloud(windows, runs, goTo) {
   const narrow = () => window.innerWidth < 700;
   const flat = names.length < 2 ? null : figure('The local models in two parameters at a time, with the ellipses of the mixture components', () => {
     const list = pairs(), type = run.length > 3000 ? 'scattergl' : 'scatter', traces = [], stacked = narrow();
-    const layout = { height: stacked ? 330 * list.length : 360, margin: { l: 66, r: 12, t: 10, b: 48 }, showlegend: false, shapes: [] };
+    const layout = { height: stacked ? 330 * list.length : 380, margin: { l: 66, r: 12, t: 32, b: 48 }, showlegend: false, shapes: [] };
     list.forEach(([a, b], s) => {
       const n = s === 0 ? '' : s + 1, share = 1 / list.length, gap = stacked ? 0.06 : 0.05;
       const span = [s * share + (s ? gap : 0), (s + 1) * share - (s < list.length - 1 ? gap / 3 : 0)];

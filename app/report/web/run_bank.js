@@ -33,7 +33,7 @@ function transitionMap(transition) {
   return figure('Transition probabilities as a map; the matrix in numbers stands below', () => ({
     traces: [{ type: 'heatmap', x: names, y: names, z: transition.map((row) => row.map((cell) => Math.log10(Math.max(cell.v, 1e-4)))), zmin: -4, zmax: 0, colorscale: 'Cividis', reversescale: false, xgap: 1, ygap: 1,
       text: transition.map((row, i) => row.map((cell, j) => `from ${i} to ${j}: ${cell.t}`)), hoverinfo: 'text', colorbar: { title: { text: 'probability', side: 'right' }, tickvals: [-4, -3, -2, -1, 0], ticktext: ['≤ 0.0001', '0.001', '0.01', '0.1', '1'], thickness: 12 } }],
-    layout: { height: 380, margin: { l: 70, r: 10, t: 10, b: 56 }, xaxis: { title: { text: 'to' }, type: 'category', tickangle: transition.length > 6 ? -90 : 0 }, yaxis: { title: { text: 'from' }, type: 'category', autorange: 'reversed' } } }));
+    layout: { height: 400, margin: { l: 70, r: 10, t: 32, b: 56 }, xaxis: { title: { text: 'to' }, type: 'category', tickangle: transition.length > 6 ? -90 : 0 }, yaxis: { title: { text: 'from' }, type: 'category', autorange: 'reversed' } } }));
 }
 
 export function drawBank(bank) {
