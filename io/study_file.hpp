@@ -19,14 +19,20 @@ struct NamedColumn {
   Values values;
 };
 
+struct NamedTable {
+  std::string name;
+  std::vector<NamedColumn> columns;
+};
+
 /// A table of runs in a file with the root of an archive: the study's resolved /config, /provenance with the inputs,
-/// the hash in the user block, and one compound dataset.
+/// the hash in the user block, one compound dataset, and the tables of what it answers.
 struct StudyFile {
   Provenance provenance;
   std::string config;
   std::string table;  ///< the dataset's name
   std::vector<NamedColumn> columns;
   std::vector<std::pair<std::string, std::filesystem::path>> archives;  ///< appear as /trials/<name>
+  std::vector<NamedTable> answers;  ///< drawn from the table; appear as /answers/<name>
 };
 
 /// Whether /trials/<name> are external links, relative to the file's folder, or copies of the archives' content.
@@ -40,6 +46,7 @@ StudyFile read_study_file(const std::filesystem::path& path, const std::string& 
 
 /// What a study's table takes from a trial's archive.
 struct TrialScores {
+  std::string modebank_version, config_hash, data_hash;
   std::int64_t modes = 0;                              ///< of the bank
   std::vector<std::pair<std::string, double>> pooled;  ///< <filter>_<role>_<score>, ..._rmse_<state>: the summary's "*"
 };
