@@ -98,7 +98,7 @@ Refinement learn_modes_of(const Config& config, const Eigen::MatrixXd& R, const 
   options.em.seed = config.job.seed;
   if (options.refine == Refine::em)
     return learn_refined_bank(*archive.recording, *archive.windows, *archive.mixture, options, R, config.filter);
-  return {learn_bank(*archive.recording, *archive.windows, *archive.mixture, options, R, motion), {}, {}, {}};
+  return {learn_bank(*archive.recording, *archive.windows, *archive.mixture, options, R, motion), {}, {}, {}, {}};
 }
 
 /// What a limit on the number of modes cost: the same bank without it, on the runs that were held out.
