@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 #include <stdexcept>
 
 #include "filter/refine_climb.hpp"
@@ -15,7 +14,6 @@
 #include "filter/refined_modes.hpp"
 #include "filter/switching_state_space.hpp"
 #include "filter/training_likelihood.hpp"
-#include "ident/not_a_number.hpp"
 
 namespace modebank {
 namespace {
@@ -115,11 +113,11 @@ MeasurementStage fit_with_measurement_noise(const MeasuredFit& fit, const CrossV
   const double Q_before = bank.modes.front().Q(0, 0);
   if (fit.options.measurement_noise) {
     estimate_measurement_noise(fit.recording, fit.filter, bank);
-    if (bank.R_standard_error.size() == 0) return {0, not_a_number, not_a_number};
+    if (bank.R_standard_error.size() == 0) return {};
   } else if (!(bank.R.diagonal().array() > fit.least_R.array()).any()) {
-    return {0, not_a_number, not_a_number};
+    return {};
   }
-  if (!validation.possible()) return {fit.run_to_convergence(bank), not_a_number, not_a_number};
+  if (!validation.possible()) return {fit.run_to_convergence(bank)};
   const MeasurementStage stage =
       validation.with_measurement_noise(bank.R, bank.modes.front().Q(0, 0) / Q_before, bank.noise_adaptation);
   for (Index i = 0; i < stage.iterations; ++i) fit.step(bank);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -46,9 +47,9 @@ struct RefineCandidate {
 
 /// How the fit went on once R was known to be more than nothing.
 struct MeasurementStage {
-  Index iterations = 0;       ///< with measurement noise; 0: there is none, or they would not have paid
-  double score_before = 0.0;  ///< mean log score of the runs left out; NaN without cross-validation
-  double score = 0.0;         ///< the same after the iterations
+  Index iterations = 0;  ///< with measurement noise; 0: there is none, or they would not have paid
+  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out
+  double score = std::numeric_limits<double>::quiet_NaN();  ///< the same after them; NaN without cross-validation or R
 };
 
 struct Refinement {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "filter/refine_climb.hpp"
+#include "filter/refine_noise.hpp"
 #include "filter/refine_start.hpp"
 #include "filter/refined_modes.hpp"
 #include "filter/switching_state_space.hpp"
@@ -22,7 +23,7 @@ namespace {
 constexpr std::array<Index, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
 // With measurement noise, after the fit without: no start is forgotten here, and each iteration costs far more.
 constexpr std::array<Index, 6> later_checkpoints{5, 10, 20, 40, 70, 100};
-constexpr int patience = 2;  // checkpoints without a gain after which the search ends
+constexpr int patience = 2;  // checkpoints worse than the best after which the search ends
 constexpr std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
 constexpr std::array<double, 3> prior_samples{2.0, 5.0, 20.0};
 constexpr double least_measurement_share = 1e-9;  // of the global residual variance
@@ -119,10 +120,11 @@ MeasurementStage CrossValidation::with_measurement_noise(const Eigen::MatrixXd& 
   }
   const double before = score(banks);
   MeasurementStage stage{0, before, before};
+  double best = before;
   Index done = 0;
-  int idle = 0;
+  int worse = 0;
   for (const Index checkpoint : later_checkpoints) {
-    if (idle == patience || done == options_.max_iterations) break;
+    if (worse == patience || done == options_.max_iterations) break;
     const Index until = std::min(checkpoint, options_.max_iterations);
     tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
       const Recording& training = splits_[s].training;
@@ -134,10 +136,11 @@ MeasurementStage CrossValidation::with_measurement_noise(const Eigen::MatrixXd& 
     });
     done = until;
     const double now = score(banks);
-    ++idle;
-    if (!(now > stage.score)) continue;
+    best = std::max(best, now);
+    ++worse;
+    if (!(now > best - least_likelihood_gain)) continue;
     stage = {done, before, now};
-    idle = 0;
+    worse = 0;
   }
   return stage;
 }

@@ -41,7 +41,8 @@ class CrossValidation {
   NoiseAdaptation adaptation() const;
 
   /// How many iterations of expectation-maximisation with measurement noise (switching_state_space.hpp) the best one
-  /// should go on for, R and Q's factor at first as given; none when that is best.
+  /// should go on for, R and Q's factor at first as given: as many as cost less than least_likelihood_gain against the
+  /// best number, since the likelihood's maximum is where they lead.
   MeasurementStage with_measurement_noise(const Eigen::MatrixXd& R, double process_factor,
                                           const NoiseAdaptation& adaptation) const;
 

@@ -71,16 +71,40 @@ VectorImm::VectorImm(const Bank& bank, const FilterOptions& options)
   fill(bank);
 }
 
+VectorImm::VectorImm(const VectorImm& other)
+    : noise_scale(other.noise_scale),
+      noise_samples(other.noise_samples),
+      n_(other.n_),
+      n_y_(other.n_y_),
+      K_(other.K_),
+      adaptive_(other.adaptive_),
+      adaptation_(other.adaptation_),
+      kernels_(other.kernels_),
+      rows_(other.rows_),
+      C_(other.C_),
+      R_(other.R_),
+      partial_C_(other.partial_C_),
+      partial_R_(other.partial_R_),
+      y_(other.y_),
+      packed_(other.packed_),
+      start_gain_(other.start_gain_),
+      start_covariance_(other.start_covariance_),
+      initial_probability_(other.initial_probability_),
+      start_(other.start_) {
+  lay_out();
+  std::copy_n(other.memory_.get(), numbers_, memory_.get());
+}
+
 /// One block for all rows, so that a step after a pause finds its numbers in few cache lines.
 void VectorImm::lay_out() {
   const std::size_t n = count_of(n_), n_y = count_of(n_y_), p = count_of(packed_size(n_)),
                     q = count_of(packed_size(n_y_));
   const std::size_t bank_rows = n * n + n * rows_.inputs + n + p + rows_.modes;
   const std::size_t step_rows = 2 * (n + p + 1) + 5 * n_y + 2 * q + 2;
-  const std::size_t numbers = (bank_rows + step_rows) * rows_.stride;
-  auto* memory = static_cast<double*>(std::aligned_alloc(register_bytes, numbers * sizeof(double)));
+  numbers_ = (bank_rows + step_rows) * rows_.stride;
+  auto* memory = static_cast<double*>(std::aligned_alloc(register_bytes, numbers_ * sizeof(double)));
   if (memory == nullptr) throw std::bad_alloc();
-  std::fill_n(memory, numbers, 0.0);
+  std::fill_n(memory, numbers_, 0.0);
   memory_.reset(memory);
   const auto take = [&](std::size_t rows) {
     double* first = memory;

@@ -21,6 +21,11 @@ class VectorImm {
   static bool can_step(const Bank& bank, const FilterOptions& options);
   /// Requires can_step(bank, options) and check_sizes(bank).
   VectorImm(const Bank& bank, const FilterOptions& options);
+  VectorImm(const VectorImm& other);
+  VectorImm(VectorImm&&) noexcept = default;
+  VectorImm& operator=(const VectorImm& other) { return *this = VectorImm(other); }
+  VectorImm& operator=(VectorImm&&) noexcept = default;
+  ~VectorImm() = default;
 
   Eigen::Index modes() const { return K_; }
   Eigen::Index states() const { return n_; }
@@ -59,7 +64,8 @@ class VectorImm {
   NoiseAdaptation adaptation_;
   vector_imm::Kernels kernels_;
   std::unique_ptr<double[], Free> memory_;
-  vector_imm::ModeRows rows_;
+  vector_imm::ModeRows rows_;  // within memory_, numbers_ of them
+  std::size_t numbers_ = 0;
   Eigen::MatrixXd C_, R_;                  // transposed: row-major
   Eigen::MatrixXd partial_C_, partial_R_;  // of the signals that are there
   Eigen::VectorXd y_, packed_;

@@ -28,8 +28,8 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
   FilterState<any> state = start(model, run.state.col(0));
   CombinedPrediction<any, any> combined(n, n_y);
   Gaussian<any> estimate(n);
-  VectorImm imm(bank, options);
-  imm.start(run.state.col(0));
+  VectorImm kernel(bank, options);
+  kernel.start(run.state.col(0));
   VectorXd mean(n);
   MatrixXd covariance(n, n), S(n_y, n_y);
   const auto same = [&](const MatrixXd& a, const MatrixXd& b) {
@@ -37,30 +37,30 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
   };
   for (Index k = 1; k < run.samples(); ++k) {
     predict(model, state, run.input.col(k - 1), step);
-    imm.predict(run.input.col(k - 1));
+    kernel.predict(run.input.col(k - 1));
     combined.expect(model, step);
     double share = 0.0;
-    imm.combine(mean, S, share);
+    kernel.combine(mean, S, share);
     ASSERT_TRUE(same(mean, combined.state) && same(S, combined.innovation_covariance)) << "sample " << k;
-    ASSERT_TRUE(same(imm.predicted_probability(), step.predicted_probability)) << "sample " << k;
+    ASSERT_TRUE(same(kernel.predicted_probability(), step.predicted_probability)) << "sample " << k;
     ASSERT_NEAR(share, combined.spread_share, relative);
     const double expected = update(model, run.state.col(k), step, state);
-    const double log_density = imm.update(run.state.col(k));
+    const double log_density = kernel.update(run.state.col(k));
     merge(state.modes, state.mode_probability, estimate);
-    imm.merge(mean, covariance);
+    kernel.merge(mean, covariance);
     ASSERT_TRUE(same(mean, estimate.mean) && same(covariance, estimate.covariance)) << "sample " << k;
-    ASSERT_TRUE(same(imm.mode_probability(), state.mode_probability)) << "sample " << k;
+    ASSERT_TRUE(same(kernel.mode_probability(), state.mode_probability)) << "sample " << k;
     ASSERT_EQ(std::isnan(log_density), std::isnan(expected));
     if (!std::isnan(expected)) {
       ASSERT_NEAR(log_density, expected, relative * std::max(1.0, std::abs(expected))) << "sample " << k;
       for (Index j = 0; j < bank.mode_count(); ++j)
         for (Index i = 0; i < n_y; ++i) {
           const KalmanStep<any, any>& kalman = step.kalman[static_cast<std::size_t>(j)];
-          ASSERT_NEAR(imm.variance(i, j), kalman.cholesky.D(i), relative * kalman.cholesky.D(i));
-          ASSERT_NEAR(imm.decorrelated(i, j), kalman.decorrelated(i), relative * 10.0);
+          ASSERT_NEAR(kernel.variance(i, j), kalman.cholesky.D(i), relative * kalman.cholesky.D(i));
+          ASSERT_NEAR(kernel.decorrelated(i, j), kalman.decorrelated(i), relative * 10.0);
         }
     }
-    ASSERT_NEAR(imm.noise_scale, state.noise_scale, relative * state.noise_scale);
+    ASSERT_NEAR(kernel.noise_scale, state.noise_scale, relative * state.noise_scale);
   }
 }
 
@@ -134,8 +134,11 @@ TEST(VectorImm, SnapshotsGoBackAndForth) {
   first.get(means, covariances, probability);
   second.start(run.state.col(0));
   second.set(means, covariances, probability);
-  for (VectorImm* imm : {&first, &second}) imm->predict(run.input.col(8));
-  EXPECT_EQ(first.update(run.state.col(9)), second.update(run.state.col(9)));
+  VectorImm copy = first;
+  for (VectorImm* filter : {&first, &second, &copy}) filter->predict(run.input.col(8));
+  const double log_density = first.update(run.state.col(9));
+  EXPECT_EQ(second.update(run.state.col(9)), log_density);
+  EXPECT_EQ(copy.update(run.state.col(9)), log_density);
 }
 
 TEST(VectorImm, LeavesToTheGeneralStepsWhatItCannot) {
