@@ -98,7 +98,7 @@ Refinement learn_modes_of(const Config& config, const Eigen::MatrixXd& R, const 
   options.em.seed = config.job.seed;
   if (options.refine == Refine::em)
     return learn_refined_bank(*archive.recording, *archive.windows, *archive.mixture, options, R, config.filter);
-  return {learn_bank(*archive.recording, *archive.windows, *archive.mixture, options, R, motion), {}, {}, {}};
+  return {learn_bank(*archive.recording, *archive.windows, *archive.mixture, options, R, motion), {}, {}, {}, {}};
 }
 
 /// What a limit on the number of modes cost: the same bank without it, on the runs that were held out.
@@ -121,6 +121,10 @@ void report_refinement(const Refinement& refined) {
     spdlog::info(
         "refine: {:<12} {:>3} modes, shared {}, Q prior {}: {:.4f} nats/sample left out, after {} iterations{}",
         c.start, c.modes, name_of(c.shared), c.noise_transitions, c.score, c.iterations, c.selected ? " (chosen)" : "");
+  const MeasurementStage& measured = refined.measurement;
+  if (!std::isnan(measured.score))
+    spdlog::info("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
+                 measured.iterations, measured.score_before, measured.score);
 }
 
 void learn_modes(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion, Archive& archive) {

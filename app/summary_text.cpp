@@ -90,8 +90,9 @@ std::string verdicts_text(const Archive& archive) {
                         100 * row.tail_below_upper);
     text += fmt::format("mean NIS {:.3f} [{:.3f}, {:.3f}]", row.nis_mean, row.nis_lower, row.nis_upper);
     if (!std::isnan(row.nees_mean))
-      text += fmt::format("; NEES {:.3f} [{:.3f}, {:.3f}], state RMSE {:.4g}", row.nees_mean, row.nees_lower,
-                          row.nees_upper, fmt::join(row.state_rmse, " "));
+      text += fmt::format("; NEES {:.3f} [{:.3f}, {:.3f}]", row.nees_mean, row.nees_lower, row.nees_upper);
+    if (row.state_rmse.size() > 0 && row.state_rmse.allFinite())
+      text += fmt::format("; state RMSE {:.4g}", fmt::join(row.state_rmse, " "));
     text += row.flags.empty() ? "\n" : fmt::format("\n{:>11} {}\n", "", row.flags);
   }
   if (text.empty()) return "";

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 
 #include "app/commands.hpp"
 #include "app/config_file.hpp"
@@ -47,9 +49,7 @@ class Tracker {
         throw ConfigurationError(
             fmt::format("track.checkpoint: cannot write {}: {}", config.track.checkpoint, obstacle));
     if (!config.track.resume.empty()) {
-      const FilterSnapshot snapshot = load_checkpoint(config.track.resume, identity_);
-      filter_.restore(snapshot);
-      if (snapshot.samples.samples > 0) last_time_s_ = snapshot.samples.time_s;
+      resume(config.track.resume);
     }
   }
 
@@ -82,6 +82,18 @@ class Tracker {
   std::optional<double> last_time_s_;
   std::size_t line_number_ = 0, samples_ = 0;
   fmt::memory_buffer out_;
+
+  void resume(const std::string& file) {
+    const FilterSnapshot snapshot = load_checkpoint(file, identity_);
+    try {
+      filter_.restore(snapshot);
+    } catch (const std::invalid_argument& error) {
+      throw DataError(fmt::format("{}: {}", file, error.what()));
+    }
+    if (snapshot.samples.samples == 0) return;
+    if (!std::isfinite(snapshot.samples.time_s)) throw DataError(file + ": the last sample has no time");
+    last_time_s_ = snapshot.samples.time_s;
+  }
 
   bool flush() {
     const bool read = write_out({out_.data(), out_.size()});

@@ -36,6 +36,31 @@ std::size_t for_each_field(std::string_view line, Visit visit) {
   }
 }
 
+/// What many writers of JSON call numbers that JSON has no name for, outside strings, made null.
+std::string without_bare_nan(std::string_view line) {
+  std::string result;
+  bool quoted = false;
+  for (std::size_t k = 0; k < line.size();) {
+    const std::string_view rest = line.substr(k);
+    std::size_t word = 0;
+    for (const std::string_view name : {"NaN", "nan", "-Infinity", "Infinity"})
+      if (word == 0 && !quoted && rest.starts_with(name)) word = name.size();
+    if (word > 0) {
+      result += "null";
+      k += word;
+      continue;
+    }
+    if (line[k] == '"' && (k == 0 || line[k - 1] != '\\')) quoted = !quoted;
+    result += line[k++];
+  }
+  return result;
+}
+
+nlohmann::json parse_object(std::string_view line) {
+  nlohmann::json object = nlohmann::json::parse(line, nullptr, false);
+  return object.is_discarded() ? nlohmann::json::parse(without_bare_nan(line), nullptr, false) : object;
+}
+
 }  // namespace
 
 SampleReader::SampleReader(SampleColumns columns, LineFormat format) : columns_(std::move(columns)), format_(format) {
@@ -61,6 +86,8 @@ SampleReader::Line SampleReader::malformed(std::string reason) {
 }
 
 SampleReader::Line SampleReader::read(std::string_view line) {
+  if (format_ == LineFormat::automatic || positions_.empty())
+    if (line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);  // a byte order mark
   const std::string_view content = trimmed(line);
   if (content.empty()) return Line::blank;
   if (format_ == LineFormat::automatic) format_ = content.front() == '{' ? LineFormat::ndjson : LineFormat::csv;
@@ -70,7 +97,6 @@ SampleReader::Line SampleReader::read(std::string_view line) {
 }
 
 SampleReader::Line SampleReader::read_header(std::string_view line) {
-  if (line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);
   std::vector<std::string> names;
   fields_ = for_each_field(line, [&](std::size_t, std::string_view field) { names.emplace_back(field); });
   std::vector<std::size_t> positions;
@@ -101,7 +127,7 @@ bool SampleReader::read_csv(std::string_view line) {
 }
 
 bool SampleReader::read_json(std::string_view line) {
-  const nlohmann::json object = nlohmann::json::parse(line, nullptr, false);
+  const nlohmann::json object = parse_object(line);
   if (!object.is_object()) return malformed("not a JSON object"), false;
   for (std::size_t i = 0; i < slots(); ++i) {
     const auto member = object.find(name(i));

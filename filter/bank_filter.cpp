@@ -6,6 +6,7 @@
 #include "filter/combined.hpp"
 #include "filter/filter_step.hpp"
 #include "filter/run_samples.hpp"
+#include "filter/vector_imm.hpp"
 #include "ident/not_a_number.hpp"
 
 namespace modebank {
@@ -30,9 +31,15 @@ FilterEstimate empty_estimate(const Bank& bank) {
   return e;
 }
 
-const Bank& checked(const Bank& bank) {
-  check_bank(bank);
-  return bank;
+void check_snapshot(const FilterSnapshot& snapshot, Index n, Index K) {
+  if (snapshot.means.rows() != n || snapshot.means.cols() != K || snapshot.covariances.rows() != n * n ||
+      snapshot.covariances.cols() != K || snapshot.mode_probability.size() != K)
+    throw std::invalid_argument("the snapshot is not of a filter of " + std::to_string(K) + " modes and " +
+                                std::to_string(n) + " states");
+  if (!snapshot.means.allFinite() || !snapshot.covariances.allFinite() || !snapshot.mode_probability.allFinite() ||
+      snapshot.mode_probability.minCoeff() < 0.0 || !(snapshot.mode_probability.sum() > 0.0) ||
+      !(snapshot.noise_scale > 0.0) || !(snapshot.noise_samples >= 0.0))
+    throw std::invalid_argument("the snapshot holds numbers that no filter has");
 }
 
 }  // namespace
@@ -124,7 +131,7 @@ struct BankFilter::SizedSteps final : BankFilter::Steps {
   }
 
   void record_scores(const Vector& measurement, double log_density) {
-    combined.observe(model, measurement, work);
+    combined.observe(model.C, measurement);
     estimate.innovation = combined.innovation;
     estimate.nis = combined.nis;
     estimate.log_density = log_density;
@@ -153,14 +160,7 @@ struct BankFilter::SizedSteps final : BankFilter::Steps {
 
   void restore(const FilterSnapshot& snapshot) override {
     const Index n = model.structure.dimension(), K = model.mode_count();
-    if (snapshot.means.rows() != n || snapshot.means.cols() != K || snapshot.covariances.rows() != n * n ||
-        snapshot.covariances.cols() != K || snapshot.mode_probability.size() != K)
-      throw std::invalid_argument("the snapshot is not of a filter of " + std::to_string(K) + " modes and " +
-                                  std::to_string(n) + " states");
-    if (!snapshot.means.allFinite() || !snapshot.covariances.allFinite() || !snapshot.mode_probability.allFinite() ||
-        snapshot.mode_probability.minCoeff() < 0.0 || !(snapshot.mode_probability.sum() > 0.0) ||
-        !(snapshot.noise_scale > 0.0) || !(snapshot.noise_samples >= 0.0))
-      throw std::invalid_argument("the snapshot holds numbers that no filter has");
+    check_snapshot(snapshot, n, K);
     for (Index j = 0; j < K; ++j) {
       Gaussian<N>& mode = state.modes[static_cast<std::size_t>(j)];
       mode.mean = snapshot.means.col(j);
@@ -172,11 +172,92 @@ struct BankFilter::SizedSteps final : BankFilter::Steps {
   }
 };
 
-BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
-    : steps_(with_sizes(checked(bank).structure.dimension(), bank.C.rows(),
-                        [&]<int N, int NY>() -> std::unique_ptr<Steps> {
-                          return std::make_unique<SizedSteps<N, NY>>(bank, options);
-                        })) {}
+/// The same by vector kernels, where there are some for the bank.
+struct BankFilter::VectorSteps final : BankFilter::Steps {
+  VectorImm imm;
+  Eigen::MatrixXd C;
+  CombinedPrediction<Eigen::Dynamic, Eigen::Dynamic> combined;
+  Eigen::VectorXd initial_probability, weights, log_likelihood;
+
+  VectorSteps(const Bank& bank, const FilterOptions& options)
+      : Steps(bank, options),
+        imm(bank, options),
+        C(bank.C),
+        combined(imm.states(), C.rows()),
+        initial_probability(bank.initial_probability),
+        weights(imm.modes()),
+        log_likelihood(imm.modes()) {}
+
+  void wait() override {
+    clear_estimate();
+    estimate.state.setConstant(not_a_number);
+    estimate.covariance.setConstant(not_a_number);
+    estimate.mode_probability_predicted = initial_probability;
+    estimate.mode_probability = initial_probability;
+  }
+
+  void start() override {
+    clear_estimate();
+    imm.start(feed.start());
+    estimate.mode_probability_predicted = imm.mode_probability();
+    record_posterior();
+  }
+
+  void step(const Vector& measurement) override {
+    for (Index i = 1; i < feed.steps(); ++i) imm.skip(feed.inputs());
+    imm.predict(feed.inputs());
+    imm.combine(combined.state, combined.innovation_covariance, combined.spread_share);
+    estimate.prediction = combined.state;
+    estimate.innovation_covariance = combined.innovation_covariance;
+    estimate.spread_share = combined.spread_share;
+    estimate.mode_probability_predicted = imm.predicted_probability();
+    estimate.steps = feed.steps();
+    estimate.log_density = imm.update(measurement);
+    if (std::isnan(estimate.log_density))
+      clear_scores();
+    else
+      record_scores(measurement);
+    record_posterior();
+  }
+
+  void record_scores(const Vector& measurement) {
+    combined.observe(C, measurement);
+    estimate.innovation = combined.innovation;
+    estimate.nis = combined.nis;
+    weights = imm.predicted_probability();
+    probability_transform(
+        measurement, [this](Index i, Index j) { return imm.decorrelated(i, j); },
+        [this](Index i, Index j) { return imm.variance(i, j); }, weights, log_likelihood, estimate.pit);
+  }
+
+  void record_posterior() {
+    imm.merge(estimate.state, estimate.covariance);
+    estimate.mode_probability = imm.mode_probability();
+  }
+
+  void save(FilterSnapshot& snapshot) const override {
+    imm.get(snapshot.means, snapshot.covariances, snapshot.mode_probability);
+    snapshot.noise_scale = imm.noise_scale;
+    snapshot.noise_samples = imm.noise_samples;
+  }
+
+  void restore(const FilterSnapshot& snapshot) override {
+    check_snapshot(snapshot, imm.states(), imm.modes());
+    imm.set(snapshot.means, snapshot.covariances, snapshot.mode_probability);
+    imm.noise_scale = snapshot.noise_scale;
+    imm.noise_samples = snapshot.noise_samples;
+  }
+};
+
+std::unique_ptr<BankFilter::Steps> BankFilter::make_steps(const Bank& bank, const FilterOptions& options) {
+  check_bank(bank);
+  if (VectorImm::can_step(bank, options)) return std::make_unique<VectorSteps>(bank, options);
+  return with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() -> std::unique_ptr<Steps> {
+    return std::make_unique<SizedSteps<N, NY>>(bank, options);
+  });
+}
+
+BankFilter::BankFilter(const Bank& bank, const FilterOptions& options) : steps_(make_steps(bank, options)) {}
 
 BankFilter::~BankFilter() = default;
 BankFilter::BankFilter(BankFilter&&) noexcept = default;

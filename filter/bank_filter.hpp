@@ -65,6 +65,8 @@ class BankFilter {
   struct Steps;
   template <int N, int NY>
   struct SizedSteps;
+  struct VectorSteps;
+  static std::unique_ptr<Steps> make_steps(const Bank& bank, const FilterOptions& options);
   std::unique_ptr<Steps> steps_;
 };
 

@@ -25,7 +25,12 @@ struct CombinedPrediction {
   small::Cholesky<NY> cholesky;  ///< of S
 
   CombinedPrediction(Eigen::Index n, Eigen::Index n_y)
-      : state(n), innovation(n_y), innovation_covariance(n_y, n_y), cholesky(n_y), observed_(n_y, n_y) {}
+      : state(n),
+        innovation(n_y),
+        innovation_covariance(n_y, n_y),
+        cholesky(n_y),
+        observed_(n_y, n_y),
+        residual_(n_y) {}
 
   /// x and S after `predict`.
   void expect(const FilterModel<N, NY>& model, FilterStep<N, NY>& step) {
@@ -44,28 +49,32 @@ struct CombinedPrediction {
     spread_share = total > 0.0 ? std::min(1.0, spread / total) : 0.0;
   }
 
-  /// e (NaN where a signal is missing) and its normalised square after `expect` and `update`.
-  template <class Y>
-  void observe(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step) {
-    small::multiply(innovation, model.C, state);
+  /// e (NaN where a signal is missing) and its normalised square, of state and innovation_covariance as they are; the
+  /// square is NaN without any signal.
+  template <class Sensor, class Y>
+  void observe(const Sensor& C, const Y& y) {
+    small::multiply(innovation, C, state);
     innovation = y - innovation;
     observed_ = innovation_covariance;
-    step.residual = innovation;
-    if (step.partial.missing > 0)
-      for (Eigen::Index i = 0; i < y.size(); ++i)
-        if (is_missing(y(i))) {
-          PartialSensor<N, NY>::detach(observed_, i);
-          step.residual(i) = 0.0;
-          innovation(i) = std::numeric_limits<double>::quiet_NaN();
-        }
+    residual_ = innovation;
+    Eigen::Index missing = 0;
+    for (Eigen::Index i = 0; i < y.size(); ++i)
+      if (is_missing(y(i))) {
+        PartialSensor<N, NY>::detach(observed_, i);
+        residual_(i) = 0.0;
+        innovation(i) = std::numeric_limits<double>::quiet_NaN();
+        ++missing;
+      }
     cholesky.factorise(observed_);
-    cholesky.decorrelate(step.residual);
-    nis = cholesky.squared_distance(step.residual);
+    cholesky.decorrelate(residual_);
+    nis = cholesky.squared_distance(residual_);
     if (!(nis < largest_nis)) nis = largest_nis;
+    if (missing == y.size()) nis = std::numeric_limits<double>::quiet_NaN();
   }
 
  private:
   Eigen::Matrix<double, NY, NY> observed_;
+  Eigen::Matrix<double, NY, 1> residual_;
 
   static double weight(const FilterStep<N, NY>& step, std::size_t j) {
     return step.hypothesis_probability()(static_cast<Eigen::Index>(j));
@@ -77,24 +86,36 @@ inline double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::s
 
 /// Probability integral transform of the measurement taken in last (Rosenblatt 1952): component i is the predictive
 /// distribution function of y_i given y_1 .. y_(i-1), whose mixture weights those components have updated; NaN where
-/// y_i is missing. Overwrites step.log_likelihood; `weights` is workspace, one per hypothesis.
-template <int N, int NY, class Y, class Pit>
-void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights, Pit&& pit) {
-  weights = step.hypothesis_probability();
+/// y_i is missing. `weights`: of the hypotheses before the measurement, overwritten; decorrelated(i, j) and
+/// variance(i, j): of signal i's innovation in hypothesis j; `log_likelihood`: workspace, one per hypothesis.
+template <class Y, class Decorrelated, class Variance, class Pit>
+void probability_transform(const Y& y, Decorrelated decorrelated, Variance variance, Eigen::VectorXd& weights,
+                           Eigen::VectorXd& log_likelihood, Pit&& pit) {
   for (Eigen::Index i = 0; i < pit.size(); ++i) {
     if (is_missing(y(i))) {
       pit(i) = std::numeric_limits<double>::quiet_NaN();
       continue;
     }
+    const bool more = i + 1 < pit.size();
     double sum = 0.0;
-    for (std::size_t j = 0; j < step.kalman.size(); ++j) {
-      const double z = step.kalman[j].decorrelated(i), variance = step.kalman[j].cholesky.D(i);
-      sum += weights(static_cast<Eigen::Index>(j)) * normal_cdf(z / std::sqrt(variance));
-      step.log_likelihood(static_cast<Eigen::Index>(j)) = -0.5 * (std::log(variance) + z * z / variance);
+    for (Eigen::Index j = 0; j < weights.size(); ++j) {
+      const double z = decorrelated(i, j), v = variance(i, j);
+      sum += weights(j) * normal_cdf(z / std::sqrt(v));
+      if (more) log_likelihood(j) = -0.5 * (std::log(v) + z * z / v);
     }
     pit(i) = sum < 1.0 ? sum : 1.0;  // weights sum to one up to rounding
-    if (i + 1 < pit.size()) bayes(weights, step.log_likelihood, weights);
+    if (more) bayes(weights, log_likelihood, weights);
   }
+}
+
+/// The same after `update`; overwrites step.log_likelihood.
+template <int N, int NY, class Y, class Pit>
+void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights, Pit&& pit) {
+  const auto of = [&](Eigen::Index j) -> const KalmanStep<N, NY>& { return step.kalman[static_cast<std::size_t>(j)]; };
+  weights = step.hypothesis_probability();
+  probability_transform(
+      y, [&](Eigen::Index i, Eigen::Index j) { return of(j).decorrelated(i); },
+      [&](Eigen::Index i, Eigen::Index j) { return of(j).cholesky.D(i); }, weights, step.log_likelihood, pit);
 }
 
 }  // namespace modebank

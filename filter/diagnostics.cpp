@@ -19,6 +19,7 @@ constexpr double unused = 1e-3;            // usage
 constexpr double flat_entropy = 0.95;      // of log K
 constexpr double dominating_spread = 0.5;  // share of trace S
 constexpr double coloured = 0.01;          // whiteness p
+constexpr double negligible_R = 1e-6;      // of the innovations' variance
 constexpr double outer_probability = 0.025;
 
 using Series = std::vector<std::vector<double>>;  // run by run
@@ -63,7 +64,7 @@ double mean_of(const Series& stretches) {
 /// What is known of the samples that belong to one row.
 struct Collected {
   Index samples = 0, scores = 0, above = 0, below = 0, entropy_samples = 0;
-  double usage = 0.0, entropy = 0.0, spread = 0.0, visits = 0.0, visited = 0.0;
+  double usage = 0.0, entropy = 0.0, spread = 0.0, innovation = 0.0, visits = 0.0, visited = 0.0;
   Series nis, nees;
   std::vector<double> whiteness;
   Eigen::VectorXd squared_state_error;
@@ -124,6 +125,7 @@ class Collector {
   void add_scores(const RunEvaluation& e, Index k, std::vector<std::vector<double>>& z) {
     ++sums.samples;
     if (e.spread_share.size() > 0) sums.spread += e.spread_share(k);
+    sums.innovation += e.innovation_covariance.col(k).reshaped(e.pit.rows(), e.pit.rows()).trace();
     Index signals = 0;
     for (Index i = 0; i < e.pit.rows(); ++i) {
       if (std::isnan(e.pit(i, k))) continue;
@@ -168,11 +170,21 @@ class Collector {
   }
 };
 
-Verdict judge(const DiagnosticsRow& row) {
+/// Whether an interval of a tail's fraction holds all of the band that counts as calibrated, and more: nothing is
+/// known.
+bool says_nothing(double lower, double upper) { return !(lower >= least_tail || upper <= largest_tail); }
+
+/// `gaussian`: the prediction is one Gaussian, so that a true filter's NIS is chi-square.
+Verdict judge(const DiagnosticsRow& row, bool gaussian) {
   if (row.samples == 0) return Verdict::undecided;
   if (row.tail_above_lower > largest_tail) return Verdict::overconfident;
   if (row.tail_above_upper < least_tail || row.tail_below_lower > largest_tail) return Verdict::underconfident;
   if (row.tail_below_upper < least_tail) return Verdict::overconfident;
+  if (gaussian && row.nis_mean > row.nis_upper) return Verdict::overconfident;
+  if (gaussian && row.nis_mean < row.nis_lower) return Verdict::underconfident;
+  if (says_nothing(row.tail_above_lower, row.tail_above_upper) ||
+      says_nothing(row.tail_below_lower, row.tail_below_upper))
+    return Verdict::undecided;
   return Verdict::calibrated;
 }
 
@@ -200,14 +212,15 @@ DiagnosticsRow make_row(const Collected& c, const Bank& bank) {
   const Interval nis = chi_square_mean_interval(c.nis, n_y), nees = chi_square_mean_interval(c.nees, n_y);
   row.nis_lower = nis.lower;
   row.nis_upper = nis.upper;
-  row.nees_mean = mean_of(c.nees);
-  row.nees_lower = nees.lower;
-  row.nees_upper = nees.upper;
+  const bool judged = bank.R.trace() * N >= negligible_R * c.innovation;
+  row.nees_mean = judged ? mean_of(c.nees) : not_a_number;
+  row.nees_lower = judged ? nees.lower : not_a_number;
+  row.nees_upper = judged ? nees.upper : not_a_number;
   row.state_rmse =
       (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
   row.whiteness_p = fisher_p(c.whiteness);
   row.spread_share = c.spread / N;
-  row.verdict = judge(row);
+  row.verdict = judge(row, bank.mode_count() == 1);
   return row;
 }
 
@@ -221,7 +234,12 @@ std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow
   if (!modes.empty() && all.entropy > flat_entropy) add_flag(flags, "probabilities flat");
   if (all.spread_share > dominating_spread) add_flag(flags, "spread dominates S");
   if (all.tail_above_lower > largest_tail && all.tail_below_lower > largest_tail) add_flag(flags, "heavy tails");
+  if (all.nis_mean > all.nis_upper) add_flag(flags, "mean NIS above a true filter's");
+  if (all.nis_mean < all.nis_lower) add_flag(flags, "mean NIS below a true filter's");
   if (all.whiteness_p < coloured) add_flag(flags, "innovations not white");
+  if (all.verdict == Verdict::undecided) add_flag(flags, "too few samples for a verdict");
+  if (std::isnan(all.nees_mean) && all.state_rmse.allFinite())
+    add_flag(flags, "R is as good as zero, so the state is the measurement: no NEES");
   return flags;
 }
 

@@ -12,7 +12,10 @@ namespace modebank {
 
 /// Whether a filter's stated uncertainty is true, by its PIT tails: overconfident when more than 4 % of the samples lie
 /// above (or fewer than 1 % below) the quantiles that 2.5 % should lie beyond, underconfident the other way round, each
-/// with 95 % confidence. Too many above decides, whatever lies below: that is what hurts.
+/// with 95 % confidence. Too many above decides, whatever lies below: that is what hurts. Where the tails do not speak,
+/// the mean NIS does if the filter has one mode (a mixture's NIS is not chi-square, so there it is only flagged).
+/// undecided: the interval of a tail's fraction is wider than the band and could be anything, as with a few hundred
+/// samples.
 enum class Verdict { undecided, calibrated, overconfident, underconfident };
 
 template <>
@@ -41,10 +44,11 @@ struct DiagnosticsRow {
   double tail_above = 0.0, tail_above_lower = 0.0, tail_above_upper = 0.0;
   double tail_below = 0.0, tail_below_lower = 0.0, tail_below_upper = 0.0;
   double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< time average, interval of it if the filter is true
-  double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< of the state after the measurement, with truth
-  Eigen::VectorXd state_rmse;                                  ///< n_y, state minus truth; NaN without truth
-  double whiteness_p = 0.0;                                    ///< Ljung & Box, as in the summary
-  double spread_share = 0.0;                                   ///< mean share of the modes' differences in trace S
+  double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< of the state after the measurement, with truth;
+  ///< NaN where R is next to nothing: the state is then the measurement, and its stated covariance R no judgement of it
+  Eigen::VectorXd state_rmse;  ///< n_y, state minus truth; NaN without truth
+  double whiteness_p = 0.0;    ///< Ljung & Box, as in the summary
+  double spread_share = 0.0;   ///< mean share of the modes' differences in trace S
   Verdict verdict = Verdict::undecided;
   std::string flags;  ///< what stands out, separated by "; "
 };

@@ -6,6 +6,7 @@
 #include "filter/filter_step.hpp"
 #include "filter/run_samples.hpp"
 #include "filter/scalar_imm.hpp"
+#include "filter/vector_imm.hpp"
 #include "ident/not_a_number.hpp"
 
 namespace modebank {
@@ -45,20 +46,37 @@ void record(const FilterEstimate& estimate, Index k, RunEvaluation& e) {
   e.spread_share(k) = estimate.spread_share;
 }
 
-/// Filter alone, nothing written down.
-template <int N, int NY>
-double sum_log_density(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+/// Filter alone: calls take(k, log density) for every sample it scores.
+template <int N, int NY, class Take>
+void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions& options, Take take) {
   const FilterModel<N, NY> model(bank, options);
   FilterStep<N, NY> step(model);
-  double sum = 0.0;
   FilterState<N> state = initial_state(model);
   RunSamples(bank, run, options.time_steps).for_each([&](const SampleFeed& feed, Index k, bool starts) {
     if (starts) return start(model, feed.start(), state);
     advance(model, feed, state, step);
     const double log_density = update(model, run.state.col(k), step, state);
-    if (!std::isnan(log_density)) sum += log_density;
+    if (!std::isnan(log_density)) take(k, log_density);
   });
-  return sum;
+}
+
+template <class Take>
+void score_by_vectors(const Bank& bank, const Trajectory& run, const FilterOptions& options, Take take) {
+  VectorImm imm(bank, options);
+  RunSamples(bank, run, options.time_steps).for_each([&](const SampleFeed& feed, Index k, bool starts) {
+    if (starts) return imm.start(feed.start());
+    for (Index i = 1; i < feed.steps(); ++i) imm.skip(feed.inputs());
+    imm.predict(feed.inputs());
+    const double log_density = imm.update(run.state.col(k));
+    if (!std::isnan(log_density)) take(k, log_density);
+  });
+}
+
+template <class Take>
+void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions& options, Take take) {
+  if (VectorImm::can_step(bank, options)) return score_by_vectors(bank, run, options, take);
+  with_sizes(bank.structure.dimension(), bank.C.rows(),
+             [&]<int N, int NY>() { score_samples<N, NY>(bank, run, options, take); });
 }
 
 }  // namespace
@@ -105,8 +123,16 @@ double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptio
   if (scalar_imm::can_step(bank, options) && scalar_imm::can_take(bank, run, options))
     return scalar_imm::log_likelihood(scalar_imm::Parameters(bank),
                                       {run.state.data(), run.input.data(), run.samples()});
-  return with_sizes(bank.structure.dimension(), bank.C.rows(),
-                    [&]<int N, int NY>() { return sum_log_density<N, NY>(bank, run, options); });
+  double sum = 0.0;
+  score_samples(bank, run, options, [&](Index, double log_density) { sum += log_density; });
+  return sum;
+}
+
+Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  check_run(bank, run);
+  Eigen::VectorXd result = Eigen::VectorXd::Constant(run.samples(), not_a_number);
+  score_samples(bank, run, options, [&](Index k, double log_density) { result(k) = log_density; });
+  return result;
 }
 
 }  // namespace modebank

@@ -67,9 +67,12 @@ RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const Filter
 /// Nothing is stored, so maximum likelihood may call it thousands of times. Same conditions as evaluate_run.
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
-/// The same of many runs at once, run i with bank i: scalar banks go through the processor's vector registers together,
-/// a run per lane, so that studies take a fraction of the time. To rounding the same numbers.
+/// The log likelihoods of many runs at once, run i with bank i: scalar banks go through the processor's vector
+/// registers together, a run per lane, so that studies take a fraction of the time. To rounding the same numbers.
 std::vector<double> log_likelihoods(const std::vector<const Bank*>& banks, const std::vector<const Trajectory*>& runs,
                                     const FilterOptions& options);
+
+/// The log predictive density of every sample of a run [nats], N; NaN where there is none.
+Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
 }  // namespace modebank

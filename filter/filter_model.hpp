@@ -30,9 +30,9 @@ struct FilterModel {
   Eigen::Matrix<double, NY, N> C;
   Eigen::Matrix<double, NY, NY> R;
   TransitionMatrix transition;
-  Eigen::VectorXd initial_probability;           ///< K
-  Eigen::Matrix<double, N, NY> start_gain;       ///< x[0] = start_gain y[0]
-  Eigen::Matrix<double, N, N> start_covariance;  ///< P[0]
+  Eigen::VectorXd initial_probability;                  ///< K
+  Eigen::Matrix<double, N, Eigen::Dynamic> start_gain;  ///< x[0] = start_gain y[0], y[0] all of z with lags
+  Eigen::Matrix<double, N, N> start_covariance;         ///< P[0]
 
   /// FilterVariant::kf keeps the first mode alone. Requires check_sizes(bank).
   FilterModel(const Bank& bank, const FilterOptions& options);
@@ -70,6 +70,8 @@ auto with_sizes(Eigen::Index states, Eigen::Index measurements, F&& f) {
   if (states == 1 && measurements == 1) return f.template operator()<1, 1>();
   if (states == 2 && measurements == 2) return f.template operator()<2, 2>();
   if (states == 3 && measurements == 3) return f.template operator()<3, 3>();
+  if (states == 2 && measurements == 1) return f.template operator()<2, 1>();  // one signal and its lags
+  if (states == 3 && measurements == 1) return f.template operator()<3, 1>();
   return f.template operator()<Eigen::Dynamic, Eigen::Dynamic>();
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "filter/combined.hpp"
 #include "filter/filter_step.hpp"
+#include "filter/vector_imm.hpp"
 
 namespace modebank {
 
@@ -26,20 +28,24 @@ class Imm {
         step_(model_),
         state_(initial_state(model_)),
         combined_(model_.structure.dimension(), model_.C.rows()),
-        estimate_(model_.structure.dimension()) {}
+        estimate_(model_.structure.dimension()) {
+    if (VectorImm::can_step(bank, options)) vector_.emplace(bank, options);
+  }
 
   /// Starts at the first measurement.
   void start(const Measurement& y) {
+    if (vector_) return vector_->start(y), vector_->merge(estimate_.mean, estimate_.covariance);
     modebank::start(model_, y, state_);
     merge(state_.modes, state_.mode_probability, estimate_);
   }
   /// From the sample before, whose input was `u`, to this one, which measured `y` (NaN: not). Returns the measurement's
   /// log predictive density [nats], NaN when there was none.
   double step(const Input& u, const Measurement& y) {
+    if (vector_) return vector_step(u, y);
     predict(model_, state_, u, step_);
     combined_.expect(model_, step_);
     const double log_density = update(model_, y, step_, state_);
-    combined_.observe(model_, y, step_);
+    combined_.observe(model_.C, y);
     merge(state_.modes, state_.mode_probability, estimate_);
     return log_density;
   }
@@ -50,15 +56,29 @@ class Imm {
   const Measurement& innovation() const { return combined_.innovation; }
   const auto& innovation_covariance() const { return combined_.innovation_covariance; }
   double nis() const { return combined_.nis; }
-  Modes mode_probability() const { return state_.mode_probability; }
-  Modes mode_probability_predicted() const { return step_.predicted_probability; }
+  Modes mode_probability() const {
+    return vector_ ? Modes(vector_->mode_probability()) : Modes(state_.mode_probability);
+  }
+  Modes mode_probability_predicted() const {
+    return vector_ ? Modes(vector_->predicted_probability()) : Modes(step_.predicted_probability);
+  }
 
  private:
+  std::optional<VectorImm> vector_;  ///< takes the steps where it can
   FilterModel<N, NY> model_;
   FilterStep<N, NY> step_;
   FilterState<N> state_;
   CombinedPrediction<N, NY> combined_;
   Gaussian<N> estimate_;
+
+  double vector_step(const Input& u, const Measurement& y) {
+    vector_->predict(u);
+    vector_->combine(combined_.state, combined_.innovation_covariance, combined_.spread_share);
+    const double log_density = vector_->update(y);
+    combined_.observe(model_.C, y);
+    vector_->merge(estimate_.mean, estimate_.covariance);
+    return log_density;
+  }
 
   static const Bank& checked(const Bank& bank) {
     check_sizes(bank);

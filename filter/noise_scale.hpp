@@ -59,13 +59,22 @@ double explained_square(const Sensor& sensor, const Matrix& P, const Kalman& kal
   return nis > most ? sum * (most / nis) : sum;
 }
 
+/// One sample's move of the scale. `share`, `square`: the modes' sums above; nothing moves where they overflow.
+inline void move_noise_scale(const NoiseAdaptation& adaptation, double share, double square, double n_y, double& scale,
+                             double& samples) {
+  if (!std::isfinite(share) || !std::isfinite(square)) return;
+  const double f = adaptation.forgetting, n0 = adaptation.prior_samples;
+  const double squares = f * samples * scale + (1.0 - f) * n0 + scale * square / n_y;
+  samples = f * samples + (1.0 - f) * n0 + share / n_y;
+  scale = std::clamp(squares / samples, 1.0 / largest_noise_scale, largest_noise_scale);
+}
+
 /// Moves state.noise_scale after the measurement has been taken in. `prior`: the probability of every Kalman step's
 /// hypothesis before it (step.log_likelihood holds what the measurement says); the hypotheses of mode j follow each
 /// other. `sensor` has the C that was measured with.
 template <class Model, class Sensor, class Step, class State>
 void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::VectorXd& prior, Step& step,
                        State& state) {
-  const double f = model.noise_adaptation.forgetting, n0 = model.noise_adaptation.prior_samples;
   const double s = state.noise_scale, n_y = static_cast<double>(step.residual.size() - step.partial.missing);
   const std::size_t per_mode = step.kalman.size() / model.modes.size();
   const double largest = step.log_likelihood.maxCoeff();
@@ -79,11 +88,8 @@ void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::Ve
     share += weight * s * explained_share(sensor, Q, step.kalman[h], step.residual);
     square += weight * s * explained_square(sensor, Q, step.kalman[h], step.residual);
   }
-  if (!(total > 0.0) || !std::isfinite(share) || !std::isfinite(square)) return;
-  const double kept = f * state.noise_samples + (1.0 - f) * n0;
-  const double squares = f * state.noise_samples * s + (1.0 - f) * n0 + s * square / total / n_y;
-  state.noise_samples = kept + share / total / n_y;
-  state.noise_scale = std::clamp(squares / state.noise_samples, 1.0 / largest_noise_scale, largest_noise_scale);
+  if (!(total > 0.0)) return;
+  move_noise_scale(model.noise_adaptation, share / total, square / total, n_y, state.noise_scale, state.noise_samples);
 }
 
 }  // namespace modebank

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -44,11 +45,19 @@ struct RefineCandidate {
   bool selected = false;
 };
 
+/// How the fit went on once R was known to be more than nothing.
+struct MeasurementStage {
+  Index iterations = 0;  ///< with measurement noise; 0: there is none, or they would not have paid
+  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out
+  double score = std::numeric_limits<double>::quiet_NaN();  ///< the same after them; NaN without cross-validation or R
+};
+
 struct Refinement {
   Bank bank;
   Bank start;                               ///< the mixture's bank
   std::vector<RefineCandidate> candidates;  ///< the best number of iterations of each start
   std::vector<double> objective;  ///< penalised log-likelihood of the training transitions before each iteration
+  MeasurementStage measurement;
 };
 
 /// Expectation-maximisation of the switching model (switching_regression.hpp) from banks of mixtures. Which start, what
@@ -60,9 +69,13 @@ struct Refinement {
 /// none (unit information: Kass & Wasserman 1995); Q as if 1, 4 or 16 more transitions of the global residual
 /// covariance were seen, whichever the cross-validation likes most; 0.1 on every count of T and of first modes.
 ///
-/// The state counts as measured exactly in the fit of theta, Q and T, which is exact for R = 0 and an approximation for
-/// R > 0: it leaves measurement noise in Q and draws theta to errors-in-variables. R, and with it how much of Q is
-/// left, is then estimated by the filter's likelihood (refine_noise.hpp), and kept where that is better.
+/// The state counts as measured exactly at first, which is exact for R = 0; otherwise it leaves measurement noise in Q
+/// and draws theta to errors-in-variables. R, and with it how much of Q is left, is then estimated by the filter's
+/// likelihood (refine_noise.hpp) and kept where that is better. Where it is, or where R was given, expectation-
+/// maximisation goes on with the states unknown, all of theta, Q, R and T together (switching_state_space.hpp): exact
+/// for one mode, Kim's approximation for several, so the filter's likelihood need not rise at every step. How many
+/// iterations of that (none among them) is decided by the runs left out, without cross-validation by the filter's
+/// likelihood of the training runs, penalised by the prior, whose best iterate is kept.
 /// Requires linear or lagged linear banks of one structure; throws std::invalid_argument for a motion model's.
 Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& starts,
                        const RefineOptions& options, const FilterOptions& filter);

@@ -73,7 +73,7 @@ SwitchingRegression start_from_stretches(const TrainingTransitions& transitions,
   for (Index j = 0; j < modes; ++j)
     posterior.probability.col(j).segment(slots[static_cast<std::size_t>(j) % slots.size()], length).setOnes();
   const Eigen::MatrixXd transition = model.transition;
-  maximise(transitions, posterior, prior, SharedParts::none, model);
+  maximise(transitions.structure, sum_transitions(transitions, posterior, prior), prior, SharedParts::none, model);
   model.transition = transition;
   model.initial.setConstant(1.0 / static_cast<double>(modes));
   return model;

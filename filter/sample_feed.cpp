@@ -48,6 +48,8 @@ void SampleFeed::restore(const Memory& memory) {
   if (memory.inputs.rows() != recent_.rows() || memory.inputs.cols() != recent_.cols() ||
       memory.measurements.rows() != measurements_.rows() || memory.measurements.cols() != measurements_.cols())
     throw std::invalid_argument("the remembered samples are not those of this bank");
+  if (!memory.inputs.allFinite() || memory.samples < 0 || memory.whole < 0 || memory.whole > memory.samples)
+    throw std::invalid_argument("the remembered samples are none that a filter has");
   recent_ = memory.inputs;
   measurements_ = memory.measurements;
   samples_ = memory.samples;

@@ -89,50 +89,26 @@ class RunSmoother {
   Eigen::VectorXd scale_;
 };
 
-/// One mode's weighted regression about the prior's mean.
-struct ModeData {
-  Eigen::VectorXd weight;    // N
-  Eigen::MatrixXd G;         // q x q, sum g phi phi'
-  Eigen::MatrixXd H;         // q x n, sum g phi r' about the prior's mean
-  double transitions = 0.0;  // sum g
-};
-
 class Maximiser {
  public:
-  Maximiser(const TrainingTransitions& transitions, const SwitchingPrior& prior, SwitchingRegression& model)
-      : transitions_(transitions),
-        prior_(prior),
-        model_(model),
-        about_prior_(transitions.data.increments -
-                     transitions.data.regressors * coefficients(transitions.structure, prior.mean)) {}
+  Maximiser(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
+            SwitchingRegression& model)
+      : structure_(structure), sums_(sums), prior_(prior), model_(model) {}
 
-  void raise(const ModePosterior& posterior, SharedParts shared) {
-    const Index K = model_.modes();
-    data_.resize(static_cast<std::size_t>(K));
-    tbb::parallel_for(Index{0}, K, [&](Index j) { gather(posterior, j); });
+  void raise(SharedParts shared) {
     for (int i = 0; i < alternations; ++i) {
       if (shared == SharedParts::theta) set_common_theta();
-      tbb::parallel_for(Index{0}, K, [&](Index j) {
+      for (Index j = 0; j < model_.modes(); ++j) {
         if (shared != SharedParts::theta) set_theta(j);
         noise(j) = with_prior(scatter(j), at(j).transitions);
-      });
+      }
       if (shared == SharedParts::noise) set_common_noise();
     }
   }
 
  private:
-  void gather(const ModePosterior& posterior, Index j) {
-    const Eigen::MatrixXd& X = transitions_.data.regressors;
-    ModeData& data = at(j);
-    data.weight = posterior.probability.col(j).cwiseProduct(transitions_.usable);
-    const Eigen::MatrixXd weighted = data.weight.asDiagonal() * X;
-    data.G = weighted.transpose() * X;
-    data.H = weighted.transpose() * about_prior_;
-    data.transitions = data.weight.sum();
-  }
-
   Eigen::MatrixXd& noise(Index j) { return model_.Q[static_cast<std::size_t>(j)]; }
-  ModeData& at(Index j) { return data_[static_cast<std::size_t>(j)]; }
+  const ModeSums& at(Index j) const { return sums_.modes[static_cast<std::size_t>(j)]; }
 
   void set_theta(Index j) {
     const Eigen::MatrixXd Q_inverse = inverse_of(noise(j));
@@ -153,11 +129,11 @@ class Maximiser {
     model_.theta.colwise() = prior_.mean + information.ldlt().solve(pull);
   }
 
-  Eigen::MatrixXd scatter(Index j) {
-    const Eigen::VectorXd difference = model_.theta.col(j) - prior_.mean;
-    const Eigen::MatrixXd r =
-        about_prior_ - transitions_.data.regressors * coefficients(transitions_.structure, difference);
-    return r.transpose() * at(j).weight.asDiagonal() * r;
+  /// Sum of squares about the mode's own theta.
+  Eigen::MatrixXd scatter(Index j) const {
+    const Eigen::MatrixXd D = coefficients(structure_, model_.theta.col(j) - prior_.mean);
+    const Eigen::MatrixXd cross = D.transpose() * at(j).H;
+    return at(j).S - cross - cross.transpose() + D.transpose() * at(j).G * D;
   }
 
   Eigen::MatrixXd with_prior(const Eigen::MatrixXd& sum, double transitions) const {
@@ -174,11 +150,10 @@ class Maximiser {
     for (Eigen::MatrixXd& Q : model_.Q) Q = with_prior(sum, count);
   }
 
-  const TrainingTransitions& transitions_;
+  const LinearStructure& structure_;
+  const SwitchingSums& sums_;
   const SwitchingPrior& prior_;
   SwitchingRegression& model_;
-  Eigen::MatrixXd about_prior_;  // N x n, increments minus the prior mean's predictions
-  std::vector<ModeData> data_;
 };
 
 }  // namespace
@@ -196,29 +171,39 @@ ModePosterior smooth_modes(const TrainingTransitions& transitions, const Switchi
   return posterior;
 }
 
-void maximise(const TrainingTransitions& transitions, const ModePosterior& posterior, const SwitchingPrior& prior,
+SwitchingSums sum_transitions(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                              const SwitchingPrior& prior) {
+  const Eigen::MatrixXd& X = transitions.data.regressors;
+  const Eigen::MatrixXd r = transitions.data.increments - X * coefficients(transitions.structure, prior.mean);
+  SwitchingSums sums{std::vector<ModeSums>(static_cast<std::size_t>(posterior.probability.cols())), posterior.switches,
+                     posterior.first};
+  tbb::parallel_for(Index{0}, posterior.probability.cols(), [&](Index j) {
+    const Eigen::VectorXd g = posterior.probability.col(j).cwiseProduct(transitions.usable);
+    const Eigen::MatrixXd weighted = g.asDiagonal() * X;
+    sums.modes[static_cast<std::size_t>(j)] = {weighted.transpose() * X, weighted.transpose() * r,
+                                               r.transpose() * g.asDiagonal() * r, g.sum()};
+  });
+  return sums;
+}
+
+void maximise(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
               SharedParts shared, SwitchingRegression& model) {
-  Maximiser(transitions, prior, model).raise(posterior, shared);
-  const Eigen::MatrixXd counts = posterior.switches.array() + prior.counts;
+  Maximiser(structure, sums, prior, model).raise(shared);
+  const Eigen::MatrixXd counts = sums.switches.array() + prior.counts;
   for (Index i = 0; i < model.modes(); ++i) {
     const double row = counts.row(i).sum();
     if (row > 0.0) model.transition.row(i) = counts.row(i) / row;
   }
-  model.initial = posterior.first.array() + prior.counts;
+  model.initial = sums.first.array() + prior.counts;
   model.initial /= model.initial.sum();
 }
 
-std::vector<Eigen::MatrixXd> parameter_covariances(const TrainingTransitions& transitions,
-                                                   const ModePosterior& posterior, const SwitchingPrior& prior,
+std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, const SwitchingPrior& prior,
                                                    const SwitchingRegression& model) {
-  const Eigen::MatrixXd& X = transitions.data.regressors;
   std::vector<Eigen::MatrixXd> covariances;
-  for (Index j = 0; j < model.modes(); ++j) {
-    const Eigen::VectorXd weight = posterior.probability.col(j).cwiseProduct(transitions.usable);
-    const Eigen::MatrixXd G = X.transpose() * weight.asDiagonal() * X;
-    const Eigen::MatrixXd Q_inverse = inverse_of(model.Q[static_cast<std::size_t>(j)]);
-    covariances.push_back(inverse_of(Eigen::kroneckerProduct(Q_inverse, G).eval() + prior.information));
-  }
+  for (std::size_t j = 0; j < sums.modes.size(); ++j)
+    covariances.push_back(
+        inverse_of(Eigen::kroneckerProduct(inverse_of(model.Q[j]), sums.modes[j].G).eval() + prior.information));
   return covariances;
 }
 

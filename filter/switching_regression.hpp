@@ -51,14 +51,33 @@ struct ModePosterior {
 /// density. The log-likelihood is that of the IMM filter for R = 0.
 ModePosterior smooth_modes(const TrainingTransitions& transitions, const SwitchingRegression& model);
 
+/// What a mode's regression needs to know of the transitions: expected sums over them, each weighted with the mode's
+/// probability g; r = increment minus what the prior's mean predicts.
+struct ModeSums {
+  Eigen::MatrixXd G;         ///< q x q, sum g phi phi'
+  Eigen::MatrixXd H;         ///< q x n, sum g phi r'
+  Eigen::MatrixXd S;         ///< n x n, sum g r r'
+  double transitions = 0.0;  ///< sum g
+};
+
+/// All modes' sums and how the modes follow each other.
+struct SwitchingSums {
+  std::vector<ModeSums> modes;  ///< K
+  Eigen::MatrixXd switches;     ///< K x K expected counts of (i, then j)
+  Eigen::VectorXd first;        ///< K expected counts of the modes that runs start from
+};
+
+/// The sums over transitions that were measured exactly.
+SwitchingSums sum_transitions(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                              const SwitchingPrior& prior);
+
 /// Raises the expected log posterior of `model`: theta given Q, then Q given theta, a few times each (ECM: Meng & Rubin
-/// 1993), T and initial probabilities exactly. `model` holds the parameters that `posterior` was computed with.
-void maximise(const TrainingTransitions& transitions, const ModePosterior& posterior, const SwitchingPrior& prior,
+/// 1993), T and initial probabilities exactly. `model` holds the parameters that the sums were computed with.
+void maximise(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
               SharedParts shared, SwitchingRegression& model);
 
 /// Covariance of each mode's theta, (Q^-1 (x) sum g phi phi' + prior information)^-1, given the smoothed modes.
-std::vector<Eigen::MatrixXd> parameter_covariances(const TrainingTransitions& transitions,
-                                                   const ModePosterior& posterior, const SwitchingPrior& prior,
+std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, const SwitchingPrior& prior,
                                                    const SwitchingRegression& model);
 
 /// Log density of the prior at `model`, up to a constant.

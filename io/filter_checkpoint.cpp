@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "ident/error.hpp"
 #include "ident/not_a_number.hpp"
@@ -29,7 +30,11 @@ json to_json(const Eigen::MatrixXd& matrix) {
 
 Eigen::MatrixXd matrix_of(const json& stored) {
   const json& columns = stored.at("columns");
-  Eigen::MatrixXd matrix(stored.at("rows").get<Eigen::Index>(), static_cast<Eigen::Index>(columns.size()));
+  const auto rows = stored.at("rows").get<std::size_t>();
+  for (const json& column : columns)
+    if (!stored.at("rows").is_number_unsigned() || column.size() != rows) throw std::invalid_argument("column length");
+  Eigen::MatrixXd matrix(columns.empty() ? 0 : static_cast<Eigen::Index>(rows),
+                         static_cast<Eigen::Index>(columns.size()));
   for (Eigen::Index j = 0; j < matrix.cols(); ++j)
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
       const json& value = columns.at(static_cast<std::size_t>(j)).at(static_cast<std::size_t>(i));
@@ -79,6 +84,8 @@ FilterSnapshot load_checkpoint(const std::filesystem::path& path, const std::str
     snapshot.samples.time_s = stored.at("time_s").is_null() ? not_a_number : stored.at("time_s").get<double>();
     return snapshot;
   } catch (const json::exception&) {
+    throw DataError(path.string() + ": is not a whole checkpoint of track");
+  } catch (const std::invalid_argument&) {
     throw DataError(path.string() + ": is not a whole checkpoint of track");
   }
 }

@@ -1,4 +1,5 @@
 // The live filter from outside: a program between two pipes.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -128,6 +129,69 @@ TEST_F(Track, AnswersMalformedLinesOnStderrAndKeepsItsState) {
     return result;
   };
   EXPECT_EQ(answers(true), answers(false));
+}
+
+TEST_F(Track, TakesWhatOtherProgramsWrite) {
+  const std::vector<std::string> samples = lines("run_01.csv");
+  const auto answer = [&](const std::vector<std::string>& input, std::size_t answers) {
+    PipedProgram program(command());
+    for (const std::string& line : input) program.write(line);
+    program.close_input();
+    std::vector<std::string> result;
+    for (std::size_t k = 0; k < answers; ++k) result.push_back(program.read_line().value_or("none"));
+    EXPECT_FALSE(program.read_line());
+    EXPECT_EQ(program.wait(), 0);
+    EXPECT_EQ(program.errors(), "");
+    return result;
+  };
+  const std::vector<double> a = numbers(samples[1]), b = numbers(samples[2]);
+  const auto plain = answer({samples[0] + "\n", samples[1] + "\n", samples[2] + "\n"}, 3);
+  // A byte order mark, CR LF, empty lines, columns in another order and more of them, no newline at the end.
+  const auto row = [](const std::vector<double>& v) { return fmt::format("{},x,{},{},{}", v[3], v[1], v[0], v[2]); };
+  EXPECT_EQ(answer({"\xEF\xBB\xBF"
+                    "right,note,\"wz\",time,left\r\n",
+                    "\r\n", row(a) + "\r\n\n", row(b)},
+                   3),
+            plain);
+  // Python's NaN and Infinity are nothing measured.
+  const auto object = [](const std::vector<double>& v, const std::string& wz) {
+    return fmt::format("{{\"time\": {}, \"note\": \"NaN\", \"wz\": {}, \"left\": {}, \"right\": {}}}\n", v[0], wz, v[2],
+                       v[3]);
+  };
+  const std::string first = object(a, fmt::format("{}", a[1]));
+  EXPECT_EQ(answer({"\xEF\xBB\xBF" + first, object(b, "NaN")}, 2), answer({first, object(b, "null")}, 2));
+  EXPECT_EQ(answer({first, object(b, "-Infinity")}, 2), answer({first, object(b, "null")}, 2));
+}
+
+TEST_F(Track, RefusesCheckpointsThatNoFilterWrote) {
+  const std::vector<std::string> samples = lines("run_01.csv");
+  const std::string checkpoint = file("state.json").string();
+  {
+    PipedProgram program(command({"--track.checkpoint", checkpoint}));
+    for (std::size_t k = 0; k < 5; ++k) program.write(samples[k] + "\n");
+    program.close_input();
+    EXPECT_EQ(program.wait(), 0);
+  }
+  std::ifstream stream(checkpoint);
+  const json good = json::parse(stream);
+  const auto resume = [&](const char* key, const json& value) {
+    json bad = good;
+    bad[json::json_pointer(key)] = value;
+    write("bad.json", bad.dump());
+    const ProgramResult result = modebank({"track", archive(), "--track.resume", file("bad.json").string()});
+    EXPECT_EQ(result.status, 1) << key << result.err;
+    EXPECT_THAT(result.err, HasSubstr("bad.json")) << key;
+  };
+  resume("/means/rows", -1);
+  resume("/means/rows", 1e18);
+  resume("/means/columns", json::array());
+  resume("/inputs/columns/0/0", json());
+  resume("/mode_probability/columns/0/0", -0.5);
+  resume("/noise_scale", 0.0);
+  resume("/time_s", json());
+  resume("/samples", -3);
+  resume("/started", "yes");
+  resume("/format", "something else");
 }
 
 TEST_F(Track, PredictsOverMissingMeasurementsAndGaps) {

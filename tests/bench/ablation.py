@@ -23,6 +23,8 @@ FEATURES = [
     ("without cross-validation", {"bank.folds": "1"}),
     ("without restarts", {"bank.restarts": "0"}),
     ("without screening", {"bank.screen": "false"}),
+    ("without measurement noise (R = 1e-12)", {"bank.measurement_variance": "1e-12"}),
+    ("modes share what cross-validation likes most", {"bank.share": "best"}),
     ("modes share theta", {"bank.share": "theta"}),
     ("modes share Q", {"bank.share": "noise"}),
     ("with parameter noise", {"filter.parameter_noise": "true"}),

@@ -75,6 +75,38 @@ TEST(Diagnostics, VerdictsNameTheDirection) {
   }
 }
 
+TEST(Diagnostics, FewSamplesAllowNoVerdictUnlessTheyArePlain) {
+  const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
+  const DiagnosticsRow few = diagnose_runs(bank, truth_runs(bank, 1, 120)).front();
+  EXPECT_EQ(few.verdict, Verdict::undecided);
+  EXPECT_THAT(few.flags, testing::HasSubstr("too few samples for a verdict"));
+  Bank narrow = bank;
+  narrow.modes[0].Q *= 0.05;
+  EXPECT_EQ(diagnose_runs(narrow, truth_runs(bank, 1, 120)).front().verdict, Verdict::overconfident);
+}
+
+TEST(Diagnostics, NisSpeaksWhereTheTailsDoNot) {
+  const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
+  std::vector<Trajectory> runs = truth_runs(bank, 1, 800);
+  std::vector<RunEvaluation> evaluations{evaluate_run(bank, runs[0], {})};
+  EXPECT_EQ(diagnose("bank", bank, runs, evaluations).front().verdict, Verdict::calibrated);
+  evaluations[0].nis *= 0.5;
+  const DiagnosticsRow row = diagnose("bank", bank, runs, evaluations).front();
+  EXPECT_EQ(row.verdict, Verdict::underconfident);
+  EXPECT_THAT(row.flags, testing::HasSubstr("mean NIS below a true filter's"));
+}
+
+TEST(Diagnostics, NoNeesWhereTheStateIsTheMeasurement) {
+  Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
+  const std::vector<Trajectory> runs = truth_runs(bank, 2, 800);
+  EXPECT_TRUE(std::isfinite(diagnose_runs(bank, runs).front().nees_mean));
+  bank.R *= 1e-6;
+  const DiagnosticsRow row = diagnose_runs(bank, runs).front();
+  EXPECT_TRUE(std::isnan(row.nees_mean) && std::isnan(row.nees_upper));
+  EXPECT_NEAR(row.state_rmse(0), 1e-3, 1e-4);
+  EXPECT_THAT(row.flags, testing::HasSubstr("no NEES"));
+}
+
 TEST(Diagnostics, ASwitchingBankIsCalibratedModeByMode) {
   Bank bank = example_bank(1, 2, 3, 1e-6);
   bank.transition = TransitionMatrix::sticky(3, 0.95);

@@ -68,7 +68,7 @@ void step_without_allocation(const Bank& bank, const FilterOptions& options) {
     } else {
       if (k % 5 == 0 && run.state.rows() > 1) run.state(0, k) = std::nan("");
       update(model, run.state.col(k), step, state);
-      combined.observe(model, run.state.col(k), step);
+      combined.observe(model.C, run.state.col(k));
       probability_transform(run.state.col(k), step, weights, pit);
     }
     merge(state.modes, state.mode_probability, estimate);

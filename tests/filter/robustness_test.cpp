@@ -1,8 +1,10 @@
 // No number makes the filter give NaN, and one code serves fixed and dynamic sizes.
 #include <gtest/gtest.h>
 
+#include "filter/bank_filter.hpp"
 #include "filter/evaluate.hpp"
 #include "filter/filter_step.hpp"
+#include "filter/run_samples.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -15,21 +17,30 @@ using test::simulate_bank;
 constexpr FilterVariant all_variants[] = {FilterVariant::imm,  FilterVariant::mmae,      FilterVariant::gpb1,
                                           FilterVariant::gpb2, FilterVariant::salvi2025, FilterVariant::kf};
 
+/// Every variant, with and without parameter noise and adaptive noise.
+std::vector<FilterOptions> all_options() {
+  std::vector<FilterOptions> all;
+  for (const FilterVariant variant : all_variants)
+    for (const bool parameter_noise : {false, true})
+      for (const FilterNoise noise : {FilterNoise::gaussian, FilterNoise::adaptive})
+        all.push_back({variant, parameter_noise, TimeSteps::repeat, noise});
+  return all;
+}
+
 /// Everything from sample 1 on must be finite when every measurement is there.
 void expect_finite(const Bank& bank, const Trajectory& run, const std::string& what) {
-  for (const FilterVariant variant : all_variants)
-    for (const bool parameter_noise : {false, true}) {
-      const RunEvaluation r = evaluate_run(bank, run, {variant, parameter_noise});
-      const Eigen::Index scored = run.samples() - 1;
-      const std::string where = what + ", " + std::string(name_of(variant));
-      EXPECT_TRUE(r.prediction.rightCols(scored).allFinite()) << where;
-      EXPECT_TRUE(r.innovation_covariance.rightCols(scored).allFinite()) << where;
-      EXPECT_TRUE(r.state.allFinite() && r.covariance.allFinite()) << where;
-      EXPECT_TRUE(r.nis.tail(scored).allFinite() && r.log_density.tail(scored).allFinite()) << where;
-      EXPECT_TRUE(r.pit.rightCols(scored).allFinite()) << where;
-      EXPECT_TRUE((r.pit.rightCols(scored).array() >= 0.0).all() && (r.pit.rightCols(scored).array() <= 1.0).all());
-      EXPECT_TRUE(r.mode_probability.allFinite() && r.mode_probability_predicted.allFinite()) << where;
-    }
+  for (const FilterOptions& options : all_options()) {
+    const RunEvaluation r = evaluate_run(bank, run, options);
+    const Eigen::Index scored = run.samples() - 1;
+    const std::string where = what + ", " + std::string(name_of(options.variant));
+    EXPECT_TRUE(r.prediction.rightCols(scored).allFinite()) << where;
+    EXPECT_TRUE(r.innovation_covariance.rightCols(scored).allFinite()) << where;
+    EXPECT_TRUE(r.state.allFinite() && r.covariance.allFinite()) << where;
+    EXPECT_TRUE(r.nis.tail(scored).allFinite() && r.log_density.tail(scored).allFinite()) << where;
+    EXPECT_TRUE(r.pit.rightCols(scored).allFinite()) << where;
+    EXPECT_TRUE((r.pit.rightCols(scored).array() >= 0.0).all() && (r.pit.rightCols(scored).array() <= 1.0).all());
+    EXPECT_TRUE(r.mode_probability.allFinite() && r.mode_probability_predicted.allFinite()) << where;
+  }
 }
 
 TEST(NeverNaN, OutliersOfAMillionSigma) {
@@ -114,6 +125,25 @@ TEST(NeverNaN, AMillionStepsAtConstantInput) {
   EXPECT_NEAR(result.log_density(samples - 1), result.log_density(1000), 1e-9);
 }
 
+TEST(NeverNaN, AMillionStepsAtConstantInputInEveryVariant) {
+#ifdef NDEBUG
+  constexpr Eigen::Index steps = 1'000'000;
+#else
+  constexpr Eigen::Index steps = 100'000;  // sanitizers take their time
+#endif
+  Bank bank = example_bank(1, 1, 2);
+  bank.modes[1].model.A(0, 0) = 0.0;  // an integrator
+  const Eigen::VectorXd u = Eigen::VectorXd::Constant(1, 0.5), y = Eigen::VectorXd::Constant(1, 0.3);
+  for (const FilterVariant variant : all_variants) {
+    BankFilter filter(bank, {variant, false, TimeSteps::repeat, FilterNoise::adaptive});
+    for (Eigen::Index k = 0; k < steps; ++k) filter.step(std::nan(""), u, y);
+    const FilterEstimate& e = filter.estimate();
+    EXPECT_TRUE(e.state.allFinite() && e.covariance.allFinite() && e.mode_probability.allFinite()) << name_of(variant);
+    EXPECT_TRUE(std::isfinite(e.log_density) && std::isfinite(e.nis) && e.pit.allFinite()) << name_of(variant);
+    EXPECT_GT(e.covariance(0, 0), 0.0) << name_of(variant);
+  }
+}
+
 TEST(NeverNaN, InfinityCountsAsMissing) {
   const Bank bank = example_bank(1, 1, 2);
   Trajectory run = simulate_bank(bank, 10, 7), missing = run;
@@ -158,19 +188,54 @@ std::vector<double> trace(const Bank& bank, const Trajectory& run, const FilterO
 template <int N>
 void expect_same_bits() {
   const Bank bank = example_bank(N, 2, 3);
-  const Trajectory run = simulate_bank(bank, 100, 10);
-  for (const FilterVariant variant : all_variants)
-    for (const bool parameter_noise : {false, true}) {
-      const auto fixed = trace<N, N>(bank, run, {variant, parameter_noise});
-      const auto dynamic = trace<Eigen::Dynamic, Eigen::Dynamic>(bank, run, {variant, parameter_noise});
-      EXPECT_EQ(fixed, dynamic) << "n = " << N << ", " << name_of(variant);
-    }
+  Trajectory run = simulate_bank(bank, 100, 10);
+  run.state(0, 50) = 1e6;
+  for (const FilterOptions& options : all_options()) {
+    const auto fixed = trace<N, N>(bank, run, options);
+    const auto dynamic = trace<Eigen::Dynamic, Eigen::Dynamic>(bank, run, options);
+    EXPECT_EQ(fixed, dynamic) << "n = " << N << ", " << name_of(options.variant);
+  }
 }
 
 TEST(Sizes, FixedAndDynamicGiveTheSameBits) {
   expect_same_bits<1>();
   expect_same_bits<2>();
   expect_same_bits<3>();
+}
+
+/// With lags a run starts from several measurements of one signal.
+TEST(Sizes, LaggedBanksToo) {
+  for (const Eigen::Index lags : {2, 3}) {
+    Bank bank = example_bank(1, 1, 3);
+    bank.structure.state_lags = lags;
+    for (Mode& mode : bank.modes) {
+      const Eigen::VectorXd theta = Eigen::VectorXd::Constant(bank.structure.parameters(), -0.1);
+      mode.model = unpack(bank.structure, theta);
+      mode.spread.resize(0, 0);
+      const double q = mode.Q(0, 0);
+      mode.Q = Eigen::MatrixXd::Zero(lags, lags);
+      mode.Q(0, 0) = q;
+    }
+    bank.C = Eigen::MatrixXd::Identity(1, lags);
+    Trajectory run = simulate_bank(example_bank(1, 1, 3), 60, 11);
+    run.state(0, 30) = std::nan("");
+    const auto sum = [&]<int N>() {
+      const FilterModel<N, 1> model(bank, {});
+      FilterStep<N, 1> step(model);
+      FilterState<N> state = initial_state(model);
+      double total = 0.0;
+      RunSamples(bank, run, TimeSteps::repeat).for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {
+        if (starts) return start(model, feed.start(), state);
+        advance(model, feed, state, step);
+        const double value = update(model, run.state.col(k), step, state);
+        total += std::isnan(value) ? 0.0 : value;
+      });
+      return total;
+    };
+    const double dynamic = sum.operator()<Eigen::Dynamic>();
+    EXPECT_EQ(lags == 2 ? sum.operator()<2>() : sum.operator()<3>(), dynamic);
+    EXPECT_NEAR(log_likelihood(bank, run, {}), dynamic, 1e-11 * std::abs(dynamic));
+  }
 }
 
 }  // namespace

@@ -131,7 +131,7 @@ TEST_P(Sharing, EveryIterationRaisesTheObjective) {
   double before = posterior.log_likelihood + log_prior(prior, GetParam(), model);
   const double first = before;
   for (int i = 0; i < 40; ++i) {
-    maximise(t, posterior, prior, GetParam(), model);
+    maximise(t.structure, sum_transitions(t, posterior, prior), prior, GetParam(), model);
     posterior = smooth_modes(t, model);
     const double after = posterior.log_likelihood + log_prior(prior, GetParam(), model);
     EXPECT_GE(after, before - 1e-9 * std::abs(before)) << "iteration " << i;
@@ -160,7 +160,7 @@ TEST(SwitchingRegression, OneModeWithoutPriorIsTheGlobalModel) {
                             {Eigen::MatrixXd::Identity(2, 2)},
                             Eigen::MatrixXd::Ones(1, 1),
                             Eigen::VectorXd::Ones(1)};
-  maximise(t, smooth_modes(t, model), none, SharedParts::none, model);
+  maximise(t.structure, sum_transitions(t, smooth_modes(t, model), none), none, SharedParts::none, model);
   EXPECT_TRUE(near(model.theta, global.theta, 1e-10));
   EXPECT_TRUE(near(model.Q[0], global.residual_covariance, 1e-10));
 }

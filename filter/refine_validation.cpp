@@ -1,0 +1,176 @@
+#include "filter/refine_validation.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "filter/refine_climb.hpp"
+#include "filter/refine_noise.hpp"
+#include "filter/refine_start.hpp"
+#include "filter/refined_modes.hpp"
+#include "filter/switching_state_space.hpp"
+#include "ident/fit_window.hpp"
+#include "ident/not_a_number.hpp"
+
+namespace modebank {
+namespace {
+
+// Iterations after which the runs left out are scored. Not before 10: the start has seen all training runs, and it
+// takes the fit to the others a while to forget that. The last one counts as the limit where that is lower.
+constexpr std::array<Index, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
+// With measurement noise, after the fit without: no start is forgotten here, and each iteration costs far more.
+constexpr std::array<Index, 6> later_checkpoints{5, 10, 20, 40, 70, 100};
+constexpr int patience = 2;  // checkpoints worse than the best after which the search ends
+constexpr std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
+constexpr std::array<double, 3> prior_samples{2.0, 5.0, 20.0};
+constexpr double least_measurement_share = 1e-9;  // of the global residual variance
+
+std::vector<Index> checkpoints_up_to(Index limit) {
+  std::vector<Index> list;
+  for (const Index checkpoint : checkpoints)
+    if (checkpoint < limit) list.push_back(checkpoint);
+  list.push_back(limit);
+  return list;
+}
+
+SwitchingPrior prior_of_split(const Recording& training, const TrainingTransitions& transitions, const WindowFits& fits,
+                              double noise_transitions) {
+  return switching_prior(transitions, fit_global(training, transitions.structure), fits.prior_sd, noise_transitions);
+}
+
+/// The banks of one start on one split, at each checkpoint up to the limit.
+std::vector<Bank> climb_split(const Bank& frame, const RefineStart& start, const WindowFits& fits,
+                              const Recording& training, const RefineOptions& options) {
+  const TrainingTransitions transitions = gather_training_transitions(training, frame.structure);
+  const SwitchingPrior prior = prior_of_split(training, transitions, fits, start.noise_transitions);
+  Climb climb(transitions, prior, start.shared, options.tolerance, start.model);
+  std::vector<Bank> banks;
+  Index done = 0;
+  for (const Index checkpoint : checkpoints_up_to(options.max_iterations)) {
+    for (; done < checkpoint; ++done) climb.step();
+    banks.push_back(with_modes(frame, climb.model()));
+  }
+  return banks;
+}
+
+std::vector<Bank> at_checkpoint(const std::vector<std::vector<Bank>>& by_split, std::size_t checkpoint) {
+  std::vector<Bank> banks;
+  for (const std::vector<Bank>& of_split : by_split) banks.push_back(of_split[checkpoint]);
+  return banks;
+}
+
+}  // namespace
+
+Eigen::VectorXd least_measurement_noise(const WindowFits& fits) {
+  return least_measurement_share * fits.global.noise_variance();
+}
+
+CrossValidation::CrossValidation(const Recording& recording, const WindowFits& fits, const Bank& frame,
+                                 const RefineOptions& options, const FilterOptions& filter)
+    : splits_(validation_splits(recording, options.folds)),
+      fits_(fits),
+      frame_(frame),
+      options_(options),
+      filter_(filter) {
+  for (const ValidationSplit& split : splits_) samples_ += split.left_out.transitions(Role::train);
+}
+
+void CrossValidation::consider(const std::vector<RefineStart>& candidates) {
+  std::vector<std::vector<Bank>> banks(candidates.size() * splits_.size());
+  tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t i) {
+    banks[i] =
+        climb_split(frame_, candidates[i / splits_.size()], fits_, splits_[i % splits_.size()].training, options_);
+  });
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const auto first = banks.begin() + static_cast<std::ptrdiff_t>(i * splits_.size());
+    add(candidates[i], {first, first + static_cast<std::ptrdiff_t>(splits_.size())});
+  }
+}
+
+std::vector<RefineCandidate> CrossValidation::table() const {
+  std::vector<RefineCandidate> rows = table_;
+  rows[selected_].selected = true;
+  return rows;
+}
+
+NoiseAdaptation CrossValidation::adaptation() const {
+  if (splits_.empty() || filter_.noise != FilterNoise::adaptive) return {};
+  std::vector<NoiseAdaptation> ways;
+  for (const double forgetting : forgettings)
+    for (const double prior : prior_samples) ways.push_back({forgetting, prior});
+  std::vector<double> scores(ways.size());
+  tbb::parallel_for(std::size_t{0}, ways.size(), [&](std::size_t w) {
+    std::vector<Bank> banks = best_banks_;
+    for (Bank& bank : banks) bank.noise_adaptation = ways[w];
+    scores[w] = score(banks);
+  });
+  return ways[std::max_element(scores.begin(), scores.end()) - scores.begin()];
+}
+
+MeasurementStage CrossValidation::with_measurement_noise(const Eigen::MatrixXd& R, double process_factor,
+                                                         const NoiseAdaptation& adaptation) const {
+  std::vector<Bank> banks = best_banks_;
+  for (Bank& bank : banks) {
+    for (Mode& mode : bank.modes) mode.Q *= process_factor;
+    bank.R = R;
+    bank.noise_adaptation = adaptation;
+  }
+  const double before = score(banks);
+  MeasurementStage stage{0, before, before};
+  double best = before;
+  Index done = 0;
+  int worse = 0;
+  for (const Index checkpoint : later_checkpoints) {
+    if (worse == patience || done == options_.max_iterations) break;
+    const Index until = std::min(checkpoint, options_.max_iterations);
+    tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
+      const Recording& training = splits_[s].training;
+      const TrainingTransitions transitions = gather_training_transitions(training, frame_.structure);
+      const SwitchingPrior prior = prior_of_split(training, transitions, fits_, best_.noise_transitions);
+      for (Index i = done; i < until; ++i)
+        step_state_space(training, prior, best_.shared, filter_.time_steps, least_measurement_noise(fits_),
+                         options_.measurement_noise, banks[s]);
+    });
+    done = until;
+    const double now = score(banks);
+    best = std::max(best, now);
+    ++worse;
+    if (!(now > best - least_likelihood_gain)) continue;
+    stage = {done, before, now};
+    worse = 0;
+  }
+  return stage;
+}
+
+/// Mean over the samples left out; `banks`: one per split.
+double CrossValidation::score(const std::vector<Bank>& banks) const {
+  double sum = 0.0;
+  for (std::size_t s = 0; s < splits_.size(); ++s)
+    for (const Trajectory& run : splits_[s].left_out.runs) sum += log_likelihood(banks[s], run, filter_);
+  return std::isnan(sum) ? -std::numeric_limits<double>::infinity() : sum / static_cast<double>(samples_);
+}
+
+void CrossValidation::add(const RefineStart& candidate, const std::vector<std::vector<Bank>>& by_split) {
+  RefineCandidate row{candidate.name,          candidate.model.modes(),
+                      candidate.shared,        candidate.noise_transitions,
+                      options_.max_iterations, not_a_number};
+  std::size_t checkpoint = 0;
+  if (!splits_.empty()) {
+    std::vector<double> scores(by_split.front().size());
+    tbb::parallel_for(std::size_t{0}, scores.size(),
+                      [&](std::size_t c) { scores[c] = score(at_checkpoint(by_split, c)); });
+    checkpoint = std::max_element(scores.begin(), scores.end()) - scores.begin();
+    row.iterations = checkpoints_up_to(options_.max_iterations)[checkpoint];
+    row.score = scores[checkpoint];
+  }
+  table_.push_back(row);
+  if (table_.size() > 1 && !(row.score > table_[selected_].score)) return;
+  selected_ = table_.size() - 1;
+  best_ = candidate;
+  if (!splits_.empty()) best_banks_ = at_checkpoint(by_split, checkpoint);
+}
+
+}  // namespace modebank

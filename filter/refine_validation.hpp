@@ -1,0 +1,68 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "filter/bank.hpp"
+#include "filter/evaluate.hpp"
+#include "filter/refine.hpp"
+#include "filter/switching_regression.hpp"
+#include "filter/validation_split.hpp"
+#include "ident/local_model.hpp"
+
+namespace modebank {
+
+/// What is refined from where.
+struct RefineStart {
+  std::string name;
+  SwitchingRegression model;
+  SharedParts shared = SharedParts::none;
+  double noise_transitions = 0.0;
+};
+
+/// Scores of training runs left out, for every start, number of iterations and way to adapt. Keeps references to
+/// windows and frame.
+class CrossValidation {
+ public:
+  CrossValidation(const Recording& recording, const WindowFits& fits, const Bank& frame, const RefineOptions& options,
+                  const FilterOptions& filter);
+
+  /// Tries all and remembers the best of these and earlier ones; adds a row for each to the table. Without anything to
+  /// leave out the first one is the best, run to convergence.
+  void consider(const std::vector<RefineStart>& candidates);
+
+  /// Whether there is anything to leave out.
+  bool possible() const { return !splits_.empty(); }
+  const RefineStart& best() const { return best_; }
+  Index iterations() const { return table_[selected_].iterations; }
+  std::vector<RefineCandidate> table() const;
+
+  /// How the noise scale should move in the best one's filter.
+  NoiseAdaptation adaptation() const;
+
+  /// How many iterations of expectation-maximisation with measurement noise (switching_state_space.hpp) the best one
+  /// should go on for, R and Q's factor at first as given: as many as cost less than least_likelihood_gain against the
+  /// best number, since the likelihood's maximum is where they lead.
+  MeasurementStage with_measurement_noise(const Eigen::MatrixXd& R, double process_factor,
+                                          const NoiseAdaptation& adaptation) const;
+
+ private:
+  double score(const std::vector<Bank>& banks) const;
+  void add(const RefineStart& candidate, const std::vector<std::vector<Bank>>& by_split);
+
+  std::vector<ValidationSplit> splits_;
+  const WindowFits& fits_;
+  const Bank& frame_;
+  RefineOptions options_;
+  FilterOptions filter_;
+  Index samples_ = 0;
+  std::vector<RefineCandidate> table_;
+  std::size_t selected_ = 0;
+  RefineStart best_;
+  std::vector<Bank> best_banks_;
+};
+
+/// The least R that refinement knows: as good as none.
+Eigen::VectorXd least_measurement_noise(const WindowFits& fits);
+
+}  // namespace modebank

@@ -1,0 +1,152 @@
+// The filter with a mode per lane of the vector registers against the general steps, everything it says.
+#include "filter/vector_imm.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filter/combined.hpp"
+#include "filter/filter_step.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int any = Eigen::Dynamic;
+
+/// Steps both through the run and compares everything; `relative` to the size of each number.
+void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptions& options, double relative) {
+  ASSERT_TRUE(VectorImm::can_step(bank, options));
+  const FilterModel<any, any> model(bank, options);
+  FilterStep<any, any> step(model);
+  const Index n = bank.structure.dimension(), n_y = bank.C.rows();
+  FilterState<any> state = start(model, run.state.col(0));
+  CombinedPrediction<any, any> combined(n, n_y);
+  Gaussian<any> estimate(n);
+  VectorImm kernel(bank, options);
+  kernel.start(run.state.col(0));
+  VectorXd mean(n);
+  MatrixXd covariance(n, n), S(n_y, n_y);
+  const auto same = [&](const MatrixXd& a, const MatrixXd& b) {
+    return test::near(a, b, relative * std::max(1e-3, b.cwiseAbs().maxCoeff()));
+  };
+  for (Index k = 1; k < run.samples(); ++k) {
+    predict(model, state, run.input.col(k - 1), step);
+    kernel.predict(run.input.col(k - 1));
+    combined.expect(model, step);
+    double share = 0.0;
+    kernel.combine(mean, S, share);
+    ASSERT_TRUE(same(mean, combined.state) && same(S, combined.innovation_covariance)) << "sample " << k;
+    ASSERT_TRUE(same(kernel.predicted_probability(), step.predicted_probability)) << "sample " << k;
+    ASSERT_NEAR(share, combined.spread_share, relative);
+    const double expected = update(model, run.state.col(k), step, state);
+    const double log_density = kernel.update(run.state.col(k));
+    merge(state.modes, state.mode_probability, estimate);
+    kernel.merge(mean, covariance);
+    ASSERT_TRUE(same(mean, estimate.mean) && same(covariance, estimate.covariance)) << "sample " << k;
+    ASSERT_TRUE(same(kernel.mode_probability(), state.mode_probability)) << "sample " << k;
+    ASSERT_EQ(std::isnan(log_density), std::isnan(expected));
+    if (!std::isnan(expected)) {
+      ASSERT_NEAR(log_density, expected, relative * std::max(1.0, std::abs(expected))) << "sample " << k;
+      for (Index j = 0; j < bank.mode_count(); ++j)
+        for (Index i = 0; i < n_y; ++i) {
+          const KalmanStep<any, any>& kalman = step.kalman[static_cast<std::size_t>(j)];
+          ASSERT_NEAR(kernel.variance(i, j), kalman.cholesky.D(i), relative * kalman.cholesky.D(i));
+          ASSERT_NEAR(kernel.decorrelated(i, j), kalman.decorrelated(i), relative * 10.0);
+        }
+    }
+    ASSERT_NEAR(kernel.noise_scale, state.noise_scale, relative * state.noise_scale);
+  }
+}
+
+/// The example's modes, slowed down so that many of them are stable, and noises of one order.
+Bank many_modes(Index n, Index K) {
+  Bank bank = test::example_bank(n, 2, K);
+  for (Index j = 0; j < K; ++j) {
+    Mode& mode = bank.modes[static_cast<std::size_t>(j)];
+    const double share = static_cast<double>(j) / static_cast<double>(K);
+    mode.model.A = -(0.1 + 0.8 * share) * MatrixXd::Identity(n, n) + MatrixXd::Constant(n, n, 0.03);
+    mode.Q = 1e-4 * (1.0 + 3.0 * share) * (MatrixXd::Identity(n, n) + MatrixXd::Constant(n, n, 0.3));
+  }
+  return bank;
+}
+
+FilterOptions adaptive() {
+  FilterOptions options;
+  options.noise = FilterNoise::adaptive;
+  return options;
+}
+
+TEST(VectorImm, SaysWhatTheGeneralStepsSay) {
+  for (const Index n : {1, 2, 3})
+    for (const Index K : {2, 3, 8, 9, 25}) {
+      const Bank bank = many_modes(n, K);
+      Trajectory run = test::simulate_bank(bank, 120, 51);
+      run.state(0, 30) = std::nan("");  // of some signals, with one of all
+      run.state.col(40).setConstant(std::nan(""));
+      run.state(n - 1, 60) += 3.0;
+      SCOPED_TRACE(std::to_string(n) + " states, " + std::to_string(K) + " modes");
+      expect_agreement(bank, run, {}, 1e-11);
+      expect_agreement(bank, run, adaptive(), 1e-11);
+    }
+}
+
+TEST(VectorImm, OneSignalOfSeveralStates) {
+  for (const Index n : {2, 3}) {
+    Bank bank = many_modes(n, 5);
+    bank.C = MatrixXd::Zero(1, n);
+    bank.C(0, 0) = 2.0;
+    bank.C(0, n - 1) = 0.3;
+    bank.R = MatrixXd::Constant(1, 1, 1e-3);
+    const Trajectory run = test::simulate_bank(bank, 120, 52);
+    expect_agreement(bank, run, {}, 1e-11);
+    expect_agreement(bank, run, adaptive(), 1e-11);
+  }
+}
+
+TEST(VectorImm, CorrelatedNoiseAndImpossibleModes) {
+  Bank bank = many_modes(3, 4);
+  bank.R << 2e-4, 1e-4, 0, 1e-4, 3e-4, -5e-5, 0, -5e-5, 1e-4;
+  bank.initial_probability << 0.5, 0.5, 0.0, 0.0;
+  bank.transition = TransitionMatrix(
+      (MatrixXd(4, 4) << 0.9, 0.1, 0, 0, 0.2, 0.7, 0.1, 0, 0.3, 0.3, 0.4, 0, 0.5, 0.5, 0, 0).finished());
+  Trajectory run = test::simulate_bank(bank, 80, 53);
+  run.state(1, 20) = std::nan("");
+  expect_agreement(bank, run, {}, 1e-11);
+}
+
+TEST(VectorImm, SnapshotsGoBackAndForth) {
+  const Bank bank = many_modes(2, 5);
+  const Trajectory run = test::simulate_bank(bank, 10, 54);
+  VectorImm first(bank, {}), second(bank, {});
+  first.start(run.state.col(0));
+  for (Index k = 1; k < 9; ++k) {
+    first.predict(run.input.col(k - 1));
+    first.update(run.state.col(k));
+  }
+  MatrixXd means, covariances;
+  VectorXd probability;
+  first.get(means, covariances, probability);
+  second.start(run.state.col(0));
+  second.set(means, covariances, probability);
+  VectorImm copy = first;
+  for (VectorImm* filter : {&first, &second, &copy}) filter->predict(run.input.col(8));
+  const double log_density = first.update(run.state.col(9));
+  EXPECT_EQ(second.update(run.state.col(9)), log_density);
+  EXPECT_EQ(copy.update(run.state.col(9)), log_density);
+}
+
+TEST(VectorImm, LeavesToTheGeneralStepsWhatItCannot) {
+  EXPECT_FALSE(VectorImm::can_step(test::example_bank(4, 1, 3), {}));
+  EXPECT_FALSE(VectorImm::can_step(test::example_bank(2, 1, 3), {FilterVariant::gpb1}));
+  EXPECT_FALSE(VectorImm::can_step(test::example_bank(2, 1, 3), {FilterVariant::imm, true}));
+  EXPECT_FALSE(VectorImm::can_step(test::single_mode(test::example_bank(2, 1, 3), 0), {}));
+}
+
+}  // namespace
+}  // namespace modebank
