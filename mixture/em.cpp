@@ -82,8 +82,14 @@ EmResult restart(const PointBlocks& points, Start start, const EmOptions& option
   if (options.tolerance > 0.0) coarse.tolerance = std::max(options.tolerance, coarse_tolerance);
   EmResult result = split_and_merge(points, converge(points, std::move(start.mixture), coarse), coarse);
   const int spent = result.iterations + start.iterations;
+  result.iterations = spent;
+  if (coarse.tolerance == options.tolerance) return result;
+  if (spent >= options.max_iterations) {
+    result.converged = false;  // not to the tolerance that was asked for
+    return result;
+  }
   EmOptions rest = options;
-  rest.max_iterations = std::max(0, options.max_iterations - spent);
+  rest.max_iterations = options.max_iterations - spent;
   result = converge(points, std::move(result.mixture), rest);
   result.iterations += spent;
   return result;
