@@ -7,6 +7,8 @@
 #include <numbers>
 #include <unsupported/Eigen/KroneckerProduct>
 
+#include "mixture/component_merge.hpp"
+
 namespace modebank {
 namespace {
 
@@ -14,10 +16,6 @@ constexpr int alternations = 3;  // of theta and Q in one maximisation; each rai
 
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& positive_definite) {
   return positive_definite.llt().solve(Eigen::MatrixXd::Identity(positive_definite.rows(), positive_definite.cols()));
-}
-
-double log_determinant(const Eigen::MatrixXd& positive_definite) {
-  return 2.0 * positive_definite.llt().matrixLLT().diagonal().array().log().sum();
 }
 
 /// log N(r_k; 0, Q) of every transition of one mode, to the power of its sample weight.

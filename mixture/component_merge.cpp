@@ -7,13 +7,9 @@ namespace modebank {
 
 using Eigen::Index;
 
-namespace {
-
 double log_determinant(const Eigen::MatrixXd& covariance) {
   return 2.0 * Eigen::LLT<Eigen::MatrixXd>(covariance).matrixLLT().diagonal().array().log().sum();
 }
-
-}  // namespace
 
 Component component_of(const GaussianMixture& mixture, Index k) {
   return {mixture.weights(k), mixture.means.col(k), mixture.covariances[static_cast<std::size_t>(k)]};

@@ -27,6 +27,8 @@ constexpr double largest_coordinate = 1e150;
 /// Below this the floor is lost in the rounding of a covariance's largest eigenvalue.
 constexpr double smallest_floor = 1e-10;
 constexpr double agreement_per_point = 1e-4;
+/// Near enough to an optimum to try moves out of it.
+constexpr double coarse_tolerance = 1e-5;
 
 void check(const EmOptions& options) {
   if (options.restarts < 1 || options.split_merge < 0 || options.max_iterations < 0 ||
@@ -72,13 +74,25 @@ void to_physical(const ScaledCloud& cloud, EmResult& result) {
   result.log_likelihood += cloud.points.total_weight() * cloud.scale.log_jacobian();
 }
 
-/// From a start to an optimum that split-and-merge moves do not leave.
+/// From a start to an optimum that split-and-merge moves do not leave; the tolerance matters for the last stretch
+/// alone.
 EmResult restart(const PointBlocks& points, Start start, const EmOptions& options) {
+  EmOptions coarse = options;
+  coarse.max_iterations = std::max(0, options.max_iterations - start.iterations);
+  if (options.tolerance > 0.0) coarse.tolerance = std::max(options.tolerance, coarse_tolerance);
+  EmResult result = split_and_merge(points, converge(points, std::move(start.mixture), coarse), coarse);
+  const int spent = result.iterations + start.iterations;
+  result.iterations = spent;
+  if (coarse.tolerance == options.tolerance) return result;
+  if (spent >= options.max_iterations) {
+    result.converged = false;  // not to the tolerance that was asked for
+    return result;
+  }
   EmOptions rest = options;
-  rest.max_iterations = std::max(0, options.max_iterations - start.iterations);
-  EmResult result = iterate(points, std::move(start.mixture), rest);
-  result.iterations += start.iterations;
-  return split_and_merge(points, std::move(result), options);
+  rest.max_iterations = options.max_iterations - spent;
+  result = converge(points, std::move(result.mixture), rest);
+  result.iterations += spent;
+  return result;
 }
 
 /// The best of the restarts, the first on a tie, with the number that agree with it.

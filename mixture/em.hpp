@@ -8,9 +8,10 @@
 
 namespace modebank {
 
-/// Where restarts begin. kmeans_plus_plus (Arthur & Vassilvitskii 2007) and random (points as centres): the best of
-/// five short runs each (emEM: Biernacki, Celeux & Govaert 2003). hierarchical: model-based agglomeration (Fraley 1998)
-/// of a subsample, another one for each restart. automatic: the first restart hierarchical, the others k-means++.
+/// Where restarts begin. kmeans_plus_plus: Arthur & Vassilvitskii 2007. random: points as centres, the best of five
+/// short runs (emEM: Biernacki, Celeux & Govaert 2003); so are k-means++ starts of two components or with a noise
+/// component. hierarchical: model-based agglomeration (Fraley 1998) of a subsample, another one for each restart.
+/// automatic: the first restart hierarchical, the others k-means++.
 enum class StartKind { automatic, kmeans_plus_plus, random, hierarchical };
 
 template <>
@@ -44,10 +45,11 @@ struct EmResult {
 /// Best of options.restarts runs, improved by split-and-merge moves (Ueda et al. 2000). Points finite, up to 1e150 in
 /// magnitude. Fitted in units of each feature's standard deviation, so invariant to its units; a constant feature keeps
 /// its unit and is held by the floor, as are coinciding points. The floored M step is the exact constrained maximiser,
-/// so the likelihood never falls. A component that explains less than 1e-14 of the weight keeps its mean and
-/// covariance. Points with error covariances are deconvolved: the components describe the points without their errors
-/// (Bovy, Hogg & Roweis 2011, Ann. Appl. Stat. 5, eq. 16); zero errors change nothing. Throws std::invalid_argument for
-/// K < 1, K > N, bad options, weights, points or error covariances. Bitwise the same for any number of threads.
+/// so the likelihood never falls; squared extrapolation (Varadhan & Roland 2008) shortens the way. A component that
+/// explains less than 1e-14 of the weight keeps its mean and covariance. Points with error covariances are deconvolved:
+/// the components describe the points without their errors (Bovy, Hogg & Roweis 2011, Ann. Appl. Stat. 5, eq. 16); zero
+/// errors change nothing. Throws std::invalid_argument for K < 1, K > N, bad options, weights, points or error
+/// covariances. Bitwise the same for any number of threads.
 EmResult fit_em(const PointSet& points, Eigen::Index components, const EmOptions& options, std::uint64_t seed);
 /// fit_em for several numbers of components over the same points, which are prepared once and must outlive this. fit()
 /// may be called from several threads; what it returns depends on its own arguments alone.
@@ -66,9 +68,9 @@ class EmSweep {
   std::unique_ptr<Prepared> prepared_;
 };
 
-/// From a given start, no restarts: the components keep the start's order; its covariances are raised to the floor, and
-/// reduced to their diagonals for CovarianceType::diagonal. A noise component wanted but missing in the start begins
-/// with a weight of 0.05; its box is always that of the points.
+/// From a given start by plain EM, no restarts: the components keep the start's order; its covariances are raised to
+/// the floor, and reduced to their diagonals for CovarianceType::diagonal. A noise component wanted but missing in the
+/// start begins with a weight of 0.05; its box is always that of the points.
 EmResult fit_em(const PointSet& points, const GaussianMixture& start, const EmOptions& options);
 
 inline EmResult fit_em(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Eigen::Index components,

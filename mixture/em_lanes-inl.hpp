@@ -39,8 +39,9 @@ HWY_INLINE V bounded(V distance) {
   return hn::IfThenElse(hn::Lt(distance, largest), distance, largest);
 }
 
-// exp(x), x <= 0: 2^n times a polynomial in what is left of x. Cephes' split of log 2: n * high is exact.
-inline constexpr double rounder = 6755399441055744.0;  // adding it leaves the integer in the low bits of the mantissa
+// exp(x) for |x| up to 690: 2^(n + r) with n a whole number (of sixteenths), r by the Taylor polynomial. log2(e) is the
+// sum of two doubles.
+inline constexpr double log2_e = 1.4426950408889634074, log2_e_rest = 2.0355273740931033e-17;
 
 #if HWY_TARGET == HWY_AVX3
 alignas(64) inline constexpr double sixteenth_powers[16] = {1.0,
@@ -60,35 +61,38 @@ alignas(64) inline constexpr double sixteenth_powers[16] = {1.0,
                                                             1.8340080864093424,
                                                             1.9152065613971474};
 
-/// n / 16 and a table of 2^(i/16) in two registers: degree 6 is enough.
+/// A table of 2^(i/16) in two registers: degree 6 is enough.
 struct Exp {
   V low, high;
   HWY_INLINE Exp() : low(load(sixteenth_powers)), high(load(sixteenth_powers + 8)) {}
   HWY_INLINE V operator()(V x) const {
+    // Adding it leaves the sixteenths in the low bits of the mantissa.
+    const V rounder = splat(6755399441055744.0 / 16.0);
     x = hn::Max(x, splat(smallest_log_ratio));
-    const V shifted = hn::MulAdd(x, splat(16.0 * 1.4426950408889634074), splat(rounder));
-    const V n = hn::Sub(shifted, splat(rounder));
-    V r = hn::NegMulAdd(n, splat(6.93145751953125e-1 / 16), x);
-    r = hn::NegMulAdd(n, splat(1.42860682030941723212e-6 / 16), r);
+    const V shifted = hn::MulAdd(x, splat(log2_e), rounder);
+    const V n = hn::Sub(shifted, rounder);
+    const V r = hn::MulAdd(x, splat(log2_e_rest), hn::MulSub(x, splat(log2_e), n));
     const V power{_mm512_permutex2var_pd(low.raw, _mm512_castpd_si512(shifted.raw), high.raw)};
-    V p = hn::MulAdd(r, splat(1.0 / 720), splat(1.0 / 120));
-    p = hn::MulAdd(p, r, splat(1.0 / 24));
-    p = hn::MulAdd(p, r, splat(1.0 / 6));
-    p = hn::MulAdd(p, r, splat(0.5));
-    p = hn::MulAdd(p, hn::Mul(r, r), r);
-    const V y = hn::MulAdd(power, p, power);
-    return V{_mm512_scalef_pd(y.raw, hn::Mul(n, splat(1.0 / 16)).raw)};  // scalef rounds its argument down
+    const V r2 = hn::Mul(r, r);
+    const auto pair = [&](double a, double b) { return hn::MulAdd(r, splat(b), splat(a)); };
+    const V high_terms = hn::MulAdd(r2, pair(1.3333558146428443e-3, 1.5403530393381609e-4),
+                                    pair(5.5504108664821580e-2, 9.6181291076284772e-3));
+    const V p = hn::MulAdd(r2, high_terms, pair(6.9314718055994531e-1, 2.4022650695910071e-1));
+    const V y = hn::MulAdd(hn::Mul(power, r), p, power);
+    return V{_mm512_scalef_pd(y.raw, n.raw)};  // scalef rounds its argument down
   }
 };
 #else
-/// The Taylor polynomial of degree 12 on [-log(2)/2, log(2)/2].
+/// The polynomial of degree 12 on [-1/2, 1/2].
 struct Exp {
   HWY_INLINE V operator()(V x) const {
+    const V rounder = splat(6755399441055744.0);  // adding it leaves n in the low bits of the mantissa
     x = hn::Max(x, splat(smallest_log_ratio));
-    const V shifted = hn::MulAdd(x, splat(1.4426950408889634074), splat(rounder));
-    const V n = hn::Sub(shifted, splat(rounder));
-    V r = hn::NegMulAdd(n, splat(6.93145751953125e-1), x);
-    r = hn::NegMulAdd(n, splat(1.42860682030941723212e-6), r);
+    const V shifted = hn::MulAdd(x, splat(log2_e), rounder);
+    const V n = hn::Sub(shifted, rounder);
+    // In natural units: Taylor's coefficients.
+    const V fraction = hn::MulAdd(x, splat(log2_e_rest), hn::MulSub(x, splat(log2_e), n));
+    const V r = hn::Mul(fraction, splat(0.69314718055994530942));
     const V r2 = hn::Mul(r, r), r4 = hn::Mul(r2, r2);
     const auto pair = [&](double a, double b) { return hn::MulAdd(r, splat(b), splat(a)); };
     const V low = hn::MulAdd(r2, pair(1.0 / 24, 1.0 / 120), pair(1.0 / 2, 1.0 / 6));
@@ -131,6 +135,34 @@ HWY_INLINE int add_noise(const Components& components, const Block& block, const
     store(hn::Max(load(scratch.log_density + n), noise), scratch.log_density + n);
   }
   return components.count + 1;
+}
+
+/// What densities are relative to where that is one number for a whole block: no log density lies above it.
+HWY_INLINE double largest_log_constant(const Components& components) {
+  double largest = components.log_constants[0];
+  for (int k = 1; k < components.count; ++k)
+    largest = components.log_constants[k] > largest ? components.log_constants[k] : largest;
+  return largest;
+}
+
+/// Ends what densities relative to exp(shift) began: adds the noise component and turns their sums into log densities.
+/// False where a point is too far from all components (or the noise too dense) for one shift to do.
+HWY_INLINE bool finish_shifted(const Components& components, const Block& block, double shift, const Scratch& scratch) {
+  const V least = splat(1e-150), most = splat(1e150), by = splat(shift);
+  const Exp exp;
+  auto sound = hn::Eq(by, by);
+  for (Index n = 0; n < block_size; n += L) {
+    V sum = load(scratch.sum + n);
+    if (block.noise) {
+      const V noise = exp(hn::Sub(load(block.noise + n), by));
+      store(noise, scratch.relative + components.count * block_size + n);
+      sum = hn::Add(sum, noise);
+      store(sum, scratch.sum + n);
+    }
+    sound = hn::And(sound, hn::And(hn::Ge(sum, least), hn::Le(sum, most)));
+    store(hn::Add(by, hn::Log(D(), sum)), scratch.log_density + n);
+  }
+  return hn::AllTrue(D(), sound);
 }
 
 /// Adds log-likelihood and noise of a block to the first two of the lane sums; leaves weight / sum in scratch.sum.

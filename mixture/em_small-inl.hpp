@@ -20,8 +20,9 @@ struct Small {
     for (int i = 0; i < F; ++i) d[i] = hn::Sub(load(points + i * block_size + n), mean[i]);
   }
 
-  static HWY_INLINE V distance(const V (&W)[seconds], const V (&d)[F]) {
+  static HWY_INLINE V unbounded_distance(const V (&W)[seconds], const V (&d)[F]) {
     V sum = zero();
+#pragma GCC unroll 4
     for (int i = 0; i < F; ++i) {
       V y;
       if constexpr (diagonal) {
@@ -29,11 +30,12 @@ struct Small {
       } else {
         const int row = i * (i + 1) / 2;
         y = hn::Mul(W[row], d[0]);
+#pragma GCC unroll 4
         for (int j = 1; j <= i; ++j) y = hn::MulAdd(W[row + j], d[j], y);
       }
       sum = i == 0 ? hn::Mul(y, y) : hn::MulAdd(y, y, sum);
     }
-    return bounded(sum);
+    return sum;
   }
 
   static HWY_INLINE void log_densities(const Components& components, const Block& block, const Scratch& scratch) {
@@ -45,7 +47,7 @@ struct Small {
       double* out = scratch.relative + k * block_size;
       for (Index n = 0; n < block_size; n += L) {
         offset(block.points, n, mean, d);
-        const V density = hn::NegMulAdd(distance(W, d), half, constant);
+        const V density = hn::NegMulAdd(bounded(unbounded_distance(W, d)), half, constant);
         store(density, out + n);
         store(k == 0 ? density : hn::Max(load(scratch.log_density + n), density), scratch.log_density + n);
       }
@@ -71,7 +73,34 @@ struct Small {
     for (int i = 0; i < entries; ++i) store(sum[i], lanes + i * L);
   }
 
+  /// Densities relative to exp(shift) and their sums in one pass.
+  static HWY_INLINE void densities(const Components& components, const Block& block, double shift,
+                                   const Scratch& scratch) {
+    const Exp exp;
+    for (Index n = 0; n < block_size; n += L) store(zero(), scratch.sum + n);
+    for (int k = 0; k < components.count; ++k) {
+      V mean[F], W[seconds], d[F];
+      for (int i = 0; i < F; ++i) mean[i] = splat(components.means[k * F + i]);
+      for (int i = 0; i < seconds; ++i) W[i] = splat(components.whitening[k * components.stride + i]);
+      const V constant = splat(components.log_constants[k] - shift), half = splat(0.5);
+      double* out = scratch.relative + k * block_size;
+      for (Index n = 0; n < block_size; n += L) {
+        offset(block.points, n, mean, d);
+        store(hn::NegMulAdd(unbounded_distance(W, d), half, constant), out + n);
+      }
+      // A loop of its own: the processor holds the short chains of several vectors at once, but not one long one.
+      for (Index n = 0; n < block_size; n += L) {
+        const V density = exp(load(out + n));
+        store(density, out + n);
+        store(hn::Add(load(scratch.sum + n), density), scratch.sum + n);
+      }
+    }
+  }
+
   static void evaluate(const Components& components, const Block& block, const Scratch& scratch) {
+    const double shift = largest_log_constant(components);
+    densities(components, block, shift, scratch);
+    if (finish_shifted(components, block, shift, scratch)) return;
     log_densities(components, block, scratch);
     normalise(add_noise(components, block, scratch), scratch);
   }

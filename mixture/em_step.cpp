@@ -20,7 +20,8 @@ constexpr Index blocks_per_group = 32;
 constexpr Index parallel_points = 20000;
 constexpr double starved_share = 1e-14;
 
-MixtureMoments expect_group(const PointBlocks& points, const FactoredMixture& mixture, Index first, Index last) {
+MixtureMoments expect_group(const PointBlocks& points, const FactoredMixture& mixture, const double* background,
+                            Index first, Index last) {
   const em::Components components = mixture.components();
   const em::Kernels& kernels = mixture.kernels();
   KernelScratch memory(mixture);
@@ -28,7 +29,7 @@ MixtureMoments expect_group(const PointBlocks& points, const FactoredMixture& mi
   if (mixture.has_noise()) std::fill_n(memory.noise(), block_size, mixture.log_noise());
   for (Index b = first; b < last; ++b) {
     em::Block block = points.block(b, stage);
-    block.noise = mixture.has_noise() ? memory.noise() : nullptr;
+    block.noise = background ? background + b * block_size : mixture.has_noise() ? memory.noise() : nullptr;
     kernels.accumulate(components, block, memory.scratch());
   }
   MixtureMoments moments;
@@ -57,13 +58,13 @@ void update_component(const Eigen::Ref<const Eigen::VectorXd>& sums, bool diagon
 
 }  // namespace
 
-MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture) {
+MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture, const double* background) {
   const FactoredMixture factored(mixture, points.has_errors());
   const Index groups = (points.blocks() + blocks_per_group - 1) / blocks_per_group;
   std::vector<MixtureMoments> partial(groups);
   const auto group = [&](Index g) {
     const Index first = g * blocks_per_group;
-    partial[g] = expect_group(points, factored, first, std::min(first + blocks_per_group, points.blocks()));
+    partial[g] = expect_group(points, factored, background, first, std::min(first + blocks_per_group, points.blocks()));
   };
   if (points.count() > parallel_points)
     tbb::parallel_for(Index(0), groups, group);

@@ -18,8 +18,9 @@ struct MixtureMoments {
 };
 
 /// E step. Blocks are summed in fixed groups and groups in order, in parallel when there are many points: the result
-/// does not depend on the number of threads.
-MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture);
+/// does not depend on the number of threads. `background` (block_size x blocks, aligned), where given, is the log
+/// density of what else there is at every point, in place of the mixture's noise component.
+MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture, const double* background = nullptr);
 
 /// M step in place. Covariance eigenvalues (diagonal: variances) below `floor` are raised to it, which is the exact
 /// maximiser under that constraint, so the likelihood never falls. A component that explains less than 1e-14 of the

@@ -138,16 +138,6 @@ Eigen::MatrixXd responsibilities(const GaussianMixture& mixture, const PointSet&
   return result;
 }
 
-double classification_entropy(const GaussianMixture& mixture, const PointSet& points) {
-  const auto term = [](double r) { return r > 0.0 ? r * std::log(r) : 0.0; };
-  double sum = 0.0;
-  visit_responsibilities(mixture, points, [&](Index, const Eigen::Ref<const Eigen::MatrixXd>& block) {
-    sum -= block.unaryExpr(term).sum();
-    if (mixture.noise.present()) sum -= (1.0 - block.colwise().sum().array()).max(0.0).unaryExpr(term).sum();
-  });
-  return sum;
-}
-
 Eigen::MatrixXd sample(const GaussianMixture& mixture, Index count, std::mt19937_64& generator) {
   check_sizes(mixture);
   std::vector<Eigen::MatrixXd> factors;

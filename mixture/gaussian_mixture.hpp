@@ -66,8 +66,6 @@ Eigen::MatrixXd responsibilities(const GaussianMixture& mixture, const PointSet&
 /// first + 1, ... (at most 128) and must not keep a reference to them.
 void visit_responsibilities(const GaussianMixture& mixture, const PointSet& points,
                             const std::function<void(Eigen::Index, const Eigen::Ref<const Eigen::MatrixXd>&)>& visit);
-/// - sum r log r over all points and components, the noise component included [nats].
-double classification_entropy(const GaussianMixture& mixture, const PointSet& points);
 /// N points drawn from the mixture; the generator is the only source of randomness.
 Eigen::MatrixXd sample(const GaussianMixture& mixture, Eigen::Index count, std::mt19937_64& generator);
 

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "mixture/em_step.hpp"
+#include "mixture/kmeans_kernels.hpp"
 
 namespace modebank {
 
@@ -13,32 +15,47 @@ using Eigen::Index;
 
 namespace {
 
-constexpr int lloyd_iterations = 10;
+/// More of either cost more time than they save EM.
+constexpr int lloyd_iterations = 3, candidates = 3;
 
-void squared_distance(const Eigen::Ref<const BlockColumns>& points, const Eigen::Ref<const Eigen::VectorXd>& center,
-                      BlockColumn& distance) {
-  distance = (points.col(0) - center(0)).square();
-  for (Index f = 1; f < points.cols(); ++f) distance += (points.col(f) - center(f)).square();
+/// A number for every point, and its weighted sum block by block.
+struct WeightedColumn {
+  AlignedBuffer values;
+  Eigen::VectorXd block_sums;  ///< sum of weight times value
+
+  explicit WeightedColumn(const PointBlocks& points)
+      : values(points.blocks() * block_size), block_sums(Eigen::VectorXd::Zero(points.blocks())) {}
+};
+
+/// Squared distances to the nearest of `centers`, when `center` joins them.
+void closer(const PointBlocks& points, const Eigen::Ref<const Eigen::VectorXd>& center, const WeightedColumn& nearest,
+            WeightedColumn& out) {
+  const auto kernel = em::kmeans_kernels().closer;
+  AlignedBuffer stage = points.stage();
+  for (Index b = 0; b < points.blocks(); ++b)
+    out.block_sums(b) = kernel(points.block(b, stage), static_cast<int>(points.features()), center.data(),
+                               nearest.values.data() + b * block_size, out.values.data() + b * block_size);
 }
 
-/// Index of a point drawn with probability proportional to `mass` (filling points have none).
-Index draw(const BlockColumns& mass, std::mt19937_64& generator) {
-  boost::random::uniform_01<double> uniform;
-  double rest = uniform(generator) * mass.sum();
+/// Index of a point drawn with probability proportional to its weight times `column` (filling points have none).
+Index draw(const PointBlocks& points, const WeightedColumn& column, std::mt19937_64& generator) {
+  double rest = boost::random::uniform_01<double>()(generator) * column.block_sums.sum();
   Index last = 0;
-  for (Index i = 0; i < mass.size(); ++i) {
-    if (!(mass(i) > 0.0)) continue;
-    last = i;
-    if (rest < mass(i)) break;
-    rest -= mass(i);
+  for (Index b = 0; b < points.blocks(); ++b) {
+    if (rest >= column.block_sums(b) && b + 1 < points.blocks()) {
+      rest -= column.block_sums(b);
+      continue;
+    }
+    const auto weights = points.weights(b);
+    for (Index i = 0; i < points.points_in(b); ++i) {
+      const double mass = weights(i) * column.values.data()[b * block_size + i];
+      if (!(mass > 0.0)) continue;
+      last = b * block_size + i;
+      if (rest < mass) return last;
+      rest -= mass;
+    }
   }
   return last;
-}
-
-BlockColumns all_weights(const PointBlocks& points) {
-  BlockColumns weights(block_size, points.blocks());
-  for (Index b = 0; b < points.blocks(); ++b) weights.col(b) = points.weights(b);
-  return weights;
 }
 
 Eigen::VectorXd point(const PointBlocks& points, Index index) {
@@ -47,66 +64,89 @@ Eigen::VectorXd point(const PointBlocks& points, Index index) {
   return result;
 }
 
+/// Every point counts with its weight alone.
+WeightedColumn ones(const PointBlocks& points) {
+  WeightedColumn result(points);
+  std::fill_n(result.values.data(), points.blocks() * block_size, 1.0);
+  for (Index b = 0; b < points.blocks(); ++b) result.block_sums(b) = points.weights(b).sum();
+  return result;
+}
+
+/// k-means++ that draws a few candidates for every centre and keeps the one that leaves the least distances (Arthur &
+/// Vassilvitskii 2007, section 5).
 Eigen::MatrixXd plus_plus_centers(const PointBlocks& points, Index components, std::mt19937_64& generator) {
+  const WeightedColumn equal = ones(points);
+  WeightedColumn nearest(points), trial(points), best(points);
+  std::fill_n(nearest.values.data(), points.blocks() * block_size, std::numeric_limits<double>::max());
   Eigen::MatrixXd centers(points.features(), components);
-  BlockColumns nearest = BlockColumns::Constant(block_size, points.blocks(), std::numeric_limits<double>::infinity());
-  const BlockColumns weights = all_weights(points);
-  BlockColumns mass;
-  BlockColumn distance;
   for (Index k = 0; k < components; ++k) {
-    mass = k == 0 ? weights : BlockColumns(weights * nearest);
     // All points coincide with a centre: any of them is as good.
-    if (!(mass.sum() > 0.0)) mass = weights;
-    centers.col(k) = point(points, draw(mass, generator));
-    for (Index b = 0; b < points.blocks(); ++b) {
-      squared_distance(points.points(b), centers.col(k), distance);
-      nearest.col(b) = nearest.col(b).min(distance);
+    const bool any = k == 0 || !(nearest.block_sums.sum() > 0.0);
+    for (int candidate = 0; candidate < (any ? 1 : candidates); ++candidate) {
+      const Eigen::VectorXd center = point(points, draw(points, any ? equal : nearest, generator));
+      closer(points, center, nearest, trial);
+      if (candidate > 0 && !(trial.block_sums.sum() < best.block_sums.sum())) continue;
+      centers.col(k) = center;
+      std::swap(best, trial);
     }
+    std::swap(nearest, best);
   }
   return centers;
 }
 
 /// Nearest centre of every point, the lower index on a tie.
 void assign(const PointBlocks& points, const Eigen::MatrixXd& centers, BlockLabels& labels) {
-  BlockColumn distance, nearest;
-  for (Index b = 0; b < points.blocks(); ++b) {
-    nearest.setConstant(std::numeric_limits<double>::infinity());
-    for (Index k = 0; k < centers.cols(); ++k) {
-      squared_distance(points.points(b), centers.col(k), distance);
-      for (Index i = 0; i < block_size; ++i)
-        labels(i, b) = distance(i) < nearest(i) ? static_cast<int>(k) : labels(i, b);
-      nearest = nearest.min(distance);
-    }
-  }
+  const auto kernel = em::kmeans_kernels().nearest;
+  AlignedBuffer stage = points.stage();
+  for (Index b = 0; b < points.blocks(); ++b)
+    kernel(points.block(b, stage), static_cast<int>(points.features()), centers.data(),
+           static_cast<int>(centers.cols()), labels.col(b).data());
 }
 
 /// Weighted means of the clusters; an empty one keeps its centre. Returns the clusters' weights.
 Eigen::VectorXd recenter(const PointBlocks& points, const BlockLabels& labels, Eigen::MatrixXd& centers) {
-  Eigen::VectorXd mass = Eigen::VectorXd::Zero(centers.cols());
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(centers.rows(), centers.cols());
-  for (Index i = 0; i < points.count(); ++i) {
-    const double weight = points.weight(i);
-    mass(labels(i)) += weight;
-    for (Index f = 0; f < centers.rows(); ++f) sums(f, labels(i)) += weight * points.coordinate(i, f);
+  const Index features = centers.rows();
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(1 + features, centers.cols());
+  AlignedBuffer stage = points.stage();
+  for (Index b = 0; b < points.blocks(); ++b) {
+    const em::Block block = points.block(b, stage);
+    for (Index i = 0; i < block_size; ++i) {
+      double* const sum = sums.data() + labels(i, b) * (1 + features);
+      const double weight = block.weights[i];
+      sum[0] += weight;
+      for (Index f = 0; f < features; ++f) sum[1 + f] += weight * block.points[f * block_size + i];
+    }
   }
   for (Index k = 0; k < centers.cols(); ++k)
-    if (mass(k) > 0.0) centers.col(k) = sums.col(k) / mass(k);
-  return mass;
+    if (sums(0, k) > 0.0) centers.col(k) = sums.col(k).tail(features) / sums(0, k);
+  return sums.row(0);
 }
 
 /// Weighted scatter (sum of w d d') of each cluster about its centre.
 std::vector<Eigen::MatrixXd> scatter(const PointBlocks& points, const BlockLabels& labels,
                                      const Eigen::MatrixXd& centers) {
-  const Index features = centers.rows();
-  std::vector<Eigen::MatrixXd> result(centers.cols(), Eigen::MatrixXd::Zero(features, features));
-  for (Index i = 0; i < points.count(); ++i) {
-    const int k = labels(i);
-    for (Index f = 0; f < features; ++f)
-      for (Index g = 0; g <= f; ++g)
-        result[k](f, g) +=
-            points.weight(i) * (points.coordinate(i, f) - centers(f, k)) * (points.coordinate(i, g) - centers(g, k));
+  const Index features = centers.rows(), entries = features * (features + 1) / 2;
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(entries, centers.cols());
+  Eigen::VectorXd offset(features);
+  AlignedBuffer stage = points.stage();
+  for (Index b = 0; b < points.blocks(); ++b) {
+    const em::Block block = points.block(b, stage);
+    for (Index i = 0; i < block_size; ++i) {
+      const Index k = labels(i, b);
+      const double* const center = centers.data() + k * features;
+      double* sum = sums.data() + k * entries;
+      for (Index f = 0; f < features; ++f) {
+        offset(f) = block.points[f * block_size + i] - center[f];
+        const double weighted = block.weights[i] * offset(f);
+        for (Index g = 0; g <= f; ++g) *sum++ += weighted * offset(g);
+      }
+    }
   }
-  for (Eigen::MatrixXd& matrix : result) matrix = Eigen::MatrixXd(matrix.selfadjointView<Eigen::Lower>());
+  std::vector<Eigen::MatrixXd> result(static_cast<std::size_t>(centers.cols()), Eigen::MatrixXd(features, features));
+  for (Index k = 0; k < centers.cols(); ++k)
+    for (Index f = 0, entry = 0; f < features; ++f)
+      for (Index g = 0; g <= f; ++g, ++entry)
+        result[static_cast<std::size_t>(k)](f, g) = result[static_cast<std::size_t>(k)](g, f) = sums(entry, k);
   return result;
 }
 
@@ -146,9 +186,9 @@ GaussianMixture kmeans_start(const PointBlocks& points, Index components, Covari
 
 GaussianMixture random_start(const PointBlocks& points, Index components, CovarianceType type, double floor,
                              std::mt19937_64& generator) {
-  const BlockColumns weights = all_weights(points);
+  const WeightedColumn equal = ones(points);
   Eigen::MatrixXd centers(points.features(), components);
-  for (Index k = 0; k < components; ++k) centers.col(k) = point(points, draw(weights, generator));
+  for (Index k = 0; k < components; ++k) centers.col(k) = point(points, draw(points, equal, generator));
   BlockLabels labels = BlockLabels::Zero(block_size, points.blocks());
   assign(points, centers, labels);
   return mixture_of_clusters(points, labels, std::move(centers), type, floor);

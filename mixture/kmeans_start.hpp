@@ -16,7 +16,7 @@ using BlockLabels = Eigen::Array<int, block_size, Eigen::Dynamic>;
 GaussianMixture mixture_of_clusters(const PointBlocks& points, const BlockLabels& labels, Eigen::MatrixXd centers,
                                     CovarianceType type, double floor);
 
-/// A start for EM: k-means++ seeding (Arthur & Vassilvitskii 2007), at most ten Lloyd iterations, then the clusters'
+/// A start for EM: greedy k-means++ seeding (Arthur & Vassilvitskii 2007), a few Lloyd iterations, then the clusters'
 /// moments. Points should be in units of equal importance. Fewer distinct points than components gives coinciding
 /// components.
 GaussianMixture kmeans_start(const PointBlocks& points, Eigen::Index components, CovarianceType type, double floor,

@@ -20,7 +20,7 @@ using Eigen::Index;
 namespace {
 
 constexpr Index moves_are_ranked_on = 1500;  // points
-constexpr int partial_iterations = 15, move_iterations = 15;
+constexpr int partial_iterations = 10, move_iterations = 15;
 constexpr int most_move_rounds = 20;
 /// A gain below this per unit weight is the same optimum [nats].
 constexpr double least_gain = 1e-5;
@@ -67,7 +67,13 @@ SplitMergeMove best_split(const GaussianMixture& mixture, Index k, const Eigen::
   SplitMergeMove move;
   move.split = k;
   if (!((memberships.array() > 0.5).count() > 1)) return move;
-  const PointBlocks own(PointSet(points, memberships), FeatureScale::identity(points.rows()));
+  constexpr double belongs = 0.01;
+  std::vector<Index> members;
+  for (Index i = 0; i < points.cols(); ++i)
+    if (memberships(i) > belongs) members.push_back(i);
+  const Eigen::MatrixXd own_points = points(Eigen::all, members);
+  const Eigen::VectorXd own_weights = memberships(members);
+  const PointBlocks own(PointSet(own_points, own_weights), FeatureScale::identity(points.rows()));
   GaussianMixture alone;
   alone.type = mixture.type;
   alone.weights = Eigen::VectorXd::Ones(1);
@@ -123,31 +129,94 @@ GaussianMixture apply(const SplitMergeMove& move, const GaussianMixture& mixture
   return result;
 }
 
+namespace {
+
+/// The cloud that moves are ranked on, and what the present mixture makes of it.
+struct Ranking {
+  Eigen::MatrixXd points;       // F x n
+  Eigen::MatrixXd memberships;  // K x n
+  Eigen::VectorXd log_density;
+
+  void look(const GaussianMixture& mixture) {
+    memberships = responsibilities(mixture, points);
+    log_density = modebank::log_density(mixture, points);
+  }
+};
+
+/// EM of the three components that a move touches, the others' density and the three's common weight held (partial EM:
+/// Ueda et al. 2000, section 3.2). Returns the change of the mean log-likelihood on the cloud.
+double settle(const Ranking& ranking, const SplitMergeMove& move, const EmOptions& options, GaussianMixture& mixture) {
+  const std::vector<Index> touched{move.merged, move.absorbed, move.split};
+  const PointBlocks points(PointSet(ranking.points), FeatureScale::identity(ranking.points.rows()));
+  AlignedBuffer rest(points.blocks() * block_size);
+  for (Index i = 0; i < points.count(); ++i) {
+    double others = mixture.noise.present() ? std::max(0.0, 1.0 - ranking.memberships.col(i).sum()) : 0.0;
+    for (Index k = 0; k < mixture.components(); ++k)
+      if (std::find(touched.begin(), touched.end(), k) == touched.end()) others += ranking.memberships(k, i);
+    rest.data()[i] = ranking.log_density(i) + std::log(std::max(others, 1e-300));
+  }
+  GaussianMixture three;
+  three.type = mixture.type;
+  three.weights = mixture.weights(touched);
+  three.means = mixture.means(Eigen::all, touched);
+  for (const Index k : touched) three.covariances.push_back(mixture.covariances[static_cast<std::size_t>(k)]);
+  const double weight = three.weights.sum();
+  double log_likelihood = 0.0;
+  for (int iteration = 0;; ++iteration) {
+    const MixtureMoments moments = expect(points, three, rest.data());
+    log_likelihood = moments.log_likelihood;
+    if (iteration == partial_iterations) break;
+    maximise(moments, options.covariance_floor, three);
+    three.weights *= weight / three.weights.sum();
+  }
+  for (Index i = 0; i < std::ssize(touched); ++i)
+    put(component_of(three, i), touched[static_cast<std::size_t>(i)], mixture);
+  return (log_likelihood - ranking.log_density.sum()) / static_cast<double>(points.count());
+}
+
+struct Trial {
+  GaussianMixture start;
+  double gain;
+};
+
+/// Where the moves lead that still gain once partial EM has settled them, the best first. (Points with errors: the
+/// cloud does not know them, so its word is not taken.)
+std::vector<Trial> promising(const Ranking& ranking, const GaussianMixture& mixture, bool errors,
+                             const EmOptions& options) {
+  std::vector<Trial> trials;
+  const auto most = static_cast<std::size_t>(options.split_merge);
+  for (const SplitMergeMove& move : split_merge_moves(mixture, ranking.points, options, most)) {
+    Trial trial{apply(move, mixture), move.gain};
+    raise_all(trial.start, options);
+    if (!errors) trial.gain = settle(ranking, move, options, trial.start);
+    if (errors || trial.gain > 0.0) trials.push_back(std::move(trial));
+  }
+  std::stable_sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.gain > b.gain; });
+  return trials;
+}
+
+}  // namespace
+
 EmResult split_and_merge(const PointBlocks& points, EmResult fit, const EmOptions& options) {
-  if (options.split_merge < 1 || fit.mixture.components() < 3) return fit;
+  if (options.split_merge < 1 || options.max_iterations < 1 || fit.mixture.components() < 3) return fit;
   std::mt19937_64 generator = make_generator(0, "split and merge");
-  const Eigen::MatrixXd sample = sample_points(points, moves_are_ranked_on, generator);
+  Ranking ranking{sample_points(points, moves_are_ranked_on, generator), {}, {}};
   EmOptions brief = options;
   brief.max_iterations = std::min(move_iterations, options.max_iterations);
   for (int round = 0; round < most_move_rounds; ++round) {
-    EmResult best;
-    best.log_likelihood = -std::numeric_limits<double>::infinity();
-    for (const SplitMergeMove& move :
-         split_merge_moves(fit.mixture, sample, options, static_cast<std::size_t>(options.split_merge))) {
-      GaussianMixture start = apply(move, fit.mixture);
-      raise_all(start, options);
-      EmResult result = iterate(points, std::move(start), brief);
-      if (result.log_likelihood > best.log_likelihood) best = std::move(result);
+    ranking.look(fit.mixture);
+    bool better = false;
+    for (Trial& trial : promising(ranking, fit.mixture, points.has_errors(), options)) {
+      EmResult result = converge(points, std::move(trial.start), brief);
+      if (!(result.log_likelihood > fit.log_likelihood + least_gain * points.total_weight())) continue;
+      const int spent = fit.iterations + result.iterations;
+      if (!result.converged) result = converge(points, std::move(result.mixture), options);
+      result.iterations += spent;
+      fit = std::move(result);
+      better = true;
+      break;
     }
-    if (best.mixture.components() == 0) return fit;
-    const int spent = best.iterations;
-    if (!best.converged) {
-      best = iterate(points, std::move(best.mixture), options);
-      best.iterations += spent;
-    }
-    if (!(best.log_likelihood > fit.log_likelihood + least_gain * points.total_weight())) return fit;
-    best.iterations += fit.iterations;
-    fit = std::move(best);
+    if (!better) break;
   }
   return fit;
 }

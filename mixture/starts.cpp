@@ -18,7 +18,9 @@ namespace {
 constexpr Index largest_subsample = 300;
 /// k-means++ and random starts are chosen from this many points at most.
 constexpr Index start_points = 50000;
-/// A restart goes on from the best of a few short runs, which miss a cluster far less often than a single start does.
+/// A random start is the best of a few short runs, which miss a cluster far less often than a single one does. So is
+/// one of two components, which no split-and-merge move can leave, and one with a noise component. Elsewhere k-means++
+/// and the moves find more for the time.
 constexpr int short_runs = 5, short_run_iterations = 10;
 
 }  // namespace
@@ -51,7 +53,7 @@ Starts::Starts(const ScaledCloud& cloud, const EmOptions& options) : cloud_(clou
 Start Starts::make(Index components, int restart, std::uint64_t seed) const {
   if (restart < std::ssize(trees_)) return {hierarchical(trees_[static_cast<std::size_t>(restart)], components), 0};
   std::mt19937_64 generator = make_generator(seed, "em restart", static_cast<std::uint64_t>(restart));
-  return best_of_short_runs(components, generator);
+  return fresh_start(components, generator);
 }
 
 GaussianMixture Starts::hierarchical(const Tree& tree, Index components) const {
@@ -73,20 +75,23 @@ GaussianMixture Starts::with_noise(GaussianMixture start, Index components) cons
   return start;
 }
 
-/// emEM (Biernacki, Celeux & Govaert 2003, Comput. Stat. Data Anal. 41, section 2.2).
-Start Starts::best_of_short_runs(Index components, std::mt19937_64& generator) const {
+/// emEM (Biernacki, Celeux & Govaert 2003, Comput. Stat. Data Anal. 41, section 2.2) where a single start will not do.
+Start Starts::fresh_start(Index components, std::mt19937_64& generator) const {
   const auto start = options_.start == StartKind::random ? random_start : kmeans_start;
+  const PointBlocks chosen = cloud_.points.for_starts(start_points, generator);
+  const auto draw = [&](Index spare) {
+    return with_noise(start(chosen, components + spare, options_.covariance, options_.covariance_floor, generator),
+                      components);
+  };
+  if (!options_.noise_component && (components == 1 || (components > 2 && options_.start != StartKind::random)))
+    return {draw(0), 0};
   EmOptions brief = options_;
   brief.max_iterations = std::min(short_run_iterations, options_.max_iterations);
-  const PointBlocks chosen = cloud_.points.for_starts(start_points, generator);
   EmResult best;
-  const bool one_start = components == 1 && !options_.noise_component;
-  for (int run = 0; run < (one_start ? 1 : short_runs); ++run) {
+  for (int run = 0; run < short_runs; ++run) {
     // Every other run thins more clusters out: it finds the noise where there is much, but may lose a mode.
-    const Index spare = options_.noise_component && run % 2 == 1 ? spare_components(components) : 0;
-    GaussianMixture mixture = with_noise(
-        start(chosen, components + spare, options_.covariance, options_.covariance_floor, generator), components);
-    EmResult result = iterate(cloud_.points, std::move(mixture), brief);
+    EmResult result = iterate(cloud_.points,
+                              draw(options_.noise_component && run % 2 == 1 ? spare_components(components) : 0), brief);
     if (run == 0 || result.log_likelihood > best.log_likelihood) best = std::move(result);
   }
   return {std::move(best.mixture), best.iterations};

@@ -3,7 +3,8 @@
 //   compare_em [ROUNDS]           with Armadillo, where the benchmark was built with it
 //   compare_em memory             peak memory of N = 1e7, d = 3, K = 25 from k-means++ starts
 //   compare_em serve FOLDER       for em_peers.py: writes the cases to FOLDER, then answers lines on stdin
-//                                 ("case NAME", "sweep THREADS KMAX RESTARTS") with seconds and log-likelihoods
+//                                 ("case NAME", "sweep NAME THREADS KMAX RESTARTS SEED") with seconds and
+//                                 log-likelihoods
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <tbb/blocked_range.h>
@@ -156,7 +157,7 @@ void write_case(const EmCase& problem, const std::string& folder) {
 
 /// Every number of components to `most`, each from `restarts` starts, in scikit-learn's tolerance and iterations.
 /// Seconds and the sum of log-likelihoods.
-EmRun sweep(const EmCase& problem, int threads, int most, int restarts) {
+EmRun sweep(const EmCase& problem, int threads, int most, int restarts, int seed) {
   EmOptions options;
   options.covariance = problem.type;
   options.restarts = restarts;
@@ -168,12 +169,13 @@ EmRun sweep(const EmCase& problem, int threads, int most, int restarts) {
   std::vector<double> log_likelihoods(static_cast<std::size_t>(most));
   const double cpu_start = cpu_seconds();
   const auto start = std::chrono::steady_clock::now();
+  const EmSweep points(PointSet(problem.points), options);
   tbb::parallel_for(
       tbb::blocked_range<int>(0, most, 1),
       [&](const tbb::blocked_range<int>& range) {
         for (int i = range.begin(); i < range.end(); ++i)
           log_likelihoods[static_cast<std::size_t>(i)] =
-              fit_em(PointSet(problem.points), most - i, options, 1).log_likelihood;
+              points.fit(most - i, static_cast<std::uint64_t>(seed)).log_likelihood;
       },
       tbb::simple_partitioner());
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
@@ -220,10 +222,10 @@ void serve(const std::vector<EmCase>& cases, const std::string& folder) {
     words >> command >> name;
     const auto found = std::find_if(cases.begin(), cases.end(), [&](const EmCase& c) { return c.name == name; });
     check(found != cases.end(), "unknown case " + name);
-    int threads = 1, most = 25, restarts = 5;
-    if (command == "sweep") words >> threads >> most >> restarts;
+    int threads = 1, most = 25, restarts = 5, seed = 1;
+    if (command == "sweep") words >> threads >> most >> restarts >> seed;
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    const EmRun own = command == "sweep" ? sweep(*found, threads, most, restarts) : run_modebank(*found);
+    const EmRun own = command == "sweep" ? sweep(*found, threads, most, restarts, seed) : run_modebank(*found);
     const EmRun peer = command == "case" && has_armadillo() ? run_armadillo(*found) : EmRun{};
     fmt::print("{:.9g} {:.17g} {:.9g} {:.17g}\n", own.seconds, own.log_likelihood, peer.seconds, peer.log_likelihood);
     std::fflush(stdout);

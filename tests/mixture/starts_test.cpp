@@ -9,6 +9,8 @@
 
 #include "mixture/assignment.hpp"
 #include "mixture/hierarchical.hpp"
+#include "mixture/kmeans_kernels.hpp"
+#include "mixture/point_blocks.hpp"
 #include "mixture/split_merge.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -70,6 +72,38 @@ TEST(Starts, EveryKindFindsSeparateClusters) {
     const EmResult fit = fit_em(points, 6, options, 1);
     EXPECT_NEAR(fit.log_likelihood, truth, 1e-3) << name_of(kind);
     EXPECT_EQ(fit.agreeing_restarts, 3) << name_of(kind);
+  }
+}
+
+TEST(Kmeans, KernelsAgreeWithDistancesOneByOne) {
+  for (const Index features : {1, 3, 7}) {
+    std::mt19937_64 generator(5);
+    const auto number = [&] { return static_cast<double>(generator() % 2000) / 1000.0 - 1.0; };
+    const Eigen::MatrixXd points = Eigen::MatrixXd::NullaryExpr(features, 200, number);
+    const Eigen::VectorXd weights = Eigen::VectorXd::NullaryExpr(200, [&] { return std::abs(number()); });
+    Eigen::MatrixXd centers = Eigen::MatrixXd::NullaryExpr(features, 9, number);
+    centers.col(8) = centers.col(2);  // a tie: the lower index
+    const PointBlocks blocks(PointSet(points, weights), FeatureScale::identity(features));
+    AlignedBuffer stage = blocks.stage(), nearest(block_size);
+    std::vector<int> labels(block_size);
+    for (Index b = 0; b < blocks.blocks(); ++b) {
+      const em::Block block = blocks.block(b, stage);
+      em::kmeans_kernels().nearest(block, static_cast<int>(features), centers.data(), 9, labels.data());
+      std::fill_n(nearest.data(), block_size, 1e300);
+      double sum = 0.0, expected = 0.0;
+      for (Index k = 0; k < 9; ++k)
+        sum = em::kmeans_kernels().closer(block, static_cast<int>(features), centers.col(k).data(), nearest.data(),
+                                          nearest.data());
+      for (Index i = 0; i < blocks.points_in(b); ++i) {
+        const Index point = b * block_size + i;
+        Index best = 0;
+        const double distance = (centers.colwise() - points.col(point)).colwise().squaredNorm().minCoeff(&best);
+        EXPECT_EQ(labels[static_cast<std::size_t>(i)], best);
+        EXPECT_NEAR(nearest.data()[i], distance, 1e-14);
+        expected += weights(point) * distance;
+      }
+      EXPECT_NEAR(sum, expected, 1e-12);
+    }
   }
 }
 

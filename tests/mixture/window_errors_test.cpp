@@ -110,7 +110,7 @@ TEST(WindowErrors, ThePriorIsTakenOffAgain) {
   EXPECT_GT(pull, 10.0);
   // Not nothing: the posterior weighs data by a robust scale, its covariance states the residuals' variance, and from
   // 25 transitions these differ by some 35 %.
-  EXPECT_LT(left, 0.2 * pull);
+  EXPECT_LT(left, 0.15 * pull);
 }
 
 TEST(WindowErrors, LogVarianceAndUnknownCovariances) {
