@@ -97,7 +97,7 @@ TEST(VectorImm, SaysWhatTheGeneralStepsSay) {
 }
 
 TEST(VectorImm, OneSignalOfSeveralStates) {
-  for (const Index n : {2, 3}) {
+  for (const Index n : {2, 3, 4}) {
     Bank bank = many_modes(n, 5);
     bank.C = MatrixXd::Zero(1, n);
     bank.C(0, 0) = 2.0;
