@@ -23,7 +23,7 @@ namespace {
 constexpr std::array<Index, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
 // With measurement noise, after the fit without: no start is forgotten here, and each iteration costs far more.
 constexpr std::array<Index, 6> later_checkpoints{5, 10, 20, 40, 70, 100};
-constexpr int patience = 2;  // checkpoints worse than the best after which the search ends
+constexpr int patience = 1;  // checkpoints worse than the best after which the search ends
 constexpr std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
 constexpr std::array<double, 3> prior_samples{2.0, 5.0, 20.0};
 constexpr double least_measurement_share = 1e-9;  // of the global residual variance

@@ -443,6 +443,7 @@ Kernels kernels_here(std::size_t n, std::size_t n_y) {
   if (n == 2 && n_y == 2) return kernels_of<2, 2>();
   if (n == 3 && n_y == 1) return kernels_of<3, 1>();
   if (n == 3 && n_y == 3) return kernels_of<3, 3>();
+  if (n == 4 && n_y == 1) return kernels_of<4, 1>();
   return {};
 }
 

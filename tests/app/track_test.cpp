@@ -174,6 +174,7 @@ TEST_F(Track, RefusesCheckpointsThatNoFilterWrote) {
   }
   std::ifstream stream(checkpoint);
   const json good = json::parse(stream);
+  EXPECT_EQ(modebank({"track", archive(), "--track.resume", checkpoint}).status, 0);
   const auto resume = [&](const char* key, const json& value) {
     json bad = good;
     bad[json::json_pointer(key)] = value;

@@ -19,7 +19,7 @@ FEATURES = [
     ("without the adaptive noise scale", {"filter.noise": "gaussian"}),
     ("without refinement", {"bank.refine": "none"}),
     ("without either", {"bank.refine": "none", "filter.noise": "gaussian"}),
-    ("without lagged states (linear)", {"window.model": "linear"}),
+    ("without lagged states (linear)", {"window.model": "linear", "window.state_lags": "1"}),
     ("without cross-validation", {"bank.folds": "1"}),
     ("without restarts", {"bank.restarts": "0"}),
     ("without screening", {"bank.screen": "false"}),

@@ -134,7 +134,7 @@ double fixed(const Bank& bank, const Trajectory& run) {
   return sum;
 }
 
-/// The step without what only a summary needs.
+/// The general steps, which every variant and size can take, without what only a summary needs.
 template <int N>
 double bare(const Bank& bank, const Trajectory& run) {
   const FilterModel<N, 1> model(bank, {});
@@ -188,7 +188,8 @@ void compare_states(int rounds, const Trajectory& run) {
   const Bank bank = make_bank(N, 9);
   compare(fmt::format("K = 9, n = {}", N), rounds,
           {{"plain dynamic Eigen", 1, [&] { return plain(bank, run); }},
-           {"predict, update", 1, [&] { return bare<N>(bank, run); }},
+           {"general steps", 1, [&] { return bare<N>(bank, run); }},
+           {"log_likelihood, one run", 1, [&] { return log_likelihood(bank, run, {}); }},
            {"Imm<n, 2, 9, 1>, estimate and NIS", 1, [&] { return fixed<N, 9>(bank, run); }}});
 }
 
@@ -203,7 +204,7 @@ int main(int argc, char** argv) {
     const std::vector<const Trajectory*> runs(32, &run);
     compare(fmt::format("K = {}, n = 1", K), rounds,
             {{"plain dynamic Eigen", 1, [&] { return plain(bank, run); }},
-             {"predict, update", 1, [&] { return bare<1>(bank, run); }},
+             {"general steps", 1, [&] { return bare<1>(bank, run); }},
              {"log_likelihood, one run", 1, [&] { return log_likelihood(bank, run, {}); }},
              {"log_likelihoods, 32 runs in lanes", 32, [&] { return log_likelihoods(banks, runs, {}).back(); }}});
   }

@@ -167,6 +167,11 @@ TEST(BankFilter, GoesOnFromASnapshotAsIfNothingHadHappened) {
       EXPECT_TRUE(near(a.state, b.state, 0.0));
     }
   }
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2}) {  // before there was anything to know
+    BankFilter fresh(bank, {variant}), restored(bank, {variant});
+    EXPECT_NO_THROW(restored.restore(fresh.snapshot())) << name_of(variant);
+    EXPECT_FALSE(restored.started());
+  }
   BankFilter other(example_bank(2, 1, 2), {});
   EXPECT_THROW(other.restore(BankFilter(bank, {}).snapshot()), std::invalid_argument);
 }
