@@ -66,17 +66,16 @@ class Browser:
         """Scrolls through the page until every plot is drawn; plots draw when they come near the window. Returns how many."""
         for _ in range(60):
             pending = self.run("""
-                const open = [...document.querySelectorAll('details:not([open])')];
-                const pending = [...document.querySelectorAll('.plot')].filter((p) => p.offsetParent && !p.dataset.failed && !p.querySelector('.main-svg'));
+                const pending = [...document.querySelectorAll('div.plot')].filter((p) => p.offsetParent && !p.dataset.failed && !p.querySelector('.main-svg'));
                 if (pending.length) pending[0].scrollIntoView({block: 'center'});
                 return pending.length;""")
             if not pending:
                 break
             time.sleep(0.1)
-        failed = self.run("return [...document.querySelectorAll('.plot[data-failed]')].map((p) => p.getAttribute('aria-label'))")
+        failed = self.run("return [...document.querySelectorAll('div.plot[data-failed]')].map((p) => p.getAttribute('aria-label'))")
         assert not failed, f"plots that failed: {failed}"
         assert not pending, f"{pending} plots were never drawn"
-        return self.run("return document.querySelectorAll('.plot .main-svg').length")
+        return self.run("return [...document.querySelectorAll('div.plot')].filter((p) => p.querySelector('.main-svg')).length")
 
     def messages(self):
         """Console errors and requests to anywhere but this file since the last call."""
