@@ -42,7 +42,7 @@ class Browser:
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)
 
-    def wait(self, script, *arguments, seconds=30, what=None):
+    def wait(self, script, *arguments, seconds=60, what=None):
         """Until the script's value is true; returns it."""
         end = time.monotonic() + seconds
         while True:
@@ -53,7 +53,7 @@ class Browser:
                 raise AssertionError(f"waited {seconds} s for: {what or script}")
             time.sleep(0.05)
 
-    def open(self, page, seconds=30):
+    def open(self, page, seconds=60):
         """Opens a file and waits until the page says it has drawn itself; returns the seconds that took."""
         self.messages()
         start = time.monotonic()

@@ -1,7 +1,7 @@
 // The page of a study: its runs as a table that sorts and filters, and what the varied keys do to the scores.
 import { copyButton, data, draw, facts, h, head, note, section, table } from './common.js';
 import { drawStudyTable } from './study_table.js';
-import { drawEffects, drawHeatMap, drawParallel, drawPareto } from './study_plots.js';
+import { drawCoverage, drawEffects, drawHeatMap, drawParallel, drawPareto } from './study_plots.js';
 
 const study = data.study;
 // The runs that pass the filters (base) and what was dragged in the parallel coordinates, too (rows); every plot follows.
@@ -61,4 +61,5 @@ draw(async () => {
   drawEffects(context);
   drawHeatMap(context);
   drawPareto(context);
+  drawCoverage(context);
 });

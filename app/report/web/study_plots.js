@@ -147,3 +147,29 @@ export function drawPareto(context) {
   section('pareto', 'Pareto plot', h('div', { class: 'controls' }, choice('Cost', costs, 0, (i) => { cost = costs[i]; element.redraw(); }), control), element);
   follow(context, element);
 }
+
+// The paper's figure 5: samples outside the interval, above and below, training and held out, over the values of a key.
+export function drawCoverage(context) {
+  const { study, shown } = context;
+  const scores = names(study, 'score'), measures = [['nis', 'NIS'], ['tail', 'PIT']].filter(([key]) => scores.includes(`bank_test_${key}_above`) || scores.includes(`bank_train_${key}_above`));
+  const keys = names(study, 'varied');
+  if (!measures.length || !keys.length) { section('coverage', 'Samples outside the interval', h('p', {}, 'The study has no such scores.')); return; }
+  let key = keys[first(keys, 'mixture.components')], measure = measures[0];
+  const element = figure('Shares of samples outside the 95 % interval, above and below, training and held out, for the baseline, noise only and each value of a key', () => {
+    const axis = axisOf(study, key), runs = shown.rows, traces = [];
+    const average = (rows, score) => { const of = axisOf(study, score).of, values = scores.includes(score) ? rows.map(of).filter(isNumber) : []; return values.length ? 100 * mean(values) : null; };
+    const groups = [['baseline', 'baseline', runs], ['noise only', 'noise_only', runs], ...axis.levels.map((level) => [String(level), 'bank', runs.filter((row) => axis.of(row) === level)])];
+    for (const [side, sign] of [['above', 1], ['below', -1]])
+      for (const [role, title, colour] of [['train', 'training', palette.modes[0]], ['test', 'held out', palette.modes[1]]]) {
+        const y = groups.map(([, filter, rows]) => average(rows, `${filter}_${role}_${measure[0]}_${side}`));
+        traces.push({ type: 'bar', name: title, legendgroup: title, showlegend: sign > 0, offsetgroup: role, x: groups.map(([name], i) => i), y: y.map((v) => (v === null ? null : sign * v)), meta: `${role} ${side}`,
+          text: y.map((v, i) => `${plain(groups[i][0])}, ${title}, ${side}: ${v === null ? '–' : v.toPrecision(4)} %`), textposition: 'none', hoverinfo: 'text', marker: { color: colour } });
+      }
+    const line = (y) => ({ type: 'line', xref: 'paper', x0: 0, x1: 1, y0: y, y1: y, line: { color: ink(), width: 1, dash: 'dash' } });
+    return { traces, layout: { height: 380, barmode: 'group', legend: { orientation: 'h', y: 1.1 }, shapes: [line(2.5), line(-2.5)], margin: { l: 60, r: 10, t: 30, b: 60 },
+      xaxis: { tickvals: groups.map((g, i) => i), ticktext: groups.map(([name]) => plain(name)), title: { text: `filter, then the bank by ${axis.label}` } }, yaxis: { title: { text: `${measure[1]} below | above [%]` }, zeroline: true, zerolinewidth: 2 } } };
+  }, 'Means over the runs shown. Dashed: 2.5 % on either side, as a true filter has.');
+  section('coverage', 'Samples outside the interval', h('div', { class: 'controls' }, choice('Over', keys, keys.indexOf(key), (i) => { key = keys[i]; element.redraw(); }),
+    choice('By', measures.map(([, name]) => name), 0, (i) => { measure = measures[i]; element.redraw(); })), element);
+  follow(context, element);
+}
