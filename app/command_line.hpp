@@ -15,6 +15,7 @@ struct CommandLine {
   bool version = false;
   bool markdown = false;  ///< help: the table of keys as README holds it
   bool json = false;
+  bool repair = false;             ///< verify: remove what is broken in study folders
   std::string form = "increment";  ///< of models that `show` prints: increment or full
   std::string output;              ///< -o: the file that `report` writes
   std::string typed;               ///< the whole line, for provenance

@@ -7,6 +7,7 @@
 
 #include "app/build_info.hpp"
 #include "app/option_table.hpp"
+#include "app/study/verify_study.hpp"
 #include "ident/error.hpp"
 #include "ident/nearest_name.hpp"
 #include "io/archive.hpp"
@@ -36,7 +37,9 @@ constexpr Command commands[] = {
      run_track},
     {"report", "ARCHIVE|STUDY [ARCHIVE]",
      "an interactive page that opens offline in a browser (-o page.html): of a run, a study, or two runs", run_report},
-    {"verify", "ARCHIVE...", "check hash, schema and completeness of archives", run_verify},
+    {"verify", "ARCHIVE...",
+     "check hash, schema and completeness of archives and study folders; --repair removes what is broken in the latter",
+     run_verify},
 };
 
 std::string option_help() {
@@ -75,8 +78,10 @@ std::string help_text() {
   for (const Command& command : commands)
     text += fmt::format("  {:<24} {}\n", fmt::format("{} {}", command.name, command.arguments), command.help);
   text +=
-      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report). Every\n"
-      "configuration key is an option too, and wins over the file. Exit status: 0 done; 2 usage, configuration or "
+      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report), --repair "
+      "(verify).\n"
+      "Every configuration key is an option too, and wins over the file. Exit status: 0 done; 2 usage, configuration "
+      "or "
       "path; 1 content or run failure.\n";
   return text + option_help();
 }
@@ -100,14 +105,36 @@ int run_command(const CommandLine& line) {
                                        did_you_mean(line.command, names), fmt::join(names, ", ")));
 }
 
+namespace {
+
+bool report_archive(const std::string& file) {
+  const Verification result = verify_archive(file);
+  if (result.ok()) fmt::print("{}: ok\n", file);
+  for (const std::string& problem : result.problems) fmt::print("{}: {}\n", file, problem);
+  return result.ok();
+}
+
+/// Whether all is well, or repaired as far as files go.
+bool report_study(const std::string& folder, bool repair) {
+  const StudyVerification result = verify_study(folder);
+  for (const StudyProblem& problem : result.problems)
+    fmt::print("{}: {}{}{}\n", problem.file.string(), problem.what,
+               problem.redo.empty() ? "" : "; to redo: " + problem.redo,
+               repair && problem.removable ? "; removed" : "");
+  if (repair) repair_study(folder, result);
+  fmt::print("{}: {} trials are whole{}\n", folder, result.whole,
+             result.problems.empty() ? ": ok" : fmt::format(", {} problems", result.problems.size()));
+  return result.problems.empty();
+}
+
+}  // namespace
+
 int run_verify(const CommandLine& line) {
   if (line.files.empty()) throw ConfigurationError("verify needs at least one archive: modebank verify ARCHIVE...");
   bool all_good = true;
   for (const std::string& file : line.files) {
-    const Verification result = verify_archive(file);
-    all_good = all_good && result.ok();
-    if (result.ok()) fmt::print("{}: ok\n", file);
-    for (const std::string& problem : result.problems) fmt::print("{}: {}\n", file, problem);
+    const bool good = is_study_folder(file) ? report_study(file, line.repair) : report_archive(file);
+    all_good = all_good && good;
   }
   return all_good ? 0 : 1;
 }

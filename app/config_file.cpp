@@ -141,13 +141,28 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
   return config;
 }
 
-Config stored_config(const std::string& resolved, const KeyValues& overrides) {
+namespace {
+
+/// The known keys of a resolved configuration whose name `wanted` takes.
+template <class Wanted>
+Config config_of(const std::string& resolved, Wanted wanted) {
   Config config = default_config();
   for (const auto& [key, value] : resolved_values(resolved))
-    if ((key.rfind("data.", 0) == 0 || key.rfind("filter.", 0) == 0) && find_option(key))
-      apply(config, "stored configuration", key, value, false);
+    if (wanted(key) && find_option(key)) apply(config, "stored configuration", key, value, false);
+  return config;
+}
+
+}  // namespace
+
+Config stored_config(const std::string& resolved, const KeyValues& overrides) {
+  Config config = config_of(
+      resolved, [](const std::string& key) { return key.rfind("data.", 0) == 0 || key.rfind("filter.", 0) == 0; });
   apply_overrides(config, overrides);
   return config;
+}
+
+Config resolved_config(const std::string& resolved) {
+  return config_of(resolved, [](const std::string&) { return true; });
 }
 
 std::string resolved_text(const Config& config) {

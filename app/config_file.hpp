@@ -21,6 +21,9 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
 /// does not know are left out.
 Config stored_config(const std::string& resolved, const KeyValues& overrides);
 
+/// A resolved configuration read back whole. Keys that this version does not know are left out.
+Config resolved_config(const std::string& resolved);
+
 /// Every key with its value, itself a valid configuration file.
 std::string resolved_text(const Config& config);
 

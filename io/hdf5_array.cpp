@@ -85,13 +85,18 @@ hsize_t element_count(const Shape& shape) {
 
 namespace {
 
+Handle without_times() {
+  Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare datasets");
+  check(H5Pset_obj_track_times(creation.id(), false), "prepare datasets");
+  return creation;
+}
+
 /// A contiguous dataset without time stamps.
 Handle create_dataset(hid_t parent, const std::string& name, hid_t file_type, const Handle& space) {
-  const std::string what = quoted(Place::dataset, name);
-  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare " + what);
-  check(H5Pset_obj_track_times(creation.id(), false), "prepare " + what);
-  return {H5Dcreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose,
-          "create " + what};
+  // Made once: an archive has a thousand datasets. It stays until HDF5 itself ends, which may be before our statics do.
+  static const hid_t creation = (new Handle(without_times()))->id();
+  return {H5Dcreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose,
+          "create " + quoted(Place::dataset, name)};
 }
 
 }  // namespace

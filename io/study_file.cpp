@@ -181,7 +181,11 @@ TrialScores read_trial_scores(const std::filesystem::path& path) {
     layout::exchange_summary(evaluation, summary, {});
     const std::vector<std::string> states = hdf5::StoredArray(data.id(), hdf5::Place::attribute, "state_names").texts();
     const hdf5::StoredArray weights(bank.id(), hdf5::Place::dataset, "weight");
-    return {static_cast<std::int64_t>(weights.elements()), pooled_scores(summary, states)};
+    const auto attribute = [&](const char* name) {
+      return hdf5::StoredArray(root.id(), hdf5::Place::attribute, name).texts().front();
+    };
+    return {attribute("modebank_version"), attribute("config_hash"), attribute("data_hash"),
+            static_cast<std::int64_t>(weights.elements()), pooled_scores(summary, states)};
   } catch (const DataError& error) {
     throw DataError(path.string() + ": " + error.what());
   }

@@ -40,6 +40,7 @@ StudyFile read_study_file(const std::filesystem::path& path, const std::string& 
 
 /// What a study's table takes from a trial's archive.
 struct TrialScores {
+  std::string modebank_version, config_hash, data_hash;
   std::int64_t modes = 0;                              ///< of the bank
   std::vector<std::pair<std::string, double>> pooled;  ///< <filter>_<role>_<score>, ..._rmse_<state>: the summary's "*"
 };
