@@ -15,11 +15,23 @@ namespace modebank {
 
 namespace {
 
-constexpr const char* trials_group = "trials";
+constexpr const char *trials_group = "trials", *answers_group = "answers";
 
-std::size_t row_count(const StudyFile& study) {
-  if (study.columns.empty()) return 0;
-  return std::visit([](const auto& values) { return values.size(); }, study.columns.front().values);
+void write_columns(hid_t group, const std::string& name, const std::vector<NamedColumn>& named) {
+  std::vector<hdf5::TableColumn> columns;
+  for (const NamedColumn& column : named)
+    columns.push_back(
+        {column.name, std::visit([](const auto& values) { return hdf5::TableColumn::Values(values); }, column.values)});
+  const std::size_t rows =
+      named.empty() ? 0 : std::visit([](const auto& values) { return values.size(); }, named.front().values);
+  hdf5::write_table(group, name, columns, rows);
+}
+
+hdf5::Handle make_group(const hdf5::Handle& file, const char* name) {
+  const std::string what = std::string("create the group ") + name;
+  const hdf5::Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, what);
+  hdf5::check(H5Pset_obj_track_times(creation.id(), false), what);
+  return {H5Gcreate2(file.id(), name, H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose, what};
 }
 
 /// Everything but the archives.
@@ -29,22 +41,14 @@ void write_table_of_runs(const hdf5::Handle& file, const StudyFile& study) {
   origin.config = study.config;
   ArchiveWriter root(open_root(file));
   layout::exchange_origin(root, origin);
-  std::vector<hdf5::TableColumn> columns;
-  for (const NamedColumn& column : study.columns)
-    columns.push_back(
-        {column.name, std::visit([](const auto& values) { return hdf5::TableColumn::Values(values); }, column.values)});
-  hdf5::write_table(open_root(file).id(), study.table, columns, row_count(study));
-}
-
-hdf5::Handle make_trials(const hdf5::Handle& file) {
-  const hdf5::Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, "prepare the group of trials");
-  hdf5::check(H5Pset_obj_track_times(creation.id(), false), "prepare the group of trials");
-  return {H5Gcreate2(file.id(), trials_group, H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose,
-          "create the group of trials"};
+  write_columns(open_root(file).id(), study.table, study.columns);
+  if (study.answers.empty()) return;
+  const hdf5::Handle group = make_group(file, answers_group);
+  for (const NamedTable& answer : study.answers) write_columns(group.id(), answer.name, answer.columns);
 }
 
 void link_archives(const hdf5::Handle& file, const StudyFile& study, const std::filesystem::path& folder) {
-  const hdf5::Handle trials = make_trials(file);
+  const hdf5::Handle trials = make_group(file, trials_group);
   for (const auto& [name, path] : study.archives)
     hdf5::check(H5Lcreate_external(std::filesystem::proximate(path, folder).c_str(), "/", trials.id(), name.c_str(),
                                    H5P_DEFAULT, H5P_DEFAULT),
@@ -52,7 +56,7 @@ void link_archives(const hdf5::Handle& file, const StudyFile& study, const std::
 }
 
 void copy_archives(const hdf5::Handle& file, const StudyFile& study) {
-  const hdf5::Handle trials = make_trials(file);
+  const hdf5::Handle trials = make_group(file, trials_group);
   for (const auto& [name, path] : study.archives) {
     const hdf5::Handle archive = open_archive(path);
     hdf5::check(H5Ocopy(archive.id(), "/", trials.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
@@ -126,7 +130,7 @@ StudyFile read_study_file(const std::filesystem::path& path, const std::string& 
     Archive origin;
     ArchiveReader root(open_root(file), nullptr);
     layout::exchange_origin(root, origin);
-    StudyFile study{std::move(origin.provenance), std::move(origin.config), table, {}, {}};
+    StudyFile study{std::move(origin.provenance), std::move(origin.config), table, {}, {}, {}};
     study.columns = read_columns(hdf5::StoredArray(open_root(file).id(), hdf5::Place::dataset, table));
     return study;
   } catch (const DataError& error) {

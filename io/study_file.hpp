@@ -19,14 +19,20 @@ struct NamedColumn {
   Values values;
 };
 
+struct NamedTable {
+  std::string name;
+  std::vector<NamedColumn> columns;
+};
+
 /// A table of runs in a file with the root of an archive: the study's resolved /config, /provenance with the inputs,
-/// the hash in the user block, and one compound dataset.
+/// the hash in the user block, one compound dataset, and the tables of what it answers.
 struct StudyFile {
   Provenance provenance;
   std::string config;
   std::string table;  ///< the dataset's name
   std::vector<NamedColumn> columns;
   std::vector<std::pair<std::string, std::filesystem::path>> archives;  ///< appear as /trials/<name>
+  std::vector<NamedTable> answers;  ///< drawn from the table; appear as /answers/<name>
 };
 
 /// Whether /trials/<name> are external links, relative to the file's folder, or copies of the archives' content.

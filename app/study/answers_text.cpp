@@ -94,6 +94,17 @@ std::string effects_text(const StudyTable& table, const Answers& answers) {
   return text + "\n";
 }
 
+/// The setting without the keys' sections, where the names alone tell them apart.
+std::string short_setting(const StudyTable& table, std::size_t row) {
+  const auto name_of_key = [](const std::string& key) { return key.substr(key.find('.') + 1); };
+  StudyTable shortened{table.varied_keys, {}, {table.rows[row]}};
+  for (std::string& key : shortened.varied_keys) {
+    const auto same_name = [&](const std::string& other) { return name_of_key(other) == name_of_key(key); };
+    if (std::count_if(table.varied_keys.begin(), table.varied_keys.end(), same_name) == 1) key = name_of_key(key);
+  }
+  return setting_text(shortened, 0);
+}
+
 std::string best_text(const StudyTable& table, const Answers& answers) {
   const std::string prefix = answers.headline.substr(0, answers.headline.rfind("log_score"));
   std::string text = fmt::format("\nBest per score (over repeats: by their mean)\n{:<28} {:<14} {:>10}  {:<12}  {}\n",
@@ -101,7 +112,7 @@ std::string best_text(const StudyTable& table, const Answers& answers) {
   for (const BestSetting& best : answers.best)
     if (best.score.rfind(prefix, 0) == 0)
       text += fmt::format("{:<28} {:<14} {:>10.5g}  {:<12}  {}\n", best.score, best.goal.text(), best.value,
-                          table.rows[best.row].key.substr(0, 12), setting_text(table, best.row));
+                          table.rows[best.row].key.substr(0, 12), short_setting(table, best.row));
   return text;
 }
 
@@ -111,7 +122,7 @@ std::string pareto_text(const StudyTable& table, const Answers& answers) {
                                  answers.headline, "modes", "log_score", "trial", "setting");
   for (const ParetoSetting& point : answers.pareto)
     text += fmt::format("{:>6.3g} {:>10.4f}  {:<12}  {}\n", point.modes, point.log_score,
-                        table.rows[point.row].key.substr(0, 12), setting_text(table, point.row));
+                        table.rows[point.row].key.substr(0, 12), short_setting(table, point.row));
   return text;
 }
 
@@ -131,8 +142,10 @@ std::string spread_text(const StudyTable& table, const Answers& answers) {
 
 std::string setting_text(const StudyTable& table, std::size_t row) {
   std::string text;
-  for (std::size_t key = 0; key < table.varied_keys.size(); ++key)
-    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", table.varied_keys[key], table.rows[row].varied.at(key));
+  for (std::size_t key = 0; key < table.varied_keys.size(); ++key) {
+    const std::string& value = table.rows[row].varied.at(key);
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", table.varied_keys[key], value.empty() ? "''" : value);
+  }
   return text.empty() ? "as configured" : text;
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "app/option_text.hpp"
+#include "app/study/answer_tables.hpp"
 #include "app/study/csv_field.hpp"
 #include "ident/error.hpp"
 #include "io/replace_file.hpp"
@@ -142,8 +143,9 @@ std::string table_csv(const StudyTable& table) {
   return text;
 }
 
-void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTable& table, ArchiveUse use) {
-  StudyFile file{plan.provenance, plan.config, "study", table_columns(table), {}};
+void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTable& table, const Answers& answers,
+                 ArchiveUse use) {
+  StudyFile file{plan.provenance, plan.config, "study", table_columns(table), {}, answer_tables(table, answers)};
   for (const TrialRow& row : table.rows)
     if (row.status == TrialStatus::done) file.archives.emplace_back(row.key, store.archive(row.key));
   write_study_file(store.folder() / "study.h5", file, use);

@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "app/study/answers.hpp"
 #include "app/study/study_plan.hpp"
 #include "app/study/trial_store.hpp"
 #include "io/study_file.hpp"
@@ -14,8 +15,10 @@ namespace modebank::app {
 /// An archive counts when its hash is right; those in `whole` are known to be.
 StudyTable collect_table(const TrialStore& store, const StudyPlan& plan, const std::set<std::string>& whole = {});
 
-/// Writes study.h5 (with links to the archives, or copies of them), study.csv, and the rows' status into plan.h5.
-void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTable& table, ArchiveUse use);
+/// Writes study.h5 (with the answers, and with links to the archives, or copies of them), study.csv, and the rows'
+/// status into plan.h5.
+void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTable& table, const Answers& answers,
+                 ArchiveUse use);
 
 /// The table's columns: varied keys (numbers where all are), repeat, seed, status, message, key, scores.
 std::vector<NamedColumn> table_columns(const StudyTable& table);

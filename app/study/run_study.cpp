@@ -4,10 +4,14 @@
 #include "app/commands.hpp"
 #include "app/config_file.hpp"
 #include "app/provenance.hpp"
+#include "app/study/answers_text.hpp"
+#include "app/study/best_runs.hpp"
 #include "app/study/merge_study.hpp"
 #include "app/study/run_trials.hpp"
+#include "app/study/slurm.hpp"
 #include "app/study/study_progress.hpp"
 #include "app/study/study_text.hpp"
+#include "app/study/submit_study.hpp"
 #include "ident/error.hpp"
 
 namespace modebank::app {
@@ -93,8 +97,11 @@ int merge(const StudyCommand& command, const std::set<std::string>& whole) {
   const StudyPlan plan = read_plan(command.store.folder());  // another process may have added values
   check_plan_is_of(plan, command.config, command.store.folder());
   const StudyTable table = collect_table(command.store, plan, whole);
-  write_study(command.store, plan, table, command.config.study.flat ? ArchiveUse::copy : ArchiveUse::link);
+  const Answers answers = answer(table);
+  write_study(command.store, plan, table, answers, command.config.study.flat ? ArchiveUse::copy : ArchiveUse::link);
   fmt::print("{}", table_text(table, command.store));
+  write_best_runs(command.store.folder(), command.config, table, answers);
+  fmt::print("\n{}\n", answers_text(table, answers));
   fmt::print("table     {}, {}\n", (command.store.folder() / "study.h5").string(),
              (command.store.folder() / "study.csv").string());
   return is_complete(table) ? 0 : 1;
@@ -111,8 +118,15 @@ int show_status(const StudyCommand& command) {
   require_plan(command);
   const StudyPlan plan = read_plan(command.store.folder());
   const StudyTable table = collect_table(command.store, plan);
-  fmt::print("{}", table_text(table, command.store));
+  fmt::print("{}{}", table_text(table, command.store), slurm_text(slurm_view(command.store.folder())));
   return is_complete(table) ? 0 : 1;
+}
+
+int submit(const StudyCommand& command) {
+  const StudyPlan plan = settle_plan(command);
+  print_plan(command, plan);
+  fmt::print("{}", submit_study(command.line, command.config, plan, collect_table(command.store, plan)));
+  return 0;
 }
 
 }  // namespace
@@ -135,9 +149,9 @@ int run_study(const CommandLine& line) {
     case StudyStage::status:
       return show_status(command);
     case StudyStage::submit:
-      break;
+      return submit(command);
   }
-  throw ConfigurationError("study.stage = submit: not there yet");
+  return 0;
 }
 
 }  // namespace modebank::app

@@ -181,7 +181,7 @@ std::filesystem::path plan_file(const std::filesystem::path& folder) { return fo
 
 void write_plan(const std::filesystem::path& folder, const StudyPlan& plan) {
   const std::vector<TrialRow>& rows = plan.table.rows;
-  StudyFile file{plan.provenance, plan.config, "plan", {}, {}};
+  StudyFile file{plan.provenance, plan.config, "plan", {}, {}, {}};
   file.columns.push_back(text_column("key", rows, [](const TrialRow& row) { return row.key; }));
   for (std::size_t i = 0; i < plan.table.varied_keys.size(); ++i)
     file.columns.push_back(

@@ -17,7 +17,7 @@ struct ValueGroup {
 /// Groups in the order of the plan; of a key with more than `value_group_limit` different numbers (as sampled plans
 /// have) `value_range_count` ranges of about equally many trials, in rising order, labelled "lowest..highest". Trials
 /// for which the key does not apply form a group of their own.
-inline constexpr std::size_t value_group_limit = 20, value_range_count = 5;
+inline constexpr std::size_t value_group_limit = 30, value_range_count = 5;
 std::vector<ValueGroup> value_groups(const StudyTable& table, std::size_t key);
 
 }  // namespace modebank::app

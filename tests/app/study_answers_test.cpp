@@ -154,9 +154,8 @@ TEST(StudyAnswers, ManyNumbersAreGroupedIntoRanges) {
 TEST(StudyAnswers, TextNamesKeysValuesAndTrials) {
   const StudyTable table = grid();
   const std::string text = answers_text(table, answer(table));
-  for (const char* part :
-       {"mixture.components (share 99 %)", "26.0500", "mixture.components = 3, mixture.covariance = full", "Pareto",
-        "Spread over repeats", "nearest 0.025"})
+  for (const char* part : {"mixture.components (share 99 %)", "26.0500", "components = 3, covariance = full", "Pareto",
+                           "Spread over repeats", "nearest 0.025"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 

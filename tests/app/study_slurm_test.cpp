@@ -86,13 +86,13 @@ TEST_F(StudySlurm, LostNodeChangesNoNumber) {
   options.insert(options.end(), slow.begin(), slow.end());
   const ProgramResult submitted = study("slurm", options);
   ASSERT_EQ(submitted.status, 0) << submitted.err;
-  int killed = 0;
-  for (int tries = 0; killed == 0 && tries < 300; ++tries) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    const bool at_work = std::filesystem::exists(file("slurm") / "trials") && !archives("slurm").empty();
-    if (at_work) killed = cluster.kill_node("n2");
-  }
-  ASSERT_GT(killed, 0) << "n2 had nothing to do\n" << cluster.queue();
+  const auto at_work = [&] {
+    return cluster.running_on("n2") > 0 && std::filesystem::exists(file("slurm") / "trials") &&
+           !archives("slurm").empty();
+  };
+  for (int tries = 0; !at_work() && tries < 600; ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  ASSERT_TRUE(at_work()) << "n2 had nothing to do\n" << cluster.queue();
+  cluster.kill_node("n2");
   EXPECT_LT(archives("slurm").size(), trials);
   ASSERT_TRUE(settled(cluster, 120)) << cluster.queue();
   int restarts = 0;

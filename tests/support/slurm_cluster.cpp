@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -70,21 +69,27 @@ std::string SlurmCluster::script(const std::string& name) {
   return (golden_dir().parent_path() / "support" / name).string();
 }
 
-int SlurmCluster::kill_node(const std::string& node) const {
+SlurmCluster::NodeProcesses SlurmCluster::processes_of(const std::string& node) const {
   const std::string configuration = "SLURM_CONF=" + (folder_.path() / "slurm.conf").string();
-  std::set<pid_t> tasks, steps;
+  NodeProcesses found;
   for (const auto& entry : fs::directory_iterator("/proc")) {
     const pid_t process = std::atoi(entry.path().filename().c_str());
     if (process <= 0) continue;
     const std::string environment = content_of(entry.path() / "environ");
     if (!holds(environment, "SLURMD_NODENAME=" + node) || !holds(environment, configuration)) continue;
-    tasks.insert(process);
-    if (const pid_t parent = parent_of(process); is_slurmstepd(parent)) steps.insert(parent);
+    found.tasks.insert(process);
+    if (const pid_t parent = parent_of(process); is_slurmstepd(parent)) found.steps.insert(parent);
   }
+  return found;
+}
+
+std::size_t SlurmCluster::running_on(const std::string& node) const { return processes_of(node).steps.size(); }
+
+void SlurmCluster::kill_node(const std::string& node) const {
+  const NodeProcesses processes = processes_of(node);
   kill(std::stoi(content_of(folder_.path() / "run" / ("slurmd." + node + ".pid"))), SIGKILL);
-  for (const pid_t step : steps) kill(step, SIGKILL);
-  for (const pid_t task : tasks) kill(task, SIGKILL);
-  return static_cast<int>(steps.size());
+  for (const pid_t step : processes.steps) kill(step, SIGKILL);
+  for (const pid_t task : processes.tasks) kill(task, SIGKILL);
 }
 
 std::string SlurmCluster::queue() const {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <sys/types.h>
+
+#include <set>
 #include <string>
 
 #include "tests/support/paths.hpp"
@@ -19,14 +22,19 @@ class SlurmCluster {
   /// Whether Slurm and munge are installed.
   static bool installed();
 
-  /// Kills a node as a power cut would: its slurmd, its job steps and their tasks, by SIGKILL. Returns how many tasks
-  /// it was running.
-  int kill_node(const std::string& node) const;
+  /// How many tasks of jobs have started on a node.
+  std::size_t running_on(const std::string& node) const;
+  /// Kills a node as a power cut would: its slurmd, its job steps and their tasks, by SIGKILL.
+  void kill_node(const std::string& node) const;
 
   /// What squeue prints of all jobs, also finished ones, a line each: task, state, node, restarts.
   std::string queue() const;
 
  private:
+  struct NodeProcesses {
+    std::set<pid_t> steps, tasks;  ///< slurmstepd, and what runs below it
+  };
+  NodeProcesses processes_of(const std::string& node) const;
   static std::string script(const std::string& name);
   TemporaryFolder folder_;
 };
