@@ -45,8 +45,10 @@ class Figures : public CliTest {
       names.insert(entry.path().filename().string());
     return names;
   }
+  /// Into a folder named as seen from the current one.
   ProgramResult report(std::vector<std::string> options = {}) const {
-    options.insert(options.begin(), {"report", archive(), "--report.figures", file("figures").string()});
+    const std::string folder = std::filesystem::relative(file("figures")).string();
+    options.insert(options.begin(), {"report", archive(), "--report.figures", folder});
     return modebank(options);
   }
 };

@@ -9,7 +9,7 @@ set xrange [start:end]
 set tmargin at screen 0.875
 set bmargin at screen 0.48
 set format x ''
-set ylabel state_label offset 1.0,0
+set label 100 state_label at screen 0.03, screen 0.68 center rotate by 90
 eval legend(0.99)
 plot figure.'.dat' index 0 using 1:5:6 with filledcurves linecolor rgb band_colour title '95 % band', \
      '' index 0 using 1:2 with lines linewidth 1.4 linecolor rgb '#000000' title 'measured', \

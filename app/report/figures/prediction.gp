@@ -19,7 +19,7 @@ set xrange [start:end]
 set tmargin at screen 0.93
 set bmargin at screen 0.66
 set format x ''
-set ylabel input_label offset 1.0,0
+set label 100 input_label at screen 0.03, screen 0.795 center rotate by 90
 set ytics round_tic(input_range, 4)
 eval legend(0.99)
 set key maxrows 1
@@ -30,7 +30,7 @@ set tmargin at screen 0.49
 set bmargin at screen 0.125
 set format x '% h'
 set xlabel 'time [s]' offset 0,0.9
-set ylabel state_label offset 1.0,0
+set label 100 state_label at screen 0.03, screen 0.31 center rotate by 90
 set ytics autofreq
 set yrange [*:*]
 plot figure.'.dat' index 0 using 1:3:4 with filledcurves linecolor rgb band_colour title '95 % band', \
