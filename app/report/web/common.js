@@ -161,9 +161,11 @@ function printButton() {
   return h('button', { type: 'button', id: 'print', onclick: async () => {
     const root = document.documentElement, theme = root.dataset.theme;
     root.dataset.theme = 'light';
+    root.dataset.printing = 'true';
     await Promise.all(unfinished.map((finish) => finish()));
     await announce();
     window.print();
+    delete root.dataset.printing;
     if (theme) root.dataset.theme = theme; else delete root.dataset.theme;
     await announce();
   } }, 'Print');

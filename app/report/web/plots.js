@@ -77,6 +77,10 @@ export function figure(label, make, caption) {
     element.begin = begin;
   });
   beforePrint(() => { element.begin(); return element.ready; });
-  onTheme(() => (drawn ? element.redraw() : undefined));
+  onTheme(async () => {  // or of the width, when printing
+    if (!drawn) return;
+    await element.redraw();
+    await Plotly.Plots.resize(plot);
+  });
   return element;
 }
