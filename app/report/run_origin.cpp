@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/config_file.hpp"
+#include "app/option_table.hpp"
 #include "app/report/numbers.hpp"
 #include "app/report/run_sections.hpp"
 #include "app/summary_text.hpp"
