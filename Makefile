@@ -69,8 +69,11 @@ coverage: packages-build packages-test
 	cmake --build --preset coverage -j $(JOBS)
 	ctest --preset coverage -j $(JOBS)
 
+# README's pictures: two figures of the demo's report.
 picture: demo packages-picture
-	/usr/bin/python3 app/report/readme_picture.py $(DEMO)/demo.h5 app/report/readme.png
+	build/modebank report $(DEMO)/demo.h5 --report.figures $(DEMO)/figures --report.png true
+	cp $(DEMO)/figures/local_models.png app/report/readme_local_models.png
+	cp $(DEMO)/figures/estimates.png app/report/readme_estimates.png
 
 # README's table of keys is what the program prints.
 readme: build

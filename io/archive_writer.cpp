@@ -60,17 +60,22 @@ hdf5::Shape trailing_shape(const hdf5::Shape& shape, std::size_t count) {
 
 }  // namespace
 
-void ArchiveWriter::write_unit(const std::string& name, const Unit& unit, const hdf5::Shape& shape) {
+hdf5::Handle ArchiveWriter::open_dataset(const std::string& name) const {
+  return {H5Dopen2(group_.id(), name.c_str(), H5P_DEFAULT), H5Dclose, "open '" + name + "'"};
+}
+
+void ArchiveWriter::write_unit(const hdf5::Handle& dataset, const Unit& unit, const hdf5::Shape& shape) {
   if (unit.empty() || (all_equal(unit) && unit.front().empty())) return;
-  const hdf5::Handle dataset(H5Dopen2(group_.id(), name.c_str(), H5P_DEFAULT), H5Dclose, "open '" + name + "'");
-  if (all_equal(unit)) return hdf5::write_texts(dataset.id(), hdf5::Place::attribute, "units", {unit.front()}, {});
+  if (all_equal(unit)) {
+    hdf5::write_texts(dataset.id(), hdf5::Place::attribute, "units", {unit.front()}, {});
+    return;
+  }
   const hdf5::Shape tail = trailing_shape(shape, unit.size());
   if (!tail.empty()) hdf5::write_texts(dataset.id(), hdf5::Place::attribute, "units", unit, tail);
 }
 
-void ArchiveWriter::write_column_units(const std::string& name, const std::vector<std::string>& units) {
+void ArchiveWriter::write_column_units(const hdf5::Handle& table, const std::vector<std::string>& units) {
   if (all_equal(units) && units.front().empty()) return;
-  const hdf5::Handle table(H5Dopen2(group_.id(), name.c_str(), H5P_DEFAULT), H5Dclose, "open '" + name + "'");
   hdf5::write_texts(table.id(), hdf5::Place::attribute, "units", units, {units.size()});
 }
 

@@ -86,11 +86,11 @@ class ArchiveWriter {
       shape.front() = part_->total;
       hdf5::write_rows(group_.id(), name, hdf5::file_type<Stored>(), hdf5::memory_type<Stored>(), shape, part_->first,
                        part_->count, values.data());
-      return complete() ? write_unit(name, unit, shape) : void();
+      return complete() ? write_unit(open_dataset(name), unit, shape) : void();
     }
-    hdf5::write_array(group_.id(), hdf5::Place::dataset, name, hdf5::file_type<Stored>(), hdf5::memory_type<Stored>(),
-                      shape, values.data());
-    write_unit(name, unit, shape);
+    const hdf5::Handle dataset = hdf5::write_array(group_.id(), hdf5::Place::dataset, name, hdf5::file_type<Stored>(),
+                                                   hdf5::memory_type<Stored>(), shape, values.data());
+    write_unit(dataset, unit, shape);
   }
   /// An array whose columns are made as they are written: `values` has windows(), components() and block(first, count).
   template <class Source>
@@ -124,8 +124,8 @@ class ArchiveWriter {
 
   template <class Row, class... T>
   void table(const std::string& name, const std::vector<Row>& rows, const Column<Row, T>&... columns) {
-    hdf5::write_table(group_.id(), name, {encode(rows, columns)...}, rows.size());
-    write_column_units(name, {columns.unit...});
+    write_column_units(hdf5::write_table(group_.id(), name, {encode(rows, columns)...}, rows.size()),
+                       {columns.unit...});
   }
 
   /// An empty table is left out.
@@ -156,8 +156,9 @@ class ArchiveWriter {
   }
   void agree(const std::string& name, const Letters& letters, const hdf5::Shape& shape);
   hdf5::Shape shape_of(const std::string& name, const Letters& letters, hsize_t rows, hsize_t cols, bool is_vector);
-  void write_unit(const std::string& name, const Unit& unit, const hdf5::Shape& shape);
-  void write_column_units(const std::string& name, const std::vector<std::string>& units);
+  hdf5::Handle open_dataset(const std::string& name) const;
+  void write_unit(const hdf5::Handle& dataset, const Unit& unit, const hdf5::Shape& shape);
+  void write_column_units(const hdf5::Handle& table, const std::vector<std::string>& units);
 
   struct Part {
     hsize_t first, count, total;

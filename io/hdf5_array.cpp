@@ -117,26 +117,28 @@ void write_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t me
     check(H5Dwrite(dataset.id(), memory_type, memory.id(), space.id(), H5P_DEFAULT, data), "write " + what);
 }
 
-void write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,
-                 const Shape& shape, const void* data) {
+Handle write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,
+                   const Shape& shape, const void* data) {
   const std::string what = quoted(place, name);
   const Handle space = make_space(shape);
   if (place == Place::attribute) {
-    const Handle attribute(H5Acreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                           "create " + what);
-    return check(H5Awrite(attribute.id(), memory_type, data), "write " + what);
+    Handle attribute(H5Acreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                     "create " + what);
+    check(H5Awrite(attribute.id(), memory_type, data), "write " + what);
+    return attribute;
   }
-  const Handle dataset = create_dataset(parent, name, file_type, space);
+  Handle dataset = create_dataset(parent, name, file_type, space);
   if (element_count(shape) > 0)
     check(H5Dwrite(dataset.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write " + what);
+  return dataset;
 }
 
-void write_texts(hid_t parent, Place place, const std::string& name, const std::vector<std::string>& texts,
-                 const Shape& shape) {
+Handle write_texts(hid_t parent, Place place, const std::string& name, const std::vector<std::string>& texts,
+                   const Shape& shape) {
   const std::size_t bytes = longest(texts);
   const bool array = place == Place::dataset && !shape.empty();
   const Handle type = array ? array_text_type(texts) : string_type(bytes);
-  write_array(parent, place, name, type.id(), type.id(), shape, pack_texts(texts, bytes).data());
+  return write_array(parent, place, name, type.id(), type.id(), shape, pack_texts(texts, bytes).data());
 }
 
 StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : place_(place), name_(name) {

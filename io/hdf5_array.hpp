@@ -45,14 +45,15 @@ std::vector<std::string> unpack_texts(const std::string& cells, std::size_t byte
 /// Number of elements; the largest hsize_t when the product does not fit.
 hsize_t element_count(const Shape& shape);
 
-/// Creates a dataset (contiguous, without time stamps) or attribute and writes it. An empty shape is a scalar.
-void write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,
-                 const Shape& shape, const void* data);
+/// Creates a dataset (contiguous, without time stamps) or attribute, writes it and hands it over open. An empty shape
+/// is a scalar.
+Handle write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,
+                   const Shape& shape, const void* data);
 /// Writes rows first .. first + count - 1 of a dataset of the full `shape`, which is created with row 0.
 void write_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape,
                 hsize_t first, hsize_t count, const void* data);
-void write_texts(hid_t parent, Place place, const std::string& name, const std::vector<std::string>& texts,
-                 const Shape& shape);
+Handle write_texts(hid_t parent, Place place, const std::string& name, const std::vector<std::string>& texts,
+                   const Shape& shape);
 
 /// An open dataset or attribute whose declared size has been checked against the file's, so that a corrupt shape cannot
 /// ask for memory that no content backs.

@@ -114,7 +114,7 @@ void read_values(const StoredArray& table, const std::string& name, Eigen::Matri
 
 }  // namespace
 
-void write_table(hid_t group, const std::string& name, const std::vector<TableColumn>& columns, hsize_t rows) {
+Handle write_table(hid_t group, const std::string& name, const std::vector<TableColumn>& columns, hsize_t rows) {
   std::vector<CellTypes> cells;
   for (const TableColumn& column : columns)
     cells.push_back(std::visit([](const auto& values) { return cell_types(values); }, column.values));
@@ -130,7 +130,7 @@ void write_table(hid_t group, const std::string& name, const std::vector<TableCo
     for (std::size_t row = 0; row < rows; ++row) bytes.copy(packed.data() + row * row_bytes + offset, size, row * size);
     offset += size;
   }
-  write_array(group, Place::dataset, name, type.id(), in_memory.id(), {rows}, packed.data());
+  return write_array(group, Place::dataset, name, type.id(), in_memory.id(), {rows}, packed.data());
 }
 
 bool has_column(const StoredArray& table, const std::string& name) {

@@ -101,14 +101,14 @@ std::string sentence(const Pair& runs) {
                      gain > 0 ? "B" : "A", std::abs(gain));
 }
 
-json run_json(const ComparedRun& run, PageArrays& arrays, const Detail& detail) {
+json run_json(const ComparedRun& run, PageArrays& arrays, std::size_t room) {
   return {{"name", run.name},
           {"origin", origin_section(run.archive)},
           {"windows", windows_section(run.archive, arrays)},
           {"selection", selection_section(run.archive)},
           {"bank", bank_section(run.archive)},
           {"filter", filter_section(run.archive)},
-          {"data", runs_section(run.archive, arrays, detail)}};
+          {"data", affordable_runs_section(run.archive, arrays, room)}};
 }
 
 }  // namespace
@@ -120,7 +120,7 @@ Page compare_page(const std::array<ComparedRun, 2>& runs, const ReportConfig& op
   page.title = fmt::format("{} and {} · modebank", runs[0].name, runs[1].name);
   page.script = assets::compare_js();
   json both = json::array();
-  for (const ComparedRun& run : runs) both.push_back(run_json(run, page.arrays, affordable_detail(run.archive, room)));
+  for (const ComparedRun& run : runs) both.push_back(run_json(run, page.arrays, room));
   page.data = {{"kind", "compare"},
                {"verdict", sentence(runs)},
                {"same_data", runs[0].archive.provenance.data_hash == runs[1].archive.provenance.data_hash},

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 class WorkFolder {
  public:
   explicit WorkFolder(const fs::path& parent) {
-    std::string pattern = (parent / ".figures-XXXXXX").string();
+    std::string pattern = (fs::absolute(parent) / ".figures-XXXXXX").string();
     if (!mkdtemp(pattern.data()))
       throw ConfigurationError(fmt::format("report.figures: cannot write to {}: {}", parent.string(), strerror(errno)));
     path_ = pattern;

@@ -1,11 +1,7 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <filesystem>
 
 #include "app/commands.hpp"
 #include "app/config_file.hpp"
-#include "app/report/gnuplot.hpp"
 #include "app/report/run_figures.hpp"
 #include "app/report/run_page.hpp"
 #include "app/report/write_page.hpp"
@@ -23,22 +19,16 @@ std::filesystem::path page_path(const CommandLine& line) {
   return named.stem().string() + ".html";
 }
 
-/// Figures of one archive; prints what was written and what could not be.
-void write_figures(const Archive& archive, const ReportConfig& options) {
-  const report::FigureSet set = report::run_figures(archive, options.run);
-  const auto files = report::draw_figures(set.figures, {options.figures, options.png, options.sources});
-  fmt::print("{}: {}\n", options.figures, fmt::join(files, ", "));
-  for (const std::string& reason : set.left_out) fmt::print("left out: {}\n", reason);
+/// Empty where figures alone are asked for.
+std::filesystem::path page_if_asked(const CommandLine& line, const ReportConfig& options) {
+  return options.figures.empty() || !line.output.empty() ? page_path(line) : "";
 }
 
-void report_run(const CommandLine& line, const ReportConfig& options) {
-  const std::filesystem::path file = line.files.front();
-  // Figures alone, unless a page is asked for.
-  const bool with_page = options.figures.empty() || !line.output.empty();
-  if (with_page) report::check_page_path(page_path(line), {file});
+void report_run(const std::filesystem::path& file, const std::filesystem::path& page, const ReportConfig& options) {
+  if (!page.empty()) report::check_page_path(page, {file});
   const Archive archive = read_archive(file);
-  if (!options.figures.empty()) write_figures(archive, options);
-  if (with_page) report::write_page(page_path(line), report::run_page(archive, file.filename().string(), options));
+  if (!options.figures.empty()) report::write_figures(report::run_figures(archive, options.run), options);
+  if (!page.empty()) report::write_page(page, report::run_page(archive, file.filename().string(), options));
 }
 
 }  // namespace
@@ -49,14 +39,15 @@ int run_report(const CommandLine& line) {
         "report needs an archive, a study's folder, or two archives to compare: modebank report ARCHIVE [ARCHIVE] [-o "
         "page.html]");
   const ReportConfig options = stored_config("", line.overrides).report;
-  const bool one_run = line.files.size() == 1 && !report::is_study(line.files.front());
-  if (!one_run && !options.figures.empty()) throw ConfigurationError("report.figures are drawn of one archive");
-  if (line.files.size() == 2)
-    report::report_comparison(line.files[0], line.files[1], page_path(line), options);
-  else if (one_run)
-    report_run(line, options);
-  else
-    report::report_study(line.files.front(), page_path(line), options);
+  const std::filesystem::path page = page_if_asked(line, options);
+  if (line.files.size() == 2) {
+    if (!options.figures.empty()) throw ConfigurationError("report.figures are drawn of one archive or study");
+    report::report_comparison(line.files[0], line.files[1], page, options);
+  } else if (report::is_study(line.files.front())) {
+    report::report_study(line.files.front(), page, options);
+  } else {
+    report_run(line.files.front(), page, options);
+  }
   return 0;
 }
 

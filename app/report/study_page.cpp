@@ -124,7 +124,7 @@ json best_of(const StudyTable& table, const Answers& answers) {
     std::string setting;
     for (std::size_t k = 0; k < table.varied_keys.size(); ++k)
       setting += (k ? ", " : "") + table.varied_keys[k] + " = " + row.varied[k];
-    std::string text = fmt::format("The best {} ({}), {}, comes from {}", best.score, best.goal.text(),
+    std::string text = fmt::format("The best {} ({} is better), {}, comes from {}", best.score, best.goal.text(),
                                    number_text(best.value), setting);
     if (best.repeats > 1) text += fmt::format(" (mean of {} repeats)", best.repeats);
     for (std::size_t s = 0; s < table.score_names.size(); ++s)

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/report/html_page.hpp"
+#include "app/report/run_figures.hpp"
 #include "app/study/study_table.hpp"
 #include "io/study_file.hpp"
 
@@ -22,5 +23,9 @@ struct TrialPlace {
 /// The page of a study: `places` holds one entry per row of `table`.
 Page study_page(const StudyFile& file, const StudyTable& table, const std::vector<TrialPlace>& places,
                 const std::string& name);
+
+/// The paper's figure 5 over K: shares of samples outside the interval of the baseline, of noise only and of the banks
+/// with each number of components.
+FigureSet study_figures(const StudyTable& table);
 
 }  // namespace modebank::app::report

@@ -82,11 +82,12 @@ bool is_study(const fs::path& path) {
 
 void report_study(const fs::path& study, const fs::path& page, const ReportConfig& options) {
   const fs::path path = study_file(study);
-  check_page_path(page, {path});
+  if (!page.empty()) check_page_path(page, {path});
   const StudyFile file = read_study_file(path, "study");
   const StudyTable table = study_table_of(file);
-  const fs::path folder = path.parent_path();
-  std::vector<TrialPlace> places = archives_of(table, folder);
+  if (!options.figures.empty()) write_figures(study_figures(table), options);
+  if (page.empty()) return;
+  std::vector<TrialPlace> places = archives_of(table, path.parent_path());
   write_run_pages(table, page, options, places);
   const fs::path name = fs::absolute(fs::is_directory(study) ? study : path).lexically_normal();
   write_page(page,

@@ -75,16 +75,20 @@ std::string numbered(const std::string& name, Index state) {
 
 Figure estimates(const DrawnRun& drawn, Index state) {
   Figure figure(numbered("estimates", state), assets::figure_estimates());
-  Eigen::MatrixXd rows(3, drawn.run.samples());
+  Eigen::MatrixXd rows(5, drawn.run.samples());
   rows.row(0) = drawn.run.state.row(state);
   rows.row(1).setConstant(std::numeric_limits<double>::quiet_NaN());
   if (drawn.baseline)
     rows.row(1) = prediction_band(*drawn.archive.baseline, *drawn.baseline, band_level).center.row(state);
-  rows.row(2) = prediction_band(*drawn.archive.bank, drawn.bank, band_level).center.row(state);
+  const PredictionBand band = prediction_band(*drawn.archive.bank, drawn.bank, band_level);
+  rows.row(2) = band.center.row(state);
+  rows.row(3) = band.center.row(state) - band.half_width.row(state);
+  rows.row(4) = band.center.row(state) + band.half_width.row(state);
   set_time(drawn, figure);
   figure.set("state_label", state_label(drawn, state));
   figure.set("bank_title", bank_title(drawn.archive));
-  figure.add_block("run " + drawn.run.run, {"time [s]", "measured", "baseline", "bank"}, with_time(drawn, rows));
+  figure.add_block("run " + drawn.run.run, {"time [s]", "measured", "baseline", "bank", "lower", "upper"},
+                   with_time(drawn, rows));
   add_strip(drawn, figure);
   return figure;
 }

@@ -1,7 +1,9 @@
 #include "app/report/write_page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "app/report/gnuplot.hpp"
 #include "ident/error.hpp"
 #include "io/replace_file.hpp"
 
@@ -21,6 +23,12 @@ void write_page(const std::filesystem::path& path, const Page& page) {
   const std::string html = html_of(page);
   replace_file(path, {html});
   fmt::print("{}: {:.1f} MB; open it in a browser\n", path.string(), static_cast<double>(html.size()) / bytes_per_MB);
+}
+
+void write_figures(const FigureSet& set, const ReportConfig& options) {
+  const auto files = draw_figures(set.figures, {options.figures, options.png, options.sources});
+  fmt::print("{}: {}\n", options.figures, fmt::join(files, ", "));
+  for (const std::string& reason : set.left_out) fmt::print("left out: {}\n", reason);
 }
 
 }  // namespace modebank::app::report

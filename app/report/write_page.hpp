@@ -4,6 +4,7 @@
 
 #include "app/config.hpp"
 #include "app/report/html_page.hpp"
+#include "app/report/run_figures.hpp"
 
 namespace modebank::app::report {
 
@@ -13,8 +14,12 @@ void check_page_path(const std::filesystem::path& path, const std::vector<std::f
 /// Writes the page under a temporary name and renames it; says how large it is.
 void write_page(const std::filesystem::path& path, const Page& page);
 
-/// The commands: `files` are what the user named.
+/// Draws the figures into report.figures and prints what was written and what could not be.
+void write_figures(const FigureSet& set, const ReportConfig& options);
+
+/// A study's figures, where report.figures asks for them, and its page, unless `page` is empty.
 void report_study(const std::filesystem::path& study, const std::filesystem::path& page, const ReportConfig& options);
+/// The page of two archives.
 void report_comparison(const std::filesystem::path& first, const std::filesystem::path& second,
                        const std::filesystem::path& page, const ReportConfig& options);
 

@@ -22,6 +22,7 @@ struct StudyCommand {
   Config config;
   CommandLine line;
   TrialStore store;
+  std::filesystem::file_time_type started;
 };
 
 /// The plan of the configuration, written to the folder; one that is there must go on in it.
@@ -40,12 +41,8 @@ StudyPlan settle_plan(const StudyCommand& command) {
 }
 
 WorkerSettings worker_settings(const StudyCommand& command, const StudyPlan& plan) {
-  return {command.config,
-          command.line,
-          command.store,
-          plan.table.varied_keys,
-          plan.provenance.modebank_version,
-          std::filesystem::file_time_type::clock::now()};
+  return {command.config, command.line, command.store, plan.table.varied_keys, plan.provenance.modebank_version,
+          command.started};
 }
 
 void print_plan(const StudyCommand& command, const StudyPlan& plan) {
@@ -86,10 +83,19 @@ bool is_complete(const StudyTable& table) {
   return true;
 }
 
+/// What merge and status need.
+void require_plan(const StudyCommand& command) {
+  if (!std::filesystem::exists(plan_file(command.store.folder())))
+    throw ConfigurationError(fmt::format("{}: there is no plan yet: run the study, or --study.stage plan, first",
+                                         plan_file(command.store.folder()).string()));
+}
+
 int merge(const StudyCommand& command, const std::set<std::string>& whole) {
+  require_plan(command);
   const FileLocks locks(command.store.lock_file());
   const FileLocks::Hold alone = locks.lock("plan");
   const StudyPlan plan = read_plan(command.store.folder());  // another process may have added values
+  check_plan_is_of(plan, command.config, command.store.folder());
   const StudyTable table = collect_table(command.store, plan, whole);
   const Answers answers = answer(table);
   write_study(command.store, plan, table, answers, command.config.study.flat ? ArchiveUse::copy : ArchiveUse::link);
@@ -109,6 +115,7 @@ int run_all(const StudyCommand& command) {
 }
 
 int show_status(const StudyCommand& command) {
+  require_plan(command);
   const StudyPlan plan = read_plan(command.store.folder());
   const StudyTable table = collect_table(command.store, plan);
   fmt::print("{}{}", table_text(table, command.store), slurm_text(slurm_view(command.store.folder())));
@@ -127,7 +134,8 @@ int submit(const StudyCommand& command) {
 int run_study(const CommandLine& line) {
   if (line.files.size() != 1) throw ConfigurationError("study needs one configuration file: modebank study CONFIG");
   Config config = load_config(line.files.front(), line.overrides);
-  const StudyCommand command{config, line, TrialStore(config.study.output)};
+  const StudyCommand command{config, line, TrialStore(config.study.output),
+                             std::filesystem::file_time_type::clock::now()};
   switch (config.study.stage) {
     case StudyStage::all:
       return run_all(command);

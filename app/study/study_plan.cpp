@@ -242,4 +242,13 @@ void check_plan_goes_on(const StudyPlan& before, const StudyPlan& now, const std
   throw DataError(fmt::format("{}; the data changed:{}{}", head, files, advice));
 }
 
+void check_plan_is_of(const StudyPlan& plan, const Config& config, const std::filesystem::path& folder) {
+  const std::string differences = key_differences(plan.config, resolved_text(config));
+  if (!differences.empty())
+    throw ConfigurationError(
+        fmt::format("{} was planned with another configuration (planned -> now):{}\nplan it again "
+                    "first: --study.stage plan",
+                    folder.string(), differences));
+}
+
 }  // namespace modebank::app

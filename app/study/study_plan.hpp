@@ -40,6 +40,9 @@ void write_plan(const std::filesystem::path& folder, const StudyPlan& plan);
 /// Throws ConfigurationError when there is none, DataError when it is damaged.
 StudyPlan read_plan(const std::filesystem::path& folder);
 
+/// Refuses a configuration that is not the plan's, with the differences (ConfigurationError).
+void check_plan_is_of(const StudyPlan& plan, const Config& config, const std::filesystem::path& folder);
+
 /// Refuses a plan that lacks a planned run of an earlier one, with the keys (ConfigurationError) or files (DataError)
 /// that changed since.
 void check_plan_goes_on(const StudyPlan& before, const StudyPlan& now, const std::filesystem::path& folder);

@@ -162,9 +162,12 @@ std::vector<std::vector<double>> sobol_points(std::size_t count, std::size_t axe
   boost::random::sobol sequence(axes);
   std::vector<std::uint64_t> shifts;
   for (std::size_t a = 0; a < axes; ++a) shifts.push_back(derive_seed(seed, "study.sample", a));
-  for (auto& point : coordinates)
-    for (std::size_t a = 0; a < axes; ++a)
-      point[a] = static_cast<double>((sequence() ^ shifts[a]) >> 11) * 0x1p-53;  // 53 bits, so always below 1
+  // Boost leaves out the sequence's first point, the origin, without which no block of 2^k points fills its strata.
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t a = 0; a < axes; ++a) {
+      const std::uint64_t bits = (i == 0 ? 0 : sequence()) ^ shifts[a];
+      coordinates[i][a] = static_cast<double>(bits >> 11) * 0x1p-53;  // 53 bits, so always below 1
+    }
   return coordinates;
 }
 

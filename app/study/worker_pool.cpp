@@ -139,11 +139,11 @@ WorkerPool::Finished WorkerPool::collect(std::size_t index) {
   return {index, trial, unpack_report(packet), false};
 }
 
-std::optional<std::size_t> WorkerPool::overdue() const {
-  if (timeout_s_ <= 0.0) return std::nullopt;
-  for (std::size_t i = 0; i < workers_.size(); ++i)
-    if (workers_[i].trial && Clock::now() - workers_[i].since > std::chrono::duration<double>(timeout_s_)) return i;
-  return std::nullopt;
+std::optional<std::size_t> WorkerPool::first_due() const {
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < workers_.size() && timeout_s_ > 0.0; ++i)
+    if (workers_[i].trial && (!first || workers_[i].since < workers_[*first].since)) first = i;
+  return first;
 }
 
 WorkerPool::Finished WorkerPool::stop_overdue(std::size_t index) {
@@ -157,9 +157,13 @@ WorkerPool::Finished WorkerPool::stop_overdue(std::size_t index) {
 }
 
 std::optional<WorkerPool::Finished> WorkerPool::wait(double patience_s) {
-  const auto until = Clock::now() + std::chrono::duration<double>(patience_s);
+  const auto seconds_since = [](Clock::time_point time) {
+    return std::chrono::duration<double>(Clock::now() - time).count();
+  };
+  const Clock::time_point start = Clock::now();
   for (;;) {
-    if (const auto late = overdue()) return stop_overdue(*late);
+    const std::optional<std::size_t> due = first_due();
+    if (due && seconds_since(workers_[*due].since) > timeout_s_) return stop_overdue(*due);
     std::vector<pollfd> channels;
     std::vector<std::size_t> owners;
     for (std::size_t i = 0; i < workers_.size(); ++i)
@@ -167,11 +171,11 @@ std::optional<WorkerPool::Finished> WorkerPool::wait(double patience_s) {
         channels.push_back({workers_[i].channel, POLLIN, 0});
         owners.push_back(i);
       }
-    const double left = std::chrono::duration<double>(until - Clock::now()).count();
+    double left = patience_s - seconds_since(start);
     if (left <= 0.0) return std::nullopt;
-    constexpr double tick_s = 0.1;  // so that timeouts are seen
-    const int wait_ms = static_cast<int>(1000.0 * std::min(left, timeout_s_ > 0.0 ? tick_s : left)) + 1;
-    if (::poll(channels.data(), channels.size(), wait_ms) <= 0) continue;
+    if (due) left = std::min(left, std::max(0.0, timeout_s_ - seconds_since(workers_[*due].since)));
+    constexpr double ms_per_s = 1000.0;
+    if (::poll(channels.data(), channels.size(), static_cast<int>(ms_per_s * left) + 1) <= 0) continue;
     for (std::size_t c = 0; c < channels.size(); ++c)
       if (channels[c].revents != 0) return collect(owners[c]);
   }

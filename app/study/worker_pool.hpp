@@ -49,7 +49,8 @@ class WorkerPool {
   /// Ends and reaps the process; says how it ended.
   std::string end(Worker& worker, bool by_force);
   Finished collect(std::size_t index);
-  std::optional<std::size_t> overdue() const;
+  /// The working worker whose time is up first; nothing without a limit.
+  std::optional<std::size_t> first_due() const;
   Finished stop_overdue(std::size_t index);
 
   double timeout_s_;

@@ -42,7 +42,7 @@ class Browser:
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)
 
-    def wait(self, script, *arguments, seconds=30, what=None):
+    def wait(self, script, *arguments, seconds=60, what=None):
         """Until the script's value is true; returns it."""
         end = time.monotonic() + seconds
         while True:
@@ -53,7 +53,7 @@ class Browser:
                 raise AssertionError(f"waited {seconds} s for: {what or script}")
             time.sleep(0.05)
 
-    def open(self, page, seconds=30):
+    def open(self, page, seconds=60):
         """Opens a file and waits until the page says it has drawn itself; returns the seconds that took."""
         self.messages()
         start = time.monotonic()
@@ -66,17 +66,16 @@ class Browser:
         """Scrolls through the page until every plot is drawn; plots draw when they come near the window. Returns how many."""
         for _ in range(60):
             pending = self.run("""
-                const open = [...document.querySelectorAll('details:not([open])')];
-                const pending = [...document.querySelectorAll('.plot')].filter((p) => p.offsetParent && !p.dataset.failed && !p.querySelector('.main-svg'));
+                const pending = [...document.querySelectorAll('div.plot')].filter((p) => p.offsetParent && !p.dataset.failed && !p.querySelector('.main-svg'));
                 if (pending.length) pending[0].scrollIntoView({block: 'center'});
                 return pending.length;""")
             if not pending:
                 break
             time.sleep(0.1)
-        failed = self.run("return [...document.querySelectorAll('.plot[data-failed]')].map((p) => p.getAttribute('aria-label'))")
+        failed = self.run("return [...document.querySelectorAll('div.plot[data-failed]')].map((p) => p.getAttribute('aria-label'))")
         assert not failed, f"plots that failed: {failed}"
         assert not pending, f"{pending} plots were never drawn"
-        return self.run("return document.querySelectorAll('.plot .main-svg').length")
+        return self.run("return [...document.querySelectorAll('div.plot')].filter((p) => p.querySelector('.main-svg')).length")
 
     def messages(self):
         """Console errors and requests to anywhere but this file since the last call."""

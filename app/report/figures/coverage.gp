@@ -16,7 +16,7 @@ step = round_tic(highest + lowest, 8)
 set yrange [-1.05*lowest:1.05*highest]
 set ytics ('0' 0)
 do for [i = 1:10] { set ytics add (sprintf('%g', i * step) i * step, sprintf('%g', i * step) -i * step) }
-set ylabel 'NIS below | above [%]' offset 1.0,0
+set label 100 'NIS below | above [%]' at screen 0.03, screen 0.5 center rotate by 90
 set xtics scale 0 rotate by (filters > 5 ? -35 : 0)
 set xtics (filter_title[1] 1)
 do for [f = 2:filters] { set xtics add (filter_title[f] f) }

@@ -39,7 +39,7 @@ do for [p = 1:panels] {
   set xtics round_tic(high[first[p]] - low[first[p]], 5)
   set ytics round_tic(high[second[p]] - low[second[p]], 6)
   set xlabel axis_label[first[p]] offset 0,0.9
-  set ylabel axis_label[second[p]] offset 1.4,0
+  set label 100 axis_label[second[p]] at graph -0.36, graph 0.5 center rotate by 90
   plot figure.'.dat' index K using first[p]:second[p] with points pointtype 1 pointsize dot(0.15) linecolor rgb grey notitle, \
        for [k = 0:K-1] '' index k using first[p]:second[p] with points pointtype mode_point(k) pointsize dot(0.12) linecolor rgb palette[k+1] notitle, \
        for [k = 0:K-1] '' index K+1+3*k+p-1 using 1:2 with lines linewidth 2.2 linecolor rgb '#ffffff' notitle, \
@@ -50,6 +50,7 @@ if (panels == 3) {
   unset tics
   unset xlabel
   unset ylabel
+  unset label 100
   unset key
   set xrange [0:1]
   set yrange [0:1]

@@ -12,7 +12,7 @@ set format x ''
 set logscale y
 set format y '1e%T'
 set yrange [1e-6:*]
-set ylabel 'NIS' offset 1.0,0
+set label 100 'NIS' at screen 0.03, screen 0.68 center rotate by 90
 eval legend(0.99)
 set object 1 rectangle from graph 0, first lower_bound to graph 1, first upper_bound behind fillcolor rgb accepted_colour fillstyle solid noborder
 plot figure.'.dat' index 0 using 1:2 with points pointtype 6 pointsize dot(0.18) linecolor rgb baseline_colour title 'baseline', \

@@ -8,7 +8,7 @@ set tmargin at screen 0.85
 set bmargin at screen 0.15
 set border heldout ? 11 : 3
 set xlabel 'components K' offset 0,0.9
-set ylabel 'BIC, ICL, AIC' offset 1.0,0
+set label 100 'BIC, ICL, AIC' at screen 0.03, screen 0.5 center rotate by 90
 if (heldout) { set y2label 'held out [nats/window]' offset -1.6,0; set y2tics offset -0.4,0 }
 set xrange [first-0.4:last+0.4]
 tick = (last - first) > 12 ? 5 : 1

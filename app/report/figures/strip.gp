@@ -6,7 +6,7 @@ set format y '% h'
 unset logscale y
 unset arrow
 set xlabel 'time [s]' offset 0,0.9
-set ylabel 'P(mode)' offset 1.0,0
+set label 100 'P(mode)' at screen 0.03, screen 0.27 center rotate by 90
 set yrange [0:1]
 set ytics 0,0.5,1
 unset key

@@ -9,6 +9,7 @@ open(height) = format eq 'png' \
   : sprintf("set terminal svg noenhanced size %d,%d font 'Helvetica,10' background '#ffffff'", column, height)
 set encoding utf8
 set datafile missing 'NaN'
+# Labels of vertical axes are labels of the picture: gnuplot leaves out a ylabel that long numbers push over the edge.
 set border 3 linewidth 0.6 linecolor rgb '#444444'
 set tics nomirror out scale 0.4
 set xtics offset 0,0.4

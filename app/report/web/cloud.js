@@ -160,6 +160,7 @@ export async function cloud(windows, runs, goTo) {
   const tell = (i) => info.replaceChildren(`Window in ${place(i)}: `,
     windows.axes.map((axis, a) => `${axis.name} = ${digits(values[a][i])}` + (covariance && a < windows.parameters ? ` ± ${digits(Number(Math.sqrt(entry(i, a, a)).toPrecision(2)))}` : '')).join(', '),
     label ? `; component ${label[i] < 0 ? 'none' : label[i]}` : '', mode ? `; mode of the filter ${mode[i] < 0 ? 'none' : mode[i]}` : '');
+  let pointed = -1;
   const tip = h('div', { class: 'tip', hidden: true });
   document.body.append(tip);
   const pick = (i) => { state.picked = i; tell(i); redraw(); goTo(run[i], begin[i], end[i]); };
@@ -175,13 +176,21 @@ export async function cloud(windows, runs, goTo) {
         const i = numberOf(event);
         if (i < 0) return;
         tell(i);
+        pointed = i;
         tip.replaceChildren(place(i), ...state.axes.map((a) => h('div', {}, `${windows.axes[a].name} = ${digits(values[a][i])}`)));
         tip.hidden = false;
       });
-      element.plot.on('plotly_unhover', () => { tip.hidden = true; });
+      element.plot.on('plotly_unhover', () => { tip.hidden = true; pointed = -1; });
       element.plot.addEventListener('mousemove', (event) => { tip.style.left = `${Math.min(event.clientX + 14, window.innerWidth - 240)}px`; tip.style.top = `${event.clientY + 14}px`; });
       element.plot.addEventListener('mouseleave', () => { tip.hidden = true; });
-      element.plot.on('plotly_click', (event) => { const i = numberOf(event); if (i >= 0) pick(i); });
+      if (element !== solid) return void element.plot.on('plotly_click', (event) => { const i = numberOf(event); if (i >= 0) pick(i); });
+      // In three dimensions Plotly tells a click from a turn by luck: a press that does not move is a click.
+      let down = null;
+      element.plot.addEventListener('pointerdown', (event) => { down = { x: event.clientX, y: event.clientY, i: pointed }; }, true);
+      element.plot.addEventListener('pointerup', (event) => {
+        if (down && down.i >= 0 && Math.hypot(event.clientX - down.x, event.clientY - down.y) < 4) pick(down.i);
+        down = null;
+      }, true);
     };
   }
 

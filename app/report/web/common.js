@@ -148,7 +148,28 @@ export const dark = () => {
   return forced ? forced === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
 };
 export function onTheme(listener) { listeners.push(listener); }
-const announce = () => listeners.forEach((listener) => listener());
+const announce = () => {
+  document.documentElement.dataset.drawn = dark() ? 'dark' : 'light';
+  return Promise.all(listeners.map((listener) => listener()));
+};
+
+// What must be done before the page can be printed, e.g. drawing what is still out of sight.
+const unfinished = [];
+export function beforePrint(finish) { unfinished.push(finish); }
+
+function printButton() {
+  return h('button', { type: 'button', id: 'print', onclick: async () => {
+    const root = document.documentElement, theme = root.dataset.theme;
+    root.dataset.theme = 'light';
+    root.dataset.printing = 'true';
+    await Promise.all(unfinished.map((finish) => finish()));
+    await announce();
+    window.print();
+    delete root.dataset.printing;
+    if (theme) root.dataset.theme = theme; else delete root.dataset.theme;
+    await announce();
+  } }, 'Print');
+}
 
 function themeSwitch() {
   const button = h('button', { type: 'button', id: 'theme' });
@@ -160,7 +181,8 @@ function themeSwitch() {
 }
 
 export function head(title, subtitle) {
-  document.getElementById('top').append(h('div', { style: 'min-width:0' }, h('h1', {}, title), subtitle ? h('div', { class: 'soft' }, subtitle) : null), themeSwitch());
+  document.getElementById('top').append(h('div', { style: 'min-width:0' }, h('h1', {}, title), subtitle ? h('div', { class: 'soft' }, subtitle) : null), h('div', { class: 'buttons' }, printButton(), ' ', themeSwitch()));
+  document.documentElement.dataset.drawn = dark() ? 'dark' : 'light';
 }
 
 // Runs what draws the page; a failure is shown and thrown on, so that tests see it.

@@ -1,6 +1,6 @@
 // Plotly as the report uses it: one theme, one palette, text that stays text.
 import palette from './palette.json';
-import { dark, h, onTheme } from './common.js';
+import { beforePrint, dark, h, onTheme } from './common.js';
 
 const Plotly = window.Plotly;
 export { palette, Plotly };
@@ -26,6 +26,9 @@ export function modeColour(k) {
 export const lineColour = (colour) => (dark() && /^#[0-9a-f]{6}$/i.test(colour) ? mixed(colour, '#ffffff', 0.35) : colour);
 export const filterColour = (name) => lineColour(palette.filters[name] || ink());
 export const translucent = (colour, alpha) => colour + Math.round(255 * alpha).toString(16).padStart(2, '0');
+
+// A finger that drags over a plot means the page; it zooms by the buttons.
+export const fingers = () => matchMedia('(pointer: coarse)').matches;
 
 const axisTheme = () => ({ gridcolor: faint(), zerolinecolor: faint(), linecolor: faint(), tickcolor: faint(), color: ink() });
 
@@ -55,12 +58,12 @@ export function figure(label, make, caption) {
   element.plot = plot;
   element.redraw = async () => {
     const { traces, layout } = await make();
-    const full = themed({ margin: { l: 60, r: 12, t: 12, b: 44 }, uirevision: 'kept', hovermode: 'closest', ...layout });
+    const full = themed({ margin: { l: 60, r: 12, t: 12, b: 44 }, uirevision: 'kept', hovermode: 'closest', dragmode: fingers() ? false : 'zoom', ...layout });
     plot.style.height = `${full.height || 320}px`;
     await (drawn ? Plotly.react(plot, traces, full, config) : Plotly.newPlot(plot, traces, full, config));
     drawn = true;
   };
-  // Drawn when it comes near the window: a page of many figures opens at once. Printing draws the rest.
+  // Drawn when it comes near the window: a page of many figures opens at once.
   element.ready = new Promise((resolve, reject) => {
     const begin = () => {
       if (drawn !== null) return;
@@ -71,9 +74,13 @@ export function figure(label, make, caption) {
     const watcher = new IntersectionObserver((entries) => { if (entries.some((entry) => entry.isIntersecting)) begin(); }, { rootMargin: '600px' });
     plot.style.minHeight = '200px';
     watcher.observe(plot);
-    window.addEventListener('beforeprint', begin);
     element.begin = begin;
   });
-  onTheme(() => { if (drawn) element.redraw(); });
+  beforePrint(() => { element.begin(); return element.ready; });
+  onTheme(async () => {  // or of the width, when printing
+    if (!drawn) return;
+    await element.redraw();
+    await Plotly.Plots.resize(plot);
+  });
   return element;
 }

@@ -83,7 +83,7 @@ draw(async () => {
   await drawWindows(data.windows, runs, (run, begin, end) => {
     const around = 3 * (end - begin), time = runs.runs[run].time;
     state.select(run, [Math.max(time.start, begin - around), Math.min(time.end, end + around)], [begin, end]);
-    document.getElementById('data').scrollIntoView({ behavior: matchMedia('(prefers-reduced-motion: reduce)').matches ? 'auto' : 'smooth' });
+    document.getElementById('data').scrollIntoView();
   });
   drawSelection(data.selection);
   drawBank(data.bank);

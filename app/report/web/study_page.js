@@ -1,13 +1,11 @@
 // The page of a study: its runs as a table that sorts and filters, and what the varied keys do to the scores.
-import { choice, copyButton, data, draw, facts, h, head, note, section, table, value } from './common.js';
+import { copyButton, data, draw, facts, h, head, note, section, table } from './common.js';
 import { drawStudyTable } from './study_table.js';
-import { drawEffects, drawHeatMap, drawParallel, drawPareto } from './study_plots.js';
+import { drawCoverage, drawEffects, drawHeatMap, drawParallel, drawPareto } from './study_plots.js';
 
 const study = data.study;
-const shown = { rows: study.rows, listeners: [] };  // the runs that pass the filters; every plot follows
-
-// Score that the plots begin with, and whether more of it is better.
-export const scoreOf = (row, name) => { const cell = row.cells[study.columns.findIndex((c) => c.name === name)]; return cell && typeof cell === 'object' ? cell.v : cell; };
+// The runs that pass the filters (base) and what was dragged in the parallel coordinates, too (rows); every plot follows.
+const shown = { rows: study.rows, base: study.rows, listeners: [] };
 
 function drawOrigin() {
   section('origin', 'What was run',
@@ -54,7 +52,7 @@ draw(async () => {
   head(`Study ${data.file}`, `${study.rows.length} runs, made ${data.origin.created}`);
   drawOrigin();
   drawVerdict();
-  const filter = (rows) => { shown.rows = rows; shown.listeners.forEach((listener) => listener()); };
+  const filter = (rows, base, dragged) => { Object.assign(shown, { rows, base }); shown.listeners.forEach((listener) => listener(dragged)); };
   const runs = section('runs', 'Runs');
   const tableOfRuns = drawStudyTable(runs, study, { filter, showRun, chosen: () => chosen });
   runs.append(detail);
@@ -63,4 +61,5 @@ draw(async () => {
   drawEffects(context);
   drawHeatMap(context);
   drawPareto(context);
+  drawCoverage(context);
 });

@@ -28,24 +28,35 @@ function scoreChoice(study, begin, onchange) {
 function follow(context, element) { context.shown.listeners.push(() => { if (element.plot.querySelector('.main-svg')) element.redraw(); }); }
 
 export function drawParallel(context) {
-  const { study, shown } = context;
-  const keys = names(study, 'varied');
-  let score = study.standard_score;
+  const { study, shown, restrict } = context;
+  const keys = names(study, 'varied'), kept = new Map();  // ranges dragged along an axis, by its name
+  let score = study.standard_score, axes = [];
   const element = figure('Parallel coordinates: every run is a line through its varied keys and its score', () => {
-    const axes = keys.map((key) => axisOf(study, key)), last = axisOf(study, score);
-    const rows = shown.rows.filter((row) => isNumber(last.of(row)));
+    axes = [...keys, score].map((key) => axisOf(study, key));
+    const last = axes[axes.length - 1], rows = shown.base.filter((row) => isNumber(last.of(row)));
     // Levels stand at equal distances: keys such as 1, 10, 100 or words would otherwise crowd.
-    const dimensions = axes.map((axis) => ({ label: axis.label, range: [0, Math.max(1, axis.levels.length - 1)], tickvals: axis.levels.map((l, k) => k),
-      ticktext: axis.levels.map((level) => plain(level)), values: rows.map((row) => axis.position.get(axis.of(row))) }));
-    dimensions.push({ label: last.label, values: rows.map(last.of) });
-    const values = rows.map(last.of);
+    const dimensions = axes.map((axis) => (axis === last ? { label: axis.label, values: rows.map(axis.of) }
+      : { label: axis.label, range: [0, Math.max(1, axis.levels.length - 1)], tickvals: axis.levels.map((l, k) => k), ticktext: axis.levels.map((level) => plain(level)), values: rows.map((row) => axis.position.get(axis.of(row))) }));
+    dimensions.forEach((dimension, i) => { if (kept.has(axes[i].name)) dimension.constraintrange = kept.get(axes[i].name); });
     return { traces: [{ type: 'parcoords', dimensions, labelangle: -12, labelfont: { color: ink() }, tickfont: { color: ink() }, rangefont: { color: ink() },
-      line: { color: values, colorscale: 'Cividis', reversescale: false, showscale: true, colorbar: { title: { text: last.label, side: 'right' }, thickness: 12 } } }],
+      line: { color: rows.map(last.of), colorscale: 'Cividis', showscale: true, colorbar: { title: { text: last.label, side: 'right' }, thickness: 12 } } }],
     layout: { height: 440, margin: { l: 70, r: 30, t: 90, b: 30 } } };
-  }, 'Drag along an axis to keep the runs that pass there.');
-  const { control } = scoreChoice(study, score, (name) => { score = name; element.redraw(); });
+  }, 'Drag along an axis to keep the runs that pass there; click the axis to keep all again.');
+  // What was dragged filters the table and the plots below.
+  const dragged = () => {
+    kept.clear();
+    element.plot.data[0].dimensions.forEach((dimension, i) => { if (dimension.constraintrange && dimension.constraintrange.length) kept.set(axes[i].name, dimension.constraintrange); });
+    const tests = axes.filter((axis) => kept.has(axis.name)).map((axis, i, list) => {
+      const ranges = Array.isArray(kept.get(axis.name)[0]) ? kept.get(axis.name) : [kept.get(axis.name)];
+      const of = axis.name === score ? axis.of : (row) => axis.position.get(axis.of(row));
+      return (row) => ranges.some(([low, high]) => of(row) >= low && of(row) <= high);
+    });
+    restrict(tests.length ? (row) => tests.every((test) => test(row)) : null);
+  };
+  element.ready.then(() => element.plot.on('plotly_restyle', dragged));
+  const { control } = scoreChoice(study, score, (name) => { kept.delete(score); score = name; element.redraw(); });
   section('parallel', 'Parallel coordinates', h('div', { class: 'controls' }, control), element);
-  follow(context, element);
+  shown.listeners.push((own) => { if (!own && element.plot.querySelector('.main-svg')) element.redraw(); });
 }
 
 export function drawEffects(context) {
@@ -91,11 +102,12 @@ export function drawHeatMap(context) {
       const here = shown.rows.filter((row) => x.of(row) === a && y.of(row) === b).map(z.of).filter(isNumber);
       return here.length ? mean(here) : null;
     }));
-    const small = x.levels.length * y.levels.length <= 150;
+    const small = x.levels.length * y.levels.length <= 150, known = cells.flat().filter(isNumber), middle = (Math.min(...known) + Math.max(...known)) / 2;
+    const labels = cells.flatMap((line, b) => line.flatMap((cell, a) => (cell === null ? [] : [{ x: a, y: b, text: cell.toPrecision(4), showarrow: false, font: { size: 11, color: cell > middle ? '#111111' : '#ffffff' } }])));
     return { traces: [{ type: 'heatmap', z: cells, x: x.levels.map((l, k) => k), y: y.levels.map((l, k) => k), colorscale: 'Cividis', xgap: 1, ygap: 1, hoverongaps: false,
       text: cells.map((line, b) => line.map((cell, a) => `${x.label} = ${plain(x.levels[a])}<br>${y.label} = ${plain(y.levels[b])}<br>mean ${cell === null ? '–' : cell.toPrecision(4)}`)), hoverinfo: 'text',
-      texttemplate: small ? '%{z:.3g}' : undefined, colorbar: { title: { text: z.label, side: 'right' }, thickness: 12 } }],
-    layout: { height: Math.min(700, 140 + 42 * y.levels.length), margin: { l: 90, r: 10, t: 10, b: 60 },
+      colorbar: { title: { text: z.label, side: 'right' }, thickness: 12 } }],
+    layout: { annotations: small ? labels : [], height: Math.min(700, 140 + 42 * y.levels.length), margin: { l: 90, r: 10, t: 10, b: 60 },
       xaxis: { tickvals: x.levels.map((l, k) => k), ticktext: x.levels.map((l) => plain(l)), title: { text: x.label }, showgrid: false },
       yaxis: { tickvals: y.levels.map((l, k) => k), ticktext: y.levels.map((l) => plain(l)), title: { text: y.label }, showgrid: false } } };
   }, 'Mean over the runs shown that have the pair of values, whatever their other keys.');
@@ -105,12 +117,13 @@ export function drawHeatMap(context) {
   follow(context, element);
 }
 
-// Runs that no other run beats in both: fewer (or equal) of x, a better (or equal) score.
-export function paretoFront(points, higherIsBetter) {
-  const sign = higherIsBetter ? 1 : -1;
-  const sorted = [...points].sort((a, b) => a.x - b.x || sign * (b.y - a.y));
+// How bad a score is by its goal (study_page.cpp): the smaller the better.
+const lossOf = (goal, score) => (!goal || goal.kind === 'higher' ? -score : goal.kind === 'lower' ? score : Math.abs(score - goal.nominal));
+
+// Points {x, loss} that no other point beats in both.
+export function paretoFront(points) {
   const front = [];
-  for (const point of sorted) if (!front.length || sign * point.y > sign * front[front.length - 1].y) front.push(point);
+  for (const point of [...points].sort((a, b) => a.x - b.x || a.loss - b.loss)) if (!front.length || point.loss < front[front.length - 1].loss) front.push(point);
   return front;
 }
 
@@ -119,9 +132,9 @@ export function drawPareto(context) {
   const costs = names(study, 'cost').concat(names(study, 'varied').filter((key) => axisOf(study, key).numeric), names(study, 'score'));
   let cost = costs[0], score = study.standard_score;
   const element = figure('Pareto plot: score against number of modes, the front marked', () => {
-    const x = axisOf(study, cost), y = axisOf(study, score), higher = study.columns.find((column) => column.name === score).higher;
-    const points = shown.rows.filter((row) => isNumber(x.of(row)) && isNumber(y.of(row))).map((row) => ({ x: x.of(row), y: y.of(row), row }));
-    const front = paretoFront(points, higher);
+    const x = axisOf(study, cost), y = axisOf(study, score), goal = study.columns.find((column) => column.name === score).goal;
+    const points = shown.rows.filter((row) => isNumber(x.of(row)) && isNumber(y.of(row))).map((row) => ({ x: x.of(row), y: y.of(row), loss: lossOf(goal, y.of(row)), row }));
+    const front = paretoFront(points);
     const hover = (row) => study.varied.map(({ key }, i) => `${plain(key)} = ${plain(row.varied[i])}`).join('<br>');
     const trace = (list, more) => ({ type: 'scattergl', x: list.map((p) => p.x), y: list.map((p) => p.y), customdata: list.map((p) => p.row.number), text: list.map((p) => hover(p.row)),
       hovertemplate: 'run %{customdata}<br>%{text}<br>%{x:.5g}, %{y:.5g}<extra></extra>', ...more });
@@ -132,5 +145,31 @@ export function drawPareto(context) {
   element.ready.then(() => element.plot.on('plotly_click', (event) => showRun(study.rows[event.points[0].customdata])));
   const { control } = scoreChoice(study, score, (name) => { score = name; element.redraw(); });
   section('pareto', 'Pareto plot', h('div', { class: 'controls' }, choice('Cost', costs, 0, (i) => { cost = costs[i]; element.redraw(); }), control), element);
+  follow(context, element);
+}
+
+// The paper's figure 5: samples outside the interval, above and below, training and held out, over the values of a key.
+export function drawCoverage(context) {
+  const { study, shown } = context;
+  const scores = names(study, 'score'), measures = [['nis', 'NIS'], ['tail', 'PIT']].filter(([key]) => scores.includes(`bank_test_${key}_above`) || scores.includes(`bank_train_${key}_above`));
+  const keys = names(study, 'varied');
+  if (!measures.length || !keys.length) { section('coverage', 'Samples outside the interval', h('p', {}, 'The study has no such scores.')); return; }
+  let key = keys[first(keys, 'mixture.components')], measure = measures[0];
+  const element = figure('Shares of samples outside the 95 % interval, above and below, training and held out, for the baseline, noise only and each value of a key', () => {
+    const axis = axisOf(study, key), runs = shown.rows, traces = [];
+    const average = (rows, score) => { const of = axisOf(study, score).of, values = scores.includes(score) ? rows.map(of).filter(isNumber) : []; return values.length ? 100 * mean(values) : null; };
+    const groups = [['baseline', 'baseline', runs], ['noise only', 'noise_only', runs], ...axis.levels.map((level) => [String(level), 'bank', runs.filter((row) => axis.of(row) === level)])];
+    for (const [side, sign] of [['above', 1], ['below', -1]])
+      for (const [role, title, colour] of [['train', 'training', palette.modes[0]], ['test', 'held out', palette.modes[1]]]) {
+        const y = groups.map(([, filter, rows]) => average(rows, `${filter}_${role}_${measure[0]}_${side}`));
+        traces.push({ type: 'bar', name: title, legendgroup: title, showlegend: sign > 0, offsetgroup: role, x: groups.map(([name], i) => i), y: y.map((v) => (v === null ? null : sign * v)), meta: `${role} ${side}`,
+          text: y.map((v, i) => `${plain(groups[i][0])}, ${title}, ${side}: ${v === null ? '–' : v.toPrecision(4)} %`), textposition: 'none', hoverinfo: 'text', marker: { color: colour } });
+      }
+    const line = (y) => ({ type: 'line', xref: 'paper', x0: 0, x1: 1, y0: y, y1: y, line: { color: ink(), width: 1, dash: 'dash' } });
+    return { traces, layout: { height: 380, barmode: 'group', legend: { orientation: 'h', y: 1.1 }, shapes: [line(2.5), line(-2.5)], margin: { l: 60, r: 10, t: 30, b: 60 },
+      xaxis: { tickvals: groups.map((g, i) => i), ticktext: groups.map(([name]) => plain(name)), title: { text: `filter, then the bank by ${axis.label}` } }, yaxis: { title: { text: `${measure[1]} below | above [%]` }, zeroline: true, zerolinewidth: 2 } } };
+  }, 'Means over the runs shown. Dashed: 2.5 % on either side, as a true filter has.');
+  section('coverage', 'Samples outside the interval', h('div', { class: 'controls' }, choice('Over', keys, keys.indexOf(key), (i) => { key = keys[i]; element.redraw(); }),
+    choice('By', measures.map(([, name]) => name), 0, (i) => { measure = measures[i]; element.redraw(); })), element);
   follow(context, element);
 }

@@ -60,9 +60,10 @@ export function drawStudyTable(place, study, { filter, showRun, chosen }) {
     status.textContent = `${rows.length} of ${study.rows.length} runs` + (rows.length > state.most ? `, the first ${state.most} of them shown` : '');
     more.hidden = rows.length <= state.most;
   }
-  function update() {
+  function update(dragged = false) {
     const tests = state.filters.map((text, i) => [filterOf(text), i, text]).filter(([, , text]) => text.trim());
-    rows = study.rows.filter((row) => (!state.restriction || state.restriction(row)) && tests.every(([test, i]) => test(row.cells[i])));
+    const base = study.rows.filter((row) => tests.every(([test, i]) => test(row.cells[i])));
+    rows = state.restriction ? base.filter(state.restriction) : base;
     if (state.order !== null) {
       const i = state.order, sign = state.down ? -1 : 1;
       rows = [...rows].sort((a, b) => {
@@ -71,7 +72,7 @@ export function drawStudyTable(place, study, { filter, showRun, chosen }) {
       });
     }
     fill();
-    filter(rows);
+    filter(rows, base, dragged);
   }
   function heading(i) {
     const column = study.columns[i];
@@ -93,5 +94,5 @@ export function drawStudyTable(place, study, { filter, showRun, chosen }) {
     columns, status, h('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Table of runs' }, element), more);
   frame();
   update();
-  return { restrict: (test) => { state.restriction = test; update(); } };
+  return { restrict: (test) => { state.restriction = test; update(true); } };
 }

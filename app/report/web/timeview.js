@@ -1,6 +1,6 @@
 // Plots over time that share one run and one stretch of time.
 import { h } from './common.js';
-import { figure, ink, Plotly } from './plots.js';
+import { figure, fingers, ink } from './plots.js';
 import { clock, view } from './signals.js';
 
 // What all time plots of a page show: {run, range: [from, to] in seconds, mark: [from, to] or null}. Changes reach every
@@ -50,8 +50,8 @@ export function timePlot(state, label, rows, caption) {
     const list = rowsNow(), total = list.reduce((sum, row) => sum + row.height, 0), run = state.current;
     const gap = 26, below = 46, above = 30, height = total + gap * (list.length - 1) + below + above, inner = height - below - above;
     const clockOf = await state.clock(), range = state.shown(), shown = view(clockOf, range);
-    const traces = [], layout = { height, margin: { l: 82, r: 14, t: above, b: below }, showlegend: false, shapes: [], annotations: [],
-      uirevision: `run ${state.run}`, dragmode: 'zoom', hovermode: 'closest' };
+    const traces = [], layout = { height, margin: { l: window.innerWidth < 600 ? 62 : 82, r: 14, t: above, b: below }, showlegend: false, shapes: [], annotations: [],
+      uirevision: `run ${state.run}`, dragmode: fingers() ? false : 'zoom', hovermode: 'closest' };
     let top = 1;
     for (let i = 0; i < list.length; ++i) {
       const row = list[i], n = i === 0 ? '' : i + 1, size = row.height / inner;
@@ -92,4 +92,3 @@ export function timePlot(state, label, rows, caption) {
   state.plots.push(element);
   return element;
 }
-export { Plotly };

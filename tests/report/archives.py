@@ -1,0 +1,85 @@
+"""What the pages are made from, and modebank's command line."""
+import os
+import pathlib
+import random
+import subprocess
+
+HOSTILE_STATE = "<script>window.hostile=1</script>"
+HOSTILE_INPUT = "\"><img src=x onerror='window.hostile=2'>&amp;"
+HOSTILE_RUN = "</script><b>run</b> 'é\"漢 ${x} {{data}}"
+HOSTILE_UNIT = "<i>rad</i>&s"
+
+
+class Modebank:
+    def __init__(self, program, source, work):
+        self.program, self.source, self.work = program, pathlib.Path(source), pathlib.Path(work)
+
+    def __call__(self, *arguments, status=0):
+        result = subprocess.run([self.program, *map(str, arguments)], capture_output=True, text=True, cwd=self.work)
+        assert result.returncode == status, f"modebank {arguments}: status {result.returncode}\n{result.stderr}"
+        return result
+
+    def page(self, name, *archives, options=()):
+        """Made once."""
+        page = self.work / f"{name}.html"
+        if not page.exists():
+            self("report", *archives, "-o", page, *options)
+        return page
+
+    def run(self, name, config, *options, command="run"):
+        archive = self.work / f"{name}.h5"
+        self(command, config, "--archive.output", archive, *options)
+        return archive
+
+
+def real_data():
+    for folder in (os.environ.get("MODEBANK_DATA"), pathlib.Path(__file__).resolve().parents[3] / "shared" / "data"):
+        if folder and (pathlib.Path(folder) / "borealtc" / "ICE").is_dir():
+            return pathlib.Path(folder)
+    return None
+
+
+def demo_data(modebank):
+    data = modebank.work / "demo_data"
+    modebank("simulate", modebank.source / "configs/simulate_ice.ini", "--simulate.output", data)
+    return data
+
+
+def demo(modebank, data, name, *options, command="run"):
+    return modebank.run(name, modebank.source / "configs/demo.ini", "--data.root", data, "--mixture.restarts", "2", *options, command=command)
+
+
+def ice(modebank):
+    """The Husky on ice, without refinement, which takes long and adds no kind of number."""
+    return modebank.run("ice", modebank.source / "configs/husky_ice.ini", "--data.root", real_data(), "--bank.refine", "none",
+                        "--mixture.components", "1..4", "--mixture.restarts", "2")
+
+
+def hostile(modebank):
+    """Two runs in one file whose names, channels and units are made to break out of a page."""
+    folder = modebank.work / "hostile"
+    folder.mkdir(exist_ok=True)
+    quote = lambda text: '"' + text.replace('"', '""') + '"'
+    generator = random.Random(1)
+    with open(folder / "log.csv", "w", encoding="utf-8") as file:
+        file.write(f"time,{quote(HOSTILE_STATE)},{quote(HOSTILE_INPUT)},right,trial\n")
+        for run in (HOSTILE_RUN.replace("/", "\\"), "plain"):
+            state = 0.0
+            for k in range(120):
+                left, right = generator.uniform(-0.5, 0.5), generator.uniform(-0.5, 0.5)
+                file.write(f"{0.1 * k:.3f},{state!r},{left!r},{right!r},{quote(run)}\n")
+                state += -0.4 * state - 0.2 * left + 0.2 * right + 0.01 * generator.uniform(-0.5, 0.5)
+    config = folder / "hostile.ini"
+    config.write_text(f"[data]\ninputs = log.csv\nstate = {HOSTILE_STATE}\ninput = {HOSTILE_INPUT}, right\nrun = trial\n"
+                      f"state_unit = {HOSTILE_UNIT}\n[mixture]\ncomponents = 1..2\n", encoding="utf-8")
+    return modebank.run("hostile", config, "--data.root", folder)
+
+
+def study(modebank, data):
+    folder = modebank.work / "study"
+    config = modebank.work / "study.ini"
+    config.write_text((modebank.source / "configs/demo.ini").read_text() + "\nrestarts = 1\nheldout = never\n[study]\n"
+                      "vary = window.length = 15 | 25\nvary = mixture.components = 1 | 2 | 3\nvary = mixture.covariance = full | diagonal\n",
+                      encoding="utf-8")
+    modebank("study", config, "--data.root", data, "--study.output", folder)
+    return folder

@@ -1,0 +1,40 @@
+#!/usr/bin/env python3
+"""The report's pages in headless Chromium: pages_test.py PROGRAM SOURCE_FOLDER WORK_FOLDER [TEST...]
+
+Makes pages of every kind and checks that each section draws without a console error or a request, that zoom, hover,
+click-through, sorting and filtering work, and that the numbers shown are the archive's. Pages and screenshots stay in
+WORK_FOLDER/pages.
+"""
+import os
+import pathlib
+import sys
+import unittest
+
+
+def leave(reason):
+    """Skips loudly, or fails where everything must be there."""
+    print(f"SKIPPED: {reason}")
+    sys.exit(1 if os.environ.get("CI") == "true" else 77)
+
+
+try:
+    import h5py  # noqa: F401
+    import selenium  # noqa: F401
+except ImportError as error:
+    leave(f"{error.name} is missing (Debian packages python3-h5py, python3-selenium)")
+if not (os.path.exists("/usr/bin/chromium") and os.path.exists("/usr/bin/chromedriver")):
+    leave("Chromium is missing (Debian packages chromium, chromium-driver)")
+
+import session  # noqa: E402
+from compare_page import ComparePage, Refusals  # noqa: E402, F401
+from run_pages import RunPages  # noqa: E402, F401
+from study_page import StudyPage  # noqa: E402, F401
+
+if __name__ == "__main__":
+    program, source, folder = sys.argv[1:4]
+    try:
+        session.start(program, source, pathlib.Path(folder) / "pages")
+        result = unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2, exit=False).result
+    finally:
+        session.stop()
+    sys.exit(not result.wasSuccessful())

@@ -1,0 +1,210 @@
+"""Pages of runs."""
+import time
+
+import archives
+import h5py
+import session
+from session import PageTest, pooled
+
+RUN_SECTIONS = ["origin", "verdict", "data", "windows", "selection", "bank", "filter"]
+
+
+class RunPages(PageTest):
+    def test_every_section_of_every_page_draws(self):
+        for name in ("demo", "one_mode", "no_truth", "hostile", "ice"):
+            if name not in session.made:
+                continue
+            with self.subTest(name):
+                plots = self.assert_whole(session.modebank.page(name, session.made[name]), RUN_SECTIONS)
+                self.assertGreaterEqual(plots, 6)
+
+    def test_numbers_are_the_archives(self):
+        for name in ("demo", "ice"):
+            if name not in session.made:
+                continue
+            with self.subTest(name):
+                self.open(session.modebank.page(name, session.made[name]))
+                self.check_scores(session.made[name])
+                self.check_bank(session.made[name])
+                self.check_candidates(session.made[name])
+
+    def check_scores(self, archive):
+        rows = pooled(archive)
+        shown = session.browser.run("return [...document.querySelectorAll('#verdict .numbers .big span')].map((s) => JSON.parse(s.dataset.value))")
+        bank = rows["bank", "test"]
+        self.assertEqual(shown, [bank["log_score"], float(bank["rmse"].ravel()[0]), bank["tail_above"], bank["tail_below"]])
+        names = {"bank": "bank", "baseline": "baseline", "noise only": "noise_only"}
+        table = self.table("Scores, all runs together")
+        self.assertEqual(len(table), len(rows))
+        for line in table:
+            row = rows[names[line["Filter"][0]], "test" if line["Runs"][0] == "held out" else "train"]
+            for heading, key in (("Samples", "samples"), ("Log score [nats]", "log_score"), ("NIS above", "nis_above"), ("NIS below", "nis_below"),
+                                 ("PIT above", "tail_above"), ("PIT below", "tail_below"), ("mean NIS", "nis_mean")):
+                self.same(line[heading][1], row[key])
+
+    def check_bank(self, archive):
+        with h5py.File(archive) as file:
+            theta, error, weight = (file[f"bank/{name}"][:] for name in ("parameters", "parameter_standard_error", "weight"))
+            transition = file["bank/transition"][:]
+        table = self.table("Modes")
+        for k, line in enumerate(table[:len(theta)]):
+            cells = list(line.values())
+            exact = [value for _, value in cells]
+            self.assertIn(float(weight[k]), exact)
+            for value in theta[k]:
+                self.assertIn(float(value), exact)
+        shown = session.browser.run("""
+            return [...document.querySelectorAll('#bank [data-value]')].map((e) => JSON.parse(e.dataset.value)).filter((v) => typeof v === 'number');""")
+        if len(theta) > 1:
+            for value in transition.ravel():
+                self.assertIn(float(value), shown)
+
+    def check_candidates(self, archive):
+        with h5py.File(archive) as file:
+            candidates = file["mixture/candidates"][:]
+        table = self.table("Candidates")
+        self.assertEqual(len(table), len(candidates))
+        for line, row in zip(table, candidates):
+            self.assertEqual(int(line["K"][0]), row["components"])
+            self.assertEqual(line["Status"][0] == "chosen", bool(row["selected"]))
+            for heading, key in (("BIC", "bic"), ("ICL", "icl"), ("AIC", "aic"), ("held out", "heldout"), ("log likelihood", "log_likelihood")):
+                self.same(line[heading][1], row[key])
+
+    def test_zoom_is_shared_and_undone(self):
+        self.open(session.modebank.page("demo", session.made["demo"]))
+        session.browser.draw_all()
+        whole = self.plot_range("data")
+        area = self.plot_area("data")
+        middle = area["top"] + area["height"] / 2
+        session.browser.drag(area["left"] + 0.3 * area["width"], middle, area["left"] + 0.5 * area["width"], middle)
+        session.browser.wait("const r = document.querySelector('#data div.plot')._fullLayout.xaxis.range; return r[1] - r[0] < 0.5 * arguments[0]", whole[1] - whole[0],
+                     what="the drag to zoom")
+        zoomed = self.plot_range("data")
+        self.assertAlmostEqual((zoomed[1] - zoomed[0]) / (whole[1] - whole[0]), 0.2, delta=0.02)
+        session.browser.wait("const r = document.querySelector('#filter div.plot')._fullLayout.xaxis.range; return Math.abs(r[0] - arguments[0]) < 1e-6 && Math.abs(r[1] - arguments[1]) < 1e-6",
+                     *zoomed, what="the filter's plot to follow")
+        session.browser.run("[...document.querySelectorAll('#data .controls button')].find((b) => b.textContent === 'All').click()")
+        session.browser.wait("const r = document.querySelector('#data div.plot')._fullLayout.xaxis.range; return Math.abs(r[1] - arguments[0]) < 1e-6", whole[1], what="the whole run again")
+        self.assert_quiet()
+
+    def window_point(self):
+        """Where some window of the flat cloud is drawn, in the window's pixels, and which one it is."""
+        return session.browser.run("""
+            const plot = [...document.querySelectorAll('#windows div.plot')].at(-1);
+            plot.scrollIntoView({block: 'center'});
+            const box = plot.getBoundingClientRect(), x = plot._fullLayout.xaxis, y = plot._fullLayout.yaxis;
+            let best = null;
+            for (const trace of plot._fullData) {
+              if (trace.xaxis !== 'x' || trace.mode !== 'markers' || !Number.isInteger(trace.customdata?.[0]) || trace.customdata[0] < 0) continue;
+              for (let i = 0; i < trace.x.length; ++i) {
+                const px = x.l2p(trace.x[i]), py = y.l2p(trace.y[i]);
+                if (px < 20 || py < 20 || px > x._length - 20 || py > y._length - 20) continue;
+                // The loneliest of some: nothing else may be nearer to the pointer.
+                if (!best || px < best.px) best = {px, py, left: box.x + x._offset + px, top: box.y + y._offset + py, window: trace.customdata[i]};
+              }
+            }
+            return best;""")
+
+    def test_hover_names_a_window_and_a_click_goes_to_its_data(self):
+        self.open(session.modebank.page("demo", session.made["demo"]))
+        session.browser.draw_all()
+        point = self.window_point()
+        before = session.browser.run("return document.getElementById('window-info').textContent")
+        time.sleep(0.2)
+        session.browser.move(point["left"] + 3, point["top"])
+        session.browser.move(point["left"], point["top"])
+        session.browser.wait("return document.getElementById('window-info').textContent !== arguments[0]", before, what="hover to tell of the window")
+        told = session.browser.run("return document.getElementById('window-info').textContent")
+        self.assertRegex(told, r"Window in run \w+, [\d.]+ to [\d.]+ s: A = ")
+        session.browser.click(point["left"], point["top"])
+        session.browser.wait("const m = document.querySelector('#data div.plot')._fullLayout.shapes; return m.some((s) => s.xref === 'x' && s.type === 'rect')",
+                     what="the click to mark the window's stretch of the data")
+        mark = session.browser.run("return document.querySelector('#data div.plot')._fullLayout.shapes.filter((s) => s.xref === 'x').map((s) => [s.x0, s.x1])[0]")
+        begin, end = (float(word) for word in told.split(", ")[1].split(" s")[0].split(" to "))
+        self.assertAlmostEqual(mark[0], begin, places=2)
+        self.assertAlmostEqual(mark[1], end, places=2)
+        shown = self.plot_range("data")
+        self.assertTrue(shown[0] <= begin and end <= shown[1])
+        self.assert_quiet()
+
+    def test_hover_over_the_data_shows_values(self):
+        self.open(session.modebank.page("demo", session.made["demo"]))
+        session.browser.draw_all()
+        point = session.browser.run("""
+            const plot = document.querySelector('#data div.plot');
+            plot.scrollIntoView({block: 'center'});
+            const box = plot.getBoundingClientRect(), x = plot._fullLayout.xaxis, y = plot._fullLayout.yaxis;
+            const trace = plot._fullData.find((t) => t.name === 'measured'), i = Math.floor(trace.x.length / 2);
+            return [box.x + x._offset + x.l2p(trace.x[i]), box.y + y._offset + y.l2p(trace.y[i])];""")
+        time.sleep(0.2)
+        session.browser.move(point[0] + 2, point[1])
+        session.browser.move(*point)
+        session.browser.wait("return document.querySelector('#data div.plot .hoverlayer').children.length > 0", what="a hover label")
+
+    def test_light_dark_phone_and_print(self):
+        page = session.modebank.page("demo", session.made["demo"])
+        for scheme in ("light", "dark"):
+            session.browser.scheme(scheme)
+            self.open(page)
+            session.browser.draw_all()
+            session.browser.screenshot(f"demo_{scheme}")
+            self.assertEqual(session.browser.run("return getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)", scheme == "light")
+        session.browser.scheme("light")
+        session.browser.run("document.getElementById('theme').click()")
+        self.assertEqual(session.browser.run("return document.documentElement.dataset.theme"), "dark")
+        session.browser.size(390, 800)
+        try:
+            self.open(page)
+            session.browser.draw_all()
+            session.browser.screenshot("demo_phone")
+            self.assertLessEqual(session.browser.run("return document.documentElement.scrollWidth"), 390)
+        finally:
+            session.browser.size(1200, 900)
+        self.open(page)
+        session.browser.draw_all()
+        pdf = session.browser.cdp("Page.printToPDF", printBackground=True)["data"]
+        self.assertGreater(len(pdf), 100_000)
+        self.assert_quiet()
+
+    def test_keyboard_and_names_for_screen_readers(self):
+        self.open(session.modebank.page("demo", session.made["demo"]))
+        session.browser.draw_all()
+        session.browser.key("Tab")
+        self.assertEqual(session.browser.run("return document.activeElement.className"), "skip")
+        session.browser.key("Enter")
+        self.assertEqual(session.browser.run("return document.activeElement.id"), "main")
+        self.assertEqual(session.browser.run("return [...document.querySelectorAll('div.plot')].filter((p) => !p.getAttribute('aria-label')).length"), 0)
+        self.assertEqual(session.browser.run("return [...document.querySelectorAll('select, input, textarea')].filter((e) => !e.labels?.length && !e.getAttribute('aria-label')).length"), 0)
+        self.assertEqual(session.browser.run("return document.querySelectorAll('h1').length"), 1)
+        self.assertEqual(session.browser.run("return [...document.querySelectorAll('section')].every((s) => document.getElementById(s.getAttribute('aria-labelledby')))"), True)
+
+    def test_the_configuration_is_copied_whole(self):
+        self.open(session.modebank.page("demo", session.made["demo"]))
+        with h5py.File(session.made["demo"]) as file:
+            config = file["config"][()].decode()
+        session.browser.run("""
+            window.copied = null;
+            Object.defineProperty(navigator, 'clipboard', {value: {writeText: (text) => { window.copied = text; return Promise.resolve(); }}});
+            [...document.querySelectorAll('button')].find((b) => b.textContent.includes('Copy the configuration')).click();""")
+        self.assertEqual(session.browser.run("return window.copied"), config)
+
+    def test_hostile_names_are_text(self):
+        self.open(session.modebank.page("hostile", session.made["hostile"]))
+        session.browser.draw_all()
+        self.assertIsNone(session.browser.run("return window.hostile ?? null"))
+        self.assertEqual(session.browser.run("return document.querySelectorAll('main script, main img, main b, main i').length"), 0)
+        text = session.browser.run("return document.body.textContent")
+        self.assertIn(archives.HOSTILE_STATE, text)
+        self.assertIn("漢 ${x} {{data}}", text)
+        # Plotly draws texts of its own: they hold the name as well, as text.
+        drawn = session.browser.run("return [...document.querySelectorAll('#data div.plot svg text')].map((t) => t.textContent).join(' | ')")
+        self.assertIn(archives.HOSTILE_STATE, drawn)
+        session.browser.screenshot("hostile")
+        self.assert_quiet()
+
+    def test_what_an_archive_lacks_is_said(self):
+        session.made["windows_only"] = archives.demo(session.modebank, session.data, "windows_only", command="identify")
+        plots = self.assert_whole(session.modebank.page("windows_only", session.made["windows_only"]), RUN_SECTIONS)
+        self.assertGreaterEqual(plots, 2)
+        for section in ("selection", "bank", "filter"):
+            self.assertRegex(session.browser.run("return document.getElementById(arguments[0]).textContent", section), "holds no|nothing|no ")

@@ -1,0 +1,93 @@
+"""What all tests of the pages share: the program, the archives, the browser, and how a page is read."""
+import json
+import math
+import os
+import shutil
+import unittest
+
+import archives
+import h5py
+from browser import Browser
+
+modebank = browser = data = work = None
+made = {}  # name -> archive
+
+
+def start(program, source, folder):
+    global modebank, browser, data, work
+    work = folder
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    modebank = archives.Modebank(program, source, work)
+    data = archives.demo_data(modebank)
+    made["demo"] = archives.demo(modebank, data, "demo", "--mixture.components", "1..4")
+    made["one_mode"] = archives.demo(modebank, data, "one_mode", "--mixture.components", "1")
+    made["no_truth"] = archives.demo(modebank, data, "no_truth", "--data.truth=", "--mixture.components", "2")
+    made["hostile"] = archives.hostile(modebank)
+    if archives.real_data():
+        made["ice"] = archives.ice(modebank)
+    elif os.environ.get("CI") == "true":
+        raise AssertionError("real data is absent: set MODEBANK_DATA (CI requires it)")
+    else:
+        print("SKIPPED: the page of ICE, real data is absent: set MODEBANK_DATA")
+    made["study"] = archives.study(modebank, data)
+    browser = Browser(work)
+
+
+def stop():
+    if browser:
+        browser.close()
+
+
+class PageTest(unittest.TestCase):
+    def open(self, page):
+        seconds = browser.open(page)
+        self.assertIsNone(browser.run("return document.querySelector('.failure')?.textContent ?? null"))
+        return seconds
+
+    def assert_quiet(self):
+        """No console error, no request, no other file since the page was opened."""
+        errors, requests = browser.messages()
+        self.assertEqual(errors, [])
+        self.assertEqual(requests, [])
+        self.assertEqual(browser.files_requested(), [])
+
+    def assert_whole(self, page, sections):
+        self.open(page)
+        self.assertEqual(browser.run("return [...document.querySelectorAll('main > section')].map((s) => s.id)"), sections)
+        plots = browser.draw_all()
+        self.assert_quiet()
+        return plots
+
+    def table(self, caption):
+        """Rows of the table with this caption: {heading: (text, exact value)}."""
+        found = browser.run("""
+            const table = [...document.querySelectorAll('table')].find((t) => t.caption && t.caption.textContent.startsWith(arguments[0]));
+            if (!table) return null;
+            const names = [...table.querySelectorAll('thead tr:first-child th')].map((th) => th.textContent);
+            return [...table.querySelectorAll('tbody tr')].map((tr) => [...tr.children].map((td, i) => [names[i], td.textContent, td.dataset.value ?? null]));""", caption)
+        self.assertIsNotNone(found, f"no table {caption}")
+        return [{name: (text, json.loads(value) if value is not None else None) for name, text, value in row} for row in found]
+
+    def plot_range(self, section):
+        return browser.run("return document.querySelector(arguments[0] + ' div.plot')._fullLayout.xaxis.range", f"#{section}")
+
+    def plot_area(self, section, index=0):
+        """The inside of a drawn plot, in the window."""
+        return browser.run("""
+            const plot = document.querySelectorAll(arguments[0] + ' div.plot')[arguments[1]];
+            plot.scrollIntoView({block: 'center'});
+            const box = plot.getBoundingClientRect(), size = plot._fullLayout._size, y = plot._fullLayout.yaxis, x = plot._fullLayout.xaxis;
+            return {left: box.x + x._offset, top: box.y + y._offset, width: x._length, height: y._length};""", f"#{section}", index)
+
+    def same(self, shown, stored):
+        """A page's exact value and the archive's; what is not finite is null there."""
+        if shown is None:
+            self.assertFalse(math.isfinite(stored))
+        else:
+            self.assertEqual(shown, stored)
+
+
+def pooled(archive):
+    with h5py.File(archive) as file:
+        return {(row["filter"].decode(), row["role"].decode()): row for row in file["evaluation/summary"][:] if row["run"].decode() == "*"}

@@ -1,0 +1,136 @@
+"""The page of a study."""
+import h5py
+import session
+from session import PageTest
+
+STUDY_SECTIONS = ["origin", "verdict", "runs", "parallel", "effects", "heatmap", "pareto", "coverage"]
+
+
+class StudyPage(PageTest):
+    def page(self):
+        return session.modebank.page("study", session.made["study"], options=("--report.runs", "2"))
+
+    def stored(self):
+        with h5py.File(session.made["study"] / "study.h5") as file:
+            return file["study"][:]
+
+    def column(self, name):
+        return [row[name][1] for row in self.rows()]
+
+    def rows(self):
+        table = self.table("Every run")
+        return [{heading.rstrip(" ▴▾"): cell for heading, cell in row.items()} for row in table]
+
+    def sort_by(self, name):
+        session.browser.run("[...document.querySelectorAll('#study-table th button')].find((b) => b.textContent.startsWith(arguments[0])).click()", name)
+
+    def filter(self, name, text):
+        session.browser.run("""
+            const input = document.querySelector(`#study-table input[data-column="${arguments[0]}"]`);
+            input.value = arguments[1];
+            input.dispatchEvent(new Event('input', {bubbles: true}));""", name, text)
+
+    def test_every_section_draws_in_light_and_dark(self):
+        page = self.page()
+        for scheme in ("dark", "light"):
+            session.browser.scheme(scheme)
+            self.assert_whole(page, STUDY_SECTIONS)
+            session.browser.screenshot(f"study_{scheme}")
+
+    def test_numbers_are_the_tables(self):
+        self.open(self.page())
+        session.browser.run("document.querySelectorAll('#runs details input[type=checkbox]').forEach((box) => { if (!box.checked) box.click(); })")
+        stored = self.stored()
+        rows = self.rows()
+        self.assertEqual(len(rows), len(stored))
+        scores = [name for name in stored.dtype.names if name.startswith(("bank_", "baseline_", "noise_only_")) or name == "modes"]
+        self.assertGreater(len(scores), 20)
+        for line, row in zip(rows, stored):
+            self.assertEqual(line["status"][0], row["status"].decode())
+            self.assertEqual(line["window.length"][1], row["window.length"])
+            self.assertEqual(line["mixture.covariance"][0], row["mixture.covariance"].decode())
+            for name in scores:
+                self.same(line[name][1], row[name])
+
+    def test_sorting(self):
+        self.open(self.page())
+        self.sort_by("bank_test_log_score")
+        self.assertEqual(self.column("bank_test_log_score"), sorted(self.stored()["bank_test_log_score"]))
+        self.sort_by("bank_test_log_score")
+        self.assertEqual(self.column("bank_test_log_score"), sorted(self.stored()["bank_test_log_score"], reverse=True))
+        self.assertEqual(session.browser.run("return document.querySelectorAll('#study-table th[aria-sort=descending]').length"), 1)
+
+    def test_filtering_and_what_follows_it(self):
+        self.open(self.page())
+        session.browser.draw_all()
+        stored = self.stored()
+        points = "return document.querySelector('#pareto div.plot')._fullData[0].x.length"
+        self.assertEqual(session.browser.run(points), len(stored))
+        self.filter("mixture.components", ">= 2")
+        self.assertEqual(len(self.rows()), sum(stored["mixture.components"] >= 2))
+        self.filter("mixture.covariance", "diag")
+        wanted = (stored["mixture.components"] >= 2) & (stored["mixture.covariance"] == b"diagonal")
+        self.assertEqual(sorted(self.column("bank_test_log_score")), sorted(stored["bank_test_log_score"][wanted]))
+        session.browser.wait(points + " === arguments[0]", int(sum(wanted)), what="the Pareto plot to follow")
+        self.filter("mixture.components", "1 | 3")
+        self.assertEqual({row["mixture.components"][1] for row in self.rows()}, {1, 3})
+        self.filter("mixture.components", "")
+        self.filter("mixture.covariance", "")
+        self.assertEqual(len(self.rows()), len(stored))
+        # What is dragged along an axis of the parallel coordinates filters, too: here the first two values of the first key.
+        session.browser.run("return Plotly.restyle(document.querySelector('#parallel div.plot'), {'dimensions[1].constraintrange': [[0.5, 1.5]]}, [0])")
+        session.browser.wait("return document.querySelectorAll('#study-table tbody tr').length === arguments[0]", int(sum(stored["mixture.components"] == 2)),
+                     what="the dragged range to filter the table")
+        self.assert_quiet()
+
+    def test_main_effects_heat_map_and_front(self):
+        self.open(self.page())
+        session.browser.draw_all()
+        stored = self.stored()
+        means = session.browser.run("return document.querySelector('#effects div.plot')._fullData.filter((t) => t.meta === 'main effect').map((t) => t.y)")
+        keys = ["window.length", "mixture.components", "mixture.covariance"]
+        for key, shown in zip(keys, means):
+            levels = list(dict.fromkeys(stored[key].tolist()))
+            levels = levels if key == "mixture.covariance" else sorted(levels)
+            for level, mean in zip(levels, shown):
+                self.assertAlmostEqual(mean, float(stored["bank_test_log_score"][stored[key] == level].mean()), places=10)
+        cells = session.browser.run("return document.querySelector('#heatmap div.plot')._fullData[0].z")
+        for a, length in enumerate((15, 25)):
+            for b, components in enumerate((1, 2, 3)):
+                here = (stored["window.length"] == length) & (stored["mixture.components"] == components)
+                self.assertAlmostEqual(cells[b][a], float(stored["bank_test_log_score"][here].mean()), places=10)
+        front = session.browser.run("return document.querySelector('#pareto div.plot')._fullData[1].customdata")
+        beaten = lambda i: any((stored["modes"][j] <= stored["modes"][i]) and (stored["bank_test_log_score"][j] > stored["bank_test_log_score"][i]) for j in range(len(stored)))
+        for i in front:
+            self.assertFalse(beaten(i))
+
+    def test_samples_outside_over_the_number_of_components(self):
+        self.open(self.page())
+        session.browser.draw_all()
+        stored = self.stored()
+        shown = session.browser.run("return Object.fromEntries(document.querySelector('#coverage div.plot').data.map((t) => [t.meta, t.y]))")
+        for role in ("train", "test"):
+            for side, sign in (("above", 1), ("below", -1)):
+                wanted = [stored[f"{name}_{role}_nis_{side}"].mean() for name in ("baseline", "noise_only")]
+                wanted += [stored[f"bank_{role}_nis_{side}"][stored["mixture.components"] == k].mean() for k in (1, 2, 3)]
+                for value, mean in zip(shown[f"{role} {side}"], wanted):
+                    self.assertAlmostEqual(value, sign * 100 * mean, places=9)
+
+    def test_a_run_is_a_click_away(self):
+        self.open(self.page())
+        session.browser.draw_all()
+        session.browser.run("document.getElementById('show-best').click()")
+        detail = session.browser.run("return document.getElementById('run-detail').textContent")
+        stored = self.stored()
+        best = stored[stored["bank_test_log_score"].argmax()]
+        self.assertIn(best["key"].decode(), detail)
+        self.assertIn("mixture.components", detail)
+        link = session.browser.run("return document.getElementById('run-page').href")
+        session.browser.driver.get(link)
+        session.browser.wait("return document.documentElement.dataset.ready === 'true'", what="the best run's page")
+        shown = session.browser.run("return JSON.parse(document.querySelector('#verdict .numbers .big span').dataset.value)")
+        self.assertEqual(shown, best["bank_test_log_score"])
+        self.open(self.page())
+        session.browser.run("document.querySelector('#study-table tbody tr').click()")
+        self.assertIn(stored[0]["key"].decode(), session.browser.run("return document.getElementById('run-detail').textContent"))
+        self.assert_quiet()
