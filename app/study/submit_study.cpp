@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <sstream>
 
 #include "app/study/slurm.hpp"
 #include "app/study/trial_order.hpp"
@@ -31,6 +33,11 @@ std::vector<int> unfinished_shards(const TrialGroups& groups, int count, const S
     if (unfinished) shards.push_back(i);
   }
   return shards;
+}
+
+std::vector<std::string> words_of_line(const std::string& line) {
+  std::istringstream stream(line);
+  return {std::istream_iterator<std::string>(stream), {}};
 }
 
 }  // namespace
