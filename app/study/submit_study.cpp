@@ -51,7 +51,7 @@ std::string submit_study(const CommandLine& line, const Config& config, const St
   const SlurmSubmission submission =
       submit_to_slurm({fs::read_symlink("/proc/self/exe"), fs::absolute(line.files.front()),
                        fs::absolute(config.study.output).lexically_normal(), config.data.root, line.overrides, count,
-                       tasks, config.study.slurm_options});
+                       tasks, words_of_line(config.study.slurm_options)});
   std::string text;
   for (const std::string& command : submission.commands) text += command + "\n";
   return text + fmt::format(
