@@ -34,8 +34,8 @@ struct StudyConfig {
   StudyStage stage = StudyStage::all;
   std::int64_t shard_index = 0, shard_count = 1;
   bool flat = false;
-  std::int64_t slurm_tasks = 0;            ///< 0: by the number of runs
-  std::vector<std::string> slurm_options;  ///< of sbatch
+  std::int64_t slurm_tasks = 0;  ///< 0: by the number of runs
+  std::string slurm_options;     ///< of sbatch, separated by spaces
 };
 
 }  // namespace modebank::app

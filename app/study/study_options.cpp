@@ -95,8 +95,8 @@ std::vector<Option> work_options() {
       numeric("study.slurm_tasks", between(0, 1'000'000), "",
               "submit: tasks of the job array, each a share of the runs; 0: one per ten runs, at most 100",
               MODEBANK_FIELD(study.slurm_tasks)),
-      text("study.slurm_options", "options by commas",
-           "submit: further options of sbatch, such as --partition=main, --time=60, --cpus-per-task=4",
+      text("study.slurm_options", "options of sbatch",
+           "submit: separated by spaces, such as --partition=main --time=60 --cpus-per-task=4",
            MODEBANK_FIELD(study.slurm_options)),
   };
 }

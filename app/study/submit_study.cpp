@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <sstream>
 
 #include "app/study/slurm.hpp"
 #include "app/study/trial_order.hpp"
@@ -33,6 +35,11 @@ std::vector<int> unfinished_shards(const TrialGroups& groups, int count, const S
   return shards;
 }
 
+std::vector<std::string> words_of_line(const std::string& line) {
+  std::istringstream stream(line);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
 }  // namespace
 
 std::string submit_study(const CommandLine& line, const Config& config, const StudyPlan& plan,
@@ -44,7 +51,7 @@ std::string submit_study(const CommandLine& line, const Config& config, const St
   const SlurmSubmission submission =
       submit_to_slurm({fs::read_symlink("/proc/self/exe"), fs::absolute(line.files.front()),
                        fs::absolute(config.study.output).lexically_normal(), config.data.root, line.overrides, count,
-                       tasks, config.study.slurm_options});
+                       tasks, words_of_line(config.study.slurm_options)});
   std::string text;
   for (const std::string& command : submission.commands) text += command + "\n";
   return text + fmt::format(

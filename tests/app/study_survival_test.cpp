@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 
+#include "io/inspect.hpp"
 #include "tests/app/study_fixture.hpp"
 
 namespace modebank::test {
@@ -166,6 +168,25 @@ TEST_F(StudySurvival, TwoProcessesShareOneStudy) {
   EXPECT_EQ(second_status, 0);
   EXPECT_EQ(replaced, 0) << "archives done twice";
   EXPECT_EQ(numbers("shared"), numbers(undisturbed));
+}
+
+/// study.best.ini is a configuration as it stands: run gives the score that the study names.
+TEST_F(StudySurvival, BestConfigurationGivesItsScoreAgain) {
+  run_undisturbed();
+  nlohmann::json best;
+  for (const nlohmann::json& row : inspect(file(undisturbed) / "study.h5", "/answers/best").at("value"))
+    if (row.at("score") == "bank_test_log_score") best = row;
+  ASSERT_FALSE(best.is_null());
+  const std::string config_file = (file(undisturbed) / "study.best.ini").string();
+  const ProgramResult result = modebank({"run", config_file, "--archive.output", archive()});
+  ASSERT_EQ(result.status, 0) << result.err;
+  int found = 0;
+  for (const nlohmann::json& row : inspect(archive(), "/evaluation/summary").at("value"))
+    if (row.at("filter") == "bank" && row.at("run") == "*" && row.at("role") == "test") {
+      EXPECT_EQ(row.at("log_score"), best.at("value"));
+      ++found;
+    }
+  EXPECT_EQ(found, 1);
 }
 
 }  // namespace
