@@ -94,8 +94,8 @@ Handle without_times() {
 /// A contiguous dataset without time stamps.
 Handle create_dataset(hid_t parent, const std::string& name, hid_t file_type, const Handle& space) {
   // Made once: an archive has a thousand datasets. It stays until HDF5 itself ends, which may be before our statics do.
-  static const hid_t creation = (new Handle(without_times()))->id();
-  return {H5Dcreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose,
+  static const Handle& creation = *new Handle(without_times());
+  return {H5Dcreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose,
           "create " + quoted(Place::dataset, name)};
 }
 

@@ -9,6 +9,7 @@
 #include "io/archive_writer.hpp"
 #include "io/hdf5_table.hpp"
 #include "io/replace_file.hpp"
+#include "io/sha256.hpp"
 #include "io/user_block.hpp"
 
 namespace modebank {
@@ -103,22 +104,39 @@ std::vector<NamedColumn> read_columns(const hdf5::StoredArray& table) {
 
 }  // namespace
 
-void write_study_file(const std::filesystem::path& path, const StudyFile& study, ArchiveUse use) {
-  const hdf5::Quiet quiet;
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+namespace {
+
+/// Made in memory, where a full disk cannot break off HDF5's work.
+void write_linked(const std::filesystem::path& path, const StudyFile& study) {
+  const ArchiveImage image;
+  write_table_of_runs(image.file(), study);
+  link_archives(image.file(), study, std::filesystem::absolute(path).parent_path());
+  const std::string_view content = image.content();
+  const UserBlock block = make_user_block(sha256_hex(content));
+  replace_file(path, {std::string_view(block.data(), block.size()), content});
+}
+
+/// Made in the file system: all archives together may be larger than memory.
+void write_copied(const std::filesystem::path& path, const StudyFile& study) {
   replace_file(path, [&](const std::filesystem::path& temporary) {
     {
       const hdf5::Handle file = create_archive_file(temporary);
       write_table_of_runs(file, study);
-      if (use == ArchiveUse::link) {
-        link_archives(file, study, folder);
-      } else {
-        copy_archives(file, study);
-      }
+      copy_archives(file, study);
       hdf5::check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "complete the file");
     }
     stamp_hash(temporary);
   });
+}
+
+}  // namespace
+
+void write_study_file(const std::filesystem::path& path, const StudyFile& study, ArchiveUse use) {
+  const hdf5::Quiet quiet;
+  if (use == ArchiveUse::link)
+    write_linked(path, study);
+  else
+    write_copied(path, study);
 }
 
 StudyFile read_study_file(const std::filesystem::path& path, const std::string& table) {

@@ -30,7 +30,7 @@ StudyPlan settle_plan(const StudyCommand& command) {
   StudyPlan plan = make_plan(command.config, make_provenance(command.config, command.line));
   command.store.create();
   const FileLocks locks(command.store.lock_file());
-  const FileLocks::Hold alone = locks.lock("plan");
+  const FileLocks::Hold alone = locks.lock(plan_lock);
   if (std::filesystem::exists(plan_file(command.store.folder()))) {
     const StudyPlan before = read_plan(command.store.folder());
     check_plan_goes_on(before, plan, command.store.folder());
@@ -93,7 +93,7 @@ void require_plan(const StudyCommand& command) {
 int merge(const StudyCommand& command, const std::set<std::string>& whole) {
   require_plan(command);
   const FileLocks locks(command.store.lock_file());
-  const FileLocks::Hold alone = locks.lock("plan");
+  const FileLocks::Hold alone = locks.lock(plan_lock);
   const StudyPlan plan = read_plan(command.store.folder());  // another process may have added values
   check_plan_is_of(plan, command.config, command.store.folder());
   const StudyTable table = collect_table(command.store, plan, whole);

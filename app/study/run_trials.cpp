@@ -62,6 +62,7 @@ class TrialQueue {
   void split_largest(Rows& own) {
     Rows& largest =
         *std::max_element(own_.begin(), own_.end(), [](const Rows& a, const Rows& b) { return a.size() < b.size(); });
+    if (largest.empty()) return;
     const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);
     own.assign(middle, largest.end());
     largest.erase(middle, largest.end());

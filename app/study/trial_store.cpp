@@ -54,14 +54,15 @@ void TrialStore::forget_failure(const std::string& key) const {
 }
 
 void TrialStore::remove_leftovers(const FileLocks& locks) const {
-  for (const fs::path& part : {folder_ / "trials", cache()})
+  for (const fs::path& part : {folder_, folder_ / "trials", cache()})
     for (const fs::directory_entry& entry : fs::directory_iterator(part)) {
       // .<name>.h5.<process>-<number>.tmp, as io/replace_file.cpp makes it
       const std::string file = entry.path().filename().string();
       const auto dot = file.find('.', 1);
       if (entry.path().extension() != ".tmp" || file.front() != '.' || dot == std::string::npos) continue;
       std::error_code ignored;
-      if (const FileLocks::Hold free = locks.try_lock(file.substr(1, dot - 1)); free) fs::remove(entry.path(), ignored);
+      const std::string lock = part == folder_ ? plan_lock : file.substr(1, dot - 1);
+      if (const FileLocks::Hold free = locks.try_lock(lock); free) fs::remove(entry.path(), ignored);
     }
 }
 

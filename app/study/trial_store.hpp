@@ -10,6 +10,10 @@
 
 namespace modebank::app {
 
+/// Held by who writes plan.h5, study.h5 or study.csv. Trials are locked by their keys, cached stages by their files'
+/// names.
+inline constexpr const char* plan_lock = "plan";
+
 /// Why a trial failed, and when.
 struct FailureRecord {
   std::string message;

@@ -175,8 +175,10 @@ TEST_F(StudyCommands, DamageIsFoundNamedAndRepaired) {
   modebank({"verify", file("s").string(), "--repair"});
   EXPECT_EQ(trials().size(), 4u);
   flip(trials()[0], 3000);  // resuming finds damage by itself
+  write("s/.study.h5.1-0.tmp", "half");
   ASSERT_EQ(study_six().status, 0);
   EXPECT_EQ(text("s/study.csv"), table);
+  EXPECT_FALSE(std::filesystem::exists(file("s/.study.h5.1-0.tmp")));
   EXPECT_EQ(modebank({"verify", file("s").string()}).status, 0);
 }
 
