@@ -174,14 +174,16 @@ TEST_F(StudySurvival, TwoProcessesShareOneStudy) {
 TEST_F(StudySurvival, BestConfigurationGivesItsScoreAgain) {
   run_undisturbed();
   nlohmann::json best;
-  for (const nlohmann::json& row : inspect(file(undisturbed) / "study.h5", "/answers/best").at("value"))
+  const nlohmann::json answers = inspect(file(undisturbed) / "study.h5", "/answers/best");
+  for (const nlohmann::json& row : answers.at("value"))
     if (row.at("score") == "bank_test_log_score") best = row;
   ASSERT_FALSE(best.is_null());
   const std::string config_file = (file(undisturbed) / "study.best.ini").string();
   const ProgramResult result = modebank({"run", config_file, "--archive.output", archive()});
   ASSERT_EQ(result.status, 0) << result.err;
   int found = 0;
-  for (const nlohmann::json& row : inspect(archive(), "/evaluation/summary").at("value"))
+  const nlohmann::json summary = inspect(archive(), "/evaluation/summary");
+  for (const nlohmann::json& row : summary.at("value"))
     if (row.at("filter") == "bank" && row.at("run") == "*" && row.at("role") == "test") {
       EXPECT_EQ(row.at("log_score"), best.at("value"));
       ++found;
