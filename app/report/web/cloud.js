@@ -94,10 +94,19 @@ export async function cloud(windows, runs, goTo) {
       .map((group) => ({ k: group.k, mean: axes.map((a) => group.mean[position(a)]), covariance: sub(group.covariance, axes.map(position)) }));
   }
 
+  // How far a group reaches over the axes: wide ones are drawn first, or they would hide the narrow ones.
+  function reach(list, axes) {
+    const some = list.filter((_, j) => j % Math.max(1, Math.floor(list.length / 300)) === 0);
+    return axes.reduce((product, a) => {
+      const mean = some.reduce((sum, i) => sum + values[a][i], 0) / some.length;
+      return product * some.reduce((sum, i) => sum + Math.abs(values[a][i] - mean), 0) / some.length;
+    }, 1);
+  }
   function points(axes, type) {
-    return groups().filter(([key]) => !state.hidden.has(key)).map(([key, list]) => {
+    const order = groups().filter(([key]) => !state.hidden.has(key)).map(([key, list]) => [key, list, key < 0 ? Infinity : reach(list, axes)]).sort((a, b) => b[2] - a[2]);
+    return order.map(([key, list]) => {
       const trace = { type, mode: 'markers', name: groupName(key), customdata: list, hoverinfo: 'none',
-        marker: { size: type === 'scatter3d' ? 2.2 : 4, color: groupColour(key), opacity: key < 0 ? 0.3 : run.length > 20000 ? 0.35 : 0.65, line: { width: 0 } } };
+        marker: { size: type === 'scatter3d' ? 2.2 : run.length > 20000 ? 2.5 : 4, color: groupColour(key), opacity: key < 0 ? 0.3 : run.length > 20000 ? 0.35 : 0.65, line: { width: 0 } } };
       axes.forEach((a, j) => { trace['xyz'[j]] = Float32Array.from(list, (i) => values[a][i]); });
       return trace;
     });

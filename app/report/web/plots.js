@@ -47,6 +47,9 @@ function themed(layout) {
   return result;
 }
 
+// Figures are drawn one after the other, so that the first is seen before a large one begins.
+let turn = Promise.resolve();
+
 // A figure: `make` returns {traces, layout} and is called again when the theme changes. `label` is what a screen reader
 // says. Returns the element; element.redraw() calls `make` anew and keeps zoom (layout.uirevision).
 export function figure(label, make, caption) {
@@ -69,9 +72,10 @@ export function figure(label, make, caption) {
       if (drawn !== null) return;
       drawn = false;
       watcher.disconnect();
-      element.redraw().then(resolve, (error) => { plot.dataset.failed = 'true'; reject(error); });
+      turn = turn.then(() => element.redraw()).then(resolve, (error) => { plot.dataset.failed = 'true'; reject(error); })
+        .then(() => new Promise((shown) => setTimeout(shown, 0)));
     };
-    const watcher = new IntersectionObserver((entries) => { if (entries.some((entry) => entry.isIntersecting)) begin(); }, { rootMargin: '600px' });
+    const watcher = new IntersectionObserver((entries) => { if (entries.some((entry) => entry.isIntersecting)) begin(); }, { rootMargin: '300px' });
     plot.style.minHeight = '200px';
     watcher.observe(plot);
     element.begin = begin;
