@@ -154,8 +154,9 @@ void identify_stage(const Config& config, Archive& archive) {
   const Stopwatch watch;
   archive.windows = fit_windows(*archive.recording, window_options(config));
   spdlog::info("windows: {} fitted in {:.2f} s", archive.windows->count(), watch.seconds());
-  if (const std::string warning = audit_warning(*archive.windows); !warning.empty())
-    spdlog::warn("windows: {}", warning);
+  WindowCounts counts;
+  counts.add(*archive.windows);
+  for (const std::string& warning : window_warnings(*archive.windows, counts)) spdlog::warn("windows: {}", warning);
 }
 
 bool streams_windows(const Config& config, const Archive& archive) {
@@ -176,7 +177,7 @@ std::string identify_into_file(const Config& config, const Archive& archive) {
   const Index windows = count_windows(*archive.recording, config.window);
   const WindowFits common = write_archive(config.archive.output, archive, windows, produce);
   spdlog::info("windows: {} fitted and archived in {:.2f} s", windows, watch.seconds());
-  if (const std::string warning = audit_warning(common); !warning.empty()) spdlog::warn("windows: {}", warning);
+  for (const std::string& warning : window_warnings(common, counts)) spdlog::warn("windows: {}", warning);
   return data_text(*archive.recording) + windows_text(common, counts);
 }
 

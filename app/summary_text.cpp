@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "app/judged_runs.hpp"
 #include "app/lag_text.hpp"
@@ -164,23 +163,28 @@ std::string audit_text(const WindowAudit& audit) {
 
 }  // namespace
 
-std::string audit_warning(const WindowFits& fits) {
-  if (fits.audit.replaced == 0) return "";
-  return fmt::format(
-      "the batch solver's cost was above Ceres' by more than {:.0e} relative in {} of {} audited windows, which have "
-      "Ceres' solution "
-      "now; window.solver = ceres solves all of them so",
-      WindowAudit::tolerance, fits.audit.replaced, fits.audit.checked);
+std::vector<std::string> window_warnings(const WindowFits& fits, const WindowCounts& counts) {
+  std::vector<std::string> warnings;
+  if (fits.audit.replaced > 0)
+    warnings.push_back(fmt::format(
+        "the batch solver's cost was above Ceres' by more than {:.0e} relative in {} of {} audited windows, which have "
+        "Ceres' solution now; window.solver = ceres solves all of them so",
+        WindowAudit::tolerance, fits.audit.replaced, fits.audit.checked));
+  if (const Index failed = counts.of(FitStatus::failed); failed > 0)
+    warnings.push_back(
+        fmt::format("{} of {} windows have no finite fit and are left out: their samples may hold values too large to "
+                    "square; see `modebank check`",
+                    failed, counts.total()));
+  return warnings;
 }
 
 std::string windows_text(const WindowFits& fits, const WindowCounts& counts) {
-  const auto count = [&](FitStatus status) { return counts.status[static_cast<std::size_t>(status)]; };
   std::string text = fmt::format(
       "windows   {} of {} transitions: {} converged, {} rank deficient, {} at the iteration limit, {} failed\n",
-      std::accumulate(counts.status.begin(), counts.status.end(), Index{0}), fits.length, count(FitStatus::converged),
-      count(FitStatus::rank_deficient), count(FitStatus::iteration_limit), count(FitStatus::failed));
+      counts.total(), fits.length, counts.of(FitStatus::converged), counts.of(FitStatus::rank_deficient),
+      counts.of(FitStatus::iteration_limit), counts.of(FitStatus::failed));
   text += audit_text(fits.audit);
-  if (const std::string warning = audit_warning(fits); !warning.empty()) text += "warning   " + warning + "\n";
+  for (const std::string& warning : window_warnings(fits, counts)) text += "warning   " + warning + "\n";
   const auto names = fits.parameter_names();
   text += "global   ";
   for (std::size_t i = 0; i < names.size(); ++i) {

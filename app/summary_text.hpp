@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "io/archive.hpp"
 
@@ -11,14 +13,16 @@ namespace modebank::app {
 struct WindowCounts {
   std::array<Index, 4> status{};  ///< by FitStatus
   void add(const WindowFits& fits);
+  Index of(FitStatus which) const { return status[static_cast<std::size_t>(which)]; }
+  Index total() const { return std::accumulate(status.begin(), status.end(), Index{0}); }
 };
 
 /// What the summary says of windows: how many, how they ended, the global model, and the batch solver's audit.
 std::string windows_text(const WindowFits& common, const WindowCounts& counts);
 std::string data_text(const Recording& recording);
 
-/// Empty, or what the audit found above tolerance.
-std::string audit_warning(const WindowFits& fits);
+/// What of the windows needs a look: solutions that the audit replaced, windows without a finite fit.
+std::vector<std::string> window_warnings(const WindowFits& fits, const WindowCounts& counts);
 
 /// The summary of an archive as people read it: data, windows, mixture, bank, scores and what the bank gains. Lines
 /// longer than `width` columns are broken; 0: none.

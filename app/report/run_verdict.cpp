@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "app/judged_runs.hpp"
 #include "app/report/numbers.hpp"
 #include "app/report/run_sections.hpp"
 #include "app/report/unit_text.hpp"
@@ -8,12 +9,6 @@ namespace modebank::app::report {
 namespace {
 
 using nlohmann::json;
-
-const SummaryRow* pooled(const Archive& archive, const std::string& filter, Role role) {
-  for (const SummaryRow& row : archive.summary)
-    if (row.filter == filter && row.role == role && row.run == "*") return &row;
-  return nullptr;
-}
 
 const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filter, Role role) {
   for (const DiagnosticsRow& row : archive.diagnostics)
@@ -26,7 +21,7 @@ json decisive(const Archive& archive, Role role, const std::string& name, const 
               const std::string& better, json (*of)(const SummaryRow&)) {
   json values = json::object();
   for (const char* filter : {"bank", "baseline", "noise_only"})
-    if (const SummaryRow* row = pooled(archive, filter, role)) values[filter] = of(*row);
+    if (const SummaryRow* row = pooled_row(archive, filter, role)) values[filter] = of(*row);
   return {{"name", name}, {"unit", unit}, {"better", better}, {"values", values}};
 }
 
@@ -46,12 +41,12 @@ std::string calibration_words(const DiagnosticsRow& row) {
 
 /// The finding in one sentence, from the archive's own verdict.
 json sentence(const Archive& archive, Role role) {
-  const SummaryRow* bank = pooled(archive, "bank", role);
-  const SummaryRow* baseline = pooled(archive, "baseline", role);
-  const SummaryRow* noise_only = pooled(archive, "noise_only", role);
+  const SummaryRow* bank = pooled_row(archive, "bank", role);
+  const SummaryRow* baseline = pooled_row(archive, "baseline", role);
+  const SummaryRow* noise_only = pooled_row(archive, "noise_only", role);
   if (!bank) return {{"text", "No bank was scored, so there is nothing to judge yet."}, {"good", nullptr}};
-  std::string text = fmt::format("On {} runs the bank of {} modes", role == Role::test ? "held-out" : "training",
-                                 archive.bank ? archive.bank->mode_count() : 0);
+  std::string text =
+      fmt::format("On {} runs the bank of {} modes", words_for(role), archive.bank ? archive.bank->mode_count() : 0);
   bool good = role == Role::test;
   if (baseline) {
     const double gain = bank->log_score - baseline->log_score;
@@ -76,7 +71,7 @@ json sentence(const Archive& archive, Role role) {
 }  // namespace
 
 nlohmann::json verdict_section(const Archive& archive) {
-  const Role role = pooled(archive, "bank", Role::test) ? Role::test : Role::train;
+  const Role role = judged_role(archive);
   json section = sentence(archive, role);
   section["role"] = name_of(role);
   section["numbers"] = {

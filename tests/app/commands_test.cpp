@@ -75,6 +75,18 @@ TEST_F(Commands, SampleWeightsComeFromAColumn) {
   EXPECT_NE(negative.err.find("run_00.csv:"), std::string::npos) << negative.err;
 }
 
+TEST_F(Commands, WindowsWithoutAFiniteFitAreAWarning) {
+  std::string text = csv_run(60, 1);
+  const std::size_t row = text.find("\n", text.size() / 2) + 1;
+  const std::size_t state = text.find(',', row) + 1;
+  text.replace(state, text.find(',', state) - state, "1e200");
+  write("run_00.csv", text);
+  const ProgramResult result = modebank({"identify", config(), "--archive.output", archive()});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("windows have no finite fit"), std::string::npos) << result.err;
+  EXPECT_NE(result.out.find("windows have no finite fit"), std::string::npos) << result.out;
+}
+
 TEST_F(Commands, NumbersAreTheSameForAnyThreadCount) {
   ASSERT_EQ(run({"--job.threads", "1"}).status, 0);
   const std::string one = all_stages(archive());
