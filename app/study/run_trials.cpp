@@ -2,6 +2,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -73,15 +74,17 @@ class TrialQueue {
   Rows held_;
 };
 
-/// One line per trial and execution: what the estimates of time are made from. Losing a line loses nothing else.
+/// One line per trial and execution: when, host, process, key, outcome, seconds, those of each stage (0: there
+/// already), message. The estimates of time are made from it (study_estimate.cpp). Losing a line loses nothing else.
 void log_trial(const TrialStore& store, const TrialRow& row, const TrialReport& report) {
   static constexpr std::array<const char*, 5> words{"held", "present", "done", "failed", "stopped"};
   char host[256] = "";
   ::gethostname(host, sizeof host - 1);
   std::ofstream file(store.log(), std::ios::app);
-  const std::string line = fmt::format(
-      "{:%Y-%m-%dT%H:%M:%SZ},{},{},{},{},{:.6g},{}\n", fmt::gmtime(std::time(nullptr)), csv_field(host), ::getpid(),
-      row.key, words[static_cast<std::size_t>(report.outcome)], report.seconds, csv_field(report.message));
+  const std::string line =
+      fmt::format("{:%Y-%m-%dT%H:%M:%SZ},{},{},{},{},{:.6g},{:.6g},{}\n", fmt::gmtime(std::time(nullptr)),
+                  csv_field(host), ::getpid(), row.key, words[static_cast<std::size_t>(report.outcome)], report.seconds,
+                  fmt::join(report.stage_seconds, ","), csv_field(report.message));
   file.write(line.data(), static_cast<std::streamsize>(line.size()));
 }
 
@@ -91,11 +94,12 @@ std::size_t threads_per_trial(const Config& study) {
   return std::max<std::size_t>(1, study.job.thread_count() / job_count(study.study));
 }
 
-WorkerPool::Work make_work(const WorkerSettings& settings, const std::vector<TrialRow>& rows) {
+WorkerPool::Work make_work(const WorkerSettings& settings, const std::vector<TrialRow>& rows,
+                           const WorkerPool::TellWaiting& tell_waiting) {
   spdlog::set_level(spdlog::level::off);  // a thousand trials would each say the same
   const auto limit = std::make_shared<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                            threads_per_trial(settings.config));
-  const auto worker = std::make_shared<TrialWorker>(settings);
+  const auto worker = std::make_shared<TrialWorker>(settings, tell_waiting);
   return [limit, worker, &rows](std::size_t row) { return worker->take(rows[row]); };
 }
 
@@ -109,7 +113,8 @@ class StudyRun {
         listener_(listener),
         all_(count(groups)),
         pool_(std::min(job_count(settings.config.study), std::max<std::size_t>(all_, 1)),
-              settings.config.study.timeout_s, [this] { return make_work(settings_, rows_); }),
+              settings.config.study.timeout_s,
+              [this](const auto& tell_waiting) { return make_work(settings_, rows_, tell_waiting); }),
         queue_(groups, pool_.size()) {}
 
   RunResult run() {

@@ -12,8 +12,16 @@ namespace modebank::app {
 
 namespace fs = std::filesystem;
 
-StageCache::StageCache(fs::path folder, double limit_mb, const FileLocks& locks)
-    : folder_(std::move(folder)), limit_bytes_(limit_mb * 1e6), locks_(locks) {}
+StageCache::StageCache(fs::path folder, double limit_mb, const FileLocks& locks, std::function<void(bool)> tell_waiting)
+    : folder_(std::move(folder)), limit_bytes_(limit_mb * 1e6), locks_(locks), tell_waiting_(std::move(tell_waiting)) {}
+
+FileLocks::Hold StageCache::wait_for(const std::string& stem) const {
+  if (FileLocks::Hold free = locks_.try_lock(stem)) return free;
+  if (tell_waiting_) tell_waiting_(true);
+  FileLocks::Hold alone = locks_.lock(stem);
+  if (tell_waiting_) tell_waiting_(false);
+  return alone;
+}
 
 void StageCache::provide(const std::string& name, const std::string& inputs, const std::function<void(Archive&&)>& take,
                          const std::function<bool()>& compute, const std::function<Archive()>& part) const {
@@ -23,7 +31,7 @@ void StageCache::provide(const std::string& name, const std::string& inputs, con
     compute();
     return;
   }
-  const FileLocks::Hold alone = locks_.lock(stem);
+  const FileLocks::Hold alone = wait_for(stem);
   if (load(file, take)) return;
   if (compute()) store(file, part());
 }

@@ -13,7 +13,9 @@ namespace modebank::app {
 /// size: the files used longest ago go first.
 class StageCache {
  public:
-  StageCache(std::filesystem::path folder, double limit_mb, const FileLocks& locks);
+  /// `tell_waiting` hears when this process begins (true) and ceases to wait for a stage that another one computes.
+  StageCache(std::filesystem::path folder, double limit_mb, const FileLocks& locks,
+             std::function<void(bool)> tell_waiting = {});
 
   /// The stage of this name whose inputs are given: from a file, or by `compute`, which is called by one process at a
   /// time. It says whether its result is worth a file, and is then asked for it by `part`.
@@ -21,6 +23,7 @@ class StageCache {
                const std::function<bool()>& compute, const std::function<Archive()>& part) const;
 
  private:
+  FileLocks::Hold wait_for(const std::string& stem) const;
   bool load(const std::filesystem::path& file, const std::function<void(Archive&&)>& take) const;
   void store(const std::filesystem::path& file, const Archive& part) const;
   void make_room() const;
@@ -28,6 +31,7 @@ class StageCache {
   std::filesystem::path folder_;
   double limit_bytes_;
   const FileLocks& locks_;
+  std::function<void(bool)> tell_waiting_;
 };
 
 }  // namespace modebank::app

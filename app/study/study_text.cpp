@@ -48,6 +48,7 @@ std::string plan_text(const StudyPlan& plan, const DistinctStages& distinct, std
 
 std::string estimate_text(const StudyEstimate& estimate, const TrialStore& store, std::size_t jobs) {
   if (estimate.left == 0) return "estimate  nothing is left to run\n";
+  if (!estimate.known) return fmt::format("estimate  {} runs left: {}\n", estimate.left, estimate.basis);
   std::string text = fmt::format("estimate  {} runs left: {} with {} at a time, {} ({})\n", estimate.left,
                                  duration_text(estimate.seconds), jobs, bytes_text(estimate.bytes), estimate.basis);
   std::error_code unknown;

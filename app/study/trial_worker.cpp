@@ -21,10 +21,10 @@ double headline_score(const std::vector<std::pair<std::string, double>>& scores)
 
 }  // namespace
 
-TrialWorker::TrialWorker(const WorkerSettings& settings)
+TrialWorker::TrialWorker(const WorkerSettings& settings, std::function<void(bool)> tell_waiting)
     : settings_(settings),
       locks_(settings.store.lock_file()),
-      cache_(settings.store.cache(), settings.config.study.cache_mb, locks_),
+      cache_(settings.store.cache(), settings.config.study.cache_mb, locks_, std::move(tell_waiting)),
       runner_(&cache_) {}
 
 std::optional<TrialReport> TrialWorker::settled(const TrialRow& row, std::string& found) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -39,7 +40,8 @@ struct WorkerSettings {
 /// A process's part of a study: takes trials by their rows and leaves archives or records of failure.
 class TrialWorker {
  public:
-  explicit TrialWorker(const WorkerSettings& settings);
+  /// `tell_waiting`: see StageCache.
+  explicit TrialWorker(const WorkerSettings& settings, std::function<void(bool)> tell_waiting = {});
   TrialReport take(const TrialRow& row);
 
  private:

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <map>
 #include <optional>
+#include <set>
 
 namespace modebank::app {
 namespace {
@@ -34,6 +35,16 @@ std::vector<ValueGroup> ranges_of(const std::vector<ValueGroup>& groups) {
   return ranges;
 }
 
+/// Whether values come with hardly more than one setting each though other keys vary, too: what is then one value's is
+/// as well the others'.
+bool are_thin(const StudyTable& table, const std::vector<ValueGroup>& groups) {
+  if (table.varied_keys.size() < 2 || groups.size() <= value_range_count) return false;
+  std::set<std::vector<std::string>> settings;
+  for (const ValueGroup& group : groups)
+    for (const std::size_t row : group.rows) settings.insert(table.rows[row].varied);
+  return settings.size() < 2 * groups.size();
+}
+
 }  // namespace
 
 std::vector<ValueGroup> value_groups(const StudyTable& table, std::size_t key) {
@@ -48,7 +59,7 @@ std::vector<ValueGroup> value_groups(const StudyTable& table, std::size_t key) {
   }
   const bool numbers = std::all_of(groups.begin(), groups.end(),
                                    [](const ValueGroup& group) { return as_number(group.label).has_value(); });
-  return numbers && groups.size() > value_group_limit ? ranges_of(groups) : groups;
+  return numbers && (groups.size() > value_group_limit || are_thin(table, groups)) ? ranges_of(groups) : groups;
 }
 
 }  // namespace modebank::app

@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 /// What is wrong with the archive of a planned trial; empty when nothing is.
 std::string trial_problem(const TrialStore& store, const Config& study, const StudyTable& table, const TrialRow& row) {
   try {
-    if (const auto problems = store.problems(row.key); !problems.empty()) return problems.front();
+    if (const auto problems = verify_archive(store.archive(row.key)).problems; !problems.empty())
+      return problems.front();
     const TrialScores stored = read_trial_scores(store.archive(row.key));
     const Config trial = trial_config(study, table.varied_keys, row);
     if (stored.config_hash != config_hash(trial)) return "its configuration is not that of its name";

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 #include "ident/error.hpp"
 
@@ -26,6 +27,7 @@ struct ReportHead {
 };
 
 constexpr std::size_t longest_message = 4096;
+constexpr char starts_waiting = 'w', goes_on = 'g';  // packets of one byte, before the report
 
 std::string pack_report(const TrialReport& report) {
   const ReportHead head{static_cast<int>(report.outcome), report.seconds, report.log_score, report.stage_seconds};
@@ -50,10 +52,13 @@ ssize_t receive(int channel, void* data, std::size_t bytes) {
 }
 
 /// The life of a worker: trials in, reports out, until the parent closes its end.
-[[noreturn]] void serve(int channel, const std::function<WorkerPool::Work()>& make_work) {
+[[noreturn]] void serve(int channel, const WorkerPool::MakeWork& make_work) {
   int status = 0;
   try {
-    const WorkerPool::Work work = make_work();
+    const WorkerPool::Work work = make_work([channel](bool waiting) {
+      const char word = waiting ? starts_waiting : goes_on;
+      static_cast<void>(::send(channel, &word, sizeof word, MSG_NOSIGNAL));
+    });
     std::size_t trial = 0;
     while (receive(channel, &trial, sizeof trial) == sizeof trial) {
       const std::string packet = pack_report(work(trial));
@@ -75,7 +80,7 @@ std::string how_it_ended(int status) {
 
 }  // namespace
 
-WorkerPool::WorkerPool(std::size_t workers, double timeout_s, std::function<Work()> make_work)
+WorkerPool::WorkerPool(std::size_t workers, double timeout_s, MakeWork make_work)
     : timeout_s_(timeout_s), make_work_(std::move(make_work)), workers_(workers) {}
 
 WorkerPool::~WorkerPool() {
@@ -104,7 +109,7 @@ void WorkerPool::start(Worker& worker) {
     serve(channels[1], make_work_);
   }
   ::close(channels[1]);
-  worker = {child, channels[0], {}, {}};
+  worker = {child, channels[0], {}, {}, {}};
 }
 
 std::string WorkerPool::end(Worker& worker, bool by_force) {
@@ -121,28 +126,37 @@ void WorkerPool::give(std::size_t index, std::size_t trial) {
   if (worker.process < 0) start(worker);
   worker.trial = trial;
   worker.since = Clock::now();
+  worker.waiting_from.reset();
   // A worker that is gone shows when its answer is awaited.
   static_cast<void>(::send(worker.channel, &trial, sizeof trial, MSG_NOSIGNAL));
 }
 
-WorkerPool::Finished WorkerPool::collect(std::size_t index) {
+std::optional<WorkerPool::Finished> WorkerPool::collect(std::size_t index) {
   Worker& worker = workers_[index];
   const std::size_t trial = *worker.trial;
   std::string packet(sizeof(ReportHead) + longest_message, '\0');
   const ssize_t received = receive(worker.channel, packet.data(), packet.size());
+  if (received == 1) {
+    if (packet[0] == starts_waiting)
+      worker.waiting_from = Clock::now();
+    else if (worker.waiting_from)
+      worker.since += Clock::now() - *std::exchange(worker.waiting_from, std::nullopt);
+    return std::nullopt;
+  }
   if (received < static_cast<ssize_t>(sizeof(ReportHead))) {
     const std::string why = end(worker, false);
-    return {index, trial, {TrialOutcome::failed, why, 0.0, {}, 0.0}, true};
+    return Finished{index, trial, {TrialOutcome::failed, why, 0.0, {}, 0.0}, true};
   }
   worker.trial.reset();
   packet.resize(static_cast<std::size_t>(received));
-  return {index, trial, unpack_report(packet), false};
+  return Finished{index, trial, unpack_report(packet), false};
 }
 
 std::optional<std::size_t> WorkerPool::first_due() const {
   std::optional<std::size_t> first;
   for (std::size_t i = 0; i < workers_.size() && timeout_s_ > 0.0; ++i)
-    if (workers_[i].trial && (!first || workers_[i].since < workers_[*first].since)) first = i;
+    if (workers_[i].trial && !workers_[i].waiting_from && (!first || workers_[i].since < workers_[*first].since))
+      first = i;
   return first;
 }
 
@@ -177,7 +191,8 @@ std::optional<WorkerPool::Finished> WorkerPool::wait(double patience_s) {
     constexpr double ms_per_s = 1000.0;
     if (::poll(channels.data(), channels.size(), static_cast<int>(ms_per_s * left) + 1) <= 0) continue;
     for (std::size_t c = 0; c < channels.size(); ++c)
-      if (channels[c].revents != 0) return collect(owners[c]);
+      if (channels[c].revents != 0)
+        if (auto finished = collect(owners[c])) return finished;
   }
 }
 

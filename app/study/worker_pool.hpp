@@ -17,8 +17,12 @@ class WorkerPool {
  public:
   using Work = std::function<TrialReport(std::size_t trial)>;
 
+  /// To be called when a trial begins (true) and ceases to wait for what another process does: its time stands still.
+  using TellWaiting = std::function<void(bool)>;
+  using MakeWork = std::function<Work(const TellWaiting&)>;
+
   /// `make_work` is called in every new process. timeout_s 0: no limit. The calling process must have no threads yet.
-  WorkerPool(std::size_t workers, double timeout_s, std::function<Work()> make_work);
+  WorkerPool(std::size_t workers, double timeout_s, MakeWork make_work);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
@@ -43,18 +47,20 @@ class WorkerPool {
     int channel = -1;
     std::optional<std::size_t> trial;
     Clock::time_point since;
+    std::optional<Clock::time_point> waiting_from;
   };
 
   void start(Worker& worker);
   /// Ends and reaps the process; says how it ended.
   std::string end(Worker& worker, bool by_force);
-  Finished collect(std::size_t index);
+  /// What the worker says: nothing, when only that it waits or no longer does.
+  std::optional<Finished> collect(std::size_t index);
   /// The working worker whose time is up first; nothing without a limit.
   std::optional<std::size_t> first_due() const;
   Finished stop_overdue(std::size_t index);
 
   double timeout_s_;
-  std::function<Work()> make_work_;
+  MakeWork make_work_;
   std::vector<Worker> workers_;
 };
 

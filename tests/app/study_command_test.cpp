@@ -9,6 +9,7 @@
 #include "io/archive.hpp"
 #include "io/study_file.hpp"
 #include "tests/app/cli_fixture.hpp"
+#include "tests/io/archive_patch.hpp"
 
 namespace modebank::test {
 namespace {
@@ -180,6 +181,21 @@ TEST_F(StudyCommands, DamageIsFoundNamedAndRepaired) {
   EXPECT_EQ(text("s/study.csv"), table);
   EXPECT_FALSE(std::filesystem::exists(file("s/.study.h5.1-0.tmp")));
   EXPECT_EQ(modebank({"verify", file("s").string()}).status, 0);
+}
+
+TEST_F(StudyCommands, AnArchiveThatLacksAMemberIsFoundThoughItsHashIsRight) {
+  ASSERT_EQ(study({"--study.vary", "mixture.components = 2"}).status, 0);
+  remove_member(trials()[0], "bank/Q");
+  const ProgramResult found = modebank({"verify", file("s").string()});
+  EXPECT_EQ(found.status, 1) << found.out;
+  EXPECT_NE(found.out.find("bank/Q"), std::string::npos) << found.out;
+  EXPECT_NE(found.out.find("to redo: mixture.components = 2"), std::string::npos) << found.out;
+}
+
+TEST_F(StudyCommands, WithoutARunThatSucceedsNoTimeIsPromised) {
+  const ProgramResult result = study({"--study.vary", "window.length = 500 | 600"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.out.find("estimate  2 runs left: how long is unknown"), std::string::npos) << result.out;
 }
 
 TEST_F(StudyCommands, AnArchiveUnderAnothersNameIsFound) {

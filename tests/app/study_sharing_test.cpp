@@ -4,12 +4,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "app/config_file.hpp"
 #include "app/study/trial_runner.hpp"
 #include "app/study/worker_pool.hpp"
 #include "ident/error.hpp"
+#include "io/sha256.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
@@ -162,7 +165,7 @@ TEST_F(StudySharing, LocksHoldAmongProcessesAndEndWithThem) {
 
 TEST(WorkerPools, CrashesAndOverrunsEndTheirTrialOnly) {
   constexpr double timeout_s = 0.5;
-  WorkerPool pool(2, timeout_s, [] {
+  WorkerPool pool(2, timeout_s, [](const WorkerPool::TellWaiting&) {
     return [](std::size_t trial) {
       if (trial == 1) ::raise(SIGKILL);
       if (trial == 2) ::pause();
@@ -187,6 +190,60 @@ TEST(WorkerPools, CrashesAndOverrunsEndTheirTrialOnly) {
   EXPECT_NE(messages[1].find("signal 9"), std::string::npos) << messages[1];
   EXPECT_NE(messages[2].find("study.timeout_s = 0.5"), std::string::npos) << messages[2];
   EXPECT_EQ(messages[5], "xxxxx");
+}
+
+TEST(WorkerPools, WaitingForAnotherProcessIsNoTimeOfTheTrial) {
+  constexpr double timeout_s = 0.2;
+  WorkerPool pool(2, timeout_s, [](const WorkerPool::TellWaiting& tell_waiting) {
+    return [tell_waiting](std::size_t trial) {
+      tell_waiting(true);
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+      tell_waiting(false);
+      if (trial == 1) ::pause();  // from here its own time runs
+      TrialReport report;
+      report.outcome = TrialOutcome::computed;
+      return report;
+    };
+  });
+  pool.give(0, 0);
+  pool.give(1, 1);
+  for (int i = 0; i < 2; ++i) {
+    const auto done = pool.wait(10.0);
+    ASSERT_TRUE(done);
+    EXPECT_EQ(done->report.outcome, done->trial == 0 ? TrialOutcome::computed : TrialOutcome::failed)
+        << done->report.message;
+  }
+}
+
+TEST_F(StudySharing, TheCacheTellsOfWaitingForAnotherProcess) {
+  std::filesystem::create_directory(file("cache"));
+  const std::string stem = "bank-" + sha256_hex("inputs");
+  int ready[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const FileLocks locks(file("locks"));
+    const FileLocks::Hold hold = locks.lock(stem);
+    static_cast<void>(::write(ready[1], "x", 1));
+    for (;;) ::pause();
+  }
+  char signal = 0;
+  ASSERT_EQ(::read(ready[0], &signal, 1), 1);
+  const FileLocks locks(file("locks"));
+  std::vector<bool> told;
+  const StageCache cache(file("cache"), 1.0, locks, [&](bool waiting) {
+    told.push_back(waiting);
+    if (waiting) ::kill(child, SIGKILL);
+  });
+  const auto provide = [&] {
+    cache.provide(
+        "bank", "inputs", [](Archive&&) {}, [] { return false; }, [] { return Archive{}; });
+  };
+  provide();
+  EXPECT_EQ(told, (std::vector<bool>{true, false}));
+  ::waitpid(child, nullptr, 0);
+  provide();  // nobody is at it now
+  EXPECT_EQ(told.size(), 2u);
 }
 
 }  // namespace
