@@ -84,11 +84,19 @@ bool trained_on(const Recording& recording, const Trajectory& run) {
 
 namespace {
 
+/// Over the samples that have a prediction, as in the summary.
 double mean_log_score(const Bank& bank, const Recording& recording, Role role, const FilterOptions& options) {
   double sum = 0.0;
-  for (const Trajectory& run : recording.runs)
-    if (run.role == role) sum += log_likelihood(bank, run, options);
-  return sum / static_cast<double>(recording.transitions(role));
+  Index scored = 0;
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != role) continue;
+    for (const double score : log_densities(bank, run, options)) {
+      if (std::isnan(score)) continue;
+      sum += score;
+      ++scored;
+    }
+  }
+  return sum / static_cast<double>(scored);
 }
 
 /// The bank, refined if so configured.

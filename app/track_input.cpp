@@ -1,7 +1,6 @@
 #include "app/track_input.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/algorithm/string/trim.hpp>
@@ -10,6 +9,7 @@
 
 #include "ident/error.hpp"
 #include "ident/not_a_number.hpp"
+#include "io/csv.hpp"
 #include "io/csv_number.hpp"
 
 namespace modebank::app {
@@ -100,13 +100,7 @@ SampleReader::Line SampleReader::read_header(std::string_view line) {
   std::vector<std::string> names;
   fields_ = for_each_field(line, [&](std::size_t, std::string_view field) { names.emplace_back(field); });
   std::vector<std::size_t> positions;
-  for (std::size_t i = 0; i < slots(); ++i) {
-    const auto found = std::find(names.begin(), names.end(), name(i));
-    if (found == names.end())
-      throw ConfigurationError(
-          fmt::format("standard input has no column {}; its header names {}", name(i), fmt::join(names, ", ")));
-    positions.push_back(static_cast<std::size_t>(found - names.begin()));
-  }
+  for (std::size_t i = 0; i < slots(); ++i) positions.push_back(column_position("standard input", names, name(i)));
   positions_ = std::move(positions);
   return Line::header;
 }

@@ -105,8 +105,13 @@ std::vector<SplitMergeMove> split_merge_moves(const GaussianMixture& mixture, co
   for (Index k = 0; k < mixture.components(); ++k) {
     const SplitMergeMove split = best_split(mixture, k, points, memberships.row(k), options);
     if (split.parts.components() == 0) continue;
+    // The cheapest merges come first: of one split no more than `most` can be among the best, nor are more kept (there
+    // are K^3 / 2 in all).
+    std::size_t kept = 0;
     for (const Merge& merge : merges) {
+      if (kept == most) break;
       if (merge.first == k || merge.second == k) continue;
+      ++kept;
       moves.push_back(split);
       moves.back().merged = merge.first;
       moves.back().absorbed = merge.second;

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -54,6 +57,24 @@ TEST_F(Commands, ResidualTestsAreInTheArchiveAndInTheSummary) {
     }
   const ProgramResult shown = modebank({"show", archive()});
   EXPECT_NE(shown.out.find("R^2 of the increments"), std::string::npos) << shown.out;
+}
+
+/// The cost that the log names is the difference of the summary's scores, also where lags leave samples unscored.
+TEST_F(Commands, MergingModesSaysWhatItCostsInTheSummarysScores) {
+  std::vector<std::string> options{"--window.model", "varx", "--window.state_lags", "3", "--mixture.components", "3"};
+  const auto held_out = [&] {
+    for (const SummaryRow& row : read_archive(archive()).summary)
+      if (row.filter == "bank" && row.role == Role::test && row.run == "*") return row.log_score;
+    return std::nan("");
+  };
+  ASSERT_EQ(run(options).status, 0);
+  const double before = held_out();
+  options.insert(options.end(), {"--bank.modes", "1"});
+  const ProgramResult result = run(options);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string cost = fmt::format(
+      "bank.modes: 3 components merged into 1: log score on held-out runs {:.4f} -> {:.4f}", before, held_out());
+  EXPECT_NE(result.err.find(cost), std::string::npos) << cost << '\n' << result.err;
 }
 
 /// A column of zeros and ones is the same as leaving the transitions out; the column named must hold weights.

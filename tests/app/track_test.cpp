@@ -298,7 +298,11 @@ TEST_F(Track, RefusesWhatDoesNotFitBeforeAnySample) {
   PipedProgram program(command());
   program.write("time,yaw,left,right\n");
   EXPECT_EQ(program.wait(), 2);
-  EXPECT_THAT(program.errors(), HasSubstr("no column wz; its header names time, yaw, left, right"));
+  EXPECT_THAT(program.errors(), HasSubstr("no column \"wz\"; columns: time, yaw, left, right"));
+  PipedProgram ambiguous(command());
+  ambiguous.write("time,wz,wz,left,right\n");
+  EXPECT_EQ(ambiguous.wait(), 2);
+  EXPECT_THAT(ambiguous.errors(), HasSubstr("standard input has column \"wz\" twice"));
   EXPECT_EQ(modebank({"track"}).status, 2);
   EXPECT_EQ(modebank({"track", file("none.h5").string()}).status, 2);
   EXPECT_EQ(modebank({"track", archive(), "--data.input", "left"}).status, 2);

@@ -146,6 +146,29 @@ TEST(SplitAndMerge, TheExpectedBestMoveIsTheRightOne) {
   EXPECT_GT(log_density(after, points).sum(), log_density(stuck, points).sum());
 }
 
+/// Of K^3 / 2 moves only `most` are ever held: with 500 components all of them would not fit in memory.
+TEST(SplitAndMerge, TheFewBestMovesAreTheBestOfAll) {
+  std::mt19937_64 generator(7);
+  std::normal_distribution<double> normal;
+  const Eigen::MatrixXd points = Eigen::MatrixXd::NullaryExpr(2, 300, [&] { return normal(generator); });
+  GaussianMixture mixture;
+  mixture.weights = Eigen::VectorXd::Constant(6, 1.0 / 6.0);
+  mixture.means = points.leftCols(6);
+  mixture.covariances.assign(6, 0.3 * Eigen::MatrixXd::Identity(2, 2));
+  const std::vector<SplitMergeMove> all = split_merge_moves(mixture, points, EmOptions{}, 1000);
+  ASSERT_GE(all.size(), 30u) << "10 merges of the other five for every component that can be split";
+  for (std::size_t most : {std::size_t{1}, std::size_t{5}, std::size_t{20}}) {
+    const std::vector<SplitMergeMove> few = split_merge_moves(mixture, points, EmOptions{}, most);
+    ASSERT_EQ(few.size(), most);
+    for (std::size_t i = 0; i < most; ++i) {
+      EXPECT_EQ(few[i].gain, all[i].gain);
+      EXPECT_EQ(few[i].split, all[i].split);
+      EXPECT_EQ(few[i].merged, all[i].merged);
+      EXPECT_EQ(few[i].absorbed, all[i].absorbed);
+    }
+  }
+}
+
 TEST(Assignment, AgreesWithAllPermutations) {
   std::mt19937_64 generator(1);
   for (Index size = 1; size <= 6; ++size)
