@@ -63,14 +63,18 @@ class Browser:
         return time.monotonic() - start
 
     def draw_all(self, within="main"):
-        """Scrolls through the page, or one part of it, until every plot is drawn; plots draw when they come near the window.
-        Returns how many."""
-        self.run("""
-            window.undrawn = () => [...document.querySelectorAll(arguments[0] + ' div.plot')]
-                .filter((p) => p.offsetParent && !p.dataset.failed && !p.querySelector('.main-svg'));""".replace("arguments[0]", json.dumps(within)))
-        self.wait("const left = window.undrawn(); if (left.length) left[0].scrollIntoView({block: 'center'}); return !left.length", what=f"the plots of {within}")
+        """Scrolls through the page, or one part of it, until every plot is drawn; plots draw when they come near the window. Returns how many."""
+        for _ in range(60):
+            pending = self.run("""
+                const pending = [...document.querySelectorAll(arguments[0] + ' div.plot')].filter((p) => p.offsetParent && !p.dataset.failed && !p.querySelector('.main-svg'));
+                if (pending.length) pending[0].scrollIntoView({block: 'center'});
+                return pending.length;""", within)
+            if not pending:
+                break
+            time.sleep(0.1)
         failed = self.run("return [...document.querySelectorAll('div.plot[data-failed]')].map((p) => p.getAttribute('aria-label'))")
         assert not failed, f"plots that failed: {failed}"
+        assert not pending, f"{pending} plots were never drawn"
         return self.run("return [...document.querySelectorAll('div.plot')].filter((p) => p.querySelector('.main-svg')).length")
 
     def messages(self):

@@ -1,4 +1,6 @@
 """Pages of runs."""
+import re
+import shutil
 import time
 
 import archives
@@ -129,6 +131,19 @@ class RunPages(PageTest):
         self.assertTrue(shown[0] <= begin and end <= shown[1])
         self.assert_quiet()
 
+    def test_figures_say_whose_colour_is_whose(self):
+        if not shutil.which("gnuplot"):
+            self.skipTest("gnuplot is missing (Debian package gnuplot-nox)")
+        folder = session.work / "figures"
+        session.modebank("report", session.made["demo"], "-o", session.work / "with_figures.html", "--report.figures", folder)
+        with h5py.File(session.made["demo"]) as file:
+            modes = len(file["bank/weight"])
+        self.assertGreater(modes, 1)
+        for name in ("estimates", "nis"):
+            texts = re.findall(r">\s*(?:<!\[CDATA\[)?([^<>\]]+?)(?:\]\]>)?\s*</", (folder / f"{name}.svg").read_text(encoding="utf-8"))
+            self.assertIn("mode", texts)
+            self.assertIn(str(modes - 1), texts)
+
     def test_hover_over_the_data_shows_values(self):
         self.open(session.modebank.page("demo", session.made["demo"]))
         session.browser.draw_all("#data")
@@ -167,7 +182,7 @@ class RunPages(PageTest):
         session.browser.run("""
             addEventListener('beforeprint', () => {
               const copy = document.querySelector('#windows canvas.still'), pixels = copy.getContext('2d').getImageData(0, 0, copy.width, copy.height).data;
-              window.printed = {inked: pixels.filter((value, i) => i % 4 === 3 && value > 0).length,
+              window.printed = {inked: pixels.filter((value, i) => value !== pixels[i % 4]).length,  // unlike the corner
                                 widths: [...document.querySelectorAll('div.js-plotly-plot .main-svg')].map((plot) => plot.getBoundingClientRect().width)};
             }, {once: true});""")
         pdf = session.browser.cdp("Page.printToPDF", printBackground=True)["data"]
