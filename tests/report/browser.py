@@ -62,13 +62,13 @@ class Browser:
                   what=f"{page} to draw itself")
         return time.monotonic() - start
 
-    def draw_all(self):
-        """Scrolls through the page until every plot is drawn; plots draw when they come near the window. Returns how many."""
+    def draw_all(self, within="main"):
+        """Scrolls through the page, or one part of it, until every plot is drawn; plots draw when they come near the window. Returns how many."""
         for _ in range(60):
             pending = self.run("""
-                const pending = [...document.querySelectorAll('div.plot')].filter((p) => p.offsetParent && !p.dataset.failed && !p.querySelector('.main-svg'));
+                const pending = [...document.querySelectorAll(arguments[0] + ' div.plot')].filter((p) => p.offsetParent && !p.dataset.failed && !p.querySelector('.main-svg'));
                 if (pending.length) pending[0].scrollIntoView({block: 'center'});
-                return pending.length;""")
+                return pending.length;""", within)
             if not pending:
                 break
             time.sleep(0.1)

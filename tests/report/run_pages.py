@@ -1,4 +1,6 @@
 """Pages of runs."""
+import re
+import shutil
 import time
 
 import archives
@@ -11,7 +13,8 @@ RUN_SECTIONS = ["origin", "verdict", "data", "windows", "selection", "bank", "fi
 
 class RunPages(PageTest):
     def test_every_section_of_every_page_draws(self):
-        for name in ("demo", "one_mode", "no_truth", "hostile", "ice"):
+        """Those of the demo and of hostile names, too: in tests below."""
+        for name in ("one_mode", "no_truth", "ice"):
             if name not in session.made:
                 continue
             with self.subTest(name):
@@ -72,7 +75,8 @@ class RunPages(PageTest):
 
     def test_zoom_is_shared_and_undone(self):
         self.open(session.modebank.page("demo", session.made["demo"]))
-        session.browser.draw_all()
+        session.browser.draw_all("#filter")
+        session.browser.draw_all("#data")
         whole = self.plot_range("data")
         area = self.plot_area("data")
         middle = area["top"] + area["height"] / 2
@@ -127,9 +131,22 @@ class RunPages(PageTest):
         self.assertTrue(shown[0] <= begin and end <= shown[1])
         self.assert_quiet()
 
+    def test_figures_say_whose_colour_is_whose(self):
+        if not shutil.which("gnuplot"):
+            self.skipTest("gnuplot is missing (Debian package gnuplot-nox)")
+        folder = session.work / "figures"
+        session.modebank("report", session.made["demo"], "-o", session.work / "with_figures.html", "--report.figures", folder)
+        with h5py.File(session.made["demo"]) as file:
+            modes = len(file["bank/weight"])
+        self.assertGreater(modes, 1)
+        for name in ("estimates", "nis"):
+            texts = re.findall(r">\s*(?:<!\[CDATA\[)?([^<>\]]+?)(?:\]\]>)?\s*</", (folder / f"{name}.svg").read_text(encoding="utf-8"))
+            self.assertIn("mode", texts)
+            self.assertIn(str(modes - 1), texts)
+
     def test_hover_over_the_data_shows_values(self):
         self.open(session.modebank.page("demo", session.made["demo"]))
-        session.browser.draw_all()
+        session.browser.draw_all("#data")
         point = session.browser.run("""
             const plot = document.querySelector('#data div.plot');
             plot.scrollIntoView({block: 'center'});
@@ -141,34 +158,42 @@ class RunPages(PageTest):
         session.browser.move(*point)
         session.browser.wait("return document.querySelector('#data div.plot .hoverlayer').children.length > 0", what="a hover label")
 
-    def test_light_dark_phone_and_print(self):
+    def test_light_dark_print_and_phone(self):
         page = session.modebank.page("demo", session.made["demo"])
-        for scheme in ("light", "dark"):
+        for scheme in ("dark", "light"):
             session.browser.scheme(scheme)
-            self.open(page)
-            session.browser.draw_all()
+            self.assertGreaterEqual(self.assert_whole(page, RUN_SECTIONS), 6)
             session.browser.screenshot(f"demo_{scheme}")
             self.assertEqual(session.browser.run("return getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)", scheme == "light")
-        session.browser.scheme("light")
+        self.check_print()
         session.browser.run("document.getElementById('theme').click()")
         self.assertEqual(session.browser.run("return document.documentElement.dataset.theme"), "dark")
+        self.assert_quiet()
         session.browser.size(390, 800)
         try:
-            self.open(page)
-            session.browser.draw_all()
+            self.assertGreaterEqual(self.assert_whole(page, RUN_SECTIONS), 6)
             session.browser.screenshot("demo_phone")
             self.assertLessEqual(session.browser.run("return document.documentElement.scrollWidth"), 390)
         finally:
             session.browser.size(1200, 900)
-        self.open(page)
-        session.browser.draw_all()
+
+    def check_print(self):
+        """All of a figure is on the sheet, and the cloud, which WebGL draws, is there."""
+        session.browser.run("""
+            addEventListener('beforeprint', () => {
+              const copy = document.querySelector('#windows canvas.still'), pixels = copy.getContext('2d').getImageData(0, 0, copy.width, copy.height).data;
+              window.printed = {inked: pixels.filter((value, i) => value !== pixels[i % 4]).length,  // unlike the corner
+                                widths: [...document.querySelectorAll('div.js-plotly-plot .main-svg')].map((plot) => plot.getBoundingClientRect().width)};
+            }, {once: true});""")
         pdf = session.browser.cdp("Page.printToPDF", printBackground=True)["data"]
         self.assertGreater(len(pdf), 100_000)
-        self.assert_quiet()
+        printed = session.browser.run("return window.printed")
+        self.assertGreater(printed["inked"], 5000)
+        self.assertLessEqual(max(printed["widths"]), 701)
+        self.assertEqual(session.browser.run("return document.querySelectorAll('canvas.still').length"), 0)
 
     def test_keyboard_and_names_for_screen_readers(self):
         self.open(session.modebank.page("demo", session.made["demo"]))
-        session.browser.draw_all()
         session.browser.key("Tab")
         self.assertEqual(session.browser.run("return document.activeElement.className"), "skip")
         session.browser.key("Enter")
@@ -189,8 +214,7 @@ class RunPages(PageTest):
         self.assertEqual(session.browser.run("return window.copied"), config)
 
     def test_hostile_names_are_text(self):
-        self.open(session.modebank.page("hostile", session.made["hostile"]))
-        session.browser.draw_all()
+        self.assertGreaterEqual(self.assert_whole(session.modebank.page("hostile", session.made["hostile"]), RUN_SECTIONS), 6)
         self.assertIsNone(session.browser.run("return window.hostile ?? null"))
         self.assertEqual(session.browser.run("return document.querySelectorAll('main script, main img, main b, main i').length"), 0)
         text = session.browser.run("return document.body.textContent")

@@ -62,7 +62,8 @@ class StudyPage(PageTest):
 
     def test_filtering_and_what_follows_it(self):
         self.open(self.page())
-        session.browser.draw_all()
+        session.browser.draw_all("#parallel")
+        session.browser.draw_all("#pareto")
         stored = self.stored()
         points = "return document.querySelector('#pareto div.plot')._fullData[0].x.length"
         self.assertEqual(session.browser.run(points), len(stored))
@@ -106,7 +107,7 @@ class StudyPage(PageTest):
 
     def test_samples_outside_over_the_number_of_components(self):
         self.open(self.page())
-        session.browser.draw_all()
+        session.browser.draw_all("#coverage")
         stored = self.stored()
         shown = session.browser.run("return Object.fromEntries(document.querySelector('#coverage div.plot').data.map((t) => [t.meta, t.y]))")
         for role in ("train", "test"):
@@ -118,7 +119,6 @@ class StudyPage(PageTest):
 
     def test_a_run_is_a_click_away(self):
         self.open(self.page())
-        session.browser.draw_all()
         session.browser.run("document.getElementById('show-best').click()")
         detail = session.browser.run("return document.getElementById('run-detail').textContent")
         stored = self.stored()

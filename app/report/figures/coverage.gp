@@ -17,7 +17,7 @@ set yrange [-1.05*lowest:1.05*highest]
 set ytics ('0' 0)
 do for [i = 1:10] { set ytics add (sprintf('%g', i * step) i * step, sprintf('%g', i * step) -i * step) }
 set label 100 'NIS below | above [%]' at screen 0.03, screen 0.5 center rotate by 90
-set xtics scale 0 rotate by (filters > 5 ? -35 : 0)
+if (filters > 5) { set xtics scale 0 rotate by 35 right offset 0.6,0.2 } else { set xtics scale 0 }
 set xtics (filter_title[1] 1)
 do for [f = 2:filters] { set xtics add (filter_title[f] f) }
 eval legend(0.99)

@@ -15,9 +15,9 @@ set tics nomirror out scale 0.4
 set xtics offset 0,0.4
 set ytics offset 0.4,0
 set style fill solid noborder
+legend_font = sprintf(',%g', format eq 'png' ? 7 * dots : 9.3)
 # A legend in two rows above a plot, at this height of the picture.
-legend(height) = sprintf("set key at screen left_edge,%g left top Left reverse vertical maxrows 2 samplen 1.2 width -0.5 font ',%g'", \
-                         height, format eq 'png' ? 7 * dots : 9.3)
+legend(height) = sprintf("set key at screen left_edge,%g left top Left reverse vertical maxrows 2 samplen 1.2 width -0.5 font '%s'", height, legend_font)
 left_edge = 0.15
 right_edge = 0.985
 # Sizes of points are not scaled alike by the two terminals.

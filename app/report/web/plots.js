@@ -88,3 +88,22 @@ export function figure(label, make, caption) {
   });
   return element;
 }
+
+// A browser prints without waiting: what WebGL has drawn in three dimensions would be missing, so a copy is laid over it, and
+// figures that were drawn for a wider window are made smaller.
+const sheet_px = 700;
+addEventListener('beforeprint', () => {
+  for (const plot of document.querySelectorAll('div.js-plotly-plot')) {
+    if (plot.clientWidth > sheet_px) plot.style.zoom = sheet_px / plot.clientWidth;
+    const scene = plot._fullLayout?.scene?._scene;
+    if (!scene?.glplot) continue;
+    scene.glplot.redraw();
+    const drawn = scene.glplot.canvas, copy = h('canvas', { class: 'still', width: drawn.width, height: drawn.height });
+    copy.getContext('2d').drawImage(drawn, 0, 0);
+    scene.container.append(copy);
+  }
+});
+addEventListener('afterprint', () => {
+  for (const copy of document.querySelectorAll('canvas.still')) copy.remove();
+  for (const plot of document.querySelectorAll('div.js-plotly-plot')) plot.style.zoom = '';
+});
