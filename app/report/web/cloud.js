@@ -192,12 +192,13 @@ export async function cloud(windows, runs, goTo) {
       element.plot.on('plotly_unhover', () => { tip.hidden = true; pointed = -1; });
       element.plot.addEventListener('mousemove', (event) => { tip.style.left = `${Math.min(event.clientX + 14, window.innerWidth - 240)}px`; tip.style.top = `${event.clientY + 14}px`; });
       element.plot.addEventListener('mouseleave', () => { tip.hidden = true; });
-      if (element !== solid) return void element.plot.on('plotly_click', (event) => { const i = numberOf(event); if (i >= 0) pick(i); });
-      // In three dimensions Plotly tells a click from a turn by luck: a press that does not move is a click.
+      // A finger hovers over nothing: there Plotly's own click says where it was.
+      if (element !== solid) element.plot.on('plotly_click', (event) => { const i = numberOf(event); if (i >= 0 && i !== state.picked) pick(i); });
+      // Plotly tells a click from a turn or a drag by luck while a page draws: a press that does not move is a click.
       let down = null;
       element.plot.addEventListener('pointerdown', (event) => { down = { x: event.clientX, y: event.clientY, i: pointed }; }, true);
       element.plot.addEventListener('pointerup', (event) => {
-        if (down && down.i >= 0 && Math.hypot(event.clientX - down.x, event.clientY - down.y) < 4) pick(down.i);
+        if (down && down.i >= 0 && Math.hypot(event.clientX - down.x, event.clientY - down.y) < 4) setTimeout(pick, 0, down.i);
         down = null;
       }, true);
     };
