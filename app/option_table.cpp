@@ -164,7 +164,8 @@ std::vector<Option> mixture_options() {
       numeric("mixture.restarts", between(1, 10'000), "", "independent starts per candidate",
               MODEBANK_FIELD(mixture.selection.em.restarts)),
       numeric("mixture.split_merge", between(0, 10'000), "",
-              "moves tried to leave each optimum: two components merged, one split; 0: none",
+              "moves tried to leave each optimum: two components merged, one split; 0: none, and k-means++ starts are "
+              "single ones",
               MODEBANK_FIELD(mixture.selection.em.split_merge)),
       words("mixture.heldout",
             "score candidates by leaving out runs; auto: up to 20,000 windows; never: only as the criterion",
