@@ -27,8 +27,8 @@ struct EmOptions {
   int split_merge = 5;        ///< split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000)
   double tolerance = 1e-7;    ///< stop when the mean log-likelihood per unit weight gains less; negative: never
   int max_iterations = 1000;  ///< M steps, >= 0
-  double covariance_floor =
-      1e-6;  ///< eigenvalues (variances) are kept above this share of the data's own variance per feature, >= 1e-10
+  double covariance_floor = 1e-6;  ///< eigenvalues (variances) are kept above this share of the data's variance per
+                                   ///< feature (without far outliers: feature_scale.hpp), >= 1e-10
   bool noise_component = false;  ///< adds a uniform component over the points' bounding box (see UniformNoise)
 };
 

@@ -18,6 +18,15 @@ using Eigen::Index;
 
 namespace {
 
+/// Besides check_sizes: what no mixture has. Weights may sum to anything, as those of a part of a mixture do.
+void check_numbers(const GaussianMixture& mixture) {
+  if (!mixture.means.allFinite() || !mixture.weights.allFinite() || mixture.weights.minCoeff() < 0.0)
+    throw std::invalid_argument("mixture with a mean or weight that is not finite, or a negative weight");
+  if (mixture.noise.present() && !(mixture.noise.weight >= 0.0 && std::isfinite(mixture.noise.weight)))
+    throw std::invalid_argument(
+        fmt::format("mixture whose noise component has the weight {}, which is no probability", mixture.noise.weight));
+}
+
 /// Evaluates a mixture block by block. With errors in units in which the mixture's numbers are near one.
 class BlockEvaluation {
  public:
@@ -47,9 +56,11 @@ class BlockEvaluation {
  private:
   static FeatureScale scale_for(const GaussianMixture& mixture, const PointSet& set) {
     check_sizes(mixture);
+    check_numbers(mixture);
     if (set.features() != mixture.features())
       throw std::invalid_argument(
           fmt::format("points have {} features, the mixture has {}", set.features(), mixture.features()));
+    if (!set.points.allFinite()) throw std::invalid_argument("a mixture is evaluated at points that are not finite");
     check_errors(set);
     return set.has_errors() ? FeatureScale::near_one(mixture) : FeatureScale::identity(set.features());
   }
@@ -140,6 +151,10 @@ Eigen::MatrixXd responsibilities(const GaussianMixture& mixture, const PointSet&
 
 Eigen::MatrixXd sample(const GaussianMixture& mixture, Index count, std::mt19937_64& generator) {
   check_sizes(mixture);
+  check_numbers(mixture);
+  const double noise = mixture.noise.present() ? mixture.noise.weight : 0.0, total = mixture.weights.sum() + noise;
+  if (count < 0 || !(total > 0.0))
+    throw std::invalid_argument(fmt::format("cannot sample {} points from weights that sum to {}", count, total));
   std::vector<Eigen::MatrixXd> factors;
   for (const Eigen::MatrixXd& covariance : mixture.covariances) {
     const Eigen::LLT<Eigen::MatrixXd> cholesky(covariance);
@@ -152,9 +167,8 @@ Eigen::MatrixXd sample(const GaussianMixture& mixture, Index count, std::mt19937
   boost::random::normal_distribution<double> normal;
   Eigen::MatrixXd points(mixture.features(), count);
   Eigen::VectorXd z(mixture.features());
-  const double noise = mixture.noise.present() ? mixture.noise.weight : 0.0;
   for (Index i = 0; i < count; ++i) {
-    double rest = uniform(generator) * (mixture.weights.sum() + noise);
+    double rest = uniform(generator) * total;
     if (rest < noise) {
       for (Index f = 0; f < mixture.features(); ++f)
         points(f, i) = mixture.noise.lower(f) + uniform(generator) * (mixture.noise.upper(f) - mixture.noise.lower(f));

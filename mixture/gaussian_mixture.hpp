@@ -53,9 +53,10 @@ void check_sizes(const GaussianMixture& mixture);
 /// has a negative variance or a correlation beyond one.
 void check_errors(const PointSet& points);
 
-// The functions below throw std::invalid_argument for sizes that do not fit, for a covariance that is not positive
-// definite and for an error covariance that is none. A point with an error covariance S is seen through it: component k
-// is N(mu_k, Sigma_k + S) there (Bovy, Hogg & Roweis 2011, eq. 9). Weights of points are ignored.
+// The functions below throw std::invalid_argument for sizes that do not fit, for points, means or weights that are not
+// finite, a negative weight, a covariance that is not positive definite and for an error covariance that is none. A
+// point with an error covariance S is seen through it: component k is N(mu_k, Sigma_k + S) there (Bovy, Hogg & Roweis
+// 2011, eq. 9). Weights of points are ignored.
 
 /// log density of every point, in the log domain: N values, finite for finite points (about -1e300 where the distance
 /// itself overflows).

@@ -12,7 +12,8 @@ struct ScaledCloud {
   PointBlocks points;
   UniformNoise noise;  ///< physical units; absent unless asked for
 
-  ScaledCloud(const PointSet& set, const EmOptions& options) : scale(FeatureScale::of(set)), points(set, scale) {
+  ScaledCloud(const PointSet& set, const EmOptions& options)
+      : scale(FeatureScale::of(set, options.covariance_floor)), points(set, scale) {
     if (!options.noise_component) return;
     noise = bounding_box(set, scale, options.covariance_floor);
     constexpr double noise_start = 0.05;

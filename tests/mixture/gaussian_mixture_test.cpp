@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "ident/not_a_number.hpp"
 #include "mixture/point_blocks.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -115,6 +116,31 @@ TEST(GaussianMixture, RejectsWhatDoesNotFit) {
   EXPECT_THROW(responsibilities(mixture, Eigen::MatrixXd::Zero(2, 5)), std::invalid_argument);
   mixture.covariances.pop_back();
   EXPECT_THROW(log_density(mixture, Eigen::MatrixXd::Zero(2, 5)), std::invalid_argument);
+}
+
+TEST(GaussianMixture, RejectsNumbersThatNoMixtureHas) {
+  const GaussianMixture sound = three_clusters(3.0);
+  const Eigen::MatrixXd points = Eigen::MatrixXd::Zero(2, 5);
+  std::mt19937_64 generator(1);
+  const auto expect_rejected = [&](const GaussianMixture& mixture) {
+    EXPECT_THROW(log_density(mixture, points), std::invalid_argument);
+    EXPECT_THROW(responsibilities(mixture, points), std::invalid_argument);
+    EXPECT_THROW(sample(mixture, 3, generator), std::invalid_argument);
+  };
+  GaussianMixture broken = sound;
+  broken.weights(1) = -0.1;
+  expect_rejected(broken);
+  broken.weights(1) = not_a_number;
+  expect_rejected(broken);
+  broken = sound;
+  broken.means(0, 2) = not_a_number;
+  expect_rejected(broken);
+  broken = sound;
+  broken.weights.setZero();
+  EXPECT_THROW(sample(broken, 3, generator), std::invalid_argument);
+  EXPECT_THROW(sample(sound, -1, generator), std::invalid_argument);
+  EXPECT_EQ(sample(sound, 0, generator).cols(), 0);
+  EXPECT_THROW(log_density(sound, Eigen::MatrixXd::Constant(2, 5, not_a_number)), std::invalid_argument);
 }
 
 TEST(Kernels, ExpAndLogAreAsAccurateAsTheirHeaderSays) {

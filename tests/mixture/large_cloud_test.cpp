@@ -21,7 +21,7 @@ TEST(LargeCloud, BlocksLaidOutWhenReadAreThoseThatAreKept) {
                         errors = Eigen::Vector4d(0.5, 0.1, 0.1, 0.2).replicate(1, 1000);
   const Eigen::VectorXd weights = points.row(0).array().square().transpose();
   for (const PointSet& set : {PointSet(points), PointSet(points, weights), PointSet(points, weights, errors)}) {
-    const FeatureScale scale = FeatureScale::of(set);
+    const FeatureScale scale = FeatureScale::of(set, 1e-6);
     const GaussianMixture mixture = scale.to_scaled(three_clusters(2.0));
     const MixtureMoments kept = expect(PointBlocks(set, scale), mixture),
                          read = expect(PointBlocks(set, scale, 0), mixture);

@@ -81,6 +81,47 @@ TEST_P(Robustness, ExtremeOutlier) {
   }
 }
 
+TEST_P(Robustness, OutliersHideNoClusters) {
+  const GaussianMixture truth = three_clusters(8.0);
+  for (const double distance : {1e3, 1e5, 1e6}) {
+    Eigen::MatrixXd points = draw(truth, 600, 3);
+    points.col(17) << distance, -0.3 * distance;
+    const EmResult result = fit(points, 4);
+    expect_sound(result, points);
+    for (Eigen::Index k = 0; k < 3; ++k)
+      EXPECT_LT((result.mixture.means.colwise() - truth.means.col(k)).colwise().norm().minCoeff(), 0.5) << distance;
+    EXPECT_NEAR(result.mixture.weights(3), 1.0 / 600.0, 1e-6);
+    EXPECT_NEAR(result.mixture.means(0, 3) / distance, 1.0, 1e-6);
+  }
+}
+
+TEST_P(Robustness, NoiseTakesAnOutlierOfOneFeature) {
+  const GaussianMixture truth = three_clusters(8.0);
+  Eigen::MatrixXd points = draw(truth, 600, 3);
+  points(1, 17) = 1e6;
+  EmOptions options;
+  options.covariance = GetParam();
+  options.noise_component = true;
+  const EmResult result = fit_em(points, unweighted, 3, options, 1);
+  expect_sound(result, points);
+  for (Eigen::Index k = 0; k < 3; ++k)
+    EXPECT_LT((result.mixture.means.colwise() - truth.means.col(k)).colwise().norm().minCoeff(), 0.5);
+  EXPECT_NEAR(result.mixture.noise.weight, 1.0 / 600.0, 1e-3);
+}
+
+TEST_P(Robustness, ConstantFeatureOfAnyMagnitudeWithNoise) {
+  for (const double constant : {0.0, 1e13, -1e140}) {
+    Eigen::MatrixXd points = draw(three_clusters(8.0), 200, 3);
+    points.row(1).setConstant(constant);
+    EmOptions options;
+    options.covariance = GetParam();
+    options.noise_component = true;
+    const EmResult result = fit_em(points, unweighted, 2, options, 1);
+    expect_sound(result, points);
+    EXPECT_TRUE((result.mixture.noise.upper.array() > result.mixture.noise.lower.array()).all());
+  }
+}
+
 TEST_P(Robustness, TinyAndHugeUnits) {
   for (const double unit : {1e-100, 1e100}) {
     const Eigen::MatrixXd points = unit * draw(three_clusters(8.0), 300, 4);
