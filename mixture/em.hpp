@@ -29,7 +29,7 @@ struct EmOptions {
   int max_iterations = 1000;  ///< M steps, >= 0
   double covariance_floor = 1e-6;  ///< eigenvalues (variances) are kept above this share of the data's variance per
                                    ///< feature (without far outliers: feature_scale.hpp), >= 1e-10
-  bool noise_component = false;  ///< adds a uniform component over the points' bounding box (see UniformNoise)
+  bool noise_component = false;    ///< adds a uniform component over the points' bounding box (see UniformNoise)
 };
 
 /// A fitted mixture and how the fit ended.

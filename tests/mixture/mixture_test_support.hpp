@@ -41,7 +41,8 @@ inline EmOptions fixed_iterations(int iterations, CovarianceType type = Covarian
 inline bool is_finite(const GaussianMixture& mixture) {
   bool finite = mixture.weights.allFinite() && mixture.means.allFinite();
   for (const Eigen::MatrixXd& covariance : mixture.covariances) finite = finite && covariance.allFinite();
-  return finite && std::abs(mixture.weights.sum() - 1.0) < 1e-12 && mixture.weights.minCoeff() >= 0.0;
+  return finite && std::abs(mixture.weights.sum() + mixture.noise.weight - 1.0) < 1e-12 &&
+         mixture.weights.minCoeff() >= 0.0;
 }
 
 /// A cloud of windows in `runs` runs of equal length, in order, each window clustered; `fits` matches it.
