@@ -59,22 +59,66 @@ TEST_F(Commands, ResidualTestsAreInTheArchiveAndInTheSummary) {
   EXPECT_NE(shown.out.find("R^2 of the increments"), std::string::npos) << shown.out;
 }
 
-/// The cost that the log names is the difference of the summary's scores, also where lags leave samples unscored.
+/// The loss is the difference of the summary's scores, also where lags leave samples unscored.
 TEST_F(Commands, MergingModesSaysWhatItCostsInTheSummarysScores) {
   std::vector<std::string> options{"--window.model", "varx", "--window.state_lags", "3", "--mixture.components", "3"};
-  const auto held_out = [&] {
+  const auto pooled = [&](Role role) {
     for (const SummaryRow& row : read_archive(archive()).summary)
-      if (row.filter == "bank" && row.role == Role::test && row.run == "*") return row.log_score;
-    return std::nan("");
+      if (row.filter == "bank" && row.role == role && row.run == "*") return row;
+    return SummaryRow();
   };
   ASSERT_EQ(run(options).status, 0);
-  const double before = held_out();
+  EXPECT_TRUE(read_archive(archive()).merging.empty());
+  const SummaryRow before[]{pooled(Role::train), pooled(Role::test)};
   options.insert(options.end(), {"--bank.modes", "1"});
   const ProgramResult result = run(options);
   ASSERT_EQ(result.status, 0) << result.err;
-  const std::string cost = fmt::format(
-      "bank.modes: 3 components merged into 1: log score on held-out runs {:.4f} -> {:.4f}", before, held_out());
-  EXPECT_NE(result.err.find(cost), std::string::npos) << cost << '\n' << result.err;
+  const std::vector<MergingCost> merging = read_archive(archive()).merging;
+  ASSERT_EQ(merging.size(), 2u);
+  for (const std::size_t i : {0u, 1u}) {
+    const SummaryRow after = pooled(i == 0 ? Role::train : Role::test);
+    EXPECT_EQ(merging[i].role, after.role);
+    EXPECT_EQ(merging[i].components, 3);
+    EXPECT_EQ(merging[i].modes, 1);
+    EXPECT_EQ(merging[i].samples, after.samples);
+    EXPECT_NEAR(merging[i].log_score_unlimited, before[i].log_score, 1e-10);
+    EXPECT_NEAR(merging[i].log_score, after.log_score, 1e-10);
+    EXPECT_NEAR(merging[i].loss, before[i].log_score - after.log_score, 1e-10);
+  }
+  const std::string cost = fmt::format("a loss of {:.4f}", before[1].log_score - pooled(Role::test).log_score);
+  EXPECT_NE(result.out.find("merged    3 components into 1 modes: log score on held-out runs"), std::string::npos);
+  EXPECT_NE(result.out.find(cost), std::string::npos) << cost << '\n' << result.out;
+  EXPECT_NE(modebank({"show", archive()}).out.find(cost), std::string::npos);
+}
+
+/// kf is one global model, whatever bank is stored.
+TEST_F(Commands, AStoredBankRunAsOneKalmanFilterIsTheBaseline) {
+  ASSERT_EQ(run({"--mixture.components", "3"}).status, 0);
+  const std::string again = file("again.h5").string();
+  const ProgramResult result = modebank(
+      {"evaluate", config(), "--archive.bank", archive(), "--archive.output", again, "--filter.variant", "kf"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Archive content = read_archive(again);
+  EXPECT_EQ(content.bank->mode_count(), 1);
+  EXPECT_EQ(content.evaluations.at(0).runs.at(0).log_density.tail(70),
+            content.evaluations.at(1).runs.at(0).log_density.tail(70));
+}
+
+/// A gyro that reads 1e15 now and then: every line keeps its columns.
+TEST_F(Commands, HugeNumbersStayInTheirColumns) {
+  std::string text = csv_run(80, 1);
+  for (const double share : {0.3, 0.6}) {
+    const std::size_t row = text.find("\n", static_cast<std::size_t>(share * static_cast<double>(text.size()))) + 1;
+    const std::size_t state = text.find(',', row) + 1;
+    text.replace(state, text.find(',', state) - state, "1e15");
+  }
+  write("run_01.csv", text);
+  const ProgramResult result = run({"--filter.horizon", "1,3"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::istringstream lines(result.out);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("archive") != 0) EXPECT_LE(line.size(), 220u) << line;
+  EXPECT_EQ(result.out.find("00000000000"), std::string::npos) << result.out;
 }
 
 /// A column of zeros and ones is the same as leaving the transitions out; the column named must hold weights.
@@ -211,68 +255,6 @@ TEST_F(Commands, AStoredBankLeavesItsTraceAndIsNotHeldOutOnItsTrainingRuns) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.err, ::testing::HasSubstr("its bank was trained on 00"));
   EXPECT_EQ(read_archive(again).provenance.inputs.back().sha256, sha256_hex(read_file(archive())));
-}
-
-TEST_F(Commands, SimulateWritesRunsThatRunReads) {
-  const std::string options =
-      std::string("[data]\nstate = wz\ninput = left, right\n[simulate]\n") +
-      "modes = -0.6, -0.7, 0.7 | -0.2, -0.1, 0.1\nprocess_sd = 0.01\nruns = 4\nsamples = 120\n" +
-      "output = " + file("sim").string() + "\n";
-  write("sim.ini", options);
-  const ProgramResult simulated = modebank({"simulate", file("sim.ini").string()});
-  ASSERT_EQ(simulated.status, 0) << simulated.err;
-  const ProgramResult result = run({"--data.root", file("sim").string(), "--data.inputs", "pro_*.csv", "--data.states",
-                                    "imu_*.csv", "--data.truth", "true_wz"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const Archive content = read_archive(archive());
-  EXPECT_EQ(content.recording->runs.size(), 4u);
-  EXPECT_EQ(content.recording->runs[0].samples(), 120);
-  EXPECT_EQ(content.recording->runs[0].truth.cols(), 120);
-}
-
-TEST_F(Commands, SimulatedVehicleRunsWithItsLagUndone) {
-  const std::string folder = file("vehicle").string();
-  write("vehicle.ini",
-        "[data]\nstate = wz, vx\ninput = left, right\n[simulate]\nsystem = vehicle\nfriction = 0.06\nruns = 4\n"
-        "samples = 120\nlag_s = 0.4\noutput = " +
-            folder + "\n");
-  const ProgramResult simulated = modebank({"simulate", file("vehicle.ini").string()});
-  ASSERT_EQ(simulated.status, 0) << simulated.err;
-  const auto score = [&](const char* lag) {
-    const ProgramResult result =
-        run({"--data.root", folder, "--data.inputs", "pro_*.csv", "--data.states", "imu_*.csv", "--data.truth",
-             "true_wz", "--data.input", "cmd_left, cmd_right", "--data.lag_s", lag});
-    EXPECT_EQ(result.status, 0) << result.err;
-    const Archive content = read_archive(archive());
-    EXPECT_EQ(content.recording->runs.size(), 4u);
-    EXPECT_EQ(content.recording->runs[0].truth.rows(), 1);
-    return content.windows->global.noise_variance()(0);
-  };
-  const double undone = score("0.4");
-  EXPECT_LT(undone, 0.8 * score("0"));
-  EXPECT_LT(undone, 0.8 * score("-0.4"));
-}
-
-TEST_F(Commands, SimulateRefusesKeysOfTheOtherSystem) {
-  const auto refusal = [&](const char* system, const char* key, const char* value) {
-    write("sim.ini", "[data]\nstate = wz\ninput = left, right\n[simulate]\nsamples = 5\nsystem = " +
-                         std::string(system) + "\noutput = " + file("sim").string() + "\n");
-    const ProgramResult result = modebank({"simulate", file("sim.ini").string(), key, value});
-    EXPECT_EQ(result.status, 2) << key;
-    EXPECT_THAT(result.err, ::testing::HasSubstr(key + 2));
-    EXPECT_FALSE(std::filesystem::exists(file("sim"))) << "nothing is written";
-    return result.err;
-  };
-  EXPECT_THAT(refusal("vehicle", "--simulate.dwell_samples", "20"),
-              ::testing::HasSubstr("belongs to simulate.system = linear"));
-  refusal("linear", "--simulate.friction", "0.1, 0.5");
-  refusal("vehicle", "--simulate.friction", "0");
-  refusal("vehicle", "--simulate.drift", "0.9");
-  refusal("vehicle", "--simulate.system", "car");
-  write("three.ini", "[data]\nstate = wz\ninput = a, b, c\n[simulate]\nsystem = vehicle\n");
-  const ProgramResult three = modebank({"simulate", file("three.ini").string()});
-  EXPECT_EQ(three.status, 2);
-  EXPECT_THAT(three.err, ::testing::HasSubstr("left and right wheel speed"));
 }
 
 TEST_F(Commands, ThePapersOwnLayoutRunsByChangingDataOptionsOnly) {
