@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "filter/calibration.hpp"
+#include "filter/diagnostics_flags.hpp"
 #include "ident/not_a_number.hpp"
 
 namespace modebank {
@@ -14,18 +15,13 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double takes_all = 0.99;         // usage of one mode
-constexpr double unused = 1e-3;            // usage
-constexpr double flat_entropy = 0.95;      // of log K
-constexpr double dominating_spread = 0.5;  // share of trace S
-constexpr double coloured = 0.01;          // whiteness p
-constexpr double negligible_R = 1e-6;      // of the innovations' variance
+constexpr double negligible_R = 1e-6;  // of the innovations' variance
 constexpr double outer_probability = 0.025;
 
 /// What is known of the samples that belong to one row.
 struct Collected {
   Index samples = 0, entropy_samples = 0;
-  double usage = 0.0, entropy = 0.0, spread = 0.0, innovation = 0.0, visits = 0.0, visited = 0.0;
+  double usage = 0.0, entropy = 0.0, spread = 0.0, visits = 0.0, visited = 0.0;
   Evidence evidence;
   SeriesByRun nees;
   std::vector<double> whiteness;
@@ -36,9 +32,10 @@ struct Collected {
 /// Collects over runs for the whole filter (mode -1) or one mode.
 class Collector {
  public:
-  Collector(const Bank& bank, Index mode, bool chi_square_nis)
-      : bank_(bank),
-        mode_(mode),
+  /// `nees_states`: the states that the NEES is about.
+  Collector(const Bank& bank, Index mode, bool chi_square_nis, const std::vector<Index>& nees_states)
+      : mode_(mode),
+        nees_states_(nees_states),
         lower_(chi_square_quantile(outer_probability, 1.0)),
         upper_(chi_square_quantile(1.0 - outer_probability, 1.0)) {
     sums.squared_state_error.setZero(bank.C.rows());
@@ -66,8 +63,8 @@ class Collector {
   }
 
  private:
-  const Bank& bank_;
   Index mode_;
+  const std::vector<Index>& nees_states_;
   double lower_, upper_;
 
   bool belongs(const RunEvaluation& e, Index k) const {
@@ -89,7 +86,6 @@ class Collector {
   void add_scores(const RunEvaluation& e, Index k, std::vector<std::vector<double>>& z) {
     ++sums.samples;
     if (e.spread_share.size() > 0) sums.spread += e.spread_share(k);
-    sums.innovation += e.innovation_covariance.col(k).reshaped(e.pit.rows(), e.pit.rows()).trace();
     Index signals = 0;
     for (Index i = 0; i < e.pit.rows(); ++i) {
       if (std::isnan(e.pit(i, k))) continue;
@@ -107,8 +103,11 @@ class Collector {
     const Index n = run.truth.rows(), all = e.state.rows();
     const Eigen::VectorXd error = e.state.col(k).head(n) - run.truth.col(k);
     if (!error.allFinite()) return;
-    const Eigen::MatrixXd P = e.covariance.col(k).reshaped(all, all).topLeftCorner(n, n);
-    sums.nees.back().push_back(error.dot(P.ldlt().solve(error)));
+    if (!nees_states_.empty()) {
+      const Eigen::MatrixXd P = e.covariance.col(k).reshaped(all, all)(nees_states_, nees_states_);
+      const Eigen::VectorXd judged = error(nees_states_);
+      sums.nees.back().push_back(judged.dot(P.ldlt().solve(judged)));
+    }
     sums.squared_state_error += error.cwiseAbs2();
     ++sums.state_errors;
   }
@@ -133,8 +132,6 @@ class Collector {
   }
 };
 
-void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
-
 double total_of(const SeriesByRun& series) {
   return std::accumulate(series.begin(), series.end(), 0.0, [](double sum, const std::vector<double>& run) {
     return std::accumulate(run.begin(), run.end(), sum);
@@ -155,23 +152,41 @@ void set_tails(const Evidence& evidence, DiagnosticsRow& row) {
   row.tail_below_upper = below.upper;
 }
 
-/// NIS, and NEES where R is more than next to nothing.
-void set_distances(const Collected& c, const Bank& bank, double samples, DiagnosticsRow& row) {
+/// The states whose measurement noise is more than next to nothing, so that their stated covariance after the
+/// measurement is more than R.
+std::vector<Index> states_with_noise(const Bank& bank, Role role, const std::vector<Trajectory>& runs,
+                                     const std::vector<RunEvaluation>& evaluations) {
+  const Index n_y = bank.C.rows();
+  Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(n_y);
+  double samples = 0.0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].role != role) continue;
+    const RunEvaluation& e = evaluations.at(i);
+    for (Index k = 0; k < e.log_density.size(); ++k) {
+      if (std::isnan(e.log_density(k))) continue;
+      variance += e.innovation_covariance.col(k).reshaped(n_y, n_y).diagonal().array();
+      samples += 1.0;
+    }
+  }
+  std::vector<Index> states;
+  for (Index i = 0; i < n_y; ++i)
+    if (samples > 0.0 && bank.R(i, i) * samples >= negligible_R * variance(i)) states.push_back(i);
+  return states;
+}
+
+void set_distances(const Collected& c, double n_y, double nees_states, DiagnosticsRow& row) {
   const SeriesByRun& nis = c.evidence.nis;
-  const auto n_y = static_cast<double>(bank.C.rows());
   row.nis_mean = mean_of(nis);
   const Interval expected = chi_square_mean_interval(nis, autocorrelation_time(nis), n_y);
   row.nis_lower = expected.lower;
   row.nis_upper = expected.upper;
-  row.nees_mean = row.nees_lower = row.nees_upper = not_a_number;
-  if (bank.R.trace() * samples < negligible_R * c.innovation) return;
-  const Interval nees = chi_square_mean_interval(c.nees, autocorrelation_time(c.nees), n_y);
+  const Interval nees = chi_square_mean_interval(c.nees, autocorrelation_time(c.nees), nees_states);
   row.nees_mean = mean_of(c.nees);
   row.nees_lower = nees.lower;
   row.nees_upper = nees.upper;
 }
 
-DiagnosticsRow make_row(const Collected& c, const Bank& bank) {
+DiagnosticsRow make_row(const Collected& c, Index n_y, Index nees_states) {
   DiagnosticsRow row;
   const double N = c.samples > 0 ? static_cast<double>(c.samples) : not_a_number;
   const double all = c.entropy_samples > 0 ? static_cast<double>(c.entropy_samples) : not_a_number;
@@ -181,44 +196,13 @@ DiagnosticsRow make_row(const Collected& c, const Bank& bank) {
   row.dwell = c.visits > 0.0 ? c.visited / c.visits : not_a_number;
   row.dwell_model = not_a_number;
   set_tails(c.evidence, row);
-  set_distances(c, bank, N, row);
+  set_distances(c, static_cast<double>(n_y), static_cast<double>(nees_states), row);
   row.state_rmse =
       (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
   row.whiteness_p = fisher_p(c.whiteness);
   row.spread_share = c.spread / N;
   row.verdict = judge(c.evidence);
   return row;
-}
-
-/// "mode 3 unused", "modes 1, 3 unused"; empty without any.
-std::string unused_modes(const std::vector<DiagnosticsRow>& modes) {
-  std::string list;
-  Index count = 0;
-  for (const DiagnosticsRow& mode : modes)
-    if (mode.usage < unused) list += (count++ > 0 ? ", " : " ") + std::to_string(mode.mode);
-  return count == 0 ? "" : (count > 1 ? "modes" : "mode") + list + " unused";
-}
-
-/// `modes`: rows of the same filter's modes.
-std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes) {
-  std::string flags;
-  for (const DiagnosticsRow& mode : modes)
-    if (mode.usage > takes_all) add_flag(flags, "one mode takes all (" + std::to_string(mode.mode) + ")");
-  if (const std::string list = unused_modes(modes); !list.empty()) add_flag(flags, list);
-  if (!modes.empty() && all.entropy > flat_entropy) add_flag(flags, "probabilities flat");
-  if (all.spread_share > dominating_spread) add_flag(flags, "spread dominates S");
-  if (all.tail_above_lower > largest_tail && all.tail_below_lower > largest_tail) add_flag(flags, "heavy tails");
-  if (all.nis_mean > all.nis_upper) add_flag(flags, "mean NIS above a true filter's");
-  if (all.nis_mean < all.nis_lower) add_flag(flags, "mean NIS below a true filter's");
-  if (all.nees_mean > all.nees_upper)
-    add_flag(flags, "NEES above a true filter's: the state's covariance is too small");
-  if (all.nees_mean < all.nees_lower)
-    add_flag(flags, "NEES below a true filter's: the state's covariance is too large");
-  if (all.whiteness_p < coloured) add_flag(flags, "innovations not white");
-  if (all.verdict == Verdict::undecided) add_flag(flags, "too few samples for a verdict");
-  if (std::isnan(all.nees_mean) && all.state_rmse.allFinite())
-    add_flag(flags, "R is as good as zero, so the state is the measurement: no NEES");
-  return flags;
 }
 
 }  // namespace
@@ -232,11 +216,12 @@ std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank
   std::vector<DiagnosticsRow> rows;
   for (const Role role : {Role::train, Role::test}) {
     if (std::none_of(runs.begin(), runs.end(), [role](const Trajectory& run) { return run.role == role; })) continue;
+    const std::vector<Index> nees_states = states_with_noise(bank, role, runs, evaluations);
     const auto row_of = [&](Index mode) {
-      Collector collector(bank, mode, chi_square_nis);
+      Collector collector(bank, mode, chi_square_nis, nees_states);
       for (std::size_t i = 0; i < runs.size(); ++i)
         if (runs[i].role == role) collector.add(runs[i], evaluations.at(i));
-      DiagnosticsRow row = make_row(collector.sums, bank);
+      DiagnosticsRow row = make_row(collector.sums, bank.C.rows(), std::ssize(nees_states));
       row.filter = filter;
       row.role = role;
       row.mode = mode;
@@ -246,7 +231,7 @@ std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank
     DiagnosticsRow all = row_of(-1);
     std::vector<DiagnosticsRow> modes;
     for (Index mode = 0; bank.mode_count() > 1 && mode < bank.mode_count(); ++mode) modes.push_back(row_of(mode));
-    all.flags = flags_of(all, modes);
+    all.flags = flags_of(all, modes, std::ssize(nees_states));
     rows.push_back(std::move(all));
     rows.insert(rows.end(), modes.begin(), modes.end());
   }
