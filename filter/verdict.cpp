@@ -11,7 +11,7 @@ namespace modebank {
 
 namespace {
 
-constexpr double outer_probability = 0.025;
+constexpr double beyond_either_end = 0.025;
 constexpr double nis_level = 0.99;     // of the interval whose outside is a verdict
 constexpr double nis_tolerance = 0.1;  // a tenth of the variance is a twentieth of the interval's width
 
@@ -78,8 +78,8 @@ Interval binomial_interval(double count, double samples) {
   if (!(samples > 0.0)) return {not_a_number, not_a_number};
   using Beta = boost::math::beta_distribution<>;
   const double misses = std::max(0.0, samples - count);
-  return {count > 0.0 ? boost::math::quantile(Beta(count, misses + 1.0), outer_probability) : 0.0,
-          misses > 0.0 ? boost::math::quantile(Beta(count + 1.0, misses), 1.0 - outer_probability) : 1.0};
+  return {count > 0.0 ? boost::math::quantile(Beta(count, misses + 1.0), beyond_either_end) : 0.0,
+          misses > 0.0 ? boost::math::quantile(Beta(count + 1.0, misses), 1.0 - beyond_either_end) : 1.0};
 }
 
 Interval chi_square_mean_interval(const SeriesByRun& series, double time, double degrees, double level) {

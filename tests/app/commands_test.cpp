@@ -83,7 +83,9 @@ TEST_F(Commands, HugeNumbersStayInTheirColumns) {
   ASSERT_EQ(result.status, 0) << result.err;
   std::istringstream lines(result.out);
   for (std::string line; std::getline(lines, line);)
-    if (line.find("archive") != 0) EXPECT_LE(line.size(), 220u) << line;
+    if (line.find("archive") != 0) {
+      EXPECT_LE(line.size(), 220u) << line;
+    }
   EXPECT_EQ(result.out.find("00000000000"), std::string::npos) << result.out;
 }
 
