@@ -3,26 +3,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "app/stopwatch.hpp"
 #include "app/summary_text.hpp"
-#include "filter/bank_frame.hpp"
-#include "filter/diagnostics.hpp"
-#include "filter/evaluate.hpp"
-#include "filter/horizon.hpp"
-#include "filter/innovation_tests.hpp"
 #include "filter/learn.hpp"
-#include "filter/scores.hpp"
-#include "filter/smoother.hpp"
+#include "filter/merging_cost.hpp"
 #include "ident/error.hpp"
 #include "ident/fit_window.hpp"
 #include "ident/linearise.hpp"
 #include "ident/model_choice.hpp"
-#include "ident/residual_tests.hpp"
 #include "ident/seed.hpp"
 #include "io/import.hpp"
 #include "mixture/criteria.hpp"
@@ -32,71 +24,11 @@
 namespace modebank::app {
 namespace {
 
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-std::vector<RunEvaluation> evaluate_runs(const Bank& bank, const std::vector<Trajectory>& runs,
-                                         const FilterOptions& options, bool smooth) {
-  std::vector<RunEvaluation> evaluations(runs.size());
-  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
-    evaluations[i] = evaluate_run(bank, runs[i], options);
-    if (smooth) smooth_run(bank, runs[i], options, evaluations[i]);
-  });
-  return evaluations;
-}
-
-std::vector<HorizonEvaluation> look_ahead(const Bank& bank, const std::vector<Trajectory>& runs,
-                                          const FilterOptions& options, const std::vector<Index>& horizons) {
-  std::vector<HorizonEvaluation> evaluations(runs.size());
-  tbb::parallel_for(std::size_t{0}, runs.size(),
-                    [&](std::size_t i) { evaluations[i] = evaluate_horizons(bank, runs[i], options, horizons); });
-  return evaluations;
-}
-
-/// The global model of the windows in linear terms, whatever they were fitted with.
-GlobalModel linear_global(const Config& config, const Archive& archive) {
-  const Recording& recording = *archive.recording;
-  const auto motion = motion_model(config.window, recording.state_count(), recording.input_count());
-  const GlobalModel& global = archive.windows->global;
-  return motion ? linearise(*motion, global, operating_point(recording)) : global;
-}
-
 /// The one seed reaches the windows' samples, too.
 FitOptions window_options(const Config& config) {
   FitOptions options = config.window;
   options.seed = config.job.seed;
   return options;
-}
-
-bool trained_on(const Recording& recording, const Trajectory& run) {
-  return std::any_of(recording.runs.begin(), recording.runs.end(), [&](const Trajectory& other) {
-    return other.role == Role::train && other.samples() == run.samples() && other.state == run.state &&
-           other.input == run.input;
-  });
-}
-
-}  // namespace
-
-namespace {
-
-/// Over the samples that have a prediction, as in the summary.
-double mean_log_score(const Bank& bank, const Recording& recording, Role role, const FilterOptions& options) {
-  double sum = 0.0;
-  Index scored = 0;
-  for (const Trajectory& run : recording.runs) {
-    if (run.role != role) continue;
-    for (const double score : log_densities(bank, run, options)) {
-      if (std::isnan(score)) continue;
-      sum += score;
-      ++scored;
-    }
-  }
-  return sum / static_cast<double>(scored);
 }
 
 /// The bank, refined if so configured.
@@ -109,19 +41,15 @@ Refinement learn_modes_of(const Config& config, const Eigen::MatrixXd& R, const 
   return {learn_bank(*archive.recording, *archive.windows, *archive.mixture, options, R, motion), {}, {}, {}, {}};
 }
 
-/// What a limit on the number of modes cost: the same bank without it, on the runs that were held out.
-void report_merging(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion, const Archive& archive) {
-  const Index components = archive.mixture->mixture.components(), limit = config.bank.modes;
-  if (limit == 0 || components <= limit) return;
-  const Recording& recording = *archive.recording;
+/// What a limit on the number of modes cost: the same bank is learned without it.
+std::vector<MergingCost> merging_of(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion,
+                                    const Archive& archive) {
+  const Index components = archive.mixture->mixture.components();
+  if (config.bank.modes == 0 || components <= config.bank.modes) return {};
   Config unlimited = config;
   unlimited.bank.modes = 0;
-  const Role role = recording.transitions(Role::test) > 0 ? Role::test : Role::train;
   const Bank whole = learn_modes_of(unlimited, R, motion, archive).bank;
-  const double before = mean_log_score(whole, recording, role, config.filter);
-  const double after = mean_log_score(*archive.bank, recording, role, config.filter);
-  spdlog::info("bank.modes: {} components merged into {}: log score on {} runs {:.4f} -> {:.4f} ({:+.4f})", components,
-               limit, role == Role::test ? "held-out" : "training", before, after, after - before);
+  return merging_costs(whole, *archive.bank, components, *archive.recording, config.filter);
 }
 
 void report_refinement(const Refinement& refined) {
@@ -140,10 +68,17 @@ void learn_modes(const Config& config, const Eigen::MatrixXd& R, const MotionMod
   archive.bank = std::move(learned.bank);
   if (config.bank.refine == Refine::em) archive.unrefined = std::move(learned.start);
   report_refinement(learned);
-  report_merging(config, R, motion, archive);
+  archive.merging = merging_of(config, R, motion, archive);
 }
 
 }  // namespace
+
+GlobalModel linear_global(const Config& config, const Archive& archive) {
+  const Recording& recording = *archive.recording;
+  const auto motion = motion_model(config.window, recording.state_count(), recording.input_count());
+  const GlobalModel& global = archive.windows->global;
+  return motion ? linearise(*motion, global, operating_point(recording)) : global;
+}
 
 void import_stage(const Config& config, Archive& archive) {
   const Stopwatch watch;
@@ -235,6 +170,7 @@ void modes_stage(const Config& config, Archive& archive) {
   const Recording& recording = *archive.recording;
   const auto motion = motion_model(config.window, recording.state_count(), recording.input_count());
   archive.unrefined.reset();
+  archive.merging.clear();
   if (config.filter.variant == FilterVariant::kf)
     archive.bank = archive.baseline;
   else
@@ -247,115 +183,6 @@ void bank_stage(const Config& config, Archive& archive) {
   modes_stage(config, archive);
   spdlog::info("bank: {} modes, {} screened, in {:.2f} s", archive.bank->mode_count(), archive.bank->screened.size(),
                watch.seconds());
-}
-
-/// What makes a stored bank's scores mean something else than they seem to.
-void warn_of_foreign_bank(const std::string& file, const Archive& stored, const Recording& recording) {
-  std::vector<std::string> trained;
-  for (const Trajectory& run : recording.runs)
-    if (run.role == Role::test && stored.recording && trained_on(*stored.recording, run)) trained.push_back(run.run);
-  if (!trained.empty())
-    spdlog::warn("{}: its bank was trained on {}: the scores of the test runs are not held out", file,
-                 fmt::join(trained, ", "));
-  const Bank& bank = *stored.bank;
-  if (bank.state_names != state_names(recording, bank.structure) ||
-      bank.input_names != input_names(recording, bank.structure))
-    spdlog::warn("{}: its bank was learned from columns {}; {}, the data have {}; {}", file,
-                 fmt::join(bank.state_names, ", "), fmt::join(bank.input_names, ", "),
-                 fmt::join(names_of(recording.states), ", "), fmt::join(names_of(recording.inputs), ", "));
-  constexpr double tolerated = 0.1;  // a tenth more or less time per step changes increments by as much
-  if (const double dt_s = recording.median_period_s(); std::abs(dt_s - bank.dt_s) > tolerated * bank.dt_s)
-    spdlog::warn("{}: its bank steps by {:.4g} s, the data by {:.4g} s", file, bank.dt_s, dt_s);
-}
-
-void load_banks(const Config& config, Archive& archive) {
-  Archive stored = read_archive(config.archive.bank);
-  if (!stored.bank) throw DataError(fmt::format("{}: holds no bank", config.archive.bank));
-  const Recording& recording = *archive.recording;
-  const LinearStructure& structure = stored.bank->structure;
-  if (structure.states != recording.state_count() || structure.inputs != recording.input_count())
-    throw DataError(fmt::format("{}: its bank has {} states and {} inputs, the data have {} and {}",
-                                config.archive.bank, structure.states, structure.inputs, recording.state_count(),
-                                recording.input_count()));
-  warn_of_foreign_bank(config.archive.bank, stored, recording);
-  archive.provenance.inputs.push_back(describe_file(config.archive.bank));
-  archive.bank = std::move(stored.bank);
-  archive.baseline = std::move(stored.baseline);
-  archive.noise_only = std::move(stored.noise_only);
-  archive.unrefined = std::move(stored.unrefined);
-}
-
-FilterScores score_filter(const Config& config, const Archive& archive, const std::string& name) {
-  const std::vector<Trajectory>& runs = archive.recording->runs;
-  // The competitors stay what they are, whatever filter the bank runs in.
-  const bool competitor = name != "bank";
-  const FilterVariant variant = name == "baseline" ? FilterVariant::kf : FilterVariant::imm;
-  const FilterOptions options = competitor ? FilterOptions{variant, false, config.filter.time_steps} : config.filter;
-  const Bank& bank = *(!competitor ? archive.bank : name == "baseline" ? archive.baseline : archive.noise_only);
-  FilterScores scores;
-  scores.evaluation = {name, evaluate_runs(bank, runs, options, config.scoring.smooth)};
-  scores.summary = summarize(name, runs, scores.evaluation.runs);
-  scores.diagnostics = diagnose(name, bank, runs, scores.evaluation.runs);
-  if (config.scoring.horizon != std::vector<Index>{1})
-    scores.horizons = summarize_horizons(name, runs, look_ahead(bank, runs, options, config.scoring.horizon));
-  return scores;
-}
-
-void take_scores(std::vector<FilterScores> scores, Archive& archive) {
-  archive.evaluations.clear();
-  archive.summary.clear();
-  archive.horizons.clear();
-  archive.diagnostics.clear();
-  const auto append = [](auto& list, auto& rows) {
-    list.insert(list.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
-  };
-  for (FilterScores& filter : scores) {
-    archive.evaluations.push_back(std::move(filter.evaluation));
-    append(archive.summary, filter.summary);
-    append(archive.diagnostics, filter.diagnostics);
-    append(archive.horizons, filter.horizons);
-  }
-}
-
-void evaluate_stage(const Config& config, Archive& archive) {
-  const Stopwatch watch;
-  std::vector<FilterScores> scores;
-  if (archive.bank) scores.push_back(score_filter(config, archive, "bank"));
-  if (archive.baseline) scores.push_back(score_filter(config, archive, "baseline"));
-  if (archive.noise_only) scores.push_back(score_filter(config, archive, "noise_only"));
-  take_scores(std::move(scores), archive);
-  spdlog::info("evaluation: {} filters in {:.2f} s", archive.evaluations.size(), watch.seconds());
-}
-
-namespace {
-
-template <class Test>
-ResidualTestSet test_runs(const std::string& model, std::size_t runs, Test test) {
-  ResidualTestSet set{model, std::vector<ResidualTests>(runs)};
-  tbb::parallel_for(std::size_t{0}, runs, [&](std::size_t i) { set.runs[i] = test(i); });
-  return set;
-}
-
-}  // namespace
-
-ResidualTestSet test_global(const Config& config, const Archive& archive) {
-  const std::vector<Trajectory>& runs = archive.recording->runs;
-  const Eigen::VectorXd theta = linear_global(config, archive).theta;
-  return test_runs("global", runs.size(),
-                   [&](std::size_t i) { return test_residuals(runs[i], archive.windows->structure, theta); });
-}
-
-ResidualTestSet test_filter(const Archive& archive, const FilterEvaluation& evaluation) {
-  const std::vector<Trajectory>& runs = archive.recording->runs;
-  return test_runs(evaluation.filter, runs.size(),
-                   [&](std::size_t i) { return test_innovations(runs[i], evaluation.runs[i]); });
-}
-
-void residual_test_stage(const Config& config, Archive& archive) {
-  archive.residual_tests.clear();
-  if (archive.windows) archive.residual_tests.push_back(test_global(config, archive));
-  for (const FilterEvaluation& evaluation : archive.evaluations)
-    archive.residual_tests.push_back(test_filter(archive, evaluation));
 }
 
 }  // namespace modebank::app

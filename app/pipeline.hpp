@@ -22,6 +22,9 @@ void evaluate_stage(const Config& config, Archive& archive);
 /// Residual tests of the global model and of every evaluated filter, on all runs.
 void residual_test_stage(const Config& config, Archive& archive);
 
+/// The global model of the windows in linear terms, whatever they were fitted with.
+GlobalModel linear_global(const Config& config, const Archive& archive);
+
 /// The two halves of bank_stage: baseline and noise_only depend on the windows alone; the bank takes the baseline's R.
 void competitors_stage(const Config& config, Archive& archive);
 void modes_stage(const Config& config, Archive& archive);

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "app/judged_runs.hpp"
+#include "app/number_text.hpp"
 #include "app/text_table.hpp"
 #include "ident/window_summary.hpp"
 
@@ -19,6 +22,10 @@ std::string unit_suffix(const Archive& archive) {
 std::string tails(double above, double below) { return fmt::format("{:.2f} % {:>5.2f} %", 100 * above, 100 * below); }
 
 std::string estimate(double value, double standard_error) {
+  // Four decimals say nothing of a value that is known far better, or that is far larger.
+  constexpr double smallest = 5e-5, largest = 1e5;
+  if (std::abs(value) >= largest || standard_error >= largest || standard_error < smallest)
+    return fmt::format("{:.6g} +- {:.2g}", value, standard_error);
   return fmt::format("{:.4f} +- {:.4f}", value, standard_error);
 }
 
@@ -39,9 +46,9 @@ std::string scores_text(const Archive& archive, int width) {
   for (const SummaryRow& row : archive.summary)
     if (row.run == "*")
       table.add({row.filter, std::string(name_of(row.role)), std::to_string(row.samples),
-                 fmt::format("{:.4f}", row.log_score), fmt::format("{:.5f}", fmt::join(row.rmse, " ")),
+                 fixed_or_short(row.log_score, 4), fixed_or_short_list(row.rmse, 5),
                  tails(row.tail_above, row.tail_below), tails(row.nis_above, row.nis_below),
-                 fmt::format("{:.3f}", row.nis_mean), fmt::format("{:.2g}", row.whiteness_p)});
+                 fixed_or_short(row.nis_mean, 3), fmt::format("{:.2g}", row.whiteness_p)});
   return table.text(width) +
          "A true filter has 2.5 % in each pit tail; log score in nats per sample, higher is better.\n";
 }
@@ -89,7 +96,7 @@ std::string candidates_text(const MixtureResult& mixture, int width) {
     }
     table.add({count, shape, fmt::format("{:.3f}", c.log_likelihood), std::to_string(c.parameters),
                fmt::format("{:.1f}", c.effective_samples), fmt::format("{:.3f}", c.bic), fmt::format("{:.3f}", c.aic),
-               fmt::format("{:.3f}", c.icl), fmt::format("{:.3f}", c.bic_naive), fmt::format("{:.4f}", c.heldout),
+               fmt::format("{:.3f}", c.icl), fmt::format("{:.3f}", c.bic_naive), fixed_or_short(c.heldout, 4),
                std::to_string(c.iterations), c.converged ? "yes" : "no",
                fmt::format("{}/{}", c.agreeing_restarts, c.restarts)},
               c.selected ? "  <- selected" : "");
@@ -119,6 +126,7 @@ std::string mode_diagnostics_text(const Archive& archive, int width) {
                    {"by T", 8},
                    {"pit tails +/-", 20},
                    {"mean NIS", 8},
+                   {"NEES", 8},
                    {"white p", 8},
                    {"verdict", 7, TextTable::Align::left}});
   bool empty = true;
@@ -126,8 +134,8 @@ std::string mode_diagnostics_text(const Archive& archive, int width) {
     if (row.filter != "bank" || row.role != role || row.mode < 0) continue;
     empty = false;
     table.add({std::to_string(row.mode), fmt::format("{:.3f}", row.usage), std::to_string(row.samples),
-               fmt::format("{:.1f}", row.dwell), fmt::format("{:.1f}", row.dwell_model),
-               tails(row.tail_above, row.tail_below), fmt::format("{:.3f}", row.nis_mean),
+               fixed_or_short(row.dwell, 1), fixed_or_short(row.dwell_model, 1), tails(row.tail_above, row.tail_below),
+               fixed_or_short(row.nis_mean, 3), fixed_or_short(row.nees_mean, 3),
                fmt::format("{:.2g}", row.whiteness_p), std::string(name_of(row.verdict))});
   }
   return empty ? "" : fmt::format("\nmodes on {} runs\n{}", words_for(role), table.text(width));

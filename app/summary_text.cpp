@@ -8,6 +8,7 @@
 
 #include "app/judged_runs.hpp"
 #include "app/lag_text.hpp"
+#include "app/number_text.hpp"
 #include "app/summary_tables.hpp"
 #include "app/terminal.hpp"
 #include "mixture/criteria.hpp"
@@ -43,6 +44,19 @@ std::string mixture_text(const MixtureResult& result) {
   text += fmt::format("; {} of {} restarts agree\n", chosen->agreeing_restarts, chosen->restarts);
   for (const std::string& warning : selection_warnings(candidates)) text += "          warning: " + warning + "\n";
   return text;
+}
+
+/// What a limit on the number of modes cost, on held-out runs if there are any.
+std::string merging_text(const Archive& archive) {
+  const Role role = judged_role(archive);
+  for (const MergingCost& cost : archive.merging)
+    if (cost.role == role)
+      return fmt::format(
+          "merged    {} components into {} modes: log score on {} runs {}, without the limit ({} modes) {}: a loss of "
+          "{}\n",
+          cost.components, cost.modes, words_for(role), fixed_or_short(cost.log_score, 4), cost.modes_unlimited,
+          fixed_or_short(cost.log_score_unlimited, 4), fixed_or_short(cost.loss, 4));
+  return "";
 }
 
 std::string bank_text(const Bank& bank) {
@@ -87,9 +101,10 @@ std::string verdicts_text(const Archive& archive) {
                         row.filter, name_of(row.verdict), 100 * row.tail_above, 100 * row.tail_above_lower,
                         100 * row.tail_above_upper, 100 * row.tail_below, 100 * row.tail_below_lower,
                         100 * row.tail_below_upper);
-    text += fmt::format("mean NIS {:.3f} [{:.3f}, {:.3f}]", row.nis_mean, row.nis_lower, row.nis_upper);
+    text += fmt::format("mean NIS {} [{:.3f}, {:.3f}]", fixed_or_short(row.nis_mean, 3), row.nis_lower, row.nis_upper);
     if (!std::isnan(row.nees_mean))
-      text += fmt::format("; NEES {:.3f} [{:.3f}, {:.3f}]", row.nees_mean, row.nees_lower, row.nees_upper);
+      text +=
+          fmt::format("; NEES {} [{:.3f}, {:.3f}]", fixed_or_short(row.nees_mean, 3), row.nees_lower, row.nees_upper);
     if (row.state_rmse.size() > 0 && row.state_rmse.allFinite())
       text += fmt::format("; state RMSE {:.4g}", fmt::join(row.state_rmse, " "));
     text += row.flags.empty() ? "\n" : fmt::format("\n{:>11} {}\n", "", row.flags);
@@ -110,10 +125,12 @@ std::string horizon_text(const Archive& archive) {
                                  "filter", "samples", "scored", "log score", "rmse");
   for (const HorizonRow& row : archive.horizons)
     if (row.run == "*" && row.role == role)
-      text += fmt::format("{:<11} {:>8} {:>8} {:>10.4f} {:>10.5f}\n", row.filter, row.horizon, row.samples,
-                          row.log_score, fmt::join(row.rmse, " "));
+      text += fmt::format("{:<11} {:>8} {:>8} {:>10} {:>10}\n", row.filter, row.horizon, row.samples,
+                          fixed_or_short(row.log_score, 4), fixed_or_short_list(row.rmse, 5));
   return text;
 }
+
+std::string gained(double nats) { return (nats >= 0.0 ? "+" : "") + fixed_or_short(nats, 3); }
 
 std::string gain_text(const Archive& archive) {
   const Role role = judged_role(archive);
@@ -123,9 +140,9 @@ std::string gain_text(const Archive& archive) {
   if (!bank || !baseline || !noise_only) return "";
   const double over_noise = bank->log_score - noise_only->log_score;
   return fmt::format(
-      "\nOn {} runs the bank gains {:+.3f} nats/sample over one Kalman filter (baseline) and {:+.3f} over noise\n"
+      "\nOn {} runs the bank gains {} nats/sample over one Kalman filter (baseline) and {} over noise\n"
       "switching alone (noise_only): {}.\n",
-      words_for(role), bank->log_score - baseline->log_score, over_noise,
+      words_for(role), gained(bank->log_score - baseline->log_score), gained(over_noise),
       role == Role::train ? "nothing was held out, so neither is evidence"
       : over_noise > 0    ? "that excess is its evidence for modes of motion"
                           : "no evidence for modes of motion beyond changing noise");
@@ -205,7 +222,7 @@ std::string summary_text(const Archive& archive, int width) {
     text += windows_text(*archive.windows, counts);
   }
   if (archive.mixture) text += mixture_text(*archive.mixture);
-  if (archive.bank) text += bank_text(*archive.bank);
+  if (archive.bank) text += bank_text(*archive.bank) + merging_text(archive);
   text += residuals_text(archive);
   if (!archive.summary.empty())
     text += "\n" + scores_text(archive, width) + verdicts_text(archive) + horizon_text(archive) + gain_text(archive);

@@ -34,6 +34,11 @@ void validate(const Config& config) {
   require(config.bank.refine == Refine::none || is_linear(config.window),
           fmt::format("bank.refine = em needs window.model = linear or varx, not {}: it fits linear modes",
                       config.window.model));
+  require(config.bank.em.share == Sharing::none || config.bank.refine == Refine::em,
+          fmt::format("bank.share = {} needs bank.refine = em: it is chosen by the score of training runs left out of "
+                      "refinement. bank.noise = shared gives unrefined modes one Q; in a study, "
+                      "study.when = bank.share if bank.refine = em",
+                      name_of(config.bank.em.share)));
 }
 
 }  // namespace modebank::app

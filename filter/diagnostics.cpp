@@ -2,10 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "filter/calibration.hpp"
+#include "filter/diagnostics_flags.hpp"
 #include "ident/not_a_number.hpp"
 
 namespace modebank {
@@ -14,58 +15,15 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double takes_all = 0.99;         // usage of one mode
-constexpr double unused = 1e-3;            // usage
-constexpr double flat_entropy = 0.95;      // of log K
-constexpr double dominating_spread = 0.5;  // share of trace S
-constexpr double coloured = 0.01;          // whiteness p
-constexpr double negligible_R = 1e-6;      // of the innovations' variance
+constexpr double negligible_R = 1e-6;  // of the innovations' variance
 constexpr double outer_probability = 0.025;
-
-using Series = std::vector<std::vector<double>>;  // run by run
-
-/// Autocorrelation time: variance of the mean over that of as many independent terms.
-double autocorrelation_time(const Series& stretches) {
-  double mean = 0.0, count = 0.0;
-  std::size_t longest = 0;
-  for (const auto& x : stretches) {
-    for (const double value : x) mean += value;
-    count += static_cast<double>(x.size());
-    longest = std::max(longest, x.size());
-  }
-  mean /= count;
-  const auto autocovariance = [&](std::size_t lag) {
-    double sum = 0.0;
-    for (const auto& x : stretches)
-      for (std::size_t k = lag; k < x.size(); ++k) sum += (x[k] - mean) * (x[k - lag] - mean);
-    return sum;
-  };
-  const double variance = autocovariance(0);
-  if (!(variance > 0.0)) return 1.0;
-  double time = -1.0;
-  for (std::size_t lag = 0; lag + 1 < longest; lag += 2) {
-    const double pair = (lag == 0 ? variance : autocovariance(lag)) + autocovariance(lag + 1);
-    if (pair <= 0.0) break;
-    time += 2.0 * pair / variance;
-  }
-  return std::max(1.0, time);
-}
-
-double mean_of(const Series& stretches) {
-  double sum = 0.0, count = 0.0;
-  for (const auto& x : stretches)
-    for (const double value : x) {
-      sum += value;
-      count += 1.0;
-    }
-  return count > 0.0 ? sum / count : not_a_number;
-}
 
 /// What is known of the samples that belong to one row.
 struct Collected {
-  Index samples = 0, scores = 0, above = 0, below = 0, entropy_samples = 0;
-  double usage = 0.0, entropy = 0.0, spread = 0.0, innovation = 0.0, visits = 0.0, visited = 0.0;
-  Series nis, nees;
+  Index samples = 0, entropy_samples = 0;
+  double usage = 0.0, entropy = 0.0, spread = 0.0, visits = 0.0, visited = 0.0;
+  Evidence evidence;
+  SeriesByRun nees;
   std::vector<double> whiteness;
   Eigen::VectorXd squared_state_error;
   Index state_errors = 0;
@@ -74,19 +32,22 @@ struct Collected {
 /// Collects over runs for the whole filter (mode -1) or one mode.
 class Collector {
  public:
-  Collector(const Bank& bank, Index mode)
-      : bank_(bank),
-        mode_(mode),
+  /// `nees_states`: the states that the NEES is about.
+  Collector(const Bank& bank, Index mode, bool chi_square_nis, const std::vector<Index>& nees_states)
+      : mode_(mode),
+        nees_states_(nees_states),
         lower_(chi_square_quantile(outer_probability, 1.0)),
         upper_(chi_square_quantile(1.0 - outer_probability, 1.0)) {
     sums.squared_state_error.setZero(bank.C.rows());
+    sums.evidence.nis_degrees = static_cast<double>(bank.C.rows());
+    sums.evidence.chi_square_nis = chi_square_nis;
   }
 
   Collected sums;
 
   void add(const Trajectory& run, const RunEvaluation& e) {
-    sums.nis.emplace_back();
-    sums.nees.emplace_back();
+    for (SeriesByRun* series : {&sums.evidence.above, &sums.evidence.below, &sums.evidence.nis, &sums.nees})
+      series->emplace_back();
     std::vector<std::vector<double>> z(static_cast<std::size_t>(e.pit.rows()));
     for (Index k = 0; k < e.log_density.size(); ++k) {
       if (std::isnan(e.log_density(k))) continue;
@@ -102,8 +63,8 @@ class Collector {
   }
 
  private:
-  const Bank& bank_;
   Index mode_;
+  const std::vector<Index>& nees_states_;
   double lower_, upper_;
 
   bool belongs(const RunEvaluation& e, Index k) const {
@@ -125,27 +86,28 @@ class Collector {
   void add_scores(const RunEvaluation& e, Index k, std::vector<std::vector<double>>& z) {
     ++sums.samples;
     if (e.spread_share.size() > 0) sums.spread += e.spread_share(k);
-    sums.innovation += e.innovation_covariance.col(k).reshaped(e.pit.rows(), e.pit.rows()).trace();
     Index signals = 0;
     for (Index i = 0; i < e.pit.rows(); ++i) {
       if (std::isnan(e.pit(i, k))) continue;
       const double score = normal_score(e.pit(i, k));
       ++signals;
-      ++sums.scores;
-      sums.above += score * score > upper_;
-      sums.below += score * score < lower_;
+      sums.evidence.above.back().push_back(score * score > upper_ ? 1.0 : 0.0);
+      sums.evidence.below.back().push_back(score * score < lower_ ? 1.0 : 0.0);
       z[static_cast<std::size_t>(i)].push_back(score);
     }
     // Of fewer signals it has fewer degrees of freedom: scaled to the same mean.
-    sums.nis.back().push_back(e.nis(k) * static_cast<double>(e.pit.rows()) / static_cast<double>(signals));
+    sums.evidence.nis.back().push_back(e.nis(k) * static_cast<double>(e.pit.rows()) / static_cast<double>(signals));
   }
 
   void add_truth(const Trajectory& run, const RunEvaluation& e, Index k) {
     const Index n = run.truth.rows(), all = e.state.rows();
     const Eigen::VectorXd error = e.state.col(k).head(n) - run.truth.col(k);
     if (!error.allFinite()) return;
-    const Eigen::MatrixXd P = e.covariance.col(k).reshaped(all, all).topLeftCorner(n, n);
-    sums.nees.back().push_back(error.dot(P.ldlt().solve(error)));
+    if (!nees_states_.empty()) {
+      const Eigen::MatrixXd P = e.covariance.col(k).reshaped(all, all)(nees_states_, nees_states_);
+      const Eigen::VectorXd judged = error(nees_states_);
+      sums.nees.back().push_back(judged.dot(P.ldlt().solve(judged)));
+    }
     sums.squared_state_error += error.cwiseAbs2();
     ++sums.state_errors;
   }
@@ -170,27 +132,61 @@ class Collector {
   }
 };
 
-/// Whether an interval of a tail's fraction holds all of the band that counts as calibrated, and more: nothing is
-/// known.
-bool says_nothing(double lower, double upper) { return !(lower >= least_tail || upper <= largest_tail); }
-
-/// `gaussian`: the prediction is one Gaussian, so that a true filter's NIS is chi-square.
-Verdict judge(const DiagnosticsRow& row, bool gaussian) {
-  if (row.samples == 0) return Verdict::undecided;
-  if (row.tail_above_lower > largest_tail) return Verdict::overconfident;
-  if (row.tail_above_upper < least_tail || row.tail_below_lower > largest_tail) return Verdict::underconfident;
-  if (row.tail_below_upper < least_tail) return Verdict::overconfident;
-  if (gaussian && row.nis_mean > row.nis_upper) return Verdict::overconfident;
-  if (gaussian && row.nis_mean < row.nis_lower) return Verdict::underconfident;
-  if (says_nothing(row.tail_above_lower, row.tail_above_upper) ||
-      says_nothing(row.tail_below_lower, row.tail_below_upper))
-    return Verdict::undecided;
-  return Verdict::calibrated;
+double total_of(const SeriesByRun& series) {
+  return std::accumulate(series.begin(), series.end(), 0.0, [](double sum, const std::vector<double>& run) {
+    return std::accumulate(run.begin(), run.end(), sum);
+  });
 }
 
-void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
+/// Fractions of the signals in the tails, and their binomial intervals.
+void set_tails(const Evidence& evidence, DiagnosticsRow& row) {
+  double scores = 0.0;
+  for (const std::vector<double>& run : evidence.above) scores += static_cast<double>(run.size());
+  row.tail_above = mean_of(evidence.above);
+  row.tail_below = mean_of(evidence.below);
+  const Interval above = binomial_interval(total_of(evidence.above), scores),
+                 below = binomial_interval(total_of(evidence.below), scores);
+  row.tail_above_lower = above.lower;
+  row.tail_above_upper = above.upper;
+  row.tail_below_lower = below.lower;
+  row.tail_below_upper = below.upper;
+}
 
-DiagnosticsRow make_row(const Collected& c, const Bank& bank) {
+/// The states whose measurement noise is more than next to nothing, so that their stated covariance after the
+/// measurement is more than R.
+std::vector<Index> states_with_noise(const Bank& bank, Role role, const std::vector<Trajectory>& runs,
+                                     const std::vector<RunEvaluation>& evaluations) {
+  const Index n_y = bank.C.rows();
+  Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(n_y);
+  double samples = 0.0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].role != role) continue;
+    const RunEvaluation& e = evaluations.at(i);
+    for (Index k = 0; k < e.log_density.size(); ++k) {
+      if (std::isnan(e.log_density(k))) continue;
+      variance += e.innovation_covariance.col(k).reshaped(n_y, n_y).diagonal().array();
+      samples += 1.0;
+    }
+  }
+  std::vector<Index> states;
+  for (Index i = 0; i < n_y; ++i)
+    if (samples > 0.0 && bank.R(i, i) * samples >= negligible_R * variance(i)) states.push_back(i);
+  return states;
+}
+
+void set_distances(const Collected& c, double n_y, double nees_states, DiagnosticsRow& row) {
+  const SeriesByRun& nis = c.evidence.nis;
+  row.nis_mean = mean_of(nis);
+  const Interval expected = chi_square_mean_interval(nis, autocorrelation_time(nis), n_y);
+  row.nis_lower = expected.lower;
+  row.nis_upper = expected.upper;
+  const Interval nees = chi_square_mean_interval(c.nees, autocorrelation_time(c.nees), nees_states);
+  row.nees_mean = mean_of(c.nees);
+  row.nees_lower = nees.lower;
+  row.nees_upper = nees.upper;
+}
+
+DiagnosticsRow make_row(const Collected& c, Index n_y, Index nees_states) {
   DiagnosticsRow row;
   const double N = c.samples > 0 ? static_cast<double>(c.samples) : not_a_number;
   const double all = c.entropy_samples > 0 ? static_cast<double>(c.entropy_samples) : not_a_number;
@@ -199,79 +195,33 @@ DiagnosticsRow make_row(const Collected& c, const Bank& bank) {
   row.entropy = c.entropy / all;
   row.dwell = c.visits > 0.0 ? c.visited / c.visits : not_a_number;
   row.dwell_model = not_a_number;
-  const double scores = c.scores > 0 ? static_cast<double>(c.scores) : not_a_number;
-  row.tail_above = static_cast<double>(c.above) / scores;
-  row.tail_below = static_cast<double>(c.below) / scores;
-  const Interval above = binomial_interval(c.above, c.scores), below = binomial_interval(c.below, c.scores);
-  row.tail_above_lower = above.lower;
-  row.tail_above_upper = above.upper;
-  row.tail_below_lower = below.lower;
-  row.tail_below_upper = below.upper;
-  row.nis_mean = mean_of(c.nis);
-  const auto n_y = static_cast<double>(bank.C.rows());
-  const Interval nis = chi_square_mean_interval(c.nis, n_y), nees = chi_square_mean_interval(c.nees, n_y);
-  row.nis_lower = nis.lower;
-  row.nis_upper = nis.upper;
-  const bool judged = bank.R.trace() * N >= negligible_R * c.innovation;
-  row.nees_mean = judged ? mean_of(c.nees) : not_a_number;
-  row.nees_lower = judged ? nees.lower : not_a_number;
-  row.nees_upper = judged ? nees.upper : not_a_number;
+  set_tails(c.evidence, row);
+  set_distances(c, static_cast<double>(n_y), static_cast<double>(nees_states), row);
   row.state_rmse =
       (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
   row.whiteness_p = fisher_p(c.whiteness);
   row.spread_share = c.spread / N;
-  row.verdict = judge(row, bank.mode_count() == 1);
+  row.verdict = judge(c.evidence);
   return row;
-}
-
-/// `modes`: rows of the same filter's modes.
-std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes) {
-  std::string flags;
-  for (const DiagnosticsRow& mode : modes) {
-    if (mode.usage > takes_all) add_flag(flags, "one mode takes all (" + std::to_string(mode.mode) + ")");
-    if (mode.usage < unused) add_flag(flags, "mode " + std::to_string(mode.mode) + " unused");
-  }
-  if (!modes.empty() && all.entropy > flat_entropy) add_flag(flags, "probabilities flat");
-  if (all.spread_share > dominating_spread) add_flag(flags, "spread dominates S");
-  if (all.tail_above_lower > largest_tail && all.tail_below_lower > largest_tail) add_flag(flags, "heavy tails");
-  if (all.nis_mean > all.nis_upper) add_flag(flags, "mean NIS above a true filter's");
-  if (all.nis_mean < all.nis_lower) add_flag(flags, "mean NIS below a true filter's");
-  if (all.whiteness_p < coloured) add_flag(flags, "innovations not white");
-  if (all.verdict == Verdict::undecided) add_flag(flags, "too few samples for a verdict");
-  if (std::isnan(all.nees_mean) && all.state_rmse.allFinite())
-    add_flag(flags, "R is as good as zero, so the state is the measurement: no NEES");
-  return flags;
 }
 
 }  // namespace
 
-Interval binomial_interval(Index count, Index samples) {
-  if (samples == 0) return {not_a_number, not_a_number};
-  using boost::math::binomial;
-  const auto n = static_cast<double>(samples), k = static_cast<double>(count);
-  return {count == 0 ? 0.0 : binomial::find_lower_bound_on_p(n, k, outer_probability),
-          count == samples ? 1.0 : binomial::find_upper_bound_on_p(n, k, outer_probability)};
-}
-
-Interval chi_square_mean_interval(const Series& stretches, double degrees) {
-  double count = 0.0;
-  for (const auto& x : stretches) count += static_cast<double>(x.size());
-  if (count == 0.0) return {not_a_number, not_a_number};
-  const double total = std::max(1.0, count * degrees / autocorrelation_time(stretches));
-  return {degrees * chi_square_quantile(outer_probability, total) / total,
-          degrees * chi_square_quantile(1.0 - outer_probability, total) / total};
-}
-
-std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const std::vector<Trajectory>& runs,
+std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
+                                     const std::vector<Trajectory>& runs,
                                      const std::vector<RunEvaluation>& evaluations) {
+  // One Gaussian of known variance per prediction.
+  const bool chi_square_nis =
+      (bank.mode_count() == 1 || options.variant == FilterVariant::kf) && options.noise == FilterNoise::gaussian;
   std::vector<DiagnosticsRow> rows;
   for (const Role role : {Role::train, Role::test}) {
     if (std::none_of(runs.begin(), runs.end(), [role](const Trajectory& run) { return run.role == role; })) continue;
+    const std::vector<Index> nees_states = states_with_noise(bank, role, runs, evaluations);
     const auto row_of = [&](Index mode) {
-      Collector collector(bank, mode);
+      Collector collector(bank, mode, chi_square_nis, nees_states);
       for (std::size_t i = 0; i < runs.size(); ++i)
         if (runs[i].role == role) collector.add(runs[i], evaluations.at(i));
-      DiagnosticsRow row = make_row(collector.sums, bank);
+      DiagnosticsRow row = make_row(collector.sums, bank.C.rows(), std::ssize(nees_states));
       row.filter = filter;
       row.role = role;
       row.mode = mode;
@@ -281,7 +231,7 @@ std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank
     DiagnosticsRow all = row_of(-1);
     std::vector<DiagnosticsRow> modes;
     for (Index mode = 0; bank.mode_count() > 1 && mode < bank.mode_count(); ++mode) modes.push_back(row_of(mode));
-    all.flags = flags_of(all, modes);
+    all.flags = flags_of(all, modes, std::ssize(nees_states));
     rows.push_back(std::move(all));
     rows.insert(rows.end(), modes.begin(), modes.end());
   }

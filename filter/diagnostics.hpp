@@ -6,32 +6,16 @@
 
 #include "filter/bank.hpp"
 #include "filter/evaluate.hpp"
+#include "filter/verdict.hpp"
 #include "ident/trajectory.hpp"
 
 namespace modebank {
-
-/// Whether a filter's stated uncertainty is true, by its PIT tails: overconfident when more than 4 % of the samples lie
-/// above (or fewer than 1 % below) the quantiles that 2.5 % should lie beyond, underconfident the other way round, each
-/// with 95 % confidence. Too many above decides, whatever lies below: that is what hurts. Where the tails do not speak,
-/// the mean NIS does if the filter has one mode (a mixture's NIS is not chi-square, so there it is only flagged).
-/// undecided: the interval of a tail's fraction is wider than the band and could be anything, as with a few hundred
-/// samples.
-enum class Verdict { undecided, calibrated, overconfident, underconfident };
-
-template <>
-struct EnumNames<Verdict> {
-  static constexpr Names<4> values{"undecided", "calibrated", "overconfident", "underconfident"};
-};
-
-/// The band of tail fractions that counts as calibrated.
-inline constexpr double least_tail = 0.01, largest_tail = 0.04;
 
 /// One row of /evaluation/diagnostics: a filter on the pooled runs of a role, or one of its modes there. A mode is
 /// judged on the samples where it was the most probable before the measurement, so that a true filter is calibrated
 /// there, too (the transform is uniform given whatever was known before: Rosenblatt 1952; Diebold, Gunther & Tay 1998).
 /// Intervals hold with 95 %: Clopper & Pearson's (1934) for fractions; chi-square's for mean NIS and NEES, their
-/// degrees of freedom divided by the series' autocorrelation time (initial positive sequence of Geyer 1992). NaN: not
-/// known.
+/// degrees of freedom divided by the series' autocorrelation time. NaN: not known.
 struct DiagnosticsRow {
   std::string filter;
   Role role = Role::train;
@@ -53,18 +37,10 @@ struct DiagnosticsRow {
   std::string flags;  ///< what stands out, separated by "; "
 };
 
-/// Rows of one filter: per role with runs the whole filter, then each mode if there are several.
-std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const std::vector<Trajectory>& runs,
+/// Rows of one filter: per role with runs the whole filter, then each mode if there are several. `options`: of the
+/// filter that made the evaluations.
+std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
+                                     const std::vector<Trajectory>& runs,
                                      const std::vector<RunEvaluation>& evaluations);
-
-/// Limits of `count` successes in `samples` independent trials, Clopper & Pearson, 95 %.
-struct Interval {
-  double lower, upper;
-};
-Interval binomial_interval(Eigen::Index count, Eigen::Index samples);
-
-/// Where the mean of a chi-square series with `degrees` degrees of freedom per term lies with 95 %. `stretches`: the
-/// series, run by run.
-Interval chi_square_mean_interval(const std::vector<std::vector<double>>& stretches, double degrees);
 
 }  // namespace modebank

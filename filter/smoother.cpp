@@ -34,11 +34,27 @@ void smooth(const Bank& bank, const Trajectory& run, const FilterOptions& option
   }
 }
 
-/// The best history of every mode, moment by moment.
+/// What the noise of every moment's step was multiplied by in the filter itself; ones unless it adapts.
+template <int N, int NY>
+Eigen::VectorXd noise_scales(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory) {
+  Eigen::VectorXd scales = Eigen::VectorXd::Ones(run.count());
+  if (!model.adaptive) return scales;
+  FilterStep<N, NY> step(model);
+  FilterState<N> state = initial_state(model);
+  for (Index t = 0; t < run.count(); ++t) {
+    scales(t) = state.noise_scale;
+    step_to(model, run, t, trajectory, state, step);
+  }
+  return scales;
+}
+
+/// The best history of every mode, moment by moment. `scales`: as noise_scales says. A scale of its own would follow
+/// this pass, whose modes count as equally probable at every moment, and take a change of mode for one of scale.
 template <int N, int NY>
 class BestHistories {
  public:
-  BestHistories(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory)
+  BestHistories(const FilterModel<N, NY>& model, const Eigen::VectorXd& scales, const RunInstants& run,
+                const Trajectory& trajectory)
       : K_(model.mode_count()), log_transition_(model.transition.matrix().array().log()) {
     from_.setZero(K_, run.count());
     best_.setZero(run.count());
@@ -48,6 +64,7 @@ class BestHistories {
     for (Index t = 0; t < run.count(); ++t) {
       const bool starts = run.instants[static_cast<std::size_t>(t)].starts;
       state.mode_probability.setConstant(1.0 / static_cast<double>(K_));  // histories are scored here, not there
+      state.noise_scale = scales(t);
       const bool measured = step_to(model, run, t, trajectory, state, step);
       if (starts)
         score = model.initial_probability.array().max(mode_probability_floor).log();
@@ -93,10 +110,11 @@ class BestHistories {
 
 template <int N, int NY>
 Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const RunInstants& instants,
-                              const FilterOptions& options) {
-  const FilterModel<N, NY> model(bank, options);
+                              const FilterOptions& options, const FilterOptions& pairs) {
+  const FilterModel<N, NY> model(bank, pairs);
   if (model.mode_count() == 1) return Eigen::VectorXi::Zero(instants.count());
-  return BestHistories<N, NY>(model, instants, run).trace(instants);
+  const Eigen::VectorXd scales = noise_scales(FilterModel<N, NY>(bank, options), instants, run);
+  return BestHistories<N, NY>(model, scales, instants, run).trace(instants);
 }
 
 /// The pairs of modes that GPB2 steps through, whatever the variant.
@@ -108,7 +126,7 @@ Eigen::VectorXi viterbi(const Bank& bank, const Trajectory& run, const FilterOpt
   if (options.variant == FilterVariant::mmae)
     steady.transition = TransitionMatrix(Eigen::MatrixXd::Identity(bank.mode_count(), bank.mode_count()));
   const Eigen::VectorXi modes = with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() {
-    return best_sequence<N, NY>(steady, run, instants, pairs);
+    return best_sequence<N, NY>(steady, run, instants, options, pairs);
   });
   Eigen::VectorXi sequence = Eigen::VectorXi::Constant(run.samples(), -1);
   for (Index t = 0; t < instants.count(); ++t)

@@ -11,6 +11,7 @@
 #include "filter/diagnostics.hpp"
 #include "filter/evaluate.hpp"
 #include "filter/horizon.hpp"
+#include "filter/merging_cost.hpp"
 #include "filter/scores.hpp"
 #include "ident/fit_window.hpp"
 #include "ident/lag_report.hpp"
@@ -62,6 +63,7 @@ struct Archive {
   std::vector<HorizonRow> horizons;  ///< with filter.horizon
   std::vector<DiagnosticsRow> diagnostics;
   std::vector<ResidualTestSet> residual_tests;
+  std::vector<MergingCost> merging = {};  ///< with bank.modes, where components were merged
 };
 
 inline constexpr const char* schema_version = "1.0";

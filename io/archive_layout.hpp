@@ -207,6 +207,7 @@ void exchange_archive(Io& io, A& archive) {
   exchange_part(io, "bank", archive.bank, {}, [&](auto& member, auto& part) {
     exchange_one(member, part);
     exchange_part(member, "unrefined", archive.unrefined, {}, exchange_one);
+    exchange_merging(member, archive.merging);
   });
   exchange_part(io, "baseline", archive.baseline, {}, exchange_one);
   exchange_part(io, "noise_only", archive.noise_only, {}, exchange_one);

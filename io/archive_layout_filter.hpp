@@ -80,6 +80,15 @@ void exchange_bank(Io& io, B& bank, const Units& units) {
       [&](auto& stored) { exchange_modes(io, stored, states, inputs, unit_of(bank.motion_parameters)); });
 }
 
+template <class Io, class R>
+void exchange_merging(Io& io, R& rows) {
+  io.optional_table("merged", rows, column("role", &MergingCost::role), column("components", &MergingCost::components),
+                    column("modes_unlimited", &MergingCost::modes_unlimited), column("modes", &MergingCost::modes),
+                    column("samples", &MergingCost::samples),
+                    column("log_score_unlimited", &MergingCost::log_score_unlimited, "nat"),
+                    column("log_score", &MergingCost::log_score, "nat"), column("loss", &MergingCost::loss, "nat"));
+}
+
 template <class Io, class E>
 void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.field("prediction", evaluation.prediction, {"N", "n"}, states);

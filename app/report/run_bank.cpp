@@ -107,6 +107,18 @@ json screened_of(const Bank& bank) {
   return list;
 }
 
+/// What a limit on the number of modes cost on the runs of a role; null without one.
+json merging_of(const Archive& archive, Role role) {
+  for (const MergingCost& cost : archive.merging)
+    if (cost.role == role)
+      return {{"components", cost.components},
+              {"modes_unlimited", cost.modes_unlimited},
+              {"log_score_unlimited", number(cost.log_score_unlimited)},
+              {"log_score", number(cost.log_score)},
+              {"loss", number(cost.loss)}};
+  return nullptr;
+}
+
 }  // namespace
 
 nlohmann::json bank_section(const Archive& archive) {
@@ -133,6 +145,7 @@ nlohmann::json bank_section(const Archive& archive) {
           {"R", number_list(bank.R.diagonal())},
           {"transition", transition_of(bank)},
           {"screened", screened_of(bank)},
+          {"merged", merging_of(archive, role)},
           {"refined", archive.unrefined.has_value()}};
 }
 

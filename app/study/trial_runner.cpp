@@ -80,11 +80,13 @@ void TrialRunner::learn(const Config& config) {
         Archive part;
         part.bank = archive_.bank;
         part.unrefined = archive_.unrefined;
+        part.merging = archive_.merging;
         return part;
       },
       [&](Archive&& part) {
         archive_.bank = std::move(part.bank);
         archive_.unrefined = std::move(part.unrefined);
+        archive_.merging = std::move(part.merging);
       });
 }
 

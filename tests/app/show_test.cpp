@@ -2,6 +2,7 @@
 #include <limits>
 #include <sstream>
 
+#include "app/number_text.hpp"
 #include "app/sparkline.hpp"
 #include "app/terminal.hpp"
 #include "app/text_table.hpp"
@@ -35,6 +36,15 @@ TEST(Sparkline, HeightsAreEighthsOrAMarkEach) {
   values << 0, 0.125, 0.5, 1, 7, std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(app::sparkline(values, true), " ▁▄██?");
   EXPECT_EQ(app::sparkline(values, false), " .+@@?");
+}
+
+TEST(NumberText, IsFixedWhereThatFits) {
+  EXPECT_EQ(app::fixed_or_short(0.0348, 5), "0.03480");
+  EXPECT_EQ(app::fixed_or_short(-99999.25, 1), "-99999.2");
+  EXPECT_EQ(app::fixed_or_short(1e5, 3), "1e+05");
+  EXPECT_EQ(app::fixed_or_short(-1.23456e15, 5), "-1.235e+15");
+  EXPECT_EQ(app::fixed_or_short(std::numeric_limits<double>::quiet_NaN(), 2), "nan");
+  EXPECT_EQ(app::fixed_or_short_list(std::vector<double>{0.5, 2e15}, 2), "0.50 2e+15");
 }
 
 TEST(Wrapped, ContinuesUnderTheLabel) {

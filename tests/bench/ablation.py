@@ -1,52 +1,191 @@
 #!/usr/bin/env python3
 """What each feature of a configuration is worth on held-out runs, both ways round.
 
-usage: ablation.py MODEBANK CONFIG [--key value ...]     (a data root is taken from MODEBANK_DATA)
+usage: ablation.py MODEBANK CONFIG [--sets ICE,FLOORING] [--cache FILE.json] [--jobs 2] [--only TEXT] [--key value ...]
 
-Runs CONFIG as it is and with one feature at a time taken back, each once as configured and once with training and test
-runs swapped, and prints a Markdown table of held-out scores: log score [nats/sample], RMSE and PIT tails of each fold.
-Nothing is chosen here: every choice is made by the program inside the training runs. Needs Python 3 alone.
+Runs CONFIG as it is and with one feature at a time taken back, changed or added, each with either half of the runs
+training, and prints a Markdown table per data set: held-out log score [nats/sample], one-step RMSE and PIT tails of
+each fold. `--sets A,B`: CONFIG's data paths hold A; the table is made for A, then with B in its place. `--only`: rows
+whose name holds TEXT, beside the first. Other options go to the program (a data root is taken from MODEBANK_DATA).
+
+Every finished run is kept in the cache, under a hash of the program, the configuration, the options and the sizes and
+times of the data files: a second call goes on where the first one stopped, and prints the table alone when nothing
+is left. Windows and mixture are made once per fold and shared by all rows that leave them as they are. Nothing is
+chosen here: every choice is made by the program inside the training runs. Needs Python 3 alone.
 """
+import concurrent.futures
+import glob
+import hashlib
 import json
 import os
+import re
+import resource
 import subprocess
 import sys
 import tempfile
+import threading
 
-# name, options that take the feature back; None: the configuration as it is
+# name, options that change the feature ("bank:" before them: the first row's bank, run so)
 FEATURES = [
     ("all of it", {}),
-    ("without the adaptive noise scale", {"filter.noise": "gaussian"}),
+    ("noise as learned (gaussian), refined for it", {"filter.noise": "gaussian"}),
+    ("the same bank, noise as learned", {"bank:filter.noise": "gaussian"}),
     ("without refinement", {"bank.refine": "none"}),
-    ("without either", {"bank.refine": "none", "filter.noise": "gaussian"}),
-    ("without lagged states (linear)", {"window.model": "linear", "window.state_lags": "1"}),
-    ("without cross-validation", {"bank.folds": "1"}),
-    ("without restarts", {"bank.restarts": "0"}),
+    ("without refinement, noise as learned", {"bank.refine": "none", "filter.noise": "gaussian"}),
+    ("without cross-validation (bank.folds = 1)", {"bank.folds": "1"}),
+    ("without random starts (bank.restarts = 0)", {"bank.restarts": "0"}),
+    ("with eight random starts", {"bank.restarts": "8"}),
+    ("mixture: 5 restarts, 2 moves", {"mixture.restarts": "5", "mixture.split_merge": "2"}),
     ("without screening", {"bank.screen": "false"}),
     ("without measurement noise (R = 1e-12)", {"bank.measurement_variance": "1e-12"}),
+    ("measurement noise given (R = 1e-6)", {"bank.measurement_variance": "1e-6"}),
     ("modes share what cross-validation likes most", {"bank.share": "best"}),
     ("modes share theta", {"bank.share": "theta"}),
     ("modes share Q", {"bank.share": "noise"}),
-    ("with parameter noise", {"filter.parameter_noise": "true"}),
-    ("without switching of parameters in mixing (mmae)", {"filter.variant": "mmae"}),
+    ("with parameter noise, refined for it", {"filter.parameter_noise": "true"}),
+    ("one lag", {"window.model": "linear", "window.state_lags": "1"}),
+    ("two lags", {"window.state_lags": "2"}),
+    ("four lags", {"window.state_lags": "4"}),
+    ("windows by least squares (no Huber)", {"window.loss": "trivial"}),
+    ("mixture over parameters alone", {"mixture.features": "parameters"}),
+    ("diagonal mixture", {"mixture.covariance": "diagonal"}),
+    ("at most 8 modes (bank.modes)", {"bank.modes": "8"}),
     ("at most 5 modes", {"bank.modes": "5"}),
+    ("at most 3 modes", {"bank.modes": "3"}),
+    ("the same bank in gpb1", {"bank:filter.variant": "gpb1"}),
+    ("the same bank in gpb2", {"bank:filter.variant": "gpb2"}),
+    ("the same bank in mmae", {"bank:filter.variant": "mmae"}),
+    ("the same bank in salvi2025", {"bank:filter.variant": "salvi2025"}),
+    ("one Kalman filter, adaptive noise (kf)", {"filter.variant": "kf"}),
 ]
+EARLY = ("data.", "window.", "mixture.", "job.")  # what windows and mixture depend on
 
 
-def run(program, config, options, archive):
-    arguments = [program, "run", config, "--archive.output", archive]
-    for key, value in options.items():
-        arguments += ["--" + key, value]
-    done = subprocess.run(arguments, capture_output=True, text=True)
-    if done.returncode != 0:
-        raise RuntimeError(done.stderr.strip().splitlines()[-1] if done.stderr.strip() else "failed")
-    shown = subprocess.run([program, "show", archive, "/evaluation/summary", "--json"], capture_output=True, text=True,
-                           check=True)
-    return json.loads(shown.stdout)["value"]
+class Failed(RuntimeError):
+    pass
 
 
-def pooled(rows, filter_name):
-    return next(r for r in rows if r["filter"] == filter_name and r["role"] == "test" and r["run"] == "*")
+class Bench:
+    """The program, the configuration and what is known already."""
+
+    def __init__(self, program, config, cache):
+        self.program, self.config, self.cache_file = program, config, cache
+        self.lock = threading.Lock()
+        self.cache = {}
+        if os.path.exists(cache):
+            with open(cache) as file:
+                self.cache = json.load(file)
+        with open(program, "rb") as file:
+            self.program_hash = hashlib.sha256(file.read()).hexdigest()
+        with open(config) as file:
+            self.text = file.read()
+
+    def call(self, *arguments):
+        done = subprocess.run([self.program, *arguments], capture_output=True, text=True)
+        if done.returncode != 0:
+            raise Failed((done.stderr.strip().splitlines() or ["failed"])[-1])
+        return done.stdout
+
+    def key(self, options):
+        identity = [self.program_hash, self.text, sorted(options.items()), os.environ.get("MODEBANK_DATA", ""),
+                    data_files(self.text, options)]
+        return hashlib.sha256(json.dumps(identity).encode()).hexdigest()
+
+    def store(self, key, value):
+        with self.lock:
+            self.cache[key] = value
+            new = self.cache_file + ".new"
+            with open(new, "w") as file:
+                json.dump(self.cache, file)
+            os.replace(new, self.cache_file)
+
+
+def configured(text, key):
+    """A key's value in [data]; only paths are looked up so."""
+    found = re.search(r"^\s*%s\s*=\s*([^#\n]*)" % key, text, re.M)
+    return found.group(1).strip() if found else ""
+
+
+def data_files(text, options):
+    root = options.get("data.root") or configured(text, "root") or os.environ.get("MODEBANK_DATA", "")
+    files = []
+    for key in ("inputs", "states"):
+        pattern = options.get("data." + key) or configured(text, key)
+        for path in sorted(glob.glob(os.path.join(root, pattern))) if pattern else []:
+            state = os.stat(path)
+            files.append([path, state.st_size, state.st_mtime_ns])
+    return files
+
+
+class Stages:
+    """Windows and mixture, and the first row's bank, of each fold: made when they are first needed, and only once."""
+
+    def __init__(self, bench, folder):
+        self.bench, self.folder = bench, folder
+        self.lock = threading.Lock()
+        self.locks = {}
+
+    def made(self, key, make):
+        path = os.path.join(self.folder, key + ".h5")
+        with self.lock:
+            mine = self.locks.setdefault(key, threading.Lock())
+        with mine:
+            if not os.path.exists(path):
+                make(path)
+        return path
+
+    def clustered(self, options):
+        early = {k: v for k, v in options.items() if k.startswith(EARLY)}
+        key = "cluster_" + self.bench.key(early)[:16]
+        return self.made(key, lambda path: self.bench.call("cluster", self.bench.config, *flags(early),
+                                                            "--archive.output", path))
+
+    def learned(self, options):
+        return self.made("bank_" + self.bench.key(options)[:16], lambda path: self.evaluate(options, path))
+
+    def evaluate(self, options, path):
+        self.bench.call("evaluate", self.bench.config, *flags(options), "--archive.input", self.clustered(options),
+                        "--archive.output", path)
+
+    def rows(self, given, feature):
+        """Held-out rows of the summary by filter."""
+        key = self.bench.key({**given, **feature})
+        if key in self.bench.cache:
+            return self.bench.cache[key]
+        changed = {k.removeprefix("bank:"): v for k, v in feature.items()}
+        if not feature:
+            rows = self.summary(self.learned(given))
+        else:
+            with tempfile.TemporaryDirectory(dir=self.folder) as folder:
+                path = os.path.join(folder, "run.h5")
+                if any(k.startswith("bank:") for k in feature):
+                    self.bench.call("evaluate", self.bench.config, *flags({**given, **changed}), "--archive.bank",
+                                    self.learned(given), "--archive.output", path)
+                else:
+                    self.evaluate({**given, **changed}, path)
+                rows = self.summary(path)
+        self.bench.store(key, rows)
+        return rows
+
+    def summary(self, path):
+        table = json.loads(self.bench.call("show", path, "/evaluation/summary", "--json"))["value"]
+        return {r["filter"]: r for r in table if r["role"] == "test" and r["run"] == "*"}
+
+
+def flags(options):
+    return [text for key, value in {**options, "job.threads": "1"}.items() for text in ("--" + key, value)]
+
+
+def halves(bench, given):
+    """The options of the two folds: as configured, and with training and test runs exchanged."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "runs.h5")
+        bench.call("identify", bench.config, *flags({**given, "window.step": "100"}), "--archive.output", path)
+        names = json.loads(bench.call("show", path, "/data", "--json"))["members"]
+        roles = {name: json.loads(bench.call("show", path, "/data/" + name, "--json"))["attributes"]["role"]
+                 for name in names}
+    chosen = {role: ",".join(name for name in roles if roles[name] == role) for role in ("train", "test")}
+    return [given, {**given, "data.train": chosen["test"], "data.test": chosen["train"]}]
 
 
 def rmse(row):
@@ -54,41 +193,57 @@ def rmse(row):
     return value[0] if isinstance(value, list) else value
 
 
-def cells(folds, filter_name):
-    scores = [pooled(rows, filter_name) for rows in folds]
+def cells(folds, name):
+    scores = [rows[name] for rows in folds]
     mean = sum(s["log_score"] for s in scores) / len(scores)
-    mean_rmse = sum(rmse(s) for s in scores) / len(scores)
-    text = [f"{mean:.3f} / {mean_rmse:.4f}"]
+    text = [f"{mean:.3f} / {sum(map(rmse, scores)) / len(scores):.4f}"]
     for s in scores:
         text.append(f"{s['log_score']:.3f} / {rmse(s):.4f}")
-        text.append(f"{100 * s['tail_above']:.1f} / {100 * s['tail_below']:.1f}")
+        text.append(f"{100 * s['tail_above']:.1f}, {100 * s['tail_below']:.1f}")
     return " | ".join(text)
 
 
+def outcome(future):
+    try:
+        return future.result()
+    except Failed as error:
+        return str(error)
+
+
+def table(stages, title, folds, features, pool):
+    running = [(name, [pool.submit(stages.rows, fold, feature) for fold in folds]) for name, feature in features]
+    print(f"\n| {title} | mean score / RMSE | first half trains | tails | second half trains | tails |")
+    print("|---|---|---|---|---|---|", flush=True)
+    for name, futures in running:
+        results = [outcome(future) for future in futures]
+        errors = [r for r in results if isinstance(r, str)]
+        print(f"| {name} | " + (errors[0] if errors else cells(results, "bank")) + " |", flush=True)
+        if name == features[0][0] and not errors:
+            for competitor in ("noise_only", "baseline"):
+                print(f"| competitor: {competitor} | {cells(results, competitor)} |", flush=True)
+
+
+def replaced(text, given, old, new):
+    paths = {"data." + key: given.get("data." + key) or configured(text, key) for key in ("inputs", "states")}
+    return {**given, **{key: path.replace(old, new) for key, path in paths.items() if path}}
+
+
 def main():
-    if len(sys.argv) < 3:
+    if len(sys.argv) < 3 or len(sys.argv) % 2 == 0:
         sys.exit(__doc__)
-    program, config = sys.argv[1], sys.argv[2]
+    program, config = os.path.abspath(sys.argv[1]), sys.argv[2]
     given = dict(zip((a.removeprefix("--") for a in sys.argv[3::2]), sys.argv[4::2]))
-    with tempfile.TemporaryDirectory() as folder:
-        archive = os.path.join(folder, "run.h5")
-        first = run(program, config, given, archive)
-        names = {role: sorted({r["run"] for r in first if r["role"] == role and r["run"] != "*"})
-                 for role in ("train", "test")}
-        swapped = {"data.train": ",".join(names["test"]), "data.test": ",".join(names["train"])}
-        print("| held out | mean score / RMSE | fold 1 | tails % above / below | fold 2 | tails % above / below |")
-        print("|---|---|---|---|---|---|")
-        for name, options in FEATURES:
-            try:
-                folds = [run(program, config, {**given, **options}, archive),
-                         run(program, config, {**given, **options, **swapped}, archive)]
-            except RuntimeError as error:
-                print(f"| {name} | {error} |")
-                continue
-            print(f"| {name} | {cells(folds, 'bank')} |", flush=True)
-            if not options:
-                print(f"| competitor: noise_only | {cells(folds, 'noise_only')} |")
-                print(f"| competitor: baseline | {cells(folds, 'baseline')} |", flush=True)
+    sets = [name.strip() for name in given.pop("sets", "").split(",")]
+    cache, jobs, only = given.pop("cache", "ablation.json"), int(given.pop("jobs", "2")), given.pop("only", "")
+    features = FEATURES[:1] + [f for f in FEATURES[1:] if only in f[0]]
+    bench = Bench(program, config, cache)
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        stages = Stages(bench, folder)
+        for name in sets:
+            options = given if name == sets[0] else replaced(bench.text, given, sets[0], name)
+            table(stages, name or "held out", halves(bench, options), features, pool)
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    print(f"\n{used.ru_utime + used.ru_stime:.0f} s of CPU time in this call", file=sys.stderr)
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ std::vector<DiagnosticsRow> diagnose_runs(const Bank& filter_bank, const std::ve
     evaluations.push_back(evaluate_run(filter_bank, run, options));
     smooth_run(filter_bank, run, options, evaluations.back());
   }
-  return diagnose("bank", filter_bank, runs, evaluations);
+  return diagnose("bank", filter_bank, options, runs, evaluations);
 }
 
 std::vector<Trajectory> truth_runs(const Bank& bank, Index runs, Index samples) {
@@ -89,11 +89,22 @@ TEST(Diagnostics, NisSpeaksWhereTheTailsDoNot) {
   const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
   std::vector<Trajectory> runs = truth_runs(bank, 1, 800);
   std::vector<RunEvaluation> evaluations{evaluate_run(bank, runs[0], {})};
-  EXPECT_EQ(diagnose("bank", bank, runs, evaluations).front().verdict, Verdict::calibrated);
+  EXPECT_EQ(diagnose("bank", bank, {}, runs, evaluations).front().verdict, Verdict::calibrated);
   evaluations[0].nis *= 0.5;
-  const DiagnosticsRow row = diagnose("bank", bank, runs, evaluations).front();
+  const DiagnosticsRow row = diagnose("bank", bank, {}, runs, evaluations).front();
   EXPECT_EQ(row.verdict, Verdict::underconfident);
   EXPECT_THAT(row.flags, testing::HasSubstr("mean NIS below a true filter's"));
+}
+
+TEST(Diagnostics, FlagsAStateCovarianceThatIsWrong) {
+  const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-3), 0);
+  const std::vector<Trajectory> runs = truth_runs(bank, 2, 1500);
+  for (const double factor : {1.0 / 16, 16.0}) {
+    Bank wrong = bank;
+    wrong.modes[0].Q *= factor;
+    EXPECT_THAT(diagnose_runs(wrong, runs).front().flags,
+                testing::HasSubstr(factor < 1 ? "NEES above a true filter's" : "NEES below a true filter's"));
+  }
 }
 
 TEST(Diagnostics, NoNeesWhereTheStateIsTheMeasurement) {
@@ -105,6 +116,17 @@ TEST(Diagnostics, NoNeesWhereTheStateIsTheMeasurement) {
   EXPECT_TRUE(std::isnan(row.nees_mean) && std::isnan(row.nees_upper));
   EXPECT_NEAR(row.state_rmse(0), 1e-3, 1e-4);
   EXPECT_THAT(row.flags, testing::HasSubstr("no NEES"));
+}
+
+/// One gyro of two says exactly what there is: the other is judged.
+TEST(Diagnostics, NeesIsAboutTheStatesThatAreNotTheMeasurement) {
+  Bank bank = test::single_mode(example_bank(2, 1, 1, 1e-4), 0);
+  const std::vector<Trajectory> runs = truth_runs(bank, 2, 1500);
+  bank.R(1, 1) = 1e-13;
+  const DiagnosticsRow row = diagnose_runs(bank, runs).front();
+  EXPECT_NEAR(row.nees_mean, 1.0, 0.35);  // one degree of freedom; the filter trusts the other gyro too much
+  EXPECT_LT(row.nees_upper, 1.2);
+  EXPECT_THAT(row.flags, testing::HasSubstr("NEES of the others alone"));
 }
 
 TEST(Diagnostics, ASwitchingBankIsCalibratedModeByMode) {
@@ -160,29 +182,6 @@ TEST(Diagnostics, FlagsWhatStandsOut) {
   wrong.modes[0].model.A *= 0.1;
   wrong.modes[0].Q *= 4.0;
   EXPECT_THAT(flags(wrong, truth_runs(test::single_mode(bank, 0), 1, 1500)), testing::HasSubstr("not white"));
-}
-
-TEST(Diagnostics, IntervalsAreTheBooks) {
-  // Clopper & Pearson (1934), table for 95 %: 3 of 10; 0 of 10; 10 of 10.
-  EXPECT_NEAR(binomial_interval(3, 10).lower, 0.0667, 5e-5);
-  EXPECT_NEAR(binomial_interval(3, 10).upper, 0.6525, 5e-5);
-  EXPECT_EQ(binomial_interval(0, 10).lower, 0.0);
-  EXPECT_NEAR(binomial_interval(0, 10).upper, 0.3085, 5e-5);
-  EXPECT_NEAR(binomial_interval(10, 10).lower, 0.6915, 5e-5);
-  EXPECT_TRUE(std::isnan(binomial_interval(0, 0).lower));
-  // White: chi-square's own quantiles, 74.22 and 129.56 at 100 degrees of freedom.
-  const Interval white = chi_square_mean_interval({std::vector<double>(100, 1.0)}, 1.0);
-  EXPECT_NEAR(white.lower, 0.7422, 5e-5);
-  EXPECT_NEAR(white.upper, 1.2956, 5e-5);
-  // Every value twice: as wide as for half as many.
-  std::mt19937_64 generator(1);
-  std::vector<double> once, twice;
-  for (int i = 0; i < 4000; ++i) {
-    once.push_back(static_cast<double>(generator() >> 11));
-    twice.insert(twice.end(), {once.back(), once.back()});
-  }
-  const Interval a = chi_square_mean_interval({once}, 1.0), b = chi_square_mean_interval({twice}, 1.0);
-  EXPECT_NEAR((b.upper - b.lower) / (a.upper - a.lower), 1.0, 0.1);
 }
 
 }  // namespace

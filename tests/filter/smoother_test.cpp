@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "filter/bank_filter.hpp"
 #include "filter/horizon.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -132,31 +133,61 @@ TEST(Smoother, StaysFiniteWhereNoiseIsSingular) {
   }
 }
 
+/// The best of all sequences by their joint density, the state being measured exactly. `scale`: of Q, sample by sample.
+Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& scale) {
+  const int K = static_cast<int>(bank.mode_count()), samples = static_cast<int>(run.samples());
+  double best = -1e300;
+  Eigen::VectorXi result(samples);
+  for (int code = 0; code < std::pow(K, samples); ++code) {
+    Eigen::VectorXi s(samples);
+    for (int k = 0, rest = code; k < samples; ++k, rest /= K) s(k) = rest % K;
+    double value = std::log(bank.initial_probability(s(0)));
+    for (Index k = 1; k < samples; ++k) {
+      const Mode& mode = bank.modes[static_cast<std::size_t>(s(k))];
+      const double e = run.state(0, k) - mode.model.next(run.state.col(k - 1), run.input.col(k - 1))(0);
+      const double Q = scale(k) * mode.Q(0, 0);
+      value += std::log(bank.transition.matrix()(s(k - 1), s(k))) - 0.5 * (std::log(Q) + e * e / Q);
+    }
+    if (value > best) {
+      best = value;
+      result = s;
+    }
+  }
+  return result;
+}
+
 TEST(Viterbi, IsTheBestOfAllSequencesWhenTheStateIsMeasuredExactly) {
   Bank bank = example_bank(1, 1, 3, 1e-16);
   bank.transition = TransitionMatrix((Eigen::MatrixXd(3, 3) << 0.7, 0.2, 0.1, 0.1, 0.8, 0.1, 0.3, 0.1, 0.6).finished());
   bank.initial_probability << 0.5, 0.3, 0.2;
   const Trajectory run = simulate_bank(bank, 8, 24);
-  // All 3^8 sequences by their joint density.
-  double best = -1e300;
-  Eigen::VectorXi expected(8);
-  for (int code = 0; code < 6561; ++code) {
-    Eigen::VectorXi s(8);
-    for (int k = 0, rest = code; k < 8; ++k, rest /= 3) s(k) = rest % 3;
-    double value = std::log(bank.initial_probability(s(0)));
-    for (Index k = 1; k < 8; ++k) {
-      const Mode& mode = bank.modes[static_cast<std::size_t>(s(k))];
-      const double e = run.state(0, k) - mode.model.next(run.state.col(k - 1), run.input.col(k - 1))(0);
-      value +=
-          std::log(bank.transition.matrix()(s(k - 1), s(k))) - 0.5 * (std::log(mode.Q(0, 0)) + e * e / mode.Q(0, 0));
-    }
-    if (value > best) {
-      best = value;
-      expected = s;
-    }
-  }
+  const Eigen::VectorXi expected = best_sequence(bank, run, Eigen::VectorXd::Ones(8));
   for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::salvi2025})
     EXPECT_EQ(smoothed(bank, run, {variant}).viterbi_mode, expected) << name_of(variant);
+}
+
+/// Given the scale that the filter itself had at every step.
+TEST(Viterbi, KeepsToTheFiltersNoiseScale) {
+  Bank bank = example_bank(1, 1, 3, 1e-16);
+  bank.transition = TransitionMatrix((Eigen::MatrixXd(3, 3) << 0.7, 0.2, 0.1, 0.1, 0.8, 0.1, 0.3, 0.1, 0.6).finished());
+  bank.noise_adaptation = {0.7, 1.0};
+  const FilterOptions options{.noise = FilterNoise::adaptive};
+  int differing = 0;
+  for (const std::uint64_t seed : {30, 31, 32, 33, 34}) {
+    Bank rough = bank;
+    for (Mode& mode : rough.modes) mode.Q *= 16.0;
+    const Trajectory run = simulate_bank(rough, 7, seed);
+    BankFilter filter(bank, options);
+    Eigen::VectorXd scale(7);  // of the step into each sample
+    for (Index k = 0; k < 7; ++k) {
+      scale(k) = k > 0 ? filter.snapshot().noise_scale : 1.0;
+      filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
+    }
+    const Eigen::VectorXi found = smoothed(bank, run, options).viterbi_mode;
+    EXPECT_EQ(found, best_sequence(bank, run, scale)) << seed;
+    differing += found != best_sequence(bank, run, Eigen::VectorXd::Ones(7));
+  }
+  EXPECT_GT(differing, 0) << "the scale decides nothing here";
 }
 
 TEST(Viterbi, FindsTheTrueModes) {

@@ -257,6 +257,17 @@ void expect_same(const Bank& actual, const Bank& expected) {
   }
 }
 
+void expect_same(const MergingCost& actual, const MergingCost& expected) {
+  EXPECT_EQ(actual.role, expected.role);
+  EXPECT_EQ(actual.components, expected.components);
+  EXPECT_EQ(actual.modes_unlimited, expected.modes_unlimited);
+  EXPECT_EQ(actual.modes, expected.modes);
+  EXPECT_EQ(actual.samples, expected.samples);
+  EXPECT_EQ(actual.log_score_unlimited, expected.log_score_unlimited);
+  EXPECT_EQ(actual.log_score, expected.log_score);
+  EXPECT_EQ(actual.loss, expected.loss);
+}
+
 void expect_same(const Archive& actual, const Archive& expected) {
   expect_same(actual.provenance, expected.provenance);
   EXPECT_EQ(actual.config, expected.config);
@@ -266,6 +277,8 @@ void expect_same(const Archive& actual, const Archive& expected) {
   expect_same_part(actual.mixture, expected.mixture, "mixture");
   expect_same_part(actual.bank, expected.bank, "bank");
   expect_same_part(actual.unrefined, expected.unrefined, "unrefined");
+  ASSERT_EQ(actual.merging.size(), expected.merging.size());
+  for (std::size_t i = 0; i < actual.merging.size(); ++i) expect_same(actual.merging[i], expected.merging[i]);
   expect_same_part(actual.baseline, expected.baseline, "baseline");
   expect_same_part(actual.noise_only, expected.noise_only, "noise_only");
   ASSERT_EQ(actual.evaluations.size(), expected.evaluations.size());

@@ -41,7 +41,8 @@ export function drawBank(bank) {
   const rows = bank.modes.map((row) => ({ ...row, name: String(row.mode), colour: modeColour(row.mode) }));
   if (bank.baseline) rows.push({ ...bank.baseline, name: 'baseline', colour: filterColour('baseline') });
   return section('bank', 'The bank',
-    facts([['Model', bank.model], ['Sample period', `${bank.dt_s.t} s`], ['Measurement noise variance R', bank.R.t], ['Modes are', bank.refined ? 'refined by expectation-maximisation: they are no longer the mixture’s components' : 'the mixture’s components']]),
+    facts([['Model', bank.model], ['Sample period', `${bank.dt_s.t} s`], ['Measurement noise variance R', bank.R.t], ['Modes are', bank.refined ? 'refined by expectation-maximisation: they are no longer the mixture’s components' : 'the mixture’s components'],
+      ...(bank.merged ? [['Limit on modes', `${bank.merged.components} components merged; log score on ${roleNames[bank.role]} ${bank.merged.log_score.t}, without the limit (${bank.merged.modes_unlimited} modes) ${bank.merged.log_score_unlimited.t}: a loss of ${bank.merged.loss.t} nats per sample`]] : [])]),
     table(modeColumns(bank), rows, { caption: `Modes (± one standard error; usage and PIT tails on ${roleNames[bank.role]})`, sortable: true }),
     bank.screened.length ? table([{ name: 'Component', of: (row) => row.component }, { name: 'Weight', of: (row) => row.weight }, { name: 'Spectral radius', of: (row) => row.radius }, { name: 'Left out because', prose: true, of: (row) => row.reason }], bank.screened, { caption: 'Components that were left out of the bank' }) : null,
     bank.modes.length > 1 ? [h('h3', {}, 'How modes follow each other'), h('div', { class: 'pair' }, h('div', {}, transitionGraph(bank.transition, bank.modes.map((row) => row.weight.v))), h('div', { style: 'min-width:0' }, transitionMap(bank.transition))),

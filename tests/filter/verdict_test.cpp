@@ -1,0 +1,121 @@
+// Verdicts on filters whose truth is known, and the intervals they rest on.
+#include "filter/verdict.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "filter/diagnostics.hpp"
+#include "tests/filter/filter_test_support.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+using test::example_bank;
+using test::simulate_truth;
+
+/// How many of `seeds` simulated runs get each verdict, by a filter whose Q and R are wrong by a factor.
+std::map<Verdict, int> verdicts(const Bank& truth, double of_Q, double of_R, Index samples, int seeds,
+                                FilterNoise noise = FilterNoise::gaussian) {
+  Bank filter = truth;
+  for (Mode& mode : filter.modes) mode.Q *= of_Q;
+  filter.R *= of_R;
+  const FilterOptions options{.noise = noise};
+  std::map<Verdict, int> counts;
+  for (int seed = 0; seed < seeds; ++seed) {
+    std::vector<Trajectory> runs{simulate_truth(truth, samples, 7000 + static_cast<std::uint64_t>(seed)).run};
+    runs[0].role = Role::test;
+    const std::vector<RunEvaluation> evaluations{evaluate_run(filter, runs[0], options)};
+    ++counts[diagnose("bank", filter, options, runs, evaluations).front().verdict];
+  }
+  return counts;
+}
+
+TEST(Verdict, VerdictsAreRightSeedBySeed) {
+  constexpr int seeds = 40, nearly_all = 38;
+  for (const double r : {1e-8, 1.3e-4, 1.3e-3}) {  // Q = 1.3e-4
+    const Bank bank = test::single_mode(example_bank(1, 1, 1, r), 0);
+    EXPECT_GE(verdicts(bank, 1, 1, 1500, seeds)[Verdict::calibrated], nearly_all) << r;
+    std::map<Verdict, int> few = verdicts(bank, 1, 1, 30, seeds);
+    EXPECT_GE(few[Verdict::undecided] + few[Verdict::calibrated], nearly_all) << r;
+    if (r < 1e-3) {  // under ten times as much R, Q hardly shows
+      EXPECT_GE(verdicts(bank, 0.25, 1, 500, seeds)[Verdict::overconfident], nearly_all) << r;
+      EXPECT_GE(verdicts(bank, 4, 1, 500, seeds)[Verdict::underconfident], nearly_all) << r;
+    }
+    if (r > 1e-6) {
+      EXPECT_GE(verdicts(bank, 1, 0.25, 500, seeds)[Verdict::overconfident], nearly_all) << r;
+      EXPECT_GE(verdicts(bank, 1, 4, 500, seeds)[Verdict::underconfident], nearly_all) << r;
+    }
+  }
+  // No measurement noise: thirty samples are enough for a factor of four.
+  const Bank exact = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
+  EXPECT_GE(verdicts(exact, 0.25, 1, 30, seeds)[Verdict::overconfident], nearly_all);
+  EXPECT_GE(verdicts(exact, 4, 1, 30, seeds)[Verdict::underconfident], nearly_all);
+}
+
+/// A scale learned on the way is not known exactly: the mean NIS of a true filter then lies above n_y, which many
+/// samples would call significant.
+TEST(Verdict, AdaptiveNoiseIsJudgedByTailsAlone) {
+  Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
+  bank.noise_adaptation = {0.95, 5.0};
+  for (const double factor : {1.0, 0.25})  // the scale makes up for it
+    EXPECT_EQ(verdicts(bank, factor, 1, 20000, 2, FilterNoise::adaptive)[Verdict::calibrated], 2) << factor;
+  const Bank noisy = test::single_mode(example_bank(1, 1, 1, 1.3e-3), 0);  // but not for measurement noise
+  EXPECT_EQ(verdicts(noisy, 1, 4, 1500, 10, FilterNoise::adaptive)[Verdict::underconfident], 10);
+}
+
+/// Many samples make a deviation significant that nobody would notice.
+TEST(Verdict, AFewPercentOfVarianceAreNoVerdict) {
+  const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
+  for (const double factor : {0.95, 1.05})
+    EXPECT_EQ(verdicts(bank, factor, 1, 50000, 1)[Verdict::calibrated], 1) << factor;
+}
+
+/// Innovations of the right size that follow each other closely: hits come in groups, and a group is not many samples.
+TEST(Verdict, GroupsOfHitsAreFewSamples) {
+  Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-12), 0);
+  bank.modes[0].model.A(0, 0) = -1.0;
+  bank.modes[0].model.B.setZero();
+  int wrong = 0;
+  for (int seed = 0; seed < 60; ++seed) {
+    Trajectory run = simulate_truth(bank, 400, 8000 + static_cast<std::uint64_t>(seed)).run;
+    run.role = Role::test;
+    for (Index k = 1; k < 400; ++k)
+      run.state(0, k) = 0.95 * run.state(0, k - 1) + std::sqrt(1 - 0.95 * 0.95) * run.state(0, k);
+    const Verdict verdict = diagnose("bank", bank, {}, {run}, {evaluate_run(bank, run, {})}).front().verdict;
+    wrong += verdict == Verdict::overconfident || verdict == Verdict::underconfident;
+  }
+  EXPECT_LE(wrong, 6);
+}
+
+Interval mean_interval(const SeriesByRun& series) {
+  return chi_square_mean_interval(series, autocorrelation_time(series), 1.0);
+}
+
+TEST(Verdict, IntervalsAreTheBooks) {
+  // Clopper & Pearson (1934), table for 95 %: 3 of 10; 0 of 10; 10 of 10.
+  EXPECT_NEAR(binomial_interval(3, 10).lower, 0.0667, 5e-5);
+  EXPECT_NEAR(binomial_interval(3, 10).upper, 0.6525, 5e-5);
+  EXPECT_EQ(binomial_interval(0, 10).lower, 0.0);
+  EXPECT_NEAR(binomial_interval(0, 10).upper, 0.3085, 5e-5);
+  EXPECT_NEAR(binomial_interval(10, 10).lower, 0.6915, 5e-5);
+  EXPECT_TRUE(std::isnan(binomial_interval(0, 0).lower));
+  // White: chi-square's own quantiles, 74.22 and 129.56 at 100 degrees of freedom.
+  const Interval white = chi_square_mean_interval({std::vector<double>(100, 1.0)}, 1.0, 1.0);
+  EXPECT_NEAR(white.lower, 0.7422, 5e-5);
+  EXPECT_NEAR(white.upper, 1.2956, 5e-5);
+  // Every value twice: as wide as for half as many.
+  std::mt19937_64 generator(1);
+  std::vector<double> once, twice;
+  for (int i = 0; i < 4000; ++i) {
+    once.push_back(static_cast<double>(generator() >> 11));
+    twice.insert(twice.end(), {once.back(), once.back()});
+  }
+  const Interval a = mean_interval({once}), b = mean_interval({twice});
+  EXPECT_NEAR((b.upper - b.lower) / (a.upper - a.lower), 1.0, 0.1);
+}
+
+}  // namespace
+}  // namespace modebank
