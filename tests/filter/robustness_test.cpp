@@ -6,6 +6,7 @@
 #include "filter/filter_step.hpp"
 #include "filter/run_samples.hpp"
 #include "tests/filter/filter_test_support.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
@@ -114,7 +115,7 @@ TEST(NeverNaN, AMillionStepsAtConstantInput) {
   Bank bank = example_bank(1, 1, 3);
   bank.modes[1].model.A(0, 0) = 0.0;  // an integrator
   Trajectory run;
-  constexpr Eigen::Index samples = 1'000'001;
+  constexpr Eigen::Index samples = test::in_release(1'000'000, 50'000) + 1;
   run.state = Eigen::MatrixXd::Constant(1, samples, 0.3);
   run.input = Eigen::MatrixXd::Constant(1, samples, 0.5);
   const RunEvaluation result = evaluate_run(bank, run, {});
@@ -126,11 +127,7 @@ TEST(NeverNaN, AMillionStepsAtConstantInput) {
 }
 
 TEST(NeverNaN, AMillionStepsAtConstantInputInEveryVariant) {
-#ifdef NDEBUG
-  constexpr Eigen::Index steps = 1'000'000;
-#else
-  constexpr Eigen::Index steps = 100'000;  // sanitizers take their time
-#endif
+  constexpr Eigen::Index steps = test::in_release(1'000'000, 20'000);
   Bank bank = example_bank(1, 1, 2);
   bank.modes[1].model.A(0, 0) = 0.0;  // an integrator
   const Eigen::VectorXd u = Eigen::VectorXd::Constant(1, 0.5), y = Eigen::VectorXd::Constant(1, 0.3);

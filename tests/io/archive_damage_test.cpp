@@ -5,6 +5,7 @@
 #include "io/inspect.hpp"
 #include "tests/io/archive_file_fixture.hpp"
 #include "tests/io/archive_patch.hpp"
+#include "tests/support/effort.hpp"
 
 // HDF5 1.10 leaks inside when a metadata checksum is wrong; the sanitizer build shall still report our own leaks.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }     // NOLINT
@@ -26,7 +27,7 @@ TEST_F(ArchiveDamage, EveryFlippedByteIsFound) {
   std::mt19937_64 generator = make_generator(7, "flips");
   boost::random::uniform_int_distribution<std::size_t> anywhere(0, bytes.size() - 1), in_block(0, 511);
   boost::random::uniform_int_distribution<int> change(1, 255);
-  for (int trial = 0; trial < 200; ++trial) {
+  for (int trial = 0; trial < test::in_release(200, 40); ++trial) {
     std::string damaged = bytes;
     char& byte = damaged[trial % 4 == 0 ? in_block(generator) : anywhere(generator)];
     byte = static_cast<char>(byte ^ change(generator));
@@ -37,8 +38,9 @@ TEST_F(ArchiveDamage, EveryFlippedByteIsFound) {
 }
 
 TEST_F(ArchiveDamage, TruncatedFilesAreErrorsAtEveryLength) {
+  constexpr std::size_t pieces = test::in_release(97, 31);
   const std::string bytes = read_file(path);
-  for (std::size_t length = 1; length < bytes.size(); length += 1 + bytes.size() / 97) {
+  for (std::size_t length = 1; length < bytes.size(); length += 1 + bytes.size() / pieces) {
     test::write_file(path, bytes.substr(0, length));
     EXPECT_THROW(read_archive(path), DataError) << length;
     EXPECT_FALSE(verify_archive(path).ok()) << length;
@@ -133,7 +135,7 @@ TEST_F(ArchiveDamage, ContentElsewhereIsRefused) {
 
 /// Reads, inspects and verifies the archive with pieces of its metadata damaged in turn.
 void use_with_damaged_metadata(const fs::path& path) {
-  constexpr int stride = 4;  // every fourth piece: each costs a whole verification
+  constexpr int stride = test::in_release(4, 15);  // not every piece: each costs a whole verification
   int piece = 0;
   const std::string bytes = read_file(path);
   for (const char* signature : {"OHDR", "OCHK", "FRHP", "FHDB", "BTHD", "BTLF"})

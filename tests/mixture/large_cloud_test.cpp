@@ -34,7 +34,7 @@ TEST(LargeCloud, TakesLittleMoreMemoryThanItsPoints) {
 #if defined(__SANITIZE_ADDRESS__)
   GTEST_SKIP() << "the address sanitizer has memory of its own";
 #endif
-  constexpr Index count = 2000000, components = 25;
+  constexpr Index count = 1500000, components = 25;
   Eigen::MatrixXd points(3, count);
   std::uint64_t state = 1;
   for (double& value : points.reshaped()) {
