@@ -125,15 +125,13 @@ struct SmallErrors {
   }
 
   template <bool logarithmic>
-  HWY_INLINE void spread(const double* mean, const double* W, Spread<logarithmic> (&out)[2], double* expected) const {
-    for (int v = 0; v < 2; ++v) {
-      V t[triangles], y[F], least[F], inverse_pivot[F];
-      whiten(v * L, mean, W, t, y);
-      for (int i = 0; i < F; ++i) least[i] = i == 0 ? splat(1.0) : noticeable_pivot(t[at(i, i)]);
-      out[v].determinant = part_of_determinant<logarithmic>(factor(t, least, inverse_pivot));
-      invert(t);
-      out[v].distance = expect(t, inverse_pivot, y, expected + v * expectations(F, diagonal) * L);
-    }
+  HWY_INLINE Spread<logarithmic> spread(int v, const double* mean, const double* W, double* expected) const {
+    V t[triangles], y[F], least[F], inverse_pivot[F];
+    whiten(v * L, mean, W, t, y);
+    for (int i = 0; i < F; ++i) least[i] = i == 0 ? splat(1.0) : noticeable_pivot(t[at(i, i)]);
+    const V determinant = part_of_determinant<logarithmic>(factor(t, least, inverse_pivot));
+    invert(t);
+    return {expect(t, inverse_pivot, y, expected), determinant};
   }
 };
 

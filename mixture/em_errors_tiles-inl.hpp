@@ -22,16 +22,16 @@ struct MatrixTile {
     for (int i = 0; i < moment_rows; ++i)
       for (int j = 0; j < tile; ++j) v[i][j] = splat(row + i == column + j ? 1.0 : 0.0);
   }
-  HWY_INLINE MatrixTile(const double* from, Index row_stride) {
+  HWY_INLINE MatrixTile(const double* from, Index to_row, Index to_column) {
     for (int i = 0; i < moment_rows; ++i)
-      for (int j = 0; j < tile; ++j) v[i][j] = load(from + i * row_stride + j * L);
+      for (int j = 0; j < tile; ++j) v[i][j] = load(from + i * to_row + j * to_column);
   }
-  HWY_INLINE void put(double* to, Index row_stride) const {
+  HWY_INLINE void put(double* to, Index to_row, Index to_column) const {
     for (int i = 0; i < moment_rows; ++i)
-      for (int j = 0; j < tile; ++j) store(v[i][j], to + i * row_stride + j * L);
+      for (int j = 0; j < tile; ++j) store(v[i][j], to + i * to_row + j * to_column);
   }
 
-  /// Adds (or subtracts) the products left(i, l) right(l, j), l = first .. last - 1.
+  /// Adds (or subtracts) the products left(l, i) right(l, j), l = first .. last - 1.
   template <bool subtract, class Left, class Right>
   HWY_INLINE void multiply(int first, int last, Left left, Right right) {
     for (int l = first; l < last; ++l) {
@@ -46,42 +46,61 @@ struct MatrixTile {
   }
 };
 
+/// Lower triangles are stored without what is above their diagonal blocks, so that all of them stay in the nearest
+/// cache: `Rows` holds a whole tile of rows column by column, `Columns` a whole tile of columns row by row.
+struct Rows {
+  double* data;
+  static Index size(int p) { return Index(p) * (p + tile) / 2; }
+  HWY_INLINE double* at_entry(int block, int i, int j) const {
+    return data + (Index(block) * (block + tile) / 2 + j * tile + i - block) * L;
+  }
+};
+struct Columns {
+  double* data;
+  int p;
+  HWY_INLINE double* at_entry(int i, int block, int j) const {
+    return data + (Index(block) * (2 * p + tile - block) / 2 + (i - block) * tile + j - block) * L;
+  }
+};
+
 template <bool diagonal_>
 struct TileErrors {
   static constexpr bool diagonal = diagonal_;
   static int features(int n) { return n; }
-  static Index work(int n) { return (6 * padded(n) + 5) * padded(n) * L; }
+  static Index work(int n) {
+    const int p = padded(n);
+    return (2 * (p + 1) * p + tile * p + 3 * Rows::size(p) + 3 * p) * L;
+  }
 
-  // Matrices are p x p and by rows, one vector per entry, p the number of features padded to whole tiles.
+  // Matrices are p x p, one vector per entry, p the number of features padded to whole tiles.
   int n, p;
-  Index row;                           ///< doubles from row to row
-  double *S, *x;                       ///< of each of the two vectors of points
-  double* A;                           ///< W S, later D^-1 M
-  double *T, *Z, *M;                   ///< T, then L of it; L D; L^-1
+  double *S, *x;                       ///< of each of the two vectors of points, by rows
+  double* A;                           ///< a tile of rows of W S, column by column
+  Rows T, Z;                           ///< T, then L of it; L D
+  Columns M, scaled_M;                 ///< L^-1; D^-1 L^-1, in the memory of Z
   double *inverse_pivot, *y, *scaled;  ///< D^-1; W (x - mu); D^-1 M y
 
-  TileErrors(int n_, double* work) : n(n_), p(padded(n_)), row(p * L) {
+  TileErrors(int n_, double* work) : n(n_), p(padded(n_)) {
     const auto take = [&](Index vectors) {
       double* const taken = work;
       work += vectors * L;
       return taken;
     };
-    const Index square = Index(p) * p;
-    S = take(2 * square), x = take(2 * p), A = take(square), T = take(square), Z = take(square), M = take(square);
+    S = take(2 * Index(p) * p), x = take(2 * p), A = take(tile * p);
+    T.data = take(Rows::size(p)), Z.data = take(Rows::size(p));
+    M = {take(Rows::size(p)), p}, scaled_M = {Z.data, p};
     inverse_pivot = take(p), y = take(p), scaled = take(p);
   }
 
-  HWY_INLINE double* entry(double* matrix, int i, int j) const { return matrix + i * row + j * L; }
-
   HWY_INLINE void begin(const Block& block) {
     for (int v = 0; v < 2; ++v) {
-      double* const whole = S + v * p * row;
+      double* const whole = S + v * p * p * L;
       for (int i = 0; i < p; ++i) {
         store(i < n ? load(block.points + i * block_size + v * L) : zero(), x + (v * p + i) * L);
         for (int j = 0; j <= i; ++j) {
           const V s = i < n ? load(block.errors + at(i, j) * block_size + v * L) : zero();
-          store(s, entry(whole, i, j));
-          store(s, entry(whole, j, i));
+          store(s, whole + (i * p + j) * L);
+          store(s, whole + (j * p + i) * L);
         }
       }
     }
@@ -96,10 +115,19 @@ struct TileErrors {
                                   const double* W) const {
     for (int i = 0; i < p; ++i) {
       const V w = splat(i < n ? W[i] : 0.0);
-      store(i < n ? hn::Mul(w, hn::Sub(load(points + i * L), splat(mean[i]))) : zero(), y + i * L);
-      for (int j = 0; j <= i; ++j) {
-        const V s = i < n ? hn::Mul(hn::Mul(w, splat(W[j])), load(errors + i * row + j * L)) : zero();
-        store(i == j ? hn::Add(s, splat(1.0)) : s, entry(T, i, j));
+      store(w, scaled + i * L);
+      store(hn::Mul(w, hn::Sub(load(points + i * L), splat(i < n ? mean[i] : 0.0))), y + i * L);
+    }
+    for (int i = 0; i < p; i += moment_rows) {
+      const int block = i / tile * tile;
+      for (int j = 0; j <= block; j += tile) {
+        MatrixTile t(i, j);
+        for (int r = 0; r < moment_rows; ++r)
+          for (int c = 0; c < tile; ++c) {
+            const V w = hn::Mul(load(scaled + (i + r) * L), load(scaled + (j + c) * L));
+            t.v[r][c] = hn::MulAdd(w, load(errors + ((i + r) * p + j + c) * L), t.v[r][c]);
+          }
+        t.put(T.at_entry(block, i, j), L, tile * L);
       }
     }
   }
@@ -123,34 +151,36 @@ struct TileErrors {
       MatrixTile sum(0, tile);
       sum.multiply<false>(
           0, i + moment_rows < n ? i + moment_rows : n, [&](int l, int r) { return splat(w[l * tile + r]); },
-          [&](int l, int c) { return load(errors + l * row + (j + c) * L); });
-      sum.put(entry(A, i, j), row);
+          [&](int l, int c) { return load(errors + (l * p + j + c) * L); });
+      sum.put(A + j * tile * L, L, tile * L);
     }
     for (int j = 0; j <= block; j += tile) {
       const double* const v = tile_of(W, j);
       MatrixTile sum(i, j);
       sum.multiply<false>(
-          0, j + tile < n ? j + tile : n, [&](int l, int r) { return load(entry(A, i + r, l)); },
+          0, j + tile < n ? j + tile : n, [&](int l, int r) { return load(A + (l * tile + r) * L); },
           [&](int l, int c) { return splat(v[l * tile + c]); });
-      sum.put(entry(T, i, j), row);
+      sum.put(T.at_entry(block, i, j), L, tile * L);
     }
   }
 
   /// Rows `i` to the left of their diagonal block: L D, and L.
   HWY_INLINE void factor_rows(int i, int block) const {
+    const double* const rows = Z.at_entry(block, i, 0);
     for (int j = 0; j < block; j += tile) {
-      MatrixTile z(entry(T, i, j), row);
+      const double* const other = T.at_entry(j, j, 0);
+      MatrixTile z(T.at_entry(block, i, j), L, tile * L);
       z.multiply<true>(
-          0, j, [&](int l, int r) { return load(entry(Z, i + r, l)); },
-          [&](int l, int c) { return load(entry(T, j + c, l)); });
+          0, j, [&](int l, int r) { return load(rows + (l * tile + r) * L); },
+          [&](int l, int c) { return load(other + (l * tile + c) * L); });
       for (int c = 0; c < tile; ++c) {
         for (int d = 0; d < c; ++d)
           for (int r = 0; r < moment_rows; ++r)
-            z.v[r][c] = hn::NegMulAdd(z.v[r][d], load(entry(T, j + c, j + d)), z.v[r][c]);
+            z.v[r][c] = hn::NegMulAdd(z.v[r][d], load(other + ((j + d) * tile + c) * L), z.v[r][c]);
         for (int r = 0; r < moment_rows; ++r)
-          store(hn::Mul(z.v[r][c], load(inverse_pivot + (j + c) * L)), entry(T, i + r, j + c));
+          store(hn::Mul(z.v[r][c], load(inverse_pivot + (j + c) * L)), T.at_entry(block, i + r, j + c));
       }
-      z.put(entry(Z, i, j), row);
+      z.put(Z.at_entry(block, i, j), L, tile * L);
     }
   }
 
@@ -158,41 +188,44 @@ struct TileErrors {
   HWY_INLINE V factor_diagonal_block(int block) const {
     using Small = SmallErrors<tile, diagonal>;
     V t[triangle(tile)], least[tile], inverse[tile];
-    for (int i = 0; i < tile; ++i) least[i] = noticeable_pivot(load(entry(T, block + i, block + i)));
-    for (int i = block; i < block + tile; i += moment_rows) {
-      MatrixTile rest(entry(T, i, block), row);
+    const double *const left = Z.at_entry(block, block, 0), *const right = T.at_entry(block, block, 0);
+    for (int i = 0; i < tile; ++i) least[i] = noticeable_pivot(load(T.at_entry(block, block + i, block + i)));
+    for (int i = 0; i < tile; i += moment_rows) {
+      MatrixTile rest(T.at_entry(block, block + i, block), L, tile * L);
       rest.multiply<true>(
-          0, block, [&](int l, int r) { return load(entry(Z, i + r, l)); },
-          [&](int l, int c) { return load(entry(T, block + c, l)); });
-      rest.put(entry(T, i, block), row);
+          0, block, [&](int l, int r) { return load(left + (l * tile + i + r) * L); },
+          [&](int l, int c) { return load(right + (l * tile + c) * L); });
+      rest.put(T.at_entry(block, block + i, block), L, tile * L);
     }
     for (int i = 0; i < tile; ++i)
-      for (int j = 0; j <= i; ++j) t[at(i, j)] = load(entry(T, block + i, block + j));
+      for (int j = 0; j <= i; ++j) t[at(i, j)] = load(T.at_entry(block, block + i, block + j));
     const V determinant = Small::factor(t, least, inverse);
     for (int i = 0; i < tile; ++i) {
       store(inverse[i], inverse_pivot + (block + i) * L);
-      for (int j = 0; j < i; ++j) store(t[at(i, j)], entry(T, block + i, block + j));
+      for (int j = 0; j < i; ++j) store(t[at(i, j)], T.at_entry(block, block + i, block + j));
     }
     Small::invert(t);
     for (int i = 0; i < tile; ++i)
       for (int j = 0; j < tile; ++j)
-        store(j < i ? t[at(i, j)] : splat(i == j ? 1.0 : 0.0), entry(M, block + i, block + j));
+        store(j < i ? t[at(i, j)] : splat(i == j ? 1.0 : 0.0), M.at_entry(block + i, block, block + j));
     return determinant;
   }
 
   /// Rows `i` of L^-1 to the left of their diagonal block.
   HWY_INLINE void invert_rows(int i, int block) const {
+    const double* const rows = T.at_entry(block, i, 0);
     for (int j = 0; j < block; j += tile) {
+      const double* const columns = M.at_entry(0, j, j);
       MatrixTile m(0, tile);
       m.multiply<true>(
-          j, i, [&](int l, int r) { return load(entry(T, i + r, l)); },
-          [&](int l, int c) { return load(entry(M, l, j + c)); });
+          j, i, [&](int l, int r) { return load(rows + (l * tile + r) * L); },
+          [&](int l, int c) { return load(columns + (l * tile + c) * L); });
       for (int r = 1; r < moment_rows; ++r)
         for (int s = 0; s < r; ++s) {
-          const V factor = load(entry(T, i + r, i + s));
+          const V factor = load(T.at_entry(block, i + r, i + s));
           for (int c = 0; c < tile; ++c) m.v[r][c] = hn::NegMulAdd(factor, m.v[s][c], m.v[r][c]);
         }
-      m.put(entry(M, i, j), row);
+      m.put(M.at_entry(i, j, j), tile * L, L);
     }
   }
 
@@ -202,9 +235,12 @@ struct TileErrors {
     for (int block = 0; block < p; block += tile) {
       V u[tile];
       for (int i = 0; i < tile; ++i) u[i] = zero();
-      for (int l = 0; l < block + tile; ++l) {
-        const V right = load(y + l * L);
-        for (int i = 0; i < tile; ++i) u[i] = hn::MulAdd(load(entry(M, block + i, l)), right, u[i]);
+      for (int j = 0; j <= block; j += tile) {
+        const double* const m = M.at_entry(block, j, j);
+        for (int c = 0; c < tile; ++c) {
+          const V right = load(y + (j + c) * L);
+          for (int i = 0; i < tile; ++i) u[i] = hn::MulAdd(load(m + (i * tile + c) * L), right, u[i]);
+        }
       }
       for (int i = 0; i < tile; ++i) {
         const V part = hn::Mul(u[i], load(inverse_pivot + (block + i) * L));
@@ -215,17 +251,22 @@ struct TileErrors {
     return distance;
   }
 
-  /// z, and with it the diagonal of I - T^-1 where that is all that is asked for.
+  /// z, and with it the diagonal of I - T^-1 where that is all that is asked for, else D^-1 M.
   HWY_INLINE void expect_columns(double* expected) const {
     for (int column = 0; column < n; column += tile) {
+      const double* const m = M.at_entry(0, column, column);
+      double* const to = scaled_M.at_entry(0, column, column);
       V z[tile], second[tile];
       for (int c = 0; c < tile; ++c) z[c] = zero(), second[c] = splat(1.0);
       for (int l = column; l < n; ++l) {
         const V right = load(scaled + l * L), inverse = load(inverse_pivot + l * L);
         for (int c = 0; c < tile; ++c) {
-          const V m = load(entry(M, l, column + c));
-          z[c] = hn::MulAdd(m, right, z[c]);
-          if constexpr (diagonal) second[c] = hn::NegMulAdd(hn::Mul(m, inverse), m, second[c]);
+          const V entry = load(m + (l * tile + c) * L), scaled_entry = hn::Mul(entry, inverse);
+          z[c] = hn::MulAdd(entry, right, z[c]);
+          if constexpr (diagonal)
+            second[c] = hn::NegMulAdd(scaled_entry, entry, second[c]);
+          else
+            store(scaled_entry, to + (l * tile + c) * L);
         }
       }
       for (int c = 0; c < tile && column + c < n; ++c) {
@@ -237,42 +278,38 @@ struct TileErrors {
 
   /// The lower triangle of I - T^-1.
   HWY_INLINE void expect_squares(double* expected) const {
-    for (int l = 0; l < n; ++l) {
-      const V inverse = load(inverse_pivot + l * L);
-      for (int j = 0; j <= l; ++j) store(hn::Mul(load(entry(M, l, j)), inverse), entry(A, l, j));
-      for (int j = l + 1; j < l / tile * tile + tile; ++j) store(zero(), entry(A, l, j));
-    }
-    for (int i = 0; i < n; i += moment_rows)
+    for (int i = 0; i < n; i += moment_rows) {
+      const double* const left = scaled_M.at_entry(0, i / tile * tile, i);
       for (int j = 0; j < i + moment_rows; j += tile) {
+        const double* const right = M.at_entry(0, j, j);
         MatrixTile second(i, j);
         second.multiply<true>(
-            i, n, [&](int l, int r) { return load(entry(A, l, i + r)); },
-            [&](int l, int c) { return load(entry(M, l, j + c)); });
+            i, n, [&](int l, int r) { return load(left + (l * tile + r) * L); },
+            [&](int l, int c) { return load(right + (l * tile + c) * L); });
         for (int r = 0; r < moment_rows && i + r < n; ++r)
           for (int c = 0; c < tile && j + c <= i + r; ++c) store(second.v[r][c], expected + (n + at(i + r, j + c)) * L);
       }
+    }
   }
 
   template <bool logarithmic>
-  HWY_INLINE void spread(const double* mean, const double* W, Spread<logarithmic> (&out)[2], double* expected) const {
-    for (int v = 0; v < 2; ++v) {
-      const double *points = x + v * row, *errors = S + v * p * row;
-      if constexpr (diagonal)
-        whiten_diagonal(points, errors, mean, W);
-      else
-        whiten_full(points, errors, mean, W);
-      V determinant = splat(logarithmic ? 0.0 : 1.0);
-      for (int block = 0; block < p; block += tile) {
-        for (int i = block; i < block + tile; i += moment_rows) factor_rows(i, block);
-        const V part = part_of_determinant<logarithmic>(factor_diagonal_block(block));
-        determinant = logarithmic ? hn::Add(determinant, part) : hn::Mul(determinant, part);
-        for (int i = block; i < block + tile; i += moment_rows) invert_rows(i, block);
-      }
-      out[v].determinant = determinant;
-      out[v].distance = solve();
-      expect_columns(expected + v * expectations(n, diagonal) * L);
-      if constexpr (!diagonal) expect_squares(expected + v * expectations(n, diagonal) * L);
+  HWY_INLINE Spread<logarithmic> spread(int v, const double* mean, const double* W, double* expected) const {
+    const double *points = x + v * p * L, *errors = S + v * p * p * L;
+    if constexpr (diagonal)
+      whiten_diagonal(points, errors, mean, W);
+    else
+      whiten_full(points, errors, mean, W);
+    V determinant = splat(logarithmic ? 0.0 : 1.0);
+    for (int block = 0; block < p; block += tile) {
+      for (int i = block; i < block + tile; i += moment_rows) factor_rows(i, block);
+      const V part = part_of_determinant<logarithmic>(factor_diagonal_block(block));
+      determinant = logarithmic ? hn::Add(determinant, part) : hn::Mul(determinant, part);
+      for (int i = block; i < block + tile; i += moment_rows) invert_rows(i, block);
     }
+    const V distance = solve();
+    expect_columns(expected);
+    if constexpr (!diagonal) expect_squares(expected);
+    return {distance, determinant};
   }
 };
 
