@@ -56,6 +56,13 @@ void pack(const Eigen::MatrixXd& W, em::Packing packing, std::vector<double>& ou
       for (Index i = 0; i < F; ++i)
         for (Index j = 0; j <= i; ++j) out.push_back(W(i, j));
       break;
+    case em::Packing::unit_rows:
+      for (Index i = 0; i < F; ++i)
+        for (Index j = 0; j <= i; ++j) out.push_back(W(i, i) * W(j, j));
+      for (Index i = 0; i < F; ++i) out.push_back(W(i, i));
+      for (Index i = 0; i < F; ++i)
+        for (Index j = 0; j < i; ++j) out.push_back(W(i, j) / W(i, i));
+      break;
     case em::Packing::tiles:
       for (Index row = 0; row < F; row += tile)
         for (Index j = 0; j < std::min(row + tile, F); ++j)
@@ -69,7 +76,7 @@ FactoredMixture::FactoredMixture(const GaussianMixture& mixture, bool errors)
     : means_(mixture.means),
       diagonal_(mixture.type == CovarianceType::diagonal),
       noise_(mixture.noise.present()),
-      kernels_(errors ? em::error_kernels(static_cast<int>(mixture.features()))
+      kernels_(errors ? em::error_kernels(static_cast<int>(mixture.features()), diagonal_)
                       : em::plain_kernels(static_cast<int>(mixture.features()), diagonal_)),
       log_constants_(mixture.components()) {
   const Index F = mixture.features();
@@ -108,6 +115,11 @@ em::Components FactoredMixture::components() const {
 void FactoredMixture::to_scaled_units(Index component, Eigen::Ref<Eigen::VectorXd> sums) const {
   const Eigen::MatrixXd& L = cholesky_[static_cast<std::size_t>(component)];
   const Index F = L.rows();
+  if (diagonal_) {
+    sums.segment(1, F).array() *= L.diagonal().array();
+    sums.tail(F).array() *= L.diagonal().array().square();
+    return;
+  }
   sums.segment(1, F) = (L.triangularView<Eigen::Lower>() * sums.segment(1, F)).eval();
   Eigen::MatrixXd second(F, F);
   for (Index i = 0, row = 1 + F; i < F; ++i)

@@ -20,8 +20,8 @@ class FactoredMixture {
   const em::Kernels& kernels() const { return kernels_; }
   bool has_noise() const { return noise_; }
   double log_noise() const { return log_noise_; }  ///< log of weight times density of the noise component
-  /// Kernels with errors sum in units of W: turns a component's sums into those that kernels without errors yield (rows
-  /// of full mixtures, in place).
+  /// Kernels with errors sum in units of W: turns a component's sums in place into those that kernels without errors
+  /// yield.
   void to_scaled_units(Eigen::Index component, Eigen::Ref<Eigen::VectorXd> sums) const;
 
  private:

@@ -9,189 +9,157 @@
 #define MODEBANK_EM_ERRORS_INL
 #endif
 
+#include "ident/batch_lanes-inl.hpp"
 #include "mixture/em_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::em::HWY_NAMESPACE {
 
-/// No product of eight pivots beyond double precision.
+using batch::HWY_NAMESPACE::at;
+using batch::HWY_NAMESPACE::reciprocal;
+using batch::HWY_NAMESPACE::reciprocal_root;
+
+/// No product of four pivots beyond double precision.
 inline constexpr double largest_pivot = 1e37;
-inline constexpr int pivots_per_log = 8;
 /// Of an error so large in some direction that less than this of T's diagonal is left in another, rounding has the say;
 /// such a point counts as unknown there, too.
 inline constexpr double smallest_pivot_ratio = 1e-12;
+/// Exponents relative to the shift of a block count as this at least: a point whose sum of densities is smaller than
+/// its exponential is not left to the shift, and no product with a determinant's root gets denormal.
+inline constexpr double smallest_exponent = -400.0;
+
+/// Points between whose density and whose part in the sums nothing else is done, so that their expectations stay in
+/// the nearest cache.
+inline constexpr Index together = 2 * L;
 
 constexpr int triangle(int features) { return features * (features + 1) / 2; }
-constexpr int at(int i, int j) { return i * (i + 1) / 2 + j; }
+constexpr int second_moments(int features, bool diagonal) { return diagonal ? features : triangle(features); }
 
-/// Work arrays of one vector of points, of the sizes given; F known at compile time, where they become registers, or
-/// not.
-template <int F>
-struct ErrorArrays {
-  V x[F], s[triangle(F)], a[F * F], t[triangle(F)], m[triangle(F)], inverse_pivot[F], y[F], z[F];
-  ErrorArrays(int, double*) {}
-  static constexpr int features(int) { return F; }
+/// What is expected of a point without its error: F of z, then I - T^-1, its lower triangle or its diagonal.
+constexpr int expectations(int features, bool diagonal) { return features + second_moments(features, diagonal); }
+
+/// A pivot of T: what rounding leaves of it is at least `noticeable`.
+HWY_INLINE V sound_pivot(V pivot, V noticeable) { return hn::Min(hn::Max(pivot, noticeable), splat(largest_pivot)); }
+HWY_INLINE V noticeable_pivot(V diagonal) {
+  return hn::Max(hn::Mul(diagonal, splat(smallest_pivot_ratio)), splat(1.0));
+}
+
+/// One vector of points and one component: y' T^-1 y and the determinant of T, as its logarithm or the inverse of its
+/// root.
+template <bool logarithmic>
+struct Spread {
+  V distance, determinant;
+
+  HWY_INLINE V density(double log_constant, double shift) const {
+    if constexpr (logarithmic)
+      return hn::NegMulAdd(hn::Add(bounded(distance), determinant), splat(0.5), splat(log_constant));
+    const V exponent = hn::NegMulAdd(distance, splat(0.5), splat(log_constant - shift));
+    return hn::Mul(Exp()(hn::Max(exponent, splat(smallest_exponent))), determinant);
+  }
 };
-template <>
-struct ErrorArrays<0> {
-  V *x, *s, *a, *t, *m, *inverse_pivot, *y, *z;
-  ErrorArrays(int n, double* work) {
-    V* next = reinterpret_cast<V*>(work);
-    const auto take = [&](int count) {
-      V* const taken = next;
-      next += count;
-      return taken;
-    };
-    x = take(n), s = take(triangle(n)), a = take(n * n), t = take(triangle(n)), m = take(triangle(n));
-    inverse_pivot = take(n), y = take(n), z = take(n);
-  }
-  static int features(int n) { return n; }
-};
-HWY_INLINE Index error_work(int n) { return (4 * n + n * n + 3 * triangle(n)) * L; }
 
-/// The lower triangle of t = I + W s W', and y = W (x - mean).
-template <class Arrays>
-HWY_INLINE void whiten(int n, const double* mean, const double* W, Arrays& v) {
+/// Log determinant, or the inverse of its root, from the determinant of at most four rows.
+template <bool logarithmic>
+HWY_INLINE V part_of_determinant(V determinant) {
+  if constexpr (logarithmic) return hn::Log(D(), determinant);
+  return reciprocal_root(determinant);
+}
+
+/// From `point` on.
+HWY_INLINE Block part(const Block& block, Index point) {
+  return {block.points + point, block.weights + point, block.errors + point,
+          block.noise ? block.noise + point : nullptr};
+}
+HWY_INLINE Scratch part(const Scratch& scratch, Index point) {
+  return {scratch.relative + point, scratch.sum + point, scratch.log_density + point, scratch.lanes, scratch.work};
+}
+
+/// Of a few points: the sums of one component's r, r z and r (z z' + I - T^-1).
+HWY_INLINE void add_expectations(int n, bool diagonal, const double* relative, const double* scale,
+                                 const double* expected, double* lanes) {
+  const Index per_vector = expectations(n, diagonal) * L;
+  const V r0 = hn::Mul(load(relative), load(scale)), r1 = hn::Mul(load(relative + L), load(scale + L));
+  const auto expected_at = [&](Index entry, V& a, V& b) {
+    a = load(expected + entry * L);
+    b = load(expected + per_vector + entry * L);
+  };
+  add_to(lanes, hn::Add(r0, r1));
+  Index entry = n;
   for (int i = 0; i < n; ++i) {
-    V y = zero();
-    for (int j = 0; j <= i; ++j) y = hn::MulAdd(splat(W[at(i, j)]), hn::Sub(v.x[j], splat(mean[j])), y);
-    v.y[i] = y;
-    for (int j = 0; j < n; ++j) {
-      V sum = zero();
-      for (int l = 0; l <= i; ++l) sum = hn::MulAdd(splat(W[at(i, l)]), v.s[l < j ? at(j, l) : at(l, j)], sum);
-      v.a[i * n + j] = sum;
-    }
-    for (int j = 0; j <= i; ++j) {
-      V sum = splat(i == j ? 1.0 : 0.0);
-      for (int l = 0; l <= j; ++l) sum = hn::MulAdd(v.a[i * n + l], splat(W[at(j, l)]), sum);
-      v.t[at(i, j)] = sum;
+    V z0, z1, s0, s1, other0, other1;
+    expected_at(i, z0, z1);
+    double* const first = lanes + (1 + i) * L;
+    store(hn::MulAdd(r0, z0, hn::MulAdd(r1, z1, load(first))), first);
+    for (int j = diagonal ? i : 0; j <= i; ++j, ++entry) {
+      expected_at(j, other0, other1);
+      expected_at(entry, s0, s1);
+      double* const sum = lanes + (1 + entry) * L;
+      store(hn::MulAdd(r0, hn::MulAdd(z0, other0, s0), hn::MulAdd(r1, hn::MulAdd(z1, other1, s1), load(sum))), sum);
     }
   }
 }
 
-/// L D L' of t in place (unit lower triangle), pivots inverted; returns log det.
-template <class Arrays>
-HWY_INLINE V factor(int n, Arrays& v) {
-  V product = splat(1.0), log_determinant = zero();
-  for (int j = 0; j < n; ++j) {
-    const V noticeable = hn::Max(hn::Mul(v.t[at(j, j)], splat(smallest_pivot_ratio)), splat(1.0));
-    for (int k = 0; k < j; ++k) {
-      V sum = v.t[at(j, k)];
-      for (int i = 0; i < k; ++i) sum = hn::NegMulAdd(v.z[i], v.t[at(k, i)], sum);
-      v.z[k] = sum;  // l_jk d_k
-    }
-    V pivot = v.t[at(j, j)];
-    for (int k = 0; k < j; ++k) {
-      const V l = hn::Mul(v.z[k], v.inverse_pivot[k]);
-      v.t[at(j, k)] = l;
-      pivot = hn::NegMulAdd(v.z[k], l, pivot);
-    }
-    pivot = hn::Min(hn::Max(pivot, noticeable), splat(largest_pivot));
-    v.inverse_pivot[j] = hn::Div(splat(1.0), pivot);
-    product = hn::Mul(product, pivot);
-    if (j % pivots_per_log == pivots_per_log - 1 || j == n - 1) {
-      log_determinant = hn::Add(log_determinant, hn::Log(D(), product));
-      product = splat(1.0);
-    }
-  }
-  return log_determinant;
-}
-
-/// m = the inverse of the unit lower triangle in t.
-template <class Arrays>
-HWY_INLINE void invert(int n, Arrays& v) {
-  for (int j = 0; j < n; ++j) {
-    v.m[at(j, j)] = splat(1.0);
-    for (int i = j + 1; i < n; ++i) {
-      V sum = v.t[at(i, j)];
-      for (int k = j + 1; k < i; ++k) sum = hn::MulAdd(v.t[at(i, k)], v.m[at(k, j)], sum);
-      v.m[at(i, j)] = hn::Neg(sum);
-    }
-  }
-}
-
-/// z = T^-1 y and I - T^-1 to `out`; returns y' T^-1 y.
-template <class Arrays>
-HWY_INLINE V expected(int n, Arrays& v, double* out) {
-  V distance = zero();
-  for (int i = n - 1; i >= 0; --i) {
-    V u = v.y[i];
-    for (int j = 0; j < i; ++j) u = hn::MulAdd(v.m[at(i, j)], v.y[j], u);
-    const V scaled = hn::Mul(u, v.inverse_pivot[i]);
-    distance = hn::MulAdd(u, scaled, distance);
-    v.y[i] = scaled;  // entries below i are not needed any more in what they were
-  }
-  for (int i = 0; i < n; ++i) {
-    V z = v.y[i];
-    for (int l = i + 1; l < n; ++l) z = hn::MulAdd(v.m[at(l, i)], v.y[l], z);
-    store(z, out + i * L);
-    for (int j = 0; j <= i; ++j) {
-      V sum = splat(i == j ? 1.0 : 0.0);
-      for (int l = i; l < n; ++l) sum = hn::NegMulAdd(hn::Mul(v.m[at(l, i)], v.inverse_pivot[l]), v.m[at(l, j)], sum);
-      store(sum, out + (n + at(i, j)) * L);
-    }
-  }
-  return bounded(distance);
-}
-
-template <int F>
+/// The passes over a block that kernels for few and for many features share. Kernel: a constructor (features, work);
+/// `begin` (block), which reads two vectors of points; `spread<logarithmic>` (vector, component's mean, W, where
+/// expectations go).
+template <class Kernel>
 struct Errors {
-  /// Log densities of one vector of points; expectations of component k at expectations + k stride.
-  static HWY_INLINE void log_densities(const Components& components, const Block& block, const Scratch& scratch,
-                                       Index point, double* expectations) {
-    const int n = ErrorArrays<F>::features(components.features);
-    ErrorArrays<F> v(n, scratch.work);
-    for (int i = 0; i < n; ++i) v.x[i] = load(block.points + i * block_size + point);
-    for (int i = 0; i < triangle(n); ++i) v.s[i] = load(block.errors + i * block_size + point);
-    V top = zero();
-    for (int k = 0; k < components.count; ++k) {
-      whiten(n, components.means + k * n, components.whitening + k * components.stride, v);
-      const V log_determinant = factor(n, v);
-      invert(n, v);
-      const V distance = expected(n, v, expectations + k * (n + triangle(n)) * L);
-      const V density =
-          hn::NegMulAdd(hn::Add(distance, log_determinant), splat(0.5), splat(components.log_constants[k]));
-      store(density, scratch.relative + k * block_size + point);
-      top = k == 0 ? density : hn::Max(top, density);
+  template <bool logarithmic>
+  static HWY_INLINE void densities(Kernel& kernel, const Components& components, double shift, const Scratch& scratch,
+                                   double* expected) {
+    const Index per_component = expectations(components.features, Kernel::diagonal) * together;
+    for (int v = 0; v < 2; ++v) {
+      V total = zero();
+      for (int k = 0; k < components.count; ++k) {
+        const Spread<logarithmic> spread = kernel.template spread<logarithmic>(
+            v, components.means + k * components.features, components.whitening + k * components.stride,
+            expected + k * per_component + v * per_component / 2);
+        const V density = spread.density(components.log_constants[k], shift);
+        store(density, scratch.relative + k * block_size + v * L);
+        total = k == 0 ? density : logarithmic ? hn::Max(total, density) : hn::Add(total, density);
+      }
+      store(total, (logarithmic ? scratch.log_density : scratch.sum) + v * L);
     }
-    store(top, scratch.log_density + point);
+  }
+
+  /// relative, sum and log_density of `together` points.
+  static HWY_INLINE void densities(Kernel& kernel, const Components& components, const Block& block, double shift,
+                                   const Scratch& scratch, double* expected) {
+    kernel.begin(block);
+    densities<false>(kernel, components, shift, scratch, expected);
+    if (finish_shifted(components, block, shift, scratch, together)) return;
+    densities_anywhere(kernel, components, block, scratch, expected);
+  }
+
+  static HWY_NOINLINE void densities_anywhere(Kernel& kernel, const Components& components, const Block& block,
+                                              const Scratch& scratch, double* expected) {
+    densities<true>(kernel, components, 0.0, scratch, expected);
+    normalise(add_noise(components, block, scratch, together), scratch, together);
   }
 
   static void evaluate(const Components& components, const Block& block, const Scratch& scratch) {
-    double* expectations = scratch.work + error_work(components.features);
-    for (Index point = 0; point < block_size; point += L)
-      log_densities(components, block, scratch, point, expectations);
-    normalise(add_noise(components, block, scratch), scratch);
+    Kernel kernel(components.features, scratch.work);
+    const double shift = largest_log_constant(components);
+    double* const expected = scratch.work + Kernel::work(components.features);
+    for (Index point = 0; point < block_size; point += together)
+      densities(kernel, components, part(block, point), shift, part(scratch, point), expected);
   }
 
-  static HWY_INLINE void add_component(int n, V r, const double* expectations, double* lanes) {
-    add_to(lanes, r);
-    for (int i = 0; i < n; ++i) {
-      const V z = load(expectations + i * L), rz = hn::Mul(r, z);
-      add_to(lanes + (1 + i) * L, rz);
-      for (int j = 0; j <= i; ++j) {
-        const V second = hn::MulAdd(z, load(expectations + j * L), load(expectations + (n + at(i, j)) * L));
-        double* sum = lanes + (1 + n + at(i, j)) * L;
-        store(hn::MulAdd(r, second, load(sum)), sum);
-      }
-    }
-  }
-
-  /// The expectations of a block are K (F + F (F + 1) / 2) columns: they are kept from the first pass to the second.
   static void accumulate(const Components& components, const Block& block, const Scratch& scratch) {
-    const int n = ErrorArrays<F>::features(components.features);
-    const Index per_component = (n + triangle(n)) * L, per_vector = components.count * per_component;
-    double* expectations = scratch.work + error_work(n);
-    for (Index point = 0; point < block_size; point += L)
-      log_densities(components, block, scratch, point, expectations + point / L * per_vector);
-    normalise(add_noise(components, block, scratch), scratch);
-    begin_sums(components, block, scratch);
-    for (int k = 0; k < components.count; ++k) {
-      double* lanes = scratch.lanes + (2 + k * (1 + n + triangle(n))) * L;
-      for (Index point = 0; point < block_size; point += L) {
-        const V r = hn::Mul(load(scratch.relative + k * block_size + point), load(scratch.sum + point));
-        add_component(n, r, expectations + point / L * per_vector + k * per_component, lanes);
-      }
+    const int n = Kernel::features(components.features);
+    Kernel kernel(n, scratch.work);
+    const double shift = largest_log_constant(components);
+    double* const expected = scratch.work + Kernel::work(n);
+    const Index entries = expectations(n, Kernel::diagonal);
+    for (Index point = 0; point < block_size; point += together) {
+      const Block points = part(block, point);
+      const Scratch results = part(scratch, point);
+      densities(kernel, components, points, shift, results, expected);
+      begin_sums(components, points, results, together);
+      double* lanes = scratch.lanes + 2 * L;
+      for (int k = 0; k < components.count; ++k, lanes += (1 + entries) * L)
+        add_expectations(n, Kernel::diagonal, results.relative + k * block_size, results.sum,
+                         expected + k * entries * together, lanes);
     }
   }
 };

@@ -4,41 +4,43 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "mixture/em_errors-inl.hpp"
+#include "mixture/em_errors_small-inl.hpp"
+#include "mixture/em_errors_tiles-inl.hpp"
 #include "mixture/em_kernels.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::em::HWY_NAMESPACE {
 
-template <int F>
-void set_kernels(Kernels& kernels) {
-  kernels.evaluate = Errors<F>::evaluate;
-  kernels.accumulate = Errors<F>::accumulate;
+template <class Kernel>
+Kernels error_kernels_of(Packing packing, int features) {
+  Kernels kernels;
+  kernels.packing = packing;
+  kernels.entries = 1 + expectations(features, Kernel::diagonal);
+  kernels.common_work = Kernel::work(features);
+  kernels.work = expectations(features, Kernel::diagonal) * together;
+  kernels.evaluate = Errors<Kernel>::evaluate;
+  kernels.accumulate = Errors<Kernel>::accumulate;
+  return kernels;
 }
 
-Kernels with_errors(int features) {
-  Kernels kernels;
-  kernels.packing = Packing::rows;
-  kernels.entries = 1 + features + triangle(features);
-  kernels.common_work = error_work(features);
-  kernels.work = (features + triangle(features)) * block_size;
+template <bool diagonal>
+Kernels with_errors_of(int features) {
   switch (features) {
     case 1:
-      set_kernels<1>(kernels);
-      break;
+      return error_kernels_of<SmallErrors<1, diagonal>>(Packing::unit_rows, features);
     case 2:
-      set_kernels<2>(kernels);
-      break;
+      return error_kernels_of<SmallErrors<2, diagonal>>(Packing::unit_rows, features);
     case 3:
-      set_kernels<3>(kernels);
-      break;
+      return error_kernels_of<SmallErrors<3, diagonal>>(Packing::unit_rows, features);
     case 4:
-      set_kernels<4>(kernels);
-      break;
+      return error_kernels_of<SmallErrors<4, diagonal>>(Packing::unit_rows, features);
     default:
-      set_kernels<0>(kernels);
+      return error_kernels_of<TileErrors<diagonal>>(diagonal ? Packing::diagonal : Packing::tiles, features);
   }
-  return kernels;
+}
+
+Kernels with_errors(int features, bool diagonal) {
+  return diagonal ? with_errors_of<true>(features) : with_errors_of<false>(features);
 }
 
 }  // namespace modebank::em::HWY_NAMESPACE
@@ -49,7 +51,7 @@ namespace modebank::em {
 
 HWY_EXPORT(with_errors);
 
-Kernels error_kernels(int features) { return HWY_DYNAMIC_DISPATCH(with_errors)(features); }
+Kernels error_kernels(int features, bool diagonal) { return HWY_DYNAMIC_DISPATCH(with_errors)(features, diagonal); }
 
 }  // namespace modebank::em
 #endif

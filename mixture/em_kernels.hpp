@@ -37,9 +37,10 @@ struct Components {
   const double* log_constants = nullptr;
 };
 
-/// How a kernel wants W: its diagonal; its lower triangle by rows; or four rows at a time, column by column, padded
-/// with zeros.
-enum class Packing { diagonal, rows, tiles };
+/// How a kernel wants W: its diagonal; its lower triangle by rows; W = D U with U of unit diagonal as the products D_i
+/// D_j of the lower triangle by rows, then D, then the rows of U left of its diagonal; or four rows at a time, column
+/// by column, padded with zeros.
+enum class Packing { diagonal, rows, unit_rows, tiles };
 
 /// Memory of one thread, aligned to 64 bytes.
 struct Scratch {
@@ -57,14 +58,14 @@ struct Scratch {
 struct Kernels {
   Packing packing = Packing::rows;
   Index entries = 0;
-  Index work = 0;  ///< doubles of Scratch::work that one component needs, and as many more for all
-  Index common_work = 0;
+  Index work = 0;         ///< doubles of Scratch::work that one component needs
+  Index common_work = 0;  ///< and as many more for all
   void (*evaluate)(const Components&, const Block&, const Scratch&) = nullptr;    ///< relative, sum, log_density
   void (*accumulate)(const Components&, const Block&, const Scratch&) = nullptr;  ///< the same, and adds to `lanes`
 };
 
 Kernels plain_kernels(int features, bool diagonal);
-Kernels error_kernels(int features);
+Kernels error_kernels(int features, bool diagonal);
 
 /// Lanes of doubles of this machine's kernels.
 Index lanes();

@@ -42,18 +42,16 @@ MixtureMoments expect_group(const PointBlocks& points, const FactoredMixture& mi
   return moments;
 }
 
-/// Mean and covariance of one component from its sums; `offset` is the new mean minus the old one. Diagonal mixtures on
-/// points with errors have the whole triangle among their sums.
+/// Mean and covariance of one component from its sums; `offset` is the new mean minus the old one.
 void update_component(const Eigen::Ref<const Eigen::VectorXd>& sums, bool diagonal, Eigen::VectorXd& offset,
                       Eigen::MatrixXd& covariance) {
   const Index features = offset.size();
-  const bool triangle = sums.size() > 1 + 2 * features || features == 1;
   offset = sums.segment(1, features) / sums(0);
   covariance.setZero(features, features);
   Index row = 1 + features;
   for (Index i = 0; i < features; ++i)
-    for (Index j = triangle ? 0 : i; j <= i; ++j, ++row)
-      if (!diagonal || i == j) covariance(i, j) = covariance(j, i) = sums(row) / sums(0) - offset(i) * offset(j);
+    for (Index j = diagonal ? i : 0; j <= i; ++j, ++row)
+      covariance(i, j) = covariance(j, i) = sums(row) / sums(0) - offset(i) * offset(j);
 }
 
 }  // namespace

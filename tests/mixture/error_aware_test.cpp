@@ -127,6 +127,80 @@ TEST(ErrorAware, EqualErrorsAddToTheCovariances) {
   }
 }
 
+/// One iteration of Bovy, Hogg & Roweis (2011), eq. 14 to 16, point by point in the points' own coordinates.
+EmResult direct_step(const Eigen::MatrixXd& points, const Eigen::MatrixXd& errors, GaussianMixture mixture) {
+  const Index F = points.rows(), N = points.cols(), K = mixture.components();
+  Eigen::MatrixXd densities(K, N);
+  const auto total = [&](Index k, Index i) -> Eigen::MatrixXd {
+    return mixture.covariances[static_cast<std::size_t>(k)] + errors.col(i).reshaped(F, F);
+  };
+  for (Index i = 0; i < N; ++i)
+    for (Index k = 0; k < K; ++k) {
+      const Eigen::MatrixXd T = total(k, i);
+      const Eigen::VectorXd d = points.col(i) - mixture.means.col(k);
+      const double scale = (2.0 * M_PI * T).determinant();
+      densities(k, i) = mixture.weights(k) * std::exp(-0.5 * d.dot(T.ldlt().solve(d))) / std::sqrt(scale);
+    }
+  GaussianMixture next = mixture;
+  for (Index k = 0; k < K; ++k) {
+    const Eigen::MatrixXd& covariance = mixture.covariances[static_cast<std::size_t>(k)];
+    const Eigen::RowVectorXd r = densities.row(k).array() / densities.colwise().sum().array();
+    Eigen::MatrixXd expected(F, N), spread = Eigen::MatrixXd::Zero(F, F);
+    for (Index i = 0; i < N; ++i) {
+      const Eigen::MatrixXd gain = total(k, i).ldlt().solve(covariance).transpose();
+      expected.col(i) = mixture.means.col(k) + gain * (points.col(i) - mixture.means.col(k));
+      spread += r(i) * (covariance - gain * covariance);
+    }
+    next.weights(k) = r.mean();
+    next.means.col(k) = expected * r.transpose() / r.sum();
+    const Eigen::MatrixXd off = expected.colwise() - next.means.col(k);
+    Eigen::MatrixXd second = (off * r.asDiagonal() * off.transpose() + spread) / r.sum();
+    if (mixture.type == CovarianceType::diagonal) second = Eigen::MatrixXd(second.diagonal().asDiagonal());
+    next.covariances[static_cast<std::size_t>(k)] = second;
+  }
+  EmResult result;
+  result.mixture = next;
+  result.log_likelihood = densities.colwise().sum().array().log().sum();
+  return result;
+}
+
+TEST(ErrorAware, AStepIsWhatTheFormulaeSay) {
+  for (const Index features : {1, 2, 3, 4, 5, 7, 8, 12})
+    for (const CovarianceType type : {CovarianceType::full, CovarianceType::diagonal}) {
+      SCOPED_TRACE(features);
+      GaussianMixture start = any_mixture(features, 3);
+      start.type = type;
+      if (type == CovarianceType::diagonal)
+        for (Eigen::MatrixXd& covariance : start.covariances)
+          covariance = Eigen::MatrixXd(covariance.diagonal().asDiagonal());
+      const Eigen::MatrixXd errors = random_errors(features, 150, 0.5, 21);
+      const Eigen::MatrixXd points = with_errors(draw(start, 150, 22), errors, 23);
+      const PointSet set(points, unweighted, errors);
+      const EmResult expected = direct_step(points, errors, start), step = fit_em(set, start, unfloored(1, type));
+      EXPECT_LT(difference(step, expected), 1e-11);
+      EXPECT_NEAR(log_density(start, set).sum() / expected.log_likelihood, 1.0, 1e-12);
+    }
+}
+
+TEST(ErrorAware, PointsFarFromEverythingKeepTheirDensity) {
+  // Their densities relative to any one number underflow; at equal errors a mixture of inflated components knows them.
+  for (const Index features : {2, 6}) {
+    const GaussianMixture mixture = any_mixture(features, 3);
+    GaussianMixture inflated = mixture;
+    const Eigen::MatrixXd error = random_errors(features, 1, 0.8, 3);
+    for (Eigen::MatrixXd& covariance : inflated.covariances) covariance += error.reshaped(features, features);
+    Eigen::MatrixXd points = draw(inflated, 40, 6);
+    points.col(3).array() += 60.0;
+    points.col(17).array() -= 1e4;
+    const Eigen::MatrixXd errors = error.replicate(1, 40);
+    const PointSet set(points, unweighted, errors);
+    const Eigen::VectorXd aware = log_density(mixture, set), plain = log_density(inflated, points);
+    EXPECT_LT(aware(17), -1e6);
+    EXPECT_TRUE(near(aware.cwiseQuotient(plain), Eigen::VectorXd::Ones(40), 1e-10));
+    EXPECT_TRUE(near(responsibilities(mixture, set), responsibilities(inflated, points), 1e-9));
+  }
+}
+
 TEST(ErrorAware, LogLikelihoodNeverFalls) {
   for (const CovarianceType type : {CovarianceType::full, CovarianceType::diagonal}) {
     const Eigen::MatrixXd errors = random_errors(2, 300, 1.0, 7);
