@@ -56,7 +56,7 @@ FEATURES = [
     ("the same bank in gpb2", {"bank:filter.variant": "gpb2"}),
     ("the same bank in mmae", {"bank:filter.variant": "mmae"}),
     ("the same bank in salvi2025", {"bank:filter.variant": "salvi2025"}),
-    ("one Kalman filter, adaptive noise (kf)", {"filter.variant": "kf"}),
+    ("one Kalman filter (kf)", {"filter.variant": "kf"}),
 ]
 EARLY = ("data.", "window.", "mixture.", "job.")  # what windows and mixture depend on
 
@@ -247,4 +247,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except Failed as error:
+        sys.exit(str(error))

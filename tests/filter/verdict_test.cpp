@@ -34,7 +34,7 @@ std::map<Verdict, int> verdicts(const Bank& truth, double of_Q, double of_R, Ind
 }
 
 TEST(Verdict, VerdictsAreRightSeedBySeed) {
-  constexpr int seeds = 40, nearly_all = 38;
+  constexpr int seeds = 20, nearly_all = 19;
   for (const double r : {1e-8, 1.3e-4, 1.3e-3}) {  // Q = 1.3e-4
     const Bank bank = test::single_mode(example_bank(1, 1, 1, r), 0);
     EXPECT_GE(verdicts(bank, 1, 1, 1500, seeds)[Verdict::calibrated], nearly_all) << r;
@@ -58,10 +58,9 @@ TEST(Verdict, VerdictsAreRightSeedBySeed) {
 /// A scale learned on the way is not known exactly: the mean NIS of a true filter then lies above n_y, which many
 /// samples would call significant.
 TEST(Verdict, AdaptiveNoiseIsJudgedByTailsAlone) {
-  Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
-  bank.noise_adaptation = {0.95, 5.0};
-  for (const double factor : {1.0, 0.25})  // the scale makes up for it
-    EXPECT_EQ(verdicts(bank, factor, 1, 20000, 2, FilterNoise::adaptive)[Verdict::calibrated], 2) << factor;
+  const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
+  for (const double factor : {1.0, 4.0})  // the scale makes up for it
+    EXPECT_EQ(verdicts(bank, factor, 1, 10000, 2, FilterNoise::adaptive)[Verdict::calibrated], 2) << factor;
   const Bank noisy = test::single_mode(example_bank(1, 1, 1, 1.3e-3), 0);  // but not for measurement noise
   EXPECT_EQ(verdicts(noisy, 1, 4, 1500, 10, FilterNoise::adaptive)[Verdict::underconfident], 10);
 }
@@ -70,7 +69,7 @@ TEST(Verdict, AdaptiveNoiseIsJudgedByTailsAlone) {
 TEST(Verdict, AFewPercentOfVarianceAreNoVerdict) {
   const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
   for (const double factor : {0.95, 1.05})
-    EXPECT_EQ(verdicts(bank, factor, 1, 50000, 1)[Verdict::calibrated], 1) << factor;
+    EXPECT_EQ(verdicts(bank, factor, 1, 20000, 1)[Verdict::calibrated], 1) << factor;
 }
 
 /// Innovations of the right size that follow each other closely: hits come in groups, and a group is not many samples.
@@ -79,15 +78,15 @@ TEST(Verdict, GroupsOfHitsAreFewSamples) {
   bank.modes[0].model.A(0, 0) = -1.0;
   bank.modes[0].model.B.setZero();
   int wrong = 0;
-  for (int seed = 0; seed < 60; ++seed) {
-    Trajectory run = simulate_truth(bank, 400, 8000 + static_cast<std::uint64_t>(seed)).run;
+  for (int seed = 0; seed < 40; ++seed) {
+    Trajectory run = simulate_truth(bank, 1000, 8000 + static_cast<std::uint64_t>(seed)).run;
     run.role = Role::test;
-    for (Index k = 1; k < 400; ++k)
-      run.state(0, k) = 0.95 * run.state(0, k - 1) + std::sqrt(1 - 0.95 * 0.95) * run.state(0, k);
+    for (Index k = 1; k < 1000; ++k)
+      run.state(0, k) = 0.9 * run.state(0, k - 1) + std::sqrt(1 - 0.9 * 0.9) * run.state(0, k);
     const Verdict verdict = diagnose("bank", bank, {}, {run}, {evaluate_run(bank, run, {})}).front().verdict;
     wrong += verdict == Verdict::overconfident || verdict == Verdict::underconfident;
   }
-  EXPECT_LE(wrong, 6);
+  EXPECT_LE(wrong, 4);
 }
 
 Interval mean_interval(const SeriesByRun& series) {
