@@ -37,6 +37,8 @@ struct FilterSnapshot {
   SampleFeed::Memory samples;
 };
 
+struct BankFilterSteps;
+
 /// A bank at work, sample by sample, whatever its sizes and the variant: the one way from samples to estimates, live
 /// and in evaluate_run. A step allocates nothing.
 class BankFilter {
@@ -62,12 +64,7 @@ class BankFilter {
   void restore(const FilterSnapshot& snapshot);
 
  private:
-  struct Steps;
-  template <int N, int NY>
-  struct SizedSteps;
-  struct VectorSteps;
-  static std::unique_ptr<Steps> make_steps(const Bank& bank, const FilterOptions& options);
-  std::unique_ptr<Steps> steps_;
+  std::unique_ptr<BankFilterSteps> steps_;
 };
 
 }  // namespace modebank
