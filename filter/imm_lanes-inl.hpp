@@ -10,12 +10,15 @@
 #include <hwy/highway.h>
 
 #include "filter/bounds.hpp"
-#include "ident/vector_math-inl.hpp"
+#include "ident/batch_lanes-inl.hpp"
+#include "mixture/em_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::imm_lanes::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace vector_math::HWY_NAMESPACE;
+using batch::HWY_NAMESPACE::reciprocal;
+using batch::HWY_NAMESPACE::reciprocal_root;
+using em::HWY_NAMESPACE::Exp;
 
 // At most the padding's width (vector_imm_kernels.hpp), so that rows are whole registers everywhere.
 using D = hn::CappedTag<double, 8>;
@@ -25,6 +28,7 @@ using M = hn::Mask<D>;
 inline constexpr double log_two_pi = 1.8378770664093454836;
 inline constexpr double far = 1e300;  ///< the squared distance of an impossible mode
 
+HWY_INLINE V splat(double value) { return hn::Set(D(), value); }
 HWY_INLINE V zero() { return hn::Zero(D()); }
 HWY_INLINE V load(const double* p) { return hn::Load(D(), p); }
 HWY_INLINE void store(V v, double* p) { hn::Store(v, D(), p); }

@@ -27,7 +27,7 @@ void SampleFeed::clear() { samples_ = whole_ = 0; }
 Index SampleFeed::steps_between(double from_s, double to_s, double dt_s, TimeSteps time_steps) {
   const double periods = (to_s - from_s) / dt_s;
   if (time_steps == TimeSteps::single || !(dt_s > 0.0) || !std::isfinite(periods)) return 1;
-  return static_cast<Index>(std::clamp(std::round(periods), 1.0, static_cast<double>(longest_gap_steps + 1)));
+  return static_cast<Index>(std::clamp(periods, 1.0, static_cast<double>(longest_gap_steps + 1)) + 0.5);  // rounded
 }
 
 void SampleFeed::push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,

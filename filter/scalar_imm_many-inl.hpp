@@ -6,6 +6,7 @@
 #define MODEBANK_SCALAR_IMM_MANY_INL
 #endif
 
+#include <array>
 #include <utility>
 
 #include "filter/scalar_imm_step-inl.hpp"
@@ -44,7 +45,7 @@ struct Mixed {
 
 /// Means by themselves and variances about them, for modes that differ by so much that moments about the center cancel.
 template <std::size_t J>
-HWY_NOINLINE void mix_apart(const RunLanes& p, std::size_t j, const V (&inverse)[J], Mixed<J>& m) {
+HWY_NOINLINE void mix_apart(const RunLanes& p, std::size_t j, const std::array<V, J>& inverse, Mixed<J>& m) {
   const std::size_t L = hn::Lanes(D()), K = p.modes;
   for (std::size_t b = 0; b < J; ++b) {
     m.x[b] = m.P[b] = zero();
@@ -78,16 +79,21 @@ HWY_INLINE Mixed<J> mix(const RunLanes& p, const LaneRows& rows, V center, std::
     }
   }
   M possible[J], cancelled = hn::Lt(zero(), zero());
-  V inverse[J];
+  std::array<V, J> inverse;
   for (std::size_t b = 0; b < J; ++b) {
     possible[b] = hn::Ge(m.c[b], splat(impossible_probability));
     inverse[b] = reciprocal(hn::IfThenElse(possible[b], m.c[b], splat(1.0)));
     const V shift = hn::Mul(m.x[b], inverse[b]), square = hn::Mul(m.P[b], inverse[b]);
     m.x[b] = hn::Add(center, shift);
     m.P[b] = hn::NegMulAdd(shift, shift, square);
-    cancelled = hn::Or(cancelled, hn::Lt(m.P[b], least_sound(square, center)));
+    cancelled = hn::Or(cancelled, hn::And(possible[b], hn::Lt(m.P[b], least_sound(square, center))));
   }
-  if (HWY_UNLIKELY(!hn::AllFalse(D(), cancelled))) mix_apart(p, j, inverse, m);
+  if (HWY_UNLIKELY(!hn::AllFalse(D(), cancelled))) {
+    Mixed<J> apart = m;  // a copy, so that m itself can stay in registers
+    const std::array<V, J> weights = inverse;
+    mix_apart(p, j, weights, apart);
+    m = apart;
+  }
   for (std::size_t b = 0; b < J; ++b) {
     m.x[b] = hn::IfThenElse(possible[b], m.x[b], load(p.mean + (j + b) * L));
     m.P[b] = hn::IfThenElse(possible[b], m.P[b], load(p.variance + (j + b) * L));
@@ -156,9 +162,10 @@ void many_runs(const RunLanes& p) {
         load(p.C), load(p.R), hn::IfThenElseZero(measured, y_or_nan), measured, p.v + (k - 1) * p.inputs * L, center};
     V least = splat(far);
     std::size_t j = 0;
-    for (; j + 4 <= K; j += 4) step_modes<4>(now, rows, sample, j, next, least);
-    for (; j + 2 <= K; j += 2) step_modes<2>(now, rows, sample, j, next, least);
-    if (j < K) step_modes<1>(now, rows, sample, j, next, least);
+    for (; K - j >= 4 && K - j != 5; j += 4) step_modes<4>(now, rows, sample, j, next, least);
+    for (; K - j >= 3; j += 3) step_modes<3>(now, rows, sample, j, next, least);
+    if (K - j == 2) step_modes<2>(now, rows, sample, j, next, least);
+    if (K - j == 1) step_modes<1>(now, rows, sample, j, next, least);
     V sum = zero();
     for (j = 0; j < K; ++j) {
       const V c = load(rows.prior + j * L);

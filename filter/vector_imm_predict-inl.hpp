@@ -41,7 +41,7 @@ HWY_INLINE void prepare_mixing(const ModeRows& p, V (&center)[N]) {
 /// Means by themselves and covariances about them, for modes that differ by so much that moments about the center
 /// cancel.
 template <std::size_t N>
-HWY_NOINLINE void mix_apart(const ModeRows& p, std::size_t r, const V& inverse, Moments<N>& m) {
+HWY_NOINLINE void mix_apart(const ModeRows& p, std::size_t r, V inverse, Moments<N>& m) {
   const std::size_t stride = p.stride;
   for (V& x : m.x) x = zero();
   for (V& P : m.P) P = zero();
@@ -85,7 +85,11 @@ HWY_INLINE Moments<N> mixture(const ModeRows& p, std::size_t r, const V (&center
       m.P[k] = hn::NegMulAdd(shift[a], shift[b], square);
       if (a == b) cancelled = hn::Or(cancelled, hn::Lt(m.P[k], least_sound(square, center[a])));
     }
-  if (HWY_UNLIKELY(!hn::AllFalse(D(), cancelled))) mix_apart(p, r, inverse, m);
+  if (HWY_UNLIKELY(!hn::AllFalse(D(), hn::And(possible, cancelled)))) {
+    Moments<N> apart;  // not m, which can then stay in registers
+    mix_apart(p, r, inverse, apart);
+    m = apart;
+  }
   for (std::size_t a = 0; a < N; ++a) m.x[a] = hn::IfThenElse(possible, m.x[a], load(p.mean + a * p.stride + r));
   for (std::size_t k = 0; k < packed_size(N); ++k)
     m.P[k] = hn::IfThenElse(possible, m.P[k], load(p.covariance + k * p.stride + r));

@@ -8,8 +8,6 @@
 
 #include <hwy/highway.h>
 
-#include "ident/vector_math-inl.hpp"
-
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -17,13 +15,37 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<double>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
-using vector_math::HWY_NAMESPACE::reciprocal;
-using vector_math::HWY_NAMESPACE::reciprocal_root;
 
 HWY_INLINE V splat(double value) { return hn::Set(D(), value); }
 HWY_INLINE V zero() { return hn::Zero(D()); }
 HWY_INLINE bool any(M mask) { return !hn::AllFalse(D(), mask); }
 HWY_INLINE M none() { return hn::FirstN(D(), 0); }
+
+/// 1 / x to the last bit or two; x neither denormal nor so large that its reciprocal is.
+HWY_INLINE V reciprocal(V x) {
+#if HWY_TARGET == HWY_AVX3
+  V y{_mm512_rcp14_pd(x.raw)};
+  const V e = hn::NegMulAdd(x, y, splat(1.0));
+  y = hn::MulAdd(y, hn::MulAdd(e, e, e), y);  // third order: 14 -> 42 bits
+  return hn::MulAdd(y, hn::NegMulAdd(x, y, splat(1.0)), y);
+#else
+  return hn::Div(splat(1.0), x);
+#endif
+}
+
+/// 1 / sqrt(x), likewise.
+HWY_INLINE V reciprocal_root(V x) {
+#if HWY_TARGET == HWY_AVX3
+  V y{_mm512_rsqrt14_pd(x.raw)};
+  for (int i = 0; i < 2; ++i) {
+    const V e = hn::NegMulAdd(hn::Mul(x, y), y, splat(1.0));
+    y = hn::MulAdd(hn::Mul(y, e), hn::MulAdd(e, splat(0.375), splat(0.5)), y);  // third order
+  }
+  return y;
+#else
+  return hn::Div(splat(1.0), hn::Sqrt(x));
+#endif
+}
 
 /// Position of (i, j), i >= j, in a packed lower triangle.
 constexpr int at(int i, int j) { return i * (i + 1) / 2 + j; }

@@ -1,4 +1,5 @@
-// Vectors and what a block's log densities become. Included once per instruction set (Highway's foreach_target.h).
+// Vectors, exp and log, and what a block's log densities become. Included once per instruction set (Highway's
+// foreach_target.h).
 #if defined(MODEBANK_EM_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_EM_LANES_INL
 #undef MODEBANK_EM_LANES_INL
@@ -9,7 +10,6 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "ident/vector_math-inl.hpp"
 #include "mixture/em_kernels.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,7 +18,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::ScalableTag<double>;
 using V = hn::Vec<D>;
-using vector_math::HWY_NAMESPACE::Exp;
 
 inline constexpr Index L = hn::MaxLanes(D());
 static_assert(block_size % (2 * L) == 0 && L <= most_lanes);
@@ -29,6 +28,8 @@ HWY_INLINE V load(const double* from) { return hn::Load(D(), from); }
 HWY_INLINE void store(V value, double* to) { hn::Store(value, D(), to); }
 HWY_INLINE void add_to(double* sum, V value) { store(hn::Add(load(sum), value), sum); }
 
+/// Relative densities below exp(-690) count as that: no denormal numbers, which are slow.
+inline constexpr double smallest_log_ratio = -690.0;
 /// Squared distances beyond this (points so far out that squares overflow, or not a number where the parts of a
 /// distance overflow with different signs) count as this, so that no density is ever NaN.
 inline constexpr double largest_distance = 2e300;
@@ -37,6 +38,74 @@ HWY_INLINE V bounded(V distance) {
   const V largest = splat(largest_distance);
   return hn::IfThenElse(hn::Lt(distance, largest), distance, largest);
 }
+
+// exp(x) for |x| up to 690: 2^(n + r) with n a whole number (of sixteenths), r by the Taylor polynomial. log2(e) is the
+// sum of two doubles.
+inline constexpr double log2_e = 1.4426950408889634074, log2_e_rest = 2.0355273740931033e-17;
+
+#if HWY_TARGET == HWY_AVX3
+alignas(64) inline constexpr double sixteenth_powers[16] = {1.0,
+                                                            1.0442737824274138,
+                                                            1.0905077326652577,
+                                                            1.1387886347566916,
+                                                            1.189207115002721,
+                                                            1.241857812073484,
+                                                            1.2968395546510096,
+                                                            1.3542555469368927,
+                                                            1.4142135623730951,
+                                                            1.4768261459394993,
+                                                            1.5422108254079407,
+                                                            1.6104903319492543,
+                                                            1.681792830507429,
+                                                            1.7562521603732995,
+                                                            1.8340080864093424,
+                                                            1.9152065613971474};
+
+/// A table of 2^(i/16) in two registers: degree 6 is enough.
+struct Exp {
+  V low, high;
+  HWY_INLINE Exp() : low(load(sixteenth_powers)), high(load(sixteenth_powers + 8)) {}
+  HWY_INLINE V operator()(V x) const {
+    // Adding it leaves the sixteenths in the low bits of the mantissa.
+    const V rounder = splat(6755399441055744.0 / 16.0);
+    x = hn::Max(x, splat(smallest_log_ratio));
+    const V shifted = hn::MulAdd(x, splat(log2_e), rounder);
+    const V n = hn::Sub(shifted, rounder);
+    const V r = hn::MulAdd(x, splat(log2_e_rest), hn::MulSub(x, splat(log2_e), n));
+    const V power{_mm512_permutex2var_pd(low.raw, _mm512_castpd_si512(shifted.raw), high.raw)};
+    const V r2 = hn::Mul(r, r);
+    const auto pair = [&](double a, double b) { return hn::MulAdd(r, splat(b), splat(a)); };
+    const V high_terms = hn::MulAdd(r2, pair(1.3333558146428443e-3, 1.5403530393381609e-4),
+                                    pair(5.5504108664821580e-2, 9.6181291076284772e-3));
+    const V p = hn::MulAdd(r2, high_terms, pair(6.9314718055994531e-1, 2.4022650695910071e-1));
+    const V y = hn::MulAdd(hn::Mul(power, r), p, power);
+    return V{_mm512_scalef_pd(y.raw, n.raw)};  // scalef rounds its argument down
+  }
+};
+#else
+/// The polynomial of degree 12 on [-1/2, 1/2].
+struct Exp {
+  HWY_INLINE V operator()(V x) const {
+    const V rounder = splat(6755399441055744.0);  // adding it leaves n in the low bits of the mantissa
+    x = hn::Max(x, splat(smallest_log_ratio));
+    const V shifted = hn::MulAdd(x, splat(log2_e), rounder);
+    const V n = hn::Sub(shifted, rounder);
+    // In natural units: Taylor's coefficients.
+    const V fraction = hn::MulAdd(x, splat(log2_e_rest), hn::MulSub(x, splat(log2_e), n));
+    const V r = hn::Mul(fraction, splat(0.69314718055994530942));
+    const V r2 = hn::Mul(r, r), r4 = hn::Mul(r2, r2);
+    const auto pair = [&](double a, double b) { return hn::MulAdd(r, splat(b), splat(a)); };
+    const V low = hn::MulAdd(r2, pair(1.0 / 24, 1.0 / 120), pair(1.0 / 2, 1.0 / 6));
+    const V middle = hn::MulAdd(r2, pair(1.0 / 40320, 1.0 / 362880), pair(1.0 / 720, 1.0 / 5040));
+    const V high = hn::MulAdd(r2, splat(1.0 / 479001600), pair(1.0 / 3628800, 1.0 / 39916800));
+    const V p = hn::MulAdd(r2, hn::MulAdd(r4, hn::MulAdd(r4, high, middle), low), r);
+    const hn::RebindToUnsigned<D> bits;
+    const auto exponent = hn::Add(hn::BitCast(bits, shifted), hn::Set(bits, 1023));
+    const V power = hn::BitCast(D(), hn::ShiftLeft<52>(exponent));
+    return hn::MulAdd(power, p, power);
+  }
+};
+#endif
 
 /// scratch.relative holds log densities of `rows` components and scratch.log_density their largest; turns the former
 /// into densities relative to the largest, and the latter into the log density of the mixture.
