@@ -30,8 +30,31 @@ FilterEstimate empty_estimate(const Bank& bank) {
   return e;
 }
 
+/// Throws std::invalid_argument for numbers that no filter can work with.
+void check_numbers(const Bank& bank) {
+  const auto require = [](bool holds, const std::string& what) {
+    if (!holds) throw std::invalid_argument("the bank's " + what);
+  };
+  const auto is_covariance = [](const Eigen::MatrixXd& S) {
+    return S.allFinite() && (S.diagonal().array() >= 0.0).all();
+  };
+  require(is_covariance(bank.R), "R is no covariance");
+  require(bank.C.allFinite(), "C is not finite");
+  require(bank.initial_probability.allFinite() && bank.initial_probability.minCoeff() >= 0.0 &&
+              bank.initial_probability.sum() > 0.0,
+          "initial probabilities are none");
+  for (std::size_t j = 0; j < bank.modes.size(); ++j) {
+    const Mode& mode = bank.modes[j];
+    const std::string of_mode = " of mode " + std::to_string(j);
+    require(mode.model.A.allFinite() && mode.model.B.allFinite() && mode.model.c.allFinite(),
+            "model" + of_mode + " is not finite");
+    require(is_covariance(mode.Q), "Q" + of_mode + " is no covariance");
+  }
+}
+
 std::unique_ptr<BankFilterSteps> make_steps(const Bank& bank, const FilterOptions& options) {
   check_bank(bank);
+  check_numbers(bank);
   return VectorImm::can_step(bank, options) ? make_vector_steps(bank, options) : make_general_steps(bank, options);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "filter/measurement.hpp"
 
@@ -32,10 +33,15 @@ Index SampleFeed::steps_between(double from_s, double to_s, double dt_s, TimeSte
 
 void SampleFeed::push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                       const Eigen::Ref<const Eigen::VectorXd>& measurement) {
+  if (input.size() != inputs_ || measurement.size() != measurements_.rows())
+    throw std::invalid_argument("a sample of " + std::to_string(input.size()) + " inputs and " +
+                                std::to_string(measurement.size()) + " measurements, the bank has " +
+                                std::to_string(inputs_) + " and " + std::to_string(measurements_.rows()));
   steps_ = samples_ == 0 ? 1 : steps_between(time_s_, time_s, dt_s_, time_steps_);
   if (steps_ > longest_gap_steps) clear();
   for (Index i = recent_.cols() - 1; i > 0; --i) recent_.col(i) = recent_.col(i - 1);
-  recent_.col(0) = input;
+  for (Index i = 0; i < inputs_; ++i)
+    if (std::isfinite(input(i))) recent_(i, 0) = input(i);  // else the last known one still acts
   for (Index i = measurements_.cols() - 1; i > 0; --i) measurements_.col(i) = measurements_.col(i - 1);
   measurements_.col(0) = measurement;
   for (Index j = 0; j < input_lags_; ++j) acting_.segment(j * inputs_, inputs_) = recent_.col(input_delay_ + j);

@@ -132,11 +132,24 @@ struct Correction {
         check = hn::Add(check, sum);
       }
     }
-    const M sound = hn::Lt(hn::Abs(check), splat(far));
-    if (HWY_LIKELY(hn::AllTrue(D(), sound))) return result;
+    V least = result.P[0];
+    for (std::size_t a = 1; a < N; ++a) least = hn::Min(least, result.P[packed(a, a)]);
+    const M sound = hn::Lt(hn::Abs(check), splat(far)), negative = hn::Lt(least, zero());
+    if (HWY_LIKELY(hn::AllTrue(D(), hn::AndNot(negative, sound)))) return result;
     for (std::size_t a = 0; a < N; ++a) result.x[a] = hn::IfThenElse(sound, result.x[a], m.x[a]);
     for (std::size_t k = 0; k < packed_size(N); ++k) result.P[k] = hn::IfThenElse(sound, result.P[k], m.P[k]);
+    bound_variances(hn::And(sound, negative), result);
     return result;
+  }
+
+  /// As bound_variances of kalman.hpp does, where a variance is negative.
+  HWY_INLINE void bound_variances(M negative, Moments<N>& posterior) const {
+    for (std::size_t a = 0; a < N; ++a)
+      for (std::size_t b = 0; b <= a; ++b) {
+        V& P = posterior.P[packed(a, b)];
+        const V bounded = a == b ? hn::Max(zero(), hn::Min(P, m.P[packed(a, a)])) : zero();
+        P = hn::IfThenElse(negative, bounded, P);
+      }
   }
 };
 
