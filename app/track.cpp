@@ -80,6 +80,12 @@ class Tracker {
   std::optional<EstimateWriter> writer_;
   std::string identity_;
   std::optional<double> last_time_s_;
+  /// What was known before the last sample, if that came after so long a gap that the filter started anew.
+  struct BeforeLeap {
+    double time_s;
+    FilterSnapshot filter;
+  };
+  std::optional<BeforeLeap> before_leap_;
   std::size_t line_number_ = 0, samples_ = 0;
   fmt::memory_buffer out_;
 
@@ -118,9 +124,23 @@ class Tracker {
     if (kind == SampleReader::Line::sample && comes_in_time(reader_.sample().time_s)) step(reader_.sample());
   }
 
-  /// A clock that goes back by more than a filter remembers is another clock.
+  bool is_gap(double from_s, double to_s) const {
+    return SampleFeed::steps_between(from_s, to_s, bank_.dt_s, filter_options(config_).time_steps) > longest_gap_steps;
+  }
+
+  /// A sample far ahead whose successor follows the one before it had a wrong time: what was known before it is taken
+  /// up again. Else a clock that goes back by more than a filter remembers is another clock.
   bool comes_in_time(double time_s) {
     if (!last_time_s_ || time_s > *last_time_s_) return true;
+    if (before_leap_ && time_s > before_leap_->time_s && !is_gap(before_leap_->time_s, time_s)) {
+      fmt::print(
+          stderr,
+          "modebank: line {}: time goes back from {} s to {} s, which follows {} s: the filter goes on from there\n",
+          line_number_, *last_time_s_, time_s, before_leap_->time_s);
+      filter_.restore(before_leap_->filter);
+      last_time_s_ = before_leap_->time_s;
+      return true;
+    }
     if (*last_time_s_ - time_s > static_cast<double>(longest_gap_steps) * bank_.dt_s) {
       fmt::print(stderr, "modebank: line {}: time goes back from {} s to {} s: the filter starts anew\n", line_number_,
                  *last_time_s_, time_s);
@@ -133,6 +153,8 @@ class Tracker {
 
   void step(const LiveSample& sample) {
     const bool was_started = filter_.started();
+    before_leap_.reset();
+    if (was_started && is_gap(*last_time_s_, sample.time_s)) before_leap_ = {*last_time_s_, filter_.snapshot()};
     const FilterEstimate& estimate = filter_.step(sample.time_s, sample.input, sample.measurement);
     if (was_started && estimate.steps == 0)
       fmt::print(stderr, "modebank: line {}: {} s without a sample: the filter starts anew\n", line_number_,

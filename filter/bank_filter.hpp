@@ -37,18 +37,22 @@ struct FilterSnapshot {
   SampleFeed::Memory samples;
 };
 
+struct BankFilterSteps;
+
 /// A bank at work, sample by sample, whatever its sizes and the variant: the one way from samples to estimates, live
 /// and in evaluate_run. A step allocates nothing.
 class BankFilter {
  public:
-  /// Throws std::invalid_argument when the bank's sizes do not fit each other.
+  /// Throws std::invalid_argument when the bank's sizes do not fit each other, or it holds numbers that no filter can
+  /// work with.
   BankFilter(const Bank& bank, const FilterOptions& options);
   ~BankFilter();
   BankFilter(BankFilter&&) noexcept;
   BankFilter& operator=(BankFilter&&) noexcept;
 
-  /// The next sample in the order of time: its time (NaN: one step after the last), the input recorded at it (m,
-  /// finite) and the measurement (n_y; NaN where missing). The first whole measurement is the start.
+  /// The next sample in the order of time: its time (NaN: one step after the last), the input recorded at it (m; what
+  /// is not finite is the last known one, at first zero) and the measurement (n_y; NaN where missing). The first whole
+  /// measurement is the start. Throws std::invalid_argument for other sizes.
   const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                              const Eigen::Ref<const Eigen::VectorXd>& measurement);
   /// What the last step said.
@@ -62,12 +66,7 @@ class BankFilter {
   void restore(const FilterSnapshot& snapshot);
 
  private:
-  struct Steps;
-  template <int N, int NY>
-  struct SizedSteps;
-  struct VectorSteps;
-  static std::unique_ptr<Steps> make_steps(const Bank& bank, const FilterOptions& options);
-  std::unique_ptr<Steps> steps_;
+  std::unique_ptr<BankFilterSteps> steps_;
 };
 
 }  // namespace modebank

@@ -23,4 +23,12 @@ inline constexpr double lowest_log_density = -1e300;
 /// Measurements at or beyond this magnitude, infinite or NaN count as missing: nothing can be learned from them.
 inline constexpr double largest_measurement = 1e30;
 
+/// Pivots of a covariance below this share of their diagonal entry are rounding noise: they are raised to it, which is
+/// the same as adding that much to the diagonal.
+inline constexpr double relative_pivot_floor = 1e-14;
+
+/// To adaptive noise innovations count as no larger than this many standard deviations, so that one outlier does not
+/// blow up the scale.
+inline constexpr double largest_standardised = 5.0;
+
 }  // namespace modebank

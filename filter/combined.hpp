@@ -86,11 +86,10 @@ inline double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::s
 
 /// Probability integral transform of the measurement taken in last (Rosenblatt 1952): component i is the predictive
 /// distribution function of y_i given y_1 .. y_(i-1), whose mixture weights those components have updated; NaN where
-/// y_i is missing. `weights`: of the hypotheses before the measurement, overwritten; decorrelated(i, j) and
-/// variance(i, j): of signal i's innovation in hypothesis j; `log_likelihood`: workspace, one per hypothesis.
-template <class Y, class Decorrelated, class Variance, class Pit>
-void probability_transform(const Y& y, Decorrelated decorrelated, Variance variance, Eigen::VectorXd& weights,
-                           Eigen::VectorXd& log_likelihood, Pit&& pit) {
+/// y_i is missing. `weights`: workspace, one per hypothesis. Overwrites step.log_likelihood.
+template <int N, int NY, class Y, class Pit>
+void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights, Pit&& pit) {
+  weights = step.hypothesis_probability();
   for (Eigen::Index i = 0; i < pit.size(); ++i) {
     if (is_missing(y(i))) {
       pit(i) = std::numeric_limits<double>::quiet_NaN();
@@ -99,23 +98,14 @@ void probability_transform(const Y& y, Decorrelated decorrelated, Variance varia
     const bool more = i + 1 < pit.size();
     double sum = 0.0;
     for (Eigen::Index j = 0; j < weights.size(); ++j) {
-      const double z = decorrelated(i, j), v = variance(i, j);
+      const KalmanStep<N, NY>& kalman = step.kalman[static_cast<std::size_t>(j)];
+      const double z = kalman.decorrelated(i), v = kalman.cholesky.D(i);
       sum += weights(j) * normal_cdf(z / std::sqrt(v));
-      if (more) log_likelihood(j) = -0.5 * (std::log(v) + z * z / v);
+      if (more) step.log_likelihood(j) = -0.5 * (std::log(v) + z * z / v);
     }
     pit(i) = sum < 1.0 ? sum : 1.0;  // weights sum to one up to rounding
-    if (more) bayes(weights, log_likelihood, weights);
+    if (more) bayes(weights, step.log_likelihood, weights);
   }
-}
-
-/// The same after `update`; overwrites step.log_likelihood.
-template <int N, int NY, class Y, class Pit>
-void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights, Pit&& pit) {
-  const auto of = [&](Eigen::Index j) -> const KalmanStep<N, NY>& { return step.kalman[static_cast<std::size_t>(j)]; };
-  weights = step.hypothesis_probability();
-  probability_transform(
-      y, [&](Eigen::Index i, Eigen::Index j) { return of(j).decorrelated(i); },
-      [&](Eigen::Index i, Eigen::Index j) { return of(j).cholesky.D(i); }, weights, step.log_likelihood, pit);
 }
 
 }  // namespace modebank

@@ -86,6 +86,17 @@ void make_usable(Gaussian<N>& g) {
   if (mean > largest_mean) g.mean *= largest_mean / mean;
 }
 
+/// A measurement never enlarges a variance. Where rounding made one negative (S near singular: R = 0 and singular Q),
+/// the estimate keeps its variances within those bounds and loses its correlations.
+template <int N>
+void bound_variances(const Gaussian<N>& predicted, Gaussian<N>& posterior) {
+  if ((posterior.covariance.diagonal().array() >= 0.0).all()) return;
+  for (Eigen::Index j = 0; j < posterior.mean.size(); ++j)
+    for (Eigen::Index i = 0; i < posterior.mean.size(); ++i)
+      posterior.covariance(i, j) =
+          i == j ? std::clamp(posterior.covariance(i, i), 0.0, std::max(0.0, predicted.covariance(i, i))) : 0.0;
+}
+
 /// Whether every number is finite: a sum is, unless one of its terms is not (terms are far below overflow).
 template <int N>
 bool is_finite(const Gaussian<N>& g) {
@@ -173,6 +184,7 @@ void KalmanStep<N, NY>::correct(const Sensor& sensor, Gaussian<N>& posterior) {
   small::multiply(NY_, gain_, sensor.R);
   small::add_symmetric_product(posterior.covariance, NY_, gain_);
   if (!is_finite(posterior)) posterior = predicted;  // an overflowing correction is no information
+  bound_variances(predicted, posterior);
 }
 
 }  // namespace modebank

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filter/bounds.hpp"
 #include "filter/filter_model.hpp"
 
 /// The scale of the process noise that a filter with adaptive noise learns as it goes: every mode's Q is multiplied by
@@ -17,8 +18,6 @@
 /// takes the place of the Student t of the exact conjugate update.
 namespace modebank {
 
-/// Innovations count as no larger than this many standard deviations, so that one outlier does not blow up the scale.
-inline constexpr double largest_standardised = 5.0;
 inline constexpr double largest_noise_scale = 1e8;
 
 /// tr(S^-1 C P C') of one Kalman step; `column` is workspace of size n_y.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "filter/measurement.hpp"
 
@@ -27,15 +28,20 @@ void SampleFeed::clear() { samples_ = whole_ = 0; }
 Index SampleFeed::steps_between(double from_s, double to_s, double dt_s, TimeSteps time_steps) {
   const double periods = (to_s - from_s) / dt_s;
   if (time_steps == TimeSteps::single || !(dt_s > 0.0) || !std::isfinite(periods)) return 1;
-  return static_cast<Index>(std::clamp(std::round(periods), 1.0, static_cast<double>(longest_gap_steps + 1)));
+  return static_cast<Index>(std::clamp(periods, 1.0, static_cast<double>(longest_gap_steps + 1)) + 0.5);  // rounded
 }
 
 void SampleFeed::push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                       const Eigen::Ref<const Eigen::VectorXd>& measurement) {
+  if (input.size() != inputs_ || measurement.size() != measurements_.rows())
+    throw std::invalid_argument("a sample of " + std::to_string(input.size()) + " inputs and " +
+                                std::to_string(measurement.size()) + " measurements, the bank has " +
+                                std::to_string(inputs_) + " and " + std::to_string(measurements_.rows()));
   steps_ = samples_ == 0 ? 1 : steps_between(time_s_, time_s, dt_s_, time_steps_);
   if (steps_ > longest_gap_steps) clear();
   for (Index i = recent_.cols() - 1; i > 0; --i) recent_.col(i) = recent_.col(i - 1);
-  recent_.col(0) = input;
+  for (Index i = 0; i < inputs_; ++i)
+    if (std::isfinite(input(i))) recent_(i, 0) = input(i);  // else the last known one still acts
   for (Index i = measurements_.cols() - 1; i > 0; --i) measurements_.col(i) = measurements_.col(i - 1);
   measurements_.col(0) = measurement;
   for (Index j = 0; j < input_lags_; ++j) acting_.segment(j * inputs_, inputs_) = recent_.col(input_delay_ + j);

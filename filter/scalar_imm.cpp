@@ -42,7 +42,8 @@ void run_group(const Job* jobs, std::size_t count, std::size_t L, double* out) {
   std::size_t longest = 0;
   for (std::size_t l = 0; l < count; ++l) longest = std::max(longest, size(jobs[l].samples.count));
   Lanes C(L), R(L), F(K * L), c(K * L), Q(K * L), B(m * K * L), T(K * K * L), y(longest * L), v(longest * m * L);
-  Lanes mean(K * L), variance(K * L), probability(K * L), workspace(5 * K * L), result(L);
+  Lanes moments(2 * K * L), next(2 * K * L), probability(K * L), workspace(5 * K * L), result(L);
+  double *mean = moments.data(), *variance = mean + K * L;
   std::fill_n(y.data(), longest * L, std::numeric_limits<double>::quiet_NaN());
   for (std::size_t l = 0; l < L; ++l) {
     const Job& job = jobs[std::min(l, count - 1)];  // spare lanes repeat the last
@@ -66,7 +67,7 @@ void run_group(const Job* jobs, std::size_t count, std::size_t L, double* out) {
       for (std::size_t i = 0; i < m; ++i) v[(k * m + i) * L + l] = job.samples.inputs[k * m + i];
   }
   run_lanes({K, m, longest, C.data(), R.data(), F.data(), c.data(), Q.data(), B.data(), T.data(), y.data(), v.data(),
-             mean.data(), variance.data(), probability.data(), workspace.data(), result.data()});
+             mean, variance, probability.data(), next.data(), workspace.data(), result.data()});
   std::copy_n(result.data(), count, out);
 }
 

@@ -30,7 +30,8 @@ struct RunLanes {
   const double* transition;               ///< modes x modes x lanes, first index: from
   const double* measurement;              ///< count x lanes; NaN after a run's end
   const double* v;                        ///< (count - 1) x inputs x lanes
-  double *mean, *variance, *probability;  ///< modes x lanes: the start, overwritten
+  double *mean, *variance, *probability;  ///< modes x lanes: the start, overwritten; variance follows mean
+  double* next;                           ///< 2 x modes x lanes: workspace, means and variances in turn with those
   double* workspace;                      ///< 5 x modes x lanes
   double* log_likelihood;                 ///< lanes
 };

@@ -64,10 +64,6 @@ struct Cholesky {
   Eigen::Matrix<double, Size, 1> D;          ///< pivots, all positive
   Eigen::Matrix<double, Size, 1> D_inverse;  ///< 1 / D
 
-  /// Pivots below this share of their diagonal entry are rounding noise: they are raised to it, which is the same as
-  /// adding that much to the diagonal of S.
-  static constexpr double relative_pivot_floor = 1e-14;
-
   explicit Cholesky(Index size) : L(size, size), D(size), D_inverse(size) {}
 
   template <class Matrix>

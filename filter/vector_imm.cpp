@@ -100,7 +100,7 @@ void VectorImm::lay_out() {
   const std::size_t n = count_of(n_), n_y = count_of(n_y_), p = count_of(packed_size(n_)),
                     q = count_of(packed_size(n_y_));
   const std::size_t bank_rows = n * n + n * rows_.inputs + n + p + rows_.modes;
-  const std::size_t step_rows = 2 * (n + p + 1) + 5 * n_y + 2 * q + 2;
+  const std::size_t step_rows = 3 * (n + p) + 2 + 5 * n_y + 2 * q + 2;
   numbers_ = (bank_rows + step_rows) * rows_.stride;
   auto* memory = static_cast<double*>(std::aligned_alloc(register_bytes, numbers_ * sizeof(double)));
   if (memory == nullptr) throw std::bad_alloc();
@@ -119,6 +119,7 @@ void VectorImm::lay_out() {
   rows_.mean = take(n);
   rows_.covariance = take(p);
   rows_.probability = take(1);
+  rows_.parts = take(n + p);
   rows_.predicted_probability = take(1);
   rows_.predicted_mean = take(n);
   rows_.predicted_covariance = take(p);
@@ -214,6 +215,10 @@ void VectorImm::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::Mat
   unpack_symmetric(packed_, innovation_covariance);
   const double total = innovation_covariance.diagonal().sum();
   spread_share = total > 0.0 ? std::min(1.0, to.spread / total) : 0.0;
+}
+
+void VectorImm::transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit) const {
+  kernels_.transform(rows_, y.data(), pit.data());
 }
 
 void VectorImm::merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) {

@@ -46,6 +46,8 @@ class VectorImm {
   /// After update: signal i of mode j's innovation without what earlier signals explain, and its variance.
   double decorrelated(Eigen::Index i, Eigen::Index j) const { return rows_.decorrelated[at(i, j)]; }
   double variance(Eigen::Index i, Eigen::Index j) const { return rows_.D[at(i, j)]; }
+  /// After update with the same y: its probability integral transform (combined.hpp), n_y.
+  void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit) const;
   /// Moments of the mixture as it stands.
   void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance);
 

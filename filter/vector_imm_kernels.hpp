@@ -14,6 +14,7 @@ struct ModeRows {
   const double* transition = nullptr;                                   ///< a row per mode: from
   // The filter's state.
   double *mean = nullptr, *covariance = nullptr, *probability = nullptr;  ///< n, packed n, 1
+  double* parts = nullptr;                                                ///< n + packed n: workspace
   // What a step leaves behind.
   double* predicted_probability = nullptr;                            ///< 1
   double *predicted_mean = nullptr, *predicted_covariance = nullptr;  ///< n, packed n
@@ -55,6 +56,8 @@ struct Kernels {
   void (*skip)(const ModeRows&) = nullptr;
   void (*merge)(const ModeRows&, CombinedMoments) = nullptr;
   void (*combine)(const ModeRows&, const Sensor&, CombinedExpectation&) = nullptr;
+  /// The probability integral transform of the y that update took in: n_y.
+  void (*transform)(const ModeRows&, const double* y, double* pit) = nullptr;
 };
 
 /// Null entries where there are no kernels for these sizes.

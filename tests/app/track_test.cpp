@@ -4,46 +4,17 @@
 
 #include <cmath>
 #include <csignal>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "io/archive.hpp"
-#include "tests/app/cli_fixture.hpp"
-#include "tests/support/piped_program.hpp"
+#include "tests/app/track_fixture.hpp"
 
 namespace modebank::test {
 namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
-
-class Track : public CliTest {
- protected:
-  void SetUp() override { ASSERT_EQ(run().status, 0); }
-
-  std::vector<std::string> command(const std::vector<std::string>& options = {}) const {
-    std::vector<std::string> words{MODEBANK_PROGRAM, "track", archive()};
-    words.insert(words.end(), options.begin(), options.end());
-    return words;
-  }
-
-  /// The lines of a run's file: header, then samples.
-  std::vector<std::string> lines(const std::string& name) const {
-    std::ifstream stream(file(name));
-    std::vector<std::string> result;
-    for (std::string line; std::getline(stream, line);) result.push_back(line);
-    return result;
-  }
-
-  static std::vector<double> numbers(const std::string& csv) {
-    std::vector<double> values;
-    std::istringstream stream(csv);
-    for (std::string field; std::getline(stream, field, ',');)
-      values.push_back(field.empty() ? std::nan("") : std::stod(field));
-    return values;
-  }
-};
 
 std::vector<std::string> header_of(const std::string& line) {
   std::vector<std::string> names;
@@ -161,113 +132,6 @@ TEST_F(Track, TakesWhatOtherProgramsWrite) {
   const std::string first = object(a, fmt::format("{}", a[1]));
   EXPECT_EQ(answer({"\xEF\xBB\xBF" + first, object(b, "NaN")}, 2), answer({first, object(b, "null")}, 2));
   EXPECT_EQ(answer({first, object(b, "-Infinity")}, 2), answer({first, object(b, "null")}, 2));
-}
-
-TEST_F(Track, RefusesCheckpointsThatNoFilterWrote) {
-  const std::vector<std::string> samples = lines("run_01.csv");
-  const std::string checkpoint = file("state.json").string();
-  {
-    PipedProgram program(command({"--track.checkpoint", checkpoint}));
-    for (std::size_t k = 0; k < 5; ++k) program.write(samples[k] + "\n");
-    program.close_input();
-    EXPECT_EQ(program.wait(), 0);
-  }
-  std::ifstream stream(checkpoint);
-  const json good = json::parse(stream);
-  EXPECT_EQ(modebank({"track", archive(), "--track.resume", checkpoint}).status, 0);
-  const auto resume = [&](const char* key, const json& value) {
-    json bad = good;
-    bad[json::json_pointer(key)] = value;
-    write("bad.json", bad.dump());
-    const ProgramResult result = modebank({"track", archive(), "--track.resume", file("bad.json").string()});
-    EXPECT_EQ(result.status, 1) << key << result.err;
-    EXPECT_THAT(result.err, HasSubstr("bad.json")) << key;
-  };
-  resume("/means/rows", -1);
-  resume("/means/rows", 1e18);
-  resume("/means/columns", json::array());
-  resume("/inputs/columns/0/0", json());
-  resume("/mode_probability/columns/0/0", -0.5);
-  resume("/noise_scale", 0.0);
-  resume("/time_s", json());
-  resume("/samples", -3);
-  resume("/started", "yes");
-  resume("/format", "something else");
-}
-
-TEST_F(Track, PredictsOverMissingMeasurementsAndGaps) {
-  PipedProgram program(command());
-  const std::vector<std::string> samples = lines("run_01.csv");
-  for (std::size_t k = 0; k < 10; ++k) {
-    program.write(samples[k] + "\n");
-    program.read_line();
-  }
-  program.write("0.9,,0.1,0.1\n");
-  const std::vector<double> missing = numbers(program.read_line().value());
-  EXPECT_EQ(missing[1], 1);
-  EXPECT_TRUE(std::isfinite(missing[2]) && missing[2] == missing[5]) << "prediction is the estimate";
-  EXPECT_TRUE(std::isnan(missing[7])) << "no NIS";
-  program.write("1.2,0.01,,\n");  // three periods later; the inputs are held
-  EXPECT_EQ(numbers(program.read_line().value())[1], 3);
-  program.write("900,0.01,0.1,0.1\n");
-  const std::vector<double> fresh = numbers(program.read_line().value());
-  EXPECT_EQ(fresh[1], 0);
-  EXPECT_EQ(fresh[5], 0.01);
-  program.write("0.5,0.02,0.1,0.1\n");  // another clock
-  EXPECT_EQ(numbers(program.read_line().value())[1], 0);
-  program.write("0.6,100,0.1,0.1\n");
-  const std::vector<double> outlier = numbers(program.read_line().value());
-  EXPECT_EQ(outlier[9], 1) << "alarm";
-  program.close_input();
-  EXPECT_EQ(program.wait(), 0);
-  EXPECT_THAT(program.errors(), HasSubstr("898.8 s without a sample: the filter starts anew"));
-  EXPECT_THAT(program.errors(), HasSubstr("time goes back from 900 s to 0.5 s"));
-}
-
-TEST_F(Track, GoesOnFromACheckpointAsIfItHadNeverStopped) {
-  const std::vector<std::string> samples = lines("run_01.csv");
-  std::vector<std::string> whole, parts;
-  const auto feed = [&](const std::vector<std::string>& options, std::size_t first, std::size_t last, bool interrupt,
-                        std::vector<std::string>& answers) {
-    PipedProgram program(command(options));
-    program.write(samples[0] + "\n");
-    program.read_line();
-    for (std::size_t k = first; k < last; ++k) {
-      program.write(samples[k] + "\n");
-      answers.push_back(program.read_line().value());
-    }
-    if (interrupt)
-      program.send_signal(SIGINT);
-    else
-      program.close_input();
-    EXPECT_EQ(program.wait(), 0) << program.errors();
-  };
-  const std::string checkpoint = file("state.json").string();
-  feed({}, 1, 40, false, whole);
-  feed({"--track.checkpoint", checkpoint}, 1, 20, true, parts);
-  feed({"--track.resume", checkpoint, "--track.checkpoint", checkpoint}, 20, 30, false, parts);
-  feed({"--track.resume", checkpoint}, 30, 40, false, parts);
-  EXPECT_EQ(parts, whole);
-
-  const ProgramResult other =
-      modebank({"track", archive(), "--track.resume", checkpoint, "--track.filter", "baseline"});
-  EXPECT_EQ(other.status, 1);
-  EXPECT_THAT(other.err, HasSubstr("is a checkpoint of another bank or of other filter settings"));
-  write("half.json", "{\"format\": \"modebank checkpoint 1\"");
-  EXPECT_EQ(modebank({"track", archive(), "--track.resume", file("half.json").string()}).status, 1);
-  EXPECT_EQ(modebank({"track", archive(), "--track.resume", file("none.json").string()}).status, 2);
-  EXPECT_EQ(modebank({"track", archive(), "--track.checkpoint", "/nowhere/state.json"}).status, 2);
-}
-
-TEST_F(Track, KeepsCheckpointsOnTheWay) {
-  const std::string checkpoint = file("state.json").string();
-  PipedProgram program(command({"--track.checkpoint", checkpoint, "--track.checkpoint_interval", "5"}));
-  const std::vector<std::string> samples = lines("run_01.csv");
-  for (std::size_t k = 0; k <= 6; ++k) {
-    program.write(samples[k] + "\n");
-    program.read_line();
-  }
-  EXPECT_TRUE(std::filesystem::exists(checkpoint));
 }
 
 TEST_F(Track, EndsCleanlyWhenNobodyReadsOrASignalComes) {

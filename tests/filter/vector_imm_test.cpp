@@ -30,7 +30,7 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
   Gaussian<any> estimate(n);
   VectorImm kernel(bank, options);
   kernel.start(run.state.col(0));
-  VectorXd mean(n);
+  VectorXd mean(n), pit(n_y), expected_pit(n_y), weights(bank.mode_count());
   MatrixXd covariance(n, n), S(n_y, n_y);
   const auto same = [&](const MatrixXd& a, const MatrixXd& b) {
     return test::near(a, b, relative * std::max(1e-3, b.cwiseAbs().maxCoeff()));
@@ -52,6 +52,15 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
     ASSERT_TRUE(same(kernel.mode_probability(), state.mode_probability)) << "sample " << k;
     ASSERT_EQ(std::isnan(log_density), std::isnan(expected));
     if (!std::isnan(expected)) {
+      kernel.transform(run.state.col(k), pit);
+      probability_transform(run.state.col(k), step, weights, expected_pit);
+      for (Index i = 0; i < n_y; ++i) {
+        ASSERT_EQ(std::isnan(pit(i)), std::isnan(expected_pit(i)));
+        if (std::isnan(pit(i))) continue;
+        // Relative to the smaller tail, of which the upper one has the bits that 1 - pit leaves.
+        const double tail = std::min(expected_pit(i), 1.0 - expected_pit(i));
+        ASSERT_NEAR(pit(i), expected_pit(i), 1e-15 + 1e3 * relative * tail) << "sample " << k << ", signal " << i;
+      }
       ASSERT_NEAR(log_density, expected, relative * std::max(1.0, std::abs(expected))) << "sample " << k;
       for (Index j = 0; j < bank.mode_count(); ++j)
         for (Index i = 0; i < n_y; ++i) {
@@ -118,6 +127,49 @@ TEST(VectorImm, CorrelatedNoiseAndImpossibleModes) {
   Trajectory run = test::simulate_bank(bank, 80, 53);
   run.state(1, 20) = std::nan("");
   expect_agreement(bank, run, {}, 1e-11);
+}
+
+/// Phi(z) to 20 digits (mpmath), far into the lower tail. All modes agree, so the transform is that of one normal
+/// distribution.
+TEST(VectorImm, TransformsByTheNormalDistributionFunction) {
+  Bank bank = test::example_bank(1, 1, 3);
+  for (Mode& mode : bank.modes) {
+    mode.model = {MatrixXd::Constant(1, 1, -1.0), MatrixXd::Zero(1, 1), VectorXd::Zero(1)};  // predicts zero
+    mode.Q.setConstant(1.0);
+  }
+  bank.R.setZero();
+  const struct {
+    double z, probability;
+  } cases[] = {
+      {-37.0, 5.7255712225245768227e-300}, {-30.0, 4.9067139271481870595e-198}, {-20.5, 1.0764673258790960335e-93},
+      {-12.3, 4.5287069561587846514e-35},  {-8.0, 6.2209605742717841235e-16},   {-5.2, 9.9644263169334717467e-8},
+      {-3.7, 0.00010779973347738826148},   {-2.4, 0.0081975359245961314334},    {-1.1, 0.13566606094638265582},
+      {-0.6, 0.27425311775007358769},      {-0.05, 0.4800611941616275373},      {0.0, 0.5},
+      {0.02, 0.50797831371690198119},      {0.9, 0.81593987465324051735},       {2.2, 0.98609655248650139569},
+      {4.1, 0.99997934249308745323},       {7.7, 0.99999999999999319669},       {40.0, 1.0}};
+  VectorXd pit(1);
+  for (const auto& [z, probability] : cases) {
+    VectorImm imm(bank, {});
+    imm.start(VectorXd::Zero(1));
+    imm.predict(VectorXd::Zero(1));
+    const VectorXd y = VectorXd::Constant(1, z);
+    imm.update(y);
+    imm.transform(y, pit);
+    // z itself is rounded, which the tail feels as z^2.
+    EXPECT_NEAR(pit(0), probability, (1e-14 + 2.3e-16 * z * z) * probability) << z;
+  }
+}
+
+/// Modes that predict far apart, each with a small variance: moments about their common mean cancel.
+TEST(VectorImm, ModesFarApartKeepTheirVariances) {
+  Bank bank = many_modes(2, 9);
+  for (Mode& mode : bank.modes) mode.Q *= 1e-6;
+  bank.R.setIdentity();
+  bank.R *= 1e4;  // nothing measured pulls them together
+  bank.transition = TransitionMatrix::sticky(9, 1.0 - 1e-9);
+  for (Index j = 0; j < 9; ++j) bank.modes[static_cast<std::size_t>(j)].model.c.setConstant(static_cast<double>(j));
+  const Trajectory run = test::simulate_bank(bank, 60, 55);
+  expect_agreement(bank, run, {}, 1e-9);
 }
 
 TEST(VectorImm, SnapshotsGoBackAndForth) {

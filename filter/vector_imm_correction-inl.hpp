@@ -1,0 +1,159 @@
+// What will be measured and what the measurement makes of each mode, a mode per lane. Included once per instruction
+// set (Highway's foreach_target.h).
+#if defined(MODEBANK_VECTOR_IMM_CORRECTION_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MODEBANK_VECTOR_IMM_CORRECTION_INL
+#undef MODEBANK_VECTOR_IMM_CORRECTION_INL
+#else
+#define MODEBANK_VECTOR_IMM_CORRECTION_INL
+#endif
+
+#include "filter/vector_imm_rows-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace modebank::vector_imm::HWY_NAMESPACE {
+
+template <std::size_t N, std::size_t NY>
+void expect(const ModeRows& p, const Sensor& sensor) {
+  const std::size_t stride = p.stride;
+  for (std::size_t r = 0; r < stride; r += hn::Lanes(D())) {
+    V x[N], P[packed_size(N)], PCt[N * NY], S[packed_size(NY)], L[packed_size(NY)], pivot[NY], inverse[NY];
+    load_rows(p.predicted_mean + r, stride, x);
+    load_rows(p.predicted_covariance + r, stride, P);
+    times_sensor<N, NY>(P, sensor.C, PCt);
+    for (std::size_t i = 0; i < NY; ++i) {
+      V y = hn::Zero(D());
+      for (std::size_t a = 0; a < N; ++a) y = hn::MulAdd(splat(sensor.C[i * N + a]), x[a], y);
+      store(y, p.expected + i * stride + r);
+      for (std::size_t k = 0; k <= i; ++k) {
+        V sum = splat(sensor.R[i * NY + k]);
+        for (std::size_t a = 0; a < N; ++a) sum = hn::MulAdd(splat(sensor.C[i * N + a]), PCt[a * NY + k], sum);
+        S[packed(i, k)] = sum;
+      }
+    }
+    for (std::size_t j = 0; j < NY; ++j) {
+      V d = S[packed(j, j)];
+      for (std::size_t k = 0; k < j; ++k) {
+        const V l = L[packed(j, k)];
+        d = hn::NegMulAdd(hn::Mul(l, l), pivot[k], d);
+      }
+      const V floor = hn::Max(hn::Mul(splat(relative_pivot_floor), hn::Abs(S[packed(j, j)])), splat(least_variance));
+      pivot[j] = hn::Max(d, floor);
+      inverse[j] = hn::Div(splat(1.0), pivot[j]);
+      L[packed(j, j)] = splat(1.0);
+      for (std::size_t i = j + 1; i < NY; ++i) {
+        V sum = S[packed(i, j)];
+        for (std::size_t k = 0; k < j; ++k)
+          sum = hn::NegMulAdd(hn::Mul(L[packed(i, k)], L[packed(j, k)]), pivot[k], sum);
+        L[packed(i, j)] = hn::Mul(sum, inverse[j]);
+      }
+    }
+    store_rows(S, stride, p.innovation_covariance + r);
+    store_rows(L, stride, p.L + r);
+    store_rows(pivot, stride, p.D + r);
+    store_rows(inverse, stride, p.D_inverse + r);
+  }
+}
+
+/// v := L^-1 v, and v := S^-1 v.
+template <std::size_t NY>
+HWY_INLINE void decorrelate(const V (&L)[packed_size(NY)], V (&v)[NY]) {
+  for (std::size_t i = 1; i < NY; ++i)
+    for (std::size_t k = 0; k < i; ++k) v[i] = hn::NegMulAdd(L[packed(i, k)], v[k], v[i]);
+}
+template <std::size_t NY>
+HWY_INLINE void solve(const V (&L)[packed_size(NY)], const V (&inverse)[NY], V (&v)[NY]) {
+  decorrelate<NY>(L, v);
+  for (std::size_t i = NY; i-- > 0;) {
+    v[i] = hn::Mul(v[i], inverse[i]);
+    for (std::size_t k = i + 1; k < NY; ++k) v[i] = hn::NegMulAdd(L[packed(k, i)], v[k], v[i]);
+  }
+}
+
+/// One register of modes taking a measurement in.
+template <std::size_t N, std::size_t NY>
+struct Correction {
+  V L[packed_size(NY)], inverse[NY], e[NY], z[NY];
+  Moments<N> m;  // predicted
+
+  HWY_INLINE Correction(const ModeRows& p, const double* y, std::size_t r) {
+    load_rows(p.L + r, p.stride, L);
+    load_rows(p.D_inverse + r, p.stride, inverse);
+    load_rows(p.predicted_mean + r, p.stride, m.x);
+    load_rows(p.predicted_covariance + r, p.stride, m.P);
+    for (std::size_t i = 0; i < NY; ++i) e[i] = z[i] = hn::Sub(splat(y[i]), load(p.expected + i * p.stride + r));
+    decorrelate<NY>(L, z);
+  }
+
+  HWY_INLINE V distance() const {
+    V sum = hn::Mul(hn::Mul(z[0], z[0]), inverse[0]);
+    for (std::size_t i = 1; i < NY; ++i) sum = hn::MulAdd(hn::Mul(z[i], z[i]), inverse[i], sum);
+    return sum;
+  }
+  HWY_INLINE V root_determinant_inverse() const {
+    V product = inverse[0];
+    for (std::size_t i = 1; i < NY; ++i) product = hn::Mul(product, inverse[i]);
+    return hn::Sqrt(product);
+  }
+
+  /// Joseph's form; an overflowing correction is no information.
+  HWY_INLINE Moments<N> posterior(const Sensor& sensor) const {
+    V PCt[N * NY], gain[N][NY], closed[N * N], product[N], gainR[NY];
+    times_sensor<N, NY>(m.P, sensor.C, PCt);
+    for (std::size_t a = 0; a < N; ++a) {
+      for (std::size_t i = 0; i < NY; ++i) gain[a][i] = PCt[a * NY + i];
+      solve<NY>(L, inverse, gain[a]);
+    }
+    Moments<N> result;
+    V check = hn::Zero(D());
+    for (std::size_t a = 0; a < N; ++a) {
+      result.x[a] = m.x[a];
+      for (std::size_t i = 0; i < NY; ++i) result.x[a] = hn::MulAdd(gain[a][i], e[i], result.x[a]);
+      check = hn::Add(check, result.x[a]);
+      for (std::size_t b = 0; b < N; ++b) {
+        V sum = splat(a == b ? 1.0 : 0.0);
+        for (std::size_t i = 0; i < NY; ++i) sum = hn::NegMulAdd(gain[a][i], splat(sensor.C[i * N + b]), sum);
+        closed[a * N + b] = sum;
+      }
+    }
+    for (std::size_t a = 0; a < N; ++a) {
+      for (std::size_t b = 0; b < N; ++b) {
+        product[b] = hn::Mul(closed[a * N], m.P[packed(0, b)]);
+        for (std::size_t k = 1; k < N; ++k) product[b] = hn::MulAdd(closed[a * N + k], m.P[packed(k, b)], product[b]);
+      }
+      for (std::size_t k = 0; k < NY; ++k) {
+        gainR[k] = hn::Mul(gain[a][0], splat(sensor.R[k]));
+        for (std::size_t i = 1; i < NY; ++i) gainR[k] = hn::MulAdd(gain[a][i], splat(sensor.R[i * NY + k]), gainR[k]);
+      }
+      for (std::size_t b = 0; b <= a; ++b) {
+        V sum = hn::Mul(gainR[0], gain[b][0]);
+        for (std::size_t i = 1; i < NY; ++i) sum = hn::MulAdd(gainR[i], gain[b][i], sum);
+        for (std::size_t k = 0; k < N; ++k) sum = hn::MulAdd(product[k], closed[b * N + k], sum);
+        result.P[packed(a, b)] = sum;
+        check = hn::Add(check, sum);
+      }
+    }
+    V least = result.P[0];
+    for (std::size_t a = 1; a < N; ++a) least = hn::Min(least, result.P[packed(a, a)]);
+    const M sound = hn::Lt(hn::Abs(check), splat(far)), negative = hn::Lt(least, zero());
+    if (HWY_LIKELY(hn::AllTrue(D(), hn::AndNot(negative, sound)))) return result;
+    for (std::size_t a = 0; a < N; ++a) result.x[a] = hn::IfThenElse(sound, result.x[a], m.x[a]);
+    for (std::size_t k = 0; k < packed_size(N); ++k) result.P[k] = hn::IfThenElse(sound, result.P[k], m.P[k]);
+    bound_variances(hn::And(sound, negative), result);
+    return result;
+  }
+
+  /// As bound_variances of kalman.hpp does, where a variance is negative.
+  HWY_INLINE void bound_variances(M negative, Moments<N>& posterior) const {
+    for (std::size_t a = 0; a < N; ++a)
+      for (std::size_t b = 0; b <= a; ++b) {
+        V& P = posterior.P[packed(a, b)];
+        const V bounded = a == b ? hn::Max(zero(), hn::Min(P, m.P[packed(a, a)])) : zero();
+        P = hn::IfThenElse(negative, bounded, P);
+      }
+  }
+};
+
+}  // namespace modebank::vector_imm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
