@@ -133,6 +133,11 @@ void report_refinement(const Refinement& refined) {
   if (!std::isnan(measured.score))
     spdlog::info("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
                  measured.iterations, measured.score_before, measured.score);
+  if (!measured.converged)
+    spdlog::warn(
+        "refine: the fit with measurement noise stopped before its maximum, after {} iterations; the limit is "
+        "bank.max_iterations",
+        measured.iterations);
 }
 
 void learn_modes(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion, Archive& archive) {
