@@ -133,18 +133,17 @@ void report_refinement(const Refinement& refined) {
   if (!std::isnan(measured.score))
     spdlog::info("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
                  measured.iterations, measured.score_before, measured.score);
-  if (!measured.converged)
-    spdlog::warn(
-        "refine: the fit with measurement noise stopped before its maximum, after {} iterations; the limit is "
-        "bank.max_iterations",
-        measured.iterations);
+  if (refined.bank.measured_fit == MeasuredFit::iteration_limit)
+    spdlog::warn("refine: the fit with measurement noise was stopped by bank.max_iterations before it had converged");
+  if (refined.bank.measured_fit == MeasuredFit::stalled)
+    spdlog::warn("refine: the fit with measurement noise stalled before it had converged");
 }
 
 void learn_modes(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion, Archive& archive) {
   Refinement learned = learn_modes_of(config, R, motion, archive);
+  report_refinement(learned);
   archive.bank = std::move(learned.bank);
   if (config.bank.refine == Refine::em) archive.unrefined = std::move(learned.start);
-  report_refinement(learned);
   report_merging(config, R, motion, archive);
 }
 

@@ -136,15 +136,41 @@ Eigen::MatrixXd theta_units(const LikelihoodTarget& target, const Bank& bank) {
   return units;
 }
 
-ceres::GradientProblemSolver::Options solver_options(Index iterations) {
+/// The gradient at a bank in units of the standard errors.
+struct Metric {
+  Eigen::VectorXd steps;               ///< of central differences from now on
+  Eigen::MatrixXd by_standard_errors;  ///< coordinates from whitened ones
+  Eigen::VectorXd gradient;            ///< by whitened ones
+
+  /// Of a Newton step.
+  double expected_gain() const { return 0.5 * gradient.squaredNorm(); }
+};
+
+Metric metric_of(const Neighbourhood::Scores& scores) {
+  Eigen::MatrixXd information = scores.information;
+  information.diagonal().array() += least_curvature;
+  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+  return {step_share * information.diagonal().cwiseSqrt().cwiseInverse(),
+          factor.matrixU().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols())),
+          factor.matrixL().solve(scores.gradient)};
+}
+
+/// `small_gain`: what no more is to be gained by.
+Index climb(const Neighbourhood& nearby, const Metric& metric, double origin_value, double small_gain, Index limit,
+            Eigen::VectorXd& at) {
+  const ceres::GradientProblem problem(new WhitenedTarget(nearby, metric.by_standard_errors, origin_value));
   ceres::GradientProblemSolver::Options options;
   options.line_search_direction_type = ceres::BFGS;
   options.logging_type = ceres::SILENT;
-  options.max_num_iterations = static_cast<int>(iterations);
-  options.gradient_tolerance = 0.01;  // in standard errors
+  options.max_num_iterations = static_cast<int>(std::min(iterations_per_metric, limit));
+  options.gradient_tolerance = 0.5 * std::sqrt(2.0 * small_gain / static_cast<double>(nearby.size()));
   options.function_tolerance = 1e-10;
   options.parameter_tolerance = 1e-8;
-  return options;
+  ceres::GradientProblemSolver::Summary summary;
+  at.setZero(nearby.size());
+  ceres::Solve(options, problem, at.data(), &summary);
+  at = metric.by_standard_errors * at;
+  return std::max<Index>(std::ssize(summary.iterations) - 1, 1);
 }
 
 }  // namespace
@@ -167,31 +193,21 @@ Ascent raise_likelihood(const LikelihoodTarget& target, const AscentLimits& limi
   Ascent result;
   result.value = target.value(bank);
   while (true) {
-    const Neighbourhood around(target, bank, units, steps);
-    const Neighbourhood::Scores scores = around.scores();
-    Eigen::MatrixXd information = scores.information;
-    information.diagonal().array() += least_curvature;
-    if (!information.allFinite() || !scores.gradient.allFinite()) return result;
-    steps = step_share * information.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::LLT<Eigen::MatrixXd> factor(information);
-    const Eigen::VectorXd whitened_gradient = factor.matrixL().solve(scores.gradient);
-    result.converged = 0.5 * whitened_gradient.squaredNorm() <= small_gain;
-    if (getenv("ASCENT_DEBUG"))
-      fprintf(stderr, "  %ld it value %.6f decrement %.3g\n", static_cast<long>(result.iterations), result.value,
-              0.5 * whitened_gradient.squaredNorm());
-    if (result.converged || result.iterations >= limits.max_iterations) return result;
+    const Neighbourhood::Scores scores = Neighbourhood(target, bank, units, steps).scores();
+    if (!scores.information.allFinite() || !scores.gradient.allFinite()) return result;
+    const Metric metric = metric_of(scores);
+    if (metric.expected_gain() <= small_gain)
+      result.end = MeasuredFit::converged;
+    else if (result.iterations >= limits.max_iterations)
+      result.end = MeasuredFit::iteration_limit;
+    if (result.end != MeasuredFit::stalled) return result;
+    steps = metric.steps;
     const Neighbourhood nearby(target, bank, units, steps);
-    const Eigen::MatrixXd by = factor.matrixU().solve(Eigen::MatrixXd::Identity(around.size(), around.size()));
-    const ceres::GradientProblem problem(new WhitenedTarget(nearby, by, result.value));
-    Eigen::VectorXd at = Eigen::VectorXd::Zero(around.size());
-    ceres::GradientProblemSolver::Summary summary;
-    ceres::Solve(solver_options(std::min(iterations_per_metric, limits.max_iterations - result.iterations)), problem,
-                 at.data(), &summary);
-    if (getenv("ASCENT_DEBUG")) fprintf(stderr, "%s\n", summary.BriefReport().c_str());
-    result.iterations += std::max<Index>(std::ssize(summary.iterations) - 1, 1);
-    const Bank next = nearby.decode(by * at);
+    Eigen::VectorXd at;
+    result.iterations += climb(nearby, metric, result.value, small_gain, limits.max_iterations - result.iterations, at);
+    const Bank next = nearby.decode(at);
     const double value = target.value(next);
-    if (!(value > result.value)) return result;  // as far as rounding allows
+    if (!(value > result.value)) return result;
     bank = next;
     result.value = value;
   }

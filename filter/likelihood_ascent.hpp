@@ -30,7 +30,7 @@ struct AscentLimits {
 
 struct Ascent {
   Index iterations = 0;
-  bool converged = false;
+  MeasuredFit end = MeasuredFit::stalled;
   double value = 0.0;  ///< of the target at the end
 };
 

@@ -50,7 +50,6 @@ struct MeasurementStage {
   Index iterations = 0;  ///< with measurement noise; 0: there is none, or they would not have paid
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out
   double score = std::numeric_limits<double>::quiet_NaN();  ///< the same after them; NaN without cross-validation or R
-  bool converged = true;  ///< false: stopped short of the maximum, at max_iterations or by rounding
 };
 
 struct Refinement {

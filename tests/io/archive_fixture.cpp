@@ -144,6 +144,7 @@ Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
     bank.R_standard_error = pattern(n, n, 80.0);
     bank.transition_standard_error = pattern(count, count, 90.0);
     bank.noise_adaptation = {0.995, 20.0};
+    bank.measured_fit = MeasuredFit::iteration_limit;
   }
   if (uncertain) bank.screened.push_back({4, 0.01, 1.25, "unstable: spectral radius 1.25"});
   return bank;
