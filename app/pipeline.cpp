@@ -133,9 +133,9 @@ void report_refinement(const Refinement& refined) {
   if (!std::isnan(measured.score))
     spdlog::info("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
                  measured.iterations, measured.score_before, measured.score);
-  if (refined.bank.measured_fit == MeasuredFit::iteration_limit)
+  if (measured.end == MeasuredFit::iteration_limit)
     spdlog::warn("refine: the fit with measurement noise was stopped by bank.max_iterations before it had converged");
-  if (refined.bank.measured_fit == MeasuredFit::stalled)
+  if (measured.end == MeasuredFit::stalled)
     spdlog::warn("refine: the fit with measurement noise stalled before it had converged");
 }
 
@@ -143,6 +143,7 @@ void learn_modes(const Config& config, const Eigen::MatrixXd& R, const MotionMod
   Refinement learned = learn_modes_of(config, R, motion, archive);
   report_refinement(learned);
   archive.bank = std::move(learned.bank);
+  archive.measured_fit = learned.measurement.end;
   if (config.bank.refine == Refine::em) archive.unrefined = std::move(learned.start);
   report_merging(config, R, motion, archive);
 }
@@ -239,6 +240,7 @@ void modes_stage(const Config& config, Archive& archive) {
   const Recording& recording = *archive.recording;
   const auto motion = motion_model(config.window, recording.state_count(), recording.input_count());
   archive.unrefined.reset();
+  archive.measured_fit = MeasuredFit::none;
   if (config.filter.variant == FilterVariant::kf)
     archive.bank = archive.baseline;
   else
@@ -287,6 +289,7 @@ void load_banks(const Config& config, Archive& archive) {
   archive.baseline = std::move(stored.baseline);
   archive.noise_only = std::move(stored.noise_only);
   archive.unrefined = std::move(stored.unrefined);
+  archive.measured_fit = stored.measured_fit;
 }
 
 FilterScores score_filter(const Config& config, const Archive& archive, const std::string& name) {

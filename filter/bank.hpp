@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "filter/transition_matrix.hpp"
-#include "ident/enum_names.hpp"
 #include "ident/model.hpp"
 #include "ident/motion_model.hpp"
 
@@ -29,16 +28,6 @@ struct Mode {
 struct NoiseAdaptation {
   double forgetting = 0.98;  ///< per sample, in (0, 1]: 1 / (1 - forgetting) samples are remembered; 1: all of the run
   double prior_samples = 5;  ///< how many samples at scale one a run's start is worth, > 0
-};
-
-/// How the last stage of a refinement, with measurement noise (filter/refine_measured.hpp), ended. none: there was no
-/// such stage, or it did not pay. iteration_limit: bank.max_iterations came before the maximum of the likelihood.
-/// stalled: no step raised the likelihood though its gradient promised more.
-enum class MeasuredFit { none, converged, iteration_limit, stalled };
-
-template <>
-struct EnumNames<MeasuredFit> {
-  static constexpr Names<4> values{"none", "converged", "iteration_limit", "stalled"};
 };
 
 /// A mode that was left out of the bank, and why.
@@ -66,7 +55,6 @@ struct Bank {
   NoiseAdaptation noise_adaptation;               ///< for filters whose noise is adaptive
   Eigen::MatrixXd R_standard_error;               ///< n_y x n_y; empty unless R was estimated with the bank
   Eigen::MatrixXd transition_standard_error;      ///< K x K; of refined banks, empty otherwise
-  MeasuredFit measured_fit = MeasuredFit::none;   ///< of refined banks
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
   Eigen::VectorXd theta(Eigen::Index mode) const { return pack(structure, modes[mode].model); }

@@ -4,6 +4,7 @@
 
 #include "filter/bank.hpp"
 #include "filter/evaluate.hpp"
+#include "filter/measured_fit.hpp"
 #include "filter/switching_regression.hpp"
 #include "ident/trajectory.hpp"
 

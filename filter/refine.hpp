@@ -8,6 +8,7 @@
 
 #include "filter/bank.hpp"
 #include "filter/evaluate.hpp"
+#include "filter/measured_fit.hpp"
 #include "filter/switching_regression.hpp"
 #include "ident/enum_names.hpp"
 #include "ident/local_model.hpp"
@@ -48,6 +49,7 @@ struct RefineCandidate {
 /// How the fit went on once R was known to be more than nothing.
 struct MeasurementStage {
   Index iterations = 0;  ///< with measurement noise; 0: there is none, or they would not have paid
+  MeasuredFit end = MeasuredFit::none;
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out
   double score = std::numeric_limits<double>::quiet_NaN();  ///< the same after them; NaN without cross-validation or R
 };

@@ -6,7 +6,6 @@
 
 #include "filter/refine_noise.hpp"
 #include "filter/switching_state_space.hpp"
-#include "ident/not_a_number.hpp"
 
 namespace modebank {
 namespace {
@@ -77,14 +76,14 @@ MeasurementStage fit_with_measurement_noise(const RefineOptions& options, const 
   target.prior = prior_with_states_unknown(target.prior, bank);
   Bank fitted = bank;
   const Ascent ascent = fit_with_states_unknown(target, {options.max_iterations, options.tolerance}, fitted);
-  MeasurementStage stage{ascent.iterations, not_a_number, not_a_number};
+  MeasurementStage stage{ascent.iterations, ascent.end};
   if (validation.possible()) {
     stage.score_before = validation.score_with_R(bank.R, bank.modes.front().Q(0, 0) / Q_before, bank.noise_adaptation);
     stage.score = validation.score_with_states_unknown(target, fitted);
   }
-  if (stage.score < stage.score_before - least_likelihood_gain) return {0, stage.score_before, stage.score_before};
+  if (stage.score < stage.score_before - least_likelihood_gain)
+    return {0, MeasuredFit::none, stage.score_before, stage.score_before};
   bank = fitted;
-  bank.measured_fit = ascent.end;
   return stage;
 }
 

@@ -70,7 +70,6 @@ void exchange_bank(Io& io, B& bank, const Units& units) {
   io.attribute("dt_s", bank.dt_s);
   io.optional_attribute("noise_forgetting", bank.noise_adaptation.forgetting);
   io.optional_attribute("noise_prior_samples", bank.noise_adaptation.prior_samples);
-  io.optional_attribute("measured_fit", bank.measured_fit);
   exchange_model_parameters(io, bank.motion_parameters, "motion_parameter");
   io.table("screened", bank.screened, column("component", &ScreenedMode::component),
            column("weight", &ScreenedMode::weight), column("spectral_radius", &ScreenedMode::spectral_radius),

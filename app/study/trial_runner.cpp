@@ -80,11 +80,13 @@ void TrialRunner::learn(const Config& config) {
         Archive part;
         part.bank = archive_.bank;
         part.unrefined = archive_.unrefined;
+        part.measured_fit = archive_.measured_fit;
         return part;
       },
       [&](Archive&& part) {
         archive_.bank = std::move(part.bank);
         archive_.unrefined = std::move(part.unrefined);
+        archive_.measured_fit = part.measured_fit;
       });
 }
 

@@ -22,9 +22,10 @@ TEST_P(RefineRecoverySeeds, ErrorsAreAsLargeAsStated) {
   double squares = 0.0, count = 0.0, beyond = 0.0, calibrated = 0.0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const Recording recording = test::simulated_recording(system.truth, system.runs, system.samples, seed);
-    const Bank bank = test::refine_blurred(system.truth, recording, 1).bank;
+    const Refinement refined = test::refine_blurred(system.truth, recording, 1);
+    const Bank& bank = refined.bank;
     ASSERT_EQ(bank.mode_count(), system.truth.mode_count()) << "seed " << seed;
-    EXPECT_EQ(bank.measured_fit, MeasuredFit::converged) << "seed " << seed;
+    EXPECT_EQ(refined.measurement.end, MeasuredFit::converged) << "seed " << seed;
     for (const double z : test::z_values(bank, system.truth)) {
       squares += z * z;
       beyond += std::abs(z) > 3.0 ? 1.0 : 0.0;

@@ -115,7 +115,7 @@ TEST_P(RefineRecovery, TwoModesOfTwoStatesWithinThreeStandardErrors) {
   const Recording recording = simulated_recording(truth, 4, 600, GetParam());
   const Refinement refined = refine_blurred(truth, recording, 1);
   ASSERT_EQ(refined.bank.mode_count(), 2);
-  EXPECT_EQ(refined.bank.measured_fit, MeasuredFit::converged);
+  EXPECT_EQ(refined.measurement.end, MeasuredFit::converged);
   ASSERT_EQ(refined.bank.R_standard_error.rows(), 2);
   for (const double z : test::z_values(refined.bank, truth)) EXPECT_LT(std::abs(z), 3.0);
 }
@@ -126,9 +126,10 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RefineRecovery, testing::Values(11, 12, 13));
 TEST(RefineRecovery, PendulumOfTwoDampingsIsCalibratedOnHeldOutRuns) {
   const Bank truth = test::true_pendulum({0.2, 20.0}, 1.0);
   const Recording recording = simulated_recording(truth, 4, 1500, 2);
-  const Bank bank = refine_blurred(truth, recording, 3).bank;
+  const Refinement refined = refine_blurred(truth, recording, 3);
+  const Bank& bank = refined.bank;
   ASSERT_EQ(bank.mode_count(), 2);
-  EXPECT_EQ(bank.measured_fit, MeasuredFit::converged);
+  EXPECT_EQ(refined.measurement.end, MeasuredFit::converged);
   for (const double z : test::z_values(bank, truth)) EXPECT_LT(std::abs(z), 3.0);
   const DiagnosticsRow row = test::held_out_diagnostics(bank, truth, 2);
   EXPECT_GT(row.nees_mean, row.nees_lower);
@@ -141,9 +142,9 @@ TEST(RefineRecovery, SaysThatTheLimitStoppedIt) {
   const Bank truth = test::true_pendulum({1.0}, 1.0);
   const Recording recording = simulated_recording(truth, 2, 800, 3);
   const Refinement stopped = refine_blurred(truth, recording, 1, 3);
-  EXPECT_EQ(stopped.bank.measured_fit, MeasuredFit::iteration_limit);
+  EXPECT_EQ(stopped.measurement.end, MeasuredFit::iteration_limit);
   EXPECT_LE(stopped.measurement.iterations, 3);
-  EXPECT_EQ(refine_blurred(truth, recording, 1).bank.measured_fit, MeasuredFit::converged);
+  EXPECT_EQ(refine_blurred(truth, recording, 1).measurement.end, MeasuredFit::converged);
 }
 
 }  // namespace

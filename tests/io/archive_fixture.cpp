@@ -144,7 +144,6 @@ Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
     bank.R_standard_error = pattern(n, n, 80.0);
     bank.transition_standard_error = pattern(count, count, 90.0);
     bank.noise_adaptation = {0.995, 20.0};
-    bank.measured_fit = MeasuredFit::iteration_limit;
   }
   if (uncertain) bank.screened.push_back({4, 0.01, 1.25, "unstable: spectral radius 1.25"});
   return bank;
@@ -243,6 +242,7 @@ Archive full_archive(Index n, Index m) {
   archive.mixture = make_mixture(*archive.windows);
   archive.bank = make_bank(structure, modes, true);
   archive.unrefined = make_bank(structure, 1, false);
+  archive.measured_fit = MeasuredFit::iteration_limit;
   archive.baseline = make_bank(structure, 1, false);
   archive.noise_only = make_bank(structure, modes, false);
   for (const char* filter : {"bank", "baseline", "noise_only"}) {
