@@ -134,8 +134,8 @@ TEST(RefineRecovery, PendulumOfTwoDampingsIsCalibratedOnHeldOutRuns) {
   const DiagnosticsRow row = test::held_out_diagnostics(bank, truth, 2);
   EXPECT_GT(row.nees_mean, row.nees_lower);
   EXPECT_LT(row.nees_mean, row.nees_upper);
-  EXPECT_GT(row.nis_mean, row.nis_lower);
-  EXPECT_LT(row.nis_mean, row.nis_upper);
+  // Switches are rare and far: their NIS is not chi-square's, of a true filter neither.
+  EXPECT_NEAR(row.nis_mean, test::held_out_diagnostics(truth, truth, 2).nis_mean, 0.05);
 }
 
 TEST(RefineRecovery, SaysThatTheLimitStoppedIt) {
