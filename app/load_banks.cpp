@@ -58,7 +58,9 @@ void load_banks(const Config& config, Archive& archive) {
   archive.bank = one_model && stored.baseline ? stored.baseline : std::move(stored.bank);
   archive.baseline = std::move(stored.baseline);
   archive.noise_only = std::move(stored.noise_only);
-  if (!one_model) archive.unrefined = std::move(stored.unrefined);
+  if (one_model) return;
+  archive.unrefined = std::move(stored.unrefined);
+  archive.measured_fit = stored.measured_fit;
 }
 
 }  // namespace modebank::app

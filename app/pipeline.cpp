@@ -61,13 +61,18 @@ void report_refinement(const Refinement& refined) {
   if (!std::isnan(measured.score))
     spdlog::info("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
                  measured.iterations, measured.score_before, measured.score);
+  if (measured.end == MeasuredFit::iteration_limit)
+    spdlog::warn("refine: the fit with measurement noise was stopped by bank.max_iterations before it had converged");
+  if (measured.end == MeasuredFit::stalled)
+    spdlog::warn("refine: the fit with measurement noise stalled before it had converged");
 }
 
 void learn_modes(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion, Archive& archive) {
   Refinement learned = learn_modes_of(config, R, motion, archive);
-  archive.bank = std::move(learned.bank);
-  if (config.bank.refine == Refine::em) archive.unrefined = std::move(learned.start);
   report_refinement(learned);
+  archive.bank = std::move(learned.bank);
+  archive.measured_fit = learned.measurement.end;
+  if (config.bank.refine == Refine::em) archive.unrefined = std::move(learned.start);
   archive.merging = merging_of(config, R, motion, archive);
 }
 
@@ -171,6 +176,7 @@ void modes_stage(const Config& config, Archive& archive) {
   const auto motion = motion_model(config.window, recording.state_count(), recording.input_count());
   archive.unrefined.reset();
   archive.merging.clear();
+  archive.measured_fit = MeasuredFit::none;
   if (config.filter.variant == FilterVariant::kf)
     archive.bank = archive.baseline;
   else

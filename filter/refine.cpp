@@ -7,13 +7,12 @@
 
 #include "filter/refine_climb.hpp"
 #include "filter/refine_errors.hpp"
-#include "filter/refine_noise.hpp"
+#include "filter/refine_measured.hpp"
 #include "filter/refine_screening.hpp"
 #include "filter/refine_start.hpp"
 #include "filter/refine_validation.hpp"
 #include "filter/refined_modes.hpp"
 #include "filter/switching_state_space.hpp"
-#include "filter/training_likelihood.hpp"
 
 namespace modebank {
 namespace {
@@ -72,58 +71,6 @@ std::vector<RefineStart> all_starts(const WindowFits& fits, const std::vector<Ba
   return starts;
 }
 
-/// What the search for R, and what follows it, works with.
-struct MeasuredFit {
-  const Recording& recording;
-  const RefineOptions& options;
-  const FilterOptions& filter;
-  const SwitchingPrior& prior;
-  SharedParts shared;
-  Eigen::VectorXd least_R;
-
-  void step(Bank& bank) const {
-    step_state_space(recording, prior, shared, filter.time_steps, least_R, options.measurement_noise, bank);
-  }
-  double objective(const Bank& bank) const {
-    FilterOptions gaussian;
-    gaussian.time_steps = filter.time_steps;
-    return training_log_likelihood(bank, recording, gaussian) + log_prior(prior, shared, switching_model(bank));
-  }
-
-  /// As long as the objective rises; the best iterate is kept.
-  Index run_to_convergence(Bank& bank) const {
-    const double least_rise = options.tolerance * static_cast<double>(recording.transitions(Role::train));
-    double best = objective(bank);
-    Index done = 0;
-    for (Bank next = bank; done < options.max_iterations; ++done) {
-      step(next);
-      const double value = objective(next);
-      if (!(value > best)) break;
-      const bool stands_still = value - best < least_rise;
-      best = value;
-      bank = next;
-      if (stands_still) return done + 1;
-    }
-    return done;
-  }
-};
-
-/// Goes on with the states unknown where R is more than nothing.
-MeasurementStage fit_with_measurement_noise(const MeasuredFit& fit, const CrossValidation& validation, Bank& bank) {
-  const double Q_before = bank.modes.front().Q(0, 0);
-  if (fit.options.measurement_noise) {
-    estimate_measurement_noise(fit.recording, fit.filter, bank);
-    if (bank.R_standard_error.size() == 0) return {};
-  } else if (!(bank.R.diagonal().array() > fit.least_R.array()).any()) {
-    return {};
-  }
-  if (!validation.possible()) return {fit.run_to_convergence(bank)};
-  const MeasurementStage stage =
-      validation.with_measurement_noise(bank.R, bank.modes.front().Q(0, 0) / Q_before, bank.noise_adaptation);
-  for (Index i = 0; i < stage.iterations; ++i) fit.step(bank);
-  return stage;
-}
-
 }  // namespace
 
 Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& banks,
@@ -161,13 +108,14 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   result.bank.screened = std::move(screened);
   result.bank.noise_adaptation = validation.adaptation();
   set_weights(posterior.probability.transpose() * transitions.usable, result.bank);
-  const MeasuredFit fit{recording, options, filter, prior, start.shared, least_measurement_noise(fits)};
-  result.measurement = fit_with_measurement_noise(fit, validation, result.bank);
+  LikelihoodTarget target{recording,    learning_filter(filter),       prior,
+                          start.shared, least_measurement_noise(fits), options.measurement_noise};
+  result.measurement = fit_with_measurement_noise(options, filter, validation, target, result.bank);
   const SwitchingSums sums = result.measurement.iterations > 0
-                                 ? smooth_states(result.bank, recording, prior, filter.time_steps).switching
+                                 ? smooth_states(result.bank, recording, target.prior, filter.time_steps).switching
                                  : sum_transitions(transitions, posterior, prior);
   const bool with_R = result.bank.R_standard_error.size() > 0;
-  set_standard_errors(recording, sums, prior, start.shared, with_R, result.bank);
+  set_standard_errors(recording, sums, target.prior, start.shared, with_R, result.bank);
   return result;
 }
 

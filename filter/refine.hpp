@@ -8,6 +8,7 @@
 
 #include "filter/bank.hpp"
 #include "filter/evaluate.hpp"
+#include "filter/measured_fit.hpp"
 #include "filter/switching_regression.hpp"
 #include "ident/enum_names.hpp"
 #include "ident/local_model.hpp"
@@ -48,6 +49,7 @@ struct RefineCandidate {
 /// How the fit went on once R was known to be more than nothing.
 struct MeasurementStage {
   Index iterations = 0;  ///< with measurement noise; 0: there is none, or they would not have paid
+  MeasuredFit end = MeasuredFit::none;
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out
   double score = std::numeric_limits<double>::quiet_NaN();  ///< the same after them; NaN without cross-validation or R
 };
@@ -71,11 +73,10 @@ struct Refinement {
 ///
 /// The state counts as measured exactly at first, which is exact for R = 0; otherwise it leaves measurement noise in Q
 /// and draws theta to errors-in-variables. R, and with it how much of Q is left, is then estimated by the filter's
-/// likelihood (refine_noise.hpp) and kept where that is better. Where it is, or where R was given, expectation-
-/// maximisation goes on with the states unknown, all of theta, Q, R and T together (switching_state_space.hpp): exact
-/// for one mode, Kim's approximation for several, so the filter's likelihood need not rise at every step. How many
-/// iterations of that (none among them) is decided by the runs left out, without cross-validation by the filter's
-/// likelihood of the training runs, penalised by the prior, whose best iterate is kept.
+/// likelihood (refine_noise.hpp) and kept where that is better. Where it is, or where R was given, the fit goes on with
+/// the states unknown, all of theta, Q, R and T together (refine_measured.hpp), to the maximum of the filter's
+/// likelihood of the training runs: exact for one mode, the IMM's for several. That is kept unless the runs left out
+/// say that it costs more than least_likelihood_gain.
 /// Requires linear or lagged linear banks of one structure; throws std::invalid_argument for a motion model's.
 Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& starts,
                        const RefineOptions& options, const FilterOptions& filter);

@@ -8,10 +8,8 @@
 #include <limits>
 
 #include "filter/refine_climb.hpp"
-#include "filter/refine_noise.hpp"
 #include "filter/refine_start.hpp"
 #include "filter/refined_modes.hpp"
-#include "filter/switching_state_space.hpp"
 #include "ident/fit_window.hpp"
 #include "ident/not_a_number.hpp"
 
@@ -21,9 +19,6 @@ namespace {
 // Iterations after which the runs left out are scored. Not before 10: the start has seen all training runs, and it
 // takes the fit to the others a while to forget that. The last one counts as the limit where that is lower.
 constexpr std::array<Index, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
-// With measurement noise, after the fit without: no start is forgotten here, and each iteration costs far more.
-constexpr std::array<Index, 6> later_checkpoints{5, 10, 20, 40, 70, 100};
-constexpr int patience = 1;  // checkpoints worse than the best after which the search ends
 constexpr std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
 constexpr std::array<double, 3> prior_samples{2.0, 5.0, 20.0};
 constexpr double least_measurement_share = 1e-9;  // of the global residual variance
@@ -110,39 +105,25 @@ NoiseAdaptation CrossValidation::adaptation() const {
   return ways[std::max_element(scores.begin(), scores.end()) - scores.begin()];
 }
 
-MeasurementStage CrossValidation::with_measurement_noise(const Eigen::MatrixXd& R, double process_factor,
-                                                         const NoiseAdaptation& adaptation) const {
+double CrossValidation::score_with_R(const Eigen::MatrixXd& R, double process_factor,
+                                     const NoiseAdaptation& adaptation) const {
   std::vector<Bank> banks = best_banks_;
   for (Bank& bank : banks) {
     for (Mode& mode : bank.modes) mode.Q *= process_factor;
     bank.R = R;
     bank.noise_adaptation = adaptation;
   }
-  const double before = score(banks);
-  MeasurementStage stage{0, before, before};
-  double best = before;
-  Index done = 0;
-  int worse = 0;
-  for (const Index checkpoint : later_checkpoints) {
-    if (worse == patience || done == options_.max_iterations) break;
-    const Index until = std::min(checkpoint, options_.max_iterations);
-    tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
-      const Recording& training = splits_[s].training;
-      const TrainingTransitions transitions = gather_training_transitions(training, frame_.structure);
-      const SwitchingPrior prior = prior_of_split(training, transitions, fits_, best_.noise_transitions);
-      for (Index i = done; i < until; ++i)
-        step_state_space(training, prior, best_.shared, filter_.time_steps, least_measurement_noise(fits_),
-                         options_.measurement_noise, banks[s]);
-    });
-    done = until;
-    const double now = score(banks);
-    best = std::max(best, now);
-    ++worse;
-    if (!(now > best - least_likelihood_gain)) continue;
-    stage = {done, before, now};
-    worse = 0;
-  }
-  return stage;
+  return score(banks);
+}
+
+double CrossValidation::score_with_states_unknown(const LikelihoodTarget& target, const Bank& fitted) const {
+  std::vector<Bank> banks(splits_.size(), fitted);
+  tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
+    const LikelihoodTarget of_split{splits_[s].training, target.filter,  target.prior,
+                                    target.shared,       target.least_R, target.estimate_R};
+    raise_likelihood(of_split, {options_.max_iterations, options_.tolerance}, banks[s]);
+  });
+  return score(banks);
 }
 
 /// Mean over the samples left out; `banks`: one per split.

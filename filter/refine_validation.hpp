@@ -5,6 +5,7 @@
 
 #include "filter/bank.hpp"
 #include "filter/evaluate.hpp"
+#include "filter/likelihood_ascent.hpp"
 #include "filter/refine.hpp"
 #include "filter/switching_regression.hpp"
 #include "filter/validation_split.hpp"
@@ -40,11 +41,11 @@ class CrossValidation {
   /// How the noise scale should move in the best one's filter.
   NoiseAdaptation adaptation() const;
 
-  /// How many iterations of expectation-maximisation with measurement noise (switching_state_space.hpp) the best one
-  /// should go on for, R and Q's factor at first as given: as many as cost less than least_likelihood_gain against the
-  /// best number, since the likelihood's maximum is where they lead.
-  MeasurementStage with_measurement_noise(const Eigen::MatrixXd& R, double process_factor,
-                                          const NoiseAdaptation& adaptation) const;
+  /// Score of the best one with R, every Q multiplied by `process_factor`, and this adaptation.
+  double score_with_R(const Eigen::MatrixXd& R, double process_factor, const NoiseAdaptation& adaptation) const;
+  /// Score when every split's training runs fit on with the states unknown (refine_measured.hpp) from `fitted`, the fit
+  /// to all of them: a maximum nearby is soon reached and does not remember where the way to it began.
+  double score_with_states_unknown(const LikelihoodTarget& target, const Bank& fitted) const;
 
  private:
   double score(const std::vector<Bank>& banks) const;

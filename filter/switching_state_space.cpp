@@ -33,17 +33,6 @@ void add(const StateSpaceSums& run, StateSpaceSums& all) {
   all.measurements += run.measurements;
 }
 
-/// Mean of the positive sample weights: usable weights have mean one.
-double mean_weight(const Recording& recording) {
-  double sum = 0.0, count = 0.0;
-  for (const Trajectory& run : recording.runs)
-    if (run.role == Role::train && run.weight.size() > 0) {
-      sum += run.weight.tail(run.transitions()).sum();
-      count += static_cast<double>((run.weight.tail(run.transitions()).array() > 0.0).count());
-    }
-  return sum > 0.0 ? sum / count : 1.0;
-}
-
 /// Expected sums over the transitions of one step into one mode, of the state z before it and r, by which the newest
 /// states after it differ from what the prior's mean makes of z alone.
 template <int N, int NY>
@@ -189,12 +178,22 @@ class RunExpectation {
 
 }  // namespace
 
+double mean_training_weight(const Recording& recording) {
+  double sum = 0.0, count = 0.0;
+  for (const Trajectory& run : recording.runs)
+    if (run.role == Role::train && run.weight.size() > 0) {
+      sum += run.weight.tail(run.transitions()).sum();
+      count += static_cast<double>((run.weight.tail(run.transitions()).array() > 0.0).count());
+    }
+  return sum > 0.0 ? sum / count : 1.0;
+}
+
 StateSpaceSums smooth_states(const Bank& bank, const Recording& recording, const SwitchingPrior& prior,
                              TimeSteps time_steps) {
   const Index n_y = bank.C.rows();
   StateSpaceSums all{no_sums(bank.structure, bank.mode_count()), Eigen::VectorXd::Zero(n_y),
                      Eigen::VectorXd::Zero(n_y)};
-  const double unit = mean_weight(recording);
+  const double unit = mean_training_weight(recording);
   std::vector<StateSpaceSums> of_run(recording.runs.size(), all);
   tbb::parallel_for(std::size_t{0}, of_run.size(), [&](std::size_t i) {
     const Trajectory& run = recording.runs[i];

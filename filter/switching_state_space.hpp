@@ -24,6 +24,9 @@ struct StateSpaceSums {
 StateSpaceSums smooth_states(const Bank& bank, const Recording& recording, const SwitchingPrior& prior,
                              TimeSteps time_steps);
 
+/// Mean of the training samples' positive weights, which only count in ratios; 1 without weights.
+double mean_training_weight(const Recording& recording);
+
 /// One step of expectation-maximisation: theta, Q, T and first modes as maximise does, R_ii = residuals_i /
 /// measurements_i, but at least `least_R`, unless R is known (`estimate_R` false).
 void step_state_space(const Recording& recording, const SwitchingPrior& prior, SharedParts shared, TimeSteps time_steps,

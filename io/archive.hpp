@@ -11,6 +11,7 @@
 #include "filter/diagnostics.hpp"
 #include "filter/evaluate.hpp"
 #include "filter/horizon.hpp"
+#include "filter/measured_fit.hpp"
 #include "filter/merging_cost.hpp"
 #include "filter/scores.hpp"
 #include "ident/fit_window.hpp"
@@ -56,6 +57,7 @@ struct Archive {
   std::optional<MixtureResult> mixture;
   std::optional<Bank> bank;
   std::optional<Bank> unrefined;  ///< the bank that expectation-maximisation started from
+  MeasuredFit measured_fit = MeasuredFit::none;
   std::optional<Bank> baseline;
   std::optional<Bank> noise_only;
   std::vector<FilterEvaluation> evaluations;

@@ -206,6 +206,7 @@ void exchange_archive(Io& io, A& archive) {
   const auto exchange_one = [&](auto& member, auto& part) { exchange_bank(member, part, units); };
   exchange_part(io, "bank", archive.bank, {}, [&](auto& member, auto& part) {
     exchange_one(member, part);
+    member.optional_attribute("measured_fit", archive.measured_fit);
     exchange_part(member, "unrefined", archive.unrefined, {}, exchange_one);
     exchange_merging(member, archive.merging);
   });

@@ -81,12 +81,14 @@ void TrialRunner::learn(const Config& config) {
         part.bank = archive_.bank;
         part.unrefined = archive_.unrefined;
         part.merging = archive_.merging;
+        part.measured_fit = archive_.measured_fit;
         return part;
       },
       [&](Archive&& part) {
         archive_.bank = std::move(part.bank);
         archive_.unrefined = std::move(part.unrefined);
         archive_.merging = std::move(part.merging);
+        archive_.measured_fit = part.measured_fit;
       });
 }
 

@@ -229,6 +229,7 @@ def check_bank(group, modes, uncertain):
         expect_array(group["R_standard_error"], (n_y, n_y), "<f8", outer(STATE_UNITS))
         expect_array(group["transition_standard_error"], (modes, modes), "<f8")
         expect(f"{name} noise_forgetting", group.attrs["noise_forgetting"], 0.995)
+        expect(f"{name} measured_fit", group.attrs["measured_fit"], b"iteration_limit")
         check_bank(group["unrefined"], 1, False)
         expect(f"{name} reason", group["screened"]["reason"][0], b"unstable: spectral radius 1.25")
 

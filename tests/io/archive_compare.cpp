@@ -276,6 +276,7 @@ void expect_same(const Archive& actual, const Archive& expected) {
   expect_same_part(actual.windows, expected.windows, "windows");
   expect_same_part(actual.mixture, expected.mixture, "mixture");
   expect_same_part(actual.bank, expected.bank, "bank");
+  EXPECT_EQ(actual.measured_fit, expected.measured_fit);
   expect_same_part(actual.unrefined, expected.unrefined, "unrefined");
   ASSERT_EQ(actual.merging.size(), expected.merging.size());
   for (std::size_t i = 0; i < actual.merging.size(); ++i) expect_same(actual.merging[i], expected.merging[i]);
