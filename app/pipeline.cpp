@@ -133,6 +133,10 @@ void report_refinement(const Refinement& refined) {
   if (!std::isnan(measured.score))
     spdlog::info("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
                  measured.iterations, measured.score_before, measured.score);
+  const Averaging& averaged = refined.averaging;
+  if (!std::isnan(averaged.score))
+    spdlog::info("refine: {} fits averaged: {:.4f} -> {:.4f} nats/sample left out", averaged.members,
+                 averaged.score_before, averaged.score);
 }
 
 void learn_modes(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion, Archive& archive) {

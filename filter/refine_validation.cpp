@@ -96,14 +96,32 @@ std::vector<RefineCandidate> CrossValidation::table() const {
   return rows;
 }
 
-NoiseAdaptation CrossValidation::adaptation() const {
+std::vector<ScoredFit> CrossValidation::best_of_starts() const {
+  std::vector<ScoredFit> fits;
+  const auto same_start = [](const RefineStart& a, const RefineStart& b) {
+    return a.name == b.name && a.model.modes() == b.model.modes() && a.shared == b.shared;
+  };
+  for (const ScoredFit& fit : fits_of_rows_) {
+    const auto known =
+        std::find_if(fits.begin(), fits.end(), [&](const ScoredFit& f) { return same_start(f.start, fit.start); });
+    if (known == fits.end())
+      fits.push_back(fit);
+    else if (table_[fit.row].score > table_[known->row].score)
+      *known = fit;
+  }
+  std::stable_sort(fits.begin(), fits.end(),
+                   [&](const ScoredFit& a, const ScoredFit& b) { return table_[a.row].score > table_[b.row].score; });
+  return fits;
+}
+
+NoiseAdaptation CrossValidation::adaptation(const std::vector<Bank>& of_splits) const {
   if (splits_.empty() || filter_.noise != FilterNoise::adaptive) return {};
   std::vector<NoiseAdaptation> ways;
   for (const double forgetting : forgettings)
     for (const double prior : prior_samples) ways.push_back({forgetting, prior});
   std::vector<double> scores(ways.size());
   tbb::parallel_for(std::size_t{0}, ways.size(), [&](std::size_t w) {
-    std::vector<Bank> banks = best_banks_;
+    std::vector<Bank> banks = of_splits;
     for (Bank& bank : banks) bank.noise_adaptation = ways[w];
     scores[w] = score(banks);
   });
@@ -145,12 +163,21 @@ MeasurementStage CrossValidation::with_measurement_noise(const Eigen::MatrixXd& 
   return stage;
 }
 
+Eigen::VectorXd CrossValidation::log_likelihoods(const std::vector<Bank>& banks) const {
+  std::vector<double> of_runs;
+  for (std::size_t s = 0; s < splits_.size(); ++s)
+    for (const Trajectory& run : splits_[s].left_out.runs) {
+      const double value = log_likelihood(banks[s], run, filter_);
+      of_runs.push_back(std::isnan(value) ? -std::numeric_limits<double>::infinity() : value);
+    }
+  return Eigen::VectorXd::Map(of_runs.data(), std::ssize(of_runs));
+}
+
 /// Mean over the samples left out; `banks`: one per split.
 double CrossValidation::score(const std::vector<Bank>& banks) const {
   double sum = 0.0;
-  for (std::size_t s = 0; s < splits_.size(); ++s)
-    for (const Trajectory& run : splits_[s].left_out.runs) sum += log_likelihood(banks[s], run, filter_);
-  return std::isnan(sum) ? -std::numeric_limits<double>::infinity() : sum / static_cast<double>(samples_);
+  for (const double value : log_likelihoods(banks)) sum += value;
+  return sum / static_cast<double>(samples_);
 }
 
 void CrossValidation::add(const RefineStart& candidate, const std::vector<std::vector<Bank>>& by_split) {
@@ -167,6 +194,7 @@ void CrossValidation::add(const RefineStart& candidate, const std::vector<std::v
     row.score = scores[checkpoint];
   }
   table_.push_back(row);
+  if (!splits_.empty()) fits_of_rows_.push_back({candidate, table_.size() - 1, at_checkpoint(by_split, checkpoint)});
   if (table_.size() > 1 && !(row.score > table_[selected_].score)) return;
   selected_ = table_.size() - 1;
   best_ = candidate;

@@ -20,6 +20,13 @@ struct RefineStart {
   double noise_transitions = 0.0;
 };
 
+/// One start's fit, how it scored, and what it was on each split.
+struct ScoredFit {
+  RefineStart start;
+  std::size_t row = 0;  ///< in the table
+  std::vector<Bank> banks;
+};
+
 /// Scores of training runs left out, for every start, number of iterations and way to adapt. Keeps references to
 /// windows and frame.
 class CrossValidation {
@@ -37,8 +44,17 @@ class CrossValidation {
   Index iterations() const { return table_[selected_].iterations; }
   std::vector<RefineCandidate> table() const;
 
-  /// How the noise scale should move in the best one's filter.
-  NoiseAdaptation adaptation() const;
+  /// The best fit from every start, the best first.
+  std::vector<ScoredFit> best_of_starts() const;
+
+  /// Log-likelihood of every run that was left out [nats], `banks`: one per split; divided by samples() and summed the
+  /// score. Minus infinity where a bank has none.
+  Eigen::VectorXd log_likelihoods(const std::vector<Bank>& banks) const;
+  Index samples() const { return samples_; }
+
+  /// How the noise scale should move in the best one's filter, or in that of other banks, one per split.
+  NoiseAdaptation adaptation() const { return adaptation(best_banks_); }
+  NoiseAdaptation adaptation(const std::vector<Bank>& of_splits) const;
 
   /// How many iterations of expectation-maximisation with measurement noise (switching_state_space.hpp) the best one
   /// should go on for, R and Q's factor at first as given: as many as cost less than least_likelihood_gain against the
@@ -60,6 +76,7 @@ class CrossValidation {
   std::size_t selected_ = 0;
   RefineStart best_;
   std::vector<Bank> best_banks_;
+  std::vector<ScoredFit> fits_of_rows_;
 };
 
 /// The least R that refinement knows: as good as none.
