@@ -4,8 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "filter/refine_errors.hpp"
@@ -37,21 +35,11 @@ std::vector<Bank> united_on_splits(const std::vector<ScoredFit>& fits, std::size
   return united;
 }
 
-/// Of a sum over runs, from its differences between them.
-double standard_error_of_sum(const Eigen::VectorXd& of_runs) {
-  const auto runs = static_cast<double>(of_runs.size());
-  if (of_runs.size() < 2) return std::numeric_limits<double>::infinity();
-  return std::sqrt(runs / (runs - 1.0) * (of_runs.array() - of_runs.mean()).square().sum());
-}
-
-/// How many of the fits to average; log_likelihoods: of each number of them, one column per number, one run per row.
-Index members_worth_it(const Eigen::MatrixXd& log_likelihoods, Index samples) {
-  const Eigen::VectorXd sums = log_likelihoods.colwise().sum();
-  const double slack = least_likelihood_gain * static_cast<double>(samples);
+/// How many of the fits to average: the fewest whose score is as good as the best number's. scores: of 1, 2, ... fits.
+Index members_worth_it(const Eigen::VectorXd& scores) {
   Index fewest = 0;
-  while (!(sums(fewest) > sums.maxCoeff() - slack) && fewest + 1 < sums.size()) ++fewest;
-  const Eigen::VectorXd gain = log_likelihoods.col(fewest) - log_likelihoods.col(0);
-  return gain.sum() > std::max(standard_error_of_sum(gain), slack) ? fewest + 1 : 1;
+  while (!(scores(fewest) > scores.maxCoeff() - least_likelihood_gain) && fewest + 1 < scores.size()) ++fewest;
+  return scores(fewest) > scores(0) ? fewest + 1 : 1;
 }
 
 /// One member, as it would be were it alone.
@@ -86,15 +74,12 @@ void average_fits(const AverageInput& in, const CrossValidation& validation, Ref
   const std::vector<ScoredFit> fits = validation.best_of_starts();
   const auto most = std::min(static_cast<std::size_t>(in.options.members), fits.size());
   const double switching = member_switching(in.recording);
-  std::vector<Eigen::VectorXd> by_count(most);
+  Eigen::VectorXd scores(static_cast<Index>(most));
   tbb::parallel_for(std::size_t{0}, most, [&](std::size_t i) {
-    by_count[i] = validation.log_likelihoods(i == 0 ? fits.front().banks : united_on_splits(fits, i + 1, switching));
+    scores(static_cast<Index>(i)) =
+        validation.score(i == 0 ? fits.front().banks : united_on_splits(fits, i + 1, switching));
   });
-  Eigen::MatrixXd log_likelihoods(by_count.front().size(), static_cast<Index>(most));
-  for (std::size_t i = 0; i < most; ++i) log_likelihoods.col(static_cast<Index>(i)) = by_count[i];
-  const Index count = members_worth_it(log_likelihoods, validation.samples());
-  const Eigen::VectorXd scores =
-      log_likelihoods.colwise().sum().transpose() / static_cast<double>(validation.samples());
+  const Index count = members_worth_it(scores);
   result.averaging = {count, scores(0), scores(count - 1)};
   if (count == 1) return;
 
