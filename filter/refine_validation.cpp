@@ -25,7 +25,7 @@ constexpr std::array<Index, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
 constexpr std::array<Index, 6> later_checkpoints{5, 10, 20, 40, 70, 100};
 constexpr int patience = 1;  // checkpoints worse than the best after which the search ends
 constexpr std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
-constexpr std::array<double, 3> prior_samples{2.0, 5.0, 20.0};
+constexpr std::array<double, 4> prior_samples{1.0, 2.0, 5.0, 20.0};
 constexpr double least_measurement_share = 1e-9;  // of the global residual variance
 
 std::vector<Index> checkpoints_up_to(Index limit) {
@@ -163,21 +163,11 @@ MeasurementStage CrossValidation::with_measurement_noise(const Eigen::MatrixXd& 
   return stage;
 }
 
-Eigen::VectorXd CrossValidation::log_likelihoods(const std::vector<Bank>& banks) const {
-  std::vector<double> of_runs;
-  for (std::size_t s = 0; s < splits_.size(); ++s)
-    for (const Trajectory& run : splits_[s].left_out.runs) {
-      const double value = log_likelihood(banks[s], run, filter_);
-      of_runs.push_back(std::isnan(value) ? -std::numeric_limits<double>::infinity() : value);
-    }
-  return Eigen::VectorXd::Map(of_runs.data(), std::ssize(of_runs));
-}
-
-/// Mean over the samples left out; `banks`: one per split.
 double CrossValidation::score(const std::vector<Bank>& banks) const {
   double sum = 0.0;
-  for (const double value : log_likelihoods(banks)) sum += value;
-  return sum / static_cast<double>(samples_);
+  for (std::size_t s = 0; s < splits_.size(); ++s)
+    for (const Trajectory& run : splits_[s].left_out.runs) sum += log_likelihood(banks[s], run, filter_);
+  return std::isnan(sum) ? -std::numeric_limits<double>::infinity() : sum / static_cast<double>(samples_);
 }
 
 void CrossValidation::add(const RefineStart& candidate, const std::vector<std::vector<Bank>>& by_split) {

@@ -47,10 +47,8 @@ class CrossValidation {
   /// The best fit from every start, the best first.
   std::vector<ScoredFit> best_of_starts() const;
 
-  /// Log-likelihood of every run that was left out [nats], `banks`: one per split; divided by samples() and summed the
-  /// score. Minus infinity where a bank has none.
-  Eigen::VectorXd log_likelihoods(const std::vector<Bank>& banks) const;
-  Index samples() const { return samples_; }
+  /// Mean log score of the runs left out, nats per sample; `banks`: one per split. Minus infinity where there is none.
+  double score(const std::vector<Bank>& banks) const;
 
   /// How the noise scale should move in the best one's filter, or in that of other banks, one per split.
   NoiseAdaptation adaptation() const { return adaptation(best_banks_); }
@@ -63,7 +61,6 @@ class CrossValidation {
                                           const NoiseAdaptation& adaptation) const;
 
  private:
-  double score(const std::vector<Bank>& banks) const;
   void add(const RefineStart& candidate, const std::vector<std::vector<Bank>>& by_split);
 
   std::vector<ValidationSplit> splits_;
