@@ -66,7 +66,7 @@ struct Refinement {
   std::vector<RefineCandidate> candidates;  ///< the best number of iterations of each start
   std::vector<double> objective;  ///< penalised log-likelihood of the training transitions before each iteration
   MeasurementStage measurement;
-  Averaging averaging;
+  Averaging averaging = {};
 };
 
 /// Expectation-maximisation of the switching model (switching_regression.hpp) from banks of mixtures. Which start, what
