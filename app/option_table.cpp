@@ -210,6 +210,10 @@ std::vector<Option> bank_options() {
             MODEBANK_FIELD(bank.em.share)),
       numeric("bank.restarts", between(0, 1000), "",
               "starts of em from random stretches of runs, besides the mixture's", MODEBANK_FIELD(bank.em.restarts)),
+      numeric("bank.members", between(1, 100), "",
+              "refined fits from different starts that become one bank at most, if the runs left out like it; their "
+              "modes add up",
+              MODEBANK_FIELD(bank.em.members)),
       numeric(
           "bank.folds", between(1, 1000), "",
           "parts of the training runs that em leaves out in turn to choose start, number of modes and of iterations; "

@@ -65,6 +65,10 @@ void report_refinement(const Refinement& refined) {
     spdlog::warn("refine: the fit with measurement noise was stopped by bank.max_iterations before it had converged");
   if (measured.end == MeasuredFit::stalled)
     spdlog::warn("refine: the fit with measurement noise stalled before it had converged");
+  const Averaging& averaged = refined.averaging;
+  if (!std::isnan(averaged.score))
+    spdlog::info("refine: {} fits averaged: {:.4f} -> {:.4f} nats/sample left out", averaged.members,
+                 averaged.score_before, averaged.score);
 }
 
 void learn_modes(const Config& config, const Eigen::MatrixXd& R, const MotionModel* motion, Archive& archive) {

@@ -185,6 +185,7 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   }
   RefineOptions em = options.em;
   em.screen = options.screen;
+  if (options.modes > 0) em.members = 1;  // several fits would have more modes than that
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   return refine_bank(recording, fits, starts, em, filter);
 }

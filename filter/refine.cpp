@@ -5,10 +5,10 @@
 #include <array>
 #include <stdexcept>
 
-#include "filter/refine_climb.hpp"
+#include "filter/refine_average.hpp"
 #include "filter/refine_errors.hpp"
+#include "filter/refine_fit.hpp"
 #include "filter/refine_measured.hpp"
-#include "filter/refine_screening.hpp"
 #include "filter/refine_start.hpp"
 #include "filter/refine_validation.hpp"
 #include "filter/refined_modes.hpp"
@@ -53,8 +53,6 @@ CrossValidation cross_validate(const Recording& recording, const WindowFits& fit
   return validation;
 }
 
-constexpr Index iterations_after_screening = 10;
-
 std::vector<RefineStart> all_starts(const WindowFits& fits, const std::vector<Bank>& banks,
                                     const TrainingTransitions& transitions, const SwitchingPrior& prior,
                                     const RefineOptions& options) {
@@ -91,19 +89,9 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   result.candidates = validation.table();
   const RefineStart& start = validation.best();
   prior.noise_transitions = start.noise_transitions;
-  Climb climb(transitions, prior, start.shared, options.tolerance, start.model);
-  for (Index i = 0; i < validation.iterations() && !climb.converged(); ++i) climb.step();
-  result.objective = climb.objective();
-
-  SwitchingRegression model = climb.model();
-  ModePosterior posterior = climb.posterior();
-  std::vector<ScreenedMode> screened = frame.screened;
-  while (options.screen && screen_worst_mode(frame.structure, transitions, posterior, start.shared, model, screened)) {
-    Climb rest(transitions, prior, start.shared, options.tolerance, model);
-    for (Index i = 0; i < iterations_after_screening; ++i) rest.step();
-    model = rest.model();
-    posterior = rest.posterior();
-  }
+  auto [model, posterior, screened, objective] =
+      fit_training_runs(frame, start, transitions, prior, options, validation.iterations());
+  result.objective = std::move(objective);
   result.bank = with_modes(frame, model);
   result.bank.screened = std::move(screened);
   result.bank.noise_adaptation = validation.adaptation();
@@ -116,6 +104,8 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
                                  : sum_transitions(transitions, posterior, prior);
   const bool with_R = result.bank.R_standard_error.size() > 0;
   set_standard_errors(recording, sums, target.prior, start.shared, with_R, result.bank);
+  if (options.members > 1 && !with_R && result.measurement.iterations == 0)
+    average_fits({recording, fits, frame, transitions, options}, validation, result);
   return result;
 }
 

@@ -29,6 +29,7 @@ struct RefineOptions {
   Index max_iterations = 100;     ///< of expectation-maximisation
   double tolerance = 1e-6;        ///< nats per transition: stop when the objective gains less
   Index restarts = 2;             ///< starts from random stretches of the runs besides the mixture's
+  Index members = 1;              ///< fits from different starts that are averaged at most (refine_average.hpp)
   Index folds = 6;                ///< parts of the cross-validation; 1: none, every start runs to convergence
   bool measurement_noise = true;  ///< R by maximum likelihood of the filter on the training runs; false: the start's R
   bool screen = true;             ///< take unstable, starved and duplicate modes out
@@ -42,8 +43,8 @@ struct RefineCandidate {
   SharedParts shared = SharedParts::none;
   double noise_transitions = 0.0;  ///< how many transitions the prior on Q is worth
   Index iterations = 0;
-  double score = 0.0;  ///< mean log score of the runs left out, nats per sample; NaN without cross-validation
-  bool selected = false;
+  double score = 0.0;     ///< mean log score of the runs left out, nats per sample; NaN without cross-validation
+  bool selected = false;  ///< several where fits are averaged
 };
 
 /// How the fit went on once R was known to be more than nothing.
@@ -54,12 +55,20 @@ struct MeasurementStage {
   double score = std::numeric_limits<double>::quiet_NaN();  ///< the same after them; NaN without cross-validation or R
 };
 
+/// What averaging several fits was worth.
+struct Averaging {
+  Index members = 1;  ///< fits in the bank; those of the candidates that are marked as selected
+  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out: one fit
+  double score = std::numeric_limits<double>::quiet_NaN();         ///< the same of `members` fits
+};
+
 struct Refinement {
   Bank bank;
   Bank start;                               ///< the mixture's bank
   std::vector<RefineCandidate> candidates;  ///< the best number of iterations of each start
   std::vector<double> objective;  ///< penalised log-likelihood of the training transitions before each iteration
   MeasurementStage measurement;
+  Averaging averaging = {};
 };
 
 /// Expectation-maximisation of the switching model (switching_regression.hpp) from banks of mixtures. Which start, what

@@ -20,7 +20,7 @@ namespace {
 // takes the fit to the others a while to forget that. The last one counts as the limit where that is lower.
 constexpr std::array<Index, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
 constexpr std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
-constexpr std::array<double, 3> prior_samples{2.0, 5.0, 20.0};
+constexpr std::array<double, 4> prior_samples{1.0, 2.0, 5.0, 20.0};
 constexpr double least_measurement_share = 1e-9;  // of the global residual variance
 
 std::vector<Index> checkpoints_up_to(Index limit) {
@@ -91,14 +91,32 @@ std::vector<RefineCandidate> CrossValidation::table() const {
   return rows;
 }
 
-NoiseAdaptation CrossValidation::adaptation() const {
+std::vector<ScoredFit> CrossValidation::best_of_starts() const {
+  std::vector<ScoredFit> fits;
+  const auto same_start = [](const RefineStart& a, const RefineStart& b) {
+    return a.name == b.name && a.model.modes() == b.model.modes() && a.shared == b.shared;
+  };
+  for (const ScoredFit& fit : fits_of_rows_) {
+    const auto known =
+        std::find_if(fits.begin(), fits.end(), [&](const ScoredFit& f) { return same_start(f.start, fit.start); });
+    if (known == fits.end())
+      fits.push_back(fit);
+    else if (table_[fit.row].score > table_[known->row].score)
+      *known = fit;
+  }
+  std::stable_sort(fits.begin(), fits.end(),
+                   [&](const ScoredFit& a, const ScoredFit& b) { return table_[a.row].score > table_[b.row].score; });
+  return fits;
+}
+
+NoiseAdaptation CrossValidation::adaptation(const std::vector<Bank>& of_splits) const {
   if (splits_.empty() || filter_.noise != FilterNoise::adaptive) return {};
   std::vector<NoiseAdaptation> ways;
   for (const double forgetting : forgettings)
     for (const double prior : prior_samples) ways.push_back({forgetting, prior});
   std::vector<double> scores(ways.size());
   tbb::parallel_for(std::size_t{0}, ways.size(), [&](std::size_t w) {
-    std::vector<Bank> banks = best_banks_;
+    std::vector<Bank> banks = of_splits;
     for (Bank& bank : banks) bank.noise_adaptation = ways[w];
     scores[w] = score(banks);
   });
@@ -126,7 +144,6 @@ double CrossValidation::score_with_states_unknown(const LikelihoodTarget& target
   return score(banks);
 }
 
-/// Mean over the samples left out; `banks`: one per split.
 double CrossValidation::score(const std::vector<Bank>& banks) const {
   double sum = 0.0;
   for (std::size_t s = 0; s < splits_.size(); ++s)
@@ -148,6 +165,7 @@ void CrossValidation::add(const RefineStart& candidate, const std::vector<std::v
     row.score = scores[checkpoint];
   }
   table_.push_back(row);
+  if (!splits_.empty()) fits_of_rows_.push_back({candidate, table_.size() - 1, at_checkpoint(by_split, checkpoint)});
   if (table_.size() > 1 && !(row.score > table_[selected_].score)) return;
   selected_ = table_.size() - 1;
   best_ = candidate;

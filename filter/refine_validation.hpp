@@ -21,6 +21,13 @@ struct RefineStart {
   double noise_transitions = 0.0;
 };
 
+/// One start's fit, how it scored, and what it was on each split.
+struct ScoredFit {
+  RefineStart start;
+  std::size_t row = 0;  ///< in the table
+  std::vector<Bank> banks;
+};
+
 /// Scores of training runs left out, for every start, number of iterations and way to adapt. Keeps references to
 /// windows and frame.
 class CrossValidation {
@@ -38,8 +45,15 @@ class CrossValidation {
   Index iterations() const { return table_[selected_].iterations; }
   std::vector<RefineCandidate> table() const;
 
-  /// How the noise scale should move in the best one's filter.
-  NoiseAdaptation adaptation() const;
+  /// The best fit from every start, the best first.
+  std::vector<ScoredFit> best_of_starts() const;
+
+  /// Mean log score of the runs left out, nats per sample; `banks`: one per split. Minus infinity where there is none.
+  double score(const std::vector<Bank>& banks) const;
+
+  /// How the noise scale should move in the best one's filter, or in that of other banks, one per split.
+  NoiseAdaptation adaptation() const { return adaptation(best_banks_); }
+  NoiseAdaptation adaptation(const std::vector<Bank>& of_splits) const;
 
   /// Score of the best one with R, every Q multiplied by `process_factor`, and this adaptation.
   double score_with_R(const Eigen::MatrixXd& R, double process_factor, const NoiseAdaptation& adaptation) const;
@@ -48,7 +62,6 @@ class CrossValidation {
   double score_with_states_unknown(const LikelihoodTarget& target, const Bank& fitted) const;
 
  private:
-  double score(const std::vector<Bank>& banks) const;
   void add(const RefineStart& candidate, const std::vector<std::vector<Bank>>& by_split);
 
   std::vector<ValidationSplit> splits_;
@@ -61,6 +74,7 @@ class CrossValidation {
   std::size_t selected_ = 0;
   RefineStart best_;
   std::vector<Bank> best_banks_;
+  std::vector<ScoredFit> fits_of_rows_;
 };
 
 /// The least R that refinement knows: as good as none.
