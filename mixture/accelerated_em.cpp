@@ -85,6 +85,9 @@ std::optional<GaussianMixture> mixture_of(const Eigen::VectorXd& values, const G
 class Extrapolation {
  public:
   void forget() { before_.reset(); }
+  /// How many times its last but one step EM would still go, where the latest `next` could tell: steps shrink by the
+  /// factor 1 - 1 / steps_left.
+  std::optional<double> steps_left() const { return steps_left_; }
   void shorten() {
     forget();
     longest_ = std::max(shortest, longest_ / growth);
@@ -93,10 +96,12 @@ class Extrapolation {
   /// EM went from `from` to `to`. Where to go on after two such steps in a row.
   std::optional<Eigen::VectorXd> next(const std::optional<Coordinates>& from, const std::optional<Coordinates>& to) {
     const std::optional<Coordinates> before = std::exchange(before_, from);
+    steps_left_.reset();
     if (!from || !to) forget();
     if (!before || !from || !to) return {};
     const Eigen::VectorXd step = from->values - before->values, bend = to->values - from->values - step;
     const double size = before->scale.cwiseProduct(step).norm() / before->scale.cwiseProduct(bend).norm();
+    steps_left_ = std::max(1.0, size);
     if (!(size > 1.0)) return {};  // what EM does itself
     const double length = std::min(size, longest_);
     if (length == longest_) longest_ *= growth;
@@ -107,12 +112,13 @@ class Extrapolation {
  private:
   static constexpr double growth = 2.0, shortest = 2.0;
   std::optional<Coordinates> before_;
+  std::optional<double> steps_left_;
   double longest_ = 4.0;
 };
 
 }  // namespace
 
-EmResult converge(const PointBlocks& points, GaussianMixture start, const EmOptions& options) {
+EmResult converge(const PointBlocks& points, GaussianMixture start, const EmOptions& options, double hopeless_below) {
   const double least_gain = options.tolerance * points.total_weight();
   EmResult result;
   result.mixture = std::move(start);
@@ -139,7 +145,11 @@ EmResult converge(const PointBlocks& points, GaussianMixture start, const EmOpti
     ++result.iterations;
     trial = plain;
     extrapolated = false;
-    if (const auto next = extrapolation.next(coordinates_of(result.mixture), coordinates_of(plain)))
+    const auto next = extrapolation.next(coordinates_of(result.mixture), coordinates_of(plain));
+    // Gains are quadratic in the steps: the rest of a geometric series is at most half of this.
+    if (const auto steps = extrapolation.steps_left(); steps && result.log_likelihood + gain * *steps < hopeless_below)
+      return result;
+    if (next)
       if (std::optional<GaussianMixture> mixture = mixture_of(*next, plain, options)) {
         trial = std::move(*mixture);
         extrapolated = true;
