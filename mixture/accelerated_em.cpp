@@ -17,6 +17,9 @@ namespace {
 /// Components of less weight are on their way out; their logarithms would lead the others astray.
 constexpr double least_weight = 1e-9;
 
+/// On the estimate of what EM still gains, before a climb is given up.
+constexpr double margin = 10.0;
+
 /// A mixture as a vector without constraints, logarithms of weights and Cholesky factors with logarithms on the
 /// diagonal, and the size that a unit of each entry has (the square root of the complete data's Fisher information,
 /// conditional standard deviations in place of a full whitening).
@@ -146,8 +149,10 @@ EmResult converge(const PointBlocks& points, GaussianMixture start, const EmOpti
     trial = plain;
     extrapolated = false;
     const auto next = extrapolation.next(coordinates_of(result.mixture), coordinates_of(plain));
-    // Gains are quadratic in the steps: the rest of a geometric series is at most half of this.
-    if (const auto steps = extrapolation.steps_left(); steps && result.log_likelihood + gain * *steps < hopeless_below)
+    // One geometric series would gain at most half of gain * steps; several together more than the fastest of them
+    // shows.
+    if (const auto steps = extrapolation.steps_left();
+        steps && result.log_likelihood + margin * gain * *steps < hopeless_below)
       return result;
     if (next)
       if (std::optional<GaussianMixture> mixture = mixture_of(*next, plain, options)) {

@@ -24,7 +24,7 @@ struct EmOptions {
   StartKind start = StartKind::automatic;
   int restarts = 5;  ///< independent, >= 1
   /// Short runs that k-means++ and random starts are the best of (emEM: Biernacki, Celeux & Govaert 2003), on a
-  /// subsample of many points; 1: single starts.
+  /// subsample of many points; 1: single starts. Without a noise component every other restart is a single start.
   int start_runs = 5;
   /// Split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000). 0: none, and restarts are
   /// not crossed (restarts.hpp).

@@ -57,7 +57,10 @@ Start Starts::make(Index components, int restart, std::uint64_t seed) const {
   std::mt19937_64 generator = make_generator(seed, "em restart", static_cast<std::uint64_t>(restart));
   const bool random = options_.start == StartKind::random ||
                       (options_.start == StartKind::automatic && restart % random_every == random_every - 1);
-  return fresh_start(components, random, generator);
+  // Short runs favour the optima that rise fastest: so every other restart is a single start, which may lead elsewhere.
+  // Beside a noise component single starts miss too much.
+  const bool single = restart % 2 == 0 && !options_.noise_component;
+  return fresh_start(components, random, single ? 1 : options_.start_runs, generator);
 }
 
 GaussianMixture Starts::hierarchical(const Tree& tree, Index components) const {
@@ -81,14 +84,14 @@ GaussianMixture Starts::with_noise(GaussianMixture start, Index components) cons
 
 /// emEM (Biernacki, Celeux & Govaert 2003, Comput. Stat. Data Anal. 41, section 2.2), the short runs on a subsample.
 /// Short runs miss a cluster far less often than single starts do, also where moves follow.
-Start Starts::fresh_start(Index components, bool random, std::mt19937_64& generator) const {
+Start Starts::fresh_start(Index components, bool random, int runs, std::mt19937_64& generator) const {
   const auto start = random ? random_start : kmeans_start;
   const PointBlocks chosen = cloud_.points.for_starts(start_points, generator);
   const auto draw = [&](Index spare) {
     return with_noise(start(chosen, components + spare, options_.covariance, options_.covariance_floor, generator),
                       components);
   };
-  if (options_.start_runs == 1 || (components == 1 && !options_.noise_component)) return {draw(0), 0};
+  if (runs == 1 || (components == 1 && !options_.noise_component)) return {draw(0), 0};
   // A subsample does not know the points' errors.
   const bool few = cloud_.points.count() <= short_run_points || cloud_.points.has_errors();
   std::optional<PointBlocks> subsample;
@@ -96,7 +99,7 @@ Start Starts::fresh_start(Index components, bool random, std::mt19937_64& genera
   EmOptions brief = options_;
   brief.max_iterations = std::min(short_run_iterations, options_.max_iterations);
   EmResult best;
-  for (int run = 0; run < options_.start_runs; ++run) {
+  for (int run = 0; run < runs; ++run) {
     // Every other run thins more clusters out: it finds the noise where there is much, but may lose a mode.
     const Index spare = options_.noise_component && run % 2 == 1 ? spare_components(components) : 0;
     EmResult result = iterate(few ? cloud_.points : *subsample, draw(spare), brief);

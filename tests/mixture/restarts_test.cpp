@@ -64,9 +64,10 @@ TEST(Restarts, ShortRunsAreWhatStartRunsSays) {
       options.split_merge = moves;
       const ScaledCloud cloud(PointSet(points), options);
       options.start_runs = 1;
-      EXPECT_EQ(Starts(cloud, options).make(3, 0, 1).iterations, 0);
+      EXPECT_EQ(Starts(cloud, options).make(3, 1, 1).iterations, 0);
       options.start_runs = 5;
-      EXPECT_GT(Starts(cloud, options).make(3, 0, 1).iterations, 0);
+      EXPECT_GT(Starts(cloud, options).make(3, 1, 1).iterations, 0);
+      EXPECT_EQ(Starts(cloud, options).make(3, 2, 1).iterations, 0) << "every other one is a single start";
     }
 }
 
