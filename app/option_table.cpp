@@ -132,8 +132,8 @@ std::vector<Option> window_options() {
 Option start_option() {
   Option result =
       words("mixture.start",
-            "where EM begins: auto (the first restart hierarchical, the others k-means++), one way for all, "
-            "or the mixture of an archive for the candidate of its size (the others as auto)",
+            "where EM begins: auto (the first restart hierarchical, every fourth random, the others k-means++), one "
+            "way for all, or the mixture of an archive for the candidate of its size (the others as auto)",
             MODEBANK_FIELD(mixture.selection.em.start));
   result.range += " | an archive";
   result.set = [](Config& config, const std::string& text) {
@@ -163,9 +163,12 @@ std::vector<Option> mixture_options() {
       start_option(),
       numeric("mixture.restarts", between(1, 10'000), "", "independent starts per candidate",
               MODEBANK_FIELD(mixture.selection.em.restarts)),
+      numeric("mixture.start_runs", between(1, 10'000), "",
+              "short runs that a k-means++ or random start is the best of; 1: single starts",
+              MODEBANK_FIELD(mixture.selection.em.start_runs)),
       numeric("mixture.split_merge", between(0, 10'000), "",
-              "moves tried to leave each optimum: two components merged, one split; 0: none, and k-means++ starts are "
-              "single ones",
+              "moves tried to leave each optimum: two components merged, one split; 0: none, and restarts are not "
+              "crossed",
               MODEBANK_FIELD(mixture.selection.em.split_merge)),
       words("mixture.heldout",
             "score candidates by leaving out runs; auto: up to 20,000 windows; never: only as the criterion",

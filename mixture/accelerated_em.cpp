@@ -17,6 +17,9 @@ namespace {
 /// Components of less weight are on their way out; their logarithms would lead the others astray.
 constexpr double least_weight = 1e-9;
 
+/// On the estimate of what EM still gains, before a climb is given up.
+constexpr double margin = 10.0;
+
 /// A mixture as a vector without constraints, logarithms of weights and Cholesky factors with logarithms on the
 /// diagonal, and the size that a unit of each entry has (the square root of the complete data's Fisher information,
 /// conditional standard deviations in place of a full whitening).
@@ -85,6 +88,9 @@ std::optional<GaussianMixture> mixture_of(const Eigen::VectorXd& values, const G
 class Extrapolation {
  public:
   void forget() { before_.reset(); }
+  /// How many times its last but one step EM would still go, where the latest `next` could tell: steps shrink by the
+  /// factor 1 - 1 / steps_left.
+  std::optional<double> steps_left() const { return steps_left_; }
   void shorten() {
     forget();
     longest_ = std::max(shortest, longest_ / growth);
@@ -93,10 +99,12 @@ class Extrapolation {
   /// EM went from `from` to `to`. Where to go on after two such steps in a row.
   std::optional<Eigen::VectorXd> next(const std::optional<Coordinates>& from, const std::optional<Coordinates>& to) {
     const std::optional<Coordinates> before = std::exchange(before_, from);
+    steps_left_.reset();
     if (!from || !to) forget();
     if (!before || !from || !to) return {};
     const Eigen::VectorXd step = from->values - before->values, bend = to->values - from->values - step;
     const double size = before->scale.cwiseProduct(step).norm() / before->scale.cwiseProduct(bend).norm();
+    steps_left_ = std::max(1.0, size);
     if (!(size > 1.0)) return {};  // what EM does itself
     const double length = std::min(size, longest_);
     if (length == longest_) longest_ *= growth;
@@ -107,12 +115,13 @@ class Extrapolation {
  private:
   static constexpr double growth = 2.0, shortest = 2.0;
   std::optional<Coordinates> before_;
+  std::optional<double> steps_left_;
   double longest_ = 4.0;
 };
 
 }  // namespace
 
-EmResult converge(const PointBlocks& points, GaussianMixture start, const EmOptions& options) {
+EmResult converge(const PointBlocks& points, GaussianMixture start, const EmOptions& options, double hopeless_below) {
   const double least_gain = options.tolerance * points.total_weight();
   EmResult result;
   result.mixture = std::move(start);
@@ -139,7 +148,13 @@ EmResult converge(const PointBlocks& points, GaussianMixture start, const EmOpti
     ++result.iterations;
     trial = plain;
     extrapolated = false;
-    if (const auto next = extrapolation.next(coordinates_of(result.mixture), coordinates_of(plain)))
+    const auto next = extrapolation.next(coordinates_of(result.mixture), coordinates_of(plain));
+    // One geometric series would gain at most half of gain * steps; several together more than the fastest of them
+    // shows.
+    if (const auto steps = extrapolation.steps_left();
+        steps && result.log_likelihood + margin * gain * *steps < hopeless_below)
+      return result;
+    if (next)
       if (std::optional<GaussianMixture> mixture = mixture_of(*next, plain, options)) {
         trial = std::move(*mixture);
         extrapolated = true;

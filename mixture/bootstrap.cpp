@@ -82,10 +82,16 @@ MixtureErrors bootstrap_runs(const PointSet& points, const std::vector<Index>& r
   const Eigen::MatrixXd chosen = responsibilities(mixture, sample.set());
   Replicates all{Eigen::MatrixXd(K, replicates),
                  std::vector<Eigen::MatrixXd>(static_cast<std::size_t>(K), Eigen::MatrixXd(F, replicates))};
+  // From the chosen mixture alone, by extrapolated steps.
+  EmOptions once = options;
+  once.start = StartKind::kmeans_plus_plus;
+  once.restarts = 1;
+  once.split_merge = 0;
   tbb::parallel_for(0, replicates, [&](int b) {
     std::mt19937_64 generator = make_generator(seed, "bootstrap", static_cast<std::uint64_t>(b));
     const Eigen::VectorXd weights = resampled_weights(points, runs, generator);
-    const GaussianMixture fit = fit_em(PointSet(points.points, weights, points.covariances), mixture, options).mixture;
+    const PointSet resampled(points.points, weights, points.covariances);
+    const GaussianMixture fit = EmSweep(resampled, once).fit(K, 0, &mixture).mixture;
     const std::vector<Index> match = best_assignment(chosen * responsibilities(fit, sample.set()).transpose());
     // Less than one point's worth is no component any more.
     const double least = 1.0 / static_cast<double>((weights.array() > 0.0).count());

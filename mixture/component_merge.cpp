@@ -34,16 +34,22 @@ Component merged(const GaussianMixture& mixture, Index i, Index j) {
   return result;
 }
 
+double merge_loss(const GaussianMixture& mixture, Index i, Index j, double log_determinant_i,
+                  double log_determinant_j) {
+  const Component both = merged(mixture, i, j);
+  return 0.5 * (both.weight * log_determinant(both.covariance) - mixture.weights(i) * log_determinant_i -
+                mixture.weights(j) * log_determinant_j);
+}
+
 std::vector<Merge> merges_by_loss(const GaussianMixture& mixture) {
   std::vector<double> log_determinants;
   for (const Eigen::MatrixXd& covariance : mixture.covariances) log_determinants.push_back(log_determinant(covariance));
-  const auto share = [&](Index k) { return mixture.weights(k) * log_determinants[static_cast<std::size_t>(k)]; };
   std::vector<Merge> merges;
   for (Index i = 0; i < mixture.components(); ++i)
-    for (Index j = i + 1; j < mixture.components(); ++j) {
-      const Component both = merged(mixture, i, j);
-      merges.push_back({i, j, 0.5 * (both.weight * log_determinant(both.covariance) - share(i) - share(j))});
-    }
+    for (Index j = i + 1; j < mixture.components(); ++j)
+      merges.push_back({i, j,
+                        merge_loss(mixture, i, j, log_determinants[static_cast<std::size_t>(i)],
+                                   log_determinants[static_cast<std::size_t>(j)])});
   std::stable_sort(merges.begin(), merges.end(), [](const Merge& a, const Merge& b) { return a.loss < b.loss; });
   return merges;
 }

@@ -28,9 +28,13 @@ struct Merge {
   double loss;  ///< expected mean log-likelihood per unit weight, at most [nats]
 };
 
-/// All pairs, the least loss first; by the bound of Runnalls 2007, "Kullback-Leibler approach to Gaussian mixture
-/// reduction", IEEE Trans. Aerospace and Electronic Systems 43(3), eq. 16:
+/// What merging i and j costs, given log |P_i| and log |P_j|: the bound of Runnalls 2007, "Kullback-Leibler approach to
+/// Gaussian mixture reduction", IEEE Trans. Aerospace and Electronic Systems 43(3), eq. 16:
 ///   ((w_i + w_j) log |P_ij| - w_i log |P_i| - w_j log |P_j|) / 2.
+double merge_loss(const GaussianMixture& mixture, Eigen::Index i, Eigen::Index j, double log_determinant_i,
+                  double log_determinant_j);
+
+/// All pairs, the least merge_loss first.
 std::vector<Merge> merges_by_loss(const GaussianMixture& mixture);
 
 }  // namespace modebank

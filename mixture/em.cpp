@@ -1,9 +1,9 @@
 #include "mixture/em.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -12,8 +12,8 @@
 #include "mixture/em_iteration.hpp"
 #include "mixture/em_step.hpp"
 #include "mixture/feature_scale.hpp"
+#include "mixture/restarts.hpp"
 #include "mixture/scaled_cloud.hpp"
-#include "mixture/split_merge.hpp"
 #include "mixture/starts.hpp"
 
 namespace modebank {
@@ -26,17 +26,16 @@ namespace {
 constexpr double largest_coordinate = 1e150;
 /// Below this the floor is lost in the rounding of a covariance's largest eigenvalue.
 constexpr double smallest_floor = 1e-10;
-constexpr double agreement_per_point = 1e-4;
-/// Near enough to an optimum to try moves out of it.
-constexpr double coarse_tolerance = 1e-5;
 
 void check(const EmOptions& options) {
-  if (options.restarts < 1 || options.split_merge < 0 || options.max_iterations < 0 ||
-      !(options.covariance_floor >= smallest_floor))
+  if (options.restarts < 1 || options.start_runs < 1 || options.split_merge < 0 || options.max_iterations < 0)
     throw std::invalid_argument(fmt::format(
-        "EM needs restarts >= 1, split_merge and max_iterations >= 0 and covariance_floor >= {}; given {}, "
-        "{}, {} and {}",
-        smallest_floor, options.restarts, options.split_merge, options.max_iterations, options.covariance_floor));
+        "EM needs restarts and start_runs >= 1, split_merge and max_iterations >= 0; given {}, {}, {} and {}",
+        options.restarts, options.start_runs, options.split_merge, options.max_iterations));
+  if (!(options.covariance_floor >= smallest_floor && std::isfinite(options.covariance_floor)) ||
+      std::isnan(options.tolerance))
+    throw std::invalid_argument(fmt::format("EM needs a finite covariance_floor >= {} and a tolerance; given {} and {}",
+                                            smallest_floor, options.covariance_floor, options.tolerance));
 }
 
 void check(const PointSet& set) {
@@ -72,38 +71,6 @@ void to_physical(const ScaledCloud& cloud, EmResult& result) {
     result.mixture.noise.upper = cloud.noise.upper;
   }
   result.log_likelihood += cloud.points.total_weight() * cloud.scale.log_jacobian();
-}
-
-/// From a start to an optimum that split-and-merge moves do not leave; the tolerance matters for the last stretch
-/// alone.
-EmResult restart(const PointBlocks& points, Start start, const EmOptions& options) {
-  EmOptions coarse = options;
-  coarse.max_iterations = std::max(0, options.max_iterations - start.iterations);
-  if (options.tolerance > 0.0) coarse.tolerance = std::max(options.tolerance, coarse_tolerance);
-  EmResult result = split_and_merge(points, converge(points, std::move(start.mixture), coarse), coarse);
-  const int spent = result.iterations + start.iterations;
-  result.iterations = spent;
-  if (coarse.tolerance == options.tolerance) return result;
-  if (spent >= options.max_iterations) {
-    result.converged = false;  // not to the tolerance that was asked for
-    return result;
-  }
-  EmOptions rest = options;
-  rest.max_iterations = options.max_iterations - spent;
-  result = converge(points, std::move(result.mixture), rest);
-  result.iterations += spent;
-  return result;
-}
-
-/// The best of the restarts, the first on a tie, with the number that agree with it.
-EmResult best_of(std::vector<EmResult> restarts, double total_weight) {
-  const auto best = std::max_element(restarts.begin(), restarts.end(), [](const EmResult& a, const EmResult& b) {
-    return a.log_likelihood < b.log_likelihood;
-  });
-  const double agreeing = best->log_likelihood - agreement_per_point * total_weight;
-  best->agreeing_restarts = static_cast<int>(std::count_if(
-      restarts.begin(), restarts.end(), [&](const EmResult& result) { return result.log_likelihood >= agreeing; }));
-  return std::move(*best);
 }
 
 /// A start in scaled units that obeys the options: their covariance type and floor.
@@ -161,13 +128,11 @@ EmResult EmSweep::fit(Index components, std::uint64_t seed, const GaussianMixtur
   if (components < 1 || components > cloud.points.count())
     throw std::invalid_argument(
         fmt::format("EM of {} components needs 1 to {} (the number of points)", components, cloud.points.count()));
-  std::vector<EmResult> restarts(static_cast<std::size_t>(options.restarts));
-  tbb::parallel_for(0, options.restarts, [&](int i) {
-    Start own =
-        i == 0 && start ? Start{usable_start(*start, cloud, options), 0} : prepared_->starts.make(components, i, seed);
-    restarts[static_cast<std::size_t>(i)] = restart(cloud.points, std::move(own), options);
-  });
-  EmResult result = best_of(std::move(restarts), cloud.points.total_weight());
+  const auto start_of = [&](int i) {
+    return i == 0 && start ? Start{usable_start(*start, cloud, options), 0}
+                           : prepared_->starts.make(components, i, seed);
+  };
+  EmResult result = best_of_restarts(cloud.points, start_of, options);
   order_by_weight(result.mixture);
   to_physical(cloud, result);
   return result;

@@ -8,10 +8,9 @@
 
 namespace modebank {
 
-/// Where restarts begin. kmeans_plus_plus: Arthur & Vassilvitskii 2007. random: points as centres, the best of five
-/// short runs (emEM: Biernacki, Celeux & Govaert 2003); so are k-means++ starts of two components or with a noise
-/// component. hierarchical: model-based agglomeration (Fraley 1998) of a subsample, another one for each restart.
-/// automatic: the first restart hierarchical, the others k-means++.
+/// Where restarts begin. kmeans_plus_plus: Arthur & Vassilvitskii 2007. random: points as centres. Both are the best of
+/// EmOptions::start_runs short runs. hierarchical: model-based agglomeration (Fraley 1998) of a subsample, another one
+/// for each restart. automatic: the first restart hierarchical, every fourth after it random, the others k-means++.
 enum class StartKind { automatic, kmeans_plus_plus, random, hierarchical };
 
 template <>
@@ -23,8 +22,13 @@ struct EnumNames<StartKind> {
 struct EmOptions {
   CovarianceType covariance = CovarianceType::full;
   StartKind start = StartKind::automatic;
-  int restarts = 5;           ///< independent, >= 1
-  int split_merge = 5;        ///< split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000)
+  int restarts = 5;  ///< independent, >= 1
+  /// Short runs that k-means++ and random starts are the best of (emEM: Biernacki, Celeux & Govaert 2003), on a
+  /// subsample of many points; 1: single starts. Without a noise component every other restart is a single start.
+  int start_runs = 5;
+  /// Split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000). 0: none, and restarts are
+  /// not crossed (restarts.hpp).
+  int split_merge = 5;
   double tolerance = 1e-7;    ///< stop when the mean log-likelihood per unit weight gains less; negative: never
   int max_iterations = 1000;  ///< M steps, >= 0
   double covariance_floor = 1e-6;  ///< eigenvalues (variances) are kept above this share of the data's variance per
@@ -42,14 +46,14 @@ struct EmResult {
   bool floor_active = false;  ///< whether the covariance floor held any component in the last iteration
 };
 
-/// Best of options.restarts runs, improved by split-and-merge moves (Ueda et al. 2000). Points finite, up to 1e150 in
-/// magnitude. Fitted in units of each feature's standard deviation, so invariant to its units; a constant feature keeps
-/// its unit and is held by the floor, as are coinciding points. The floored M step is the exact constrained maximiser,
-/// so the likelihood never falls; squared extrapolation (Varadhan & Roland 2008) shortens the way. A component that
-/// explains less than 1e-14 of the weight keeps its mean and covariance. Points with error covariances are deconvolved:
-/// the components describe the points without their errors (Bovy, Hogg & Roweis 2011, Ann. Appl. Stat. 5, eq. 16); zero
-/// errors change nothing. Throws std::invalid_argument for K < 1, K > N, bad options, weights, points or error
-/// covariances. Bitwise the same for any number of threads.
+/// Best of options.restarts runs, improved by split-and-merge moves (Ueda et al. 2000) and by crossing (restarts.hpp).
+/// Points finite, up to 1e150 in magnitude. Fitted in units of each feature's standard deviation, so invariant to its
+/// units; a constant feature keeps its unit and is held by the floor, as are coinciding points. The floored M step is
+/// the exact constrained maximiser, so the likelihood never falls; squared extrapolation (Varadhan & Roland 2008)
+/// shortens the way. A component that explains less than 1e-14 of the weight keeps its mean and covariance. Points with
+/// error covariances are deconvolved: the components describe the points without their errors (Bovy, Hogg & Roweis
+/// 2011, Ann. Appl. Stat. 5, eq. 16); zero errors change nothing. Throws std::invalid_argument for K < 1, K > N, bad
+/// options, weights, points or error covariances. Bitwise the same for any number of threads.
 EmResult fit_em(const PointSet& points, Eigen::Index components, const EmOptions& options, std::uint64_t seed);
 /// fit_em for several numbers of components over the same points, which are prepared once and must outlive this. fit()
 /// may be called from several threads; what it returns depends on its own arguments alone.

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -158,6 +159,13 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
   if (!design.runs.empty() && std::ssize(design.runs) != points.count())
     throw std::invalid_argument(
         fmt::format("selection is given {} points and the runs of {}", points.count(), design.runs.size()));
+  if (!(design.effective_samples >= 0.0) || !std::isfinite(design.effective_samples))
+    throw std::invalid_argument(fmt::format(
+        "selection is given {} effective samples: a finite number above 0, or 0 where all points are independent",
+        design.effective_samples));
+  if (options.bootstrap < 0 || options.bootstrap == 1)
+    throw std::invalid_argument(
+        fmt::format("a bootstrap needs 2 resamples or more (0: none), given {}", options.bootstrap));
   const double weight = points.weights.size() > 0 ? points.weights.sum() : static_cast<double>(points.count());
   const Task task{points, design, options, seed, weight, count_distinct(points, components.back())};
   std::vector<FittedCandidate> fitted = fit_all(task, components);

@@ -210,10 +210,11 @@ EmResult split_and_merge(const PointBlocks& points, EmResult fit, const EmOption
   brief.max_iterations = std::min(move_iterations, options.max_iterations);
   for (int round = 0; round < most_move_rounds; ++round) {
     ranking.look(fit.mixture);
+    const double wanted = fit.log_likelihood + least_gain * points.total_weight();
     bool better = false;
     for (Trial& trial : promising(ranking, fit.mixture, points.has_errors(), options)) {
-      EmResult result = converge(points, std::move(trial.start), brief);
-      if (!(result.log_likelihood > fit.log_likelihood + least_gain * points.total_weight())) continue;
+      EmResult result = converge(points, std::move(trial.start), brief, wanted);
+      if (!(result.log_likelihood > wanted)) continue;
       const int spent = fit.iterations + result.iterations;
       if (!result.converged) result = converge(points, std::move(result.mixture), options);
       result.iterations += spent;

@@ -1,6 +1,7 @@
 #include "mixture/starts.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "ident/seed.hpp"
@@ -18,11 +19,11 @@ namespace {
 constexpr Index largest_subsample = 300;
 /// k-means++ and random starts are chosen from this many points at most.
 constexpr Index start_points = 50000;
-/// A start is the best of a few short runs, which miss a cluster far less often than a single one does, also where
-/// split-and-merge moves follow: without them moves left poorer optima (a real cloud of twelve components, and one of
-/// twelve seeds in tests/app/recovery_test.cpp). Who wants no moves wants it quick: one k-means++ start then, but not
-/// for two components or beside a noise component, where it misses too much.
-constexpr int short_runs = 5, short_run_iterations = 10;
+/// Short runs take this many points: enough to tell a start that misses a cluster.
+constexpr Index short_run_points = 1500;
+constexpr int short_run_iterations = 10;
+/// Of automatic starts one in so many is random.
+constexpr int random_every = 4;
 
 }  // namespace
 
@@ -54,7 +55,12 @@ Starts::Starts(const ScaledCloud& cloud, const EmOptions& options) : cloud_(clou
 Start Starts::make(Index components, int restart, std::uint64_t seed) const {
   if (restart < std::ssize(trees_)) return {hierarchical(trees_[static_cast<std::size_t>(restart)], components), 0};
   std::mt19937_64 generator = make_generator(seed, "em restart", static_cast<std::uint64_t>(restart));
-  return fresh_start(components, generator);
+  const bool random = options_.start == StartKind::random ||
+                      (options_.start == StartKind::automatic && restart % random_every == random_every - 1);
+  // Short runs favour the optima that rise fastest: so every other restart is a single start, which may lead elsewhere.
+  // Beside a noise component single starts miss too much.
+  const bool single = restart % 2 == 0 && !options_.noise_component;
+  return fresh_start(components, random, single ? 1 : options_.start_runs, generator);
 }
 
 GaussianMixture Starts::hierarchical(const Tree& tree, Index components) const {
@@ -76,23 +82,27 @@ GaussianMixture Starts::with_noise(GaussianMixture start, Index components) cons
   return start;
 }
 
-/// emEM (Biernacki, Celeux & Govaert 2003, Comput. Stat. Data Anal. 41, section 2.2).
-Start Starts::fresh_start(Index components, std::mt19937_64& generator) const {
-  const auto start = options_.start == StartKind::random ? random_start : kmeans_start;
+/// emEM (Biernacki, Celeux & Govaert 2003, Comput. Stat. Data Anal. 41, section 2.2), the short runs on a subsample.
+/// Short runs miss a cluster far less often than single starts do, also where moves follow.
+Start Starts::fresh_start(Index components, bool random, int runs, std::mt19937_64& generator) const {
+  const auto start = random ? random_start : kmeans_start;
   const PointBlocks chosen = cloud_.points.for_starts(start_points, generator);
   const auto draw = [&](Index spare) {
     return with_noise(start(chosen, components + spare, options_.covariance, options_.covariance_floor, generator),
                       components);
   };
-  const bool quick = options_.split_merge == 0 && components > 2 && options_.start != StartKind::random;
-  if (!options_.noise_component && (components == 1 || quick)) return {draw(0), 0};
+  if (runs == 1 || (components == 1 && !options_.noise_component)) return {draw(0), 0};
+  // A subsample does not know the points' errors.
+  const bool few = cloud_.points.count() <= short_run_points || cloud_.points.has_errors();
+  std::optional<PointBlocks> subsample;
+  if (!few) subsample.emplace(cloud_.points.for_starts(short_run_points, generator));
   EmOptions brief = options_;
   brief.max_iterations = std::min(short_run_iterations, options_.max_iterations);
   EmResult best;
-  for (int run = 0; run < short_runs; ++run) {
+  for (int run = 0; run < runs; ++run) {
     // Every other run thins more clusters out: it finds the noise where there is much, but may lose a mode.
-    EmResult result = iterate(cloud_.points,
-                              draw(options_.noise_component && run % 2 == 1 ? spare_components(components) : 0), brief);
+    const Index spare = options_.noise_component && run % 2 == 1 ? spare_components(components) : 0;
+    EmResult result = iterate(few ? cloud_.points : *subsample, draw(spare), brief);
     if (run == 0 || result.log_likelihood > best.log_likelihood) best = std::move(result);
   }
   return {std::move(best.mixture), best.iterations};

@@ -36,7 +36,7 @@ class Starts {
   GaussianMixture hierarchical(const Tree& tree, Eigen::Index components) const;
   /// Of more components than wanted the densest, and the noise component that was asked for.
   GaussianMixture with_noise(GaussianMixture start, Eigen::Index components) const;
-  Start fresh_start(Eigen::Index components, std::mt19937_64& generator) const;
+  Start fresh_start(Eigen::Index components, bool random, int runs, std::mt19937_64& generator) const;
 
   const ScaledCloud& cloud_;
   EmOptions options_;

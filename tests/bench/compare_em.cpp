@@ -161,8 +161,9 @@ EmRun sweep(const EmCase& problem, int threads, int most, int restarts, int seed
   EmOptions options;
   options.covariance = problem.type;
   options.restarts = restarts;
-  // What scikit-learn does: it knows no agglomeration and no moves.
+  // What scikit-learn does: it knows no agglomeration, no short runs and no moves.
   options.start = StartKind::kmeans_plus_plus;
+  options.start_runs = 1;
   options.split_merge = 0;
   options.tolerance = 1e-3;
   options.max_iterations = 100;
@@ -200,6 +201,7 @@ void measure_memory() {
   EmOptions options;
   options.restarts = 1;
   options.max_iterations = 2;
+  options.start_runs = 1;
   options.split_merge = 0;
   const EmResult fit = fit_em(PointSet(points), components, options, 1);
   double sum = 0.0;

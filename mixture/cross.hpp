@@ -1,0 +1,12 @@
+#pragma once
+
+#include "mixture/gaussian_mixture.hpp"
+
+namespace modebank {
+
+/// A mixture that has what two mixtures of the same K, features and type agree on, and of the rest what differs most:
+/// the components of both at half their weight, the two closest merged (merge_loss, component_merge.hpp) until K are
+/// left. Mixtures that are the same give themselves. Time K^3.
+GaussianMixture cross(const GaussianMixture& a, const GaussianMixture& b);
+
+}  // namespace modebank
