@@ -154,7 +154,8 @@ class Tracker {
   void step(const LiveSample& sample) {
     const bool was_started = filter_.started();
     before_leap_.reset();
-    if (was_started && is_gap(*last_time_s_, sample.time_s)) before_leap_ = {*last_time_s_, filter_.snapshot()};
+    if (was_started && is_gap(*last_time_s_, sample.time_s))
+      before_leap_ = BeforeLeap{*last_time_s_, filter_.snapshot()};
     const FilterEstimate& estimate = filter_.step(sample.time_s, sample.input, sample.measurement);
     if (was_started && estimate.steps == 0)
       fmt::print(stderr, "modebank: line {}: {} s without a sample: the filter starts anew\n", line_number_,
