@@ -101,8 +101,9 @@ inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
 }
 
 /// Of the learned bank on runs that it has not seen.
-inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, std::uint64_t seed) {
-  std::vector<Trajectory> runs = simulated_recording(truth, 4, 1000, seed + 1000).runs;
+inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, std::uint64_t seed,
+                                           Index samples = 1000) {
+  std::vector<Trajectory> runs = simulated_recording(truth, 4, samples, seed + 1000).runs;
   std::vector<RunEvaluation> evaluations;
   for (Trajectory& run : runs) {
     run.role = Role::test;

@@ -19,7 +19,7 @@ class RefineRecoverySeeds : public testing::TestWithParam<System> {};
 TEST_P(RefineRecoverySeeds, ErrorsAreAsLargeAsStated) {
   constexpr std::uint64_t seeds = 20;
   const System& system = GetParam();
-  double squares = 0.0, count = 0.0, beyond = 0.0, calibrated = 0.0;
+  double squares = 0.0, count = 0.0, beyond = 0.0, calibrated = 0.0, nees = 0.0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const Recording recording = test::simulated_recording(system.truth, system.runs, system.samples, seed);
     const Refinement refined = test::refine_blurred(system.truth, recording, 1);
@@ -32,14 +32,21 @@ TEST_P(RefineRecoverySeeds, ErrorsAreAsLargeAsStated) {
       ++count;
       EXPECT_LT(std::abs(z), 4.5) << "seed " << seed;
     }
-    const DiagnosticsRow row = test::held_out_diagnostics(bank, system.truth, seed);
+    nees += test::held_out_diagnostics(bank, system.truth, seed).nees_mean / static_cast<double>(seeds);
+    // The interval knows a true filter's scatter alone, so these runs are few beside those learned from.
+    const DiagnosticsRow row = test::held_out_diagnostics(bank, system.truth, seed, 100);
     if (row.nees_mean > row.nees_lower && row.nees_mean < row.nees_upper) ++calibrated;
   }
   RecordProperty("rms_z", std::to_string(std::sqrt(squares / count)));
+  RecordProperty("nees", std::to_string(nees));
   RecordProperty("calibrated", std::to_string(calibrated));
   EXPECT_NEAR(std::sqrt(squares / count), 1.0, 0.15);
   EXPECT_LT(beyond / count, 0.02);  // 0.27 % by the normal law; variances are skewed
-  EXPECT_GE(calibrated, 15.0);      // of 20: the interval holds for 95 % of true filters, not of learned ones
+  // Of 20. Where R is ten times Q, the state's covariance rests on a Q known to 15 % or so, beside which the interval,
+  // a true filter's, is narrow.
+  EXPECT_GE(calibrated, 12.0);
+  const auto states = static_cast<double>(system.truth.structure.states);
+  EXPECT_NEAR(nees, states, 0.04 * states);
 }
 
 INSTANTIATE_TEST_SUITE_P(Systems, RefineRecoverySeeds,
