@@ -29,8 +29,8 @@ struct EmOptions {
   /// Split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000). 0: none, and restarts are
   /// not crossed (restarts.hpp).
   int split_merge = 5;
-  double tolerance = 1e-7;    ///< stop when the mean log-likelihood per unit weight gains less; negative: never
-  int max_iterations = 1000;  ///< M steps, >= 0
+  double tolerance = 1e-7;         ///< stop when the mean log-likelihood per unit weight gains less; negative: never
+  int max_iterations = 1000;       ///< M steps, >= 0
   double covariance_floor = 1e-6;  ///< eigenvalues (variances) are kept above this share of the data's variance per
                                    ///< feature (without far outliers: feature_scale.hpp), >= 1e-10
   bool noise_component = false;    ///< adds a uniform component over the points' bounding box (see UniformNoise)

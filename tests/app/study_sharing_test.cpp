@@ -105,13 +105,29 @@ TEST_F(StudySharing, EveryStageReadsBackFromTheCacheToTheBit) {
   };
   pass(
       "windows",
-      [&] { return Archive{{}, {}, made.recording, {}, made.windows, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}; },
+      [&] {
+        Archive part;
+        part.recording = made.recording;
+        part.windows = made.windows;
+        return part;
+      },
       [&](Archive&& part) { taken.windows = std::move(part.windows); });
   pass(
-      "mixture", [&] { return Archive{{}, {}, {}, {}, {}, made.mixture, {}, {}, {}, {}, {}, {}, {}, {}, {}}; },
+      "mixture",
+      [&] {
+        Archive part;
+        part.mixture = made.mixture;
+        return part;
+      },
       [&](Archive&& part) { taken.mixture = std::move(part.mixture); });
   pass(
-      "bank", [&] { return Archive{{}, {}, {}, {}, {}, {}, made.bank, made.unrefined, {}, {}, {}, {}, {}, {}, {}}; },
+      "bank",
+      [&] {
+        Archive part;
+        part.bank = made.bank;
+        part.unrefined = made.unrefined;
+        return part;
+      },
       [&](Archive&& part) {
         taken.bank = std::move(part.bank);
         taken.unrefined = std::move(part.unrefined);

@@ -109,7 +109,7 @@ inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, 
     run.role = Role::test;
     evaluations.push_back(evaluate_run(bank, run, {}));
   }
-  return diagnose("bank", bank, runs, evaluations).front();
+  return diagnose("bank", bank, {}, runs, evaluations).front();
 }
 
 }  // namespace modebank::test
