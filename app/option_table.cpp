@@ -132,7 +132,7 @@ std::vector<Option> window_options() {
 Option start_option() {
   Option result =
       words("mixture.start",
-            "where EM begins: auto (the first restart hierarchical, every fourth random, the others k-means++), one "
+            "where EM begins: auto (the first restart hierarchical, then random and k-means++ in turn), one "
             "way for all, or the mixture of an archive for the candidate of its size (the others as auto)",
             MODEBANK_FIELD(mixture.selection.em.start));
   result.range += " | an archive";

@@ -10,7 +10,7 @@ namespace modebank {
 
 /// Where restarts begin. kmeans_plus_plus: Arthur & Vassilvitskii 2007. random: points as centres. Both are the best of
 /// EmOptions::start_runs short runs. hierarchical: model-based agglomeration (Fraley 1998) of a subsample, another one
-/// for each restart. automatic: the first restart hierarchical, every fourth after it random, the others k-means++.
+/// for each restart. automatic: the first restart hierarchical, then random and k-means++ in turn.
 enum class StartKind { automatic, kmeans_plus_plus, random, hierarchical };
 
 template <>
@@ -24,8 +24,8 @@ struct EmOptions {
   StartKind start = StartKind::automatic;
   int restarts = 5;  ///< independent, >= 1
   /// Short runs that k-means++ and random starts are the best of (emEM: Biernacki, Celeux & Govaert 2003), on a
-  /// subsample of many points; 1: single starts. Without a noise component every other restart is a single start.
-  int start_runs = 5;
+  /// subsample of many points; 1: single starts.
+  int start_runs = 2;
   /// Split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000). 0: none, and restarts are
   /// not crossed (restarts.hpp).
   int split_merge = 5;

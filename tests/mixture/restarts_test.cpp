@@ -67,7 +67,6 @@ TEST(Restarts, ShortRunsAreWhatStartRunsSays) {
       EXPECT_EQ(Starts(cloud, options).make(3, 1, 1).iterations, 0);
       options.start_runs = 5;
       EXPECT_GT(Starts(cloud, options).make(3, 1, 1).iterations, 0);
-      EXPECT_EQ(Starts(cloud, options).make(3, 2, 1).iterations, 0) << "every other one is a single start";
     }
 }
 
