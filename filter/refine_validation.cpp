@@ -23,6 +23,28 @@ constexpr std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
 constexpr std::array<double, 4> prior_samples{1.0, 2.0, 5.0, 20.0};
 constexpr double least_measurement_share = 1e-9;  // of the global residual variance
 
+/// Standard error of a sum of what independent runs contribute.
+double standard_error_of_sum(const Eigen::VectorXd& parts) {
+  const auto n = static_cast<double>(parts.size());
+  return n < 2.0 ? 0.0 : std::sqrt((parts.array() - parts.mean()).square().sum() * n / (n - 1.0));
+}
+
+/// Of ways that are as good as the best within one standard error of the difference over the runs left out (Breiman et
+/// al. 1984, section 3.4.3) the one that is soonest ready to leave its start: new runs differ more from all training
+/// runs than these do from each other. scores: of each way, one per run.
+std::size_t soonest_of_the_good(const std::vector<NoiseAdaptation>& ways, const std::vector<Eigen::VectorXd>& scores) {
+  const auto lower = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return a.sum() < b.sum(); };
+  const std::size_t best = std::max_element(scores.begin(), scores.end(), lower) - scores.begin();
+  std::size_t chosen = best;
+  for (std::size_t w = 0; w < ways.size(); ++w) {
+    const Eigen::VectorXd loss = scores[best] - scores[w];
+    if (!(loss.sum() <= standard_error_of_sum(loss))) continue;
+    const double sooner = ways[chosen].prior_samples - ways[w].prior_samples;
+    if (sooner > 0.0 || (sooner == 0.0 && lower(scores[chosen], scores[w]))) chosen = w;
+  }
+  return chosen;
+}
+
 std::vector<Index> checkpoints_up_to(Index limit) {
   std::vector<Index> list;
   for (const Index checkpoint : checkpoints)
@@ -114,13 +136,13 @@ NoiseAdaptation CrossValidation::adaptation(const std::vector<Bank>& of_splits) 
   std::vector<NoiseAdaptation> ways;
   for (const double forgetting : forgettings)
     for (const double prior : prior_samples) ways.push_back({forgetting, prior});
-  std::vector<double> scores(ways.size());
+  std::vector<Eigen::VectorXd> scores(ways.size());
   tbb::parallel_for(std::size_t{0}, ways.size(), [&](std::size_t w) {
     std::vector<Bank> banks = of_splits;
     for (Bank& bank : banks) bank.noise_adaptation = ways[w];
-    scores[w] = score(banks);
+    scores[w] = run_scores(banks);
   });
-  return ways[std::max_element(scores.begin(), scores.end()) - scores.begin()];
+  return ways[soonest_of_the_good(ways, scores)];
 }
 
 double CrossValidation::score_with_R(const Eigen::MatrixXd& R, double process_factor,
@@ -144,10 +166,15 @@ double CrossValidation::score_with_states_unknown(const LikelihoodTarget& target
   return score(banks);
 }
 
-double CrossValidation::score(const std::vector<Bank>& banks) const {
-  double sum = 0.0;
+Eigen::VectorXd CrossValidation::run_scores(const std::vector<Bank>& banks) const {
+  std::vector<double> scores;
   for (std::size_t s = 0; s < splits_.size(); ++s)
-    for (const Trajectory& run : splits_[s].left_out.runs) sum += log_likelihood(banks[s], run, filter_);
+    for (const Trajectory& run : splits_[s].left_out.runs) scores.push_back(log_likelihood(banks[s], run, filter_));
+  return Eigen::VectorXd::Map(scores.data(), std::ssize(scores));
+}
+
+double CrossValidation::score(const std::vector<Bank>& banks) const {
+  const double sum = run_scores(banks).sum();
   return std::isnan(sum) ? -std::numeric_limits<double>::infinity() : sum / static_cast<double>(samples_);
 }
 

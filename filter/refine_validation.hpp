@@ -51,7 +51,8 @@ class CrossValidation {
   /// Mean log score of the runs left out, nats per sample; `banks`: one per split. Minus infinity where there is none.
   double score(const std::vector<Bank>& banks) const;
 
-  /// How the noise scale should move in the best one's filter, or in that of other banks, one per split.
+  /// How the noise scale should move in the best one's filter, or in that of other banks, one per split: of ways that
+  /// the runs left out do not tell apart, the one that soonest leaves its start.
   NoiseAdaptation adaptation() const { return adaptation(best_banks_); }
   NoiseAdaptation adaptation(const std::vector<Bank>& of_splits) const;
 
@@ -62,6 +63,8 @@ class CrossValidation {
   double score_with_states_unknown(const LikelihoodTarget& target, const Bank& fitted) const;
 
  private:
+  /// Log-likelihood of each run left out.
+  Eigen::VectorXd run_scores(const std::vector<Bank>& banks) const;
   void add(const RefineStart& candidate, const std::vector<std::vector<Bank>>& by_split);
 
   std::vector<ValidationSplit> splits_;
