@@ -179,7 +179,7 @@ TEST_P(Batch, ThreadsChunksAndNeighboursDoNotChangeABit) {
                              o.prior == Prior::global ? results[0].prior_sd : VectorXd::Ones(3)};
   const BatchSolver solver(batch_settings(test::skid_structure, o, o.prior == Prior::global ? &prior : nullptr, 1e-4));
   const Trajectory& run = recording.runs[0];
-  const Index windows = run.transitions() - o.length + 1;
+  const Index windows = (run.transitions() - o.length) / o.step + 1;
   BatchWorkspace workspace;
   std::vector<MatrixXd> thetas;
   for (const Index chunk : {windows, Index{1}, Index{3}, Index{11}}) {
