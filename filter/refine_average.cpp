@@ -85,7 +85,8 @@ void average_fits(const AverageInput& in, const CrossValidation& validation, Ref
 
   const auto members_count = static_cast<std::size_t>(count);
   std::vector<Bank> members(members_count);
-  tbb::parallel_for(std::size_t{0}, members_count, [&](std::size_t i) {
+  members[0] = result.bank;
+  tbb::parallel_for(std::size_t{1}, members_count, [&](std::size_t i) {
     members[i] = member_bank(in, fits[i], result.candidates[fits[i].row].iterations);
   });
   for (std::size_t i = 0; i < members_count; ++i) result.candidates[fits[i].row].selected = true;

@@ -21,8 +21,8 @@ struct AverageInput {
 /// one of them the bank becomes the union (united_bank.hpp) of the best 2..options.members starts' fits, if the runs
 /// left out, scored by the fits that did not see them, gain more than least_likelihood_gain by it; of numbers that are
 /// equal up to that the least. The members switch once in a run of mean length. For a state that is measured exactly;
-/// each fit is screened, and has its standard errors, on its own. Replaces result.bank, its noise adaptation, and marks
-/// the members in the table.
+/// each fit is screened, and has its standard errors, on its own. result.bank is the best start's fit, the first
+/// member; the union replaces it, with a noise adaptation of its own, and the members are marked in the table.
 void average_fits(const AverageInput& in, const CrossValidation& validation, Refinement& result);
 
 }  // namespace modebank

@@ -126,8 +126,10 @@ std::vector<ScoredFit> CrossValidation::best_of_starts() const {
     else if (table_[fit.row].score > table_[known->row].score)
       *known = fit;
   }
-  std::stable_sort(fits.begin(), fits.end(),
-                   [&](const ScoredFit& a, const ScoredFit& b) { return table_[a.row].score > table_[b.row].score; });
+  std::sort(fits.begin(), fits.end(), [&](const ScoredFit& a, const ScoredFit& b) {
+    const double better = table_[a.row].score - table_[b.row].score;
+    return better > 0.0 || (!(better < 0.0) && a.row < b.row);
+  });
   return fits;
 }
 

@@ -45,7 +45,7 @@ class CrossValidation {
   Index iterations() const { return table_[selected_].iterations; }
   std::vector<RefineCandidate> table() const;
 
-  /// The best fit from every start, the best first.
+  /// The best fit from every start, the best first: it is best()'s.
   std::vector<ScoredFit> best_of_starts() const;
 
   /// Mean log score of the runs left out, nats per sample; `banks`: one per split. Minus infinity where there is none.
