@@ -187,7 +187,7 @@ TEST_P(Batch, ThreadsChunksAndNeighboursDoNotChangeABit) {
     std::vector<batch::Verdict> verdict(static_cast<std::size_t>(windows));
     for (Index first = 0; first < windows; first += chunk) {
       const Index count = std::min(chunk, windows - first);
-      const batch::Chunk staged = workspace.stage(run, first, count, test::skid_structure, solver.settings());
+      const batch::Chunk staged = workspace.stage(run, first * o.step, count, test::skid_structure, solver.settings());
       batch::Output out;
       out.theta = theta.col(first).data();
       out.verdict = verdict.data() + first;
