@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <unsupported/Eigen/KroneckerProduct>
 
+#include "filter/definite_inverse.hpp"
 #include "filter/noise_floor.hpp"
 #include "ident/not_a_number.hpp"
 #include "mixture/em_step.hpp"
@@ -52,12 +53,8 @@ Eigen::MatrixXd prior_information(Index parameters, const ParameterPrior* prior)
   return prior->sd.array().square().inverse().matrix().asDiagonal();
 }
 
-Eigen::MatrixXd inverse(const Eigen::MatrixXd& positive_definite) {
-  return positive_definite.llt().solve(Eigen::MatrixXd::Identity(positive_definite.rows(), positive_definite.cols()));
-}
-
 Eigen::MatrixXd regularised(const WeightedRegression& data, const Eigen::MatrixXd& Q, const ParameterPrior& prior) {
-  const Eigen::MatrixXd Q_inverse = inverse(Q), P_inverse = prior_information(data.beta.size(), &prior);
+  const Eigen::MatrixXd Q_inverse = definite_inverse(Q), P_inverse = prior_information(data.beta.size(), &prior);
   const Eigen::MatrixXd information = Eigen::kroneckerProduct(Q_inverse, data.G).eval() + P_inverse;
   const Eigen::MatrixXd data_pull = data.H * Q_inverse;
   const Eigen::VectorXd pull = data_pull.reshaped() + P_inverse * (prior.mean - data.beta.reshaped());
@@ -74,7 +71,8 @@ Eigen::VectorXd standard_errors(const WeightedRegression& data, const Eigen::Mat
   const Eigen::MatrixXd Q_unbiased = Q * (data.weight / std::max(data.weight - q, 1.0));
   const Index p = Q.rows() * data.G.rows();
   Eigen::MatrixXd information = prior_information(p, prior);
-  if (data.weight >= smallest_weight) information += Eigen::kroneckerProduct(inverse(Q_unbiased), data.G).eval();
+  if (data.weight >= smallest_weight)
+    information += Eigen::kroneckerProduct(definite_inverse(Q_unbiased), data.G).eval();
   Eigen::VectorXd not_determined = Eigen::VectorXd::Constant(p, not_a_number);
   if (!(information.diagonal().minCoeff() > 0.0) || !information.allFinite()) return not_determined;
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "filter/definite_inverse.hpp"
 #include "filter/refine_noise.hpp"
 #include "filter/switching_state_space.hpp"
 
@@ -13,10 +14,6 @@ namespace {
 constexpr Index most_em_steps = 10;        // quick at first, slow later
 constexpr double least_em_gain = 1e-4;     // nats per transition, to go on with them
 constexpr double prior_transitions = 1.0;  // unit information
-
-Eigen::MatrixXd inverse(const Eigen::MatrixXd& matrix) {
-  return matrix.llt().solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols()));
-}
 
 /// Steps that raised the target.
 Index climb_by_expectation(const LikelihoodTarget& target, Index limit, Bank& bank) {
@@ -42,8 +39,8 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
   prior.noise_transitions = prior_transitions;
   const Index n = start.structure.states;
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
-  for (const Mode& mode : start.modes) information += inverse(mode.Q.topLeftCorner(n, n));
-  const Eigen::MatrixXd mean = static_cast<double>(start.mode_count()) * inverse(information);
+  for (const Mode& mode : start.modes) information += definite_inverse(mode.Q.topLeftCorner(n, n));
+  const Eigen::MatrixXd mean = static_cast<double>(start.mode_count()) * definite_inverse(information);
   if (mean.allFinite()) prior.noise = mean;
   return prior;
 }

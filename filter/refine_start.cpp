@@ -6,6 +6,7 @@
 #include <random>
 #include <unsupported/Eigen/KroneckerProduct>
 
+#include "filter/definite_inverse.hpp"
 #include "filter/noise_floor.hpp"
 #include "filter/transition_learning.hpp"
 #include "ident/seed.hpp"
@@ -20,7 +21,7 @@ constexpr double start_stay = 0.95;         // method section 4's
 Eigen::MatrixXd unit_information(const TrainingTransitions& transitions, const Eigen::MatrixXd& Q) {
   const Eigen::MatrixXd& X = transitions.data.regressors;
   const Eigen::MatrixXd G = X.transpose() * transitions.usable.asDiagonal() * X / transitions.usable.sum();
-  const Eigen::MatrixXd Q_inverse = Q.llt().solve(Eigen::MatrixXd::Identity(Q.rows(), Q.cols()));
+  const Eigen::MatrixXd Q_inverse = definite_inverse(Q);
   Eigen::MatrixXd information = Eigen::kroneckerProduct(Q_inverse, G);
   information.diagonal().array() += least_information * information.diagonal().maxCoeff();
   return information;

@@ -7,16 +7,13 @@
 #include <numbers>
 #include <unsupported/Eigen/KroneckerProduct>
 
+#include "filter/definite_inverse.hpp"
 #include "mixture/component_merge.hpp"
 
 namespace modebank {
 namespace {
 
 constexpr int alternations = 3;  // of theta and Q in one maximisation; each raises the objective
-
-Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& positive_definite) {
-  return positive_definite.llt().solve(Eigen::MatrixXd::Identity(positive_definite.rows(), positive_definite.cols()));
-}
 
 /// log N(r_k; 0, Q) of every transition of one mode, to the power of its sample weight.
 Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eigen::VectorXd& theta,
@@ -109,7 +106,7 @@ class Maximiser {
   const ModeSums& at(Index j) const { return sums_.modes[static_cast<std::size_t>(j)]; }
 
   void set_theta(Index j) {
-    const Eigen::MatrixXd Q_inverse = inverse_of(noise(j));
+    const Eigen::MatrixXd Q_inverse = definite_inverse(noise(j));
     const Eigen::MatrixXd information = Eigen::kroneckerProduct(Q_inverse, at(j).G).eval() + prior_.information;
     const Eigen::MatrixXd pull = at(j).H * Q_inverse;
     model_.theta.col(j) = prior_.mean + information.ldlt().solve(pull.reshaped());
@@ -119,7 +116,7 @@ class Maximiser {
     Eigen::MatrixXd information = prior_.information;
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(prior_.mean.size());
     for (Index j = 0; j < model_.modes(); ++j) {
-      const Eigen::MatrixXd Q_inverse = inverse_of(noise(j));
+      const Eigen::MatrixXd Q_inverse = definite_inverse(noise(j));
       information += Eigen::kroneckerProduct(Q_inverse, at(j).G).eval();
       const Eigen::MatrixXd of_mode = at(j).H * Q_inverse;
       pull += of_mode.reshaped();
@@ -200,8 +197,8 @@ std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, co
                                                    const SwitchingRegression& model) {
   std::vector<Eigen::MatrixXd> covariances;
   for (std::size_t j = 0; j < sums.modes.size(); ++j)
-    covariances.push_back(
-        inverse_of(Eigen::kroneckerProduct(inverse_of(model.Q[j]), sums.modes[j].G).eval() + prior.information));
+    covariances.push_back(definite_inverse(
+        Eigen::kroneckerProduct(definite_inverse(model.Q[j]), sums.modes[j].G).eval() + prior.information));
   return covariances;
 }
 
@@ -215,7 +212,7 @@ double log_prior(const SwitchingPrior& prior, SharedParts shared, const Switchin
   }
   for (Index j = 0; j < noises; ++j) {
     const Eigen::MatrixXd& Q = model.Q[static_cast<std::size_t>(j)];
-    sum -= 0.5 * prior.noise_transitions * (log_determinant(Q) + (inverse_of(Q) * prior.noise).trace());
+    sum -= 0.5 * prior.noise_transitions * (log_determinant(Q) + (definite_inverse(Q) * prior.noise).trace());
   }
   if (prior.counts > 0.0)
     sum += prior.counts * (model.transition.array().log().sum() + model.initial.array().log().sum());
