@@ -1,6 +1,5 @@
 #include "filter/refine_measured.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <utility>
 

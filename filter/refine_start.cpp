@@ -1,6 +1,5 @@
 #include "filter/refine_start.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <random>
