@@ -91,6 +91,13 @@ std::string residuals_text(const Archive& archive) {
   return text;
 }
 
+/// Whether the filter of a row has several modes, which then have rows of their own.
+bool has_modes(const Archive& archive, const DiagnosticsRow& row) {
+  return std::any_of(archive.diagnostics.begin(), archive.diagnostics.end(), [&row](const DiagnosticsRow& other) {
+    return other.filter == row.filter && other.role == row.role && other.mode >= 0;
+  });
+}
+
 /// Whether each filter's stated uncertainty is true, with the numbers that say so, and what else stands out.
 std::string verdicts_text(const Archive& archive) {
   std::string text;
@@ -102,6 +109,7 @@ std::string verdicts_text(const Archive& archive) {
                         100 * row.tail_above_upper, 100 * row.tail_below, 100 * row.tail_below_lower,
                         100 * row.tail_below_upper);
     text += fmt::format("mean NIS {} [{:.3f}, {:.3f}]", fixed_or_short(row.nis_mean, 3), row.nis_lower, row.nis_upper);
+    if (has_modes(archive, row)) text += fmt::format("; mean entropy {}", fixed_or_short(row.entropy, 3));
     if (!std::isnan(row.nees_mean))
       text +=
           fmt::format("; NEES {} [{:.3f}, {:.3f}]", fixed_or_short(row.nees_mean, 3), row.nees_lower, row.nees_upper);
@@ -113,7 +121,7 @@ std::string verdicts_text(const Archive& archive) {
   return fmt::format(
       "\nUncertainty on {} runs (calibrated: both tails between {:g} and {:g} %; brackets: 95 % intervals, for NIS "
       "and\n"
-      "NEES where a true filter's mean lies)\n{}",
+      "NEES where a true filter's mean lies; entropy of the mode probabilities: 0 one mode at a time, 1 all alike)\n{}",
       words_for(role), 100 * least_tail, 100 * largest_tail, text);
 }
 

@@ -46,7 +46,8 @@ class Collector {
   Collected sums;
 
   void add(const Trajectory& run, const RunEvaluation& e) {
-    for (SeriesByRun* series : {&sums.evidence.above, &sums.evidence.below, &sums.evidence.nis, &sums.nees})
+    Evidence& evidence = sums.evidence;
+    for (SeriesByRun* series : {&evidence.above, &evidence.below, &evidence.sizes, &evidence.nis, &sums.nees})
       series->emplace_back();
     std::vector<std::vector<double>> z(static_cast<std::size_t>(e.pit.rows()));
     for (Index k = 0; k < e.log_density.size(); ++k) {
@@ -93,6 +94,7 @@ class Collector {
       ++signals;
       sums.evidence.above.back().push_back(score * score > upper_ ? 1.0 : 0.0);
       sums.evidence.below.back().push_back(score * score < lower_ ? 1.0 : 0.0);
+      sums.evidence.sizes.back().push_back(std::abs(score));
       z[static_cast<std::size_t>(i)].push_back(score);
     }
     // Of fewer signals it has fewer degrees of freedom: scaled to the same mean.
@@ -174,13 +176,18 @@ std::vector<Index> states_with_noise(const Bank& bank, Role role, const std::vec
   return states;
 }
 
+/// Of a mean of squared distances whose terms have that many degrees of freedom; `chi_square`: that is their law.
+Interval distance_interval(const SeriesByRun& series, bool chi_square, double degrees) {
+  const double excess = chi_square ? 1.0 : dispersion(series, degrees);
+  return chi_square_mean_interval(series, excess * autocorrelation_time(series), degrees);
+}
+
 void set_distances(const Collected& c, double n_y, double nees_states, DiagnosticsRow& row) {
-  const SeriesByRun& nis = c.evidence.nis;
-  row.nis_mean = mean_of(nis);
-  const Interval expected = chi_square_mean_interval(nis, autocorrelation_time(nis), n_y);
-  row.nis_lower = expected.lower;
-  row.nis_upper = expected.upper;
-  const Interval nees = chi_square_mean_interval(c.nees, autocorrelation_time(c.nees), nees_states);
+  row.nis_mean = mean_of(c.evidence.nis);
+  const Interval nis = distance_interval(c.evidence.nis, c.evidence.chi_square_nis, n_y);
+  row.nis_lower = nis.lower;
+  row.nis_upper = nis.upper;
+  const Interval nees = distance_interval(c.nees, c.evidence.chi_square_nis, nees_states);
   row.nees_mean = mean_of(c.nees);
   row.nees_lower = nees.lower;
   row.nees_upper = nees.upper;

@@ -15,7 +15,8 @@ namespace modebank {
 /// judged on the samples where it was the most probable before the measurement, so that a true filter is calibrated
 /// there, too (the transform is uniform given whatever was known before: Rosenblatt 1952; Diebold, Gunther & Tay 1998).
 /// Intervals hold with 95 %: Clopper & Pearson's (1934) for fractions; chi-square's for mean NIS and NEES, their
-/// degrees of freedom divided by the series' autocorrelation time. NaN: not known.
+/// degrees of freedom divided by the series' autocorrelation time and, for several modes or a scale learned on the way,
+/// by its dispersion (verdict.hpp). They hold for a true filter: a learned one's error comes on top. NaN: not known.
 struct DiagnosticsRow {
   std::string filter;
   Role role = Role::train;

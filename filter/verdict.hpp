@@ -1,8 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <vector>
-
+#include "filter/autocorrelation.hpp"
 #include "ident/enum_names.hpp"
 
 namespace modebank {
@@ -12,8 +10,11 @@ namespace modebank {
 /// with 95 % confidence. Too many above decides, whatever lies below: that is what hurts. Where the tails do not speak,
 /// the mean NIS does if every prediction is one Gaussian of known variance (a mixture's NIS is not chi-square, nor that
 /// of a filter that learns its noise on the way, so there it is only flagged): when it lies outside the 99 % interval
-/// of a true filter's mean and is off by more than a tenth. undecided: the interval of a tail's fraction is wider than
-/// the band and could be anything, as with a few hundred samples.
+/// of a true filter's mean and is off by more than a tenth. calibrated: both fractions lie within 1 to 4 %, and neither
+/// interval holds all of that band. undecided: all else, as with a few hundred samples.
+///
+/// Samples that follow each other closely count as fewer: of a tail's hits as few as their autocorrelation time says or
+/// that of all samples' sizes (hits are too few to show it in short runs), with a margin for its own error.
 enum class Verdict { undecided, calibrated, overconfident, underconfident };
 
 template <>
@@ -28,27 +29,24 @@ struct Interval {
   double lower, upper;
 };
 
-/// Run by run, in the order of time.
-using SeriesByRun = std::vector<std::vector<double>>;
-
-/// Autocorrelation time: variance of the mean over that of as many independent terms, at least 1 (initial positive
-/// sequence of Geyer 1992, Statistical Science 7). NaN without values.
-double autocorrelation_time(const SeriesByRun& series);
-
-/// Mean over all values; NaN without any.
-double mean_of(const SeriesByRun& series);
-
 /// Limits of the probability behind `count` successes in `samples` independent trials, Clopper & Pearson (1934), 95 %.
 /// Fractions of trials are allowed. NaN without samples.
 Interval binomial_interval(double count, double samples);
 
-/// Where the mean of a chi-square series with `degrees` degrees of freedom per term lies with probability `level`;
-/// the degrees of the sum are divided by `time`, the series' autocorrelation time.
-Interval chi_square_mean_interval(const SeriesByRun& series, double time, double degrees, double level = 0.95);
+/// Variance of the terms over that of chi-square terms with the series' mean and `degrees` degrees of freedom each: 1
+/// for a true filter whose predictions are single Gaussians, more where rare terms are large, as with modes that are
+/// seldom and far. A factor on the terms leaves it. 1 without values or variance.
+double dispersion(const SeriesByRun& series, double degrees);
+
+/// Where the mean of a series whose terms have `degrees` degrees of freedom lies with probability `level`: a chi-square
+/// law with the degrees of the sum divided by `inflation`, which is the series' autocorrelation time, times its
+/// dispersion where the terms are not chi-square (matching of moments: Satterthwaite 1946, Biometrics Bulletin 2).
+Interval chi_square_mean_interval(const SeriesByRun& series, double inflation, double degrees, double level = 0.95);
 
 /// What a verdict rests on, over the scored signals of some samples.
 struct Evidence {
   SeriesByRun above, below;     ///< 1 where a signal lies in that PIT tail, else 0
+  SeriesByRun sizes;            ///< of the same signals: rises with the distance of the PIT from 1/2
   SeriesByRun nis;              ///< per sample
   double nis_degrees = 1.0;     ///< n_y
   bool chi_square_nis = false;  ///< whether a true filter's NIS is chi-square

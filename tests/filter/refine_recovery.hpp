@@ -1,10 +1,14 @@
 #pragma once
 
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "filter/bank_coordinates.hpp"
 #include "filter/bank_frame.hpp"
 #include "filter/diagnostics.hpp"
 #include "filter/refine.hpp"
@@ -100,7 +104,7 @@ inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
   return z;
 }
 
-/// Of the learned bank on runs that it has not seen.
+/// Of a bank on runs that it has not seen.
 inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, std::uint64_t seed,
                                            Index samples = 1000) {
   std::vector<Trajectory> runs = simulated_recording(truth, 4, samples, seed + 1000).runs;
@@ -110,6 +114,46 @@ inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, 
     evaluations.push_back(evaluate_run(bank, run, {}));
   }
   return diagnose("bank", bank, {}, runs, evaluations).front();
+}
+
+/// Where the mean NEES of a learned bank should lie: about n, with the scatter of a true filter's (`row`'s interval)
+/// and what the bank's own error adds. That is g' Sigma g by the delta method, g the derivative of the logarithm of the
+/// mean NEES on the held-out runs by the bank's coordinates, Sigma these coordinates' covariance: the inverse of the
+/// training runs' information (outer products of single samples' scores: Berndt, Hall, Hall & Hausman 1974).
+struct NeesInterval {
+  double lower, upper;
+  double parameter_sd, filter_sd;  ///< of the logarithm
+};
+
+inline NeesInterval learned_nees_interval(const Bank& bank, const Bank& truth, const Recording& training,
+                                          std::uint64_t seed, const DiagnosticsRow& row) {
+  Eigen::MatrixXd units(bank.structure.parameters(), bank.mode_count());
+  for (Index j = 0; j < bank.mode_count(); ++j) units.col(j) = bank.modes[static_cast<std::size_t>(j)].standard_error;
+  const BankCoordinates around(bank, SharedParts::none, units, Eigen::VectorXd::Zero(bank.R.rows()));
+  constexpr double step = 1e-2;
+  const auto moved = [&](Index c, double by) { return around.decode(by * Eigen::VectorXd::Unit(around.size(), c)); };
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(around.size(), around.size());
+  for (const Trajectory& run : training.runs) {
+    Eigen::MatrixXd scores(run.samples(), around.size());
+    tbb::parallel_for(Index{0}, around.size(), [&](Index c) {
+      const Eigen::VectorXd difference =
+          log_densities(moved(c, step), run, {}) - log_densities(moved(c, -step), run, {});
+      scores.col(c) = difference.array().isNaN().select(0.0, difference) / (2.0 * step);
+    });
+    information += scores.transpose() * scores;
+  }
+  Eigen::VectorXd gradient(around.size());
+  tbb::parallel_for(Index{0}, around.size(), [&](Index c) {
+    gradient(c) = std::log(held_out_diagnostics(moved(c, step), truth, seed).nees_mean /
+                           held_out_diagnostics(moved(c, -step), truth, seed).nees_mean) /
+                  (2.0 * step);
+  });
+  constexpr double two_sided = 1.959964;
+  const auto states = static_cast<double>(bank.structure.states);
+  const double filter_sd = std::log(row.nees_upper / row.nees_lower) / (2.0 * two_sided);
+  const double parameter_sd = std::sqrt(gradient.dot(information.ldlt().solve(gradient)));
+  const double reach = two_sided * std::hypot(filter_sd, parameter_sd);
+  return {states * std::exp(-reach), states * std::exp(reach), parameter_sd, filter_sd};
 }
 
 }  // namespace modebank::test

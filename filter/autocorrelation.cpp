@@ -1,0 +1,104 @@
+#include "filter/autocorrelation.hpp"
+
+#include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <cmath>
+#include <utility>
+
+#include "filter/calibration.hpp"
+#include "ident/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+constexpr double tail = 0.025;
+constexpr double near_one = 0.999;    // correlations beyond: the series below would take too many terms
+constexpr double negligible = 1e-10;  // last power of the correlation
+
+/// Autocorrelations of lag 1, 2, ... as far as pairs of them (with that of lag 0) sum to more than nothing.
+std::vector<double> autocorrelations(const SeriesByRun& series) {
+  const double mean = mean_of(series);
+  std::size_t longest = 0;
+  for (const auto& x : series) longest = std::max(longest, x.size());
+  const auto autocovariance = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (const auto& x : series)
+      for (std::size_t k = lag; k < x.size(); ++k) sum += (x[k] - mean) * (x[k - lag] - mean);
+    return sum;
+  };
+  std::vector<double> result;
+  const double variance = autocovariance(0);
+  if (!(variance > 0.0)) return result;
+  for (std::size_t lag = 0; lag + 1 < longest; lag += 2) {
+    const double even = lag == 0 ? variance : autocovariance(lag), odd = autocovariance(lag + 1);
+    if (even + odd <= 0.0) break;
+    if (lag > 0) result.push_back(even / variance);
+    result.push_back(odd / variance);
+  }
+  return result;
+}
+
+double time_of(const std::vector<double>& correlations) {
+  double time = 1.0;
+  for (const double r : correlations) time += 2.0 * r;
+  return std::max(1.0, time);
+}
+
+/// Every value by the normal quantile of its rank among all.
+SeriesByRun normal_scores(SeriesByRun series) {
+  std::vector<double*> order;
+  for (auto& x : series)
+    for (double& value : x) order.push_back(&value);
+  std::stable_sort(order.begin(), order.end(), [](const double* a, const double* b) { return *a < *b; });
+  const auto count = static_cast<double>(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) *order[i] = normal_score((static_cast<double>(i) + 0.5) / count);
+  return series;
+}
+
+/// Of the indicators that two standard normal variables of correlation r lie beyond the `tail` quantile: sum over j of
+/// r^j / j He_{j-1}(q)^2 / (j-1)! times phi(q)^2 / (tail (1 - tail)).
+double tail_correlation(double r) {
+  r = std::clamp(r, -near_one, near_one);
+  const double q = normal_score(1.0 - tail);
+  const double density = std::exp(-0.5 * q * q) / boost::math::constants::root_two_pi<double>();
+  double before = 0.0, hermite = 1.0, power = r, sum = 0.0;  // of order j - 1, over the root of (j-1)!
+  for (double j = 1.0; std::abs(power) > negligible; ++j, power *= r) {
+    sum += power * hermite * hermite / j;
+    before = std::exchange(hermite, (q * hermite - std::sqrt(j - 1.0) * before) / std::sqrt(j));
+  }
+  return sum * density * density / (tail * (1.0 - tail));
+}
+
+}  // namespace
+
+double sample_count(const SeriesByRun& series) {
+  double count = 0.0;
+  for (const auto& x : series) count += static_cast<double>(x.size());
+  return count;
+}
+
+double mean_of(const SeriesByRun& series) {
+  double sum = 0.0;
+  for (const auto& x : series)
+    for (const double value : x) sum += value;
+  const double count = sample_count(series);
+  return count > 0.0 ? sum / count : not_a_number;
+}
+
+double autocorrelation_time(const SeriesByRun& series) {
+  return std::isnan(mean_of(series)) ? not_a_number : time_of(autocorrelations(series));
+}
+
+double autocorrelation_time_of_tail(const SeriesByRun& series) {
+  if (sample_count(series) == 0.0) return not_a_number;
+  std::vector<double> correlations = autocorrelations(normal_scores(series));
+  for (double& r : correlations) r = tail_correlation(r);
+  return time_of(correlations);
+}
+
+double cautious_time(double time, double samples) {
+  return 1.0 + (time - 1.0) * (1.0 + std::sqrt((8.0 * time + 2.0) / samples));
+}
+
+}  // namespace modebank
