@@ -22,39 +22,6 @@ HWY_INLINE V of_bank(const double* p, std::size_t i) {
     return load(p + i * hn::Lanes(D()));
 }
 
-/// Modes j .. j + J of every lane: where they start from, and with what probability (zero: impossible).
-template <std::size_t J>
-struct Mixed {
-  V c[J], x[J], P[J];
-};
-
-/// For lanes where the sums about the center do not do: impossible modes stay where they are; of modes that differ by
-/// so much that the sums cancel, means by themselves and variances about them.
-template <bool Shared, std::size_t J>
-HWY_NOINLINE void mix_apart(const RunLanes& p, std::size_t j, M sound, Mixed<J>& m) {
-  const std::size_t L = hn::Lanes(D()), K = p.modes;
-  for (std::size_t b = 0; b < J; ++b) {
-    const M possible = hn::Ge(m.c[b], splat(impossible_probability));
-    const V inverse = reciprocal(hn::IfThenElse(possible, m.c[b], splat(1.0)));
-    V x = zero(), P = zero();
-    for (std::size_t i = 0; i < K; ++i) {
-      const V w = hn::Mul(of_bank<Shared>(p.transition, i * K + j + b), load(p.probability + i * L));
-      x = hn::MulAdd(w, load(p.mean + i * L), x);
-    }
-    x = hn::Mul(x, inverse);
-    for (std::size_t i = 0; i < K; ++i) {
-      const V w = hn::Mul(of_bank<Shared>(p.transition, i * K + j + b), load(p.probability + i * L));
-      const V d = hn::Sub(load(p.mean + i * L), x);
-      P = hn::MulAdd(w, hn::MulAdd(d, d, load(p.variance + i * L)), P);
-    }
-    x = hn::IfThenElse(possible, x, load(p.mean + (j + b) * L));
-    P = hn::IfThenElse(possible, hn::Mul(P, inverse), load(p.variance + (j + b) * L));
-    m.c[b] = hn::IfThenElseZero(possible, m.c[b]);
-    m.x[b] = hn::IfThenElse(sound, m.x[b], x);
-    m.P[b] = hn::IfThenElse(sound, m.P[b], P);
-  }
-}
-
 /// 1 / c of several by one reciprocal. Returns their product, below which none of them (at most one) lies.
 template <std::size_t J>
 HWY_INLINE V reciprocals(const V (&c)[J], V (&inverse)[J]) {
@@ -192,37 +159,60 @@ class LaneFilter {
   template <bool Shared, std::size_t J>
   HWY_NOINLINE void mix(std::size_t j) {
     const std::size_t L = hn::Lanes(D()), K = p.modes;
-    Mixed<J> m;
-    for (std::size_t b = 0; b < J; ++b) m.c[b] = m.x[b] = m.P[b] = zero();
+    V c[J], x[J], P[J];
+    for (std::size_t b = 0; b < J; ++b) c[b] = x[b] = P[b] = zero();
     for (std::size_t i = 0; i < K; ++i) {
       const V mu = load(p.probability + i * L), d = load(first + i * L), square = load(second + i * L);
       for (std::size_t b = 0; b < J; ++b) {
         const V T = of_bank<Shared>(p.transition, i * K + j + b);
-        m.c[b] = hn::MulAdd(T, mu, m.c[b]);
-        m.x[b] = hn::MulAdd(T, d, m.x[b]);
-        m.P[b] = hn::MulAdd(T, square, m.P[b]);
+        c[b] = hn::MulAdd(T, mu, c[b]);
+        x[b] = hn::MulAdd(T, d, x[b]);
+        P[b] = hn::MulAdd(T, square, P[b]);
       }
     }
     V inverse[J], surplus = splat(far);
-    const V product = reciprocals(m.c, inverse);
+    const V product = reciprocals(c, inverse);
     for (std::size_t b = 0; b < J; ++b) {
-      const V shift = hn::Mul(m.x[b], inverse[b]), square = hn::Mul(m.P[b], inverse[b]);
-      m.x[b] = hn::Add(center, shift);
-      m.P[b] = hn::NegMulAdd(shift, shift, square);
-      surplus = hn::Min(surplus, hn::Sub(m.P[b], least_sound(square, center)));
+      const V shift = hn::Mul(x[b], inverse[b]), square = hn::Mul(P[b], inverse[b]);
+      x[b] = hn::Add(center, shift);
+      P[b] = hn::NegMulAdd(shift, shift, square);
+      surplus = hn::Min(surplus, hn::Sub(P[b], least_sound(square, center)));
+    }
+    for (std::size_t b = 0; b < J; ++b) {
+      store(c[b], prior + (j + b) * L);
+      store(x[b], next + (j + b) * L);
+      store(P[b], next + (K + j + b) * L);
     }
     // Not true where one is no number.
     const M sound = hn::And(hn::Ge(product, splat(impossible_probability)), hn::Ge(surplus, zero()));
-    if (HWY_UNLIKELY(!hn::AllTrue(D(), sound))) {
-      Mixed<J> apart = m;  // a copy, so that m itself can stay in registers
-      mix_apart<Shared>(p, j, sound, apart);
-      m = apart;
+    if (HWY_UNLIKELY(!hn::AllTrue(D(), sound)))
+      for (std::size_t b = 0; b < J; ++b) mix_apart<Shared>(j + b, sound);
+  }
+
+  /// For lanes where the sums about the center do not do: an impossible mode stays where it is, of modes that differ by
+  /// so much that the sums cancel the mean by itself and the variance about that.
+  template <bool Shared>
+  HWY_NOINLINE void mix_apart(std::size_t j, M sound) {
+    const std::size_t L = hn::Lanes(D()), K = p.modes;
+    double *const c = prior + j * L, *const mean = next + j * L, *const variance = next + (K + j) * L;
+    const M possible = hn::Ge(load(c), splat(impossible_probability));
+    const V inverse = reciprocal(hn::IfThenElse(possible, load(c), splat(1.0)));
+    V x = zero(), P = zero();
+    for (std::size_t i = 0; i < K; ++i) {
+      const V w = hn::Mul(of_bank<Shared>(p.transition, i * K + j), load(p.probability + i * L));
+      x = hn::MulAdd(w, load(p.mean + i * L), x);
     }
-    for (std::size_t b = 0; b < J; ++b) {
-      store(m.c[b], prior + (j + b) * L);
-      store(m.x[b], next + (j + b) * L);
-      store(m.P[b], next + (K + j + b) * L);
+    x = hn::Mul(x, inverse);
+    for (std::size_t i = 0; i < K; ++i) {
+      const V w = hn::Mul(of_bank<Shared>(p.transition, i * K + j), load(p.probability + i * L));
+      const V d = hn::Sub(load(p.mean + i * L), x);
+      P = hn::MulAdd(w, hn::MulAdd(d, d, load(p.variance + i * L)), P);
     }
+    x = hn::IfThenElse(possible, x, load(p.mean + j * L));
+    P = hn::IfThenElse(possible, hn::Mul(P, inverse), load(p.variance + j * L));
+    store(hn::IfThenElseZero(possible, load(c)), c);
+    store(hn::IfThenElse(sound, load(mean), x), mean);
+    store(hn::IfThenElse(sound, load(variance), P), variance);
   }
 
   /// Steps all modes from there: leaves distance and 1 / sqrt(S) of each in the workspace and the estimates in `next`.
