@@ -94,7 +94,7 @@ std::vector<double> log_likelihoods(const std::vector<const Bank*>& banks, const
                                     const FilterOptions& options) {
   if (banks.size() != runs.size()) throw std::invalid_argument("as many banks as runs are needed");
   std::vector<double> result(runs.size());
-  std::vector<std::size_t> in_lanes;
+  std::vector<std::size_t> in_lanes, bank_of;
   std::vector<scalar_imm::Parameters> parameters;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     check_run(*banks[i], *runs[i]);
@@ -105,13 +105,14 @@ std::vector<double> log_likelihoods(const std::vector<const Bank*>& banks, const
       result[i] = log_likelihood(*banks[i], *runs[i], options);
       continue;
     }
+    if (in_lanes.empty() || banks[i] != banks[in_lanes.back()]) parameters.emplace_back(*banks[i]);
     in_lanes.push_back(i);
-    parameters.emplace_back(*banks[i]);
+    bank_of.push_back(parameters.size() - 1);
   }
   std::vector<scalar_imm::Job> jobs;
   for (std::size_t j = 0; j < in_lanes.size(); ++j) {
     const Trajectory& run = *runs[in_lanes[j]];
-    jobs.push_back({&parameters[j], {run.state.data(), run.input.data(), run.samples()}});
+    jobs.push_back({&parameters[bank_of[j]], {run.state.data(), run.input.data(), run.samples()}});
   }
   const std::vector<double> values = scalar_imm::log_likelihoods(jobs);
   for (std::size_t j = 0; j < in_lanes.size(); ++j) result[in_lanes[j]] = values[j];

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 
 #include "filter/imm.hpp"
 #include "filter/measurement.hpp"
@@ -36,39 +38,136 @@ double general_log_likelihood(const Parameters& bank, const Samples& samples) {
   return log_likelihoods({{&bank, samples}}).front();
 }
 
-/// Up to a register of jobs.
-void run_group(const Job* jobs, std::size_t count, std::size_t L, double* out) {
-  const std::size_t K = size(jobs->bank->modes), m = size(jobs->bank->inputs);
-  std::size_t longest = 0;
-  for (std::size_t l = 0; l < count; ++l) longest = std::max(longest, size(jobs[l].samples.count));
-  Lanes C(L), R(L), F(K * L), c(K * L), Q(K * L), B(m * K * L), T(K * K * L), y(longest * L), v(longest * m * L);
-  Lanes moments(2 * K * L), next(2 * K * L), probability(K * L), workspace(5 * K * L), result(L);
-  double *mean = moments.data(), *variance = mean + K * L;
-  std::fill_n(y.data(), longest * L, std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t l = 0; l < L; ++l) {
-    const Job& job = jobs[std::min(l, count - 1)];  // spare lanes repeat the last
-    const Parameters& p = *job.bank;
-    C[l] = p.C;
-    R[l] = p.R;
-    for (std::size_t j = 0; j < K; ++j) {
-      const auto mode = static_cast<Index>(j);
-      F[j * L + l] = p.F(mode);
-      c[j * L + l] = p.c(mode);
-      Q[j * L + l] = p.Q(mode);
-      for (std::size_t i = 0; i < m; ++i) B[(i * K + j) * L + l] = p.B(mode, static_cast<Index>(i));
-      for (std::size_t i = 0; i < K; ++i) T[(i * K + j) * L + l] = p.transition(static_cast<Index>(i), mode);
-      mean[j * L + l] = p.start_gain * job.samples.measurement[0];
-      variance[j * L + l] = p.start_variance;
-      probability[j * L + l] = p.probability(mode);
-    }
-    const std::size_t samples = size(job.samples.count);
-    for (std::size_t k = 0; k < samples; ++k) y[k * L + l] = job.samples.measurement[k];
-    for (std::size_t k = 0; k + 1 < samples; ++k)
-      for (std::size_t i = 0; i < m; ++i) v[(k * m + i) * L + l] = job.samples.inputs[k * m + i];
+/// Samples go to the kernel in pieces that stay in the nearest cache.
+constexpr std::size_t piece = 64;
+
+/// The runs of one register and their banks, laid out for the kernel. Spare lanes repeat the last run.
+class RunRegister {
+ public:
+  RunRegister(std::vector<const Job*> jobs, std::size_t L)
+      : jobs_(std::move(jobs)),
+        L_(L),
+        K_(size(jobs_.front()->bank->modes)),
+        m_(size(jobs_.front()->bank->inputs)),
+        shared_(
+            std::all_of(jobs_.begin(), jobs_.end(), [&](const Job* job) { return job->bank == jobs_.front()->bank; })),
+        width_(shared_ ? 1 : L),
+        C_(width_),
+        R_(width_),
+        F_(K_ * width_),
+        c_(K_ * width_),
+        Q_(K_ * width_),
+        B_(m_ * K_ * width_),
+        T_(K_ * K_ * width_),
+        y_(piece * L),
+        v_(piece * m_ * L),
+        moments_(2 * K_ * L),
+        next_(2 * K_ * L),
+        probability_(K_ * L),
+        workspace_(5 * K_ * L),
+        result_(L) {
+    jobs_.resize(L, jobs_.back());
+    for (std::size_t l = 0; l < width_; ++l) put_bank(*jobs_[l]->bank, l);
+    for (std::size_t l = 0; l < L; ++l) start(*jobs_[l], l);
   }
-  run_lanes({K, m, longest, C.data(), R.data(), F.data(), c.data(), Q.data(), B.data(), T.data(), y.data(), v.data(),
-             mean, variance, probability.data(), next.data(), workspace.data(), result.data()});
-  std::copy_n(result.data(), count, out);
+
+  void run() {
+    std::size_t longest = 0;
+    for (const Job* job : jobs_) longest = std::max(longest, size(job->samples.count) - 1);
+    double* mean = moments_.data();
+    RunLanes lanes{shared_,
+                   K_,
+                   m_,
+                   0,
+                   C_.data(),
+                   R_.data(),
+                   F_.data(),
+                   c_.data(),
+                   Q_.data(),
+                   B_.data(),
+                   T_.data(),
+                   y_.data(),
+                   v_.data(),
+                   mean,
+                   mean + K_ * L_,
+                   probability_.data(),
+                   next_.data(),
+                   workspace_.data(),
+                   result_.data()};
+    for (std::size_t first = 0; first < longest; first += piece) {
+      lanes.count = std::min(piece, longest - first);
+      for (std::size_t l = 0; l < L_; ++l) put_samples(jobs_[l]->samples, first, lanes.count, l);
+      run_lanes(lanes);
+    }
+  }
+
+  /// Job i of the list that begins at `first` has its log likelihood at `to` + i.
+  void tell(const Job* first, double* to) {
+    for (std::size_t l = 0; l < L_; ++l) to[jobs_[l] - first] = result_[l];
+  }
+
+ private:
+  std::vector<const Job*> jobs_;
+  std::size_t L_, K_, m_;
+  bool shared_;
+  std::size_t width_;
+  Lanes C_, R_, F_, c_, Q_, B_, T_, y_, v_, moments_, next_, probability_, workspace_, result_;
+
+  void put_bank(const Parameters& p, std::size_t l) {
+    C_[l] = p.C;
+    R_[l] = p.R;
+    for (std::size_t j = 0; j < K_; ++j) {
+      const auto mode = static_cast<Index>(j);
+      F_[j * width_ + l] = p.F(mode);
+      c_[j * width_ + l] = p.c(mode);
+      Q_[j * width_ + l] = p.Q(mode);
+      for (std::size_t i = 0; i < m_; ++i) B_[(i * K_ + j) * width_ + l] = p.B(mode, static_cast<Index>(i));
+      for (std::size_t i = 0; i < K_; ++i) T_[(i * K_ + j) * width_ + l] = p.transition(static_cast<Index>(i), mode);
+    }
+  }
+
+  void start(const Job& job, std::size_t l) {
+    for (std::size_t j = 0; j < K_; ++j) {
+      moments_[j * L_ + l] = job.bank->start_gain * job.samples.measurement[0];
+      moments_[(K_ + j) * L_ + l] = job.bank->start_variance;
+      probability_[j * L_ + l] = job.bank->probability(static_cast<Index>(j));
+    }
+  }
+
+  void put_samples(const Samples& samples, std::size_t first, std::size_t count, std::size_t l) {
+    const std::size_t all = size(samples.count) - 1, there = std::min(count, all - std::min(all, first));
+    const double* measurement = samples.measurement + first + 1;
+    const double* inputs = samples.inputs + first * m_;
+    double *y = y_.data() + l, *v = v_.data() + l;
+    for (std::size_t k = 0; k < there; ++k) y[k * L_] = measurement[k];
+    for (std::size_t k = there; k < count; ++k) y[k * L_] = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t i = 0; i < there * m_; ++i) v[i * L_] = inputs[i];
+  }
+};
+
+/// One job per lane: first registers of one bank, then what is left of each. Long runs come first, so that few lanes
+/// wait for others to end.
+std::vector<std::vector<const Job*>> by_registers(const std::vector<Job>& jobs, std::size_t L) {
+  std::vector<const Job*> order;
+  for (const Job& job : jobs) order.push_back(&job);
+  std::stable_sort(order.begin(), order.end(), [](const Job* a, const Job* b) {
+    return a->bank != b->bank ? std::less<>()(a->bank, b->bank) : a->samples.count > b->samples.count;
+  });
+  std::vector<std::vector<const Job*>> registers;
+  std::vector<const Job*> rest;
+  const auto width = static_cast<std::ptrdiff_t>(L);
+  for (auto first = order.begin(); first != order.end();) {
+    const auto last = std::find_if(first, order.end(), [&](const Job* job) { return job->bank != (*first)->bank; });
+    for (; last - first >= width; first += width) registers.emplace_back(first, first + width);
+    rest.insert(rest.end(), first, last);
+    first = last;
+  }
+  for (auto first = rest.begin(); first != rest.end();) {
+    const auto last = first + std::min(width, rest.end() - first);
+    registers.emplace_back(first, last);
+    first = last;
+  }
+  return registers;
 }
 
 }  // namespace
@@ -137,9 +236,11 @@ double log_likelihood(const Parameters& bank, const Samples& samples) {
 
 std::vector<double> log_likelihoods(const std::vector<Job>& jobs) {
   std::vector<double> result(jobs.size());
-  const std::size_t L = lane_count();
-  for (std::size_t first = 0; first < jobs.size(); first += L)
-    run_group(jobs.data() + first, std::min(L, jobs.size() - first), L, result.data() + first);
+  for (std::vector<const Job*>& group : by_registers(jobs, lane_count())) {
+    RunRegister runs(std::move(group), lane_count());
+    runs.run();
+    runs.tell(jobs.data(), result.data());
+  }
   return result;
 }
 

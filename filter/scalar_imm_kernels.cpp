@@ -18,6 +18,7 @@ double one_run_5(const ModeLanes& p) { return one_run<5>(p); }
 double one_run_6(const ModeLanes& p) { return one_run<6>(p); }
 double one_run_7(const ModeLanes& p) { return one_run<7>(p); }
 std::size_t lanes_here() { return hn::Lanes(D()); }
+void many(const RunLanes& p) { p.shared_bank ? many_runs<true>(p) : many_runs<false>(p); }
 
 }  // namespace modebank::scalar_imm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -32,7 +33,7 @@ HWY_EXPORT(one_run_4);
 HWY_EXPORT(one_run_5);
 HWY_EXPORT(one_run_6);
 HWY_EXPORT(one_run_7);
-HWY_EXPORT(many_runs);
+HWY_EXPORT(many);
 HWY_EXPORT(lanes_here);
 
 std::size_t lane_count() { return HWY_DYNAMIC_DISPATCH(lanes_here)(); }
@@ -58,7 +59,7 @@ ModeKernel mode_kernel(std::size_t modes) {
   }
 }
 
-void run_lanes(const RunLanes& lanes) { HWY_DYNAMIC_DISPATCH(many_runs)(lanes); }
+void run_lanes(const RunLanes& lanes) { HWY_DYNAMIC_DISPATCH(many)(lanes); }
 
 }  // namespace modebank::scalar_imm
 #endif

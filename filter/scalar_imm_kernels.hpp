@@ -21,19 +21,20 @@ using ModeKernel = double (*)(const ModeLanes&);
 /// Null where the bank needs more registers than there are.
 ModeKernel mode_kernel(std::size_t modes);
 
-/// A run with its bank per lane.
+/// A run per lane, as many as a register has.
 struct RunLanes {
-  std::size_t modes, inputs, count;       ///< count: samples of the longest run
-  const double *C, *R;                    ///< lanes
-  const double *F, *c, *Q;                ///< modes x lanes
-  const double* B;                        ///< inputs x modes x lanes
-  const double* transition;               ///< modes x modes x lanes, first index: from
+  bool shared_bank;                       ///< one bank for all, whose numbers stand once; else one per lane
+  std::size_t modes, inputs, count;       ///< count: transitions
+  const double *C, *R;                    ///< 1
+  const double *F, *c, *Q;                ///< modes
+  const double* B;                        ///< inputs x modes
+  const double* transition;               ///< modes x modes, first index: from
   const double* measurement;              ///< count x lanes; NaN after a run's end
-  const double* v;                        ///< (count - 1) x inputs x lanes
+  const double* v;                        ///< count x inputs x lanes
   double *mean, *variance, *probability;  ///< modes x lanes: the start, overwritten; variance follows mean
   double* next;                           ///< 2 x modes x lanes: workspace, means and variances in turn with those
   double* workspace;                      ///< 5 x modes x lanes
-  double* log_likelihood;                 ///< lanes
+  double* log_likelihood;                 ///< lanes: added to
 };
 void run_lanes(const RunLanes& lanes);
 std::size_t lane_count();

@@ -6,7 +6,6 @@
 #define MODEBANK_SCALAR_IMM_MANY_INL
 #endif
 
-#include <array>
 #include <utility>
 
 #include "filter/scalar_imm_step-inl.hpp"
@@ -14,179 +13,259 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::scalar_imm::HWY_NAMESPACE {
 
-/// Sample k of many runs, as their modes share it.
+/// A number of the bank: one for all lanes, or one per lane.
+template <bool Shared>
+HWY_INLINE V of_bank(const double* p, std::size_t i) {
+  if constexpr (Shared)
+    return splat(p[i]);
+  else
+    return load(p + i * hn::Lanes(D()));
+}
+
+/// 1 / c of several by one reciprocal. Returns their product, below which none of them (at most one) lies.
+template <std::size_t J>
+HWY_INLINE V reciprocals(const V (&c)[J], V (&inverse)[J]) {
+  V product[J];
+  product[0] = c[0];
+  for (std::size_t b = 1; b < J; ++b) product[b] = hn::Mul(product[b - 1], c[b]);
+  V of_product = reciprocal(product[J - 1]);
+  for (std::size_t b = J - 1; b > 0; --b) {
+    inverse[b] = hn::Mul(of_product, product[b - 1]);
+    of_product = hn::Mul(of_product, c[b]);
+  }
+  inverse[0] = of_product;
+  return product[J - 1];
+}
+
+/// Sample k of the runs of one register. Where nothing is measured, as if it were a signal that is always zero, of
+/// variance one, unrelated to anything.
 struct LaneSample {
-  V C, R, y;
   M measured;
+  V C, R, y;
   const double* v;
-  V center;  ///< mean of all modes
+
+  template <bool Shared>
+  static HWY_INLINE LaneSample at(const RunLanes& p, std::size_t k) {
+    const std::size_t L = hn::Lanes(D());
+    const V y_or_nan = load(p.measurement + k * L);
+    const M measured = hn::Lt(hn::Abs(y_or_nan), splat(largest_measurement));
+    return {measured, hn::IfThenElseZero(measured, of_bank<Shared>(p.C, 0)),
+            hn::IfThenElse(measured, of_bank<Shared>(p.R, 0), splat(1.0)), hn::IfThenElseZero(measured, y_or_nan),
+            p.v + k * p.inputs * L};
+  }
 };
 
-/// The workspace, modes x lanes each.
-struct LaneRows {
-  double *prior, *nis, *root;  ///< before the measurement: probability; the innovation's distance and 1 / sqrt(S)
-  double *first, *second;      ///< mu d and mu (P + d^2), d about the center: what the mixtures are sums of
+/// The log of a product of many factors per lane, taken now and then.
+class LaneProduct {
+ public:
+  HWY_INLINE LaneProduct() : product_(splat(1.0)), sum_(zero()) {}
+  HWY_INLINE void multiply(V factor) {
+    product_ = hn::Mul(product_, factor);
+    const M within = hn::And(hn::Gt(product_, splat(1e-100)), hn::Lt(product_, splat(1e100)));
+    if (HWY_UNLIKELY(!hn::AllTrue(D(), within))) {
+      sum_ = log();
+      product_ = splat(1.0);
+    }
+  }
+  HWY_INLINE void add(V value) { sum_ = hn::Add(sum_, value); }
+  HWY_INLINE V log() const { return hn::Add(sum_, hn::Log(D(), product_)); }
 
-  HWY_INLINE explicit LaneRows(const RunLanes& p) {
-    const std::size_t rows = p.modes * hn::Lanes(D());
-    prior = p.workspace;
+ private:
+  V product_, sum_;
+};
+
+/// The runs of one register on their way. Means and variances are in `p.mean` and `next` in turn.
+class LaneFilter {
+ public:
+  HWY_INLINE explicit LaneFilter(const RunLanes& start)
+      : start_(start), p(start), next(start.next), prior(start.workspace) {
+    const std::size_t L = hn::Lanes(D()), rows = p.modes * L;
     nis = prior + rows;
     root = nis + rows;
     first = root + rows;
     second = first + rows;
-  }
-};
-
-/// Modes j .. j + J of every lane: where they start from.
-template <std::size_t J>
-struct Mixed {
-  V c[J], x[J], P[J];
-};
-
-/// Means by themselves and variances about them, for modes that differ by so much that moments about the center cancel.
-template <std::size_t J>
-HWY_NOINLINE void mix_apart(const RunLanes& p, std::size_t j, const std::array<V, J>& inverse, Mixed<J>& m) {
-  const std::size_t L = hn::Lanes(D()), K = p.modes;
-  for (std::size_t b = 0; b < J; ++b) {
-    m.x[b] = m.P[b] = zero();
-    for (std::size_t i = 0; i < K; ++i) {
-      const V w = hn::Mul(load(p.transition + (i * K + j + b) * L), load(p.probability + i * L));
-      m.x[b] = hn::MulAdd(w, load(p.mean + i * L), m.x[b]);
-    }
-    m.x[b] = hn::Mul(m.x[b], inverse[b]);
-    for (std::size_t i = 0; i < K; ++i) {
-      const V w = hn::Mul(load(p.transition + (i * K + j + b) * L), load(p.probability + i * L));
-      const V d = hn::Sub(load(p.mean + i * L), m.x[b]);
-      m.P[b] = hn::MulAdd(w, hn::MulAdd(d, d, load(p.variance + i * L)), m.P[b]);
-    }
-    m.P[b] = hn::Mul(m.P[b], inverse[b]);
-  }
-}
-
-/// The mixtures of all modes that lead to modes j .. j + J, which share what is loaded of the modes they come from.
-template <std::size_t J>
-HWY_INLINE Mixed<J> mix(const RunLanes& p, const LaneRows& rows, V center, std::size_t j) {
-  const std::size_t L = hn::Lanes(D()), K = p.modes;
-  Mixed<J> m;
-  for (std::size_t b = 0; b < J; ++b) m.c[b] = m.x[b] = m.P[b] = zero();
-  for (std::size_t i = 0; i < K; ++i) {
-    const V mu = load(p.probability + i * L), first = load(rows.first + i * L), second = load(rows.second + i * L);
-    for (std::size_t b = 0; b < J; ++b) {
-      const V T = load(p.transition + (i * K + j + b) * L);
-      m.c[b] = hn::MulAdd(T, mu, m.c[b]);
-      m.x[b] = hn::MulAdd(T, first, m.x[b]);
-      m.P[b] = hn::MulAdd(T, second, m.P[b]);
-    }
-  }
-  M possible[J], cancelled = hn::Lt(zero(), zero());
-  std::array<V, J> inverse;
-  for (std::size_t b = 0; b < J; ++b) {
-    possible[b] = hn::Ge(m.c[b], splat(impossible_probability));
-    inverse[b] = reciprocal(hn::IfThenElse(possible[b], m.c[b], splat(1.0)));
-    const V shift = hn::Mul(m.x[b], inverse[b]), square = hn::Mul(m.P[b], inverse[b]);
-    m.x[b] = hn::Add(center, shift);
-    m.P[b] = hn::NegMulAdd(shift, shift, square);
-    cancelled = hn::Or(cancelled, hn::And(possible[b], hn::Lt(m.P[b], least_sound(square, center))));
-  }
-  if (HWY_UNLIKELY(!hn::AllFalse(D(), cancelled))) {
-    Mixed<J> apart = m;  // a copy, so that m itself can stay in registers
-    const std::array<V, J> weights = inverse;
-    mix_apart(p, j, weights, apart);
-    m = apart;
-  }
-  for (std::size_t b = 0; b < J; ++b) {
-    m.x[b] = hn::IfThenElse(possible[b], m.x[b], load(p.mean + (j + b) * L));
-    m.P[b] = hn::IfThenElse(possible[b], m.P[b], load(p.variance + (j + b) * L));
-  }
-  return m;
-}
-
-/// Steps modes j .. j + J of every lane. Leaves prior, distance and 1 / sqrt(S) of each in the workspace and the
-/// estimates in `next`; lowers `least` to the smallest distance.
-template <std::size_t J>
-HWY_INLINE void step_modes(const RunLanes& p, const LaneRows& rows, const LaneSample& sample, std::size_t j,
-                           double* next, V& least) {
-  const std::size_t L = hn::Lanes(D()), K = p.modes;
-  const Mixed<J> from = mix<J>(p, rows, sample.center, j);
-  for (std::size_t b = 0; b < J; ++b) {
-    const std::size_t at = (j + b) * L;
-    V offset = load(p.c + at);
-    for (std::size_t i = 0; i < p.inputs; ++i)
-      offset = hn::MulAdd(load(p.B + (i * K + j + b) * L), load(sample.v + i * L), offset);
-    const Predicted predicted(from.x[b], from.P[b], load(p.F + at), load(p.Q + at), offset);
-    const V root_inverse = reciprocal_root(predicted.innovation_variance(sample.C, sample.R));
-    const Step step(predicted, hn::Mul(root_inverse, root_inverse), sample.C, sample.y);
-    V posterior, posterior_variance;
-    step.correct(sample.C, sample.R, posterior, posterior_variance);
-    store(hn::IfThenElse(sample.measured, posterior, step.mean), next + at);
-    store(hn::IfThenElse(sample.measured, posterior_variance, step.variance), next + K * L + at);
-    const M possible = hn::Ge(from.c[b], splat(impossible_probability));
-    const V square = hn::IfThenElse(possible, step.nis(), splat(far));
-    least = hn::Min(least, square);
-    store(hn::IfThenElseZero(possible, from.c[b]), rows.prior + at);
-    store(square, rows.nis + at);
-    store(root_inverse, rows.root + at);
-  }
-}
-
-/// What the next step mixes, of the present means, variances and unnormalised probabilities; returns the center.
-HWY_INLINE V prepare_mixing(const RunLanes& p, const LaneRows& rows, V total) {
-  const std::size_t L = hn::Lanes(D()), K = p.modes;
-  const V normal = reciprocal(total);
-  V center = zero();
-  for (std::size_t j = 0; j < K; ++j) {
-    const V mu = hn::Mul(load(p.probability + j * L), normal);
-    store(mu, p.probability + j * L);
-    center = hn::MulAdd(mu, load(p.mean + j * L), center);
-  }
-  for (std::size_t j = 0; j < K; ++j) {
-    const V mu = load(p.probability + j * L), d = hn::Sub(load(p.mean + j * L), center);
-    store(hn::Mul(mu, d), rows.first + j * L);
-    store(hn::Mul(mu, hn::MulAdd(d, d, load(p.variance + j * L))), rows.second + j * L);
-  }
-  return center;
-}
-
-/// As many runs as there are lanes. Means and variances are in `p.mean` and `p.next` in turn.
-void many_runs(const RunLanes& p) {
-  const std::size_t L = hn::Lanes(D()), K = p.modes;
-  const LaneRows rows(p);
-  const Exp exp;
-  RunLanes now = p;
-  double* next = p.next;
-  V result = zero(), center = prepare_mixing(now, rows, splat(1.0));
-  for (std::size_t k = 1; k < p.count; ++k) {
-    const V y_or_nan = load(p.measurement + k * L);
-    const M measured = hn::Lt(hn::Abs(y_or_nan), splat(largest_measurement));
-    const LaneSample sample{
-        load(p.C), load(p.R), hn::IfThenElseZero(measured, y_or_nan), measured, p.v + (k - 1) * p.inputs * L, center};
-    V least = splat(far);
-    std::size_t j = 0;
-    for (; K - j >= 4 && K - j != 5; j += 4) step_modes<4>(now, rows, sample, j, next, least);
-    for (; K - j >= 3; j += 3) step_modes<3>(now, rows, sample, j, next, least);
-    if (K - j == 2) step_modes<2>(now, rows, sample, j, next, least);
-    if (K - j == 1) step_modes<1>(now, rows, sample, j, next, least);
     V sum = zero();
-    for (j = 0; j < K; ++j) {
-      const V c = load(rows.prior + j * L);
-      const V w = hn::IfThenElse(measured, weight(exp, c, load(rows.nis + j * L), least, load(rows.root + j * L)), c);
-      store(w, rows.prior + j * L);
-      sum = hn::Add(sum, w);
-    }
-    const V log_density = hn::Sub(hn::Log(D(), sum), hn::Mul(splat(0.5), hn::Add(splat(log_two_pi), least)));
-    result = hn::Add(result, hn::IfThenElseZero(measured, log_density));
-    const V scale = reciprocal(sum);
-    V total = zero();
-    for (j = 0; j < K; ++j) {
-      const V mu = hn::Max(hn::Mul(load(rows.prior + j * L), scale), splat(mode_probability_floor));
-      store(mu, p.probability + j * L);
-      total = hn::Add(total, mu);
-    }
-    std::swap(now.mean, next);
-    now.variance = now.mean + K * L;
-    center = prepare_mixing(now, rows, total);
+    for (std::size_t j = 0; j < p.modes; ++j) sum = hn::MulAdd(load(p.probability + j * L), load(p.mean + j * L), sum);
+    center = sum;
+    density.add(load(p.log_likelihood));
+    prepare_mixing(splat(1.0), center);
   }
-  store(result, p.log_likelihood);
+
+  /// Transition k. The parts are functions by themselves, so that each has all registers.
+  template <bool Shared>
+  HWY_INLINE void step(std::size_t k) {
+    for (std::size_t j = 0; j < p.modes;) {
+      const std::size_t rest = p.modes - j, block = rest % 4 == 0 ? 4 : rest < 3 ? rest : 3;
+      if (block == 4) mix<Shared, 4>(j);
+      if (block == 3) mix<Shared, 3>(j);
+      if (block == 2) mix<Shared, 2>(j);
+      if (block == 1) mix<Shared, 1>(j);
+      j += block;
+    }
+    const LaneSample sample = LaneSample::at<Shared>(p, k);
+    const V least = step_modes<Shared>(sample);
+    weigh(sample.measured, least);
+  }
+
+  /// The modes' probabilities after the measurement and what the next step mixes.
+  HWY_NOINLINE void weigh(M measured, V least) {
+    const Exp exp;
+    const std::size_t L = hn::Lanes(D()), K = p.modes;
+    double *const w = prior, *const mu = p.probability;
+    const double *const distance = nis, *const root_inverse = root, *const mean = next;
+    V sum = zero();
+    for (std::size_t j = 0; j < K; ++j) {
+      const V of_mode = weight(exp, load(w + j * L), load(distance + j * L), least, load(root_inverse + j * L));
+      store(of_mode, w + j * L);
+      sum = hn::Add(sum, of_mode);
+    }
+    const V floor = hn::Mul(sum, splat(mode_probability_floor));
+    V total = zero(), moment = zero();
+    for (std::size_t j = 0; j < K; ++j) {
+      const V floored = hn::Max(load(w + j * L), floor);
+      store(floored, mu + j * L);
+      total = hn::Add(total, floored);
+      moment = hn::MulAdd(floored, load(mean + j * L), moment);
+    }
+    std::swap(p.mean, next);
+    p.variance = p.mean + K * L;
+    const V normal = reciprocal(total);
+    center = hn::Mul(moment, normal);
+    prepare_mixing(normal, center);
+    density.multiply(hn::IfThenElse(measured, sum, splat(1.0)));
+    const V exponent = hn::MulAdd(splat(-0.5), least, splat(-0.5 * log_two_pi));
+    density.add(hn::IfThenElseZero(measured, exponent));
+  }
+
+  /// Leaves means and variances where they were at the start.
+  HWY_INLINE void finish() const {
+    store(density.log(), p.log_likelihood);
+    if (p.mean == start_.mean) return;
+    for (std::size_t i = 0; i < 2 * p.modes * hn::Lanes(D()); i += hn::Lanes(D()))
+      store(load(p.mean + i), start_.mean + i);
+  }
+
+ private:
+  const RunLanes& start_;
+  RunLanes p;
+  double* next;
+  double *prior, *nis, *root;  ///< before the measurement: probability; the innovation's distance and 1 / sqrt(S)
+  double *first, *second;      ///< mu d and mu (P + d^2), d about the center: what the mixtures are sums of
+  V center;                    ///< mean of all modes
+  LaneProduct density;
+
+  /// The mixtures of all modes that lead to modes j .. j + J, which share what is loaded of the modes they come from:
+  /// leaves their probabilities, means and variances in `prior` and `next`.
+  template <bool Shared, std::size_t J>
+  HWY_NOINLINE void mix(std::size_t j) {
+    const std::size_t L = hn::Lanes(D()), K = p.modes;
+    V c[J], x[J], P[J];
+    for (std::size_t b = 0; b < J; ++b) c[b] = x[b] = P[b] = zero();
+    for (std::size_t i = 0; i < K; ++i) {
+      const V mu = load(p.probability + i * L), d = load(first + i * L), square = load(second + i * L);
+      for (std::size_t b = 0; b < J; ++b) {
+        const V T = of_bank<Shared>(p.transition, i * K + j + b);
+        c[b] = hn::MulAdd(T, mu, c[b]);
+        x[b] = hn::MulAdd(T, d, x[b]);
+        P[b] = hn::MulAdd(T, square, P[b]);
+      }
+    }
+    V inverse[J], surplus = splat(far);
+    const V product = reciprocals(c, inverse);
+    for (std::size_t b = 0; b < J; ++b) {
+      const V shift = hn::Mul(x[b], inverse[b]), square = hn::Mul(P[b], inverse[b]);
+      x[b] = hn::Add(center, shift);
+      P[b] = hn::NegMulAdd(shift, shift, square);
+      surplus = hn::Min(surplus, hn::Sub(P[b], least_sound(square, center)));
+    }
+    for (std::size_t b = 0; b < J; ++b) {
+      store(c[b], prior + (j + b) * L);
+      store(x[b], next + (j + b) * L);
+      store(P[b], next + (K + j + b) * L);
+    }
+    // Not true where one is no number.
+    const M sound = hn::And(hn::Ge(product, splat(impossible_probability)), hn::Ge(surplus, zero()));
+    if (HWY_UNLIKELY(!hn::AllTrue(D(), sound)))
+      for (std::size_t b = 0; b < J; ++b) mix_apart<Shared>(j + b, sound);
+  }
+
+  /// For lanes where the sums about the center do not do: an impossible mode stays where it is, of modes that differ by
+  /// so much that the sums cancel the mean by itself and the variance about that.
+  template <bool Shared>
+  HWY_NOINLINE void mix_apart(std::size_t j, M sound) {
+    const std::size_t L = hn::Lanes(D()), K = p.modes;
+    double *const c = prior + j * L, *const mean = next + j * L, *const variance = next + (K + j) * L;
+    const M possible = hn::Ge(load(c), splat(impossible_probability));
+    const V inverse = reciprocal(hn::IfThenElse(possible, load(c), splat(1.0)));
+    V x = zero(), P = zero();
+    for (std::size_t i = 0; i < K; ++i) {
+      const V w = hn::Mul(of_bank<Shared>(p.transition, i * K + j), load(p.probability + i * L));
+      x = hn::MulAdd(w, load(p.mean + i * L), x);
+    }
+    x = hn::Mul(x, inverse);
+    for (std::size_t i = 0; i < K; ++i) {
+      const V w = hn::Mul(of_bank<Shared>(p.transition, i * K + j), load(p.probability + i * L));
+      const V d = hn::Sub(load(p.mean + i * L), x);
+      P = hn::MulAdd(w, hn::MulAdd(d, d, load(p.variance + i * L)), P);
+    }
+    x = hn::IfThenElse(possible, x, load(p.mean + j * L));
+    P = hn::IfThenElse(possible, hn::Mul(P, inverse), load(p.variance + j * L));
+    store(hn::IfThenElseZero(possible, load(c)), c);
+    store(hn::IfThenElse(sound, load(mean), x), mean);
+    store(hn::IfThenElse(sound, load(variance), P), variance);
+  }
+
+  /// Steps all modes from there: leaves distance and 1 / sqrt(S) of each in the workspace and the estimates in `next`.
+  /// Returns the smallest distance.
+  template <bool Shared>
+  HWY_NOINLINE V step_modes(const LaneSample& sample) {
+    // Copies, which the stores cannot change.
+    const RunLanes bank = p;
+    const LaneSample s = sample;
+    const std::size_t L = hn::Lanes(D()), K = bank.modes;
+    double *const mean = next, *const variance = next + K * L, *const to_nis = nis, *const to_root = root;
+    const double* const from = prior;
+    V least = splat(far);
+    for (std::size_t j = 0; j < K; ++j) {
+      const std::size_t at = j * L;
+      V offset = of_bank<Shared>(bank.c, j);
+      for (std::size_t i = 0; i < bank.inputs; ++i)
+        offset = hn::MulAdd(of_bank<Shared>(bank.B, i * K + j), load(s.v + i * L), offset);
+      const Predicted predicted(load(mean + at), load(variance + at), of_bank<Shared>(bank.F, j),
+                                of_bank<Shared>(bank.Q, j), offset);
+      const V root_inverse = reciprocal_root(predicted.innovation_variance(s.C, s.R));
+      const Step step(predicted, hn::Mul(root_inverse, root_inverse), s.C, s.y);
+      V posterior, posterior_variance;
+      step.correct(s.C, s.R, posterior, posterior_variance);
+      const V square = hn::IfThenElse(hn::Gt(load(from + at), zero()), step.nis(), splat(far));
+      least = hn::Min(least, square);
+      store(posterior, mean + at);
+      store(posterior_variance, variance + at);
+      store(square, to_nis + at);
+      store(root_inverse, to_root + at);
+    }
+    return least;
+  }
+
+  /// Of unnormalised probabilities.
+  HWY_INLINE void prepare_mixing(V normal, V about) {
+    const std::size_t L = hn::Lanes(D()), K = p.modes;
+    double *const probability = p.probability, *const to_first = first, *const to_second = second;
+    const double *const mean = p.mean, *const variance = p.variance;
+    for (std::size_t j = 0; j < K; ++j) {
+      const V mu = hn::Mul(load(probability + j * L), normal), d = hn::Sub(load(mean + j * L), about);
+      store(mu, probability + j * L);
+      store(hn::Mul(mu, d), to_first + j * L);
+      store(hn::Mul(mu, hn::MulAdd(d, d, load(variance + j * L))), to_second + j * L);
+    }
+  }
+};
+
+template <bool Shared>
+void many_runs(const RunLanes& p) {
+  LaneFilter filter(p);
+  for (std::size_t k = 0; k < p.count; ++k) filter.step<Shared>(k);
+  filter.finish();
 }
 
 }  // namespace modebank::scalar_imm::HWY_NAMESPACE

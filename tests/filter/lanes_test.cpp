@@ -70,6 +70,40 @@ TEST(ScalarImm, TakesManyRunsAndBanksAtOnce) {
   }
 }
 
+TEST(ScalarImm, ARunsNumberDependsNeitherOnItsCompanyNorOnWhetherTheBankIsShared) {
+  // Modes that are far apart and one that nothing leads to: the ways beside the usual one as well.
+  Bank apart = scalar_bank(5);
+  apart.modes[2].model.c.setConstant(1e3);
+  apart.transition = TransitionMatrix::sticky(5, 1.0 - 1e-9);
+  Bank unreached = scalar_bank(9);
+  Eigen::MatrixXd T = unreached.transition.matrix();
+  T.col(4).setZero();
+  unreached.transition = TransitionMatrix(T.array().colwise() / T.rowwise().sum().array());
+  for (const Bank& bank : {scalar_bank(9), scalar_bank(6), apart, unreached}) {
+    std::vector<Trajectory> runs;
+    for (Index i = 0; i < 21; ++i) {  // more than fill two registers, over the length of a piece of samples
+      runs.push_back(simulate_bank(scalar_bank(bank.mode_count()), 30 + 9 * i, 70 + static_cast<std::uint64_t>(i)));
+      runs.back().state.middleCols(1, 3).setConstant(std::nan(""));  // all are as likely as at first
+      runs.back().state(0, 8 + i) = std::nan("");
+    }
+    runs[4].state(0, 20) = 1e6;
+    const std::vector<Bank> copies(runs.size(), bank);
+    std::vector<const Bank*> shared(runs.size(), &bank), own;
+    std::vector<const Trajectory*> run_list;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      own.push_back(&copies[i]);
+      run_list.push_back(&runs[i]);
+    }
+    const std::vector<double> together = log_likelihoods(shared, run_list, {});
+    EXPECT_EQ(log_likelihoods(own, run_list, {}), together);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      EXPECT_EQ(log_likelihoods({&bank}, {&runs[i]}, {}).front(), together[i]) << "run " << i;
+      const double expected = evaluated(bank, runs[i]);
+      EXPECT_NEAR(together[i], expected, 1e-11 * std::abs(expected)) << "run " << i;
+    }
+  }
+}
+
 TEST(ScalarImm, NeverSaysNaN) {
   Bank dead = scalar_bank(3);
   dead.initial_probability << 1.0, 0.0, 0.0;
