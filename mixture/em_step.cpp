@@ -73,8 +73,7 @@ MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture,
     partial[0].noise += partial[g].noise;
     partial[0].sums += partial[g].sums;
   }
-  if (points.has_errors())
-    for (Index k = 0; k < mixture.components(); ++k) factored.to_scaled_units(k, partial[0].sums.col(k));
+  for (Index k = 0; k < mixture.components(); ++k) factored.to_plain_sums(k, partial[0].sums.col(k));
   return std::move(partial[0]);
 }
 
