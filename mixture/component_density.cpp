@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -158,9 +159,11 @@ KernelScratch::KernelScratch(const FactoredMixture& mixture) : components_(mixtu
   const Index lanes = (2 + components_ * kernels.entries) * em::most_lanes;
   const Index work = kernels.common_work + components_ * kernels.work;
   const Index work_padded = (work + em::most_lanes - 1) / em::most_lanes * em::most_lanes;
-  memory_ = AlignedBuffer((components_ + 4) * block_size + lanes + work_padded);
+  const Index densities = (components_ + 1) * block_size, others = 3 * block_size + lanes + work_padded;
+  memory_ = AlignedBuffer::unset(densities + others);
   scratch_.relative = memory_.data();
-  scratch_.sum = scratch_.relative + (components_ + 1) * block_size;
+  scratch_.sum = scratch_.relative + densities;
+  std::fill_n(scratch_.sum, others, 0.0);
   scratch_.log_density = scratch_.sum + block_size;
   noise_ = scratch_.log_density + block_size;
   scratch_.lanes = noise_ + block_size;

@@ -26,13 +26,21 @@ inline constexpr double ln_2 = 0.69314718055994530942;
 /// Exponentials below exp(-690) count as that: no denormal numbers, which are slow.
 inline constexpr double smallest_log_ratio = -690.0;
 
-/// c[0] + c[1] x + ... (Horner).
-template <std::size_t terms>
-HWY_INLINE V polynomial(const double (&c)[terms], V x) {
-  V sum = splat(c[terms - 1]);
-#pragma GCC unroll 16
-  for (std::size_t i = terms - 1; i-- > 0;) sum = hn::MulAdd(sum, x, splat(c[i]));
-  return sum;
+/// Keeps the compiler from loading a value anew at every use.
+HWY_INLINE V in_register(V value) {
+#if HWY_TARGET == HWY_AVX3
+  asm("" : "+v"(value.raw));
+#endif
+  return value;
+}
+
+/// c[0] + c[1] x + ... (Horner) of several vectors side by side, so that the processor need not wait for any.
+template <int terms, int count>
+HWY_INLINE void polynomial(const double (&c)[terms], const V (&x)[count], V (&sum)[count]) {
+  for (int v = 0; v < count; ++v) sum[v] = splat(c[terms - 1]);
+#pragma GCC unroll 8
+  for (int i = terms - 2; i >= 0; --i)
+    for (int v = 0; v < count; ++v) sum[v] = hn::MulAdd(sum[v], x[v], splat(c[i]));
 }
 
 #if HWY_TARGET == HWY_AVX3
@@ -63,31 +71,34 @@ class Exp {
   HWY_INLINE Exp()
       : low_(hn::Load(D(), sixteenth_powers)),
         high_(hn::Load(D(), sixteenth_powers + 8)),
-        smallest_(splat(smallest_log_ratio)),
-        smallest_power_(splat(smallest_log_ratio * log2_e)) {}
+        smallest_(splat(smallest_log_ratio * log2_e)) {}
 
   /// exp(x), x at most 700.
   HWY_INLINE V operator()(V x) const {
-    x = hn::Max(x, smallest_);
-    const V t = hn::Mul(x, splat(log2_e));
-    const V rest = hn::MulAdd(x, splat(log2_e_rest), hn::MulSub(x, splat(log2_e), t));
-    return power(t, hn::Add(above_sixteenth(t), rest));
+    x = hn::Max(x, splat(smallest_log_ratio));
+    V t[1] = {hn::Mul(x, splat(log2_e))}, r[1];
+    const V rest = hn::MulAdd(x, splat(log2_e_rest), hn::MulSub(x, splat(log2_e), t[0]));
+    r[0] = hn::Add(above_sixteenth(t[0]), rest);
+    power(t, r);
+    return t[0];
   }
 
-  /// 2^t, t at most 1000.
-  HWY_INLINE V power_of_two(V t) const {
-    t = hn::Max(t, smallest_power_);
-    return power(t, above_sixteenth(t));
+  /// t becomes 2^t; t at most 1000.
+  template <int count>
+  HWY_INLINE void power_of_two(V (&t)[count]) const {
+    V r[count];
+    for (int v = 0; v < count; ++v) t[v] = hn::Max(t[v], smallest_);
+    for (int v = 0; v < count; ++v) r[v] = above_sixteenth(t[v]);
+    power(t, r);
   }
 
  private:
   static HWY_INLINE V above_sixteenth(V t) { return V{_mm512_reduce_pd(t.raw, (4 << 4) | 9)}; }
 
-  HWY_INLINE V power(V t, V r) const {
+  template <int count>
+  HWY_INLINE void power(V (&t)[count], const V (&r)[count]) const {
     // Rounded down; adding it leaves the sixteenths in the low bits of the mantissa.
     const V rounder = splat(6755399441055744.0 / 16.0);
-    const __m512d sixteenths = _mm512_add_round_pd(t.raw, rounder.raw, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
-    const V fraction{_mm512_permutex2var_pd(low_.raw, _mm512_castpd_si512(sixteenths), high_.raw)};
     constexpr double c[] = {1.0,
                             0.6931471805599344,
                             0.24022650696190856,
@@ -95,11 +106,18 @@ class Exp {
                             0.009618141476090586,
                             0.0013330655301776657,
                             0.00015740592991395644};
-    const V y = hn::Mul(fraction, polynomial(c, r));
-    return V{_mm512_scalef_pd(y.raw, t.raw)};  // scalef rounds its argument down
+    V y[count], fraction[count];
+    for (int v = 0; v < count; ++v) {
+      const __m512d sixteenths = _mm512_add_round_pd(t[v].raw, rounder.raw, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+      fraction[v] = V{_mm512_permutex2var_pd(low_.raw, _mm512_castpd_si512(sixteenths), high_.raw)};
+    }
+    polynomial(c, r, y);
+    for (int v = 0; v < count; ++v) y[v] = hn::Mul(fraction[v], y[v]);
+    // scalef rounds its argument down.
+    for (int v = 0; v < count; ++v) t[v] = V{_mm512_scalef_pd(y[v].raw, t[v].raw)};
   }
 
-  V low_, high_, smallest_, smallest_power_;
+  V low_, high_, smallest_;
 };
 
 // Reciprocals of j/16, j = 12 .. 24, at j modulo 16, and the logarithms of j/16.
@@ -140,8 +158,8 @@ alignas(64) inline constexpr double logarithms_of_sixteenths[16] = {
     -0.06453852113757116,
 };
 
-/// log of x > 0, neither denormal nor beyond 1e308: x = 2^e (j/16) (1 + r), 3/4 <= j/16 <= 3/2, |r| <= 1/24, and log(1 +
-/// r) / r by a minimax polynomial of error 8e-15 (which, times r, is 3e-16).
+/// log of x > 0, neither denormal nor beyond 1e308: x = 2^e (j/16) (1 + r), 3/4 <= j/16 <= 3/2, |r| <= 1/24, and log(1
+/// + r) / r by a minimax polynomial of error 8e-15 (which, times r, is 3e-16).
 class Log {
  public:
   HWY_INLINE V operator()(V x) const {
@@ -149,16 +167,17 @@ class Log {
     const V e{_mm512_getexp_pd(hn::Mul(x, splat(4.0 / 3.0)).raw)};
     const V m{_mm512_getmant_pd(x.raw, _MM_MANT_NORM_p75_1p5, _MM_MANT_SIGN_src)};
     const __m512i j = _mm512_castpd_si512(hn::Add(m, splat(6755399441055744.0 / 16.0)).raw);
-    const V r = hn::MulSub(m, look_up(reciprocals, j), splat(1.0));
-    constexpr double c[] = {0.9999999999999921,   -0.4999999999999707, 0.3333333334791454,  -0.25000000023336966,
-                            0.19999958022065,     -0.1666661711976564, 0.14324373569912544, -0.12538666779249916};
-    return hn::MulAdd(r, polynomial(c, r), hn::MulAdd(e, splat(ln_2), look_up(logarithms_of_sixteenths, j)));
+    const V r[1] = {hn::MulSub(m, look_up(reciprocals, j), splat(1.0))};
+    V ratio[1];
+    constexpr double c[] = {0.9999999999999921, -0.4999999999999707, 0.3333333334791454,  -0.25000000023336966,
+                            0.19999958022065,   -0.1666661711976564, 0.14324373569912544, -0.12538666779249916};
+    polynomial(c, r, ratio);
+    return hn::MulAdd(r[0], ratio[0], hn::MulAdd(e, splat(ln_2), look_up(logarithms_of_sixteenths, j)));
   }
 
  private:
   static HWY_INLINE V look_up(const double (&table)[16], __m512i index) {
-    return V{
-        _mm512_permutex2var_pd(hn::Load(D(), table).raw, index, hn::Load(D(), table + 8).raw)};
+    return V{_mm512_permutex2var_pd(hn::Load(D(), table).raw, index, hn::Load(D(), table + 8).raw)};
   }
 };
 
@@ -174,9 +193,10 @@ class Exp {
     return power(t, hn::MulAdd(x, splat(log2_e_rest), hn::MulSub(x, splat(log2_e), t)));
   }
 
-  /// 2^t, t at most 1000.
-  HWY_INLINE V power_of_two(V t) const {
-    return power(hn::Max(t, splat(smallest_log_ratio * log2_e)), hn::Zero(D()));
+  /// t becomes 2^t; t at most 1000.
+  template <int count>
+  HWY_INLINE void power_of_two(V (&t)[count]) const {
+    for (int v = 0; v < count; ++v) t[v] = power(hn::Max(t[v], splat(smallest_log_ratio * log2_e)), hn::Zero(D()));
   }
 
  private:

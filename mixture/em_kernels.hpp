@@ -64,7 +64,8 @@ struct Kernels {
   Index work = 0;         ///< doubles of Scratch::work that one component needs
   Index common_work = 0;  ///< and as many more for all
   void (*evaluate)(const Components&, const Block&, const Scratch&) = nullptr;    ///< relative, sum, log_density
-  void (*accumulate)(const Components&, const Block&, const Scratch&) = nullptr;  ///< the same, and adds to `lanes`
+  void (*measure)(const Components&, const Block&, const Scratch&) = nullptr;     ///< and adds to the first two lanes
+  void (*accumulate)(const Components&, const Block&, const Scratch&) = nullptr;  ///< and to all
 };
 
 Kernels plain_kernels(int features, bool diagonal);

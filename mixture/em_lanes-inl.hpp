@@ -112,6 +112,12 @@ HWY_INLINE void begin_sums(const Components& components, const Block& block, con
   store(noise, scratch.lanes + L);
 }
 
+template <class Kernel>
+void measure(const Components& components, const Block& block, const Scratch& scratch) {
+  Kernel::evaluate(components, block, scratch);
+  begin_sums(components, block, scratch);
+}
+
 }  // namespace modebank::em::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -18,13 +18,14 @@ Kernels kernels_of(Packing packing, int features, bool diagonal) {
   kernels.entries = 1 + features + (diagonal ? features : features * (features + 1) / 2);
   kernels.common_work = Kernel::work(features);
   kernels.evaluate = Kernel::evaluate;
+  kernels.measure = measure<Kernel>;
   kernels.accumulate = Kernel::accumulate;
   return kernels;
 }
 
 Kernels plain(int features, bool diagonal) {
-#define MODEBANK_EM_SMALL(F)                                                            \
-  case F:                                                                               \
+#define MODEBANK_EM_SMALL(F)                                                          \
+  case F:                                                                             \
     return diagonal ? kernels_of<Small<F, true>>(Packing::affine, features, diagonal) \
                     : kernels_of<Small<F, false>>(Packing::affine, features, diagonal);
   switch (features) {

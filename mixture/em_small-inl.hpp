@@ -43,7 +43,7 @@ struct Ellipsoid {
   HWY_INLINE V log2_density(const double* points, V log2_density) const {
     V x[F];
     for (int i = 0; i < F; ++i) {
-      x[i] = load(points + i * block_size);
+      x[i] = in_register(load(points + i * block_size));
       if constexpr (!central) x[i] = hn::Sub(x[i], mean[i]);
     }
 #pragma GCC unroll 4
@@ -60,8 +60,12 @@ struct Small {
   static constexpr int seconds = Ellipsoid<F, diagonal>::seconds;
   static constexpr int entries = 1 + F + seconds;
   /// Central components whose sums are gathered together: as many as there are registers for.
-  static constexpr int together = L == 8 ? (entries > 12 ? 1 : 24 / entries > 4 ? 4 : 24 / entries)
-                                         : (entries > 6 ? 1 : 12 / entries > 4 ? 4 : 12 / entries);
+  static constexpr int together = L == 8 ? (entries > 12       ? 1
+                                            : 24 / entries > 4 ? 4
+                                                               : 24 / entries)
+                                         : (entries > 6        ? 1
+                                            : 12 / entries > 4 ? 4
+                                                               : 12 / entries);
 
   static Index work(int) { return entries * block_size; }
 
@@ -83,8 +87,7 @@ struct Small {
   static HWY_INLINE void log2_densities(const Ellipsoid<F, diagonal>& ellipsoid, const double* points, double constant,
                                         double* out) {
     const V c = splat(constant);
-    for (Index n = 0; n < block_size; n += L)
-      store(ellipsoid.template log2_density<central>(points + n, c), out + n);
+    for (Index n = 0; n < block_size; n += L) store(ellipsoid.template log2_density<central>(points + n, c), out + n);
   }
 
   /// Densities relative to exp(shift) and their sums.
@@ -102,7 +105,8 @@ struct Small {
       // A loop of its own: the processor holds short chains of several vectors at once, but not one long one.
       for (Index n = 0; n < block_size; n += abreast * L) {
         V density[abreast];
-        for (int v = 0; v < abreast; ++v) density[v] = exp.power_of_two(load(out + n + v * L));
+        for (int v = 0; v < abreast; ++v) density[v] = load(out + n + v * L);
+        exp.power_of_two(density);
         for (int v = 0; v < abreast; ++v) {
           double* const sum = scratch.sum + n + v * L;
           store(density[v], out + n + v * L);
@@ -171,7 +175,7 @@ struct Small {
       V density[count];
       for (int c = 0; c < count; ++c) density[c] = load(relative[c] + n);
       for (int i = 0; i < entries; ++i) {
-        const V moment = load(columns + i * block_size + n);
+        const V moment = in_register(load(columns + i * block_size + n));
         for (int c = 0; c < count; ++c) sum[c][i] = hn::MulAdd(density[c], moment, sum[c][i]);
       }
     }
