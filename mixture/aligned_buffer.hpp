@@ -7,13 +7,16 @@
 
 namespace modebank {
 
-/// Doubles aligned to 64 bytes, the widest vector; zero at first.
+/// Doubles aligned to 64 bytes, the widest vector; zero at first unless made `unset`.
 class AlignedBuffer {
  public:
   AlignedBuffer() = default;
-  explicit AlignedBuffer(std::ptrdiff_t size)
-      : data_(static_cast<double*>(::operator new(static_cast<std::size_t>(size) * sizeof(double), alignment))) {
-    std::fill_n(data_.get(), size, 0.0);
+  explicit AlignedBuffer(std::ptrdiff_t size) : AlignedBuffer(unset(size)) { std::fill_n(data_.get(), size, 0.0); }
+  static AlignedBuffer unset(std::ptrdiff_t size) {
+    AlignedBuffer result;
+    result.data_.reset(
+        static_cast<double*>(::operator new(static_cast<std::size_t>(size) * sizeof(double), alignment)));
+    return result;
   }
   double* data() { return data_.get(); }
   const double* data() const { return data_.get(); }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -45,16 +46,23 @@ void invert(const Eigen::MatrixXd& L, Eigen::MatrixXd& W) {
   }
 }
 
-void pack(const Eigen::MatrixXd& W, em::Packing packing, std::vector<double>& out) {
+/// Components of which the origin is not further away [standard deviations]: squares about it lose three digits.
+constexpr double central_distance = 32.0;
+
+/// `diagonal`: so is W.
+void pack(const Eigen::MatrixXd& W, const Eigen::VectorXd& mean, em::Packing packing, bool diagonal,
+          std::vector<double>& out) {
   constexpr Index tile = 4;
+  const double unit = std::sqrt(0.5 * std::numbers::log2e);
   const Index F = W.rows();
   switch (packing) {
     case em::Packing::diagonal:
       for (Index i = 0; i < F; ++i) out.push_back(W(i, i));
       break;
-    case em::Packing::rows:
+    case em::Packing::affine:
       for (Index i = 0; i < F; ++i)
-        for (Index j = 0; j <= i; ++j) out.push_back(W(i, j));
+        for (Index j = diagonal ? i : 0; j <= i; ++j) out.push_back(unit * W(i, j));
+      for (Index i = 0; i < F; ++i) out.push_back(-unit * W.row(i).dot(mean));
       break;
     case em::Packing::unit_rows:
       for (Index i = 0; i < F; ++i)
@@ -70,6 +78,15 @@ void pack(const Eigen::MatrixXd& W, em::Packing packing, std::vector<double>& ou
   }
 }
 
+/// Sums about the origin become those about `mean`.
+void to_sums_about(const Eigen::VectorXd& mean, bool diagonal, Eigen::Ref<Eigen::VectorXd> sums) {
+  const Index F = mean.size();
+  const Eigen::VectorXd about_origin = sums.segment(1, F);
+  sums.segment(1, F) -= sums(0) * mean;
+  for (Index i = 0, row = 1 + F; i < F; ++i)
+    for (Index j = diagonal ? i : 0; j <= i; ++j, ++row) sums(row) -= mean(i) * sums(1 + j) + mean(j) * about_origin(i);
+}
+
 }  // namespace
 
 FactoredMixture::FactoredMixture(const GaussianMixture& mixture, bool errors)
@@ -78,6 +95,7 @@ FactoredMixture::FactoredMixture(const GaussianMixture& mixture, bool errors)
       noise_(mixture.noise.present()),
       kernels_(errors ? em::error_kernels(static_cast<int>(mixture.features()), diagonal_)
                       : em::plain_kernels(static_cast<int>(mixture.features()), diagonal_)),
+      central_(new bool[static_cast<std::size_t>(mixture.components())]),
       log_constants_(mixture.components()) {
   const Index F = mixture.features();
   const double log_normal = -0.5 * static_cast<double>(F) * std::log(2.0 * std::numbers::pi);
@@ -90,7 +108,8 @@ FactoredMixture::FactoredMixture(const GaussianMixture& mixture, bool errors)
       throw std::invalid_argument(fmt::format(
           "covariance of mixture component {} of {} features is not positive definite (smallest variance {})", k, F,
           covariance.diagonal().minCoeff()));
-    pack(W, kernels_.packing, whitening_);
+    pack(W, mixture.means.col(k), kernels_.packing, diagonal_, whitening_);
+    central_[static_cast<std::size_t>(k)] = (W * mixture.means.col(k)).norm() < central_distance;
     if (errors) cholesky_.push_back(L);
     const double log_weight = mixture.weights(k) > 0.0 ? std::log(mixture.weights(k)) : log_zero;
     log_constants_(k) = log_weight + W.diagonal().array().log().sum() + log_normal;
@@ -109,10 +128,16 @@ em::Components FactoredMixture::components() const {
   result.whitening = whitening_.data();
   result.stride = stride_;
   result.log_constants = log_constants_.data();
+  result.central = central_.get();
   return result;
 }
 
-void FactoredMixture::to_scaled_units(Index component, Eigen::Ref<Eigen::VectorXd> sums) const {
+void FactoredMixture::to_plain_sums(Index component, Eigen::Ref<Eigen::VectorXd> sums) const {
+  if (kernels_.packing == em::Packing::affine) {
+    if (central_[static_cast<std::size_t>(component)]) to_sums_about(means_.col(component), diagonal_, sums);
+    return;
+  }
+  if (cholesky_.empty()) return;
   const Eigen::MatrixXd& L = cholesky_[static_cast<std::size_t>(component)];
   const Index F = L.rows();
   if (diagonal_) {
@@ -134,9 +159,11 @@ KernelScratch::KernelScratch(const FactoredMixture& mixture) : components_(mixtu
   const Index lanes = (2 + components_ * kernels.entries) * em::most_lanes;
   const Index work = kernels.common_work + components_ * kernels.work;
   const Index work_padded = (work + em::most_lanes - 1) / em::most_lanes * em::most_lanes;
-  memory_ = AlignedBuffer((components_ + 4) * block_size + lanes + work_padded);
+  const Index densities = (components_ + 1) * block_size, others = 3 * block_size + lanes + work_padded;
+  memory_ = AlignedBuffer::unset(densities + others);
   scratch_.relative = memory_.data();
-  scratch_.sum = scratch_.relative + (components_ + 1) * block_size;
+  scratch_.sum = scratch_.relative + densities;
+  std::fill_n(scratch_.sum, others, 0.0);
   scratch_.log_density = scratch_.sum + block_size;
   noise_ = scratch_.log_density + block_size;
   scratch_.lanes = noise_ + block_size;

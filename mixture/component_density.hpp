@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "mixture/aligned_buffer.hpp"
@@ -20,9 +21,9 @@ class FactoredMixture {
   const em::Kernels& kernels() const { return kernels_; }
   bool has_noise() const { return noise_; }
   double log_noise() const { return log_noise_; }  ///< log of weight times density of the noise component
-  /// Kernels with errors sum in units of W: turns a component's sums in place into those that kernels without errors
-  /// yield.
-  void to_scaled_units(Eigen::Index component, Eigen::Ref<Eigen::VectorXd> sums) const;
+  /// Kernels with errors sum in units of W, others about the origin where that does: turns a component's sums in place
+  /// into those of r, r d and r d d' (em::Kernels).
+  void to_plain_sums(Eigen::Index component, Eigen::Ref<Eigen::VectorXd> sums) const;
 
  private:
   Eigen::MatrixXd means_;
@@ -32,6 +33,7 @@ class FactoredMixture {
   em::Kernels kernels_;
   Eigen::Index stride_ = 0;
   std::vector<double> whitening_;
+  std::unique_ptr<bool[]> central_;
   std::vector<Eigen::MatrixXd> cholesky_;  ///< lower factors; with errors only
   Eigen::VectorXd log_constants_;
 };

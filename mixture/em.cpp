@@ -41,7 +41,7 @@ void check(const EmOptions& options) {
 void check(const PointSet& set) {
   if (set.features() < 1 || set.count() < 1)
     throw std::invalid_argument(fmt::format("EM needs points, given {} x {}", set.features(), set.count()));
-  if (!(set.points.array().abs() <= largest_coordinate).all())
+  if (!(set.points.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= largest_coordinate))
     throw std::invalid_argument(fmt::format("EM needs finite points of magnitude up to {}", largest_coordinate));
   check_errors(set);
   if (set.weights.size() == 0) return;
@@ -94,10 +94,11 @@ EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptio
   result.mixture = std::move(start);
   double previous = -std::numeric_limits<double>::infinity();
   while (true) {
-    const MixtureMoments moments = expect(points, result.mixture);
+    const bool last = result.iterations == options.max_iterations;
+    const MixtureMoments moments = last ? measure(points, result.mixture) : expect(points, result.mixture);
     result.log_likelihood = moments.log_likelihood;
     result.converged = result.log_likelihood - previous < options.tolerance * points.total_weight();
-    if (result.converged || result.iterations == options.max_iterations) break;
+    if (result.converged || last) break;
     previous = result.log_likelihood;
     result.floor_active = maximise(moments, options.covariance_floor, result.mixture);
     ++result.iterations;

@@ -9,14 +9,12 @@
 #define MODEBANK_EM_ERRORS_INL
 #endif
 
-#include "ident/batch_lanes-inl.hpp"
 #include "mixture/em_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::em::HWY_NAMESPACE {
 
 using batch::HWY_NAMESPACE::at;
-using batch::HWY_NAMESPACE::reciprocal;
 using batch::HWY_NAMESPACE::reciprocal_root;
 
 /// No product of four pivots beyond double precision.
@@ -61,7 +59,7 @@ struct Spread {
 /// Log determinant, or the inverse of its root, from the determinant of at most four rows.
 template <bool logarithmic>
 HWY_INLINE V part_of_determinant(V determinant) {
-  if constexpr (logarithmic) return hn::Log(D(), determinant);
+  if constexpr (logarithmic) return Log()(determinant);
   return reciprocal_root(determinant);
 }
 

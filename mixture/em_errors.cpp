@@ -19,6 +19,7 @@ Kernels error_kernels_of(Packing packing, int features) {
   kernels.common_work = Kernel::work(features);
   kernels.work = expectations(features, Kernel::diagonal) * together;
   kernels.evaluate = Errors<Kernel>::evaluate;
+  kernels.measure = measure<Errors<Kernel>>;
   kernels.accumulate = Errors<Kernel>::accumulate;
   return kernels;
 }

@@ -35,12 +35,14 @@ struct Components {
   const double* whitening = nullptr;  ///< `stride` doubles per component, in the kernel's Packing
   Index stride = 0;
   const double* log_constants = nullptr;
+  /// The origin is so near, in standard deviations, that squares about it lose little to rounding.
+  const bool* central = nullptr;
 };
 
-/// How a kernel wants W: its diagonal; its lower triangle by rows; W = D U with U of unit diagonal as the products D_i
-/// D_j of the lower triangle by rows, then D, then the rows of U left of its diagonal; or four rows at a time, column
-/// by column, padded with zeros.
-enum class Packing { diagonal, rows, unit_rows, tiles };
+/// How a kernel wants W: its diagonal; A = W sqrt(log2(e) / 2), its lower triangle by rows or its diagonal, then -A mu;
+/// W = D U with U of unit diagonal as the products D_i D_j of the lower triangle by rows, then D, then the rows of U
+/// left of its diagonal; or four rows at a time, column by column, padded with zeros.
+enum class Packing { diagonal, affine, unit_rows, tiles };
 
 /// Memory of one thread, aligned to 64 bytes.
 struct Scratch {
@@ -54,14 +56,16 @@ struct Scratch {
 /// One number of features' kernels. `entries` per component: sum of r, of r d (F), of r d d' (lower triangle by rows,
 /// or the diagonal of it), where r is the weighted responsibility and d the offset x - mu_k. With errors d is W_k times
 /// the expected offset of the point without its error, and d d' the expectation of that product less I (which leaves
-/// W_k' of the plain entries where the error is zero; see component_density.cpp).
+/// W_k' of the plain entries where the error is zero; see component_density.cpp). Kernels of Packing::affine sum x in
+/// place of d for components that are central.
 struct Kernels {
-  Packing packing = Packing::rows;
+  Packing packing = Packing::affine;
   Index entries = 0;
   Index work = 0;         ///< doubles of Scratch::work that one component needs
   Index common_work = 0;  ///< and as many more for all
   void (*evaluate)(const Components&, const Block&, const Scratch&) = nullptr;    ///< relative, sum, log_density
-  void (*accumulate)(const Components&, const Block&, const Scratch&) = nullptr;  ///< the same, and adds to `lanes`
+  void (*measure)(const Components&, const Block&, const Scratch&) = nullptr;     ///< and adds to the first two lanes
+  void (*accumulate)(const Components&, const Block&, const Scratch&) = nullptr;  ///< and to all
 };
 
 Kernels plain_kernels(int features, bool diagonal);

@@ -16,17 +16,18 @@ Kernels kernels_of(Packing packing, int features, bool diagonal) {
   Kernels kernels;
   kernels.packing = packing;
   kernels.entries = 1 + features + (diagonal ? features : features * (features + 1) / 2);
-  kernels.common_work = (padded(features) + 1 + moment_rows) * block_size;
+  kernels.common_work = Kernel::work(features);
   kernels.evaluate = Kernel::evaluate;
+  kernels.measure = measure<Kernel>;
   kernels.accumulate = Kernel::accumulate;
   return kernels;
 }
 
 Kernels plain(int features, bool diagonal) {
-#define MODEBANK_EM_SMALL(F)                                                            \
-  case F:                                                                               \
-    return diagonal ? kernels_of<Small<F, true>>(Packing::diagonal, features, diagonal) \
-                    : kernels_of<Small<F, false>>(Packing::rows, features, diagonal);
+#define MODEBANK_EM_SMALL(F)                                                          \
+  case F:                                                                             \
+    return diagonal ? kernels_of<Small<F, true>>(Packing::affine, features, diagonal) \
+                    : kernels_of<Small<F, false>>(Packing::affine, features, diagonal);
   switch (features) {
     MODEBANK_EM_SMALL(1)
     MODEBANK_EM_SMALL(2)
@@ -51,7 +52,8 @@ void exponentials(double* values, Index count) {
 }
 
 void logarithms(double* values, Index count) {
-  for (Index n = 0; n < count; n += L) store(hn::Log(D(), load(values + n)), values + n);
+  const Log log;
+  for (Index n = 0; n < count; n += L) store(log(load(values + n)), values + n);
 }
 
 }  // namespace modebank::em::HWY_NAMESPACE

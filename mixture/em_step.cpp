@@ -21,7 +21,7 @@ constexpr Index parallel_points = 20000;
 constexpr double starved_share = 1e-14;
 
 MixtureMoments expect_group(const PointBlocks& points, const FactoredMixture& mixture, const double* background,
-                            Index first, Index last) {
+                            bool with_sums, Index first, Index last) {
   const em::Components components = mixture.components();
   const em::Kernels& kernels = mixture.kernels();
   KernelScratch memory(mixture);
@@ -30,10 +30,10 @@ MixtureMoments expect_group(const PointBlocks& points, const FactoredMixture& mi
   for (Index b = first; b < last; ++b) {
     em::Block block = points.block(b, stage);
     block.noise = background ? background + b * block_size : mixture.has_noise() ? memory.noise() : nullptr;
-    kernels.accumulate(components, block, memory.scratch());
+    (with_sums ? kernels.accumulate : kernels.measure)(components, block, memory.scratch());
   }
   MixtureMoments moments;
-  moments.sums.resize(kernels.entries, components.count);
+  moments.sums.resize(with_sums ? kernels.entries : 0, components.count);
   const double* const lanes = memory.scratch().lanes;
   const Index lane_count = em::lanes();
   em::reduce_lanes(lanes, 1, &moments.log_likelihood);
@@ -54,15 +54,14 @@ void update_component(const Eigen::Ref<const Eigen::VectorXd>& sums, bool diagon
       covariance(i, j) = covariance(j, i) = sums(row) / sums(0) - offset(i) * offset(j);
 }
 
-}  // namespace
-
-MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture, const double* background) {
-  const FactoredMixture factored(mixture, points.has_errors());
+MixtureMoments pass(const PointBlocks& points, const FactoredMixture& factored, const double* background,
+                    bool with_sums) {
   const Index groups = (points.blocks() + blocks_per_group - 1) / blocks_per_group;
   std::vector<MixtureMoments> partial(groups);
   const auto group = [&](Index g) {
     const Index first = g * blocks_per_group;
-    partial[g] = expect_group(points, factored, background, first, std::min(first + blocks_per_group, points.blocks()));
+    partial[g] = expect_group(points, factored, background, with_sums, first,
+                              std::min(first + blocks_per_group, points.blocks()));
   };
   if (points.count() > parallel_points)
     tbb::parallel_for(Index(0), groups, group);
@@ -73,9 +72,20 @@ MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture,
     partial[0].noise += partial[g].noise;
     partial[0].sums += partial[g].sums;
   }
-  if (points.has_errors())
-    for (Index k = 0; k < mixture.components(); ++k) factored.to_scaled_units(k, partial[0].sums.col(k));
   return std::move(partial[0]);
+}
+
+}  // namespace
+
+MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture, const double* background) {
+  const FactoredMixture factored(mixture, points.has_errors());
+  MixtureMoments moments = pass(points, factored, background, true);
+  for (Index k = 0; k < mixture.components(); ++k) factored.to_plain_sums(k, moments.sums.col(k));
+  return moments;
+}
+
+MixtureMoments measure(const PointBlocks& points, const GaussianMixture& mixture) {
+  return pass(points, FactoredMixture(mixture, points.has_errors()), nullptr, false);
 }
 
 bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType type) {

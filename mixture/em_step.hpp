@@ -22,6 +22,9 @@ struct MixtureMoments {
 /// density of what else there is at every point, in place of the mixture's noise component.
 MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture, const double* background = nullptr);
 
+/// The same without sums of components: log-likelihood and noise, the same to the last bit.
+MixtureMoments measure(const PointBlocks& points, const GaussianMixture& mixture);
+
 /// M step in place. Covariance eigenvalues (diagonal: variances) below `floor` are raised to it, which is the exact
 /// maximiser under that constraint, so the likelihood never falls. A component that explains less than 1e-14 of the
 /// total weight keeps its mean and covariance. Returns whether the floor held any component.

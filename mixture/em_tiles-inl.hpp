@@ -139,6 +139,8 @@ HWY_INLINE void add_diagonal_moments(int F, const double* mean, const double* po
 
 template <bool diagonal>
 struct Tiles {
+  static Index work(int features) { return (padded(features) + 1 + moment_rows) * block_size; }
+
   static void evaluate(const Components& components, const Block& block, const Scratch& scratch) {
     for (int k = 0; k < components.count; ++k) {
       if constexpr (diagonal) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -14,27 +15,86 @@ namespace {
 
 constexpr double rounding_share = 1e-13;
 constexpr double smallest_scale = 1e-150;
-/// Squared standard deviations: at most 2.5 % of the points cannot dominate a standard deviation from nearer.
-constexpr double far_out = 36.0;
+/// Standard deviations: at most 2.5 % of the points cannot dominate a standard deviation from nearer.
+constexpr double far_out = 6.0;
 /// Sums of sums of this many terms lose less to rounding.
 constexpr Index chunk = 4096;
 
-/// Weighted sums over points of what `term(i)` adds to a vector, chunk by chunk.
-template <class Term>
-Eigen::VectorXd sum_over(const PointSet& set, Index size, Term term) {
-  Eigen::VectorXd total = Eigen::VectorXd::Zero(size), part(size);
-  for (Index first = 0; first < set.count(); first += chunk) {
-    part.setZero();
-    for (Index i = first; i < std::min(first + chunk, set.count()); ++i) {
-      const double weight = set.weights.size() > 0 ? set.weights(i) : 1.0;
-      if (weight > 0.0) term(i, weight, part);
-    }
-    total += part;
+bool counts(const PointSet& set, Index i) { return set.weights.size() == 0 || set.weights(i) > 0.0; }
+
+template <int F>
+using Row = Eigen::Array<double, F, 1>;
+
+/// Calls visit(weight, x) for all points that count, flush() after every chunk of them.
+template <int F, class Visit, class Flush>
+void each_point(const PointSet& set, Visit visit, Flush flush) {
+  const Index features = set.features();
+  const double *x = set.points.data(), *weights = set.weights.size() > 0 ? set.weights.data() : nullptr;
+  for (Index i = 0; i < set.count(); ++i, x += features) {
+    const double weight = weights ? weights[i] : 1.0;
+    if (weight > 0.0) visit(weight, Eigen::Map<const Row<F>>(x, features));
+    if ((i + 1) % chunk == 0 || i + 1 == set.count()) flush();
   }
-  return total;
 }
 
-bool counts(const PointSet& set, Index i) { return set.weights.size() == 0 || set.weights(i) > 0.0; }
+/// The first pass over the points that count.
+struct Extent {
+  double weight = 0.0;
+  Eigen::ArrayXd lower, upper, mean;
+};
+
+template <int F>
+Extent extent_of(const PointSet& set) {
+  const Index features = set.features();
+  constexpr double beyond = std::numeric_limits<double>::infinity();
+  Row<F> lower = Row<F>::Constant(features, beyond), upper = -lower, part = Row<F>::Zero(features), sum = part;
+  double weight_part = 0.0, weight_sum = 0.0;
+  each_point<F>(
+      set,
+      [&](double weight, const auto& x) {
+        weight_part += weight;
+        part += weight * x;
+        lower = lower.min(x);
+        upper = upper.max(x);
+      },
+      [&] {
+        weight_sum += std::exchange(weight_part, 0.0);
+        sum += part;
+        part.setZero();
+      });
+  return {weight_sum, lower, upper, sum / weight_sum};
+}
+
+/// The second: variances in units of 1 / `inverse_unit`.
+template <int F>
+Eigen::ArrayXd variances_of(const PointSet& set, const Extent& extent, const Eigen::ArrayXd& inverse_unit) {
+  const Row<F> unit = inverse_unit, mean = extent.mean;
+  Row<F> part = Row<F>::Zero(set.features()), sum = part;
+  each_point<F>(
+      set, [&](double weight, const auto& x) { part += weight * ((x - mean) * unit).square(); },
+      [&] {
+        sum += part;
+        part.setZero();
+      });
+  return sum / extent.weight;
+}
+
+/// action(std::integral_constant<int, F>()), F features where they are few.
+template <class Action>
+auto with_features(Index features, Action action) {
+  switch (features) {
+    case 1:
+      return action(std::integral_constant<int, 1>());
+    case 2:
+      return action(std::integral_constant<int, 2>());
+    case 3:
+      return action(std::integral_constant<int, 3>());
+    case 4:
+      return action(std::integral_constant<int, 4>());
+    default:
+      return action(std::integral_constant<int, Eigen::Dynamic>());
+  }
+}
 
 /// Where the bulk of a feature's values lies.
 struct Bulk {
@@ -98,32 +158,22 @@ FeatureScale FeatureScale::near_one(const GaussianMixture& mixture) {
 
 FeatureScale FeatureScale::of(const PointSet& set, double floor) {
   const Index features = set.features();
-  Eigen::VectorXd magnitude = Eigen::VectorXd::Zero(features);
-  for (Index i = 0; i < set.count(); ++i)
-    if (counts(set, i)) magnitude = magnitude.cwiseMax(set.points.col(i).cwiseAbs());
-  // Relative to the magnitude, so that squares neither overflow nor underflow.
-  const auto relative = [&](Index i, Index f) { return magnitude(f) > 0.0 ? set.points(f, i) / magnitude(f) : 0.0; };
-  const Eigen::VectorXd sums = sum_over(set, features + 1, [&](Index i, double weight, Eigen::VectorXd& sum) {
-    sum(features) += weight;
-    for (Index f = 0; f < features; ++f) sum(f) += weight * relative(i, f);
-  });
-  const Eigen::VectorXd mean = sums.head(features) / sums(features);
-  Eigen::VectorXd largest = Eigen::VectorXd::Zero(features);  // squared offset
-  const Eigen::VectorXd squares = sum_over(set, features, [&](Index i, double weight, Eigen::VectorXd& sum) {
-    for (Index f = 0; f < features; ++f) {
-      const double offset = relative(i, f) - mean(f), square = offset * offset;
-      sum(f) += weight * square;
-      largest(f) = std::max(largest(f), square);
-    }
-  });
+  const Extent extent = with_features(features, [&](auto F) { return extent_of<F()>(set); });
+  const Eigen::ArrayXd magnitude = extent.lower.abs().max(extent.upper.abs());
+  // Near the magnitude, so that squares neither overflow nor underflow.
+  const Eigen::ArrayXd inverse_unit = magnitude.unaryExpr(
+      [](double value) { return value > smallest_scale ? std::ldexp(1.0, -std::ilogb(value)) : 1.0; });
+  const Eigen::ArrayXd deviation =
+      with_features(features, [&](auto F) { return variances_of<F()>(set, extent, inverse_unit); }).sqrt() /
+      inverse_unit;
+  const Eigen::ArrayXd farthest = (extent.upper - extent.mean).max(extent.mean - extent.lower);
   FeatureScale result = identity(features);
   for (Index f = 0; f < features; ++f) {
-    const double deviation = std::sqrt(squares(f) / sums(features));
-    result.center(f) = magnitude(f) * mean(f);
-    const bool constant = !(deviation > rounding_share) || magnitude(f) * deviation < smallest_scale;
-    if (!constant) result.scale(f) = magnitude(f) * deviation;
+    result.center(f) = extent.mean(f);
+    const bool constant = !(deviation(f) > rounding_share * magnitude(f)) || deviation(f) < smallest_scale;
+    if (!constant) result.scale(f) = deviation(f);
     result.inverse(f) = constant ? 0.0 : 1.0 / result.scale(f);
-    if (!constant && largest(f) > far_out * deviation * deviation) resist_outliers(set, f, floor, result);
+    if (!constant && farthest(f) > far_out * deviation(f)) resist_outliers(set, f, floor, result);
   }
   return result;
 }

@@ -23,7 +23,6 @@ struct FeatureScale {
   /// Powers of two near the largest standard deviation of the components: no rounding, but numbers near one.
   static FeatureScale near_one(const GaussianMixture& mixture);
 
-  double scaled(Eigen::Index feature, double value) const { return (value - center(feature)) * inverse(feature); }
   GaussianMixture to_scaled(const GaussianMixture& mixture) const;
   GaussianMixture to_physical(const GaussianMixture& mixture) const;
   /// log |d scaled / d physical| of one point: add (times the weight) to a scaled log density for the physical one.

@@ -20,7 +20,7 @@ PointBlocks::PointBlocks(const PointSet& set, const FeatureScale& scale, std::pt
     : set_(set), scale_(scale), features_(set.features()), count_(set.count()), has_errors_(set.has_errors()) {
   const std::ptrdiff_t bytes = blocks() * block_doubles() * static_cast<std::ptrdiff_t>(sizeof(double));
   copied_ = bytes <= most_copied;
-  if (copied_) blocks_ = AlignedBuffer(blocks() * block_doubles());
+  if (copied_) blocks_ = AlignedBuffer::unset(blocks() * block_doubles());
   for (Index b = 0; b < blocks(); ++b) {
     if (copied_) lay_out(b, blocks_.data() + b * block_doubles());
     const Index first = b * block_size;
@@ -47,12 +47,20 @@ em::Block PointBlocks::block(Index block, AlignedBuffer& stage) const {
 void PointBlocks::lay_out(Index block, double* to) const {
   const Index first = block * block_size, filled = points_in(block);
   double* const weights = to + features_ * block_size;
-  for (Index i = 0; i < filled; ++i) weights[i] = set_.weights.size() > 0 ? set_.weights(first + i) : 1.0;
+  const bool weighted = set_.weights.size() > 0;
+  if (weighted)
+    std::copy_n(set_.weights.data() + first, filled, weights);
+  else
+    std::fill_n(weights, filled, 1.0);
   std::fill(weights + filled, weights + block_size, 0.0);
+  const double* const from = set_.points.data() + first * features_;
   for (Index f = 0; f < features_; ++f) {
     double* const column = to + f * block_size;
+    const double center = scale_.center(f), inverse = scale_.inverse(f);
+    for (Index i = 0; i < filled; ++i) column[i] = (from[i * features_ + f] - center) * inverse;
     // A point that does not count may be anywhere, even where its square overflows.
-    for (Index i = 0; i < filled; ++i) column[i] = weights[i] > 0.0 ? scale_.scaled(f, set_.points(f, first + i)) : 0.0;
+    for (Index i = 0; weighted && i < filled; ++i)
+      if (!(weights[i] > 0.0)) column[i] = 0.0;
     std::fill(column + filled, column + block_size, 0.0);
   }
   if (!has_errors()) return;

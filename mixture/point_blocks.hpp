@@ -32,7 +32,7 @@ class PointBlocks {
   Eigen::Index points_in(Eigen::Index block) const { return std::min(block_size, count_ - block * block_size); }
 
   /// Memory that a block is laid out in where the cloud is not copied.
-  AlignedBuffer stage() const { return AlignedBuffer(copied_ ? 0 : block_doubles()); }
+  AlignedBuffer stage() const { return AlignedBuffer::unset(copied_ ? 0 : block_doubles()); }
   em::Block block(Eigen::Index block, AlignedBuffer& stage) const;
 
   /// At most `most` points to choose a start from, copied: all, or evenly spread ones from a random first on; weights
