@@ -135,9 +135,9 @@ class RunRegister {
   }
 
   void put_samples(const Samples& samples, std::size_t first, std::size_t count, std::size_t l) {
-    const std::size_t all = size(samples.count) - 1, there = std::min(count, all - std::min(all, first));
-    const double* measurement = samples.measurement + first + 1;
-    const double* inputs = samples.inputs + first * m_;
+    const std::size_t all = size(samples.count) - 1, begin = std::min(all, first), there = std::min(count, all - begin);
+    const double* measurement = samples.measurement + begin + 1;
+    const double* inputs = samples.inputs + begin * m_;
     double *y = y_.data() + l, *v = v_.data() + l;
     for (std::size_t k = 0; k < there; ++k) y[k * L_] = measurement[k];
     for (std::size_t k = there; k < count; ++k) y[k * L_] = std::numeric_limits<double>::quiet_NaN();

@@ -22,7 +22,7 @@ HWY_INLINE V of_bank(const double* p, std::size_t i) {
     return load(p + i * hn::Lanes(D()));
 }
 
-/// 1 / c of several by one reciprocal. Returns their product, below which none of them (at most one) lies.
+/// 1 / c of several, all at most one, by one reciprocal. Returns their product: none of them lies below it.
 template <std::size_t J>
 HWY_INLINE V reciprocals(const V (&c)[J], V (&inverse)[J]) {
   V product[J];
@@ -63,8 +63,8 @@ class LaneProduct {
     product_ = hn::Mul(product_, factor);
     const M within = hn::And(hn::Gt(product_, splat(1e-100)), hn::Lt(product_, splat(1e100)));
     if (HWY_UNLIKELY(!hn::AllTrue(D(), within))) {
-      sum_ = log();
-      product_ = splat(1.0);
+      sum_ = hn::IfThenElse(within, sum_, log());
+      product_ = hn::IfThenElse(within, product_, splat(1.0));
     }
   }
   HWY_INLINE void add(V value) { sum_ = hn::Add(sum_, value); }
@@ -75,10 +75,17 @@ class LaneProduct {
 };
 
 /// The runs of one register on their way. Means and variances are in `p.mean` and `next` in turn.
-class LaneFilter {
- public:
-  HWY_INLINE explicit LaneFilter(const RunLanes& start)
-      : start_(start), p(start), next(start.next), prior(start.workspace) {
+struct LaneFilter {
+  const RunLanes& start;
+  RunLanes p;
+  double* next;
+  double *prior, *nis, *root;  ///< before the measurement: probability; the innovation's distance and 1 / sqrt(S)
+  double *first, *second;      ///< mu d and mu (P + d^2), d about the center: what the mixtures are sums of
+  V center;                    ///< mean of all modes
+  LaneProduct density;
+
+  HWY_INLINE explicit LaneFilter(const RunLanes& lanes)
+      : start(lanes), p(lanes), next(lanes.next), prior(lanes.workspace) {
     const std::size_t L = hn::Lanes(D()), rows = p.modes * L;
     nis = prior + rows;
     root = nis + rows;
@@ -140,19 +147,10 @@ class LaneFilter {
   /// Leaves means and variances where they were at the start.
   HWY_INLINE void finish() const {
     store(density.log(), p.log_likelihood);
-    if (p.mean == start_.mean) return;
+    if (p.mean == start.mean) return;
     for (std::size_t i = 0; i < 2 * p.modes * hn::Lanes(D()); i += hn::Lanes(D()))
-      store(load(p.mean + i), start_.mean + i);
+      store(load(p.mean + i), start.mean + i);
   }
-
- private:
-  const RunLanes& start_;
-  RunLanes p;
-  double* next;
-  double *prior, *nis, *root;  ///< before the measurement: probability; the innovation's distance and 1 / sqrt(S)
-  double *first, *second;      ///< mu d and mu (P + d^2), d about the center: what the mixtures are sums of
-  V center;                    ///< mean of all modes
-  LaneProduct density;
 
   /// The mixtures of all modes that lead to modes j .. j + J, which share what is loaded of the modes they come from:
   /// leaves their probabilities, means and variances in `prior` and `next`.
