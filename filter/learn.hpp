@@ -67,13 +67,14 @@ Bank learn_noise_only(const Recording& recording, const LinearStructure& structu
 
 /// Turns clustered windows into a bank (method: section 4). `R` is used unless options.measurement_variance is set.
 /// `motion`: the model that the windows were fitted with, null for linear ones; its modes are linearised at their mean
-/// state and input. Throws DataError when every mode is screened.
+/// state and input. Where every component is screened the bank has one mode, of all of them merged; throws DataError
+/// when that one is screened too.
 Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                 const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion = nullptr);
 
 /// learn_bank, then refine_bank from it and from what is left of the mixture when its closest components are merged
-/// (merge_components) down to three quarters of the modes, again and again while there are two. The mixture's own bank
-/// is `start` of the result.
+/// (merge_components) down to three quarters of the modes, again and again until there is one: where more modes do not
+/// pay on training runs left out, as with little data, one mode wins. The mixture's own bank is `start` of the result.
 Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                               const BankOptions& options, const Eigen::MatrixXd& R, const FilterOptions& filter);
 

@@ -89,7 +89,7 @@ std::vector<ComponentEstimate> estimate_components(const EstimationInput& in, co
   return estimates;
 }
 
-/// Positions of the components that become modes; the others are listed in `screened`.
+/// Positions of the components that become modes, maybe none; the others are listed in `screened`.
 std::vector<Index> screen(const LinearStructure& structure, const std::vector<ComponentEstimate>& modes,
                           const Eigen::VectorXd& weights, std::vector<ScreenedMode>& screened) {
   std::vector<Index> kept;
@@ -100,7 +100,6 @@ std::vector<Index> screen(const LinearStructure& structure, const std::vector<Co
     else
       screened.push_back({k, weights(k), spectral_radius(unpack(structure, modes[k].linear.theta)), reason});
   }
-  if (kept.empty()) throw DataError("no mode is left for the bank: " + describe(screened));
   return kept;
 }
 
@@ -144,6 +143,17 @@ std::vector<Index> all_positions(Index count) {
   return positions;
 }
 
+/// Where no component can be a mode, all of them together may: the bank of one mode that is left.
+Bank bank_of_all(const Recording& recording, const WindowFits& fits, const MixtureResult& whole, BankOptions options,
+                 const Bank& without_modes, const MotionModel* motion) {
+  if (whole.mixture.components() == 1 || options.modes == 1)
+    throw DataError("no mode is left for the bank: " + describe(without_modes.screened));
+  options.modes = 1;
+  Bank bank = learn_bank(recording, fits, whole, options, without_modes.R, motion);
+  bank.screened = without_modes.screened;
+  return bank;
+}
+
 }  // namespace
 
 Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& whole,
@@ -161,6 +171,7 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
     bank.R = *options.measurement_variance * Eigen::MatrixXd::Identity(bank.R.rows(), bank.R.cols());
   const std::vector<Index> kept = options.screen ? screen(fits.structure, estimates, components.weights, bank.screened)
                                                  : all_positions(components.components());
+  if (kept.empty()) return bank_of_all(recording, fits, whole, options, bank, motion);
   std::vector<ComponentEstimate> modes;
   modes.reserve(kept.size());
   for (const Index k : kept) modes.push_back(estimates[k]);
@@ -179,8 +190,9 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
                               const BankOptions& options, const Eigen::MatrixXd& R, const FilterOptions& filter) {
   BankOptions of_start = options;
   std::vector<Bank> starts{learn_bank(recording, fits, mixture, options, R)};
-  for (Index modes = starts.front().mode_count() * 3 / 4; modes >= 2; modes = modes * 3 / 4) {
+  for (Index modes = starts.front().mode_count() * 3 / 4; modes >= 1; modes = modes * 3 / 4) {
     of_start.modes = modes;
+    of_start.screen = options.screen && modes > 1;  // one mode is a start in any case; refinement screens it
     starts.push_back(learn_bank(recording, fits, mixture, of_start, R));
   }
   RefineOptions em = options.em;

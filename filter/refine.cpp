@@ -64,8 +64,10 @@ std::vector<RefineStart> all_starts(const WindowFits& fits, const std::vector<Ba
         start_from_stretches(transitions, prior, banks.front().mode_count(), fits.length, options.seed, i));
   std::vector<RefineStart> starts;
   for (const auto& [name, model] : models)
-    for (const SharedParts shared : ways_to_share(options.share))
+    for (const SharedParts shared : ways_to_share(options.share)) {
       starts.push_back({name, model, shared, first_strength(options)});
+      if (model.modes() == 1) break;  // it shares nothing
+    }
   return starts;
 }
 
