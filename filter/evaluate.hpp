@@ -68,7 +68,7 @@ RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const Filter
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
 /// The log likelihoods of many runs at once, run i with bank i: scalar banks go through the processor's vector
-/// registers together, a run per lane, so that studies take a fraction of the time. To rounding the same numbers.
+/// registers together, a run per lane, as learning and cross-validation score them. To rounding the same numbers.
 std::vector<double> log_likelihoods(const std::vector<const Bank*>& banks, const std::vector<const Trajectory*>& runs,
                                     const FilterOptions& options);
 

@@ -169,9 +169,14 @@ double CrossValidation::score_with_states_unknown(const LikelihoodTarget& target
 }
 
 Eigen::VectorXd CrossValidation::run_scores(const std::vector<Bank>& banks) const {
-  std::vector<double> scores;
+  std::vector<const Bank*> bank_of;
+  std::vector<const Trajectory*> runs;
   for (std::size_t s = 0; s < splits_.size(); ++s)
-    for (const Trajectory& run : splits_[s].left_out.runs) scores.push_back(log_likelihood(banks[s], run, filter_));
+    for (const Trajectory& run : splits_[s].left_out.runs) {
+      bank_of.push_back(&banks[s]);
+      runs.push_back(&run);
+    }
+  const std::vector<double> scores = log_likelihoods(bank_of, runs, filter_);
   return Eigen::VectorXd::Map(scores.data(), std::ssize(scores));
 }
 
