@@ -98,26 +98,27 @@ HWY_INLINE void add_expectations(int n, bool diagonal, const double* relative, c
 }
 
 /// The passes over a block that kernels for few and for many features share. Kernel: a constructor (features, work);
-/// `begin` (block), which reads two vectors of points; `spread<logarithmic>` (vector, component's mean, W, where
-/// expectations go).
+/// `begin` (block), which reads two vectors of points; `spread<logarithmic>` (component's mean, W, where expectations
+/// go, the second vector's after all of the first's, and the two Spreads).
 template <class Kernel>
 struct Errors {
   template <bool logarithmic>
   static HWY_INLINE void densities(Kernel& kernel, const Components& components, double shift, const Scratch& scratch,
                                    double* expected) {
     const Index per_component = expectations(components.features, Kernel::diagonal) * together;
-    for (int v = 0; v < 2; ++v) {
-      V total = zero();
-      for (int k = 0; k < components.count; ++k) {
-        const Spread<logarithmic> spread = kernel.template spread<logarithmic>(
-            v, components.means + k * components.features, components.whitening + k * components.stride,
-            expected + k * per_component + v * per_component / 2);
-        const V density = spread.density(components.log_constants[k], shift);
+    V total[2];
+    for (int k = 0; k < components.count; ++k) {
+      Spread<logarithmic> spreads[2];
+      kernel.template spread<logarithmic>(components.means + k * components.features,
+                                          components.whitening + k * components.stride, expected + k * per_component,
+                                          spreads);
+      for (int v = 0; v < 2; ++v) {
+        const V density = spreads[v].density(components.log_constants[k], shift);
         store(density, scratch.relative + k * block_size + v * L);
-        total = k == 0 ? density : logarithmic ? hn::Max(total, density) : hn::Add(total, density);
+        total[v] = k == 0 ? density : logarithmic ? hn::Max(total[v], density) : hn::Add(total[v], density);
       }
-      store(total, (logarithmic ? scratch.log_density : scratch.sum) + v * L);
     }
+    for (int v = 0; v < 2; ++v) store(total[v], (logarithmic ? scratch.log_density : scratch.sum) + v * L);
   }
 
   /// relative, sum and log_density of `together` points.

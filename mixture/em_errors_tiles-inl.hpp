@@ -293,7 +293,7 @@ struct TileErrors {
   }
 
   template <bool logarithmic>
-  HWY_INLINE Spread<logarithmic> spread(int v, const double* mean, const double* W, double* expected) const {
+  HWY_INLINE Spread<logarithmic> spread_vector(int v, const double* mean, const double* W, double* expected) const {
     const double *points = x + v * p * L, *errors = S + v * p * p * L;
     if constexpr (diagonal)
       whiten_diagonal(points, errors, mean, W);
@@ -310,6 +310,12 @@ struct TileErrors {
     expect_columns(expected);
     if constexpr (!diagonal) expect_squares(expected);
     return {distance, determinant};
+  }
+
+  template <bool logarithmic>
+  HWY_INLINE void spread(const double* mean, const double* W, double* expected, Spread<logarithmic> (&of)[2]) const {
+    for (int v = 0; v < 2; ++v)
+      of[v] = spread_vector<logarithmic>(v, mean, W, expected + v * expectations(n, diagonal) * L);
   }
 };
 
