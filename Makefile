@@ -57,7 +57,7 @@ strict: packages-build
 
 # Recovery of known systems over many seeds.
 seeds: build
-	ctest --preset seeds
+	ctest --preset seeds -j $(JOBS)
 
 sanitize: packages-build packages-test
 	cmake --preset sanitize >/dev/null
