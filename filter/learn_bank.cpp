@@ -146,9 +146,12 @@ std::vector<Index> all_positions(Index count) {
 /// Where no component can be a mode, all of them together may: the bank of one mode that is left.
 Bank bank_of_all(const Recording& recording, const WindowFits& fits, const MixtureResult& whole, BankOptions options,
                  const Bank& without_modes, const MotionModel* motion) {
-  if (whole.mixture.components() == 1 || options.modes == 1)
+  const MixtureResult all = merge_components(whole, 1);
+  const ModeEstimate one = estimate_components({recording, fits, all, options.theta}, motion).front().linear;
+  if (!screening_reason(fits.structure, one).empty())
     throw DataError("no mode is left for the bank: " + describe(without_modes.screened));
   options.modes = 1;
+  options.screen = false;
   Bank bank = learn_bank(recording, fits, whole, options, without_modes.R, motion);
   bank.screened = without_modes.screened;
   return bank;
