@@ -4,4 +4,4 @@ execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 O
 if(failed)
   set(GIT_REVISION unknown)
 endif()
-configure_file(${SOURCE}/app/build_info.cpp.in ${OUTPUT} @ONLY)
+configure_file(${SOURCE}/app/chain/build_info.cpp.in ${OUTPUT} @ONLY)

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "io/archive.hpp"
+#include "io/archive/archive.hpp"
 
-namespace modebank::app {
+namespace modebank {
 
 /// The summary's row of a filter over all runs of a role; null without.
 const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role);
@@ -15,4 +15,4 @@ Role judged_role(const Archive& archive);
 /// "held-out" or "training".
 const char* words_for(Role role);
 
-}  // namespace modebank::app
+}  // namespace modebank

@@ -1,25 +1,19 @@
-#include "app/check.hpp"
+#include "app/check/check.hpp"
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <thread>
 
-#include "app/commands.hpp"
-#include "app/config_file.hpp"
-#include "app/pipeline.hpp"
-#include "ident/error.hpp"
-#include "ident/lag_choice.hpp"
-#include "ident/not_a_number.hpp"
-#include "ident/robust_scale.hpp"
-#include "io/import.hpp"
-#include "io/missing_values.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/fit/scale.hpp"
+#include "ident/lag/choice.hpp"
+#include "io/import/import.hpp"
+#include "io/import/missing_values.hpp"
+#include "modebank/base/error.hpp"
 
-namespace modebank::app {
+namespace modebank {
 namespace {
 
 using Eigen::VectorXd;
@@ -37,11 +31,11 @@ struct Material {
 };
 
 /// The runs as `run` would join them if it accepted all that can be mended.
-void join_parts(const Config& config, Material& material, DataCheck& check) {
-  DataOptions lenient = config.data;
+void join_parts(const CheckOptions& options, Material& material, DataCheck& check) {
+  DataOptions lenient = options.data;
   lenient.missing = Missing::gap;
   lenient.disorder = Disorder::sort;
-  lenient.lag_s = config.data.lag_auto ? 0.0 : config.data.lag_s;
+  lenient.lag_s = options.data.lag_auto ? 0.0 : options.data.lag_s;
   lenient.lag_auto = false;
   for (std::size_t i = 0; i < material.recorded.size(); ++i) {
     RunStreams run = material.recorded[i];
@@ -51,7 +45,7 @@ void join_parts(const Config& config, Material& material, DataCheck& check) {
     try {
       for (Trajectory& part : split_at_gaps(join_run(run, lenient, {}), false)) {
         RunReport& report = check.runs[i];
-        const DeficientWindows windows = count_deficient_windows(part, config.window.length, material.structure);
+        const DeficientWindows windows = count_deficient_windows(part, options.window_length, material.structure);
         report.transitions += part.transitions();
         report.windows.windows += windows.windows;
         report.windows.deficient += windows.deficient;
@@ -136,21 +130,21 @@ void check_runs(const Material& material, DataCheck& check) {
   });
 }
 
-void check_lags(const Config& config, const Material& material, DataCheck& check) {
+void check_lags(const CheckOptions& options, const Material& material, DataCheck& check) {
   const auto trains = [](const RunPair& run) { return run.role == Role::train; };
   check.has_lag =
       material.structure.inputs > 0 && std::any_of(material.ordered.begin(), material.ordered.end(), trains) &&
       std::all_of(check.runs.begin(), check.runs.end(), [](const RunReport& r) { return r.problem.empty(); });
   if (!check.has_lag) return;
   try {
-    check.lag = choose_lag(material.ordered, {config.data.lag_range_s, config.data.rate_hz});
+    check.lag = choose_lag(material.ordered, {options.data.lag_range_s, options.data.rate_hz});
   } catch (const DataError&) {  // nothing to fit: said elsewhere on the page
     check.has_lag = false;
     return;
   }
   tbb::parallel_for(std::size_t{0}, check.runs.size(), [&](std::size_t i) {
     const bool estimated = material.ordered[i].role == Role::train;
-    check.runs[i].lag = estimated ? check.lag.runs[i] : estimate_run(material.ordered[i], config.data.lag_range_s);
+    check.runs[i].lag = estimated ? check.lag.runs[i] : estimate_run(material.ordered[i], options.data.lag_range_s);
   });
 }
 
@@ -179,16 +173,20 @@ void advise(const Material& material, DataCheck& check) {
   if (!training.runs.empty()) check.loss = advise_loss(training, material.structure);
 }
 
-/// Why identification would fail; empty: it would not.
-std::string find_unusable(const Config& config, const Material& material, const DataCheck& check) {
-  for (const RunReport& run : check.runs)
-    if (!run.problem.empty()) return run.problem;
+Index longest_training_stretch(const Material& material) {
   Index longest = 0;
   for (const Trajectory& part : material.parts)
     if (part.role == Role::train) longest = std::max(longest, part.transitions());
-  if (longest < config.window.length)
-    return fmt::format("the longest stretch of the training runs has {} transitions, window.length is {}", longest,
-                       config.window.length);
+  return longest;
+}
+
+/// Why identification would fail; empty: it would not.
+std::string find_unusable(const DataCheck& check) {
+  for (const RunReport& run : check.runs)
+    if (!run.problem.empty()) return run.problem;
+  if (check.longest_stretch < check.window_length)
+    return fmt::format("the longest stretch of the training runs has {} transitions, fewer than one window",
+                       check.longest_stretch);
   for (const ChannelSummary& channel : check.channels)
     if (channel.is_state && !(channel.values.sd > 0.0))
       return fmt::format("the state {} never changes", channel.channel.name);
@@ -197,13 +195,13 @@ std::string find_unusable(const Config& config, const Material& material, const 
 
 }  // namespace
 
-DataCheck check_data(const Config& config) {
+DataCheck check_data(const CheckOptions& options) {
   Material material;
-  material.recorded = read_streams(config.data);
-  material.structure = {static_cast<Index>(config.data.state.size()), static_cast<Index>(config.data.input.size()),
-                        config.window.intercept};
+  material.recorded = read_streams(options.data);
+  material.structure = {static_cast<Index>(options.data.state.size()), static_cast<Index>(options.data.input.size()),
+                        options.intercept};
   DataCheck check;
-  check.window_length = config.window.length;
+  check.window_length = options.window_length;
   for (const RunStreams& run : material.recorded) {
     material.ordered.push_back({run.run, run.role, in_order(run.states.stream), in_order(run.inputs.stream)});
     RunReport& report = check.runs.emplace_back();
@@ -212,28 +210,14 @@ DataCheck check_data(const Config& config) {
     if (material.ordered.back().states.time_s.size() < 2 || material.ordered.back().inputs.time_s.size() < 2)
       throw DataError(fmt::format("run \"{}\" has fewer than two samples with a time of their own", run.run));
   }
-  join_parts(config, material, check);
-  check_all_channels(config.data, material, check);
+  join_parts(options, material, check);
+  check_all_channels(options.data, material, check);
   check_runs(material, check);
-  check_lags(config, material, check);
+  check_lags(options, material, check);
   advise(material, check);
-  check.unusable = find_unusable(config, material, check);
-  check.findings = findings_of(check, config);
+  check.longest_stretch = longest_training_stretch(material);
+  check.unusable = find_unusable(check);
   return check;
 }
 
-int run_check(const CommandLine& line) {
-  if (line.files.size() != 1) throw ConfigurationError("check needs one configuration file: modebank check CONFIG");
-  const Config config = load_config(line.files.front(), line.overrides);
-  validate(config);
-  const int threads =
-      config.job.threads > 0 ? config.job.threads : static_cast<int>(std::thread::hardware_concurrency());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(std::max(threads, 1)));
-  const DataCheck check = check_data(config);
-  fmt::print("{}", line.json ? check_json(check).dump(2) + "\n" : check_text(check));
-  if (!check.unusable.empty()) throw DataError("unusable as configured: " + check.unusable);
-  return 0;
-}
-
-}  // namespace modebank::app
+}  // namespace modebank

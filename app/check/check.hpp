@@ -1,15 +1,14 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "app/config.hpp"
-#include "ident/data_advice.hpp"
-#include "ident/lag_report.hpp"
-#include "ident/run_check.hpp"
+#include "ident/check/advice.hpp"
+#include "ident/check/run_check.hpp"
+#include "ident/lag/report.hpp"
+#include "io/import/options.hpp"
 
-namespace modebank::app {
+namespace modebank {
 
 /// One run as recorded.
 struct RunReport {
@@ -46,22 +45,18 @@ struct DataCheck {
   RateAdvice rate;
   LengthAdvice length;
   LossAdvice loss;
-  std::vector<std::string> findings;  ///< in words
-  std::string unusable;               ///< why nothing can be identified; empty: something can
+  Index longest_stretch = 0;  ///< transitions without a gap in the training runs
+  std::string unusable;       ///< why nothing can be identified; empty: something can
+};
+
+/// What is checked, and the windows that it would be cut into.
+struct CheckOptions {
+  DataOptions data;
+  Index window_length = 0;  ///< transitions
+  bool intercept = false;
 };
 
 /// Reads all runs leniently and gathers every number. Throws as read_streams does.
-DataCheck check_data(const Config& config);
+DataCheck check_data(const CheckOptions& options);
 
-/// What stands out, each with what would accept or mend it.
-std::vector<std::string> findings_of(const DataCheck& check, const Config& config);
-
-std::string check_text(const DataCheck& check);
-nlohmann::json check_json(const DataCheck& check);
-
-/// Why the advice is what it is.
-std::string rate_reason(const DataCheck& check);
-std::string length_reason(const DataCheck& check);
-std::string loss_reason(const DataCheck& check);
-
-}  // namespace modebank::app
+}  // namespace modebank

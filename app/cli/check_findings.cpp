@@ -5,8 +5,8 @@
 #include <cmath>
 #include <functional>
 
-#include "app/check.hpp"
-#include "app/text_units.hpp"
+#include "app/cli/check_output.hpp"
+#include "app/text/text_units.hpp"
 
 namespace modebank::app {
 namespace {
@@ -137,9 +137,14 @@ void lag_findings(const DataCheck& check, const Config& config, std::vector<std:
 
 }  // namespace
 
+std::string unusable_text(const DataCheck& check) {
+  const bool too_short = !check.unusable.empty() && check.longest_stretch < check.window_length;
+  return check.unusable + (too_short ? fmt::format("; window.length is {}", check.window_length) : "");
+}
+
 std::vector<std::string> findings_of(const DataCheck& check, const Config& config) {
   std::vector<std::string> found;
-  if (!check.unusable.empty()) found.push_back("UNUSABLE as configured: " + check.unusable);
+  if (!check.unusable.empty()) found.push_back("UNUSABLE as configured: " + unusable_text(check));
   time_findings(check, config, found);
   channel_findings(check, found);
   rest_findings(check, found);

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/check.hpp"
+#include "app/cli/check_output.hpp"
 
 namespace modebank::app {
 namespace {
@@ -114,7 +114,7 @@ json lags_json(const LagReport& lag) {
 
 }  // namespace
 
-json check_json(const DataCheck& check) {
+json check_json(const DataCheck& check, const std::vector<std::string>& findings) {
   json runs = json::array(), channels = json::array();
   for (const RunReport& run : check.runs) runs.push_back(run_json(check, run));
   for (const ChannelSummary& channel : check.channels) {
@@ -126,12 +126,12 @@ json check_json(const DataCheck& check) {
     channels.push_back(entry);
   }
   return {{"usable", check.unusable.empty()},
-          {"unusable_because", check.unusable},
+          {"unusable_because", unusable_text(check)},
           {"window_length", check.window_length},
           {"runs", runs},
           {"channels", channels},
           {"lag", check.has_lag ? lags_json(check.lag) : json(nullptr)},
-          {"findings", check.findings},
+          {"findings", findings},
           {"advice",
            {{"rate_hz", {{"value", check.rate.rate_hz}, {"reason", rate_reason(check)}}},
             {"window_length", {{"value", check.length.length}, {"reason", length_reason(check)}}},

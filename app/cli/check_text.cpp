@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/check.hpp"
-#include "app/lag_text.hpp"
-#include "app/text_units.hpp"
+#include "app/cli/check_output.hpp"
+#include "app/text/lag_text.hpp"
+#include "app/text/text_units.hpp"
 
 namespace modebank::app {
 namespace {
@@ -97,7 +97,7 @@ std::string channel_table(const DataCheck& check) {
 
 }  // namespace
 
-std::string check_text(const DataCheck& check) {
+std::string check_text(const DataCheck& check, const std::vector<std::string>& findings) {
   Index transitions = 0;
   for (const RunReport& run : check.runs) transitions += run.transitions;
   const auto trains =
@@ -118,8 +118,8 @@ std::string check_text(const DataCheck& check) {
     text += lag_text(pooled, false);
   }
   text += "\nfindings\n";
-  for (const std::string& finding : check.findings) text += "- " + finding + "\n";
-  if (check.findings.empty()) text += "- nothing stands out\n";
+  for (const std::string& finding : findings) text += "- " + finding + "\n";
+  if (findings.empty()) text += "- nothing stands out\n";
   text += fmt::format("\nsuggested\n  data.rate_hz = {:g}: {}\n  window.length = {}: {}\n  window.loss = {}: {}\n",
                       check.rate.rate_hz, rate_reason(check), check.length.length, length_reason(check),
                       name_of(check.loss.loss), loss_reason(check));

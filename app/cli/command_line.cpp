@@ -1,12 +1,12 @@
-#include "app/command_line.hpp"
+#include "app/cli/command_line.hpp"
 
 #include <fmt/format.h>
 
 #include <boost/program_options.hpp>
 
-#include "app/config_file.hpp"
-#include "app/option_table.hpp"
-#include "ident/error.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "modebank/base/error.hpp"
 
 namespace po = boost::program_options;
 

@@ -1,16 +1,16 @@
-#include "app/commands.hpp"
+#include "app/cli/commands.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 
-#include "app/build_info.hpp"
-#include "app/option_table.hpp"
-#include "app/study/verify_study.hpp"
-#include "ident/error.hpp"
-#include "ident/nearest_name.hpp"
-#include "io/archive.hpp"
+#include "app/chain/build_info.hpp"
+#include "app/config/option_table.hpp"
+#include "app/study/answers/verify_study.hpp"
+#include "ident/base/nearest_name.hpp"
+#include "io/archive/archive.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {

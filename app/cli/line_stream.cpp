@@ -1,4 +1,4 @@
-#include "app/line_stream.hpp"
+#include "app/cli/line_stream.hpp"
 
 #include <poll.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <exception>
 
-#include "app/command_line.hpp"
-#include "app/commands.hpp"
-#include "ident/error.hpp"
+#include "app/cli/command_line.hpp"
+#include "app/cli/commands.hpp"
+#include "modebank/base/error.hpp"
 
 namespace {
 

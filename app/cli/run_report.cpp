@@ -1,12 +1,12 @@
 #include <filesystem>
 
-#include "app/commands.hpp"
-#include "app/config_file.hpp"
-#include "app/report/run_figures.hpp"
-#include "app/report/run_page.hpp"
-#include "app/report/write_page.hpp"
-#include "ident/error.hpp"
-#include "io/archive.hpp"
+#include "app/cli/commands.hpp"
+#include "app/config/config_file.hpp"
+#include "app/report/figures/run_figures.hpp"
+#include "app/report/page/run_page.hpp"
+#include "app/report/page/write_page.hpp"
+#include "io/archive/archive.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {

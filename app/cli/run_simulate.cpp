@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include "app/commands.hpp"
-#include "app/config_file.hpp"
-#include "app/option_table.hpp"
-#include "ident/error.hpp"
-#include "io/simulation_writer.hpp"
-#include "io/vehicle_writer.hpp"
+#include "app/cli/commands.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "io/simulation/simulation_writer.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
@@ -42,7 +41,7 @@ VehicleSimulationOptions vehicle_of(const Config& config) {
         "and sideways speed, and data.input, those of left and right wheel speed");
   VehicleSimulationOptions vehicle = config.simulate.vehicle;
   const SimulationOptions& shared = config.simulate.system;
-  vehicle.commands = shared;
+  vehicle.commands = static_cast<const CommandOptions&>(shared);
   vehicle.runs = shared.runs;
   vehicle.outlier_fraction = shared.outlier_fraction;
   vehicle.outlier_sd = shared.outlier_sd;

@@ -2,14 +2,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/commands.hpp"
-#include "app/sparkline.hpp"
-#include "app/summary_tables.hpp"
-#include "app/summary_text.hpp"
-#include "app/terminal.hpp"
-#include "ident/error.hpp"
-#include "io/archive.hpp"
-#include "io/inspect.hpp"
+#include "app/cli/commands.hpp"
+#include "app/text/sparkline.hpp"
+#include "app/text/summary_tables.hpp"
+#include "app/text/summary_text.hpp"
+#include "app/text/terminal.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/inspect.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {

@@ -5,17 +5,18 @@
 #include <optional>
 #include <stdexcept>
 
-#include "app/commands.hpp"
-#include "app/config_file.hpp"
-#include "app/line_stream.hpp"
-#include "app/track_input.hpp"
-#include "app/track_output.hpp"
-#include "filter/bank_filter.hpp"
-#include "filter/live_verdict.hpp"
-#include "ident/error.hpp"
-#include "io/filter_checkpoint.hpp"
-#include "io/load_bank.hpp"
-#include "io/replace_file.hpp"
+#include "app/chain/stages.hpp"
+#include "app/cli/commands.hpp"
+#include "app/cli/line_stream.hpp"
+#include "app/cli/track_input.hpp"
+#include "app/cli/track_output.hpp"
+#include "app/config/config_file.hpp"
+#include "filter/step/alarm.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "io/archive/bank/load_bank.hpp"
+#include "io/archive/filter_checkpoint.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
@@ -23,8 +24,13 @@ namespace {
 /// The competitors of the bank run as evaluate runs them.
 FilterOptions filter_options(const Config& config) {
   if (config.track.filter == TrackedFilter::bank) return config.filter;
-  const bool single = config.track.filter == TrackedFilter::baseline;
-  return {single ? FilterVariant::kf : FilterVariant::imm, false, config.filter.time_steps};
+  return competitor_filter(std::string(name_of(config.track.filter)), config.filter.time_steps);
+}
+
+/// kf is the global model alone, whatever the bank.
+std::string tracked_bank(const Config& config) {
+  const bool single = config.track.filter == TrackedFilter::bank && config.filter.variant == FilterVariant::kf;
+  return std::string(name_of(single ? TrackedFilter::baseline : config.track.filter));
 }
 
 /// A live filter between standard input and standard output.
@@ -32,7 +38,7 @@ class Tracker {
  public:
   Tracker(const std::string& archive, const Config& config)
       : config_(config),
-        bank_(load_bank(archive, std::string(name_of(config.track.filter)))),
+        bank_(load_bank(archive, tracked_bank(config))),
         filter_(bank_, filter_options(config)),
         judge_(bank_, config.track.level, config.track.alarm),
         reader_({config.data.time, config.data.input, config.data.state}, config.track.format) {

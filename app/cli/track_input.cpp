@@ -1,4 +1,4 @@
-#include "app/track_input.hpp"
+#include "app/cli/track_input.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "ident/error.hpp"
-#include "ident/not_a_number.hpp"
-#include "io/csv.hpp"
-#include "io/csv_number.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "io/import/csv.hpp"
+#include "io/import/csv_number.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 

@@ -5,11 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "ident/enum_names.hpp"
+#include "app/config/config.hpp"
 
 namespace modebank::app {
-
-enum class LineFormat { automatic, csv, ndjson };
 
 /// One sample as it arrived.
 struct LiveSample {
@@ -59,8 +57,3 @@ class SampleReader {
 };
 
 }  // namespace modebank::app
-
-template <>
-struct modebank::EnumNames<modebank::app::LineFormat> {
-  static constexpr Names<3> values{"auto", "csv", "ndjson"};
-};

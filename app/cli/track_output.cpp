@@ -1,4 +1,4 @@
-#include "app/track_output.hpp"
+#include "app/cli/track_output.hpp"
 
 #include <cmath>
 #include <iterator>

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "filter/bank_filter.hpp"
-#include "filter/live_verdict.hpp"
+#include "filter/step/alarm.hpp"
+#include "filter/step/bank_filter.hpp"
 
 namespace modebank::app {
 

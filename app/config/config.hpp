@@ -6,35 +6,18 @@
 #include <thread>
 #include <vector>
 
-#include "app/study/study_config.hpp"
-#include "app/track_input.hpp"
-#include "filter/evaluate.hpp"
-#include "filter/learn.hpp"
-#include "ident/fit_options.hpp"
-#include "ident/simulate.hpp"
-#include "ident/simulate_vehicle.hpp"
-#include "io/data_options.hpp"
-#include "mixture/select.hpp"
+#include "app/chain/options.hpp"
+#include "app/config/study_config.hpp"
+#include "ident/simulate/simulate.hpp"
+#include "ident/simulate/simulate_vehicle.hpp"
 
 namespace modebank::app {
 
-/// The [mixture] section: which cloud is clustered, and how.
-struct MixtureConfig {
-  SelectionOptions selection;
-  FeatureSet features = FeatureSet::parameters_and_noise;
-  WindowChoice windows = WindowChoice::automatic;
-  bool error_aware = false;
-  std::string start_file;  ///< archive whose mixture is a start; empty: selection.em.start alone
-};
-
-/// What of the [filter] section is about scoring a filter, not about how it steps.
-struct ScoringConfig {
-  std::vector<Index> horizon{1};  ///< samples ahead; 1 alone is what the summary scores anyway
-  bool smooth = true;
-};
-
 /// Which filter of an archive `track` runs.
 enum class TrackedFilter { bank, baseline, noise_only };
+
+/// Of the lines that `track` reads and writes.
+enum class LineFormat { automatic, csv, ndjson };
 
 struct TrackConfig {
   TrackedFilter filter = TrackedFilter::bank;
@@ -86,10 +69,10 @@ struct SimulateConfig {
 struct Config {
   DataOptions data;
   FitOptions window;
-  MixtureConfig mixture;
+  ClusterOptions mixture;
   BankOptions bank;
   FilterOptions filter;
-  ScoringConfig scoring;
+  ScoringOptions scoring;  ///< of the [filter] section what is not about how a filter steps
   TrackConfig track;
   ReportConfig report;
   ArchiveConfig archive;
@@ -101,11 +84,22 @@ struct Config {
 /// Defaults that are not those of the library's own structs.
 Config default_config();
 
+/// What of it decides the numbers of a run.
+ChainOptions chain_options(const Config& config);
+
+/// Checks values against each other, before any file of data is opened. Throws ConfigurationError naming the keys.
+void validate(const Config& config);
+
 }  // namespace modebank::app
 
 template <>
 struct modebank::EnumNames<modebank::app::TrackedFilter> {
   static constexpr Names<3> values{"bank", "baseline", "noise_only"};
+};
+
+template <>
+struct modebank::EnumNames<modebank::app::LineFormat> {
+  static constexpr Names<3> values{"auto", "csv", "ndjson"};
 };
 
 template <>

@@ -1,4 +1,4 @@
-#include "app/config_file.hpp"
+#include "app/config/config_file.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -11,10 +11,10 @@
 #include <map>
 #include <sstream>
 
-#include "app/option_table.hpp"
-#include "ident/error.hpp"
-#include "ident/nearest_name.hpp"
-#include "io/sha256.hpp"
+#include "app/config/option_table.hpp"
+#include "ident/base/nearest_name.hpp"
+#include "io/files/sha256.hpp"
+#include "modebank/base/error.hpp"
 
 namespace po = boost::program_options;
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/config.hpp"
+#include "app/config/config.hpp"
 
 namespace modebank::app {
 

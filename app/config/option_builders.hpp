@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/option_table.hpp"
-#include "app/option_text.hpp"
+#include "app/config/option_table.hpp"
+#include "app/config/option_text.hpp"
 
 /// What the lines of the option table are written with.
 namespace modebank::app {
@@ -102,7 +102,6 @@ Option text(std::string key, std::string what, std::string help, Field field) {
 }
 
 /// The member of a Config that an option reads and writes.
-#define MODEBANK_FIELD(expression) \
-  [](auto& c) -> auto& { return c.expression; }
+#define MODEBANK_FIELD(expression) ([](auto& c) -> auto& { return c.expression; })
 
 }  // namespace modebank::app

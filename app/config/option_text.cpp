@@ -1,4 +1,4 @@
-#include "app/option_text.hpp"
+#include "app/config/option_text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "ident/enum_names.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank::app {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/enum_names.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank::app {
 
@@ -17,7 +17,7 @@ enum class SampleMethod { latin_hypercube, sobol };
 /// What a failed trial means for the others.
 enum class OnFailure { record, stop };
 
-/// The [study] section. The texts of vary, together and when are taken apart by app/study/study_space.hpp.
+/// The [study] section. The texts of vary, together and when are taken apart by app/study/space/study_space.hpp.
 struct StudyConfig {
   std::vector<std::string> vary;      ///< "KEY = v1 | v2", one key each
   std::vector<std::string> together;  ///< "KEY, KEY": varied in step

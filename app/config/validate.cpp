@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
-#include "app/pipeline.hpp"
-#include "ident/error.hpp"
-#include "ident/model_choice.hpp"
+#include "app/chain/section.hpp"
+#include "app/config/config.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
@@ -27,18 +28,13 @@ void validate(const Config& config) {
           fmt::format("data.truth names {} columns, data.state {}: there must be as many, or none", data.truth.size(),
                       data.state.size()));
   const Index states = std::ssize(data.state), inputs = std::ssize(data.input);
-  check_model(config.window, states, inputs);
+  in_section("window", [&] { check_model(config.window, states, inputs); });
   check_prior(config.window, parameter_count(config.window, states, inputs));
   require(config.window.scale != ScaleSource::fixed || config.window.sigma > 0.0,
           "window.scale = fixed needs window.sigma, the residual standard deviation, above 0");
   require(config.bank.refine == Refine::none || is_linear(config.window),
           fmt::format("bank.refine = em needs window.model = linear or varx, not {}: it fits linear modes",
                       config.window.model));
-  require(config.bank.em.share == Sharing::none || config.bank.refine == Refine::em,
-          fmt::format("bank.share = {} needs bank.refine = em: it is chosen by the score of training runs left out of "
-                      "refinement. bank.noise = shared gives unrefined modes one Q; in a study, "
-                      "study.when = bank.share if bank.refine = em",
-                      name_of(config.bank.em.share)));
 }
 
 }  // namespace modebank::app

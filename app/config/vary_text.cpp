@@ -1,13 +1,14 @@
+#include "app/config/vary_text.hpp"
+
 #include <fmt/format.h>
 
 #include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <stdexcept>
 
-#include "app/config_file.hpp"
-#include "app/option_table.hpp"
-#include "app/option_text.hpp"
-#include "app/study/study_space.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "app/config/option_text.hpp"
 
 namespace modebank::app {
 namespace {

@@ -1,33 +1,33 @@
+#include "app/study/study.hpp"
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "app/commands.hpp"
-#include "app/config_file.hpp"
-#include "app/provenance.hpp"
-#include "app/study/answers_text.hpp"
-#include "app/study/best_runs.hpp"
-#include "app/study/merge_study.hpp"
-#include "app/study/run_trials.hpp"
-#include "app/study/slurm.hpp"
-#include "app/study/study_progress.hpp"
-#include "app/study/study_text.hpp"
-#include "app/study/submit_study.hpp"
-#include "ident/error.hpp"
+#include "app/chain/provenance.hpp"
+#include "app/study/answers/answers_text.hpp"
+#include "app/study/answers/best_runs.hpp"
+#include "app/study/answers/merge_study.hpp"
+#include "app/study/answers/study_text.hpp"
+#include "app/study/launch/slurm.hpp"
+#include "app/study/launch/submit_study.hpp"
+#include "app/study/run/run_trials.hpp"
+#include "app/study/run/study_progress.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
 
 /// One execution of the command.
 struct StudyCommand {
-  Config config;
-  CommandLine line;
+  const StudyCall& call;
+  const Config& config;
   TrialStore store;
   std::filesystem::file_time_type started;
 };
 
 /// The plan of the configuration, written to the folder; one that is there must go on in it.
 StudyPlan settle_plan(const StudyCommand& command) {
-  StudyPlan plan = make_plan(command.config, make_provenance(command.config, command.line));
+  StudyPlan plan = make_plan(command.config, make_provenance(config_hash(command.config), command.call.typed));
   command.store.create();
   const FileLocks locks(command.store.lock_file());
   const FileLocks::Hold alone = locks.lock(plan_lock);
@@ -41,7 +41,7 @@ StudyPlan settle_plan(const StudyCommand& command) {
 }
 
 WorkerSettings worker_settings(const StudyCommand& command, const StudyPlan& plan) {
-  return {command.config, command.line, command.store, plan.table.varied_keys, plan.provenance.modebank_version,
+  return {command.config, command.call.typed, command.store, plan.table.varied_keys, plan.provenance.modebank_version,
           command.started};
 }
 
@@ -125,18 +125,16 @@ int show_status(const StudyCommand& command) {
 int submit(const StudyCommand& command) {
   const StudyPlan plan = settle_plan(command);
   print_plan(command, plan);
-  fmt::print("{}", submit_study(command.line, command.config, plan, collect_table(command.store, plan)));
+  fmt::print("{}", submit_study(command.call, plan, collect_table(command.store, plan)));
   return 0;
 }
 
 }  // namespace
 
-int run_study(const CommandLine& line) {
-  if (line.files.size() != 1) throw ConfigurationError("study needs one configuration file: modebank study CONFIG");
-  Config config = load_config(line.files.front(), line.overrides);
-  const StudyCommand command{config, line, TrialStore(config.study.output),
+int do_study(const StudyCall& call) {
+  const StudyCommand command{call, call.config, TrialStore(call.config.study.output),
                              std::filesystem::file_time_type::clock::now()};
-  switch (config.study.stage) {
+  switch (call.config.study.stage) {
     case StudyStage::all:
       return run_all(command);
     case StudyStage::plan:

@@ -1,10 +1,10 @@
-#include "app/lag_text.hpp"
+#include "app/text/lag_text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "app/text_units.hpp"
+#include "app/text/text_units.hpp"
 
 namespace modebank::app {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "ident/lag_report.hpp"
+#include "ident/lag/report.hpp"
 
 namespace modebank::app {
 

@@ -1,4 +1,4 @@
-#include "app/number_text.hpp"
+#include "app/text/number_text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "app/sparkline.hpp"
+#include "app/text/sparkline.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "app/judged_runs.hpp"
-#include "filter/stretch_means.hpp"
+#include "app/chain/judged_runs.hpp"
+#include "app/text/stretch_means.hpp"
 
 namespace modebank::app {
 namespace {

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "app/terminal.hpp"
-#include "io/archive.hpp"
+#include "app/text/terminal.hpp"
+#include "io/archive/archive.hpp"
 
 namespace modebank::app {
 

@@ -1,4 +1,4 @@
-#include "filter/stretch_means.hpp"
+#include "app/text/stretch_means.hpp"
 
 #include <algorithm>
 #include <limits>

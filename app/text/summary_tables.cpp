@@ -1,14 +1,14 @@
-#include "app/summary_tables.hpp"
+#include "app/text/summary_tables.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <cmath>
 
-#include "app/judged_runs.hpp"
-#include "app/number_text.hpp"
-#include "app/text_table.hpp"
-#include "ident/window_summary.hpp"
+#include "app/chain/judged_runs.hpp"
+#include "app/text/number_text.hpp"
+#include "app/text/text_table.hpp"
+#include "ident/fit/window_summary.hpp"
 
 namespace modebank::app {
 namespace {

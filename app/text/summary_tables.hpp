@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "io/archive.hpp"
+#include "io/archive/archive.hpp"
 
 /// The tables of the summary and of `show`. A table wider than `width` columns goes on below; 0: no limit.
 namespace modebank::app {

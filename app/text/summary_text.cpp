@@ -1,4 +1,4 @@
-#include "app/summary_text.hpp"
+#include "app/text/summary_text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/judged_runs.hpp"
-#include "app/lag_text.hpp"
-#include "app/number_text.hpp"
-#include "app/summary_tables.hpp"
-#include "app/terminal.hpp"
+#include "app/chain/judged_runs.hpp"
+#include "app/text/lag_text.hpp"
+#include "app/text/number_text.hpp"
+#include "app/text/summary_tables.hpp"
+#include "app/text/terminal.hpp"
 #include "mixture/criteria.hpp"
 
 namespace modebank::app {
@@ -141,19 +141,15 @@ std::string horizon_text(const Archive& archive) {
 std::string gained(double nats) { return (nats >= 0.0 ? "+" : "") + fixed_or_short(nats, 3); }
 
 std::string gain_text(const Archive& archive) {
-  const Role role = judged_role(archive);
-  const SummaryRow* bank = pooled_row(archive, "bank", role);
-  const SummaryRow* baseline = pooled_row(archive, "baseline", role);
-  const SummaryRow* noise_only = pooled_row(archive, "noise_only", role);
-  if (!bank || !baseline || !noise_only) return "";
-  const double over_noise = bank->log_score - noise_only->log_score;
+  const std::optional<BankGain> gain = bank_gain(archive.summary);
+  if (!gain || !gain->over_baseline || !gain->over_noise_only) return "";
   return fmt::format(
       "\nOn {} runs the bank gains {} nats/sample over one Kalman filter (baseline) and {} over noise\n"
       "switching alone (noise_only): {}.\n",
-      words_for(role), gained(bank->log_score - baseline->log_score), gained(over_noise),
-      role == Role::train ? "nothing was held out, so neither is evidence"
-      : over_noise > 0    ? "that excess is its evidence for modes of motion"
-                          : "no evidence for modes of motion beyond changing noise");
+      words_for(gain->role), gained(*gain->over_baseline), gained(*gain->over_noise_only),
+      !gain->held_out()          ? "nothing was held out, so neither is evidence"
+      : gain->speaks_for_modes() ? "that excess is its evidence for modes of motion"
+                                 : "no evidence for modes of motion beyond changing noise");
 }
 
 }  // namespace
@@ -174,14 +170,21 @@ void WindowCounts::add(const WindowFits& fits) {
 
 namespace {
 
-/// How the windows were solved; empty for archives older than the audit and where Ceres solved all.
+/// Who solved the windows, and the audit of the batch solver; empty for archives that do not say in words.
 std::string audit_text(const WindowAudit& audit) {
-  if (audit.batch == 0) return "";
-  std::string text =
-      fmt::format("audit     {} windows by Newton's method, {} by Ceres; {} solved by both: cost differs by ",
-                  audit.batch, audit.ceres, audit.checked);
-  text += fmt::format("{:.1e} relative, parameters by {:.1e} standard errors", audit.cost_difference,
-                      audit.parameter_difference);
+  if (audit.ceres_method.empty()) return "";
+  std::string text = "solved    ";
+  if (audit.batch > 0) text += fmt::format("{} windows by {} (batch solver)", audit.batch, audit.batch_method);
+  if (audit.batch > 0 && audit.ceres > 0) text += ", ";
+  if (audit.ceres > 0) text += fmt::format("{} windows by {}", audit.ceres, audit.ceres_method);
+  if (audit.batch + audit.ceres == 0) text += "no window";
+  text += "\n";
+  if (audit.checked == 0) return text;
+  text +=
+      fmt::format("audit     {} of the batch solver's windows against Ceres alone: cost differs by {:.1e} relative, ",
+                  audit.checked, audit.cost_difference);
+  text += fmt::format("gradient {:.1e} (Ceres {:.1e}); parameters by {:.1e} standard errors", audit.gradient,
+                      audit.ceres_gradient, audit.parameter_difference);
   if (audit.lower > 0) text += fmt::format("; {} in a lower minimum than Ceres'", audit.lower);
   return text + "\n";
 }
@@ -191,10 +194,12 @@ std::string audit_text(const WindowAudit& audit) {
 std::vector<std::string> window_warnings(const WindowFits& fits, const WindowCounts& counts) {
   std::vector<std::string> warnings;
   if (fits.audit.replaced > 0)
-    warnings.push_back(fmt::format(
-        "the batch solver's cost was above Ceres' by more than {:.0e} relative in {} of {} audited windows, which have "
-        "Ceres' solution now; window.solver = ceres solves all of them so",
-        WindowAudit::tolerance, fits.audit.replaced, fits.audit.checked));
+    warnings.push_back(
+        fmt::format("the batch solver's cost was above Ceres' by more than {:.0e} relative, or its gradient above "
+                    "{:.0e}, in {} of {} "
+                    "audited windows, which have been solved by {}; window.solver = ceres solves all of them so",
+                    WindowAudit::tolerance, WindowAudit::gradient_tolerance, fits.audit.replaced, fits.audit.checked,
+                    fits.audit.ceres_method));
   if (const Index failed = counts.of(FitStatus::failed); failed > 0)
     warnings.push_back(
         fmt::format("{} of {} windows have no finite fit and are left out: their samples may hold values too large to "

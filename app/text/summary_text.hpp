@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/archive.hpp"
+#include "io/archive/archive.hpp"
 
 namespace modebank::app {
 

@@ -1,4 +1,4 @@
-#include "app/terminal.hpp"
+#include "app/text/terminal.hpp"
 
 #include <sys/ioctl.h>
 #include <unistd.h>

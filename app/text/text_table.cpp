@@ -1,9 +1,9 @@
-#include "app/text_table.hpp"
+#include "app/text/text_table.hpp"
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 
-#include "app/terminal.hpp"
+#include "app/text/terminal.hpp"
 
 namespace modebank::app {
 namespace {

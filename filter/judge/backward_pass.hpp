@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/filter_step.hpp"
-#include "filter/run_instants.hpp"
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/feed/run_samples.hpp"
 
 /// Kim's (1994) smoother on the modes' filtered estimates, moment by moment: what smooth_run writes down and what
 /// expectation-maximisation with measurement noise takes its expectations from.

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "filter/bank.hpp"
-#include "filter/evaluate.hpp"
-#include "filter/verdict.hpp"
-#include "ident/trajectory.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/verdict.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
 
 namespace modebank {
 
@@ -39,9 +39,9 @@ struct DiagnosticsRow {
 };
 
 /// Rows of one filter: per role with runs the whole filter, then each mode if there are several. `options`: of the
-/// filter that made the evaluations.
+/// filter that made the evaluations; `scores`: of these (score_runs).
 std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
-                                     const std::vector<Trajectory>& runs,
-                                     const std::vector<RunEvaluation>& evaluations);
+                                     const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
+                                     const std::vector<RunScores>& scores);
 
 }  // namespace modebank

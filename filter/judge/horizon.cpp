@@ -1,12 +1,12 @@
-#include "filter/horizon.hpp"
+#include "filter/judge/horizon.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "filter/filter_step.hpp"
-#include "filter/run_instants.hpp"
-#include "ident/not_a_number.hpp"
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/feed/run_samples.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 

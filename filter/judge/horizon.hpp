@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "filter/bank.hpp"
-#include "filter/evaluate.hpp"
-#include "ident/trajectory.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
 
 namespace modebank {
 

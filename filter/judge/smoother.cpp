@@ -1,9 +1,9 @@
-#include "filter/smoother.hpp"
+#include "filter/judge/smoother.hpp"
 
 #include <limits>
 
-#include "filter/backward_pass.hpp"
-#include "ident/not_a_number.hpp"
+#include "filter/judge/backward_pass.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "filter/bank.hpp"
-#include "filter/evaluate.hpp"
-#include "ident/trajectory.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
 
 namespace modebank {
 

@@ -1,11 +1,10 @@
-#include "filter/verdict.hpp"
+#include "filter/judge/verdict.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/beta.hpp>
 #include <cmath>
 
-#include "filter/calibration.hpp"
-#include "ident/not_a_number.hpp"
+#include "ident/base/distributions.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
@@ -42,10 +41,9 @@ int judge_nis(const Evidence& evidence) {
 
 Interval binomial_interval(double count, double samples) {
   if (!(samples > 0.0)) return {not_a_number, not_a_number};
-  using Beta = boost::math::beta_distribution<>;
   const double misses = std::max(0.0, samples - count);
-  return {count > 0.0 ? boost::math::quantile(Beta(count, misses + 1.0), beyond_either_end) : 0.0,
-          misses > 0.0 ? boost::math::quantile(Beta(count + 1.0, misses), 1.0 - beyond_either_end) : 1.0};
+  return {count > 0.0 ? beta_quantile(beyond_either_end, count, misses + 1.0) : 0.0,
+          misses > 0.0 ? beta_quantile(1.0 - beyond_either_end, count + 1.0, misses) : 1.0};
 }
 
 double dispersion(const SeriesByRun& series, double degrees) {
@@ -64,7 +62,7 @@ Interval chi_square_mean_interval(const SeriesByRun& series, double inflation, d
           degrees * chi_square_quantile(1.0 - outside, total) / total};
 }
 
-Verdict judge(const Evidence& evidence) {
+Verdict verdict_of(const Evidence& evidence) {
   if (sample_count(evidence.above) == 0.0) return Verdict::undecided;
   const double time = cautious_time(autocorrelation_time_of_tail(evidence.sizes), sample_count(evidence.sizes));
   const Interval above = tail_interval(evidence.above, time), below = tail_interval(evidence.below, time);

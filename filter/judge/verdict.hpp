@@ -1,7 +1,7 @@
 #pragma once
 
-#include "filter/autocorrelation.hpp"
-#include "ident/enum_names.hpp"
+#include "filter/judge/statistics.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank {
 
@@ -52,6 +52,6 @@ struct Evidence {
   bool chi_square_nis = false;  ///< whether a true filter's NIS is chi-square
 };
 
-Verdict judge(const Evidence& evidence);
+Verdict verdict_of(const Evidence& evidence);
 
 }  // namespace modebank

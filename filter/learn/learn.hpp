@@ -3,11 +3,11 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "filter/bank.hpp"
-#include "filter/evaluate.hpp"
-#include "filter/refine.hpp"
-#include "ident/local_model.hpp"
-#include "ident/trajectory.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/learn/refine/refine.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/model/local_model.hpp"
 #include "mixture/select.hpp"
 
 namespace modebank {

@@ -1,15 +1,15 @@
-#include "filter/live_verdict.hpp"
+#include "filter/step/alarm.hpp"
 
 #include <cmath>
 
-#include "filter/calibration.hpp"
+#include "ident/base/distributions.hpp"
 
 namespace modebank {
 
 LiveJudge::LiveJudge(const Bank& bank, double level, double alarm)
     : C_(bank.C),
-      interval_quantile_(normal_score(0.5 + 0.5 * level)),
-      alarm_quantile_(normal_score(0.5 + 0.5 * alarm)),
+      interval_quantile_(normal_quantile(0.5 + 0.5 * level)),
+      alarm_tail_(0.5 * (1.0 - alarm)),
       verdict_{Eigen::VectorXd(C_.rows()), Eigen::VectorXd(C_.rows()), Eigen::VectorXd(C_.rows())} {}
 
 const LiveVerdict& LiveJudge::judge(const FilterEstimate& estimate) {
@@ -20,7 +20,7 @@ const LiveVerdict& LiveJudge::judge(const FilterEstimate& estimate) {
     verdict_.lower(i) = verdict_.predicted(i) - half;
     verdict_.upper(i) = verdict_.predicted(i) + half;
     const double pit = estimate.pit(i);
-    if (!std::isnan(pit) && std::abs(normal_score(pit)) > alarm_quantile_) verdict_.alarm = true;
+    if (pit < alarm_tail_ || pit > 1.0 - alarm_tail_) verdict_.alarm = true;  // NaN, a missing signal: never
   }
   return verdict_;
 }

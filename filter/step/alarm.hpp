@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "filter/bank_filter.hpp"
+#include "filter/step/bank_filter.hpp"
 
 namespace modebank {
 
@@ -24,7 +24,8 @@ class LiveJudge {
 
  private:
   Eigen::MatrixXd C_;
-  double interval_quantile_, alarm_quantile_;
+  double interval_quantile_;
+  double alarm_tail_;  ///< to either side
   LiveVerdict verdict_;
 };
 

@@ -4,11 +4,28 @@
 #include <string>
 #include <vector>
 
-#include "filter/transition_matrix.hpp"
-#include "ident/model.hpp"
-#include "ident/motion_model.hpp"
+#include "ident/model/linear_model.hpp"
+#include "ident/model/motion_model.hpp"
 
 namespace modebank {
+
+/// Row-stochastic mode transition matrix, T(i, j) = P(mode j next | mode i now). A type of its own, so that it can
+/// never be handed over where mixing weights (columns sum to one) are meant. Checked once, at construction.
+class TransitionMatrix {
+ public:
+  TransitionMatrix() : matrix_(Eigen::MatrixXd::Identity(1, 1)) {}
+  /// Throws std::invalid_argument unless square with nonnegative rows that each sum to one within 1e-9 (rows are then
+  /// normalised, unless they are already up to rounding: making one from its own matrix() keeps every bit).
+  explicit TransitionMatrix(Eigen::MatrixXd row_stochastic);
+  /// `stay` on the diagonal, the rest spread equally; K = 1 gives 1.
+  static TransitionMatrix sticky(Eigen::Index modes, double stay);
+
+  const Eigen::MatrixXd& matrix() const { return matrix_; }
+  Eigen::Index modes() const { return matrix_.rows(); }
+
+ private:
+  Eigen::MatrixXd matrix_;
+};
 
 /// One mode of motion, in state space (with lags z and v of LinearStructure take the places of x and u): x[k+1] = x + A
 /// x + B u + c + w, w ~ N(0, Q).
@@ -24,7 +41,7 @@ struct Mode {
   Eigen::MatrixXd Q_standard_error = {};  ///< n x n; of refined banks, empty otherwise
 };
 
-/// How fast the scale of the noise follows a run (filter/noise_scale.hpp).
+/// How fast the scale of the noise follows a run (filter/step/equations/noise_scale.hpp).
 struct NoiseAdaptation {
   double forgetting = 0.98;  ///< per sample, in (0, 1]: 1 / (1 - forgetting) samples are remembered; 1: all of the run
   double prior_samples = 5;  ///< how many samples at scale one a run's start is worth, > 0
@@ -60,7 +77,24 @@ struct Bank {
   Eigen::VectorXd theta(Eigen::Index mode) const { return pack(structure, modes[mode].model); }
 };
 
-/// Throws std::invalid_argument naming the first size that does not fit.
+/// Throws std::invalid_argument naming the first thing that no filter can work with: a size that does not fit the
+/// others, a number that is not finite, a variance below zero, probabilities that are none, a noise adaptation out of
+/// its range.
+void validate(const Bank& bank);
+/// The sizes alone: what an optimiser's candidates have in common, however far out their numbers are.
 void check_sizes(const Bank& bank);
+
+/// Directions of the state that one measurement leaves open start with this multiple of the largest variance of Q and
+/// R: wide against what the filter will learn, and close enough to it to keep the arithmetic sound.
+inline constexpr double unobserved_variance_factor = 1e4;
+
+/// How a filter starts from its first measurement: x[0] = gain y[0]. With lagged states it starts from the measurements
+/// of all of z: gain I, and R for each sample.
+struct StartMoments {
+  Eigen::MatrixXd gain;        ///< n x n_y, the pseudo-inverse C+; n x n with lagged states
+  Eigen::MatrixXd covariance;  ///< n x n, C+ R C+' (+ wide variance where C sees nothing); R itself for C = I
+};
+
+StartMoments start_moments(const Bank& bank);
 
 }  // namespace modebank

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "filter/bank.hpp"
-#include "filter/evaluate.hpp"
-#include "filter/sample_feed.hpp"
+#include "filter/step/bank.hpp"
+#include "filter/step/feed/sample_feed.hpp"
+#include "modebank/filter/options.hpp"
 
 namespace modebank {
 
@@ -26,25 +26,27 @@ struct FilterEstimate {
   Eigen::Index steps = 0;                      ///< model steps from the sample before; 0: the filter (re)started here
 };
 
-/// All that a BankFilter remembers, to go on later where it stopped.
-struct FilterSnapshot {
-  bool started = false;
+/// What a filter knows between two samples, of any bank and variant.
+struct FilterMemory {
   Eigen::MatrixXd means;             ///< n x K
   Eigen::MatrixXd covariances;       ///< n*n x K
   Eigen::VectorXd mode_probability;  ///< K
   double noise_scale = 1.0;
   double noise_samples = 0.0;  ///< how many samples the scale rests on
-  SampleFeed::Memory samples;
 };
 
-struct BankFilterSteps;
+/// All that a BankFilter remembers, to go on later where it stopped.
+struct FilterSnapshot : FilterMemory {
+  bool started = false;
+  SampleFeed::Memory samples;
+};
 
 /// A bank at work, sample by sample, whatever its sizes and the variant: the one way from samples to estimates, live
 /// and in evaluate_run. A step allocates nothing.
 class BankFilter {
  public:
-  /// Throws std::invalid_argument when the bank's sizes do not fit each other, or it holds numbers that no filter can
-  /// work with.
+  /// Throws std::invalid_argument for a bank that validate (bank.hpp) refuses, and for FilterVariant::kf of several
+  /// modes.
   BankFilter(const Bank& bank, const FilterOptions& options);
   ~BankFilter();
   BankFilter(BankFilter&&) noexcept;
@@ -62,11 +64,13 @@ class BankFilter {
   bool started() const;
 
   FilterSnapshot snapshot() const;
-  /// Throws std::invalid_argument when the snapshot is of a bank of other sizes, or holds numbers that no filter has.
+  /// Throws std::invalid_argument when the snapshot is of a bank of other sizes, or holds numbers that no filter has;
+  /// the filter is then as it was.
   void restore(const FilterSnapshot& snapshot);
 
  private:
-  std::unique_ptr<BankFilterSteps> steps_;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace modebank

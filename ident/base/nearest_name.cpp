@@ -1,4 +1,4 @@
-#include "ident/nearest_name.hpp"
+#include "ident/base/nearest_name.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "ident/seed.hpp"
+#include "ident/base/seed.hpp"
 
 namespace modebank {
 

@@ -1,12 +1,12 @@
-#include "ident/data_advice.hpp"
+#include "ident/check/advice.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "ident/regression.hpp"
-#include "ident/robust_regression.hpp"
-#include "ident/run_check.hpp"
+#include "ident/check/run_check.hpp"
+#include "ident/fit/robust_regression.hpp"
+#include "ident/model/transitions.hpp"
 
 namespace modebank {
 

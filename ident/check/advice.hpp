@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "ident/robust_loss.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/fit/loss.hpp"
 
 namespace modebank {
 

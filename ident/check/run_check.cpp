@@ -1,12 +1,12 @@
-#include "ident/run_check.hpp"
+#include "ident/check/run_check.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
-#include "ident/lag_objective.hpp"
-#include "ident/not_a_number.hpp"
-#include "ident/regression.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/lag/objective.hpp"
+#include "ident/model/transitions.hpp"
 
 namespace modebank {
 

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "ident/lag_choice.hpp"
-#include "ident/model.hpp"
-#include "ident/stream_check.hpp"
+#include "ident/check/stream_check.hpp"
+#include "ident/lag/choice.hpp"
+#include "ident/model/linear_model.hpp"
 
 namespace modebank {
 

@@ -1,13 +1,13 @@
-#include "ident/stream_check.hpp"
+#include "ident/check/stream_check.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 
-#include "ident/not_a_number.hpp"
-#include "ident/robust_scale.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/fit/scale.hpp"
 
 namespace modebank {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ident/join_streams.hpp"
+#include "ident/data/streams.hpp"
 
 namespace modebank {
 

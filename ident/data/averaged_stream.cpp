@@ -1,4 +1,4 @@
-#include "ident/averaged_stream.hpp"
+#include "ident/data/averaged_stream.hpp"
 
 #include <algorithm>
 #include <cmath>

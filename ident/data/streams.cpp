@@ -1,11 +1,11 @@
-#include "ident/join_streams.hpp"
+#include "ident/data/streams.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
 
 namespace modebank {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "ident/input_clock.hpp"
+#include "ident/data/input_clock.hpp"
 
 namespace modebank {
 

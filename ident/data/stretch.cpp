@@ -1,4 +1,4 @@
-#include "ident/stretch.hpp"
+#include "ident/data/stretch.hpp"
 
 namespace modebank {
 

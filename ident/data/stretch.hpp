@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
 
 namespace modebank {
 

@@ -1,4 +1,4 @@
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
 
 #include <algorithm>
 

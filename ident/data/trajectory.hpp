@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/enum_names.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank {
 

@@ -1,13 +1,14 @@
-#include "ident/window_plan.hpp"
+#include "ident/data/window.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
-
-#include "ident/error.hpp"
 
 namespace modebank {
 
 WindowPlan::WindowPlan(const Recording& recording, Index length, Index step, Index first) : step_(step) {
+  if (length < 1) throw std::invalid_argument("window length " + std::to_string(length) + " is below 1");
+  if (step < 1) throw std::invalid_argument("window step " + std::to_string(step) + " is below 1");
   for (std::size_t r = 0; r < recording.runs.size(); ++r) {
     const Trajectory& run = recording.runs[r];
     const Index last = run.transitions() - length;  // start of the last window
@@ -18,14 +19,14 @@ WindowPlan::WindowPlan(const Recording& recording, Index length, Index step, Ind
 }
 
 Window WindowPlan::window(Index i) const {
-  const auto after = [](Index index, const Stretch& run) { return index < run.first; };
-  const Stretch& run = *(std::upper_bound(runs_.begin(), runs_.end(), i, after) - 1);
+  const auto after = [](Index index, const Range& run) { return index < run.first; };
+  const Range& run = *(std::upper_bound(runs_.begin(), runs_.end(), i, after) - 1);
   return {run.window.run, run.window.start + (i - run.first) * step_};
 }
 
-std::vector<WindowPlan::Stretch> WindowPlan::stretches(Index first, Index count, Index longest) const {
-  std::vector<Stretch> result;
-  for (const Stretch& run : runs_) {
+std::vector<WindowPlan::Range> WindowPlan::ranges(Index first, Index count, Index longest) const {
+  std::vector<Range> result;
+  for (const Range& run : runs_) {
     const Index end = std::min(first + count, run.first + run.count);
     for (Index i = std::max(first, run.first); i < end; i += longest)
       result.push_back({i, std::min(longest, end - i), window(i)});
@@ -33,17 +34,11 @@ std::vector<WindowPlan::Stretch> WindowPlan::stretches(Index first, Index count,
   return result;
 }
 
-WindowFits empty_fits(const FitOptions& options, const LinearStructure& structure, Index windows) {
-  if (windows == 0)
-    throw DataError("no training run has the " + std::to_string(options.length) + " transitions of a window");
-  WindowFits fits;
-  fits.model = options.model;
-  fits.structure = structure;
-  fits.residual = options.residual;
-  fits.length = options.length;
-  fits.step = options.step;
-  fits.loss = options.loss;
-  return fits;
+std::vector<Window> make_windows(const Recording& recording, Index length, Index step, Index first) {
+  const WindowPlan plan(recording, length, step, first);
+  std::vector<Window> windows;
+  for (Index i = 0; i < plan.count(); ++i) windows.push_back(plan.window(i));
+  return windows;
 }
 
 }  // namespace modebank

@@ -1,18 +1,15 @@
-#include "ident/confidence.hpp"
+#include "ident/fit/confidence.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/distributions.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
@@ -27,15 +24,7 @@ void check_level(double level) {
 }
 
 double region_limit(double parameters, double nu, double level) {
-  namespace math = boost::math;
-  if (std::isinf(nu)) return math::quantile(math::chi_squared(parameters), level);
-  return parameters * math::quantile(math::fisher_f(parameters, nu), level);
-}
-
-double student_quantile(double nu, double probability) {
-  namespace math = boost::math;
-  return std::isinf(nu) ? math::quantile(math::normal(), probability)
-                        : math::quantile(math::students_t(nu), probability);
+  return std::isinf(nu) ? chi_square_quantile(level, parameters) : parameters * fisher_quantile(level, parameters, nu);
 }
 
 }  // namespace
@@ -79,7 +68,7 @@ ConfidenceRegion confidence_region(const LocalModel& fit, double level) {
 
 Eigen::VectorXd interval_half_width(const LocalModel& fit, double level) {
   check_level(level);
-  return standard_error(fit) * student_quantile(region_degrees_of_freedom(fit), 0.5 * (1.0 + level));
+  return standard_error(fit) * student_quantile(0.5 * (1.0 + level), region_degrees_of_freedom(fit));
 }
 
 }  // namespace modebank

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "ident/local_model.hpp"
+#include "ident/model/local_model.hpp"
 
 namespace modebank {
 

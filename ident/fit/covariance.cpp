@@ -1,17 +1,16 @@
-#include "ident/covariance.hpp"
+#include "ident/fit/covariance.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/fit/constants.hpp"
 
 namespace modebank {
 
 namespace {
 
-/// 1 - leverage is kept above this: a sample that determines a direction alone has residual and 1 - leverage both zero.
-constexpr double least_one_minus_leverage = 1e-6;
 /// Below this reciprocal condition G counts as singular.
 constexpr double least_correlation_rcond = 1e-10;
 

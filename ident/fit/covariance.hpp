@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "ident/m_estimate.hpp"
+#include "ident/fit/minimise.hpp"
 
 namespace modebank {
 

@@ -1,12 +1,29 @@
 #pragma once
 
-#include <Eigen/Core>
-
-#include "ident/fit_transitions.hpp"
-#include "ident/m_estimate.hpp"
-#include "ident/whitened_problem.hpp"
+#include "ident/fit/minimise.hpp"
+#include "ident/fit/options.hpp"
+#include "ident/fit/scale.hpp"
+#include "ident/fit/whitened_problem.hpp"
 
 namespace modebank {
+
+/// A window's problem at its optimum, of a linear or a motion model, and what its description needs.
+struct SolvedWindow {
+  const WhitenedProblem& problem;
+  const RobustTerms& terms;
+  const Transitions& transitions;  ///< only the increments are used
+  const RobustLoss& loss;
+  double consistency = 1.0;  ///< gaussian_consistency of the loss
+  CovarianceKind covariance = CovarianceKind::model;
+  const NoiseScale& scale;
+  const ParameterPrior* prior = nullptr;
+  double unknowns_per_state = 0.0;  ///< q of a linear model
+  double rank_per_state = 0.0;
+};
+
+/// Everything of LocalModel but condition, rank and status, as fit_window states it; theta is that of `terms`' optimum
+/// given as `theta`, whose entries are the first of the problem's.
+LocalModel describe_fit(const SolvedWindow& solved, const Eigen::VectorXd& theta);
 
 /// How much of a window a fit explains, from its problem and the terms at the optimum. omega_k is the robust weight of
 /// sample k, w_k its sample weight, d_k its increment, e_k its residual, both in the state's unit.
@@ -29,5 +46,8 @@ Eigen::VectorXd r_squared(const Transitions& transitions, const WhitenedProblem&
 /// (Hastie & Tibshirani 1990).
 double akaike_criterion(const WhitenedProblem& problem, const RobustTerms& terms, const RobustLoss& loss,
                         const NoiseScale& scale);
+
+/// The outcome for data that are not finite or cannot be fitted: everything NaN, rank 0.
+LocalModel failed_fit(Index parameters, Index states);
 
 }  // namespace modebank

@@ -1,9 +1,9 @@
-#include "ident/linearise.hpp"
+#include "ident/fit/linearise.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "ident/model_residuals.hpp"
+#include "ident/fit/motion_residuals.hpp"
 
 namespace modebank {
 

@@ -1,14 +1,13 @@
-#include "ident/robust_loss.hpp"
+#include "ident/fit/loss.hpp"
 
 #include <ceres/loss_function.h>
 
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "ident/fit_window.hpp"
+#include "ident/base/distributions.hpp"
+#include "ident/fit/constants.hpp"
 
 namespace modebank {
 
@@ -39,7 +38,7 @@ double default_loss_scale(Loss loss) {
     case Loss::trivial:
       return 1.0;
     case Loss::huber:
-      return 1.345;
+      return huber_tuning;
     case Loss::cauchy:
       return 2.385;
     case Loss::softlone:
@@ -70,16 +69,14 @@ LossValue RobustLoss::operator()(double s) const {
 
 double gaussian_consistency(const RobustLoss& loss, Eigen::Index states) {
   if (loss.kind() == Loss::trivial) return 1.0;
-  const boost::math::chi_squared density(static_cast<double>(states));
   const auto integrand = [&](double r) {
     const double s = r * r;
-    return loss(s).weight * s * boost::math::pdf(density, s) * 2.0 * r;
+    return loss(s).weight * s * chi_square_density(s, static_cast<double>(states)) * 2.0 * r;
   };
-  using Quadrature = boost::math::quadrature::gauss_kronrod<double, 61>;
   // Split at the kink of Huber's and Tukey's weights; beyond the end chi has less than 1e-20 of its mass.
   const double kink = loss.scale(), end = std::sqrt(static_cast<double>(states)) + 10.0;
-  const double tail = kink < end ? Quadrature::integrate(integrand, kink, end) : 0.0;
-  return (Quadrature::integrate(integrand, 0.0, std::min(kink, end)) + tail) / static_cast<double>(states);
+  const double tail = kink < end ? integrate(integrand, kink, end) : 0.0;
+  return (integrate(integrand, 0.0, std::min(kink, end)) + tail) / static_cast<double>(states);
 }
 
 }  // namespace modebank

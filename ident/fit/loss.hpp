@@ -3,13 +3,17 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "ident/local_model.hpp"
+#include "ident/model/local_model.hpp"
 
 namespace ceres {
 class LossFunction;
 }
 
 namespace modebank {
+
+/// Tuning constant, in units of sigma, that gives 95 % efficiency under Gaussian noise in one state (Holland & Welsch
+/// 1977; softlone and arctan solved from the same condition; 1 for trivial).
+double default_loss_scale(Loss loss);
 
 /// rho and its derivatives at s = |r|^2, r in units of sigma.
 struct LossValue {

@@ -1,4 +1,4 @@
-#include "ident/m_estimate.hpp"
+#include "ident/fit/minimise.hpp"
 
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -9,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "ident/residuals.hpp"
+#include "ident/fit/constants.hpp"
+#include "ident/fit/residuals.hpp"
 
 namespace modebank {
 
@@ -21,8 +22,11 @@ constexpr double largest_residual = 1e100;
 /// they do not, as far as the cost can be told apart.
 constexpr double near_tolerance = 1e-4;
 constexpr double far_tolerance = 1e-14;
-constexpr double stationary_gradient = 1e-10;  ///< of |psi|, of which the gradient is a projection
-constexpr double rounding_gradient = 1e-15;    ///< of the residuals that it is made from
+/// Below this share of b the influence psi no longer scales a gradient: stationary_gradient of it is rounding error.
+constexpr double least_influence = 1e-5;
+/// Near the optimum what a step should gain is rounding error, and Ceres calls it invalid; the trust region shrinks,
+/// and Ceres is to end there as at any small step, not as a failure.
+constexpr int most_invalid_steps = 50;
 constexpr double cost_rounding = 1e-13;
 constexpr int max_newton_steps = 60;
 constexpr int max_halvings = 30;
@@ -35,7 +39,13 @@ ceres::Problem::Options problem_options() {
   return options;
 }
 
-ceres::Solver::Options solver_options(double function_tolerance, int max_iterations) {
+/// Where Ceres ends: relative change of the cost, gradient, relative step.
+struct Tolerances {
+  double function, gradient = 1e-14, parameter = 1e-12;
+};
+constexpr Tolerances tightest{1e-16, 1e-16, 1e-16};
+
+ceres::Solver::Options solver_options(const Tolerances& tolerances, int max_iterations) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;  // safe: J has orthonormal columns
   options.max_num_iterations = max_iterations;
@@ -43,14 +53,15 @@ ceres::Solver::Options solver_options(double function_tolerance, int max_iterati
   options.logging_type = ceres::SILENT;
   options.jacobi_scaling = false;             // the columns are of unit norm already
   options.initial_trust_region_radius = 1e8;  // start with full steps: the problem is convex or starts near its optimum
-  options.function_tolerance = function_tolerance;
-  options.gradient_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-12;
+  options.function_tolerance = tolerances.function;
+  options.gradient_tolerance = tolerances.gradient;
+  options.max_num_consecutive_invalid_steps = most_invalid_steps;
+  options.parameter_tolerance = tolerances.parameter;
   return options;
 }
 
-FitStatus search(const WhitenedProblem& problem, const RobustLoss& loss, double tolerance, int max_iterations,
-                 Eigen::VectorXd& z) {
+FitStatus search(const WhitenedProblem& problem, const RobustLoss& loss, const Tolerances& tolerances,
+                 int max_iterations, Eigen::VectorXd& z) {
   ceres::Problem ceres_problem(problem_options());
   const auto add = [&](Index first, Index count, ceres::LossFunction* function) {
     ceres_problem.AddResidualBlock(new LinearResidual(problem, first, count), function, z.data());  // Ceres owns it
@@ -62,26 +73,13 @@ FitStatus search(const WhitenedProblem& problem, const RobustLoss& loss, double 
         weighted.empty() ? loss.ceres_function() : &weighted[static_cast<std::size_t>(k)]);
   if (problem.prior_rows() > 0) add(problem.sample_rows(), problem.prior_rows(), nullptr);
   ceres::Solver::Summary summary;
-  ceres::Solve(solver_options(tolerance, max_iterations), &ceres_problem, &summary);
+  ceres::Solve(solver_options(tolerances, max_iterations), &ceres_problem, &summary);
   if (summary.termination_type == ceres::CONVERGENCE) return FitStatus::converged;
   return summary.termination_type == ceres::NO_CONVERGENCE ? FitStatus::iteration_limit : FitStatus::failed;
 }
 
-/// 1/2 sum w rho(|r_k|^2 / w) + 1/2 |prior rows|^2.
-double half_cost(const WhitenedProblem& problem, const RobustLoss& loss, const RobustTerms& terms) {
-  double sum = terms.residual.tail(problem.prior_rows()).squaredNorm();
-  for (Index k = 0; k < problem.samples; ++k) {
-    const double w = problem.sample_weight(k);
-    sum += w * loss(terms.sample(k, problem.states).squaredNorm() / w).rho;
-  }
-  return 0.5 * sum;
-}
-
-bool stationary(const WhitenedProblem& problem, const RobustTerms& terms, const Eigen::VectorXd& g) {
-  double psi_square = terms.residual.tail(problem.prior_rows()).squaredNorm();
-  for (Index k = 0; k < problem.samples; ++k)
-    psi_square += terms.weight(k) * terms.weight(k) * terms.sample(k, problem.states).squaredNorm();
-  return g.norm() <= std::max(stationary_gradient * std::sqrt(psi_square), rounding_gradient * problem.b.norm());
+bool stationary(const WhitenedProblem& problem, const RobustTerms& terms) {
+  return scaled_gradient(problem, terms) <= stationary_gradient;
 }
 
 /// -H^-1 g; without rho'' where the second derivative is not positive definite. Empty where even that is not.
@@ -95,9 +93,8 @@ Eigen::VectorXd newton_step(const WhitenedProblem& problem, const RobustTerms& t
 bool polish(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::VectorXd& z) {
   RobustTerms terms = evaluate(problem, loss, z);
   for (int i = 0; i < max_newton_steps; ++i) {
-    const Eigen::VectorXd g = gradient(problem, terms);
-    if (stationary(problem, terms, g)) return true;
-    Eigen::VectorXd step = newton_step(problem, terms, g);
+    if (stationary(problem, terms)) return true;
+    Eigen::VectorXd step = newton_step(problem, terms, gradient(problem, terms));
     if (step.size() == 0 || !step.allFinite()) return false;
     const double allowed = half_cost(problem, loss, terms) * (1.0 + cost_rounding);
     RobustTerms candidate = evaluate(problem, loss, z + step);
@@ -109,7 +106,12 @@ bool polish(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::Vecto
     z += step;
     terms = std::move(candidate);
   }
-  return stationary(problem, terms, gradient(problem, terms));
+  return stationary(problem, terms);
+}
+
+/// Whether the numbers can be squared.
+bool sound(const WhitenedProblem& problem) {
+  return problem.b.cwiseAbs().maxCoeff() < largest_residual && problem.J.allFinite();
 }
 
 Minimum finite_or_failed(Minimum minimum) {
@@ -127,8 +129,13 @@ Eigen::MatrixXd RobustTerms::influence_slope(Index k, Index states) const {
 }
 
 RobustTerms evaluate(const WhitenedProblem& problem, const RobustLoss& loss, const Eigen::VectorXd& z) {
-  RobustTerms terms{problem.b, Eigen::VectorXd(problem.samples), Eigen::VectorXd(problem.samples)};
-  terms.residual.noalias() -= problem.J * z;
+  Eigen::VectorXd residual = problem.b;
+  residual.noalias() -= problem.J * z;
+  return evaluate_at(problem, loss, std::move(residual));
+}
+
+RobustTerms evaluate_at(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::VectorXd residual) {
+  RobustTerms terms{std::move(residual), Eigen::VectorXd(problem.samples), Eigen::VectorXd(problem.samples)};
   for (Index k = 0; k < problem.samples; ++k) {
     const double sample_weight = problem.sample_weight(k);
     const LossValue value = loss(terms.sample(k, problem.states).squaredNorm() / sample_weight);
@@ -136,6 +143,23 @@ RobustTerms evaluate(const WhitenedProblem& problem, const RobustLoss& loss, con
     terms.curvature(k) = value.curvature / sample_weight;
   }
   return terms;
+}
+
+double half_cost(const WhitenedProblem& problem, const RobustLoss& loss, const RobustTerms& terms) {
+  double sum = terms.residual.tail(problem.prior_rows()).squaredNorm();
+  for (Index k = 0; k < problem.samples; ++k) {
+    const double w = problem.sample_weight(k);
+    sum += w * loss(terms.sample(k, problem.states).squaredNorm() / w).rho;
+  }
+  return 0.5 * sum;
+}
+
+double scaled_gradient(const WhitenedProblem& problem, const RobustTerms& terms) {
+  double psi_square = terms.residual.tail(problem.prior_rows()).squaredNorm();
+  for (Index k = 0; k < problem.samples; ++k)
+    psi_square += terms.weight(k) * terms.weight(k) * terms.sample(k, problem.states).squaredNorm();
+  const double scale = std::max(std::sqrt(psi_square), least_influence * problem.b.norm());
+  return scale > 0.0 ? gradient(problem, terms).norm() / scale : 0.0;
 }
 
 Eigen::VectorXd gradient(const WhitenedProblem& problem, const RobustTerms& terms) {
@@ -164,20 +188,26 @@ Eigen::MatrixXd hessian(const WhitenedProblem& problem, const RobustTerms& terms
 
 Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max_iterations) {
   Minimum minimum{Eigen::VectorXd::Zero(problem.unknowns()), FitStatus::failed};
-  if (!(problem.b.cwiseAbs().maxCoeff() < largest_residual) || !problem.J.allFinite()) return minimum;
+  if (!sound(problem)) return minimum;
   minimum.status = FitStatus::converged;
   if (problem.unknowns() == 0) return minimum;
-  if (!loss.convex()) {
-    const Minimum start = minimise(problem, RobustLoss(Loss::huber, 0.0), max_iterations);
-    minimum.z = start.z;
-  }
-  const RobustTerms terms = evaluate(problem, loss, minimum.z);
-  if (stationary(problem, terms, gradient(problem, terms))) return minimum;
+  if (!loss.convex()) minimum.z = minimise(problem, RobustLoss(Loss::huber, 0.0), max_iterations).z;
   for (const double tolerance : {near_tolerance, far_tolerance}) {
-    minimum.status = search(problem, loss, tolerance, max_iterations, minimum.z);
+    minimum.status = search(problem, loss, {tolerance}, max_iterations, minimum.z);
     if (minimum.status != FitStatus::converged || polish(problem, loss, minimum.z)) return finite_or_failed(minimum);
   }
   minimum.status = FitStatus::iteration_limit;  // Ceres gains nothing, and yet this is no stationary point
+  return finite_or_failed(minimum);
+}
+
+Minimum minimise_by_ceres_alone(const WhitenedProblem& problem, const RobustLoss& loss) {
+  constexpr int max_iterations = 1000;
+  Minimum minimum{Eigen::VectorXd::Zero(problem.unknowns()), FitStatus::failed};
+  if (!sound(problem)) return minimum;
+  minimum.status = FitStatus::converged;
+  if (problem.unknowns() == 0) return minimum;
+  if (!loss.convex()) minimum.z = minimise_by_ceres_alone(problem, RobustLoss(Loss::huber, 0.0)).z;
+  minimum.status = search(problem, loss, tightest, max_iterations, minimum.z);
   return finite_or_failed(minimum);
 }
 

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "ident/robust_loss.hpp"
-#include "ident/whitened_problem.hpp"
+#include "ident/fit/loss.hpp"
+#include "ident/fit/whitened_problem.hpp"
 
 namespace modebank {
 
@@ -26,13 +26,22 @@ struct RobustTerms {
 };
 
 RobustTerms evaluate(const WhitenedProblem& problem, const RobustLoss& loss, const Eigen::VectorXd& z);
+/// The same at given residuals (all rows).
+RobustTerms evaluate_at(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::VectorXd residual);
 
-/// Gradient of 1/2 sum w rho(|r_k|^2 / w) + 1/2 |prior rows|^2 in z.
+/// The objective 1/2 sum w rho(|r_k|^2 / w) + 1/2 |prior rows|^2.
+double half_cost(const WhitenedProblem& problem, const RobustLoss& loss, const RobustTerms& terms);
+/// Its gradient in z.
 Eigen::VectorXd gradient(const WhitenedProblem& problem, const RobustTerms& terms);
 /// Its exact second derivative.
 Eigen::MatrixXd hessian(const WhitenedProblem& problem, const RobustTerms& terms);
 /// The second derivative without rho'', as iteratively reweighted least squares takes it: never indefinite.
 Eigen::MatrixXd weighted_information(const WhitenedProblem& problem, const RobustTerms& terms);
+
+/// How far from a minimum (the Karush-Kuhn-Tucker condition of a problem without bounds): the gradient's norm relative
+/// to that of psi and the prior's rows, of which it is a projection, or to 1e-5 |b| where psi is smaller still and the
+/// gradient rounding error. Free of units.
+double scaled_gradient(const WhitenedProblem& problem, const RobustTerms& terms);
 
 /// The minimiser, and how the search for it ended: converged, iteration_limit or failed.
 struct Minimum {
@@ -40,9 +49,14 @@ struct Minimum {
   FitStatus status = FitStatus::failed;
 };
 
-/// Ceres' trust region search from the least-squares solution (non-convex losses: from the Huber optimum), then Newton
-/// steps with the exact second derivative, because Ceres drops rho'' where it is negative and so gains only a constant
+/// THE definition of a linear window's fit, and what solves it where the batch solver does not: Ceres' trust region
+/// search, one residual block and loss per sample, from the least-squares solution (non-convex losses: from the Huber
+/// optimum) until the cost changes by less than 1e-4 of itself; then Newton steps with the exact second derivative to a
+/// scaled gradient of stationary_gradient, because Ceres drops rho'' where it is negative and so gains only a constant
 /// factor per step near the optimum. Deterministic and silent.
 Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max_iterations);
+
+/// Ceres alone from the same start, at tolerances of 1e-16: what audits compare with.
+Minimum minimise_by_ceres_alone(const WhitenedProblem& problem, const RobustLoss& loss);
 
 }  // namespace modebank

@@ -1,4 +1,4 @@
-#include "ident/model_objective.hpp"
+#include "ident/fit/motion_objective.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ident/fit_window.hpp"
-#include "ident/model_residuals.hpp"
-#include "ident/robust_loss.hpp"
+#include "ident/fit/loss.hpp"
+#include "ident/fit/motion_residuals.hpp"
+#include "ident/fit/prior.hpp"
 
 namespace modebank {
 

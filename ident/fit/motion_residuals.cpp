@@ -1,4 +1,4 @@
-#include "ident/model_residuals.hpp"
+#include "ident/fit/motion_residuals.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ident/local_model.hpp"
-#include "ident/motion_model.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/model/local_model.hpp"
+#include "ident/model/motion_model.hpp"
 
 namespace modebank {
 

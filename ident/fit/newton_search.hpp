@@ -5,7 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "ident/model_objective.hpp"
+#include "ident/fit/constants.hpp"
+#include "ident/fit/motion_objective.hpp"
 
 namespace modebank {
 
@@ -33,26 +34,23 @@ class NewtonSearch {
   bool operator()(const RobustLoss& loss, Eigen::VectorXd& at) {
     objective_.expand(at, loss, LossCurvature::taken, here_);
     if (!std::isfinite(here_.cost)) return false;
-    for (steps_ = 0; steps_ < max_newton_iterations; ++steps_) {
+    for (int steps = 0; steps < max_newton_iterations; ++steps) {
       find_free(at);
       double decrement = find_step();
-      if (decrement >= 0.0 && decrement <= stationary_share * stationary_share * here_.psi_square) return true;
-      if (steps_ >= iterations_without_curvature) {
+      if (decrement >= 0.0 && decrement <= stationary_gradient * stationary_gradient * here_.psi_square) return true;
+      if (steps >= iterations_without_curvature) {
         const double exact = find_exact_step(loss, at);
         if (exact >= 0.0) decrement = exact;
       }
       if (decrement < 0.0) {
         objective_.expand(at, loss, LossCurvature::left_out, here_);
         decrement = find_step(damping);
-        if (decrement >= 0.0 && decrement <= stationary_share * stationary_share * here_.psi_square) return true;
+        if (decrement >= 0.0 && decrement <= stationary_gradient * stationary_gradient * here_.psi_square) return true;
       }
       if (decrement < 0.0 || !advance(loss, at)) return false;
     }
     return false;
   }
-
-  double cost() const { return here_.cost; }  ///< where the last search ended
-  int steps() const { return steps_; }        ///< of the last search
 
  private:
   using LossCurvature = ModelObjective::LossCurvature;
@@ -144,7 +142,6 @@ class NewtonSearch {
     return true;
   }
 
-  static constexpr double stationary_share = 1e-10;  // of |psi|
   static constexpr double cost_rounding = 1e-13;
   static constexpr int max_newton_iterations = 60;
   static constexpr int max_halvings = 8;
@@ -154,7 +151,6 @@ class NewtonSearch {
 
   const ModelObjective& objective_;
   ModelObjective::Expansion here_, there_;
-  int steps_ = 0;
   Eigen::VectorXd free_, scale_, step_, candidate_;
   Eigen::MatrixXd factor_, exact_;
 };

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "ident/local_model.hpp"
+#include "ident/model/local_model.hpp"
 
 namespace modebank {
 
@@ -23,15 +23,19 @@ struct EnumNames<Prior> {
   static constexpr Names<2> values{"none", "global"};
 };
 
-/// Who minimises: Ceres window by window, or the batch solver, many linear windows of one state at a time, with Ceres
-/// for those it hands back. automatic: the batch solver wherever it has kernels. Motion models: see ModelSearch; all
-/// but `ceres` try Newton's steps first, on one-step residuals.
+/// Who minimises: Ceres window by window (`minimise`; motion models `minimise_model`), or the batch solver, many linear
+/// windows of one state at a time, with Ceres for those it hands back. automatic: Ceres for up to most_ceres_windows
+/// windows, the batch solver for more wherever it has kernels; this depends on the stage's inputs alone.
 enum class WindowSolver { ceres, batch, automatic };
 
 template <>
 struct EnumNames<WindowSolver> {
   static constexpr Names<3> values{"ceres", "batch", "auto"};
 };
+
+/// What Ceres does in some 1.4 s of one core, the default prior's fits included: nobody waits for less, and a stage of
+/// more is ten times as fast by the batch solver.
+inline constexpr Eigen::Index most_ceres_windows = 20000;
 
 /// How windows are cut and fitted. Defaults are the recommended method.
 struct FitOptions {

@@ -1,9 +1,9 @@
-#include "ident/parameter_prior.hpp"
+#include "ident/fit/prior.hpp"
 
 #include <cmath>
 #include <vector>
 
-#include "ident/robust_scale.hpp"
+#include "ident/fit/scale.hpp"
 
 namespace modebank {
 

@@ -3,10 +3,16 @@
 #include <Eigen/Core>
 #include <functional>
 
-#include "ident/fit_options.hpp"
-#include "ident/local_model.hpp"
+#include "ident/fit/options.hpp"
+#include "ident/model/local_model.hpp"
 
 namespace modebank {
+
+/// Gaussian prior on theta, independent per parameter.
+struct ParameterPrior {
+  Eigen::VectorXd mean;  ///< p
+  Eigen::VectorXd sd;    ///< p
+};
 
 /// Default prior standard deviations: 3 x the spread of the robust fits of full-rank windows made without prior
 /// (`parameters` p x M, one per column; those that are not finite do not count). The spread is 1.4826 times the median

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "ident/whitened_problem.hpp"
+#include "ident/fit/whitened_problem.hpp"
 
 namespace modebank {
 

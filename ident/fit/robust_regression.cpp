@@ -1,13 +1,13 @@
-#include "ident/robust_regression.hpp"
+#include "ident/fit/robust_regression.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "ident/fit_window.hpp"
-#include "ident/not_a_number.hpp"
-#include "ident/robust_scale.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/fit/fit_window.hpp"
+#include "ident/fit/scale.hpp"
 
 namespace modebank {
 namespace {

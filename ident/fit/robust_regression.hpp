@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "ident/regression.hpp"
+#include "ident/model/transitions.hpp"
 
 namespace modebank {
 

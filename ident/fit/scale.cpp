@@ -1,4 +1,4 @@
-#include "ident/robust_scale.hpp"
+#include "ident/fit/scale.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,12 +6,12 @@
 #include <numeric>
 #include <vector>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/fit/constants.hpp"
 
 namespace modebank {
 
 namespace {
-constexpr double mad_to_sd = 1.4826;
 constexpr double floor_share = 1e-3;
 constexpr double least_scale = 1e-150;  // its square is still a normal number
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "ident/regression.hpp"
+#include "ident/model/transitions.hpp"
 
 namespace modebank {
 
@@ -13,6 +13,12 @@ double normalised_mad(const Eigen::VectorXd& values);
 
 /// The same of a sample in which value i stands for weights(i) > 0 values.
 double normalised_mad(const Eigen::VectorXd& values, const Eigen::VectorXd& weights);
+
+/// Residual standard deviations and what no estimate of them may fall below, n each.
+struct NoiseScale {
+  Eigen::VectorXd sigma;
+  Eigen::VectorXd floor;
+};
 
 /// Residual standard deviation per state from least-squares residuals r (N x n, not multiplied by roots of weights)
 /// that cost each state `lost` degrees of freedom: normalised_mad, with the sample weights where there are some (N, or

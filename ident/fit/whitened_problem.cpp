@@ -1,4 +1,4 @@
-#include "ident/whitened_problem.hpp"
+#include "ident/fit/whitened_problem.hpp"
 
 #include <vector>
 

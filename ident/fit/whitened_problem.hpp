@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "ident/fit_window.hpp"
-#include "ident/regression.hpp"
+#include "ident/fit/prior.hpp"
+#include "ident/model/transitions.hpp"
 
 namespace modebank {
 

@@ -1,10 +1,10 @@
-#include "ident/window_summary.hpp"
+#include "ident/fit/window_summary.hpp"
 
 #include <cmath>
 #include <vector>
 
-#include "ident/not_a_number.hpp"
-#include "ident/robust_scale.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/fit/scale.hpp"
 
 namespace modebank {
 

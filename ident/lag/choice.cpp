@@ -1,13 +1,13 @@
-#include "ident/lag_choice.hpp"
+#include "ident/lag/choice.hpp"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "ident/error.hpp"
-#include "ident/lag_cross_validation.hpp"
-#include "ident/lag_track.hpp"
+#include "ident/lag/cross_validation.hpp"
+#include "ident/lag/track.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 

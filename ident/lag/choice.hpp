@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "ident/join_streams.hpp"
-#include "ident/lag_report.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/data/streams.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/lag/report.hpp"
 
 namespace modebank {
 

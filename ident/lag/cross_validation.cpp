@@ -1,4 +1,4 @@
-#include "ident/lag_cross_validation.hpp"
+#include "ident/lag/cross_validation.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "ident/fit_window.hpp"
-#include "ident/lag_objective.hpp"
+#include "ident/fit/global_model.hpp"
+#include "ident/lag/objective.hpp"
 
 namespace modebank {
 

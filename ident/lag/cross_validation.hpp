@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "ident/lag_choice.hpp"
+#include "ident/lag/choice.hpp"
 
 namespace modebank {
 
@@ -29,7 +29,7 @@ InputClock training_clock(LagCorrection correction, const RunLag& estimate, cons
 /// gaps or missing values hold NaN.
 Trajectory join_delayed(const RunPair& run, double rate_hz, const InputClock& clock);
 
-/// One score per correction (ident/lag_choice.hpp).
+/// One score per correction (ident/lag/choice.hpp).
 std::vector<LagScore> cross_validate_lags(const std::vector<LagSubject>& subjects, double rate_hz);
 
 }  // namespace modebank

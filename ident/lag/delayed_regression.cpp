@@ -1,4 +1,4 @@
-#include "ident/delayed_regression.hpp"
+#include "ident/lag/delayed_regression.hpp"
 
 #include <Eigen/Eigenvalues>
 

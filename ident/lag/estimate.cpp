@@ -1,12 +1,12 @@
-#include "ident/lag.hpp"
+#include "ident/lag/estimate.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "ident/lag_objective.hpp"
-#include "ident/lag_uncertainty.hpp"
+#include "ident/lag/objective.hpp"
+#include "ident/lag/uncertainty.hpp"
 
 namespace modebank {
 

@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include "ident/enum_names.hpp"
-#include "ident/input_clock.hpp"
-#include "ident/join_streams.hpp"
+#include "ident/data/input_clock.hpp"
+#include "ident/data/streams.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank {
 
@@ -46,7 +46,7 @@ struct LagEstimate {
 /// whose delayed inputs are known, on a grid, then by pattern search, with Huber weights against outliers.
 ///
 /// The time constant takes up what a one-step model explains by A, so the dead time is what such a model needs to have
-/// removed; the delay at which the signals match best (ident/lag_track.hpp) is longer by about the time constant.
+/// removed; the delay at which the signals match best (ident/lag/track.hpp) is longer by about the time constant.
 /// Standard errors: Gauss-Newton sandwich with the autocorrelation of the scores by Newey & West (1987), bandwidth by
 /// Andrews (1991, eq. 6.2, 6.4). Missing states are bridged where short and left out where long; NaN inputs keep their
 /// last value. Streams too short or without change give not_excited, never an exception.

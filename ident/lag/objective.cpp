@@ -1,12 +1,13 @@
-#include "ident/lag_objective.hpp"
+#include "ident/lag/objective.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "ident/delayed_regression.hpp"
-#include "ident/robust_scale.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/fit/constants.hpp"
+#include "ident/fit/scale.hpp"
+#include "ident/lag/delayed_regression.hpp"
 
 namespace modebank {
 
@@ -15,7 +16,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double huber_constant = 1.345;     // 95 % efficiency at the normal (Holland & Welsch 1977)
 constexpr double least_unexplained = 1e-12;  // noise-free data: logarithms stay finite
 
 /// Times at `period_s` steps between two others, away from gaps of the states at `time_s`.
@@ -108,7 +108,7 @@ void LagObjective::reweight(const LagPoint& point) {
   if (!found) return;
   weights_.setOnes();
   for (Index i = 0; i < states_.rows(); ++i) {
-    const double bend = huber_constant * normalised_mad(found->residuals.row(i).transpose());
+    const double bend = huber_tuning * normalised_mad(found->residuals.row(i).transpose());
     if (!(bend > 0.0)) continue;
     auto weights = weights_.segment(found->first, found->samples).array();
     weights = weights.min((bend / found->residuals.row(i).transpose().array().abs()).min(1.0));

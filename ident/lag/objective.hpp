@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "ident/averaged_stream.hpp"
-#include "ident/input_clock.hpp"
+#include "ident/data/averaged_stream.hpp"
+#include "ident/data/input_clock.hpp"
 
 namespace modebank {
 
@@ -19,7 +19,7 @@ struct LagPoint {
 Stream without_missing(const Stream& stream);
 Stream with_last_known(const Stream& stream);
 
-/// States regressed on delayed inputs as a function of the delay (ident/lag.hpp).
+/// States regressed on delayed inputs as a function of the delay (ident/lag/estimate.hpp).
 class LagObjective {
  public:
   /// Streams without missing values, of two samples at least. At most `most_samples` averages are compared.

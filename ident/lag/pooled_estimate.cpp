@@ -1,9 +1,9 @@
-#include "ident/pooled_estimate.hpp"
+#include "ident/lag/pooled_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 

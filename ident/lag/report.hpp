@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "ident/enum_names.hpp"
-#include "ident/lag.hpp"
-#include "ident/not_a_number.hpp"
-#include "ident/pooled_estimate.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/lag/estimate.hpp"
+#include "ident/lag/pooled_estimate.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank {
 

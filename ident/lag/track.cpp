@@ -1,15 +1,15 @@
-#include "ident/lag_track.hpp"
+#include "ident/lag/track.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "ident/averaged_stream.hpp"
-#include "ident/delayed_regression.hpp"
-#include "ident/lag_objective.hpp"
-#include "ident/not_a_number.hpp"
-#include "ident/robust_scale.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/data/averaged_stream.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/fit/scale.hpp"
+#include "ident/lag/delayed_regression.hpp"
+#include "ident/lag/objective.hpp"
 
 namespace modebank {
 

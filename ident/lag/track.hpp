@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "ident/join_streams.hpp"
+#include "ident/data/streams.hpp"
 
 namespace modebank {
 

@@ -1,12 +1,12 @@
-#include "ident/lag_uncertainty.hpp"
+#include "ident/lag/uncertainty.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "ident/not_a_number.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/data/trajectory.hpp"
 
 namespace modebank {
 

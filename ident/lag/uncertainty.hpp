@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "ident/lag_objective.hpp"
+#include "ident/lag/objective.hpp"
 
 namespace modebank {
 

@@ -1,4 +1,4 @@
-#include "ident/model.hpp"
+#include "ident/model/linear_model.hpp"
 
 #include <cassert>
 

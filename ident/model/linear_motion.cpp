@@ -1,4 +1,4 @@
-#include "ident/linear_motion.hpp"
+#include "ident/model/linear_motion.hpp"
 
 #include <cassert>
 

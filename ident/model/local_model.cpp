@@ -1,6 +1,6 @@
-#include "ident/local_model.hpp"
+#include "ident/model/local_model.hpp"
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "ident/enum_names.hpp"
-#include "ident/model.hpp"
-#include "ident/motion_model.hpp"
-#include "ident/window.hpp"
+#include "ident/data/window.hpp"
+#include "ident/model/linear_model.hpp"
+#include "ident/model/motion_model.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank {
 
@@ -50,9 +50,10 @@ struct LocalModel {
   Eigen::VectorXd information;   ///< p, 1 - posterior variance / prior variance; NaN without a prior
   double inlier_fraction = 0.0;  ///< share of samples that keep at least half of their least-squares weight
   FitStatus status = FitStatus::failed;
-  Eigen::VectorXd r_squared;  ///< n, see ident/fit_quality.hpp; empty: not computed
-  double aic = 0.0;           ///< nat, see ident/fit_quality.hpp
+  Eigen::VectorXd r_squared;  ///< n, see ident/fit/describe.hpp; empty: not computed
+  double aic = 0.0;           ///< nat, see ident/fit/describe.hpp
   Index transitions = 0;      ///< L, those that entered the fit: finite and of positive weight
+  bool solved = false;        ///< the search reached its tolerance (a deficient rank hides iteration_limit in `status`)
 };
 
 /// The global model: plain least squares over all training transitions.
@@ -64,17 +65,21 @@ struct GlobalModel {
   Eigen::VectorXd noise_variance() const { return residual_covariance.diagonal(); }
 };
 
-/// How the windows were solved: by the batch solver or by Ceres, and what Ceres said of a random sample of the former
-/// (their objective evaluated in both solutions).
+/// Who solved the windows to what tolerance, and how a random sample of the batch solver's answers compares with those
+/// of Ceres alone, run on to tolerances of 1e-16: both judged by the objective and its gradient.
 struct WindowAudit {
-  /// Relative difference in cost above which two solutions disagree.
-  static constexpr double tolerance = 1e-9;
-  Index batch = 0;    ///< windows of the batch solver; of a motion model all that Newton's steps were tried on first
-  Index ceres = 0;    ///< windows of Ceres, the batch solver's leftovers among them
-  Index checked = 0;  ///< windows of the batch solver solved again by Ceres
+  /// Relative difference in cost, and gradient (scaled_gradient), above which an answer is no minimum.
+  static constexpr double tolerance = 1e-9, gradient_tolerance = 1e-8;
+  Index batch = 0;           ///< windows that the batch solver solved
+  Index ceres = 0;           ///< windows solved as `ceres_method` says; those of neither are unsolved
+  std::string batch_method;  ///< in words; empty without a batch solver
+  std::string ceres_method;
+  Index checked = 0;                  ///< windows of the batch solver solved again by Ceres alone
   double cost_difference = 0.0;       ///< largest relative difference in cost
-  double parameter_difference = 0.0;  ///< largest difference of a parameter in its standard errors
-  Index replaced = 0;  ///< checked windows whose cost was above Ceres' by more than the tolerance: they are Ceres' now
+  double gradient = 0.0;              ///< largest scaled gradient of the batch solver's answers
+  double ceres_gradient = 0.0;        ///< largest scaled gradient of Ceres'
+  double parameter_difference = 0.0;  ///< largest difference of a parameter in its standard errors: information only
+  Index replaced = 0;  ///< checked windows whose cost or gradient was above tolerance: solved anew by `ceres_method`
   Index lower = 0;     ///< checked windows whose cost was below Ceres' by more (losses with several minima)
 };
 

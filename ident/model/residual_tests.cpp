@@ -1,15 +1,14 @@
-#include "ident/residual_tests.hpp"
+#include "ident/model/residual_tests.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "ident/not_a_number.hpp"
-#include "ident/regression.hpp"
+#include "ident/base/distributions.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/model/transitions.hpp"
 
 namespace modebank {
 
@@ -59,9 +58,7 @@ double ljung_box_p(const VectorXd& autocorrelation, Index N) {
   if (lags < 1 || !autocorrelation.allFinite()) return not_a_number;
   double Q = 0.0;
   for (Index k = 1; k <= lags; ++k) Q += autocorrelation(k) * autocorrelation(k) / static_cast<double>(N - k);
-  const boost::math::chi_squared distribution(static_cast<double>(lags));
-  return boost::math::cdf(
-      boost::math::complement(distribution, static_cast<double>(N) * static_cast<double>(N + 2) * Q));
+  return chi_square_upper_tail(static_cast<double>(N) * static_cast<double>(N + 2) * Q, static_cast<double>(lags));
 }
 
 void check(const MatrixXd& residual, const MatrixXd& input, const ResidualTestOptions& options) {
@@ -105,7 +102,7 @@ ResidualTests test_residuals(const MatrixXd& residual, const MatrixXd& input, co
   check(residual, input, options);
   const Index n = residual.rows(), m = input.rows(),
               lags = std::max<Index>(std::min(options.lags, residual.cols() - 1), 0);
-  const double z = boost::math::quantile(boost::math::normal(), 0.5 * (1.0 + options.level));
+  const double z = normal_quantile(0.5 * (1.0 + options.level));
   const std::vector<Centred> e = centred_rows(residual), u = centred_rows(input);
   std::vector<VectorXd> input_autocorrelation;
   for (const Centred& channel : u) input_autocorrelation.push_back(correlations(channel, channel, lags));

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "ident/motion_model.hpp"
+#include "ident/model/motion_model.hpp"
 
 namespace modebank {
 

@@ -1,4 +1,4 @@
-#include "ident/regression.hpp"
+#include "ident/model/transitions.hpp"
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <functional>
 
-#include "ident/model.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/model/linear_model.hpp"
 
 namespace modebank {
 

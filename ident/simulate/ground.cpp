@@ -1,8 +1,8 @@
-#include "ident/ground.hpp"
+#include "ident/simulate/ground.hpp"
 
 #include <cmath>
 
-#include "ident/seed.hpp"
+#include "ident/base/seed.hpp"
 
 namespace modebank {
 

@@ -1,4 +1,4 @@
-#include "ident/input_law.hpp"
+#include "ident/simulate/input_law.hpp"
 
 #include <algorithm>
 #include <boost/random/geometric_distribution.hpp>

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <random>
 
-#include "ident/simulate.hpp"
+#include "ident/simulate/simulate.hpp"
 
 namespace modebank {
 

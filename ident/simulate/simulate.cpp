@@ -1,4 +1,4 @@
-#include "ident/simulate.hpp"
+#include "ident/simulate/simulate.hpp"
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -7,10 +7,10 @@
 #include <string>
 #include <string_view>
 
-#include "ident/error.hpp"
-#include "ident/input_law.hpp"
-#include "ident/seed.hpp"
-#include "ident/simulation_parts.hpp"
+#include "ident/base/seed.hpp"
+#include "ident/simulate/input_law.hpp"
+#include "ident/simulate/simulation_parts.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "ident/model.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/model/linear_model.hpp"
 
 namespace modebank {
 

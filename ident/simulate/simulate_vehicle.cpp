@@ -1,4 +1,4 @@
-#include "ident/simulate_vehicle.hpp"
+#include "ident/simulate/simulate_vehicle.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -8,9 +8,9 @@
 #include <numbers>
 #include <string_view>
 
-#include "ident/input_law.hpp"
-#include "ident/seed.hpp"
-#include "ident/simulation_parts.hpp"
+#include "ident/base/seed.hpp"
+#include "ident/simulate/input_law.hpp"
+#include "ident/simulate/simulation_parts.hpp"
 
 namespace modebank {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "ident/simulate.hpp"
-#include "ident/vehicle.hpp"
+#include "ident/simulate/simulate.hpp"
+#include "ident/simulate/vehicle.hpp"
 
 namespace modebank {
 
@@ -21,7 +21,7 @@ struct SensorOptions {
   double drift = 0.0;                ///< [s/s], above -1
 };
 
-/// A skid-steer robot (ident/vehicle.hpp) on a plane of square tiles of ground (ident/ground.hpp).
+/// A skid-steer robot (ident/simulate/vehicle.hpp) on a plane of square tiles of ground (ident/simulate/ground.hpp).
 struct VehicleSimulationOptions {
   VehicleParameters vehicle;
   std::vector<double> friction{0.06, 0.6};  ///< one per kind of ground, each above 0

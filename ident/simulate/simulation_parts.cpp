@@ -1,11 +1,11 @@
-#include "ident/simulation_parts.hpp"
+#include "ident/simulate/simulation_parts.hpp"
 
 #include <algorithm>
 #include <boost/random/bernoulli_distribution.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 

@@ -4,7 +4,7 @@
 #include <random>
 #include <string>
 
-#include "ident/simulate.hpp"
+#include "ident/simulate/simulate.hpp"
 
 namespace modebank {
 

@@ -1,4 +1,4 @@
-#include "ident/vehicle.hpp"
+#include "ident/simulate/vehicle.hpp"
 
 #include <algorithm>
 #include <boost/numeric/odeint/algebra/array_algebra.hpp>

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "ident/ground.hpp"
+#include "ident/simulate/ground.hpp"
 
 namespace modebank {
 

@@ -1,15 +1,14 @@
-#include "io/archive.hpp"
+#include "io/archive/archive.hpp"
 
-#include "ident/error.hpp"
-#include "io/archive_file.hpp"
-#include "io/archive_layout.hpp"
-#include "io/archive_reader.hpp"
-#include "io/archive_writer.hpp"
-#include "io/read_stages.hpp"
-#include "io/replace_file.hpp"
-#include "io/run_names.hpp"
-#include "io/sha256.hpp"
-#include "io/user_block.hpp"
+#include "io/archive/archive_file.hpp"
+#include "io/archive/bank/open_archive.hpp"
+#include "io/archive/layout.hpp"
+#include "io/files/replace_file.hpp"
+#include "io/files/run_names.hpp"
+#include "io/files/sha256.hpp"
+#include "io/hdf5/group_reader.hpp"
+#include "io/hdf5/group_writer.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -36,7 +35,7 @@ void write_large_archive(const std::filesystem::path& path, const Archive& archi
   replace_file(path, [&](const std::filesystem::path& temporary) {
     {
       const hdf5::Handle file = create_archive_file(temporary);
-      ArchiveWriter root(open_root(file));
+      GroupWriter root(open_root(file));
       layout::exchange_archive(root, archive);
       hdf5::check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "complete the archive");
     }
@@ -50,7 +49,7 @@ void write_archive(const std::filesystem::path& path, const Archive& archive) {
   const hdf5::Quiet quiet;
   const ArchiveImage image;
   {
-    ArchiveWriter root(open_root(image.file()));
+    GroupWriter root(open_root(image.file()));
     layout::exchange_archive(root, archive);
   }
   const std::string_view content = image.content();
@@ -68,12 +67,12 @@ WindowFits write_archive(const std::filesystem::path& path, const Archive& archi
   replace_file(path, [&](const std::filesystem::path& temporary) {
     {
       const hdf5::Handle file = create_archive_file(temporary);
-      ArchiveWriter root(open_root(file));
+      GroupWriter root(open_root(file));
       layout::exchange_origin(root, archive);
-      root.group("data", {}, [&](ArchiveWriter& member) { layout::exchange_recording(member, recording); });
+      root.group("data", {}, [&](GroupWriter& member) { layout::exchange_recording(member, recording); });
       layout::exchange_part(root, "lag", archive.lag, {},
-                            [](ArchiveWriter& member, const LagReport& lag) { layout::exchange_lag(member, lag); });
-      root.group("windows", {}, [&](ArchiveWriter& member) {
+                            [](GroupWriter& member, const LagReport& lag) { layout::exchange_lag(member, lag); });
+      root.group("windows", {}, [&](GroupWriter& member) {
         common = produce([&](const WindowFits& fits, Index first) {
           member.windows_from(static_cast<hsize_t>(first), static_cast<hsize_t>(fits.count()),
                               static_cast<hsize_t>(count), run_names(recording.runs));
@@ -87,11 +86,22 @@ WindowFits write_archive(const std::filesystem::path& path, const Archive& archi
   return common;
 }
 
+namespace {
+
+/// Without a list the first problem is thrown as DataError; with one all problems are listed, each with its place, and
+/// what is returned is incomplete.
+Archive read_stages(const hdf5::Handle& file, std::vector<std::string>* problems) {
+  Archive archive;
+  GroupReader root(open_root(file), problems);
+  layout::exchange_archive(root, archive);
+  return archive;
+}
+
+}  // namespace
+
 Archive read_archive(const std::filesystem::path& path) {
   const hdf5::Quiet quiet;
-  const hdf5::Handle file = open_archive(path);
-  if (const std::vector<std::string> problems = hash_problems(path); !problems.empty())
-    throw DataError(path.string() + ": damaged: " + problems.front());
+  const hdf5::Handle file = open_archive(path, HashCheck::before);
   try {
     return read_stages(file, nullptr);
   } catch (const DataError& error) {
@@ -99,11 +109,18 @@ Archive read_archive(const std::filesystem::path& path) {
   }
 }
 
-Archive read_stages(const hdf5::Handle& file, std::vector<std::string>* problems) {
-  Archive archive;
-  ArchiveReader root(open_root(file), problems);
-  layout::exchange_archive(root, archive);
-  return archive;
+Verification verify_archive(const std::filesystem::path& path) {
+  require_readable(path);
+  const hdf5::Quiet quiet;
+  Verification verification{hash_problems(path)};
+  try {
+    std::vector<std::string> found;
+    read_stages(open_archive(path, HashCheck::unchecked), &found);
+    verification.problems.insert(verification.problems.end(), found.begin(), found.end());
+  } catch (const DataError& error) {
+    verification.problems.emplace_back(error.what());
+  }
+  return verification;
 }
 
 }  // namespace modebank

@@ -7,19 +7,19 @@
 #include <utility>
 #include <vector>
 
-#include "filter/bank.hpp"
-#include "filter/diagnostics.hpp"
-#include "filter/evaluate.hpp"
-#include "filter/horizon.hpp"
-#include "filter/measured_fit.hpp"
-#include "filter/merging_cost.hpp"
-#include "filter/scores.hpp"
-#include "ident/fit_window.hpp"
-#include "ident/lag_report.hpp"
-#include "ident/local_model.hpp"
-#include "ident/residual_tests.hpp"
-#include "ident/trajectory.hpp"
-#include "io/import.hpp"
+#include "filter/judge/diagnostics.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/horizon.hpp"
+#include "filter/judge/scores.hpp"
+#include "filter/learn/likelihood/maximum_likelihood.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "ident/lag/report.hpp"
+#include "ident/model/local_model.hpp"
+#include "ident/model/residual_tests.hpp"
+#include "io/archive/bank/open_archive.hpp"
+#include "io/files/input_file.hpp"
 #include "mixture/select.hpp"
 
 namespace modebank {
@@ -39,6 +39,7 @@ struct Provenance {
 struct FilterEvaluation {
   std::string filter;  ///< bank, baseline or noise_only
   std::vector<RunEvaluation> runs;
+  std::vector<RunScores> scores;  ///< of these, where they have just been made; archives do not hold them
 };
 
 /// Residual tests of one model over all runs of the recording, in its order.
@@ -67,8 +68,6 @@ struct Archive {
   std::vector<ResidualTestSet> residual_tests;
   std::vector<MergingCost> merging = {};  ///< with bank.modes, where components were merged
 };
-
-inline constexpr const char* schema_version = "1.0";
 
 /// Throws ConfigurationError when `path` cannot become an archive: its folder is missing or not writable, or it is a
 /// folder.

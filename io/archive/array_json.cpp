@@ -1,4 +1,4 @@
-#include "io/hdf5_json.hpp"
+#include "io/archive/array_json.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/hdf5_array.hpp"
+#include "io/hdf5/array.hpp"
 
 namespace modebank::hdf5 {
 

@@ -1,13 +1,13 @@
-#include "io/filter_checkpoint.hpp"
+#include "io/archive/filter_checkpoint.hpp"
 
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "ident/error.hpp"
-#include "ident/not_a_number.hpp"
-#include "io/replace_file.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "filter/bank_filter.hpp"
+#include "filter/step/bank_filter.hpp"
 
 namespace modebank {
 

@@ -1,13 +1,13 @@
-#include "io/inspect.hpp"
+#include "io/archive/inspect.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <vector>
 
-#include "ident/error.hpp"
-#include "io/archive_file.hpp"
-#include "io/hdf5_json.hpp"
+#include "io/archive/array_json.hpp"
+#include "io/archive/bank/open_archive.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -109,7 +109,7 @@ json json_at(const hdf5::Handle& file, const std::string& path) {
 
 nlohmann::json inspect(const std::filesystem::path& archive, const std::string& path) {
   const hdf5::Quiet quiet;
-  const hdf5::Handle file = open_archive(archive);
+  const hdf5::Handle file = open_archive(archive, HashCheck::unchecked);
   try {
     return json_at(file, path);
   } catch (const DataError& error) {

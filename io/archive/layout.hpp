@@ -2,54 +2,17 @@
 
 #include <string>
 
-#include "io/archive.hpp"
-#include "io/archive_file.hpp"
-#include "io/archive_layout_filter.hpp"
-#include "io/archive_layout_lag.hpp"
-#include "io/archive_layout_residuals.hpp"
-#include "io/archive_sizes.hpp"
-#include "io/archive_stored.hpp"
-#include "io/archive_units.hpp"
-#include "io/run_names.hpp"
-#include "io/table_columns.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/bank/layout_bank.hpp"
+#include "io/archive/layout_data.hpp"
+#include "io/archive/layout_evaluation.hpp"
+#include "io/archive/stored.hpp"
 
-/// The one description of the archive's layout; its parts for banks and evaluations and for
-/// residual tests are archive_layout_filter.hpp and archive_layout_residuals.hpp. Every
-/// function names members once; `Io` is ArchiveWriter or ArchiveReader, so writing, reading and verification cannot
-/// drift apart. Letters: M windows, K modes, n states, m inputs, n_y outputs, p parameters, N samples, F features.
+/// The one description of the archive's layout; its other parts are layout_data.hpp, layout_evaluation.hpp and, for
+/// programs that load banks alone, bank/layout_bank.hpp. Every function names members once; `Io` is GroupWriter or
+/// GroupReader, so writing, reading and verification cannot drift apart. Letters: M windows, K modes, n states, m
+/// inputs, n_y outputs, p parameters, N samples, F features.
 namespace modebank::layout {
-
-template <class Io, class R>
-void exchange_recording(Io& io, R& recording) {
-  const auto channels = [&](auto& list, const std::string& kind) {
-    io.through(list, store_channels, restore_channels, [&](auto& stored) {
-      io.attribute_texts(kind + "_names", stored.names);
-      io.attribute_texts(kind + "_units", stored.units);
-    });
-  };
-  channels(recording.states, "state");
-  channels(recording.inputs, "input");
-  const auto named_runs = [](const std::vector<std::string>& names) {
-    std::vector<Trajectory> runs(names.size());
-    for (std::size_t i = 0; i < names.size(); ++i) runs[i].run = names[i];
-    return runs;
-  };
-  io.through(recording.runs, run_names, named_runs, [&](auto& names) { io.attribute_texts("runs", names); });
-  Sizes known;
-  known.set("n", recording.states.size());
-  known.set("m", recording.inputs.size());
-  const Units units(recording);
-  for (auto& run : recording.runs)
-    io.group(run.run, known, [&](auto& member) {
-      member.attribute("role", run.role);
-      member.attribute("lag_s", run.lag_s);
-      member.field("time", run.time_s, {"N"}, {"s"});
-      member.field("state", run.state, {"N", "n"}, units.states());
-      member.field("input", run.input, {"N", "m"}, units.inputs());
-      member.optional_field("truth", run.truth, {"N", "n"}, units.states());
-      member.optional_field("weight", run.weight, {"N"});
-    });
-}
 
 template <class Io, class G>
 void exchange_global(Io& io, G& global, const Unit& parameters, const Unit& states) {
@@ -70,8 +33,12 @@ template <class Io, class A>
 void exchange_audit(Io& io, A& audit) {
   io.optional_attribute("audit_batch_windows", audit.batch);
   io.optional_attribute("audit_ceres_windows", audit.ceres);
+  io.optional_attribute("audit_batch_method", audit.batch_method);
+  io.optional_attribute("audit_ceres_method", audit.ceres_method);
   io.optional_attribute("audit_checked", audit.checked);
   io.optional_attribute("audit_cost_difference", audit.cost_difference);
+  io.optional_attribute("audit_gradient", audit.gradient);
+  io.optional_attribute("audit_ceres_gradient", audit.ceres_gradient);
   io.optional_attribute("audit_parameter_difference", audit.parameter_difference);
   io.optional_attribute("audit_replaced", audit.replaced);
   io.optional_attribute("audit_lower", audit.lower);
@@ -152,37 +119,6 @@ void exchange_mixture(Io& io, X& result, const Unit& parameters) {
   io.optional_field("noise_upper", result.mixture.noise.upper, {"F"}, features);
   io.field("labels", result.labels, {"M"});
   io.through_rows("responsibilities", result.responsibilities, {"M", "K"});
-}
-
-template <class Io, class P>
-void exchange_provenance(Io& io, P& provenance) {
-  io.attributes(provenance.versions);
-  io.table("inputs", provenance.inputs, column("path", &InputFile::path), column("bytes", &InputFile::bytes, "byte"),
-           column("sha256", &InputFile::sha256));
-}
-
-/// A part that an std::optional holds.
-template <class Io, class T, class Body>
-void exchange_part(Io& io, const std::string& name, T& part, const Sizes& known, Body body) {
-  io.optional_group(name, part.has_value(), known, [&](auto& member) {
-    if constexpr (Io::reads) part.emplace();
-    body(member, *part);
-  });
-}
-
-/// The root attributes, the configuration and where everything comes from; every archive has them.
-template <class Io, class A>
-void exchange_origin(Io& io, A& archive) {
-  io.constant_attribute("format", std::string(archive_format));
-  std::string version = schema_version;
-  io.attribute("schema_version", version);
-  io.attribute("modebank_version", archive.provenance.modebank_version);
-  io.attribute("created", archive.provenance.created);
-  io.attribute("command_line", archive.provenance.command_line);
-  io.attribute("config_hash", archive.provenance.config_hash);
-  io.attribute("data_hash", archive.provenance.data_hash);
-  io.text("config", archive.config);
-  io.group("provenance", {}, [&](auto& member) { exchange_provenance(member, archive.provenance); });
 }
 
 template <class Io, class A>

@@ -4,81 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "io/archive.hpp"
-#include "io/archive_sizes.hpp"
-#include "io/archive_stored.hpp"
-#include "io/archive_units.hpp"
-#include "io/table_columns.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/bank/units.hpp"
+#include "io/hdf5/columns.hpp"
 
-/// The layout of banks and evaluations; see archive_layout.hpp.
+/// The layout of what filters and models said of the runs; see io/archive/layout.hpp. T lags, from 0 on.
 namespace modebank::layout {
-
-/// What kind of model it is. Reading leaves the number of states to restore_structure, which knows it from the arrays.
-template <class Io, class S, class Name>
-void exchange_structure(Io& io, S& structure, Name& model) {
-  io.attribute("model", model);
-  io.constant_attribute("form", std::string("increment"));
-  io.attribute("intercept", structure.intercept);
-  io.attribute("inputs", structure.inputs);
-  io.attribute("state_lags", structure.state_lags);
-  io.attribute("input_lags", structure.input_lags);
-  io.attribute("input_delay", structure.input_delay);
-}
-
-/// Names and units of a motion model's parameters; empty lists for linear models.
-template <class Io, class P>
-void exchange_model_parameters(Io& io, P& parameters, const std::string& kind) {
-  io.through(parameters, store_model_parameters, restore_model_parameters, [&](auto& stored) {
-    io.attribute_texts(kind + "_names", stored.names);
-    io.attribute_texts(kind + "_units", stored.units);
-  });
-}
-
-/// The filter measures the recorded states, so outputs have the states' units where there are as many.
-template <class Io, class S>
-void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, const Unit& motion) {
-  const Unit parameters = parameter_units(stored.structure, states, inputs);
-  const bool measured = static_cast<std::size_t>(stored.C.cols()) == states.size();
-  const Unit outputs(states.begin(), states.begin() + (measured ? stored.C.rows() : 0));
-  io.field("weight", stored.weight, {"K"});
-  io.field("c", stored.c, {"K", "n"}, states);
-  io.field("A", stored.A, {"K", "n", "n"}, ratios(states, states));
-  io.field("B", stored.B, {"K", "n", "m"}, ratios(states, inputs));
-  io.field("Q", stored.Q, {"K", "n", "n"}, outer(states));
-  io.field("parameters", stored.parameters, {"K", "p"}, parameters);
-  io.optional_field("parameter_covariance", stored.spread, {"K", "p", "p"}, outer(parameters));
-  io.optional_field("parameter_standard_error", stored.standard_error, {"K", "p"}, parameters);
-  io.optional_field("Q_standard_error", stored.Q_standard_error, {"K", "n", "n"}, outer(states));
-  io.optional_field("R_standard_error", stored.R_standard_error, {"n_y", "n_y"}, measured ? outer(outputs) : Unit());
-  io.optional_field("transition_standard_error", stored.transition_standard_error, {"K", "K"});
-  io.field("C", stored.C, {"n_y", "n"}, measured ? ratios(outputs, states) : Unit());
-  io.field("R", stored.R, {"n_y", "n_y"}, measured ? outer(outputs) : Unit());
-  io.field("transition", stored.transition, {"K", "K"});
-  io.field("initial_probability", stored.initial_probability, {"K"});
-  io.optional_field("motion_parameters", stored.motion_parameters, {"K", "p_motion"}, motion);
-  io.optional_field("motion_standard_error", stored.motion_standard_error, {"K", "p_motion"}, motion);
-  exchange_structure(io, stored.structure, stored.model);
-  if constexpr (Io::reads)
-    io.finish([&] { stored.structure = restore_structure(stored.structure, io.size("n"), io.size("p")); });
-}
-
-/// Names, period and screened modes, then everything that StoredBank holds.
-template <class Io, class B>
-void exchange_bank(Io& io, B& bank, const Units& units) {
-  io.attribute_texts("state_names", bank.state_names);
-  io.attribute_texts("input_names", bank.input_names);
-  io.attribute("dt_s", bank.dt_s);
-  io.optional_attribute("noise_forgetting", bank.noise_adaptation.forgetting);
-  io.optional_attribute("noise_prior_samples", bank.noise_adaptation.prior_samples);
-  exchange_model_parameters(io, bank.motion_parameters, "motion_parameter");
-  io.table("screened", bank.screened, column("component", &ScreenedMode::component),
-           column("weight", &ScreenedMode::weight), column("spectral_radius", &ScreenedMode::spectral_radius),
-           column("reason", &ScreenedMode::reason));
-  const Unit states = units.states(bank.state_names), inputs = units.inputs(bank.input_names);
-  io.through(
-      bank, store_bank, [&](const StoredBank& stored) { return restore_bank(stored, bank); },
-      [&](auto& stored) { exchange_modes(io, stored, states, inputs, unit_of(bank.motion_parameters)); });
-}
 
 template <class Io, class R>
 void exchange_merging(Io& io, R& rows) {
@@ -168,7 +99,7 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
   };
   const auto named = [](const std::vector<std::string>& filters) {
     std::vector<FilterEvaluation> list;
-    for (const std::string& filter : filters) list.push_back({filter, {}});
+    for (const std::string& filter : filters) list.push_back({filter, {}, {}});
     return list;
   };
   io.through(archive.evaluations, names, named, [&](auto& filters) { io.attribute_texts("filters", filters); });
@@ -178,6 +109,45 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
   exchange_summary(io, archive.summary, units.states());
   exchange_horizon(io, archive.horizons, units.states());
   exchange_diagnostics(io, archive.diagnostics, units.states());
+}
+
+template <class Io, class R>
+void exchange_run_residuals(Io& io, R& tests) {
+  io.attribute("samples", tests.samples);
+  io.attribute("level", tests.level);
+  io.attribute("autocorrelation_band", tests.autocorrelation_band);
+  io.field("autocorrelation", tests.autocorrelation, {"T", "n"});
+  io.field("cross_correlation", tests.cross_correlation, {"T", "n", "m"});
+  io.field("cross_correlation_band", tests.cross_correlation_band, {"n", "m"});
+  io.field("ljung_box_p", tests.ljung_box_p, {"n"});
+}
+
+/// residual_tests/<model>/<run>/, every run of the recording in its order.
+template <class Io, class S>
+void exchange_residual_tests(Io& io, S& sets, const Recording& recording) {
+  const auto names = [](const std::vector<ResidualTestSet>& list) {
+    std::vector<std::string> models;
+    for (const ResidualTestSet& set : list) models.push_back(set.model);
+    return models;
+  };
+  const auto named = [](const std::vector<std::string>& models) {
+    std::vector<ResidualTestSet> list;
+    for (const std::string& model : models) list.push_back({model, {}});
+    return list;
+  };
+  io.through(sets, names, named, [&](auto& models) { io.attribute_texts("models", models); });
+  Sizes known;
+  known.set("n", recording.states.size());
+  known.set("m", recording.inputs.size());
+  for (auto& set : sets)
+    io.group(set.model, {}, [&](auto& member) {
+      if constexpr (Io::reads) set.runs.resize(recording.runs.size());
+      if (set.runs.size() != recording.runs.size())
+        throw std::invalid_argument("residual tests of " + std::to_string(set.runs.size()) + " runs of " +
+                                    std::to_string(recording.runs.size()));
+      for (std::size_t i = 0; i < recording.runs.size(); ++i)
+        member.group(recording.runs[i].run, known, [&](auto& run) { exchange_run_residuals(run, set.runs[i]); });
+    });
 }
 
 }  // namespace modebank::layout

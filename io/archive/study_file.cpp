@@ -1,16 +1,16 @@
-#include "io/study_file.hpp"
+#include "io/archive/study_file.hpp"
 
 #include <algorithm>
 
-#include "ident/error.hpp"
-#include "io/archive_file.hpp"
-#include "io/archive_layout.hpp"
-#include "io/archive_reader.hpp"
-#include "io/archive_writer.hpp"
-#include "io/hdf5_table.hpp"
-#include "io/replace_file.hpp"
-#include "io/sha256.hpp"
-#include "io/user_block.hpp"
+#include "io/archive/archive_file.hpp"
+#include "io/archive/bank/open_archive.hpp"
+#include "io/archive/layout.hpp"
+#include "io/files/replace_file.hpp"
+#include "io/files/sha256.hpp"
+#include "io/hdf5/group_reader.hpp"
+#include "io/hdf5/group_writer.hpp"
+#include "io/hdf5/table.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -40,7 +40,7 @@ void write_table_of_runs(const hdf5::Handle& file, const StudyFile& study) {
   Archive origin;
   origin.provenance = study.provenance;
   origin.config = study.config;
-  ArchiveWriter root(open_root(file));
+  GroupWriter root(open_root(file));
   layout::exchange_origin(root, origin);
   write_columns(open_root(file).id(), study.table, study.columns);
   if (study.answers.empty()) return;
@@ -59,7 +59,7 @@ void link_archives(const hdf5::Handle& file, const StudyFile& study, const std::
 void copy_archives(const hdf5::Handle& file, const StudyFile& study) {
   const hdf5::Handle trials = make_group(file, trials_group);
   for (const auto& [name, path] : study.archives) {
-    const hdf5::Handle archive = open_archive(path);
+    const hdf5::Handle archive = open_archive(path, HashCheck::unchecked);
     hdf5::check(H5Ocopy(archive.id(), "/", trials.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
                 "copy " + path.string());
   }
@@ -141,12 +141,10 @@ void write_study_file(const std::filesystem::path& path, const StudyFile& study,
 
 StudyFile read_study_file(const std::filesystem::path& path, const std::string& table) {
   const hdf5::Quiet quiet;
-  const hdf5::Handle file = open_archive(path);
+  const hdf5::Handle file = open_archive(path, HashCheck::before);
   try {
-    if (const std::vector<std::string> problems = hash_problems(path); !problems.empty())
-      throw DataError("damaged: " + problems.front());
     Archive origin;
-    ArchiveReader root(open_root(file), nullptr);
+    GroupReader root(open_root(file), nullptr);
     layout::exchange_origin(root, origin);
     StudyFile study{std::move(origin.provenance), std::move(origin.config), table, {}, {}, {}};
     study.columns = read_columns(hdf5::StoredArray(open_root(file).id(), hdf5::Place::dataset, table));
@@ -174,8 +172,11 @@ struct ScoreCollector {
     const std::string name = row.filter + "_" + std::string(name_of(row.role)) + "_" + column.name;
     if constexpr (std::is_same_v<T, Eigen::VectorXd>) {
       const Eigen::VectorXd& values = row.*column.member;
+      if (values.size() != std::ssize(states))
+        throw DataError("the summary's " + column.name + " has " + std::to_string(values.size()) + " entries for " +
+                        std::to_string(states.size()) + " states");
       for (Eigen::Index i = 0; i < values.size(); ++i)
-        scores.emplace_back(name + "_" + states.at(static_cast<std::size_t>(i)), values(i));
+        scores.emplace_back(name + "_" + states[static_cast<std::size_t>(i)], values(i));
     } else if constexpr (std::is_arithmetic_v<T>) {
       scores.emplace_back(name, static_cast<double>(row.*column.member));
     }
@@ -193,21 +194,24 @@ std::vector<std::pair<std::string, double>> pooled_scores(const std::vector<Summ
 
 TrialScores read_trial_scores(const std::filesystem::path& path) {
   const hdf5::Quiet quiet;
-  const hdf5::Handle file = open_archive(path);
+  const hdf5::Handle file = open_archive(path, HashCheck::unchecked);
   try {
     const hdf5::Handle root = open_root(file);
     const hdf5::Handle data = hdf5::open_group(root.id(), "data");
     const hdf5::Handle bank = hdf5::open_group(root.id(), "bank");
     std::vector<SummaryRow> summary;
-    ArchiveReader evaluation(hdf5::open_group(root.id(), "evaluation"), nullptr);
+    GroupReader evaluation(hdf5::open_group(root.id(), "evaluation"), nullptr);
     layout::exchange_summary(evaluation, summary, {});
     const std::vector<std::string> states = hdf5::StoredArray(data.id(), hdf5::Place::attribute, "state_names").texts();
     const hdf5::StoredArray weights(bank.id(), hdf5::Place::dataset, "weight");
-    const auto attribute = [&](const char* name) {
-      return hdf5::StoredArray(root.id(), hdf5::Place::attribute, name).texts().front();
-    };
-    return {attribute("modebank_version"), attribute("config_hash"), attribute("data_hash"),
-            static_cast<std::int64_t>(weights.elements()), pooled_scores(summary, states)};
+    TrialScores scores;
+    scores.modes = static_cast<std::int64_t>(weights.elements());
+    scores.pooled = pooled_scores(summary, states);
+    GroupReader attributes(open_root(file), nullptr);
+    attributes.attribute("modebank_version", scores.modebank_version);
+    attributes.attribute("config_hash", scores.config_hash);
+    attributes.attribute("data_hash", scores.data_hash);
+    return scores;
   } catch (const DataError& error) {
     throw DataError(path.string() + ": " + error.what());
   }

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "io/archive.hpp"
+#include "io/archive/archive.hpp"
 
 namespace modebank {
 

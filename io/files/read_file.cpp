@@ -1,18 +1,16 @@
-#include "io/read_file.hpp"
-
-#include <fmt/format.h>
+#include "io/files/read_file.hpp"
 
 #include <cerrno>
 #include <system_error>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::error_code& error) {
-  throw ConfigurationError(fmt::format("cannot read {}: {}", path.string(), error.message()));
+  throw ConfigurationError("cannot read " + path.string() + ": " + error.message());
 }
 
 }  // namespace

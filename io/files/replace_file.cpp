@@ -1,7 +1,6 @@
-#include "io/replace_file.hpp"
+#include "io/files/replace_file.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -9,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -78,7 +77,8 @@ class TemporaryFile {
   /// Unique among the processes and threads of a machine.
   static fs::path temporary_name(const fs::path& target) {
     static std::atomic<unsigned> counter = 0;
-    return folder_of(target) / fmt::format(".{}.{}-{}.tmp", target.filename().string(), ::getpid(), counter++);
+    return folder_of(target) / ("." + target.filename().string() + "." + std::to_string(::getpid()) + "-" +
+                                std::to_string(counter++) + ".tmp");
   }
 
   fs::path path_;
@@ -87,7 +87,10 @@ class TemporaryFile {
 
 }  // namespace
 
-std::string write_obstacle(const fs::path& path) {
+namespace {
+
+/// What stands in the way before anything is made; empty when nothing does.
+std::string seen_obstacle(const fs::path& path) {
   std::error_code error;
   if (!path.has_filename()) return "'" + path.string() + "' names no file";
   const fs::path folder = folder_of(path);
@@ -95,19 +98,35 @@ std::string write_obstacle(const fs::path& path) {
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status)) return "'" + path.string() + "' is a folder";
   if (fs::exists(status) && !fs::is_regular_file(status)) return "'" + path.string() + "' is not a regular file";
-  // Permissions do not tell (read-only mounts, /proc, root): only a file made there does. It goes with this scope.
+  return {};
+}
+
+/// The file under its temporary name, or why the folder does not take it: permissions do not tell (read-only mounts,
+/// /proc, root), only a file made there does.
+TemporaryFile make_temporary(const fs::path& path) {
   try {
-    const TemporaryFile probe(path);
+    return TemporaryFile(path);
   } catch (const DataError& obstacle) {
-    return "the folder '" + folder.string() + "' is not writable: " + obstacle.what();
+    throw DataError("the folder '" + folder_of(path).string() + "' is not writable: " + obstacle.what());
+  }
+}
+
+}  // namespace
+
+std::string write_obstacle(const fs::path& path) {
+  if (std::string obstacle = seen_obstacle(path); !obstacle.empty()) return obstacle;
+  try {
+    make_temporary(path);  // and gone again
+  } catch (const DataError& obstacle) {
+    return obstacle.what();
   }
   return {};
 }
 
 void replace_file(const fs::path& path, const std::function<void(const fs::path&)>& fill) {
   try {
-    if (const std::string obstacle = write_obstacle(path); !obstacle.empty()) throw DataError(obstacle);
-    TemporaryFile temporary(path);
+    if (const std::string obstacle = seen_obstacle(path); !obstacle.empty()) throw DataError(obstacle);
+    TemporaryFile temporary = make_temporary(path);
     fill(temporary.path());
     temporary.become(path);
     Descriptor(folder_of(path), O_RDONLY | O_DIRECTORY).sync();

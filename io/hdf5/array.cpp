@@ -1,10 +1,10 @@
-#include "io/hdf5_array.hpp"
+#include "io/hdf5/array.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::hdf5 {
 

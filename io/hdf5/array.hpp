@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "io/hdf5_handle.hpp"
+#include "io/hdf5/handle.hpp"
 
 namespace modebank::hdf5 {
 

@@ -4,9 +4,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "ident/enum_names.hpp"
-#include "ident/error.hpp"
-#include "io/hdf5_table.hpp"
+#include "io/hdf5/table.hpp"
+#include "modebank/base/error.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank {
 

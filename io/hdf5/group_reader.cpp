@@ -1,4 +1,4 @@
-#include "io/archive_reader.hpp"
+#include "io/hdf5/group_reader.hpp"
 
 #include <new>
 #include <stdexcept>
@@ -14,7 +14,7 @@ struct PlacedError : DataError {
 
 }  // namespace
 
-void ArchiveReader::guarded(const std::string& name, const std::function<void()>& step) {
+void GroupReader::guarded(const std::string& name, const std::function<void()>& step) {
   const auto report = [&](const std::string& problem) {
     const std::string placed = path_ + "/" + name + ": " + problem;
     if (!problems_) throw PlacedError(placed);
@@ -33,16 +33,16 @@ void ArchiveReader::guarded(const std::string& name, const std::function<void()>
   }
 }
 
-void ArchiveReader::finish(const std::function<void()>& step) {
+void GroupReader::finish(const std::function<void()>& step) {
   if (!problems_ || problems_->size() == problems_before_) guarded("", step);
 }
 
-const std::string& ArchiveReader::require(const std::string& name) const {
+const std::string& GroupReader::require(const std::string& name) const {
   if (!has(name)) throw DataError("is missing");
   return name;
 }
 
-hdf5::StoredArray ArchiveReader::open_numbers(const std::string& name, const Letters& letters, H5T_class_t kind) {
+hdf5::StoredArray GroupReader::open_numbers(const std::string& name, const Letters& letters, H5T_class_t kind) {
   hdf5::StoredArray array(group_.id(), hdf5::Place::dataset, require(name));
   if (array.type_class() != kind) throw DataError("holds another kind of value");
   const std::string problem = sizes_.agree(letters, array.shape());
@@ -50,7 +50,7 @@ hdf5::StoredArray ArchiveReader::open_numbers(const std::string& name, const Let
   return array;
 }
 
-hdf5::StoredArray ArchiveReader::open_attribute(const std::string& name, H5T_class_t kind, bool scalar) const {
+hdf5::StoredArray GroupReader::open_attribute(const std::string& name, H5T_class_t kind, bool scalar) const {
   if (!hdf5::has_attribute(group_.id(), name)) throw DataError("the attribute is missing");
   hdf5::StoredArray array(group_.id(), hdf5::Place::attribute, name);
   if (array.type_class() != kind || array.shape().size() != (scalar ? 0 : 1) || (scalar && array.elements() != 1))
@@ -58,11 +58,11 @@ hdf5::StoredArray ArchiveReader::open_attribute(const std::string& name, H5T_cla
   return array;
 }
 
-void ArchiveReader::read_attribute(const std::string& name, std::string& value) const {
+void GroupReader::read_attribute(const std::string& name, std::string& value) const {
   value = open_attribute(name, H5T_STRING, true).texts().front();
 }
 
-void ArchiveReader::constant_attribute(const std::string& name, const std::string& expected) {
+void GroupReader::constant_attribute(const std::string& name, const std::string& expected) {
   guarded(name, [&] {
     std::string found;
     read_attribute(name, found);
@@ -70,11 +70,11 @@ void ArchiveReader::constant_attribute(const std::string& name, const std::strin
   });
 }
 
-void ArchiveReader::attribute_texts(const std::string& name, std::vector<std::string>& texts) {
+void GroupReader::attribute_texts(const std::string& name, std::vector<std::string>& texts) {
   guarded(name, [&] { texts = open_attribute(name, H5T_STRING, false).texts(); });
 }
 
-void ArchiveReader::attributes(std::vector<std::pair<std::string, std::string>>& pairs) {
+void GroupReader::attributes(std::vector<std::pair<std::string, std::string>>& pairs) {
   std::vector<std::string> names;
   guarded("", [&] { names = hdf5::attribute_names(group_.id()); });
   for (const std::string& name : names) {
@@ -83,7 +83,7 @@ void ArchiveReader::attributes(std::vector<std::pair<std::string, std::string>>&
   }
 }
 
-void ArchiveReader::text(const std::string& name, std::string& value) {
+void GroupReader::text(const std::string& name, std::string& value) {
   guarded(name, [&] {
     const hdf5::StoredArray array(group_.id(), hdf5::Place::dataset, require(name));
     if (array.elements() != 1) throw DataError("is not one text");
@@ -91,7 +91,7 @@ void ArchiveReader::text(const std::string& name, std::string& value) {
   });
 }
 
-void ArchiveReader::texts(const std::string& name, std::vector<std::string>& values, const Letters& letters) {
+void GroupReader::texts(const std::string& name, std::vector<std::string>& values, const Letters& letters) {
   guarded(name, [&] {
     const hdf5::StoredArray array(group_.id(), hdf5::Place::dataset, require(name));
     const std::string problem = sizes_.agree(letters, array.shape());

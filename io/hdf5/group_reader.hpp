@@ -5,21 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "ident/error.hpp"
-#include "io/archive_sizes.hpp"
-#include "io/archive_units.hpp"
-#include "io/hdf5_array.hpp"
-#include "io/table_columns.hpp"
+#include "io/hdf5/array.hpp"
+#include "io/hdf5/columns.hpp"
+#include "io/hdf5/sizes.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
-/// The reading side of the layout's description: the same calls as ArchiveWriter. Without a list of problems the first
+/// The reading side of the layout's description: the same calls as GroupWriter. Without a list of problems the first
 /// one is thrown as DataError; with one, problems are listed and reading goes on, which is what verification does.
-class ArchiveReader {
+class GroupReader {
  public:
   static constexpr bool reads = true;
 
-  ArchiveReader(hdf5::Handle group, std::vector<std::string>* problems, std::string path = {})
+  GroupReader(hdf5::Handle group, std::vector<std::string>* problems, std::string path = {})
       : group_(std::move(group)),
         problems_(problems),
         problems_before_(problems ? problems->size() : 0),
@@ -28,7 +27,7 @@ class ArchiveReader {
   template <class Body>
   void group(const std::string& name, const Sizes& known, Body body) {
     guarded(name, [&] {
-      ArchiveReader member(hdf5::open_group(group_.id(), require(name)), problems_, path_ + "/" + name);
+      GroupReader member(hdf5::open_group(group_.id(), require(name)), problems_, path_ + "/" + name);
       member.sizes_ = known;
       body(member);
     });

@@ -1,11 +1,11 @@
-#include "io/archive_writer.hpp"
+#include "io/hdf5/group_writer.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
 namespace modebank {
 
-hdf5::Handle ArchiveWriter::make_group(const std::string& name) {
+hdf5::Handle GroupWriter::make_group(const std::string& name) {
   const hdf5::Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, "prepare the group '" + name + "'");
   hdf5::check(H5Pset_obj_track_times(creation.id(), false), "prepare the group '" + name + "'");
   const hdf5::Handle link(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "prepare the group '" + name + "'");
@@ -14,19 +14,19 @@ hdf5::Handle ArchiveWriter::make_group(const std::string& name) {
           "create the group '" + name + "'"};
 }
 
-void ArchiveWriter::write_text_rows(const std::string& name, const std::vector<std::string>& values) {
+void GroupWriter::write_text_rows(const std::string& name, const std::vector<std::string>& values) {
   const hdf5::Handle type = hdf5::array_text_type(part_->texts);
   hdf5::write_rows(group_.id(), name, type.id(), type.id(), {part_->total}, part_->first, part_->count,
                    hdf5::pack_texts(values, hdf5::longest(part_->texts)).data());
 }
 
-void ArchiveWriter::agree(const std::string& name, const Letters& letters, const hdf5::Shape& shape) {
+void GroupWriter::agree(const std::string& name, const Letters& letters, const hdf5::Shape& shape) {
   const std::string problem = sizes_.agree(letters, shape);
   if (!problem.empty()) throw std::invalid_argument(path_ + "/" + name + " has " + problem);
 }
 
-hdf5::Shape ArchiveWriter::shape_of(const std::string& name, const Letters& letters, hsize_t rows, hsize_t cols,
-                                    bool is_vector) {
+hdf5::Shape GroupWriter::shape_of(const std::string& name, const Letters& letters, hsize_t rows, hsize_t cols,
+                                  bool is_vector) {
   hdf5::Shape shape = is_vector ? hdf5::Shape{rows} : hdf5::Shape{cols, rows};
   if (letters.size() == 3) {
     const hsize_t second = sizes_.find(letters[1]).value_or(0);
@@ -60,11 +60,11 @@ hdf5::Shape trailing_shape(const hdf5::Shape& shape, std::size_t count) {
 
 }  // namespace
 
-hdf5::Handle ArchiveWriter::open_dataset(const std::string& name) const {
+hdf5::Handle GroupWriter::open_dataset(const std::string& name) const {
   return {H5Dopen2(group_.id(), name.c_str(), H5P_DEFAULT), H5Dclose, "open '" + name + "'"};
 }
 
-void ArchiveWriter::write_unit(const hdf5::Handle& dataset, const Unit& unit, const hdf5::Shape& shape) {
+void GroupWriter::write_unit(const hdf5::Handle& dataset, const Unit& unit, const hdf5::Shape& shape) {
   if (unit.empty() || (all_equal(unit) && unit.front().empty())) return;
   if (all_equal(unit)) {
     hdf5::write_texts(dataset.id(), hdf5::Place::attribute, "units", {unit.front()}, {});
@@ -74,7 +74,7 @@ void ArchiveWriter::write_unit(const hdf5::Handle& dataset, const Unit& unit, co
   if (!tail.empty()) hdf5::write_texts(dataset.id(), hdf5::Place::attribute, "units", unit, tail);
 }
 
-void ArchiveWriter::write_column_units(const hdf5::Handle& table, const std::vector<std::string>& units) {
+void GroupWriter::write_column_units(const hdf5::Handle& table, const std::vector<std::string>& units) {
   if (all_equal(units) && units.front().empty()) return;
   hdf5::write_texts(table.id(), hdf5::Place::attribute, "units", units, {units.size()});
 }

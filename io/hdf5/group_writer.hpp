@@ -6,27 +6,25 @@
 #include <string>
 #include <vector>
 
-#include "io/archive_sizes.hpp"
-#include "io/archive_units.hpp"
-#include "io/hdf5_array.hpp"
-#include "io/table_columns.hpp"
+#include "io/hdf5/array.hpp"
+#include "io/hdf5/columns.hpp"
+#include "io/hdf5/sizes.hpp"
 
 namespace modebank {
 
-/// The writing side of the layout's description (archive_layout.hpp): one group of a file in the making.
+/// The writing side of the layout's description (io/archive/layout.hpp): one group of a file in the making.
 /// Arrays hold one sample, window or mode per column, which in memory is just the row-major (count, ...) dataset.
-class ArchiveWriter {
+class GroupWriter {
  public:
   static constexpr bool reads = false;
 
-  explicit ArchiveWriter(hdf5::Handle group, std::string path = {})
-      : group_(std::move(group)), path_(std::move(path)) {}
+  explicit GroupWriter(hdf5::Handle group, std::string path = {}) : group_(std::move(group)), path_(std::move(path)) {}
 
   /// Makes a member group and runs `body(writer)` on it.
   template <class Body>
   void group(const std::string& name, const Sizes& known, Body body) {
     if (!complete()) return;
-    ArchiveWriter member(make_group(name), path_ + "/" + name);
+    GroupWriter member(make_group(name), path_ + "/" + name);
     member.sizes_ = known;
     body(member);
   }

@@ -1,8 +1,8 @@
-#include "io/hdf5_handle.hpp"
+#include "io/hdf5/handle.hpp"
 
 #include <algorithm>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::hdf5 {
 
@@ -55,7 +55,21 @@ void check(herr_t status, const std::string& what) {
   if (status < 0) fail(what);
 }
 
-Quiet::Quiet() {
+namespace {
+
+/// Held by one thread at a time where HDF5 was built without thread safety; held by nobody where it has its own.
+std::unique_lock<std::recursive_mutex> one_thread() {
+  static std::recursive_mutex mutex;
+  static const bool has_its_own = [] {
+    hbool_t safe = false;
+    return H5is_library_threadsafe(&safe) >= 0 && safe;
+  }();
+  return has_its_own ? std::unique_lock<std::recursive_mutex>() : std::unique_lock(mutex);
+}
+
+}  // namespace
+
+Quiet::Quiet() : lock_(one_thread()) {
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }

@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,9 +34,10 @@ class Handle {
 /// Throws DataError "cannot <what>: <HDF5's innermost reason>" when the status is negative.
 void check(herr_t status, const std::string& what);
 
-/// While one lives, this thread's HDF5 prints no error stack; the application's own setting comes back afterwards.
-/// After an HDF5 failure it does not: HDF5 1.10 leaks inside when a metadata checksum is wrong, and would complain
-/// about itself on stderr when the process ends.
+/// Lives as long as a function of ours works with HDF5, whatever the library was built with: other threads wait unless
+/// it is thread-safe. While one lives, this thread's HDF5 prints no error stack; the application's own setting comes
+/// back afterwards. After an HDF5 failure it does not: HDF5 1.10 leaks inside when a metadata checksum is wrong, and
+/// would complain about itself on stderr when the process ends.
 class Quiet {
  public:
   Quiet();
@@ -44,6 +46,7 @@ class Quiet {
   Quiet& operator=(const Quiet&) = delete;
 
  private:
+  std::unique_lock<std::recursive_mutex> lock_;
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
 };

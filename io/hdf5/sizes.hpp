@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "io/hdf5_array.hpp"
+#include "io/hdf5/array.hpp"
 
 namespace modebank {
+
+/// Unit of every entry of one sample; an empty text is an unknown unit, an empty list stands for "no unit".
+using Unit = std::vector<std::string>;
 
 /// Letters of the layout (M windows, K modes, n states, ...), one per dimension of an array.
 using Letters = std::vector<std::string>;

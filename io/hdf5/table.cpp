@@ -1,8 +1,8 @@
-#include "io/hdf5_table.hpp"
+#include "io/hdf5/table.hpp"
 
 #include <algorithm>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::hdf5 {
 

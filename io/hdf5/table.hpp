@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "io/hdf5_array.hpp"
+#include "io/hdf5/array.hpp"
 
 namespace modebank::hdf5 {
 

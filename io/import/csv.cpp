@@ -1,17 +1,15 @@
-#include "io/csv.hpp"
+#include "io/import/csv.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "ident/error.hpp"
-#include "ident/nearest_name.hpp"
-#include "ident/not_a_number.hpp"
-#include "io/csv_number.hpp"
-#include "io/csv_pass.hpp"
-#include "io/read_file.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "io/files/read_file.hpp"
+#include "io/import/csv_number.hpp"
+#include "io/import/csv_pass.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -50,7 +48,7 @@ struct TableSink {
   std::vector<int> target;  // per column of the file: skipped or position in table.numbers
   std::size_t text_column = none;
   std::vector<std::string> header;
-  CsvTable table;
+  Table table;
   std::vector<bool> may_miss;  // per position in table.numbers
   bool header_seen = false, empty_line_seen = false;
   std::size_t fields = 0;
@@ -108,7 +106,7 @@ std::vector<std::string> header_of(std::string_view file, NextPiece&& next_piece
   return sink.names;
 }
 
-TableSink make_sink(std::string_view file, std::vector<std::string> header, const CsvRequest& request,
+TableSink make_sink(std::string_view file, std::vector<std::string> header, const TableRequest& request,
                     std::size_t rows) {
   TableSink sink;
   sink.target.assign(header.size(), TableSink::skipped);
@@ -135,17 +133,7 @@ std::vector<std::string> read_csv_header(const std::filesystem::path& path) {
   });
 }
 
-std::size_t column_position(std::string_view file, const std::vector<std::string>& header, const std::string& column) {
-  const auto found = std::find(header.begin(), header.end(), column);
-  if (found == header.end())
-    throw ConfigurationError(fmt::format("{} has no column \"{}\"{}; columns: {}", file, column,
-                                         did_you_mean(column, header), fmt::join(header, ", ")));
-  if (std::find(found + 1, header.end(), column) != header.end())
-    throw ConfigurationError(fmt::format("{} has column \"{}\" twice", file, column));
-  return static_cast<std::size_t>(found - header.begin());
-}
-
-CsvTable parse_csv(std::string_view file, std::string_view content, const CsvRequest& request) {
+Table parse_csv(std::string_view file, std::string_view content, const TableRequest& request) {
   std::vector<std::string> header =
       header_of(file, [rest = content]() mutable { return std::exchange(rest, std::string_view()); });
   const auto rows_at_most = static_cast<std::size_t>(std::count(content.begin(), content.end(), '\n'));

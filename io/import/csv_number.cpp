@@ -1,4 +1,4 @@
-#include "io/csv_number.hpp"
+#include "io/import/csv_number.hpp"
 
 #include <charconv>
 #include <cmath>

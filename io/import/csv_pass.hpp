@@ -8,7 +8,7 @@
 #include <new>
 #include <string_view>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 

@@ -1,10 +1,10 @@
-#include "io/file_patterns.hpp"
+#include "io/import/file_patterns.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 

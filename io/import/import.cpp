@@ -1,4 +1,4 @@
-#include "io/import.hpp"
+#include "io/import/import.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_pipeline.h>
@@ -10,15 +10,13 @@
 #include <optional>
 #include <utility>
 
-#include "ident/error.hpp"
-#include "ident/lag_choice.hpp"
-#include "io/import_plan.hpp"
-#include "io/missing_values.hpp"
-#include "io/read_file.hpp"
-#include "io/read_runs.hpp"
-#include "io/run_names.hpp"
-#include "io/run_roles.hpp"
-#include "io/sha256.hpp"
+#include "ident/lag/choice.hpp"
+#include "io/files/run_names.hpp"
+#include "io/import/import_plan.hpp"
+#include "io/import/missing_values.hpp"
+#include "io/import/read_runs.hpp"
+#include "io/import/run_roles.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -84,12 +82,6 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
   return runs;
 }
 
-std::vector<std::string> run_names(const std::vector<RunStreams>& runs) {
-  std::vector<std::string> names;
-  for (const RunStreams& run : runs) names.push_back(run.run);
-  return names;
-}
-
 template <class Run>
 void sort_by_name(std::vector<Run>& runs) {
   std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.run < b.run; });
@@ -151,7 +143,7 @@ ImportedData import_data(const DataOptions& options) {
   }
   treat_missing_values(runs, options.missing, data.notes);
   sort_by_name(runs);
-  check_run_names(modebank::run_names(runs));
+  check_run_names(run_names(runs));
   return data;
 }
 
@@ -159,7 +151,7 @@ std::vector<RunStreams> read_streams(const DataOptions& options) {
   ImportedData unused;
   std::vector<FilePlan> plans = plan_import(options);
   for (FilePlan& plan : plans)
-    for (CsvRequest& request : plan.requests) request.may_miss.assign(request.numbers.size(), true);
+    for (TableRequest& request : plan.requests) request.may_miss.assign(request.numbers.size(), true);
   return named_streams(plans, options, unused, true);
 }
 
@@ -167,17 +159,6 @@ std::vector<std::filesystem::path> data_files(const DataOptions& options) {
   std::vector<std::filesystem::path> files;
   for (const FilePlan& plan : plan_import(options)) files.insert(files.end(), plan.paths.begin(), plan.paths.end());
   return files;
-}
-
-std::string data_hash(const std::vector<InputFile>& files) {
-  Sha256 hash;
-  for (const InputFile& file : files) hash.update(file.sha256);
-  return hash.hex();
-}
-
-InputFile describe_file(const std::filesystem::path& path) {
-  const std::string content = read_file(path);
-  return {std::filesystem::absolute(path).string(), content.size(), sha256_hex(content)};
 }
 
 }  // namespace modebank

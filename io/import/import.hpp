@@ -1,31 +1,24 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "ident/lag_report.hpp"
-#include "ident/trajectory.hpp"
-#include "io/data_options.hpp"
-#include "io/run_streams.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/lag/report.hpp"
+#include "io/files/input_file.hpp"
+#include "io/import/options.hpp"
+#include "io/import/run_streams.hpp"
 
 namespace modebank {
-
-/// One file that was read, for provenance.
-struct InputFile {
-  std::string path;  ///< absolute
-  std::uint64_t bytes = 0;
-  std::string sha256;  ///< lowercase hex of the content
-};
 
 struct ImportedData {
   Recording recording;             ///< runs sorted by name (byte order), roles set
   std::vector<InputFile> files;    ///< in run order, inputs before states
   std::vector<std::string> notes;  ///< what the user should know of the data
   std::optional<LagReport> lag;    ///< with DataOptions::lag_auto: what was found and applied
-  std::string data_hash;  ///< SHA-256 over the files' hex digests, in that order: the content, not where it lies
+  std::string data_hash;           ///< of files, see io/files/input_file.hpp
 };
 
 /// Finds, checks and reads all runs. Throws ConfigurationError for what can be seen before any sample is read (pattern
@@ -41,11 +34,5 @@ std::vector<RunStreams> read_streams(const DataOptions& options);
 
 /// The files that import_data would read. Throws ConfigurationError as it does.
 std::vector<std::filesystem::path> data_files(const DataOptions& options);
-
-/// ImportedData::data_hash of files in that order.
-std::string data_hash(const std::vector<InputFile>& files);
-
-/// Path, size and hash of any file, for provenance. Throws ConfigurationError when it cannot be read.
-InputFile describe_file(const std::filesystem::path& path);
 
 }  // namespace modebank

@@ -1,4 +1,4 @@
-#include "io/import_plan.hpp"
+#include "io/import/import_plan.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <optional>
 
-#include "ident/error.hpp"
-#include "ident/nearest_name.hpp"
-#include "io/file_patterns.hpp"
-#include "io/run_roles.hpp"
+#include "ident/base/nearest_name.hpp"
+#include "io/import/file_patterns.hpp"
+#include "io/import/run_roles.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -54,7 +54,7 @@ void check_options(const DataOptions& options) {
 class ColumnFinder {
  public:
   explicit ColumnFinder(FilePlan& plan) : plan_(plan) {
-    for (const auto& path : plan.paths) headers_.push_back(read_csv_header(path));
+    for (const auto& path : plan.paths) headers_.push_back(open_table(path)->columns());
     plan.requests.resize(plan.paths.size());
   }
 
@@ -119,7 +119,7 @@ void plan_columns(FilePlan& plan, const DataOptions& options) {
     plan.states_runs = find.text(options.run, {states});
   }
   // A sample without time has no place, and one without weight should not be guessed at.
-  for (CsvRequest& request : plan.requests)
+  for (TableRequest& request : plan.requests)
     request.may_miss.assign(request.numbers.size(), options.missing != Missing::error);
   for (const ColumnRef time : {plan.inputs_time, plan.states_time})
     plan.requests[time.file].may_miss[time.column] = false;

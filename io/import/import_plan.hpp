@@ -4,15 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "io/csv.hpp"
-#include "io/data_options.hpp"
+#include "io/import/options.hpp"
+#include "io/import/table_reader.hpp"
 
 namespace modebank {
 
 /// Where one wanted column stands.
 struct ColumnRef {
   std::size_t file = 0;    ///< position in FilePlan::paths
-  std::size_t column = 0;  ///< position in that file's CsvRequest::numbers
+  std::size_t column = 0;  ///< position in that file's TableRequest::numbers
 };
 
 /// What is to be read of one inputs file and its states file, decided on the headers alone.
@@ -20,7 +20,7 @@ struct FilePlan {
   std::string name;                          ///< what the * matched, or the file's stem
   bool starred = false;                      ///< whether there was a *
   std::vector<std::filesystem::path> paths;  ///< inputs file, then the states file if there is one
-  std::vector<CsvRequest> requests;          ///< one per path
+  std::vector<TableRequest> requests;        ///< one per path
   std::vector<ColumnRef> state, input, truth;
   std::vector<ColumnRef> weight;                 ///< one or none
   ColumnRef inputs_time, states_time;            ///< the same column where rows correspond
@@ -31,7 +31,7 @@ struct FilePlan {
 };
 
 /// Checks options, finds the files and reads their headers, in order of `name`. Runs that neither data.train nor
-/// data.test names are left out, unless a column names the runs. Throws ConfigurationError (io/import.hpp).
+/// data.test names are left out, unless a column names the runs. Throws ConfigurationError (io/import/import.hpp).
 std::vector<FilePlan> plan_import(const DataOptions& options);
 
 }  // namespace modebank

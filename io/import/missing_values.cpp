@@ -1,10 +1,10 @@
-#include "io/missing_values.hpp"
+#include "io/import/missing_values.hpp"
 
 #include <fmt/format.h>
 
-#include "ident/error.hpp"
-#include "ident/join_streams.hpp"
-#include "ident/stretch.hpp"
+#include "ident/data/streams.hpp"
+#include "ident/data/stretch.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 

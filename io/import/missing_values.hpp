@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
 
 namespace modebank {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/enum_names.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank {
 
@@ -35,9 +35,9 @@ struct EnumNames<Disorder> {
 
 /// What to read and how: the [data] section.
 struct DataOptions {
-  std::string root;                ///< absolute prefix of relative patterns
-  std::string inputs;              ///< one file per run; the part matched by * names the run (io/file_patterns.hpp)
-  std::string states;              ///< the same for states; empty: states are columns of the inputs file
+  std::string root;    ///< absolute prefix of relative patterns
+  std::string inputs;  ///< one file per run; the part matched by * names the run (io/import/file_patterns.hpp)
+  std::string states;  ///< the same for states; empty: states are columns of the inputs file
   std::vector<std::string> state;  ///< column names
   std::vector<std::string> input;
   std::vector<std::string> truth;       ///< true states; as many as states, or none
@@ -53,7 +53,7 @@ struct DataOptions {
   std::string run;
   double rate_hz = 0.0;      ///< 0: the inputs file's own times; else resampled (states linear, inputs held)
   double lag_s = 0.0;        ///< inputs act this much later: at time t the input is u(t - lag_s), held
-  bool lag_auto = false;     ///< lag_s is estimated on the training runs (ident/lag_choice.hpp)
+  bool lag_auto = false;     ///< lag_s is estimated on the training runs (ident/lag/choice.hpp)
   double lag_range_s = 2.5;  ///< lags that the estimate searches, either way
   Missing missing = Missing::error;
   Disorder disorder = Disorder::error;

@@ -1,14 +1,11 @@
-#include "io/read_runs.hpp"
+#include "io/import/read_runs.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_invoke.h>
 
 #include <map>
 #include <numeric>
 
-#include "ident/error.hpp"
-#include "io/read_file.hpp"
-#include "io/sha256.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -18,15 +15,11 @@ using Eigen::VectorXd;
 using Rows = std::vector<std::size_t>;
 using RunRows = std::map<std::string, Rows>;  // sorted by run name, byte order
 
-std::vector<CsvTable> read_tables(const FilePlan& plan, FileContent& result) {
-  std::vector<CsvTable> tables(plan.paths.size());
+std::vector<Table> read_tables(const FilePlan& plan, FileContent& result) {
+  std::vector<Table> tables(plan.paths.size());
   for (std::size_t f = 0; f < plan.paths.size(); ++f) {
     const std::string path = plan.paths[f].string();
-    const std::string content = read_file(path);
-    std::string sha256;
-    tbb::parallel_invoke([&] { sha256 = sha256_hex(content); },
-                         [&] { tables[f] = parse_csv(path, content, plan.requests[f]); });
-    result.files.push_back({path, content.size(), std::move(sha256)});
+    tables[f] = open_table(plan.paths[f])->read(plan.requests[f], result.files.emplace_back());
     if (tables[f].rows() == 0) throw DataError(fmt::format("{}: a header, but no rows", path));
   }
   return tables;
@@ -35,10 +28,10 @@ std::vector<CsvTable> read_tables(const FilePlan& plan, FileContent& result) {
 /// One file's view of the runs: which rows belong to which, and the rows' times.
 class RowReader {
  public:
-  RowReader(const FilePlan& plan, const std::vector<CsvTable>& tables) : plan_(plan), tables_(tables) {}
+  RowReader(const FilePlan& plan, const std::vector<Table>& tables) : plan_(plan), tables_(tables) {}
 
   RunRows rows_by_run(std::size_t file, bool has_run_column) const {
-    const CsvTable& table = tables_[file];
+    const Table& table = tables_[file];
     RunRows runs;
     if (!has_run_column) {
       runs[""].resize(table.rows());
@@ -91,10 +84,10 @@ class RowReader {
   }
 
   const FilePlan& plan_;
-  const std::vector<CsvTable>& tables_;
+  const std::vector<Table>& tables_;
 };
 
-void check_row_counts(const FilePlan& plan, const std::vector<CsvTable>& tables) {
+void check_row_counts(const FilePlan& plan, const std::vector<Table>& tables) {
   if (!plan.rows_correspond() || tables.front().rows() == tables.back().rows()) return;
   throw DataError(fmt::format("data.join = row: {} has {} rows, but {} has {}", plan.paths.front().string(),
                               tables.front().rows(), plan.paths.back().string(), tables.back().rows()));
@@ -136,7 +129,7 @@ RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::
 
 FileContent read_runs(const FilePlan& plan, const DataOptions& options) {
   FileContent result;
-  const std::vector<CsvTable> tables = read_tables(plan, result);
+  const std::vector<Table> tables = read_tables(plan, result);
   check_row_counts(plan, tables);
   const RowReader reader(plan, tables);
   const bool has_run_column = !options.run.empty();

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "io/data_options.hpp"
-#include "io/import.hpp"
-#include "io/import_plan.hpp"
-#include "io/run_streams.hpp"
+#include "io/import/import.hpp"
+#include "io/import/import_plan.hpp"
+#include "io/import/options.hpp"
+#include "io/import/run_streams.hpp"
 
 namespace modebank {
 
@@ -16,7 +16,7 @@ struct FileContent {
   std::vector<InputFile> files;  ///< inputs before states
 };
 
-/// Reads one plan's files into streams, run by run. Throws DataError (io/import.hpp).
+/// Reads one plan's files into streams, run by run. Throws DataError (io/import/import.hpp).
 FileContent read_runs(const FilePlan& plan, const DataOptions& options);
 
 }  // namespace modebank

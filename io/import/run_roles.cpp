@@ -1,12 +1,12 @@
-#include "io/run_roles.hpp"
+#include "io/import/run_roles.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "ident/error.hpp"
-#include "ident/nearest_name.hpp"
+#include "ident/base/nearest_name.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 

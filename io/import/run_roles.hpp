@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
 
 namespace modebank {
 

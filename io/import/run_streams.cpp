@@ -1,11 +1,11 @@
-#include "io/run_streams.hpp"
+#include "io/import/run_streams.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <numeric>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "ident/join_streams.hpp"
-#include "ident/trajectory.hpp"
-#include "io/data_options.hpp"
+#include "ident/data/streams.hpp"
+#include "ident/data/trajectory.hpp"
+#include "io/import/options.hpp"
 
 namespace modebank {
 

@@ -1,4 +1,4 @@
-#include "io/simulation_files.hpp"
+#include "io/simulation/simulation_files.hpp"
 
 #include <csv.h>
 #include <fmt/format.h>
@@ -8,8 +8,8 @@
 #include <iterator>
 #include <set>
 
-#include "ident/error.hpp"
-#include "io/replace_file.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 

@@ -1,9 +1,10 @@
-#include "mixture/point_blocks.hpp"
+#include "mixture/detail/cloud.hpp"
 
 #include <boost/random/uniform_01.hpp>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace modebank {
 
@@ -25,7 +26,7 @@ PointBlocks::PointBlocks(const PointSet& set, const FeatureScale& scale, std::pt
     if (copied_) lay_out(b, blocks_.data() + b * block_doubles());
     const Index first = b * block_size;
     total_weight_ +=
-        set_.weights.size() > 0 ? set_.weights.segment(first, points_in(b)).sum() : static_cast<double>(points_in(b));
+        set.weights.size() > 0 ? set.weights.segment(first, points_in(b)).sum() : static_cast<double>(points_in(b));
   }
 }
 
@@ -47,13 +48,14 @@ em::Block PointBlocks::block(Index block, AlignedBuffer& stage) const {
 void PointBlocks::lay_out(Index block, double* to) const {
   const Index first = block * block_size, filled = points_in(block);
   double* const weights = to + features_ * block_size;
-  const bool weighted = set_.weights.size() > 0;
+  const PointSet& set = *set_;
+  const bool weighted = set.weights.size() > 0;
   if (weighted)
-    std::copy_n(set_.weights.data() + first, filled, weights);
+    std::copy_n(set.weights.data() + first, filled, weights);
   else
     std::fill_n(weights, filled, 1.0);
   std::fill(weights + filled, weights + block_size, 0.0);
-  const double* const from = set_.points.data() + first * features_;
+  const double* const from = set.points.data() + first * features_;
   for (Index f = 0; f < features_; ++f) {
     double* const column = to + f * block_size;
     const double center = scale_.center(f), inverse = scale_.inverse(f);
@@ -68,7 +70,7 @@ void PointBlocks::lay_out(Index block, double* to) const {
   Eigen::VectorXd unit(features_);
   std::fill(column, column + error_columns() * block_size, 0.0);
   for (Index i = 0; i < filled; ++i) {
-    const double* const S = set_.covariances.col(first + i).data();
+    const double* const S = set.covariances.col(first + i).data();
     for (Index f = 0; f < features_; ++f) {
       const double sd = std::sqrt(S[f * features_ + f]) / scale_.scale(f);
       unit(f) = (sd > largest_error ? largest_error / sd : 1.0) / scale_.scale(f);
@@ -79,6 +81,8 @@ void PointBlocks::lay_out(Index block, double* to) const {
 }
 
 PointBlocks PointBlocks::for_starts(Index most, std::mt19937_64& generator) const {
+  if (!set_) throw std::logic_error("points for starts are chosen from points that are gone");
+  const PointSet& set = *set_;
   const Index chosen = std::min(most, count_);
   const double stride = static_cast<double>(count_) / static_cast<double>(chosen);
   const double first = chosen < count_ ? boost::random::uniform_01<double>()(generator) : 0.0;
@@ -86,14 +90,16 @@ PointBlocks PointBlocks::for_starts(Index most, std::mt19937_64& generator) cons
   Eigen::VectorXd weights(chosen);
   for (Index i = 0; i < chosen; ++i) {
     const Index from = std::min(static_cast<Index>((static_cast<double>(i) + first) * stride), count_ - 1);
-    points.col(i) = set_.points.col(from);
-    weights(i) = set_.weights.size() > 0 ? set_.weights(from) : 1.0;
+    points.col(i) = set.points.col(from);
+    weights(i) = set.weights.size() > 0 ? set.weights(from) : 1.0;
     if (!has_errors_) continue;
-    const Eigen::Map<const Eigen::MatrixXd> S(set_.covariances.col(from).data(), features_, features_);
+    const Eigen::Map<const Eigen::MatrixXd> S(set.covariances.col(from).data(), features_, features_);
     const double relative = (S.diagonal().array() / scale_.scale.array().square()).mean();
     weights(i) /= 1.0 + std::min(relative, largest_error);
   }
-  return PointBlocks(PointSet(points, weights), scale_, std::numeric_limits<std::ptrdiff_t>::max());
+  PointBlocks result(PointSet(points, weights), scale_, std::numeric_limits<std::ptrdiff_t>::max());
+  result.set_.reset();
+  return result;
 }
 
 }  // namespace modebank

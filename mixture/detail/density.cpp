@@ -1,7 +1,8 @@
-#include "mixture/component_density.hpp"
+#include "mixture/detail/density.hpp"
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,39 +13,6 @@ namespace modebank {
 using Eigen::Index;
 
 namespace {
-
-/// Lower Cholesky factor, by rows (Golub & Van Loan 2013, algorithm 4.2.2 in another order); false unless positive
-/// definite.
-bool cholesky(const Eigen::MatrixXd& covariance, bool diagonal, Eigen::MatrixXd& L) {
-  const Index F = covariance.rows();
-  L.setZero(F, F);
-  for (Index i = 0; i < F; ++i) {
-    double pivot = covariance(i, i);
-    for (Index j = 0; j < (diagonal ? 0 : i); ++j) {
-      double sum = covariance(i, j);
-      for (Index k = 0; k < j; ++k) sum -= L(i, k) * L(j, k);
-      L(i, j) = sum / L(j, j);
-      pivot -= L(i, j) * L(i, j);
-    }
-    if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
-    L(i, i) = std::sqrt(pivot);
-  }
-  return true;
-}
-
-/// Inverse of a lower triangle.
-void invert(const Eigen::MatrixXd& L, Eigen::MatrixXd& W) {
-  const Index F = L.rows();
-  W.setZero(F, F);
-  for (Index j = 0; j < F; ++j) {
-    W(j, j) = 1.0 / L(j, j);
-    for (Index i = j + 1; i < F; ++i) {
-      double sum = 0.0;
-      for (Index k = j; k < i; ++k) sum += L(i, k) * W(k, j);
-      W(i, j) = -sum / L(i, i);
-    }
-  }
-}
 
 /// Components of which the origin is not further away [standard deviations]: squares about it lose three digits.
 constexpr double central_distance = 32.0;
@@ -99,13 +67,19 @@ FactoredMixture::FactoredMixture(const GaussianMixture& mixture, bool errors)
       log_constants_(mixture.components()) {
   const Index F = mixture.features();
   const double log_normal = -0.5 * static_cast<double>(F) * std::log(2.0 * std::numbers::pi);
+  Eigen::LLT<Eigen::MatrixXd> cholesky;
   Eigen::MatrixXd L, W;
   for (Index k = 0; k < mixture.components(); ++k) {
     const Eigen::MatrixXd& covariance = mixture.covariances[k];
-    const bool positive = cholesky(covariance, diagonal_, L);
-    if (positive) invert(L, W);
-    if (!positive || !W.allFinite())
-      throw std::invalid_argument(fmt::format(
+    if (diagonal_)
+      cholesky.compute(Eigen::MatrixXd(covariance.diagonal().asDiagonal()));
+    else
+      cholesky.compute(covariance);
+    L = cholesky.matrixL();
+    W.setIdentity(F, F);
+    cholesky.matrixL().solveInPlace(W);
+    if (cholesky.info() != Eigen::Success || !L.allFinite() || !W.allFinite())
+      throw NotPositiveDefinite(fmt::format(
           "covariance of mixture component {} of {} features is not positive definite (smallest variance {})", k, F,
           covariance.diagonal().minCoeff()));
     pack(W, mixture.means.col(k), kernels_.packing, diagonal_, whitening_);

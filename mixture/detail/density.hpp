@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "mixture/aligned_buffer.hpp"
-#include "mixture/em_kernels.hpp"
+#include "mixture/detail/cloud.hpp"
+#include "mixture/detail/kernels/kernels.hpp"
 #include "mixture/gaussian_mixture.hpp"
 
 namespace modebank {
@@ -13,7 +13,7 @@ namespace modebank {
 /// A mixture with its covariances factored once, as the vector kernels read it, and the kernels that suit it.
 class FactoredMixture {
  public:
-  /// Kernels for points with or without errors. Throws std::invalid_argument naming the first component whose
+  /// Kernels for points with or without errors. Throws NotPositiveDefinite naming the first component whose
   /// covariance is not positive definite.
   FactoredMixture(const GaussianMixture& mixture, bool errors);
 

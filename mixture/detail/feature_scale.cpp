@@ -1,4 +1,4 @@
-#include "mixture/feature_scale.hpp"
+#include "mixture/detail/feature_scale.hpp"
 
 #include <algorithm>
 #include <cmath>

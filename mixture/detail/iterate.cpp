@@ -1,3 +1,5 @@
+#include "mixture/detail/iterate.hpp"
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -5,8 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "mixture/em_iteration.hpp"
-#include "mixture/em_step.hpp"
+#include "mixture/detail/step.hpp"
 
 namespace modebank {
 
@@ -121,45 +122,46 @@ class Extrapolation {
 
 }  // namespace
 
-EmResult converge(const PointBlocks& points, GaussianMixture start, const EmOptions& options, double hopeless_below) {
+EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptions& options, Steps steps,
+                 double hopeless_below) {
   const double least_gain = options.tolerance * points.total_weight();
   EmResult result;
-  result.mixture = std::move(start);
   result.log_likelihood = -std::numeric_limits<double>::infinity();
   Extrapolation extrapolation;
-  GaussianMixture trial = result.mixture, plain = result.mixture;
+  GaussianMixture trial = std::move(start), plain;
   bool extrapolated = false;
   while (true) {
-    const MixtureMoments moments = expect(points, trial);
+    const bool last = result.iterations == options.max_iterations;
+    const MixtureMoments moments = last ? measure(points, trial) : expect(points, trial);
     const double gain = moments.log_likelihood - result.log_likelihood;
     if (extrapolated && !(gain >= 0.0)) {
-      trial = plain;
+      trial = std::move(plain);
       extrapolated = false;
       extrapolation.shorten();
       continue;
     }
-    result.mixture = std::move(trial);
     result.log_likelihood = moments.log_likelihood;
     // Only what EM itself gains says how near its end is.
     result.converged = !extrapolated && gain < least_gain;
-    if (result.converged || result.iterations == options.max_iterations) return result;
-    plain = result.mixture;
-    result.floor_active = maximise(moments, options.covariance_floor, plain);
+    if (result.converged || last) break;
+    if (steps == Steps::extrapolated) result.mixture = trial;
+    result.floor_active = maximise(moments, options.covariance_floor, trial);
     ++result.iterations;
-    trial = plain;
     extrapolated = false;
-    const auto next = extrapolation.next(coordinates_of(result.mixture), coordinates_of(plain));
+    if (steps == Steps::plain) continue;
+    const auto next = extrapolation.next(coordinates_of(result.mixture), coordinates_of(trial));
     // One geometric series would gain at most half of gain * steps; several together more than the fastest of them
     // shows.
-    if (const auto steps = extrapolation.steps_left();
-        steps && result.log_likelihood + margin * gain * *steps < hopeless_below)
+    if (const auto left = extrapolation.steps_left();
+        left && result.log_likelihood + margin * gain * *left < hopeless_below)
       return result;
-    if (next)
-      if (std::optional<GaussianMixture> mixture = mixture_of(*next, plain, options)) {
-        trial = std::move(*mixture);
-        extrapolated = true;
-      }
+    std::optional<GaussianMixture> mixture = next ? mixture_of(*next, trial, options) : std::nullopt;
+    if (!mixture) continue;
+    plain = std::exchange(trial, std::move(*mixture));
+    extrapolated = true;
   }
+  result.mixture = std::move(trial);
+  return result;
 }
 
 }  // namespace modebank

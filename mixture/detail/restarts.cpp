@@ -1,4 +1,4 @@
-#include "mixture/restarts.hpp"
+#include "mixture/detail/restarts.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "mixture/cross.hpp"
-#include "mixture/em_iteration.hpp"
-#include "mixture/split_merge.hpp"
+#include "mixture/detail/iterate.hpp"
+#include "mixture/detail/split_merge.hpp"
+#include "mixture/reduction.hpp"
 
 namespace modebank {
 
@@ -34,10 +34,22 @@ EmOptions with_iterations_left(const EmOptions& options, int spent) {
   return rest;
 }
 
+GaussianMixture union_of(const GaussianMixture& a, const GaussianMixture& b) {
+  GaussianMixture both = a;
+  both.weights.resize(a.components() + b.components());
+  both.weights << 0.5 * a.weights, 0.5 * b.weights;
+  both.means.resize(a.features(), both.weights.size());
+  both.means << a.means, b.means;
+  both.covariances.insert(both.covariances.end(), b.covariances.begin(), b.covariances.end());
+  both.noise.weight = 0.5 * (a.noise.weight + b.noise.weight);
+  return both;
+}
+
 /// From a start to an optimum that split-and-merge moves do not leave.
-EmResult climb(const PointBlocks& points, Start start, const EmOptions& options) {
+EmResult climb(const PointBlocks& points, Start start, const EmOptions& options, std::uint64_t seed) {
   const EmOptions rest = with_iterations_left(options, start.iterations);
-  EmResult result = split_and_merge(points, converge(points, std::move(start.mixture), rest), rest);
+  EmResult result =
+      split_and_merge(points, iterate(points, std::move(start.mixture), rest, Steps::extrapolated), rest, seed);
   result.iterations += start.iterations;
   return result;
 }
@@ -45,15 +57,22 @@ EmResult climb(const PointBlocks& points, Start start, const EmOptions& options)
 /// Goes on from where `result` stopped.
 void follow(const PointBlocks& points, const EmOptions& options, double hopeless_below, EmResult& result) {
   const int spent = result.iterations;
-  EmResult rest = converge(points, std::move(result.mixture), with_iterations_left(options, spent), hopeless_below);
+  EmResult rest = iterate(points, std::move(result.mixture), with_iterations_left(options, spent), Steps::extrapolated,
+                          hopeless_below);
   result = std::move(rest);
   result.iterations += spent;
 }
 
 }  // namespace
 
+GaussianMixture cross(const GaussianMixture& a, const GaussianMixture& b) {
+  Reduction reduction(union_of(a, b));
+  while (reduction.components() > a.components()) reduction.merge_closest();
+  return reduction.mixture();
+}
+
 EmResult best_of_restarts(const PointBlocks& points, const std::function<Start(int)>& start_of,
-                          const EmOptions& options) {
+                          const EmOptions& options, std::uint64_t seed) {
   EmOptions coarse = options;
   if (options.tolerance > 0.0) coarse.tolerance = std::max(options.tolerance, coarse_tolerance);
   std::vector<EmResult> results(static_cast<std::size_t>(options.restarts));
@@ -61,13 +80,13 @@ EmResult best_of_restarts(const PointBlocks& points, const std::function<Start(i
   const auto for_each = [&](auto action) {
     tbb::parallel_for(0, options.restarts, [&](int i) { action(static_cast<std::size_t>(i)); });
   };
-  for_each([&](std::size_t i) { results[i] = climb(points, start_of(static_cast<int>(i)), coarse); });
+  for_each([&](std::size_t i) { results[i] = climb(points, start_of(static_cast<int>(i)), coarse, seed); });
   std::size_t best = best_of(results);
   if (options.split_merge > 0 && results[best].mixture.components() > 1) {
     for_each([&](std::size_t i) {
       if (i == best) return;
       const int spent = results[i].iterations;
-      EmResult crossed = climb(points, {cross(results[best].mixture, results[i].mixture), spent}, coarse);
+      EmResult crossed = climb(points, {cross(results[best].mixture, results[i].mixture), spent}, coarse, seed);
       if (crossed.log_likelihood > results[i].log_likelihood) crossing[i] = std::move(crossed);
     });
     for (std::size_t i = 0; i < results.size(); ++i)

@@ -1,4 +1,4 @@
-#include "mixture/split_merge.hpp"
+#include "mixture/detail/split_merge.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -7,11 +7,11 @@
 #include <numbers>
 #include <utility>
 
-#include "ident/seed.hpp"
-#include "mixture/component_merge.hpp"
-#include "mixture/em_iteration.hpp"
-#include "mixture/em_step.hpp"
-#include "mixture/starts.hpp"
+#include "ident/base/seed.hpp"
+#include "mixture/detail/iterate.hpp"
+#include "mixture/detail/starts.hpp"
+#include "mixture/detail/step.hpp"
+#include "mixture/reduction.hpp"
 
 namespace modebank {
 
@@ -202,9 +202,9 @@ std::vector<Trial> promising(const Ranking& ranking, const GaussianMixture& mixt
 
 }  // namespace
 
-EmResult split_and_merge(const PointBlocks& points, EmResult fit, const EmOptions& options) {
+EmResult split_and_merge(const PointBlocks& points, EmResult fit, const EmOptions& options, std::uint64_t seed) {
   if (options.split_merge < 1 || options.max_iterations < 1 || fit.mixture.components() < 3) return fit;
-  std::mt19937_64 generator = make_generator(0, "split and merge");
+  std::mt19937_64 generator = make_generator(seed, "split and merge");
   Ranking ranking{sample_points(points, moves_are_ranked_on, generator), {}, {}};
   EmOptions brief = options;
   brief.max_iterations = std::min(move_iterations, options.max_iterations);
@@ -213,10 +213,10 @@ EmResult split_and_merge(const PointBlocks& points, EmResult fit, const EmOption
     const double wanted = fit.log_likelihood + least_gain * points.total_weight();
     bool better = false;
     for (Trial& trial : promising(ranking, fit.mixture, points.has_errors(), options)) {
-      EmResult result = converge(points, std::move(trial.start), brief, wanted);
+      EmResult result = iterate(points, std::move(trial.start), brief, Steps::extrapolated, wanted);
       if (!(result.log_likelihood > wanted)) continue;
       const int spent = fit.iterations + result.iterations;
-      if (!result.converged) result = converge(points, std::move(result.mixture), options);
+      if (!result.converged) result = iterate(points, std::move(result.mixture), options, Steps::extrapolated);
       result.iterations += spent;
       fit = std::move(result);
       better = true;

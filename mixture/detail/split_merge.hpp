@@ -1,10 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
+#include "mixture/detail/cloud.hpp"
 #include "mixture/em.hpp"
-#include "mixture/point_blocks.hpp"
 
 namespace modebank {
 
@@ -27,8 +28,9 @@ std::vector<SplitMergeMove> split_merge_moves(const GaussianMixture& mixture, co
 GaussianMixture apply(const SplitMergeMove& move, const GaussianMixture& mixture);
 
 /// Leaves a poor optimum: of the most promising options.split_merge moves the one that has gained most after a short EM
-/// run is followed to its end, and kept when the likelihood is higher; again until a round brings nothing. A run that
-/// will not get above the present likelihood ends early (converge). Never worse than `fit`.
-EmResult split_and_merge(const PointBlocks& points, EmResult fit, const EmOptions& options);
+/// run is followed to its end, and kept when the likelihood is higher; again until a round brings nothing. Moves are
+/// ranked on a sample of the points (`seed`). A run that will not get above the present likelihood ends early
+/// (`iterate`). Never worse than `fit`.
+EmResult split_and_merge(const PointBlocks& points, EmResult fit, const EmOptions& options, std::uint64_t seed);
 
 }  // namespace modebank

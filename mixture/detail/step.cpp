@@ -1,13 +1,11 @@
-#include "mixture/em_step.hpp"
+#include "mixture/detail/step.hpp"
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <vector>
 
-#include "mixture/component_density.hpp"
+#include "mixture/detail/density.hpp"
 
 namespace modebank {
 
@@ -86,23 +84,6 @@ MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture,
 
 MixtureMoments measure(const PointBlocks& points, const GaussianMixture& mixture) {
   return pass(points, FactoredMixture(mixture, points.has_errors()), nullptr, false);
-}
-
-bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType type) {
-  if (type == CovarianceType::diagonal) {
-    const Eigen::VectorXd variances = covariance.diagonal();
-    covariance = variances.cwiseMax(floor).asDiagonal();
-    return (variances.array() < floor).any();
-  }
-  Eigen::MatrixXd excess = covariance;
-  excess.diagonal().array() -= floor;
-  // Positive definite after the floor is taken off: every eigenvalue is above it, and no decomposition is needed.
-  if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(excess).info() == Eigen::Success) return false;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  covariance =
-      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(floor).asDiagonal() * eigen.eigenvectors().transpose();
-  covariance = (0.5 * (covariance + covariance.transpose())).eval();
-  return true;
 }
 
 bool maximise(const MixtureMoments& moments, double floor, GaussianMixture& mixture) {

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "mixture/detail/cloud.hpp"
 #include "mixture/gaussian_mixture.hpp"
-#include "mixture/point_blocks.hpp"
 
 namespace modebank {
 
@@ -29,8 +29,5 @@ MixtureMoments measure(const PointBlocks& points, const GaussianMixture& mixture
 /// maximiser under that constraint, so the likelihood never falls. A component that explains less than 1e-14 of the
 /// total weight keeps its mean and covariance. Returns whether the floor held any component.
 bool maximise(const MixtureMoments& moments, double floor, GaussianMixture& mixture);
-
-/// Raises the eigenvalues (`diagonal`: the variances, off-diagonals are zeroed) to `floor`; whether any was below.
-bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType type);
 
 }  // namespace modebank

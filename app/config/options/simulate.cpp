@@ -1,8 +1,7 @@
-#include "app/simulate_options.hpp"
-
 #include <fmt/format.h>
 
-#include "app/option_builders.hpp"
+#include "app/config/option_builders.hpp"
+#include "app/config/options/sections.hpp"
 
 namespace modebank::app {
 namespace {

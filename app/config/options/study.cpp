@@ -1,12 +1,11 @@
-#include "app/study/study_options.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <boost/algorithm/string.hpp>
 
-#include "app/option_builders.hpp"
-#include "app/study/study_space.hpp"
+#include "app/config/option_builders.hpp"
+#include "app/config/options/sections.hpp"
+#include "app/config/vary_text.hpp"
 
 namespace modebank::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/report/figure.hpp"
+#include "app/report/figures/figure.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <boost/algorithm/string.hpp>
 #include <cmath>
 
-#include "app/report/palette.hpp"
+#include "app/report/figures/palette.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/report/gnuplot.hpp"
+#include "app/report/figures/gnuplot.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -11,9 +11,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "app/report/assets.hpp"
-#include "ident/error.hpp"
+#include "app/report/page/assets.hpp"
+#include "modebank/base/error.hpp"
 
+// NOLINTNEXTLINE(readability-redundant-declaration): POSIX leaves its declaration to the user, glibc gives one.
 extern char** environ;
 
 namespace modebank::app::report {

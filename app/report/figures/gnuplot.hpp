@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/report/figure.hpp"
+#include "app/report/figures/figure.hpp"
 
 namespace modebank::app::report {
 

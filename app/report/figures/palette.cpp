@@ -1,11 +1,11 @@
-#include "app/report/palette.hpp"
+#include "app/report/figures/palette.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/report/assets.hpp"
+#include "app/report/page/assets.hpp"
 
 namespace modebank::app::report {
 namespace {

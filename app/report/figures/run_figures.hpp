@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "app/report/figure.hpp"
-#include "io/archive.hpp"
+#include "app/report/figures/figure.hpp"
+#include "io/archive/archive.hpp"
 
 namespace modebank::app::report {
 

@@ -3,11 +3,11 @@
 #include <array>
 #include <limits>
 
-#include "app/judged_runs.hpp"
-#include "app/report/assets.hpp"
-#include "app/report/palette.hpp"
-#include "app/report/run_figures.hpp"
-#include "filter/pit_histogram.hpp"
+#include "app/chain/judged_runs.hpp"
+#include "app/report/figures/palette.hpp"
+#include "app/report/figures/run_figures.hpp"
+#include "app/report/page/assets.hpp"
+#include "app/report/page/pit_histogram.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "app/report/assets.hpp"
-#include "app/report/study_page.hpp"
-#include "app/study/answers.hpp"
+#include "app/report/page/assets.hpp"
+#include "app/report/page/study_page.hpp"
+#include "app/study/answers/answers.hpp"
 
 namespace modebank::app::report {
 namespace {

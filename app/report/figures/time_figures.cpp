@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
-#include "app/judged_runs.hpp"
-#include "app/report/assets.hpp"
-#include "app/report/run_figures.hpp"
-#include "app/report/unit_text.hpp"
-#include "filter/calibration.hpp"
-#include "filter/prediction_band.hpp"
-#include "ident/error.hpp"
+#include "app/chain/judged_runs.hpp"
+#include "app/report/figures/run_figures.hpp"
+#include "app/report/page/assets.hpp"
+#include "app/report/page/prediction_band.hpp"
+#include "app/report/page/unit_text.hpp"
+#include "ident/base/distributions.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "app/report/assets.hpp"
-#include "app/report/run_figures.hpp"
-#include "app/report/unit_text.hpp"
-#include "io/archive_units.hpp"
-#include "mixture/confidence_ellipse.hpp"
+#include "app/report/figures/confidence_ellipse.hpp"
+#include "app/report/figures/run_figures.hpp"
+#include "app/report/page/assets.hpp"
+#include "app/report/page/unit_text.hpp"
+#include "io/archive/bank/units.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -1,10 +1,10 @@
-#include "ident/bucket_extremes.hpp"
+#include "app/report/page/bucket_extremes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 namespace {

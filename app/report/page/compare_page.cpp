@@ -1,15 +1,15 @@
-#include "app/report/compare_page.hpp"
+#include "app/report/page/compare_page.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "app/config_file.hpp"
-#include "app/judged_runs.hpp"
-#include "app/option_table.hpp"
-#include "app/report/assets.hpp"
-#include "app/report/numbers.hpp"
-#include "app/report/run_sections.hpp"
+#include "app/chain/judged_runs.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "app/report/page/assets.hpp"
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/run_sections.hpp"
 
 namespace modebank::app::report {
 namespace {
@@ -34,35 +34,25 @@ json configuration_differences(const Pair& runs) {
   return differences;
 }
 
-/// A score of the summary and how to tell which of two is better.
+/// A score of the summary; `column` says which of two is better (goal_of).
 struct ComparedScore {
-  const char* name;
-  enum class Better { higher, lower, nominal } better;
+  const char *name, *column;
   double (*of)(const SummaryRow&);
   bool share = false;
 };
 
-constexpr double true_tail = 0.025;
-
 constexpr ComparedScore compared_scores[] = {
-    {"log score [nats/sample]", ComparedScore::Better::higher, [](const SummaryRow& row) { return row.log_score; }},
-    {"RMSE (all states)", ComparedScore::Better::lower, [](const SummaryRow& row) { return row.rmse.norm(); }},
-    {"PIT tail above", ComparedScore::Better::nominal, [](const SummaryRow& row) { return row.tail_above; }, true},
-    {"PIT tail below", ComparedScore::Better::nominal, [](const SummaryRow& row) { return row.tail_below; }, true},
-    {"PIT distance", ComparedScore::Better::lower, [](const SummaryRow& row) { return row.pit_distance; }},
+    {"log score [nats/sample]", "log_score", [](const SummaryRow& row) { return row.log_score; }},
+    {"RMSE (all states)", "rmse", [](const SummaryRow& row) { return row.rmse.norm(); }},
+    {"PIT tail above", "tail_above", [](const SummaryRow& row) { return row.tail_above; }, true},
+    {"PIT tail below", "tail_below", [](const SummaryRow& row) { return row.tail_below; }, true},
+    {"PIT distance", "pit_distance", [](const SummaryRow& row) { return row.pit_distance; }},
 };
 
 /// Positive when the second is better.
 double advantage(const ComparedScore& score, double first, double second) {
-  switch (score.better) {
-    case ComparedScore::Better::higher:
-      return second - first;
-    case ComparedScore::Better::lower:
-      return first - second;
-    case ComparedScore::Better::nominal:
-      break;
-  }
-  return std::abs(first - true_tail) - std::abs(second - true_tail);
+  const ScoreGoal goal = goal_of(score.column, 1).value();
+  return goal.loss(first) - goal.loss(second);
 }
 
 json score_row(const ComparedScore& score, const SummaryRow& first, const SummaryRow& second) {

@@ -1,6 +1,6 @@
-#include "app/report/compare_page.hpp"
-#include "app/report/write_page.hpp"
-#include "io/archive.hpp"
+#include "app/report/page/compare_page.hpp"
+#include "app/report/page/write_page.hpp"
+#include "io/archive/archive.hpp"
 
 namespace modebank::app::report {
 

@@ -1,11 +1,11 @@
-#include "app/report/html_page.hpp"
+#include "app/report/page/html_page.hpp"
 
 #include <fmt/format.h>
 
 #include <boost/algorithm/string.hpp>
 #include <stdexcept>
 
-#include "app/report/assets.hpp"
+#include "app/report/page/assets.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/report/page_arrays.hpp"
+#include "app/report/page/page_arrays.hpp"
 
 namespace modebank::app::report {
 

@@ -1,4 +1,4 @@
-#include "filter/mode_dynamics.hpp"
+#include "app/report/page/mode_dynamics.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/bank.hpp"
+#include "filter/step/bank.hpp"
 
 namespace modebank {
 

@@ -1,4 +1,4 @@
-#include "app/report/numbers.hpp"
+#include "app/report/page/numbers.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/text_units.hpp"
+#include "app/text/text_units.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -1,7 +1,6 @@
-#include "app/report/page_arrays.hpp"
+#include "app/report/page/page_arrays.hpp"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -33,12 +32,17 @@ std::string deflated(const std::string& bytes) {
 
 std::size_t base64_size(std::size_t bytes) { return 4 * ((bytes + 2) / 3); }
 
+/// RFC 4648, section 4.
 std::string base64(const std::string& bytes) {
-  std::string text(base64_size(bytes.size()) + 1, '\0');  // and the zero that EVP_EncodeBlock writes
-  const int length =
-      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                      reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(length));
+  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text(base64_size(bytes.size()), '=');
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t there = std::min<std::size_t>(3, bytes.size() - i);
+    unsigned group = 0;
+    for (std::size_t j = 0; j < 3; ++j)
+      group = group << 8 | (j < there ? static_cast<unsigned char>(bytes[i + j]) : 0u);
+    for (std::size_t j = 0; j <= there; ++j) text[i / 3 * 4 + j] = digits[group >> (18 - 6 * j) & 63];
+  }
   return text;
 }
 

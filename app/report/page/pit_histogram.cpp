@@ -1,4 +1,4 @@
-#include "filter/pit_histogram.hpp"
+#include "app/report/page/pit_histogram.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
@@ -14,8 +14,8 @@ PitHistogram pit_histogram(const std::vector<const RunEvaluation*>& evaluations,
   for (const RunEvaluation* evaluation : evaluations)
     for (const double pit : evaluation->pit.reshaped()) {
       if (std::isnan(pit)) continue;
-      ++histogram.counts(
-          std::clamp<Eigen::Index>(static_cast<Eigen::Index>(pit * static_cast<double>(bins)), 0, bins - 1));
+      const double bin = std::clamp(pit * static_cast<double>(bins), 0.0, static_cast<double>(bins - 1));
+      ++histogram.counts(static_cast<Eigen::Index>(bin));
       ++histogram.samples;
     }
   if (histogram.samples == 0) return histogram;

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/diagnostics.hpp"
+#include "filter/judge/diagnostics.hpp"
 
 namespace modebank {
 

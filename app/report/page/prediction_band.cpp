@@ -1,9 +1,9 @@
-#include "filter/prediction_band.hpp"
+#include "app/report/page/prediction_band.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "filter/calibration.hpp"
+#include "ident/base/distributions.hpp"
 
 namespace modebank {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/bank.hpp"
-#include "filter/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/step/bank.hpp"
 
 namespace modebank {
 

@@ -1,9 +1,9 @@
-#include "ident/residual_pool.hpp"
+#include "app/report/page/residual_pool.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "ident/residual_tests.hpp"
+#include "ident/model/residual_tests.hpp"
 
 namespace modebank {
 

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include "app/report/numbers.hpp"
-#include "app/report/run_sections.hpp"
-#include "app/report/unit_text.hpp"
-#include "filter/mode_dynamics.hpp"
-#include "io/archive_units.hpp"
+#include "app/report/page/mode_dynamics.hpp"
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/run_sections.hpp"
+#include "app/report/page/unit_text.hpp"
+#include "io/archive/bank/units.hpp"
 
 namespace modebank::app::report {
 namespace {

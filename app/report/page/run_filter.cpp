@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include "app/report/numbers.hpp"
-#include "app/report/run_sections.hpp"
-#include "app/report/unit_text.hpp"
-#include "filter/pit_histogram.hpp"
-#include "ident/residual_pool.hpp"
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/pit_histogram.hpp"
+#include "app/report/page/residual_pool.hpp"
+#include "app/report/page/run_sections.hpp"
+#include "app/report/page/unit_text.hpp"
 
 namespace modebank::app::report {
 namespace {

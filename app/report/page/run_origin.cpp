@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include "app/config_file.hpp"
-#include "app/option_table.hpp"
-#include "app/report/numbers.hpp"
-#include "app/report/run_sections.hpp"
-#include "app/summary_text.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/run_sections.hpp"
+#include "app/text/summary_text.hpp"
 
 namespace modebank::app::report {
 namespace {

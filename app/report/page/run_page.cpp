@@ -1,9 +1,9 @@
-#include "app/report/run_page.hpp"
+#include "app/report/page/run_page.hpp"
 
 #include <fmt/format.h>
 
-#include "app/report/assets.hpp"
-#include "app/report/run_sections.hpp"
+#include "app/report/page/assets.hpp"
+#include "app/report/page/run_sections.hpp"
 
 namespace modebank::app::report {
 

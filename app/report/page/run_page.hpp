@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "app/config.hpp"
-#include "app/report/html_page.hpp"
-#include "io/archive.hpp"
+#include "app/config/config.hpp"
+#include "app/report/page/html_page.hpp"
+#include "io/archive/archive.hpp"
 
 namespace modebank::app::report {
 

@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/config.hpp"
-#include "app/report/page_arrays.hpp"
-#include "io/archive.hpp"
+#include "app/config/config.hpp"
+#include "app/report/page/page_arrays.hpp"
+#include "io/archive/archive.hpp"
 
 /// The parts of a run's page, each null where the archive does not hold what it shows.
 namespace modebank::app::report {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "app/report/numbers.hpp"
-#include "app/report/run_sections.hpp"
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/run_sections.hpp"
 #include "mixture/criteria.hpp"
 
 namespace modebank::app::report {

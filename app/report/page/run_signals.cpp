@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include "app/report/run_sections.hpp"
-#include "app/report/series.hpp"
-#include "app/report/unit_text.hpp"
-#include "filter/calibration.hpp"
-#include "filter/prediction_band.hpp"
+#include "app/report/page/prediction_band.hpp"
+#include "app/report/page/run_sections.hpp"
+#include "app/report/page/series.hpp"
+#include "app/report/page/unit_text.hpp"
+#include "ident/base/distributions.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include "app/judged_runs.hpp"
-#include "app/report/numbers.hpp"
-#include "app/report/run_sections.hpp"
-#include "app/report/unit_text.hpp"
+#include "app/chain/judged_runs.hpp"
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/run_sections.hpp"
+#include "app/report/page/unit_text.hpp"
 
 namespace modebank::app::report {
 namespace {
@@ -40,31 +40,27 @@ std::string calibration_words(const DiagnosticsRow& row) {
 }
 
 /// The finding in one sentence, from the archive's own verdict.
-json sentence(const Archive& archive, Role role) {
-  const SummaryRow* bank = pooled_row(archive, "bank", role);
-  const SummaryRow* baseline = pooled_row(archive, "baseline", role);
-  const SummaryRow* noise_only = pooled_row(archive, "noise_only", role);
-  if (!bank) return {{"text", "No bank was scored, so there is nothing to judge yet."}, {"good", nullptr}};
-  std::string text =
-      fmt::format("On {} runs the bank of {} modes", words_for(role), archive.bank ? archive.bank->mode_count() : 0);
-  bool good = role == Role::test;
-  if (baseline) {
-    const double gain = bank->log_score - baseline->log_score;
+json sentence(const Archive& archive) {
+  const std::optional<BankGain> gain = bank_gain(archive.summary);
+  if (!gain) return {{"text", "No bank was scored, so there is nothing to judge yet."}, {"good", nullptr}};
+  std::string text = fmt::format("On {} runs the bank of {} modes", words_for(gain->role),
+                                 archive.bank ? archive.bank->mode_count() : 0);
+  bool good = gain->held_out();
+  if (gain->over_baseline) {
     text += fmt::format(" predicts {} than one Kalman filter ({:+.3f} nats per sample)",
-                        gain > 0 ? "better" : "no better", gain);
-    good = good && gain > 0;
+                        gain->predicts_better() ? "better" : "no better", *gain->over_baseline);
+    good = good && gain->predicts_better();
   }
-  if (noise_only) {
-    const double gain = bank->log_score - noise_only->log_score;
+  if (gain->over_noise_only) {
     text += fmt::format(", {} evidence for modes of motion beyond changing noise ({:+.3f})",
-                        gain > 0 ? "with" : "without", gain);
-    good = good && gain > 0;
+                        gain->speaks_for_modes() ? "with" : "without", *gain->over_noise_only);
+    good = good && gain->speaks_for_modes();
   }
-  if (const DiagnosticsRow* row = diagnosis(archive, "bank", role)) {
+  if (const DiagnosticsRow* row = diagnosis(archive, "bank", gain->role)) {
     text += fmt::format("; {}", calibration_words(*row));
     good = good && row->verdict == Verdict::calibrated;
   }
-  text += role == Role::test ? "." : ". Nothing was held out, so none of this is evidence.";
+  text += gain->held_out() ? "." : ". Nothing was held out, so none of this is evidence.";
   return {{"text", text}, {"good", good}};
 }
 
@@ -72,7 +68,7 @@ json sentence(const Archive& archive, Role role) {
 
 nlohmann::json verdict_section(const Archive& archive) {
   const Role role = judged_role(archive);
-  json section = sentence(archive, role);
+  json section = sentence(archive);
   section["role"] = name_of(role);
   section["numbers"] = {
       decisive(archive, role, "Log score", "nats per sample", "higher is better",

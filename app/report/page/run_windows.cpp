@@ -1,9 +1,9 @@
-#include "app/report/numbers.hpp"
-#include "app/report/run_sections.hpp"
-#include "app/report/unit_text.hpp"
-#include "filter/calibration.hpp"
-#include "filter/window_modes.hpp"
-#include "io/archive_units.hpp"
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/run_sections.hpp"
+#include "app/report/page/unit_text.hpp"
+#include "app/report/page/window_modes.hpp"
+#include "ident/base/distributions.hpp"
+#include "io/archive/bank/units.hpp"
 #include "mixture/features.hpp"
 
 namespace modebank::app::report {

@@ -1,9 +1,9 @@
-#include "app/report/series.hpp"
+#include "app/report/page/series.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "ident/bucket_extremes.hpp"
+#include "app/report/page/bucket_extremes.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <nlohmann/json_fwd.hpp>
 
-#include "app/report/page_arrays.hpp"
+#include "app/report/page/page_arrays.hpp"
 
 namespace modebank::app::report {
 

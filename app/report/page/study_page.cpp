@@ -1,14 +1,14 @@
-#include "app/report/study_page.hpp"
+#include "app/report/page/study_page.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
-#include "app/report/assets.hpp"
-#include "app/report/numbers.hpp"
-#include "app/report/run_sections.hpp"
-#include "app/study/answers.hpp"
+#include "app/report/page/assets.hpp"
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/run_sections.hpp"
+#include "app/study/answers/answers.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "app/report/html_page.hpp"
-#include "app/report/run_figures.hpp"
-#include "app/study/study_table.hpp"
-#include "io/study_file.hpp"
+#include "app/report/figures/run_figures.hpp"
+#include "app/report/page/html_page.hpp"
+#include "app/study/answers/study_table.hpp"
+#include "io/archive/study_file.hpp"
 
 namespace modebank::app::report {
 

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/report/run_page.hpp"
-#include "app/report/study_page.hpp"
-#include "app/report/write_page.hpp"
-#include "app/study/answers.hpp"
-#include "app/study/study_plan.hpp"
-#include "ident/error.hpp"
-#include "io/archive.hpp"
-#include "io/inspect.hpp"
+#include "app/report/page/run_page.hpp"
+#include "app/report/page/study_page.hpp"
+#include "app/report/page/write_page.hpp"
+#include "app/study/answers/answers.hpp"
+#include "app/study/space/study_plan.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/inspect.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "app/report/study_page.hpp"
-#include "ident/enum_names.hpp"
-#include "ident/error.hpp"
+#include "app/report/page/study_page.hpp"
+#include "modebank/base/error.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -1,4 +1,4 @@
-#include "filter/window_modes.hpp"
+#include "app/report/page/window_modes.hpp"
 
 #include <cmath>
 

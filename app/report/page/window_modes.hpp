@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/evaluate.hpp"
-#include "ident/window.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "ident/data/window.hpp"
 
 namespace modebank {
 

@@ -1,11 +1,11 @@
-#include "app/report/write_page.hpp"
+#include "app/report/page/write_page.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/report/gnuplot.hpp"
-#include "ident/error.hpp"
-#include "io/replace_file.hpp"
+#include "app/report/figures/gnuplot.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app::report {
 

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "app/config.hpp"
-#include "app/report/html_page.hpp"
-#include "app/report/run_figures.hpp"
+#include "app/config/config.hpp"
+#include "app/report/figures/run_figures.hpp"
+#include "app/report/page/html_page.hpp"
 
 namespace modebank::app::report {
 

@@ -1,6 +1,6 @@
-#include "app/study/answer_tables.hpp"
+#include "app/study/answers/answer_tables.hpp"
 
-#include "app/study/answers_text.hpp"
+#include "app/study/answers/answers_text.hpp"
 
 namespace modebank::app {
 namespace {

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/study/answers.hpp"
-#include "io/study_file.hpp"
+#include "app/study/answers/answers.hpp"
+#include "io/archive/study_file.hpp"
 
 namespace modebank::app {
 

@@ -1,4 +1,4 @@
-#include "app/study/answers.hpp"
+#include "app/study/answers/answers.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 #include <numeric>
 
-#include "app/study/value_groups.hpp"
+#include "app/study/answers/value_groups.hpp"
 
 namespace modebank::app {
 namespace {
@@ -141,43 +141,6 @@ std::string headline_of(const StudyTable& table) {
 }
 
 }  // namespace
-
-double ScoreGoal::loss(double score) const {
-  switch (kind) {
-    case Kind::higher:
-      return -score;
-    case Kind::lower:
-      return score;
-    case Kind::nominal:
-      return std::abs(score - nominal);
-  }
-  return no_number;
-}
-
-std::string ScoreGoal::text() const {
-  switch (kind) {
-    case Kind::higher:
-      return "higher";
-    case Kind::lower:
-      return "lower";
-    case Kind::nominal:
-      return fmt::format("nearest {:g}", nominal);
-  }
-  return "";
-}
-
-std::optional<ScoreGoal> goal_of(const std::string& score, int states) {
-  using Kind = ScoreGoal::Kind;
-  constexpr double tail = 0.025;  // beyond the quantiles that SummaryRow counts by
-  std::string kind;
-  for (const std::string role : {"_train_", "_test_"})
-    if (const auto at = score.find(role); at != std::string::npos) kind = score.substr(at + role.size());
-  if (kind == "log_score" || kind == "whiteness_p") return ScoreGoal{Kind::higher};
-  if (kind.rfind("rmse", 0) == 0 || kind == "pit_distance") return ScoreGoal{Kind::lower};
-  if (kind == "nis_mean") return ScoreGoal{Kind::nominal, static_cast<double>(states)};
-  if (kind.rfind("tail_", 0) == 0 || kind.rfind("nis_", 0) == 0) return ScoreGoal{Kind::nominal, tail};
-  return {};
-}
 
 Answers answer(const StudyTable& table) {
   Answers answers;

@@ -4,25 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "app/study/study_table.hpp"
+#include "app/study/answers/study_table.hpp"
+#include "filter/judge/scores.hpp"
 
 /// What a study's table answers, beyond the table itself. A *setting* is one combination of varied values; its repeats
 /// differ in seed alone. Only finished trials count. Nothing here reads a file or prints.
 namespace modebank::app {
-
-/// Which values of a score are good. `nominal`: the nearer to a true filter's value the better.
-struct ScoreGoal {
-  enum class Kind { higher, lower, nominal } kind = Kind::higher;
-  double nominal = 0.0;
-
-  /// The smaller, the better; NaN for NaN.
-  double loss(double score) const;
-  std::string text() const;  ///< "higher", "lower" or "nearest 0.025"
-};
-
-/// Goal of a `<filter>_<role>_<score>` column; nothing for columns that are neither good nor bad (samples, modes).
-/// `states` is the number of measured states, the mean of a true filter's NIS.
-std::optional<ScoreGoal> goal_of(const std::string& score, int states);
 
 /// Mean of a score over all trials in which a varied key had one value (for keys with many numbers: a range of
 /// values), whatever the others were. Confounded where the plan is not a full grid.

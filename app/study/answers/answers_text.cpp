@@ -1,4 +1,4 @@
-#include "app/study/answers_text.hpp"
+#include "app/study/answers/answers_text.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "app/study/value_groups.hpp"
+#include "app/study/answers/value_groups.hpp"
 
 namespace modebank::app {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "app/study/answers.hpp"
+#include "app/study/answers/answers.hpp"
 
 namespace modebank::app {
 

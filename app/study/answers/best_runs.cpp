@@ -1,10 +1,10 @@
-#include "app/study/best_runs.hpp"
+#include "app/study/answers/best_runs.hpp"
 
 #include <fmt/format.h>
 
-#include "app/config_file.hpp"
-#include "app/study/answers_text.hpp"
-#include "io/replace_file.hpp"
+#include "app/config/config_file.hpp"
+#include "app/study/answers/answers_text.hpp"
+#include "io/files/replace_file.hpp"
 
 namespace modebank::app {
 

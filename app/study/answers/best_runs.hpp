@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "app/study/answers.hpp"
-#include "app/study/study_plan.hpp"
+#include "app/study/answers/answers.hpp"
+#include "app/study/space/study_plan.hpp"
 
 namespace modebank::app {
 

@@ -1,4 +1,4 @@
-#include "app/study/merge_study.hpp"
+#include "app/study/answers/merge_study.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -9,11 +9,11 @@
 #include <map>
 #include <optional>
 
-#include "app/option_text.hpp"
-#include "app/study/answer_tables.hpp"
-#include "app/study/csv_field.hpp"
-#include "ident/error.hpp"
-#include "io/replace_file.hpp"
+#include "app/config/option_text.hpp"
+#include "app/study/answers/answer_tables.hpp"
+#include "app/study/answers/csv_field.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {

@@ -4,10 +4,10 @@
 #include <set>
 #include <string>
 
-#include "app/study/answers.hpp"
-#include "app/study/study_plan.hpp"
-#include "app/study/trial_store.hpp"
-#include "io/study_file.hpp"
+#include "app/study/answers/answers.hpp"
+#include "app/study/run/trial_store.hpp"
+#include "app/study/space/study_plan.hpp"
+#include "io/archive/study_file.hpp"
 
 namespace modebank::app {
 

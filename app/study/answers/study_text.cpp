@@ -1,10 +1,10 @@
-#include "app/study/study_text.hpp"
+#include "app/study/answers/study_text.hpp"
 
 #include <fmt/format.h>
 
 #include <map>
 
-#include "app/study/study_progress.hpp"
+#include "app/study/run/study_progress.hpp"
 
 namespace modebank::app {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "app/study/study_estimate.hpp"
+#include "app/study/run/study_estimate.hpp"
 
 namespace modebank::app {
 

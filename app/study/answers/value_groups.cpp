@@ -1,4 +1,4 @@
-#include "app/study/value_groups.hpp"
+#include "app/study/answers/value_groups.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/study/study_table.hpp"
+#include "app/study/answers/study_table.hpp"
 
 namespace modebank::app {
 

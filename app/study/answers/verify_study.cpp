@@ -1,4 +1,4 @@
-#include "app/study/verify_study.hpp"
+#include "app/study/answers/verify_study.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -6,12 +6,12 @@
 #include <map>
 #include <optional>
 
-#include "app/config_file.hpp"
-#include "app/study/study_plan.hpp"
-#include "app/study/study_progress.hpp"
-#include "app/study/trial_store.hpp"
-#include "ident/error.hpp"
-#include "io/study_file.hpp"
+#include "app/config/config_file.hpp"
+#include "app/study/run/study_progress.hpp"
+#include "app/study/run/trial_store.hpp"
+#include "app/study/space/study_plan.hpp"
+#include "io/archive/study_file.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/study/shell.hpp"
+#include "app/study/launch/shell.hpp"
 
 #include <sys/wait.h>
 #include <unistd.h>

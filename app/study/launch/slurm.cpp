@@ -1,4 +1,4 @@
-#include "app/study/slurm.hpp"
+#include "app/study/launch/slurm.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 
-#include "app/study/shell.hpp"
-#include "app/study/slurm_jobs.hpp"
-#include "ident/error.hpp"
-#include "io/read_file.hpp"
-#include "io/replace_file.hpp"
+#include "app/study/launch/shell.hpp"
+#include "app/study/launch/slurm_jobs.hpp"
+#include "io/files/read_file.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {

@@ -6,10 +6,10 @@
 #include <map>
 #include <sstream>
 
-#include "app/study/shell.hpp"
-#include "app/study/slurm.hpp"
-#include "app/study/slurm_jobs.hpp"
-#include "ident/error.hpp"
+#include "app/study/launch/shell.hpp"
+#include "app/study/launch/slurm.hpp"
+#include "app/study/launch/slurm_jobs.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {

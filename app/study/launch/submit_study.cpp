@@ -1,4 +1,4 @@
-#include "app/study/submit_study.hpp"
+#include "app/study/launch/submit_study.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <iterator>
 #include <sstream>
 
-#include "app/study/slurm.hpp"
-#include "app/study/trial_order.hpp"
+#include "app/study/launch/slurm.hpp"
+#include "app/study/run/trial_order.hpp"
 
 namespace modebank::app {
 namespace {
@@ -42,15 +42,15 @@ std::vector<std::string> words_of_line(const std::string& line) {
 
 }  // namespace
 
-std::string submit_study(const CommandLine& line, const Config& config, const StudyPlan& plan,
-                         const StudyTable& table) {
+std::string submit_study(const StudyCall& call, const StudyPlan& plan, const StudyTable& table) {
+  const Config& config = call.config;
   namespace fs = std::filesystem;
   const int count = shard_count(config, table);
   const std::vector<int> tasks = unfinished_shards(group_trials(config, plan), count, table);
   if (tasks.empty()) return "slurm     nothing to submit: every run is done\n";
   const SlurmSubmission submission =
-      submit_to_slurm({fs::read_symlink("/proc/self/exe"), fs::absolute(line.files.front()),
-                       fs::absolute(config.study.output).lexically_normal(), config.data.root, line.overrides, count,
+      submit_to_slurm({fs::read_symlink("/proc/self/exe"), fs::absolute(call.config_file),
+                       fs::absolute(config.study.output).lexically_normal(), config.data.root, call.overrides, count,
                        tasks, words_of_line(config.study.slurm_options)});
   std::string text;
   for (const std::string& command : submission.commands) text += command + "\n";

@@ -1,4 +1,4 @@
-#include "app/study/file_locks.hpp"
+#include "app/study/run/file_locks.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -7,8 +7,8 @@
 #include <cerrno>
 #include <system_error>
 
-#include "ident/error.hpp"
-#include "io/sha256.hpp"
+#include "io/files/sha256.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/study/run_trials.hpp"
+#include "app/study/run/run_trials.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -16,8 +16,8 @@
 #include <memory>
 #include <thread>
 
-#include "app/study/csv_field.hpp"
-#include "app/study/worker_pool.hpp"
+#include "app/study/answers/csv_field.hpp"
+#include "app/study/run/worker_pool.hpp"
 
 namespace modebank::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/study/trial_order.hpp"
-#include "app/study/trial_worker.hpp"
+#include "app/study/run/trial_order.hpp"
+#include "app/study/run/trial_worker.hpp"
 
 namespace modebank::app {
 

@@ -1,12 +1,10 @@
-#include "app/study/stage_cache.hpp"
+#include "app/study/run/stage_cache.hpp"
 
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <tuple>
 #include <vector>
-
-#include "io/sha256.hpp"
 
 namespace modebank::app {
 
@@ -23,9 +21,9 @@ FileLocks::Hold StageCache::wait_for(const std::string& stem) const {
   return alone;
 }
 
-void StageCache::provide(const std::string& name, const std::string& inputs, const std::function<void(Archive&&)>& take,
+void StageCache::provide(const std::string& name, const std::string& key, const std::function<void(Archive&&)>& take,
                          const std::function<bool()>& compute, const std::function<Archive()>& part) const {
-  const std::string stem = name + "-" + sha256_hex(inputs);
+  const std::string stem = name + "-" + key;
   const fs::path file = folder_ / (stem + ".h5");
   if (limit_bytes_ <= 0.0) {
     compute();

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "app/study/file_locks.hpp"
-#include "io/archive.hpp"
+#include "app/study/run/file_locks.hpp"
+#include "io/archive/archive.hpp"
 
 namespace modebank::app {
 
@@ -17,9 +17,9 @@ class StageCache {
   StageCache(std::filesystem::path folder, double limit_mb, const FileLocks& locks,
              std::function<void(bool)> tell_waiting = {});
 
-  /// The stage of this name whose inputs are given: from a file, or by `compute`, which is called by one process at a
+  /// The stage of this name and key: from a file, or by `compute`, which is called by one process at a
   /// time. It says whether its result is worth a file, and is then asked for it by `part`.
-  void provide(const std::string& name, const std::string& inputs, const std::function<void(Archive&&)>& take,
+  void provide(const std::string& name, const std::string& key, const std::function<void(Archive&&)>& take,
                const std::function<bool()>& compute, const std::function<Archive()>& part) const;
 
  private:

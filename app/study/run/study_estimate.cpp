@@ -1,4 +1,4 @@
-#include "app/study/study_estimate.hpp"
+#include "app/study/run/study_estimate.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace {
 /// What a plan's runs took so far.
 struct MadeRuns {
   StudyPlan plan;  ///< the whole plan without the rows that were not made
-  std::array<double, trial_stage_count> stage_seconds{};
+  std::array<double, stage_count> stage_seconds{};
   double seconds = 0.0, shortest = std::numeric_limits<double>::infinity(), longest = 0.0;
   std::size_t imports = 0;  ///< times that data were read
   std::size_t count() const { return plan.table.rows.size(); }
@@ -30,7 +30,7 @@ std::vector<double> seconds_in(const std::string& line, std::string& key) {
   key = line.substr(line.rfind(',', word - 1) + 1, word - line.rfind(',', word - 1) - 1);
   std::vector<double> seconds;
   const char* at = line.c_str() + word + done.size();
-  for (char* end = nullptr; seconds.size() <= trial_stage_count; at = end + 1) {
+  for (char* end = nullptr; seconds.size() <= stage_count; at = end + 1) {
     seconds.push_back(std::strtod(at, &end));
     if (end == at || *end != ',' || !std::isfinite(seconds.back())) return {};
   }
@@ -53,7 +53,7 @@ MadeRuns made_runs(const TrialStore& store, const StudyPlan& plan) {
     made.seconds += seconds[0];
     made.shortest = std::min(made.shortest, seconds[0]);
     made.longest = std::max(made.longest, seconds[0]);
-    for (std::size_t i = 0; i < trial_stage_count; ++i) made.stage_seconds[i] += seconds[i + 1];
+    for (std::size_t i = 0; i < stage_count; ++i) made.stage_seconds[i] += seconds[i + 1];
     made.imports += seconds[1] > 0.0;
   }
   return made;
@@ -100,13 +100,13 @@ TrialGroups sample_of(const Config& study, const StudyPlan& plan, std::size_t jo
 
 /// Seconds of the whole plan, one run at a time.
 double scaled_seconds(const Config& study, const StudyPlan& plan, const MadeRuns& made, std::size_t jobs) {
-  const auto of = [&](TrialStage stage) { return made.stage_seconds[static_cast<std::size_t>(stage)]; };
+  const auto of = [&](Stage stage) { return made.stage_seconds[index_of(stage)]; };
   const DistinctStages all = count_stages(study, plan), there = count_stages(study, made.plan);
   const auto times = [](std::size_t n, std::size_t m) {
     return static_cast<double>(n) / static_cast<double>(std::max<std::size_t>(m, 1));
   };
   const double shared = std::accumulate(made.stage_seconds.begin(), made.stage_seconds.end(), 0.0);
-  using enum TrialStage;
+  using enum Stage;
   return times(jobs, made.imports) * of(data) +
          times(all.windows, there.windows) * (of(windows) + of(competitors) + of(competitor_scores)) +
          times(all.mixtures, there.mixtures) * of(mixture) + times(all.banks, there.banks) * of(bank) +

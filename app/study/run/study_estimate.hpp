@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "app/study/run_trials.hpp"
+#include "app/study/run/run_trials.hpp"
 
 namespace modebank::app {
 

@@ -1,4 +1,4 @@
-#include "app/study/study_progress.hpp"
+#include "app/study/run/study_progress.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

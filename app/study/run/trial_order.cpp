@@ -1,13 +1,16 @@
-#include "app/study/trial_order.hpp"
+#include "app/study/run/trial_order.hpp"
 
 #include <algorithm>
 #include <array>
 #include <map>
 
-#include "app/study/stage_inputs.hpp"
+#include "app/chain/stage_key.hpp"
 
 namespace modebank::app {
 namespace {
+
+/// What trials are put together by, the coarsest first.
+constexpr std::array<Stage, 3> grouped{Stage::windows, Stage::mixture, Stage::bank};
 
 /// Numbers texts in the order in which they come.
 class Numbering {
@@ -25,15 +28,13 @@ struct PlacedTrial {
 };
 
 std::vector<PlacedTrial> place_trials(const Config& study, const StudyPlan& plan, std::array<Numbering, 3>& numbers) {
-  using enum TrialStage;
   std::vector<PlacedTrial> trials;
   for (std::size_t row = 0; row < plan.table.rows.size(); ++row) {
     if (plan.table.rows[row].status == TrialStatus::dropped) continue;
     const Config config = trial_config(study, plan.table.varied_keys, plan.table.rows[row]);
+    const StageKeys keys = stage_keys(chain_inputs(chain_options(config)), "");
     PlacedTrial trial{{}, row};
-    for (const auto& [i, stage] : {std::pair(0, windows), std::pair(1, mixture), std::pair(2, bank)})
-      trial.stages[static_cast<std::size_t>(i)] =
-          numbers[static_cast<std::size_t>(i)].of(stage_inputs(stage, config, ""));
+    for (std::size_t i = 0; i < grouped.size(); ++i) trial.stages[i] = numbers[i].of(keys[index_of(grouped[i])]);
     trials.push_back(trial);
   }
   return trials;

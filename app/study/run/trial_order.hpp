@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "app/study/study_plan.hpp"
+#include "app/study/space/study_plan.hpp"
 
 namespace modebank::app {
 

@@ -1,4 +1,4 @@
-#include "app/study/trial_store.hpp"
+#include "app/study/run/trial_store.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "app/study/study_plan.hpp"
-#include "ident/error.hpp"
-#include "io/replace_file.hpp"
-#include "io/user_block.hpp"
+#include "app/study/space/study_plan.hpp"
+#include "io/archive/bank/open_archive.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 
@@ -56,7 +56,7 @@ void TrialStore::forget_failure(const std::string& key) const {
 void TrialStore::remove_leftovers(const FileLocks& locks) const {
   for (const fs::path& part : {folder_, folder_ / "trials", cache()})
     for (const fs::directory_entry& entry : fs::directory_iterator(part)) {
-      // .<name>.h5.<process>-<number>.tmp, as io/replace_file.cpp makes it
+      // .<name>.h5.<process>-<number>.tmp, as io/files/replace_file.cpp makes it
       const std::string file = entry.path().filename().string();
       const auto dot = file.find('.', 1);
       if (entry.path().extension() != ".tmp" || file.front() != '.' || dot == std::string::npos) continue;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "app/study/file_locks.hpp"
-#include "app/study/study_table.hpp"
+#include "app/study/answers/study_table.hpp"
+#include "app/study/run/file_locks.hpp"
 
 namespace modebank::app {
 

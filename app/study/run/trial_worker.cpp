@@ -1,12 +1,12 @@
-#include "app/study/trial_worker.hpp"
+#include "app/study/run/trial_worker.hpp"
 
 #include <fmt/format.h>
 
 #include <chrono>
 #include <limits>
 
-#include "ident/error.hpp"
-#include "io/study_file.hpp"
+#include "io/archive/study_file.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
@@ -65,7 +65,7 @@ TrialReport TrialWorker::compute(const TrialRow& row) {
   const Config config = trial_config(settings_.config, settings_.varied_keys, row);
   const Archive* archive = nullptr;
   try {
-    archive = &runner_.run(config, settings_.line);
+    archive = &runner_.run(config, settings_.typed);
   } catch (const std::exception& error) {
     report.outcome = TrialOutcome::failed;
     report.message = error.what();

@@ -7,10 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "app/study/stage_inputs.hpp"
-#include "app/study/study_plan.hpp"
-#include "app/study/trial_runner.hpp"
-#include "app/study/trial_store.hpp"
+#include "app/study/run/trial_runner.hpp"
+#include "app/study/run/trial_store.hpp"
+#include "app/study/space/study_plan.hpp"
 
 namespace modebank::app {
 
@@ -22,15 +21,15 @@ struct TrialReport {
   TrialOutcome outcome = TrialOutcome::held;
   std::string message;  ///< why it failed, or what was wrong with the archive that was there
   double seconds = 0.0;
-  std::array<double, trial_stage_count> stage_seconds{};
+  std::array<double, stage_count> stage_seconds{};
   /// Of the bank on the held-out runs, else on the training runs; NaN: none.
   double log_score = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What a worker is told once.
 struct WorkerSettings {
-  Config config;  ///< the study's
-  CommandLine line;
+  Config config;      ///< the study's
+  std::string typed;  ///< the command line, for provenance
   TrialStore store;
   std::vector<std::string> varied_keys;
   std::string version;

@@ -1,8 +1,7 @@
-#include "app/study/worker_pool.hpp"
+#include "app/study/run/worker_pool.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -10,11 +9,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <system_error>
 #include <utility>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
@@ -23,7 +23,7 @@ namespace {
 struct ReportHead {
   int outcome = 0;
   double seconds = 0.0, log_score = 0.0;
-  std::array<double, trial_stage_count> stage_seconds{};
+  std::array<double, stage_count> stage_seconds{};
 };
 
 constexpr std::size_t longest_message = 4096;

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "app/study/trial_worker.hpp"
+#include "app/study/run/trial_worker.hpp"
 
 namespace modebank::app {
 

@@ -1,4 +1,4 @@
-#include "app/study/study_plan.hpp"
+#include "app/study/space/study_plan.hpp"
 
 #include <fmt/format.h>
 
@@ -6,15 +6,15 @@
 #include <functional>
 #include <map>
 
-#include "app/config_file.hpp"
-#include "app/option_table.hpp"
-#include "app/option_text.hpp"
-#include "app/pipeline.hpp"
-#include "app/study/study_space.hpp"
-#include "ident/error.hpp"
-#include "ident/seed.hpp"
-#include "io/sha256.hpp"
-#include "io/study_file.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "app/config/option_text.hpp"
+#include "app/study/space/study_space.hpp"
+#include "ident/base/seed.hpp"
+#include "io/archive/study_file.hpp"
+#include "io/files/sha256.hpp"
+#include "io/import/import.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "app/config.hpp"
-#include "app/study/study_table.hpp"
-#include "io/archive.hpp"
+#include "app/config/config.hpp"
+#include "app/study/answers/study_table.hpp"
+#include "io/archive/archive.hpp"
 
 namespace modebank::app {
 

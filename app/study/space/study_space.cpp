@@ -1,4 +1,4 @@
-#include "app/study/study_space.hpp"
+#include "app/study/space/study_space.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,10 +10,10 @@
 #include <cmath>
 #include <set>
 
-#include "app/option_table.hpp"
-#include "app/option_text.hpp"
-#include "ident/error.hpp"
-#include "ident/seed.hpp"
+#include "app/config/option_table.hpp"
+#include "app/config/option_text.hpp"
+#include "ident/base/seed.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {

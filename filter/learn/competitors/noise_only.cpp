@@ -4,12 +4,12 @@
 #include <limits>
 #include <vector>
 
-#include "filter/bank_frame.hpp"
-#include "filter/learn.hpp"
-#include "filter/noise_floor.hpp"
-#include "filter/training_likelihood.hpp"
-#include "ident/error.hpp"
-#include "ident/robust_regression.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "filter/learn/learn.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
+#include "ident/fit/robust_regression.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {

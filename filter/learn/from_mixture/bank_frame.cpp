@@ -1,9 +1,9 @@
-#include "filter/bank_frame.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
 
 #include <stdexcept>
 #include <string>
 
-#include "filter/training_transitions.hpp"
+#include "filter/learn/from_mixture/training_transitions.hpp"
 
 namespace modebank {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "filter/bank.hpp"
-#include "ident/trajectory.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
 
 namespace modebank {
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -5,15 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "filter/bank_frame.hpp"
-#include "filter/learn.hpp"
-#include "filter/memberships.hpp"
-#include "filter/motion_modes.hpp"
-#include "filter/pooled_modes.hpp"
-#include "filter/screening.hpp"
-#include "filter/transition_learning.hpp"
-#include "ident/error.hpp"
-#include "mixture/merge_components.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/from_mixture/memberships.hpp"
+#include "filter/learn/from_mixture/motion_modes.hpp"
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "filter/learn/from_mixture/transition_learning.hpp"
+#include "filter/learn/learn.hpp"
+#include "mixture/select.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
@@ -101,6 +102,15 @@ std::vector<Index> screen(const LinearStructure& structure, const std::vector<Co
       screened.push_back({k, weights(k), spectral_radius(unpack(structure, modes[k].linear.theta)), reason});
   }
   return kept;
+}
+
+/// "component 2 unstable (weight 0.1, spectral radius 1.31), ...".
+std::string describe(const std::vector<ScreenedMode>& screened) {
+  std::string text;
+  for (const ScreenedMode& mode : screened)
+    text += fmt::format("{}component {} {} (weight {:.3g}, spectral radius {:.6g})", text.empty() ? "" : ", ",
+                        mode.component, mode.reason, mode.weight, mode.spectral_radius);
+  return text;
 }
 
 /// Where Q of the bank's modes comes from. theta and its errors always rest on the mode's own noise.
@@ -193,7 +203,10 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
                               const BankOptions& options, const Eigen::MatrixXd& R, const FilterOptions& filter) {
   BankOptions of_start = options;
   std::vector<Bank> starts{learn_bank(recording, fits, mixture, options, R)};
-  for (Index modes = starts.front().mode_count() * 3 / 4; modes >= 1; modes = modes * 3 / 4) {
+  const auto fewer = [&](Index modes) {
+    return static_cast<Index>(options.em.tuning.modes_kept * static_cast<double>(modes));
+  };
+  for (Index modes = fewer(starts.front().mode_count()); modes >= 1; modes = fewer(modes)) {
     of_start.modes = modes;
     of_start.screen = options.screen && modes > 1;  // one mode is a start in any case; refinement screens it
     starts.push_back(learn_bank(recording, fits, mixture, of_start, R));

@@ -1,4 +1,4 @@
-#include "filter/memberships.hpp"
+#include "filter/learn/from_mixture/memberships.hpp"
 
 #include <algorithm>
 #include <cmath>

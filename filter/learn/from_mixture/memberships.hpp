@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "filter/training_transitions.hpp"
-#include "ident/local_model.hpp"
+#include "filter/learn/from_mixture/training_transitions.hpp"
+#include "ident/model/local_model.hpp"
 #include "mixture/select.hpp"
 
 namespace modebank {

@@ -1,14 +1,13 @@
-#include "filter/motion_modes.hpp"
+#include "filter/learn/from_mixture/motion_modes.hpp"
 
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "filter/noise_floor.hpp"
-#include "ident/linearise.hpp"
-#include "ident/model_fit.hpp"
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/fit/linearise.hpp"
+#include "ident/fit/motion_fit.hpp"
 
 namespace modebank {
 namespace {

@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/pooled_modes.hpp"
-#include "ident/local_model.hpp"
-#include "ident/motion_model.hpp"
-#include "ident/trajectory.hpp"
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/model/local_model.hpp"
+#include "ident/model/motion_model.hpp"
 
 namespace modebank {
 

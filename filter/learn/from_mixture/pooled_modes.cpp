@@ -1,15 +1,15 @@
-#include "filter/pooled_modes.hpp"
+#include "filter/learn/from_mixture/pooled_modes.hpp"
 
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <limits>
 #include <unsupported/Eigen/KroneckerProduct>
 
-#include "filter/definite_inverse.hpp"
-#include "filter/noise_floor.hpp"
-#include "ident/not_a_number.hpp"
-#include "mixture/em_step.hpp"
+#include "filter/learn/likelihood/definite_inverse.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "mixture/gaussian_mixture.hpp"
 
 namespace modebank {
 namespace {
@@ -18,20 +18,10 @@ constexpr double smallest_weight = 1e-9;         // transitions; less carries no
 constexpr double alternation_tolerance = 1e-12;  // relative change of Q; rounding is three decades below
 constexpr int max_alternations = 500;
 
-/// The weighted transitions' sufficient statistics, centred at their own least squares so that nothing cancels.
+/// The weighted transitions' sums about their own least squares, so that nothing cancels.
 struct WeightedRegression {
-  Eigen::MatrixXd beta;     // q x n coefficients by least squares; directions without data stay at the global model
-  Eigen::MatrixXd G;        // q x q, sum g phi phi'
-  Eigen::MatrixXd H;        // q x n, sum g phi r' at beta: zero but for rounding and directions without data
-  Eigen::MatrixXd scatter;  // n x n, sum g r r' at beta
-  double weight = 0.0;      // sum g
-
-  /// sum g r r' at other coefficients.
-  Eigen::MatrixXd scatter_about(const Eigen::MatrixXd& other) const {
-    const Eigen::MatrixXd delta = other - beta;
-    const Eigen::MatrixXd cross = delta.transpose() * H;
-    return scatter - cross - cross.transpose() + delta.transpose() * G * delta;
-  }
+  Eigen::MatrixXd beta;  // q x n coefficients by least squares; directions without data stay at the global model
+  RegressionSums sums;   // H is zero but for rounding and directions without data
 };
 
 WeightedRegression regress(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
@@ -42,8 +32,7 @@ WeightedRegression regress(const TrainingTransitions& transitions, const Eigen::
   const Eigen::VectorXd root = weights.cwiseSqrt();
   const Eigen::MatrixXd delta = solve(decompose(root.asDiagonal() * X, excitation_tolerance), root.asDiagonal() * r);
   r -= X * delta;
-  return {beta_global + delta, X.transpose() * weights.asDiagonal() * X, X.transpose() * weights.asDiagonal() * r,
-          r.transpose() * weights.asDiagonal() * r, weights.sum()};
+  return {beta_global + delta, regression_sums(X, weights, r)};
 }
 
 /// Inverse prior covariance, p x p; zero without a prior.
@@ -54,24 +43,24 @@ Eigen::MatrixXd prior_information(Index parameters, const ParameterPrior* prior)
 
 Eigen::MatrixXd regularised(const WeightedRegression& data, const Eigen::MatrixXd& Q, const ParameterPrior& prior) {
   const Eigen::MatrixXd Q_inverse = definite_inverse(Q), P_inverse = prior_information(data.beta.size(), &prior);
-  const Eigen::MatrixXd information = Eigen::kroneckerProduct(Q_inverse, data.G).eval() + P_inverse;
-  const Eigen::MatrixXd data_pull = data.H * Q_inverse;
+  const Eigen::MatrixXd information = Eigen::kroneckerProduct(Q_inverse, data.sums.G).eval() + P_inverse;
+  const Eigen::MatrixXd data_pull = data.sums.H * Q_inverse;
   const Eigen::VectorXd pull = data_pull.reshaped() + P_inverse * (prior.mean - data.beta.reshaped());
   return data.beta + information.ldlt().solve(pull).reshaped(data.beta.rows(), data.beta.cols());
 }
 
 Eigen::MatrixXd process_noise(const WeightedRegression& data, const Eigen::MatrixXd& beta, const GlobalModel& global) {
-  if (data.weight < smallest_weight) return floored_process_noise(global.residual_covariance, global);
-  return floored_process_noise(data.scatter_about(beta) / data.weight, global);
+  if (data.sums.weight < smallest_weight) return floored_process_noise(global.residual_covariance, global);
+  return floored_process_noise(data.sums.scatter_after(beta - data.beta) / data.sums.weight, global);
 }
 
 Eigen::VectorXd standard_errors(const WeightedRegression& data, const Eigen::MatrixXd& Q, const ParameterPrior* prior) {
-  const double q = static_cast<double>(data.G.rows());
-  const Eigen::MatrixXd Q_unbiased = Q * (data.weight / std::max(data.weight - q, 1.0));
-  const Index p = Q.rows() * data.G.rows();
+  const double q = static_cast<double>(data.sums.G.rows());
+  const Eigen::MatrixXd Q_unbiased = Q * (data.sums.weight / std::max(data.sums.weight - q, 1.0));
+  const Index p = Q.rows() * data.sums.G.rows();
   Eigen::MatrixXd information = prior_information(p, prior);
-  if (data.weight >= smallest_weight)
-    information += Eigen::kroneckerProduct(definite_inverse(Q_unbiased), data.G).eval();
+  if (data.sums.weight >= smallest_weight)
+    information += Eigen::kroneckerProduct(definite_inverse(Q_unbiased), data.sums.G).eval();
   Eigen::VectorXd not_determined = Eigen::VectorXd::Constant(p, not_a_number);
   if (!(information.diagonal().minCoeff() > 0.0) || !information.allFinite()) return not_determined;
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
@@ -83,7 +72,7 @@ Eigen::VectorXd standard_errors(const WeightedRegression& data, const Eigen::Mat
 
 ModeEstimate estimate(const WeightedRegression& data, const Eigen::MatrixXd& beta, const Eigen::MatrixXd& Q,
                       const ParameterPrior* prior) {
-  return {beta.reshaped(), Q, standard_errors(data, Q, prior), data.weight, true};
+  return {beta.reshaped(), Q, standard_errors(data, Q, prior), data.sums.weight, true};
 }
 
 }  // namespace
@@ -118,6 +107,18 @@ ModeEstimate assess_weighted_mode(const TrainingTransitions& transitions, const 
   const WeightedRegression data = regress(transitions, weights, global.theta);
   const Eigen::MatrixXd beta = coefficients(transitions.structure, theta);
   return estimate(data, beta, process_noise(data, beta, global), prior);
+}
+
+double spectral_radius(const LinearModel& model) {
+  if (!model.A.allFinite()) return std::numeric_limits<double>::infinity();
+  const Eigen::MatrixXd full = Eigen::MatrixXd::Identity(model.A.rows(), model.A.cols()) + model.A;
+  return full.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+std::string screening_reason(const LinearStructure& structure, const ModeEstimate& mode) {
+  if (mode.effective_transitions < static_cast<double>(structure.regressors() + 1)) return "starved";
+  if (!(spectral_radius(unpack(structure, mode.theta)) <= 1.0 + spectral_radius_slack)) return "unstable";
+  return "";
 }
 
 std::vector<ModeEstimate> fit_pooled_modes(const TrainingTransitions& transitions, const Eigen::MatrixXd& memberships,

@@ -1,11 +1,11 @@
-#include "filter/training_transitions.hpp"
+#include "filter/learn/from_mixture/training_transitions.hpp"
 
 #include <algorithm>
 #include <iterator>
 #include <stdexcept>
 #include <string>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
@@ -65,6 +65,22 @@ TrainingTransitions gather_training_transitions(const Recording& recording, cons
   blank_unusable(all);
   if (all.usable.sum() == 0.0) throw DataError("no training run has a transition to learn from");
   return all;
+}
+
+RegressionSums RegressionSums::operator+(const RegressionSums& other) const {
+  return {G + other.G, H + other.H, S + other.S, weight + other.weight};
+}
+
+Eigen::MatrixXd RegressionSums::scatter_after(const Eigen::MatrixXd& change) const {
+  const Eigen::MatrixXd cross = change.transpose() * H;
+  return S - cross - cross.transpose() + change.transpose() * G * change;
+}
+
+RegressionSums regression_sums(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& weights,
+                               const Eigen::MatrixXd& residuals) {
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * regressors;
+  return {weighted.transpose() * regressors, weighted.transpose() * residuals,
+          residuals.transpose() * weights.asDiagonal() * residuals, weights.sum()};
 }
 
 Recording training_part(const Recording& recording) {

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ident/model.hpp"
-#include "ident/regression.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/model/linear_model.hpp"
+#include "ident/model/transitions.hpp"
 
 namespace modebank {
 
@@ -33,6 +33,23 @@ void check_structure(const Recording& recording, const LinearStructure& structur
 
 /// Throws as check_structure does, and DataError when no training run has a usable transition.
 TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure);
+
+/// What a regression needs to know of weighted transitions: sums over them, r being the residual (increment minus
+/// prediction) of whatever coefficients the sums are taken about, g the weight of a transition.
+struct RegressionSums {
+  Eigen::MatrixXd G;    ///< q x q, sum g phi phi'
+  Eigen::MatrixXd H;    ///< q x n, sum g phi r'
+  Eigen::MatrixXd S;    ///< n x n, sum g r r'
+  double weight = 0.0;  ///< sum g, effective transitions
+
+  RegressionSums operator+(const RegressionSums& other) const;
+  /// sum g r r' about coefficients that differ by `change` (q x n).
+  Eigen::MatrixXd scatter_after(const Eigen::MatrixXd& change) const;
+};
+
+/// `weights`: N; `residuals`: N x n.
+RegressionSums regression_sums(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& weights,
+                               const Eigen::MatrixXd& residuals);
 
 /// theta as the q x n coefficients of increments = regressors * coefficients: the transpose of [A B (c)].
 inline Eigen::MatrixXd coefficients(const LinearStructure& s, const Eigen::VectorXd& theta) {

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/transition_matrix.hpp"
-#include "ident/local_model.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/model/local_model.hpp"
 
 namespace modebank {
 

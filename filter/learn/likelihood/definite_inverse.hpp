@@ -4,7 +4,7 @@
 
 namespace modebank {
 
-/// Inverse of a symmetric positive definite matrix, by Cholesky's factor; not finite where it is not definite.
+/// Inverse of a symmetric positive definite matrix, by Cholesky's factor; all NaN where it is not definite.
 Eigen::MatrixXd definite_inverse(const Eigen::MatrixXd& matrix);
 
 }  // namespace modebank

@@ -1,27 +1,17 @@
-#include "filter/refine_validation.hpp"
+#include "filter/learn/refine/cross_validation.hpp"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
-#include "filter/refine_climb.hpp"
-#include "filter/refine_start.hpp"
-#include "filter/refined_modes.hpp"
-#include "ident/fit_window.hpp"
-#include "ident/not_a_number.hpp"
+#include "filter/learn/switching/starts.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/fit/global_model.hpp"
 
 namespace modebank {
 namespace {
-
-// Iterations after which the runs left out are scored. Not before 10: the start has seen all training runs, and it
-// takes the fit to the others a while to forget that. The last one counts as the limit where that is lower.
-constexpr std::array<Index, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
-constexpr std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
-constexpr std::array<double, 4> prior_samples{1.0, 2.0, 5.0, 20.0};
-constexpr double least_measurement_share = 1e-9;  // of the global residual variance
 
 /// Standard error of a sum of what independent runs contribute.
 double standard_error_of_sum(const Eigen::VectorXd& parts) {
@@ -45,30 +35,25 @@ std::size_t soonest_of_the_good(const std::vector<NoiseAdaptation>& ways, const 
   return chosen;
 }
 
-std::vector<Index> checkpoints_up_to(Index limit) {
+std::vector<Index> checkpoints_up_to(Index limit, const RefineTuning& tuning) {
   std::vector<Index> list;
-  for (const Index checkpoint : checkpoints)
+  for (const Index checkpoint : tuning.checkpoints)
     if (checkpoint < limit) list.push_back(checkpoint);
   list.push_back(limit);
   return list;
 }
 
-SwitchingPrior prior_of_split(const Recording& training, const TrainingTransitions& transitions, const WindowFits& fits,
-                              double noise_transitions) {
-  return switching_prior(transitions, fit_global(training, transitions.structure), fits.prior_sd, noise_transitions);
-}
-
-/// The banks of one start on one split, at each checkpoint up to the limit.
-std::vector<Bank> climb_split(const Bank& frame, const RefineStart& start, const WindowFits& fits,
-                              const Recording& training, const RefineOptions& options) {
-  const TrainingTransitions transitions = gather_training_transitions(training, frame.structure);
-  const SwitchingPrior prior = prior_of_split(training, transitions, fits, start.noise_transitions);
-  Climb climb(transitions, prior, start.shared, options.tolerance, start.model);
+/// The banks of one start on one split, at each checkpoint up to the limit. The prior is that of the split.
+std::vector<Bank> fit_split(const RefineInput& in, const RefineStart& start, const Recording& training) {
+  const TrainingTransitions transitions = gather_training_transitions(training, in.frame.structure);
+  const SwitchingPrior prior = switching_prior(transitions, fit_global(training, transitions.structure),
+                                               in.fits.prior_sd, start.noise_transitions, in.options.tuning);
+  ExpectationMaximisation em(transitions, prior, em_options(in.options), start.model);
   std::vector<Bank> banks;
   Index done = 0;
-  for (const Index checkpoint : checkpoints_up_to(options.max_iterations)) {
-    for (; done < checkpoint; ++done) climb.step();
-    banks.push_back(with_modes(frame, climb.model()));
+  for (const Index checkpoint : checkpoints_up_to(in.options.max_iterations, in.options.tuning)) {
+    for (; done < checkpoint; ++done) em.step();
+    banks.push_back(with_modes(in.frame, em.model()));
   }
   return banks;
 }
@@ -81,25 +66,15 @@ std::vector<Bank> at_checkpoint(const std::vector<std::vector<Bank>>& by_split, 
 
 }  // namespace
 
-Eigen::VectorXd least_measurement_noise(const WindowFits& fits) {
-  return least_measurement_share * fits.global.noise_variance();
-}
-
-CrossValidation::CrossValidation(const Recording& recording, const WindowFits& fits, const Bank& frame,
-                                 const RefineOptions& options, const FilterOptions& filter)
-    : splits_(validation_splits(recording, options.folds)),
-      fits_(fits),
-      frame_(frame),
-      options_(options),
-      filter_(filter) {
+CrossValidation::CrossValidation(const RefineInput& in)
+    : in_(in), splits_(validation_splits(in.recording, in.options.folds, in.options.tuning)) {
   for (const ValidationSplit& split : splits_) samples_ += split.left_out.transitions(Role::train);
 }
 
 void CrossValidation::consider(const std::vector<RefineStart>& candidates) {
   std::vector<std::vector<Bank>> banks(candidates.size() * splits_.size());
   tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t i) {
-    banks[i] =
-        climb_split(frame_, candidates[i / splits_.size()], fits_, splits_[i % splits_.size()].training, options_);
+    banks[i] = fit_split(in_, candidates[i / splits_.size()], splits_[i % splits_.size()].training);
   });
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const auto first = banks.begin() + static_cast<std::ptrdiff_t>(i * splits_.size());
@@ -116,7 +91,7 @@ std::vector<RefineCandidate> CrossValidation::table() const {
 std::vector<ScoredFit> CrossValidation::best_of_starts() const {
   std::vector<ScoredFit> fits;
   const auto same_start = [](const RefineStart& a, const RefineStart& b) {
-    return a.name == b.name && a.model.modes() == b.model.modes() && a.shared == b.shared;
+    return a.name == b.name && a.model.modes() == b.model.modes();
   };
   for (const ScoredFit& fit : fits_of_rows_) {
     const auto known =
@@ -134,10 +109,10 @@ std::vector<ScoredFit> CrossValidation::best_of_starts() const {
 }
 
 NoiseAdaptation CrossValidation::adaptation(const std::vector<Bank>& of_splits) const {
-  if (splits_.empty() || filter_.noise != FilterNoise::adaptive) return {};
+  if (splits_.empty() || in_.filter.noise != FilterNoise::adaptive) return {};
   std::vector<NoiseAdaptation> ways;
-  for (const double forgetting : forgettings)
-    for (const double prior : prior_samples) ways.push_back({forgetting, prior});
+  for (const double forgetting : in_.options.tuning.forgettings)
+    for (const double prior : in_.options.tuning.noise_prior_samples) ways.push_back({forgetting, prior});
   std::vector<Eigen::VectorXd> scores(ways.size());
   tbb::parallel_for(std::size_t{0}, ways.size(), [&](std::size_t w) {
     std::vector<Bank> banks = of_splits;
@@ -145,27 +120,6 @@ NoiseAdaptation CrossValidation::adaptation(const std::vector<Bank>& of_splits) 
     scores[w] = run_scores(banks);
   });
   return ways[soonest_of_the_good(ways, scores)];
-}
-
-double CrossValidation::score_with_R(const Eigen::MatrixXd& R, double process_factor,
-                                     const NoiseAdaptation& adaptation) const {
-  std::vector<Bank> banks = best_banks_;
-  for (Bank& bank : banks) {
-    for (Mode& mode : bank.modes) mode.Q *= process_factor;
-    bank.R = R;
-    bank.noise_adaptation = adaptation;
-  }
-  return score(banks);
-}
-
-double CrossValidation::score_with_states_unknown(const LikelihoodTarget& target, const Bank& fitted) const {
-  std::vector<Bank> banks(splits_.size(), fitted);
-  tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
-    const LikelihoodTarget of_split{splits_[s].training, target.filter,  target.prior,
-                                    target.shared,       target.least_R, target.estimate_R};
-    raise_likelihood(of_split, {options_.max_iterations, options_.tolerance}, banks[s]);
-  });
-  return score(banks);
 }
 
 Eigen::VectorXd CrossValidation::run_scores(const std::vector<Bank>& banks) const {
@@ -176,8 +130,11 @@ Eigen::VectorXd CrossValidation::run_scores(const std::vector<Bank>& banks) cons
       bank_of.push_back(&banks[s]);
       runs.push_back(&run);
     }
-  const std::vector<double> scores = log_likelihoods(bank_of, runs, filter_);
-  return Eigen::VectorXd::Map(scores.data(), std::ssize(scores));
+  Eigen::VectorXd scores(std::ssize(runs));
+  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
+    scores(static_cast<Eigen::Index>(i)) = log_likelihood(*bank_of[i], *runs[i], in_.filter);
+  });
+  return scores;
 }
 
 double CrossValidation::score(const std::vector<Bank>& banks) const {
@@ -186,16 +143,15 @@ double CrossValidation::score(const std::vector<Bank>& banks) const {
 }
 
 void CrossValidation::add(const RefineStart& candidate, const std::vector<std::vector<Bank>>& by_split) {
-  RefineCandidate row{candidate.name,          candidate.model.modes(),
-                      candidate.shared,        candidate.noise_transitions,
-                      options_.max_iterations, not_a_number};
+  RefineCandidate row{candidate.name, candidate.model.modes(), candidate.noise_transitions, in_.options.max_iterations,
+                      not_a_number};
   std::size_t checkpoint = 0;
   if (!splits_.empty()) {
     std::vector<double> scores(by_split.front().size());
     tbb::parallel_for(std::size_t{0}, scores.size(),
                       [&](std::size_t c) { scores[c] = score(at_checkpoint(by_split, c)); });
     checkpoint = std::max_element(scores.begin(), scores.end()) - scores.begin();
-    row.iterations = checkpoints_up_to(options_.max_iterations)[checkpoint];
+    row.iterations = checkpoints_up_to(in_.options.max_iterations, in_.options.tuning)[checkpoint];
     row.score = scores[checkpoint];
   }
   table_.push_back(row);

@@ -1,25 +1,22 @@
-#include "filter/validation_split.hpp"
+#include "filter/learn/refine/folds.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <string>
 
-#include "ident/stretch.hpp"
+#include "ident/data/stretch.hpp"
 
 namespace modebank {
 namespace {
 
-constexpr Index fewest_runs = 3;
-constexpr Index shortest_stretch = 20;  // samples; shorter ones would mostly be starts
-
-std::vector<Trajectory> training_stretches_of(const Recording& recording, Index pieces) {
+std::vector<Trajectory> training_stretches_of(const Recording& recording, Index pieces, const RefineTuning& tuning) {
   std::vector<Trajectory> runs;
   for (const Trajectory& run : recording.runs)
     if (run.role == Role::train && run.transitions() > 0) runs.push_back(run);
-  if (std::ssize(runs) >= fewest_runs) return runs;
+  if (std::ssize(runs) >= tuning.fewest_whole_runs) return runs;
   std::vector<Trajectory> parts;
   for (const Trajectory& run : runs) {
-    const Index count = std::clamp(run.samples() / shortest_stretch, Index{1}, pieces);
+    const Index count = std::clamp(run.samples() / tuning.shortest_stretch, Index{1}, pieces);
     for (Index i = 0; i < count; ++i) {
       const Index first = run.samples() * i / count;
       parts.push_back(stretch(run, first, run.samples() * (i + 1) / count - first));
@@ -30,7 +27,7 @@ std::vector<Trajectory> training_stretches_of(const Recording& recording, Index 
 }
 
 /// Which part each run is left out with: the longest first, each to the part that is shortest so far.
-std::vector<Index> deal(const std::vector<Trajectory>& runs, Index parts) {
+std::vector<Index> part_of_runs(const std::vector<Trajectory>& runs, Index parts) {
   std::vector<Index> order(runs.size()), part(runs.size());
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(),
@@ -45,11 +42,11 @@ std::vector<Index> deal(const std::vector<Trajectory>& runs, Index parts) {
 
 }  // namespace
 
-std::vector<ValidationSplit> validation_splits(const Recording& recording, Index most) {
-  const std::vector<Trajectory> runs = training_stretches_of(recording, most);
+std::vector<ValidationSplit> validation_splits(const Recording& recording, Index most, const RefineTuning& tuning) {
+  const std::vector<Trajectory> runs = training_stretches_of(recording, most, tuning);
   if (runs.size() < 2 || most < 2) return {};
   const Index parts = std::min(most, std::ssize(runs));
-  const std::vector<Index> part = deal(runs, parts);
+  const std::vector<Index> part = part_of_runs(runs, parts);
   std::vector<ValidationSplit> splits(parts);
   for (Index s = 0; s < parts; ++s) {
     splits[s].training = {recording.states, recording.inputs, {}};

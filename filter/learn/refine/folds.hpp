@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "ident/trajectory.hpp"
+#include "filter/learn/refine/tuning.hpp"
+#include "ident/data/trajectory.hpp"
 
 namespace modebank {
 
@@ -16,6 +17,6 @@ struct ValidationSplit {
 /// left out together, dealt by length so that the parts are about equal. Fewer than three training runs are cut into
 /// `most` contiguous stretches each first (those too short to be cut are only trained on). Empty when nothing can be
 /// left out. The test runs never enter.
-std::vector<ValidationSplit> validation_splits(const Recording& recording, Index most);
+std::vector<ValidationSplit> validation_splits(const Recording& recording, Index most, const RefineTuning& tuning = {});
 
 }  // namespace modebank

@@ -1,4 +1,4 @@
-#include "filter/refine_screening.hpp"
+#include "filter/learn/switching/mode_screening.hpp"
 
 #include <fmt/format.h>
 
@@ -6,45 +6,35 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <string>
+#include <vector>
 
-#include "filter/calibration.hpp"
-#include "filter/screening.hpp"
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "ident/base/distributions.hpp"
 
 namespace modebank {
 namespace {
 
-constexpr double significance = 0.95;
 constexpr double ridge = 1e-12;  // share of the regressors' power: keeps unexcited regressions solvable
 
-/// Weighted regression statistics, additive over modes: pooling two modes adds them.
-struct Pooled {
-  Eigen::MatrixXd G, H, S;
-  double weight = 0.0;
+/// 1/2 W log det of the residual covariance about the least squares of these transitions. Sums add: pooling modes adds
+/// theirs.
+double cost(const RegressionSums& sums) {
+  Eigen::MatrixXd normal = sums.G;
+  normal.diagonal().array() += ridge * std::max(sums.G.trace(), std::numeric_limits<double>::min());
+  const Eigen::MatrixXd Q = (sums.S - sums.H.transpose() * normal.ldlt().solve(sums.H)) / sums.weight;
+  const Eigen::VectorXd pivots = Q.ldlt().vectorD().cwiseMax(std::numeric_limits<double>::min());
+  return 0.5 * sums.weight * pivots.array().log().sum();
+}
 
-  Pooled operator+(const Pooled& other) const { return {G + other.G, H + other.H, S + other.S, weight + other.weight}; }
-
-  /// 1/2 W log det of the residual covariance about the least squares of these transitions.
-  double cost() const {
-    Eigen::MatrixXd normal = G;
-    normal.diagonal().array() += ridge * std::max(G.trace(), std::numeric_limits<double>::min());
-    const Eigen::MatrixXd Q = (S - H.transpose() * normal.ldlt().solve(H)) / weight;
-    const Eigen::VectorXd pivots = Q.ldlt().vectorD().cwiseMax(std::numeric_limits<double>::min());
-    return 0.5 * weight * pivots.array().log().sum();
-  }
-};
-
-std::vector<Pooled> statistics(const TrainingTransitions& transitions, const ModePosterior& posterior,
-                               const SwitchingRegression& model) {
+std::vector<RegressionSums> sums_of_modes(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                                          const SwitchingRegression& model) {
   const Eigen::MatrixXd& X = transitions.data.regressors;
   const Eigen::VectorXd middle = model.theta.rowwise().mean();  // near every mode, so that little cancels
   const Eigen::MatrixXd r = transitions.data.increments - X * coefficients(transitions.structure, middle);
-  std::vector<Pooled> modes;
-  for (Index j = 0; j < model.modes(); ++j) {
-    const Eigen::VectorXd w = posterior.probability.col(j).cwiseProduct(transitions.usable);
-    const Eigen::MatrixXd weighted = w.asDiagonal() * X;
-    modes.push_back({weighted.transpose() * X, weighted.transpose() * r, r.transpose() * w.asDiagonal() * r, w.sum()});
-  }
+  std::vector<RegressionSums> modes;
+  for (Index j = 0; j < model.modes(); ++j)
+    modes.push_back(regression_sums(X, posterior.probability.col(j).cwiseProduct(transitions.usable), r));
   return modes;
 }
 
@@ -52,19 +42,19 @@ struct Twins {
   Index kept = 0, dropped = 0;
 };
 
-Index free_parameters(const LinearStructure& structure, SharedParts shared) {
+Index free_parameters(const LinearStructure& structure, bool one_theta) {
   const Index theta = structure.parameters(), noise = structure.states * (structure.states + 1) / 2;
-  return (shared == SharedParts::theta ? 0 : theta) + (shared == SharedParts::noise ? 0 : noise);
+  return (one_theta ? 0 : theta) + noise;
 }
 
-/// The pair of modes that is closest, if it is closer than a test can tell.
-std::optional<Twins> closest_twins(const LinearStructure& structure, const std::vector<Pooled>& modes,
-                                   SharedParts shared) {
+/// The pair of modes that is closest, if it is closer than a test of this significance can tell.
+std::optional<Twins> closest_twins(const LinearStructure& structure, const std::vector<RegressionSums>& modes,
+                                   bool one_theta, double significance) {
   std::optional<Twins> twins;
-  double least = 0.5 * chi_square_quantile(significance, static_cast<double>(free_parameters(structure, shared)));
+  double least = 0.5 * chi_square_quantile(significance, static_cast<double>(free_parameters(structure, one_theta)));
   for (std::size_t i = 0; i < modes.size(); ++i)
     for (std::size_t j = i + 1; j < modes.size(); ++j) {
-      const double loss = (modes[i] + modes[j]).cost() - modes[i].cost() - modes[j].cost();
+      const double loss = cost(modes[i] + modes[j]) - cost(modes[i]) - cost(modes[j]);
       if (!(loss < least)) continue;
       least = loss;
       const bool first = modes[i].weight >= modes[j].weight;
@@ -91,7 +81,7 @@ void drop_mode(Index mode, SwitchingRegression& model) {
 }
 
 /// Gives the twin what belonged to the dropped mode, weighted as the modes are.
-void merge_sequence(const Twins& twins, const std::vector<Pooled>& modes, SwitchingRegression& model) {
+void merge_sequence(const Twins& twins, const std::vector<RegressionSums>& modes, SwitchingRegression& model) {
   const double kept = modes[static_cast<std::size_t>(twins.kept)].weight;
   const double dropped = modes[static_cast<std::size_t>(twins.dropped)].weight;
   Eigen::MatrixXd& T = model.transition;
@@ -104,8 +94,27 @@ double radius(const LinearStructure& structure, const SwitchingRegression& model
   return spectral_radius(unpack(structure, model.theta.col(j)));
 }
 
-/// Slack above 1 for growth that power iteration knows to no more digits: an integrator stays.
-constexpr double growth_slack = 1e-4;
+/// The mode with the fewest effective transitions, if these are fewer than a regression needs.
+std::optional<Index> starved_mode(const LinearStructure& structure, const std::vector<RegressionSums>& modes) {
+  const auto least =
+      std::min_element(modes.begin(), modes.end(), [](const auto& a, const auto& b) { return a.weight < b.weight; });
+  if (!(least->weight < static_cast<double>(structure.regressors() + 1))) return std::nullopt;
+  return least - modes.begin();
+}
+
+/// The mode with the largest spectral radius above 1, if the switching system is not mean-square stable with it.
+std::optional<Index> unstable_mode(const LinearStructure& structure, const SwitchingRegression& model,
+                                   double growth_slack) {
+  std::optional<Index> unstable;
+  double largest = 1.0 + spectral_radius_slack;
+  for (Index j = 0; j < model.modes(); ++j)
+    if (const double r = radius(structure, model, j); r > largest) {
+      largest = r;
+      unstable = j;
+    }
+  if (unstable && mean_square_growth(structure, model) <= 1.0 + growth_slack) return std::nullopt;
+  return unstable;
+}
 
 }  // namespace
 
@@ -135,39 +144,29 @@ double mean_square_growth(const LinearStructure& structure, const SwitchingRegre
   return growth;
 }
 
-bool screen_worst_mode(const LinearStructure& structure, const TrainingTransitions& transitions,
-                       const ModePosterior& posterior, SharedParts shared, SwitchingRegression& model,
-                       std::vector<ScreenedMode>& screened) {
-  if (model.modes() < 2) return false;
-  const std::vector<Pooled> modes = statistics(transitions, posterior, model);
-  const auto list = [&](Index j, const std::string& reason) {
-    const double share = modes[static_cast<std::size_t>(j)].weight / static_cast<double>(transitions.usable.sum());
-    screened.push_back({j, share, radius(structure, model, j), reason});
+std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                                                const SwitchingRegression& model, bool one_theta,
+                                                const RefineTuning& tuning) {
+  if (model.modes() < 2) return std::nullopt;
+  const LinearStructure& structure = transitions.structure;
+  const std::vector<RegressionSums> modes = sums_of_modes(transitions, posterior, model);
+  const auto without_mode = [&](Index j, const std::string& reason) {
+    const double share = modes[static_cast<std::size_t>(j)].weight / transitions.usable.sum();
+    return ScreenedModel{model, {j, share, radius(structure, model, j), reason + " after refinement"}};
   };
-  Index starved = -1, unstable = -1;
-  double fewest = static_cast<double>(structure.regressors() + 1), largest = 1.0 + spectral_radius_slack;
-  for (Index j = 0; j < model.modes(); ++j) {
-    if (const double weight = modes[static_cast<std::size_t>(j)].weight; weight < fewest) {
-      fewest = weight;
-      starved = j;
-    }
-    if (const double r = radius(structure, model, j); r > largest) {
-      largest = r;
-      unstable = j;
-    }
+  const std::optional<Index> starved = starved_mode(structure, modes);
+  const std::optional<Index> useless = starved ? starved : unstable_mode(structure, model, tuning.growth_slack);
+  if (useless) {
+    ScreenedModel rest = without_mode(*useless, starved ? "starved" : "unstable");
+    drop_mode(*useless, rest.model);
+    return rest;
   }
-  if (unstable >= 0 && mean_square_growth(structure, model) <= 1.0 + growth_slack) unstable = -1;
-  if (const Index j = starved >= 0 ? starved : unstable; j >= 0) {
-    list(j, starved >= 0 ? "starved after refinement" : "unstable after refinement");
-    drop_mode(j, model);
-    return true;
-  }
-  const std::optional<Twins> twins = closest_twins(structure, modes, shared);
-  if (!twins) return false;
-  list(twins->dropped, fmt::format("duplicate of mode {} after refinement", twins->kept));
-  merge_sequence(*twins, modes, model);
-  drop_mode(twins->dropped, model);
-  return true;
+  const std::optional<Twins> twins = closest_twins(structure, modes, one_theta, tuning.duplicate_significance);
+  if (!twins) return std::nullopt;
+  ScreenedModel rest = without_mode(twins->dropped, fmt::format("duplicate of mode {}", twins->kept));
+  merge_sequence(*twins, modes, rest.model);
+  drop_mode(twins->dropped, rest.model);
+  return rest;
 }
 
 }  // namespace modebank

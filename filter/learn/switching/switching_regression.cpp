@@ -1,19 +1,20 @@
-#include "filter/switching_regression.hpp"
+#include "filter/learn/switching/switching_regression.hpp"
 
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <unsupported/Eigen/KroneckerProduct>
 
-#include "filter/definite_inverse.hpp"
-#include "mixture/component_merge.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/likelihood/definite_inverse.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "mixture/reduction.hpp"
 
 namespace modebank {
 namespace {
-
-constexpr int alternations = 3;  // of theta and Q in one maximisation; each raises the objective
 
 /// log N(r_k; 0, Q) of every transition of one mode, to the power of its sample weight.
 Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eigen::VectorXd& theta,
@@ -51,9 +52,10 @@ class RunSmoother {
     scale_.resize(rows.count);
     for (Index k = 0; k < rows.count; ++k) {
       const auto of_step = log_density_.row(rows.first + k).transpose();
-      const double largest = of_step.maxCoeff();
-      density_.col(k) = (of_step.array() - largest).exp();
       filtered_.col(k).noalias() = model_.transition.transpose() * before(k);
+      const auto possible = filtered_.col(k).array() > 0.0;
+      const double largest = possible.select(of_step.array(), -std::numeric_limits<double>::infinity()).maxCoeff();
+      density_.col(k) = possible.select((of_step.array() - largest).exp(), 0.0);
       filtered_.col(k).array() *= density_.col(k).array();
       scale_(k) = filtered_.col(k).sum();
       filtered_.col(k) /= scale_(k);
@@ -84,74 +86,33 @@ class RunSmoother {
   Eigen::VectorXd scale_;
 };
 
-class Maximiser {
- public:
-  Maximiser(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
-            SwitchingRegression& model)
-      : structure_(structure), sums_(sums), prior_(prior), model_(model) {}
-
-  void raise(SharedParts shared) {
-    for (int i = 0; i < alternations; ++i) {
-      if (shared == SharedParts::theta) set_common_theta();
-      for (Index j = 0; j < model_.modes(); ++j) {
-        if (shared != SharedParts::theta) set_theta(j);
-        noise(j) = with_prior(scatter(j), at(j).transitions);
-      }
-      if (shared == SharedParts::noise) set_common_noise();
-    }
-  }
-
- private:
-  Eigen::MatrixXd& noise(Index j) { return model_.Q[static_cast<std::size_t>(j)]; }
-  const ModeSums& at(Index j) const { return sums_.modes[static_cast<std::size_t>(j)]; }
-
-  void set_theta(Index j) {
-    const Eigen::MatrixXd Q_inverse = definite_inverse(noise(j));
-    const Eigen::MatrixXd information = Eigen::kroneckerProduct(Q_inverse, at(j).G).eval() + prior_.information;
-    const Eigen::MatrixXd pull = at(j).H * Q_inverse;
-    model_.theta.col(j) = prior_.mean + information.ldlt().solve(pull.reshaped());
-  }
-
-  void set_common_theta() {
-    Eigen::MatrixXd information = prior_.information;
-    Eigen::VectorXd pull = Eigen::VectorXd::Zero(prior_.mean.size());
-    for (Index j = 0; j < model_.modes(); ++j) {
-      const Eigen::MatrixXd Q_inverse = definite_inverse(noise(j));
-      information += Eigen::kroneckerProduct(Q_inverse, at(j).G).eval();
-      const Eigen::MatrixXd of_mode = at(j).H * Q_inverse;
-      pull += of_mode.reshaped();
-    }
-    model_.theta.colwise() = prior_.mean + information.ldlt().solve(pull);
-  }
-
-  /// Sum of squares about the mode's own theta.
-  Eigen::MatrixXd scatter(Index j) const {
-    const Eigen::MatrixXd D = coefficients(structure_, model_.theta.col(j) - prior_.mean);
-    const Eigen::MatrixXd cross = D.transpose() * at(j).H;
-    return at(j).S - cross - cross.transpose() + D.transpose() * at(j).G * D;
-  }
-
-  Eigen::MatrixXd with_prior(const Eigen::MatrixXd& sum, double transitions) const {
-    return (sum + prior_.noise_transitions * prior_.noise) / (transitions + prior_.noise_transitions);
-  }
-
-  void set_common_noise() {
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(prior_.noise.rows(), prior_.noise.cols());
-    double count = 0.0;
-    for (Index j = 0; j < model_.modes(); ++j) {
-      sum += scatter(j);
-      count += at(j).transitions;
-    }
-    for (Eigen::MatrixXd& Q : model_.Q) Q = with_prior(sum, count);
-  }
-
-  const LinearStructure& structure_;
-  const SwitchingSums& sums_;
-  const SwitchingPrior& prior_;
-  SwitchingRegression& model_;
-};
-
 }  // namespace
+
+SwitchingRegression switching_model(const Bank& bank) {
+  SwitchingRegression model;
+  const Index n = bank.structure.states;
+  model.theta.resize(bank.structure.parameters(), bank.mode_count());
+  for (Index j = 0; j < bank.mode_count(); ++j) {
+    model.theta.col(j) = bank.theta(j);
+    model.Q.push_back(bank.modes[static_cast<std::size_t>(j)].Q.topLeftCorner(n, n));
+  }
+  model.transition = bank.transition.matrix();
+  model.initial = bank.initial_probability;
+  return model;
+}
+
+Bank with_modes(const Bank& frame, const SwitchingRegression& model) {
+  Bank bank = frame;
+  bank.modes.clear();
+  const Index p = bank.structure.parameters(), K = model.modes();
+  for (Index j = 0; j < K; ++j)
+    bank.modes.push_back(make_mode(bank.structure, model.theta.col(j), model.Q[static_cast<std::size_t>(j)],
+                                   Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Constant(p, not_a_number),
+                                   1.0 / static_cast<double>(K)));
+  bank.transition = TransitionMatrix(model.transition);
+  bank.initial_probability = model.initial;
+  return bank;
+}
 
 ModePosterior smooth_modes(const TrainingTransitions& transitions, const SwitchingRegression& model) {
   const Index K = model.modes();
@@ -170,27 +131,13 @@ SwitchingSums sum_transitions(const TrainingTransitions& transitions, const Mode
                               const SwitchingPrior& prior) {
   const Eigen::MatrixXd& X = transitions.data.regressors;
   const Eigen::MatrixXd r = transitions.data.increments - X * coefficients(transitions.structure, prior.mean);
-  SwitchingSums sums{std::vector<ModeSums>(static_cast<std::size_t>(posterior.probability.cols())), posterior.switches,
-                     posterior.first};
+  SwitchingSums sums{std::vector<RegressionSums>(static_cast<std::size_t>(posterior.probability.cols())),
+                     posterior.switches, posterior.first};
   tbb::parallel_for(Index{0}, posterior.probability.cols(), [&](Index j) {
     const Eigen::VectorXd g = posterior.probability.col(j).cwiseProduct(transitions.usable);
-    const Eigen::MatrixXd weighted = g.asDiagonal() * X;
-    sums.modes[static_cast<std::size_t>(j)] = {weighted.transpose() * X, weighted.transpose() * r,
-                                               r.transpose() * g.asDiagonal() * r, g.sum()};
+    sums.modes[static_cast<std::size_t>(j)] = regression_sums(X, g, r);
   });
   return sums;
-}
-
-void maximise(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
-              SharedParts shared, SwitchingRegression& model) {
-  Maximiser(structure, sums, prior, model).raise(shared);
-  const Eigen::MatrixXd counts = sums.switches.array() + prior.counts;
-  for (Index i = 0; i < model.modes(); ++i) {
-    const double row = counts.row(i).sum();
-    if (row > 0.0) model.transition.row(i) = counts.row(i) / row;
-  }
-  model.initial = sums.first.array() + prior.counts;
-  model.initial /= model.initial.sum();
 }
 
 std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, const SwitchingPrior& prior,
@@ -202,18 +149,15 @@ std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, co
   return covariances;
 }
 
-double log_prior(const SwitchingPrior& prior, SharedParts shared, const SwitchingRegression& model) {
-  const Index thetas = shared == SharedParts::theta ? 1 : model.modes();
-  const Index noises = shared == SharedParts::noise ? 1 : model.modes();
+double log_prior(const SwitchingPrior& prior, bool one_theta, const SwitchingRegression& model) {
+  const Index thetas = one_theta ? 1 : model.modes();
   double sum = 0.0;
   for (Index j = 0; j < thetas; ++j) {
     const Eigen::VectorXd difference = model.theta.col(j) - prior.mean;
     sum -= 0.5 * difference.dot(prior.information * difference);
   }
-  for (Index j = 0; j < noises; ++j) {
-    const Eigen::MatrixXd& Q = model.Q[static_cast<std::size_t>(j)];
+  for (const Eigen::MatrixXd& Q : model.Q)
     sum -= 0.5 * prior.noise_transitions * (log_determinant(Q) + (definite_inverse(Q) * prior.noise).trace());
-  }
   if (prior.counts > 0.0)
     sum += prior.counts * (model.transition.array().log().sum() + model.initial.array().log().sum());
   return sum;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/bounds.hpp"
+#include "filter/step/equations/bounds.hpp"
 
 /// Products and factorisation of small matrices in one fixed order of summation. Eigen's own products add in another
 /// order for fixed than for dynamic sizes; with these, both give the same bits, and no call allocates.

@@ -1,7 +1,9 @@
 #pragma once
 
-/// The numbers that keep a filter's arithmetic sound, whatever it is fed: of the general step and of the vector
-/// kernels.
+#include <cmath>
+
+/// The numbers that keep a filter's arithmetic sound, whatever it is fed: of the equations and of the vector kernels
+/// (which know nothing of Eigen).
 namespace modebank {
 
 /// No mode ever dies for good: probabilities after a measurement are kept above this, then renormalised.
@@ -22,6 +24,16 @@ inline constexpr double lowest_log_density = -1e300;
 
 /// Measurements at or beyond this magnitude, infinite or NaN count as missing: nothing can be learned from them.
 inline constexpr double largest_measurement = 1e30;
+
+inline bool is_missing(double y) { return !(std::abs(y) < largest_measurement); }
+
+/// How many entries of a measurement are missing.
+template <class Y>
+auto missing_entries(const Y& y) {
+  decltype(y.size()) count = 0;
+  for (decltype(y.size()) i = 0; i < y.size(); ++i) count += is_missing(y(i)) ? 1 : 0;
+  return count;
+}
 
 /// Pivots of a covariance below this share of their diagonal entry are rounding noise: they are raised to it, which is
 /// the same as adding that much to the diagonal.

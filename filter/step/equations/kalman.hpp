@@ -4,13 +4,60 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/bounds.hpp"
-#include "filter/filter_model.hpp"
-#include "filter/gaussian.hpp"
-#include "filter/small_matrix.hpp"
-#include "ident/model.hpp"
+#include "filter/step/equations/arithmetic.hpp"
+#include "filter/step/equations/bounds.hpp"
+#include "filter/step/equations/model.hpp"
+#include "ident/model/linear_model.hpp"
 
 namespace modebank {
+
+/// Mean and covariance of a state of size N, fixed or Eigen::Dynamic.
+template <int N>
+struct Gaussian {
+  Eigen::Matrix<double, N, 1> mean;
+  Eigen::Matrix<double, N, N> covariance;
+
+  explicit Gaussian(Eigen::Index size) : mean(size), covariance(size, size) {
+    mean.setZero();
+    covariance.setZero();
+  }
+};
+
+/// Makes signal i of a covariance one of variance one, unrelated to the others.
+template <class Matrix>
+void detach(Matrix& S, Eigen::Index i) {
+  S.row(i).setZero();
+  S.col(i).setZero();
+  S(i, i) = 1.0;
+}
+
+/// A sensor some of whose signals are missing: their rows of C and R become those of a signal that is always zero, of
+/// variance one, unrelated to anything, and is measured as zero. Gains, NIS and the other signals' densities are then
+/// exactly those of the signals that are there; log densities carry -log(2 pi) / 2 too much per missing signal.
+template <int N, int NY>
+struct PartialSensor {
+  Eigen::Matrix<double, NY, N> C;
+  Eigen::Matrix<double, NY, NY> R;
+  Eigen::Matrix<double, NY, 1> y;
+  Eigen::Index missing = 0;  ///< signals
+
+  PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y) {}
+
+  template <class Sensor, class Y>
+  void assign(const Sensor& whole, const Y& measured) {
+    C = whole.C;
+    R = whole.R;
+    y = measured;
+    missing = 0;
+    for (Eigen::Index i = 0; i < y.size(); ++i)
+      if (is_missing(measured(i))) {
+        C.row(i).setZero();
+        detach(R, i);
+        y(i) = 0.0;
+        ++missing;
+      }
+  }
+};
 
 /// One mode's Kalman step with the workspace it needs, sized once. Call in order: predict, expect, observe, correct.
 template <int N, int NY>

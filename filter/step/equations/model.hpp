@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
-#include "filter/bank.hpp"
-#include "filter/evaluate.hpp"
-#include "filter/gaussian.hpp"
-#include "filter/start_moments.hpp"
+#include "filter/step/bank.hpp"
+#include "modebank/filter/options.hpp"
 
 namespace modebank {
 
@@ -34,7 +34,7 @@ struct FilterModel {
   Eigen::Matrix<double, N, Eigen::Dynamic> start_gain;  ///< x[0] = start_gain y[0], y[0] all of z with lags
   Eigen::Matrix<double, N, N> start_covariance;         ///< P[0]
 
-  /// FilterVariant::kf keeps the first mode alone. Requires check_sizes(bank).
+  /// Requires check_sizes(bank). Throws std::invalid_argument for FilterVariant::kf of several modes.
   FilterModel(const Bank& bank, const FilterOptions& options);
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
@@ -47,13 +47,13 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
       adaptive(options.noise == FilterNoise::adaptive),
       noise_adaptation(bank.noise_adaptation),
       C(bank.C),
-      R(bank.R) {
-  const bool single = variant == FilterVariant::kf;
-  if (!single) transition = bank.transition;
-  initial_probability = single ? Eigen::VectorXd::Ones(1).eval() : bank.initial_probability;
-  const std::size_t kept = single ? 1 : bank.modes.size();
-  for (std::size_t j = 0; j < kept; ++j) {
-    const modebank::Mode& mode = bank.modes[j];
+      R(bank.R),
+      transition(bank.transition),
+      initial_probability(bank.initial_probability) {
+  if (variant == FilterVariant::kf && bank.mode_count() != 1)
+    throw std::invalid_argument("a Kalman filter (kf) steps a bank of one mode, this one has " +
+                                std::to_string(bank.mode_count()));
+  for (const modebank::Mode& mode : bank.modes) {
     const bool noisy = options.parameter_noise && mode.spread.size() > 0;
     modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q,
                      noisy ? mode.spread : Eigen::MatrixXd()});
@@ -63,15 +63,12 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
   start_covariance = start.covariance;
 }
 
-/// Calls f.template operator()<N, NY>() with fixed sizes where they are built, Eigen::Dynamic otherwise. The one place
-/// where run-time sizes become compile-time sizes.
+/// Calls f.template operator()<N, NY>() with fixed sizes where they pay: one state and one signal step three times as
+/// fast (K = 9, GPB2: 1.5 us against 4.9 us), two and three states only 1.7 and 1.5 times, and the IMM of those sizes
+/// has vector kernels. The one place where run-time sizes become compile-time sizes.
 template <class F>
 auto with_sizes(Eigen::Index states, Eigen::Index measurements, F&& f) {
   if (states == 1 && measurements == 1) return f.template operator()<1, 1>();
-  if (states == 2 && measurements == 2) return f.template operator()<2, 2>();
-  if (states == 3 && measurements == 3) return f.template operator()<3, 3>();
-  if (states == 2 && measurements == 1) return f.template operator()<2, 1>();  // one signal and its lags
-  if (states == 3 && measurements == 1) return f.template operator()<3, 1>();
   return f.template operator()<Eigen::Dynamic, Eigen::Dynamic>();
 }
 

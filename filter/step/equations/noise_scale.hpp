@@ -3,9 +3,10 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "filter/bounds.hpp"
-#include "filter/filter_model.hpp"
+#include "filter/step/equations/bounds.hpp"
+#include "filter/step/equations/model.hpp"
 
 /// The scale of the process noise that a filter with adaptive noise learns as it goes: every mode's Q is multiplied by
 /// one factor s, because runs of the same motion differ in roughness. s is the ratio of discounted sums, as in the
@@ -37,11 +38,11 @@ double explained_share(const Sensor& sensor, const Matrix& P, const Kalman& kalm
   return trace;
 }
 
-/// e' S^-1 C P C' S^-1 e of one Kalman step, with e' S^-1 e cut at largest_standardised^2 n_y.
+/// e' S^-1 C P C' S^-1 e of one Kalman step, with e' S^-1 e cut at largest_standardised^2 n_y, of the signals there.
 template <class Sensor, class Matrix, class Kalman, class Column>
-double explained_square(const Sensor& sensor, const Matrix& P, const Kalman& kalman, Column& column) {
+double explained_square(const Sensor& sensor, const Matrix& P, const Kalman& kalman, double n_y, Column& column) {
   const double nis = kalman.cholesky.squared_distance(kalman.decorrelated);
-  const double most = largest_standardised * largest_standardised * static_cast<double>(column.size());
+  const double most = largest_standardised * largest_standardised * n_y;
   if (!(nis < 1e300)) return 0.0;  // an overflowing innovation says nothing about the scale
   column = kalman.innovation;
   kalman.cholesky.solve(column);
@@ -76,16 +77,20 @@ void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::Ve
                        State& state) {
   const double s = state.noise_scale, n_y = static_cast<double>(step.residual.size() - step.partial.missing);
   const std::size_t per_mode = step.kalman.size() / model.modes.size();
-  const double largest = step.log_likelihood.maxCoeff();
+  // As Bayes' rule has it (imm.hpp): an impossible hypothesis takes no part, however well it fits.
+  double largest = -std::numeric_limits<double>::infinity();
+  for (Eigen::Index h = 0; h < prior.size(); ++h)
+    if (prior(h) >= impossible_probability) largest = std::max(largest, step.log_likelihood(h));
   double total = 0.0, share = 0.0, square = 0.0;
   for (std::size_t h = 0; h < step.kalman.size(); ++h) {
     const auto i = static_cast<Eigen::Index>(h);
-    const double weight = prior(i) * std::exp(step.log_likelihood(i) - largest);
+    const double weight =
+        prior(i) >= impossible_probability ? prior(i) * std::exp(step.log_likelihood(i) - largest) : 0.0;
     if (!(weight > 0.0)) continue;
     const auto& Q = model.modes[h / per_mode].Q;
     total += weight;
     share += weight * s * explained_share(sensor, Q, step.kalman[h], step.residual);
-    square += weight * s * explained_square(sensor, Q, step.kalman[h], step.residual);
+    square += weight * s * explained_square(sensor, Q, step.kalman[h], n_y, step.residual);
   }
   if (!(total > 0.0)) return;
   move_noise_scale(model.noise_adaptation, share / total, square / total, n_y, state.noise_scale, state.noise_samples);

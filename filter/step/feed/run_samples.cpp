@@ -1,23 +1,16 @@
-#include "filter/run_samples.hpp"
+#include "filter/step/feed/run_samples.hpp"
 
 #include <stdexcept>
 #include <string>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
 using Eigen::Index;
 
-void check_bank(const Bank& bank) {
-  check_sizes(bank);
-  if (bank.structure.state_lags > 1 && bank.C.rows() != bank.structure.states)
-    throw std::invalid_argument("a bank with lagged states must measure each of its " +
-                                std::to_string(bank.structure.states) + " states");
-}
-
 void check_run(const Bank& bank, const Trajectory& run) {
-  check_bank(bank);
+  check_sizes(bank);
   const auto mismatch = [&](const std::string& what, Index is, Index expected) {
     if (is != expected)
       throw std::invalid_argument("run " + run.run + " has " + std::to_string(is) + " " + what + ", the bank needs " +

@@ -3,10 +3,45 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/filter_step.hpp"
-#include "filter/run_samples.hpp"
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/feed/sample_feed.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/data/trajectory.hpp"
 
+/// A recorded run as filters see it: sample by sample, or moment by moment for those who come back to one.
 namespace modebank {
+
+/// Throws std::invalid_argument when the sizes of the bank do not fit each other or those of the run, DataError for an
+/// input that is not finite.
+void check_run(const Bank& bank, const Trajectory& run);
+
+/// Of a run that was recorded without times: NaN.
+inline double sample_time_s(const Trajectory& run, Eigen::Index k) {
+  return run.time_s.size() > 0 ? run.time_s(k) : not_a_number;
+}
+
+/// The samples of a run as filters step on them.
+class RunSamples {
+ public:
+  RunSamples(const Bank& bank, const Trajectory& run, TimeSteps time_steps) : run_(run), feed_(bank, time_steps) {}
+
+  /// Calls visit(feed, k, starts) for every sample k from the first start on; `starts`: the filter begins (anew) here.
+  template <class Visit>
+  void for_each(Visit visit) {
+    bool started = false;
+    for (Eigen::Index k = 0; k < run_.samples(); ++k) {
+      feed_.push(sample_time_s(run_, k), run_.input.col(k), run_.state.col(k));
+      started = started && feed_.steps() <= longest_gap_steps;
+      const bool starts = !started && feed_.can_start();
+      if (started || starts) visit(feed_, k, starts);
+      started = started || starts;
+    }
+  }
+
+ private:
+  const Trajectory& run_;
+  SampleFeed feed_;
+};
 
 /// One moment of a run at which a filter stood: a sample, or a step between two samples that lie further apart.
 struct Instant {

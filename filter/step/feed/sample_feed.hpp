@@ -2,20 +2,10 @@
 
 #include <Eigen/Core>
 
-#include "filter/bank.hpp"
-#include "ident/enum_names.hpp"
+#include "filter/step/bank.hpp"
+#include "modebank/filter/options.hpp"
 
 namespace modebank {
-
-/// How a filter treats a longer time between two samples than its bank's sample period. A bank is a discrete model: one
-/// of its steps takes bank.dt_s, whatever the clock says. repeat: as many prediction steps as fit (rounded, at least
-/// one), with the input held. single: one step always, as if nobody had looked at the clock.
-enum class TimeSteps { repeat, single };
-
-template <>
-struct EnumNames<TimeSteps> {
-  static constexpr Names<2> values{"repeat", "single"};
-};
 
 /// After this many steps without a sample a filter starts anew from the next whole measurement: what it knew has
 /// decayed, and predictions of an input held for so long say nothing.
@@ -44,7 +34,7 @@ class SampleFeed {
   /// What it starts from: the measurement, with lags the measurements of all of z.
   auto start() const { return measurements_.reshaped(); }
   /// The acting inputs v of the transition into this sample.
-  const Eigen::VectorXd& inputs() const { return acting_; }
+  Eigen::Map<const Eigen::VectorXd> inputs() const { return {recent_.data() + inputs_ * input_delay_, acting_inputs_}; }
 
   /// What is remembered between samples, for checkpoints.
   struct Memory {
@@ -58,12 +48,11 @@ class SampleFeed {
   void restore(const Memory& memory);
 
  private:
-  Eigen::Index inputs_, input_lags_, input_delay_, first_transition_;
+  Eigen::Index inputs_, input_delay_, acting_inputs_, first_transition_;
   TimeSteps time_steps_;
   double dt_s_;
-  Eigen::MatrixXd recent_;        ///< inputs, newest first
+  Eigen::MatrixXd recent_;        ///< inputs u[k], u[k-1], ...; those that act end it
   Eigen::MatrixXd measurements_;  ///< newest first
-  Eigen::VectorXd acting_;
   Eigen::Index samples_ = 0, whole_ = 0, steps_ = 1;
   double time_s_ = 0.0;
 };

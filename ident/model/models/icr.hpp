@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "ident/error.hpp"
-#include "ident/templated_model.hpp"
+#include "ident/model/templated_model.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::models {
 
@@ -75,7 +75,7 @@ inline std::shared_ptr<const MotionModel> make_icr(const ModelSettings& s) {
   if (s.inputs == 2 && s.states == 2) return make_templated_model(IcrModel{s.wheel_radius_m});
   if (s.inputs == 2 && s.states == 3) return make_templated_model(LateralIcrModel{{s.wheel_radius_m}});
   throw ConfigurationError(
-      "window.model = icr needs the inputs left and right wheel speed, and the states yaw rate; forward speed and yaw "
+      "model = icr needs the inputs left and right wheel speed, and the states yaw rate; forward speed and yaw "
       "rate; or forward speed, lateral speed and yaw rate, in this order");
 }
 

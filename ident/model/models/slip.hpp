@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "ident/error.hpp"
-#include "ident/templated_model.hpp"
+#include "ident/model/templated_model.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::models {
 
@@ -65,7 +65,7 @@ inline std::shared_ptr<const MotionModel> make_slip(const ModelSettings& s) {
   if (s.inputs == 2 && s.states == 1) return make_templated_model(YawSlipModel{s.wheel_radius_m});
   if (s.inputs == 2 && s.states == 2) return make_templated_model(SlipModel{s.wheel_radius_m});
   throw ConfigurationError(
-      "window.model = slip needs the inputs left and right wheel speed, and the states yaw rate, or forward speed and "
+      "model = slip needs the inputs left and right wheel speed, and the states yaw rate, or forward speed and "
       "yaw rate, in this order");
 }
 

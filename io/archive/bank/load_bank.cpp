@@ -1,13 +1,12 @@
-#include "io/load_bank.hpp"
+#include "io/archive/bank/load_bank.hpp"
 
 #include <fstream>
 #include <optional>
 
-#include "ident/error.hpp"
-#include "io/archive_file.hpp"
-#include "io/archive_layout.hpp"
-#include "io/archive_reader.hpp"
-#include "io/user_block.hpp"
+#include "io/archive/bank/layout_bank.hpp"
+#include "io/archive/bank/open_archive.hpp"
+#include "io/hdf5/group_reader.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -17,11 +16,9 @@ namespace {
 template <class Body>
 void read_root(const std::filesystem::path& path, Body body) {
   const hdf5::Quiet quiet;
-  const hdf5::Handle file = open_archive(path);
-  if (const std::vector<std::string> problems = hash_problems(path); !problems.empty())
-    throw DataError(path.string() + ": damaged: " + problems.front());
+  const hdf5::Handle file = open_archive(path, HashCheck::before);
   try {
-    ArchiveReader root(open_root(file), nullptr);
+    GroupReader root(open_root(file), nullptr);
     body(root);
   } catch (const DataError& error) {
     throw DataError(path.string() + ": " + error.what());
@@ -32,8 +29,8 @@ void read_root(const std::filesystem::path& path, Body body) {
 
 Bank load_bank(const std::filesystem::path& path, const std::string& which) {
   std::optional<Bank> bank;
-  read_root(path, [&](ArchiveReader& root) {
-    layout::exchange_part(root, which, bank, {}, [](ArchiveReader& member, Bank& part) {
+  read_root(path, [&](GroupReader& root) {
+    layout::exchange_part(root, which, bank, {}, [](GroupReader& member, Bank& part) {
       layout::exchange_bank(member, part, Units(Recording()));
     });
     if (!bank) throw DataError("holds no " + which);
@@ -43,7 +40,7 @@ Bank load_bank(const std::filesystem::path& path, const std::string& which) {
 
 std::string load_configuration(const std::filesystem::path& path) {
   std::string text;
-  read_root(path, [&](ArchiveReader& root) { root.text("config", text); });
+  read_root(path, [&](GroupReader& root) { root.text("config", text); });
   return text;
 }
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "filter/bank.hpp"
+#include "filter/step/bank.hpp"
 
 namespace modebank {
 

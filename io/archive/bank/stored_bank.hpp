@@ -1,14 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "filter/bank.hpp"
-#include "ident/local_model.hpp"
-#include "ident/trajectory.hpp"
-#include "mixture/select.hpp"
+#include "filter/step/bank.hpp"
 
 namespace modebank {
 
@@ -16,34 +13,39 @@ namespace modebank {
 /// gives back the same bits. Arrays hold one window or mode per column; matrices within a column are row-major.
 /// store_ throws std::invalid_argument for sizes that disagree, restore_ DataError for content that cannot be.
 
+/// One matrix per mode laid into the columns of a rows * cols x count array. `what`: for messages.
+template <class Get>
+Eigen::MatrixXd side_by_side(std::size_t count, Eigen::Index rows, Eigen::Index cols, const char* what, Get get) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::MatrixXd result(rows * cols, static_cast<Eigen::Index>(count));
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto& matrix = get(k);
+    if (matrix.rows() != rows || matrix.cols() != cols)
+      throw std::invalid_argument(std::string(what) + " of mode " + std::to_string(k) + " is " +
+                                  std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols()) + ", must be " +
+                                  std::to_string(rows) + " x " + std::to_string(cols));
+    Eigen::Map<RowMajor>(result.col(static_cast<Eigen::Index>(k)).data(), rows, cols) = matrix;
+  }
+  return result;
+}
+/// One of them.
+Eigen::MatrixXd one_of(const Eigen::MatrixXd& columns, Eigen::Index k, Eigen::Index rows, Eigen::Index cols);
+
 struct StoredChannels {
   std::vector<std::string> names;
   std::vector<std::string> units;
 };
-StoredChannels store_channels(const std::vector<Channel>& channels);
-std::vector<Channel> restore_channels(const StoredChannels& stored);
-
-/// Windows by the name of their run.
-struct StoredWindows {
-  std::vector<std::string> run;                          ///< M
-  Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> start;  ///< M
-};
-StoredWindows store_windows(const std::vector<Window>& windows, const std::vector<Trajectory>& runs);
-/// Every window must lie within its run.
-std::vector<Window> restore_windows(const StoredWindows& stored, const std::vector<Trajectory>& runs, Index length);
 
 /// Names and units of a motion model's parameters; where a search starts is not kept.
 StoredChannels store_model_parameters(const std::vector<ModelParameter>& parameters);
 std::vector<ModelParameter> restore_model_parameters(const StoredChannels& stored);
 
 /// The structure with the states that its dimension n says. Throws DataError when p parameters do not fit.
-LinearStructure restore_structure(LinearStructure stored, Index dimension, Index parameters);
-/// The same for windows, whose arrays have one entry per measured state; p is that of the motion model if there is one.
-void restore_window_structure(WindowFits& fits, Index states, Index parameters);
+LinearStructure restore_structure(LinearStructure stored, Eigen::Index dimension, Eigen::Index parameters);
 
-/// The components' covariances, F*F x K.
-Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances);
-std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, Index features);
+/// Throw DataError for lags that make no model of so many states, for parameters that do not fit them.
+void check_lags(const LinearStructure& structure, Eigen::Index dimension);
+[[noreturn]] void parameters_do_not_fit(Eigen::Index parameters, Eigen::Index states);
 
 /// A bank's modes side by side (K columns) and its matrices so that their memory is row-major.
 struct StoredBank {

@@ -1,7 +1,4 @@
-#include "io/archive_units.hpp"
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include "io/archive/bank/units.hpp"
 
 #include <algorithm>
 
@@ -55,7 +52,10 @@ Unit ratios(const Unit& to, const Unit& from) {
 std::string joined(const Unit& unit) {
   if (unit.empty() || std::find(unit.begin(), unit.end(), "") != unit.end()) return {};
   const bool common = std::count(unit.begin(), unit.end(), unit.front()) == static_cast<std::ptrdiff_t>(unit.size());
-  return common ? unit.front() : fmt::format("{}", fmt::join(unit, ", "));
+  if (common) return unit.front();
+  std::string all = unit.front();
+  for (std::size_t i = 1; i < unit.size(); ++i) all += ", " + unit[i];
+  return all;
 }
 
 Unit Units::of(const std::vector<Channel>& channels) {

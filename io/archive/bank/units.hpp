@@ -3,14 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "ident/model.hpp"
-#include "ident/motion_model.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/model/linear_model.hpp"
+#include "ident/model/motion_model.hpp"
+#include "io/hdf5/sizes.hpp"
 
 namespace modebank {
-
-/// Unit of every entry of one sample; an empty text is an unknown unit, an empty list stands for "no unit".
-using Unit = std::vector<std::string>;
 
 /// "(a)^2" or "(a)*(b)"; unknown when either is.
 std::string unit_product(const std::string& a, const std::string& b);

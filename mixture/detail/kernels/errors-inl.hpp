@@ -9,7 +9,7 @@
 #define MODEBANK_EM_ERRORS_INL
 #endif
 
-#include "mixture/em_lanes-inl.hpp"
+#include "mixture/detail/kernels/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::em::HWY_NAMESPACE {
@@ -97,8 +97,8 @@ HWY_INLINE void add_expectations(int n, bool diagonal, const double* relative, c
   }
 }
 
-/// The passes over a block that kernels for few and for many features share. Kernel: a constructor (features, work);
-/// `begin` (block), which reads two vectors of points; `spread<logarithmic>` (component's mean, W, where expectations
+/// The passes over a block. Kernel (Deconvolution): a constructor (features, work); `begin` (block), which reads two
+/// vectors of points; `spread<logarithmic>` (component's mean, W, where expectations
 /// go, the second vector's after all of the first's, and the two Spreads).
 template <class Kernel>
 struct Errors {

@@ -1,12 +1,11 @@
 // Kernels of EM on points with error covariances.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "mixture/em_errors.cpp"
+#define HWY_TARGET_INCLUDE "mixture/detail/kernels/errors.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "mixture/em_errors_small-inl.hpp"
-#include "mixture/em_errors_tiles-inl.hpp"
-#include "mixture/em_kernels.hpp"
+#include "mixture/detail/kernels/deconvolve-inl.hpp"
+#include "mixture/detail/kernels/kernels.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::em::HWY_NAMESPACE {
@@ -28,15 +27,15 @@ template <bool diagonal>
 Kernels with_errors_of(int features) {
   switch (features) {
     case 1:
-      return error_kernels_of<SmallErrors<1, diagonal>>(Packing::unit_rows, features);
+      return error_kernels_of<Deconvolution<1, diagonal>>(Packing::unit_rows, features);
     case 2:
-      return error_kernels_of<SmallErrors<2, diagonal>>(Packing::unit_rows, features);
+      return error_kernels_of<Deconvolution<2, diagonal>>(Packing::unit_rows, features);
     case 3:
-      return error_kernels_of<SmallErrors<3, diagonal>>(Packing::unit_rows, features);
+      return error_kernels_of<Deconvolution<3, diagonal>>(Packing::unit_rows, features);
     case 4:
-      return error_kernels_of<SmallErrors<4, diagonal>>(Packing::unit_rows, features);
+      return error_kernels_of<Deconvolution<4, diagonal>>(Packing::unit_rows, features);
     default:
-      return error_kernels_of<TileErrors<diagonal>>(diagonal ? Packing::diagonal : Packing::tiles, features);
+      return error_kernels_of<Deconvolution<0, diagonal>>(Packing::unit_rows, features);
   }
 }
 

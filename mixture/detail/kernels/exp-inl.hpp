@@ -9,7 +9,7 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "ident/batch_lanes-inl.hpp"
+#include "ident/base/detail/simd-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::em::HWY_NAMESPACE {

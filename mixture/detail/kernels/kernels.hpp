@@ -56,7 +56,7 @@ struct Scratch {
 /// One number of features' kernels. `entries` per component: sum of r, of r d (F), of r d d' (lower triangle by rows,
 /// or the diagonal of it), where r is the weighted responsibility and d the offset x - mu_k. With errors d is W_k times
 /// the expected offset of the point without its error, and d d' the expectation of that product less I (which leaves
-/// W_k' of the plain entries where the error is zero; see component_density.cpp). Kernels of Packing::affine sum x in
+/// W_k' of the plain entries where the error is zero; see density.cpp). Kernels of Packing::affine sum x in
 /// place of d for components that are central.
 struct Kernels {
   Packing packing = Packing::affine;

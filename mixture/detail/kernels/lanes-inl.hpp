@@ -7,8 +7,8 @@
 #define MODEBANK_EM_LANES_INL
 #endif
 
-#include "mixture/em_exp-inl.hpp"
-#include "mixture/em_kernels.hpp"
+#include "mixture/detail/kernels/exp-inl.hpp"
+#include "mixture/detail/kernels/kernels.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::em::HWY_NAMESPACE {

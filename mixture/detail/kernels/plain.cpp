@@ -1,12 +1,12 @@
 // Kernels of EM on points without errors.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "mixture/em_plain.cpp"
+#define HWY_TARGET_INCLUDE "mixture/detail/kernels/plain.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "mixture/em_kernels.hpp"
-#include "mixture/em_small-inl.hpp"
-#include "mixture/em_tiles-inl.hpp"
+#include "mixture/detail/kernels/kernels.hpp"
+#include "mixture/detail/kernels/small-inl.hpp"
+#include "mixture/detail/kernels/tiles-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::em::HWY_NAMESPACE {

@@ -6,7 +6,7 @@
 #define MODEBANK_EM_SMALL_INL
 #endif
 
-#include "mixture/em_lanes-inl.hpp"
+#include "mixture/detail/kernels/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::em::HWY_NAMESPACE {

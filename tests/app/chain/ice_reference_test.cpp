@@ -5,11 +5,12 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "app/pipeline.hpp"
-#include "filter/learn.hpp"
-#include "filter/scores.hpp"
-#include "ident/fit_window.hpp"
-#include "io/import.hpp"
+#include "app/chain/chain.hpp"
+#include "app/config/config.hpp"
+#include "filter/judge/scores.hpp"
+#include "filter/learn/learn.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "io/import/import.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank::app {
@@ -74,11 +75,12 @@ class IceReference : public ::testing::TestWithParam<Fold> {};
 TEST_P(IceReference, CountsGlobalModelAndBaseline) {
   MODEBANK_NEEDS_SHARED_DATA();
   const Fold& fold = GetParam();
-  const Config config = ice_config(fold.odd_runs_train);
-  Archive archive;
-  import_stage(config, archive);
+  const ChainOptions options = chain_options(ice_config(fold.odd_runs_train));
+  StageSource computed;
+  const Listener silent;
+  Chain chain(computed, silent);
+  const Archive& archive = chain.run(options, Stage::windows, {});
   EXPECT_EQ(archive.recording->transitions(Role::train), fold.transitions);
-  identify_stage(config, archive);
   EXPECT_EQ(archive.windows->count(), fold.windows);
   const GlobalModel& global = archive.windows->global;
   EXPECT_LE((global.theta - fold.theta).cwiseAbs().maxCoeff(), theta_tolerance) << global.theta.transpose();
@@ -87,11 +89,13 @@ TEST_P(IceReference, CountsGlobalModelAndBaseline) {
 
   const Baseline baseline = learn_baseline(*archive.recording, global, archive.windows->structure);
   EXPECT_TRUE(baseline.at_bound) << "smooth gyro data show no measurement noise";
-  archive.baseline = baseline.bank;
-  archive.noise_only = learn_noise_only(*archive.recording, archive.windows->structure, baseline.bank.R);
-  evaluate_stage(config, archive);
-  const SummaryRow& train = pooled(archive.summary, "baseline", Role::train);
-  const SummaryRow& test = pooled(archive.summary, "baseline", Role::test);
+  const auto rows_of = [&](const std::string& name, const Bank& bank) {
+    const FilterOptions filter = competitor_filter(name, options.filter.time_steps);
+    return score_filter(name, bank, *archive.recording, filter, options.scoring).summary;
+  };
+  const std::vector<SummaryRow> summary = rows_of("baseline", baseline.bank);
+  const SummaryRow& train = pooled(summary, "baseline", Role::train);
+  const SummaryRow& test = pooled(summary, "baseline", Role::test);
   EXPECT_NEAR(train.log_score, fold.train_log_score, log_score_tolerance);
   EXPECT_NEAR(test.log_score, fold.test_log_score, log_score_tolerance);
   EXPECT_NEAR(train.rmse(0), fold.train_rmse, rmse_tolerance);
@@ -100,7 +104,9 @@ TEST_P(IceReference, CountsGlobalModelAndBaseline) {
     EXPECT_NEAR(test.tail_above, 0.009, tail_tolerance);
     EXPECT_NEAR(test.tail_below, 0.030, tail_tolerance);
   }
-  EXPECT_NEAR(pooled(archive.summary, "noise_only", Role::test).log_score, fold.noise_only_log_score, 0.05);
+  const Bank noise_only = learn_noise_only(*archive.recording, archive.windows->structure, baseline.bank.R);
+  EXPECT_NEAR(pooled(rows_of("noise_only", noise_only), "noise_only", Role::test).log_score, fold.noise_only_log_score,
+              0.05);
 }
 
 TEST_P(IceReference, TwelveComponentsReachTheLevel) {
@@ -112,12 +118,10 @@ TEST_P(IceReference, TwelveComponentsReachTheLevel) {
   double log_score = 0.0, rmse = 0.0;
   for (int seed = 1; seed <= seeds; ++seed) {
     config.job.seed = static_cast<std::uint64_t>(seed);
-    Archive archive;
-    import_stage(config, archive);
-    identify_stage(config, archive);
-    cluster_stage(config, archive);
-    bank_stage(config, archive);
-    evaluate_stage(config, archive);
+    StageSource computed;
+    const Listener silent;
+    Chain chain(computed, silent);
+    const Archive& archive = chain.run(chain_options(config), Stage::bank_scores, {});
     const SummaryRow& test = pooled(archive.summary, "bank", Role::test);
     log_score += test.log_score / seeds;
     rmse += test.rmse(0) / seeds;

@@ -1,11 +1,11 @@
-#include "tests/app/recovery_study.hpp"
+#include "tests/app/chain/recovery_study.hpp"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <numeric>
 
-#include "ident/fit_window.hpp"
+#include "ident/fit/fit_windows.hpp"
 #include "mixture/criteria.hpp"
 
 namespace modebank::test {
@@ -49,13 +49,12 @@ RecoveredSize recover_size(const RecoveryCase& recovery, int seed) {
   options.components.resize(system.modes.size() + 3);
   std::iota(options.components.begin(), options.components.end(), Index{1});
   options.criterion = recovery.criterion;
-  options.straddling = recovery.straddling;
   options.heldout = HeldoutChoice::never;
   options.em.restarts = 2;
   options.em.noise_component = recovery.noise_component;
   const FeatureCloud cloud =
       make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::automatic, recording.states,
-                    recovery.straddling, recovery.error_aware ? WindowErrors::include : WindowErrors::ignore);
+                    StraddlingWindows::leave_out, recovery.error_aware ? WindowErrors::include : WindowErrors::ignore);
   const MixtureResult result = select_mixture(fits, cloud, options, static_cast<std::uint64_t>(seed));
   const Index naive = best_candidate(result.candidates, Criterion::bic_naive);
   return {static_cast<Index>(system.modes.size()), result.mixture.components(),

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "ident/simulate.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/simulate/simulate.hpp"
 #include "mixture/select.hpp"
 
 namespace modebank::test {
@@ -18,7 +18,6 @@ struct RecoveryCase {
   Index hold_samples = 1;      ///< inputs are redrawn every so many samples
   double dwell_windows = 0.0;  ///< mean stay in a mode in window lengths, 0: each run stays in one mode
   Index step = 1;
-  StraddlingWindows straddling = StraddlingWindows::leave_out;
   Criterion criterion = Criterion::bic;
   bool noise_component = false;
   bool error_aware = false;

@@ -7,13 +7,13 @@
 #include <numeric>
 #include <vector>
 
-#include "filter/evaluate.hpp"
-#include "filter/learn.hpp"
-#include "ident/fit_window.hpp"
-#include "ident/simulate.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/learn/learn.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "ident/simulate/simulate.hpp"
 #include "mixture/features.hpp"
 #include "mixture/select.hpp"
-#include "tests/app/recovery_study.hpp"
+#include "tests/app/chain/recovery_study.hpp"
 
 namespace modebank::test {
 namespace {
@@ -201,9 +201,6 @@ TEST(Recovery, NumberOfModes) {
   expect_recovery(recovery, 10, 0.7);
   recovery.name = "the same with held inputs";
   recovery.hold_samples = 5;
-  expect_recovery(recovery, 10, 0.7);
-  recovery = {.name = "switches every 20 L, trimmed", .dwell_windows = 20.0, .step = window_step};
-  recovery.straddling = StraddlingWindows::trim;
   expect_recovery(recovery, 10, 0.7);
 }
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "ident/simulate.hpp"
-#include "ident/window_audit.hpp"
-#include "io/import.hpp"
-#include "tests/ident/batch_test_support.hpp"
+#include "ident/fit/audit.hpp"
+#include "ident/simulate/simulate.hpp"
+#include "io/import/import.hpp"
+#include "tests/ident/fit/batch_test_support.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank {
@@ -18,17 +18,18 @@ constexpr double stationary = 1e-10;
 
 /// What one window says of its two solutions.
 struct Comparison {
-  double cost_above = 0.0;  ///< of the batch solver, relative to Ceres'
-  double gradient = 0.0;    ///< relative, at what fit_windows gives
-  double ceres_gradient = 0.0;
+  double cost_above = 0.0;      ///< of the batch solver, relative to Ceres'
+  double gradient = 0.0;        ///< relative, at what the batch solver gives
+  double ceres_gradient = 0.0;  ///< at what Ceres and Newton's method give
 };
 
 /// Ceres starts where the batch solver does: at least squares, or the Huber optimum.
-std::vector<Comparison> compare(const Recording& recording, const FitOptions& options) {
+std::vector<Comparison> compare(const Recording& recording, FitOptions options) {
+  options.solver = WindowSolver::batch;
   const LinearStructure structure = linear_structure(recording.state_count(), recording.input_count(), options);
   const WindowFits fits = fit_windows(recording, options);
   EXPECT_GT(fits.audit.batch, fits.count() * 9 / 10);
-  const WindowContext context(recording, options, structure, fits.global);
+  const LinearWindows context(recording, options, structure, fits.global);
   const ParameterPrior prior{fits.global.theta, fits.prior_sd};
   std::vector<Comparison> result(static_cast<std::size_t>(fits.count()));
   tbb::parallel_for(std::size_t{0}, result.size(), [&](std::size_t w) {
@@ -45,7 +46,7 @@ std::vector<Comparison> compare(const Recording& recording, const FitOptions& op
       if (model.status == FitStatus::iteration_limit) return 0.0;  // says so itself
       return problem.relative_gradient(samples, model.theta.cast<test::Real>());
     };
-    result[w] = {audited.cost, gradient(fit), gradient(audited.ceres)};
+    result[w] = {audited.cost, gradient(fit), gradient(context.fit(window, &prior))};
   });
   return result;
 }

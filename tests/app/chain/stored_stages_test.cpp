@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/archive.hpp"
-#include "io/inspect.hpp"
-#include "io/read_file.hpp"
-#include "io/sha256.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/inspect.hpp"
+#include "io/files/read_file.hpp"
+#include "io/files/sha256.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {

@@ -1,5 +1,5 @@
 // modebank check finds the facts that the READMEs of the real data state.
-#include "tests/app/check_fixture.hpp"
+#include "tests/app/check/check_fixture.hpp"
 
 namespace modebank::test {
 namespace {

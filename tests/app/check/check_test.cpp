@@ -1,7 +1,7 @@
 // modebank check: what it prints and its exit status.
 #include <sstream>
 
-#include "tests/app/check_fixture.hpp"
+#include "tests/app/check/check_fixture.hpp"
 
 namespace modebank::test {
 namespace {

@@ -36,10 +36,6 @@ TEST_F(BadInput, HeaderOnly) {
   expect(run(), 1, {"run_01.csv"});
 }
 TEST_F(BadInput, UnknownColumn) { expect(run({"--data.state", "wzz"}), 2, {"wzz", "time, wz, left, right"}); }
-TEST_F(BadInput, SharingWithoutRefinement) {
-  for (const char* share : {"best", "theta", "noise"})
-    expect(run({"--bank.share", share}), 2, {"bank.share = ", share, "needs bank.refine = em", "bank.noise = shared"});
-}
 TEST_F(BadInput, UnknownRunName) { expect(run({"--data.train", "00, 07"}), 2, {"07", "00", "01"}); }
 TEST_F(BadInput, TextInANumber) {
   replace_line("run_01.csv", 5, "0.3,abc,0,0");

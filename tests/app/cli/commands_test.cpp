@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "io/archive.hpp"
-#include "io/inspect.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/inspect.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
@@ -167,7 +167,7 @@ TEST_F(Commands, ThePapersOwnLayoutRunsByChangingDataOptionsOnly) {
     write("TSyn_" + std::string(run) + ".csv", states);
     write("joint_states_" + std::string(run) + ".csv", joints);
   }
-  const std::string husky = (golden_dir() / "../../configs/husky_ice.ini").string();
+  const std::string husky = (project_dir() / "configs/husky_ice.ini").string();
   const ProgramResult result =
       modebank({"run", husky, "--data.root", file(".").string(), "--data.inputs", "joint_states_*.csv", "--data.states",
                 "TSyn_*.csv", "--data.state", "IMU_fil_AngZ", "--data.input", "velocity_0, velocity_1", "--data.join",
@@ -190,7 +190,7 @@ TEST_F(Commands, HelpNamesEveryCommandAndOption) {
 TEST_F(Commands, ReadmeHoldsTheTableOfKeysAsHelpPrintsIt) {
   const ProgramResult result = modebank({"help", "--markdown"});
   ASSERT_EQ(result.status, 0);
-  std::ifstream stream(golden_dir() / "../../README.md");
+  std::ifstream stream(project_dir() / "README.md");
   const std::string readme{std::istreambuf_iterator<char>(stream), {}};
   EXPECT_NE(readme.find(result.out), std::string::npos) << "run: make readme";
 }

@@ -2,11 +2,11 @@
 #include <limits>
 #include <sstream>
 
-#include "app/number_text.hpp"
-#include "app/sparkline.hpp"
-#include "app/terminal.hpp"
-#include "app/text_table.hpp"
-#include "io/archive.hpp"
+#include "app/text/number_text.hpp"
+#include "app/text/sparkline.hpp"
+#include "app/text/terminal.hpp"
+#include "app/text/text_table.hpp"
+#include "io/archive/archive.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {

@@ -1,7 +1,7 @@
 // `modebank simulate`, and that `run` reads what it writes.
 #include <gmock/gmock.h>
 
-#include "io/archive.hpp"
+#include "io/archive/archive.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {

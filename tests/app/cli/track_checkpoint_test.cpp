@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "tests/app/track_fixture.hpp"
+#include "tests/app/cli/track_fixture.hpp"
 
 namespace modebank::test {
 namespace {

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "io/archive.hpp"
-#include "tests/app/track_fixture.hpp"
+#include "io/archive/archive.hpp"
+#include "tests/app/cli/track_fixture.hpp"
 
 namespace modebank::test {
 namespace {
@@ -73,6 +73,19 @@ TEST_F(Track, SpeaksNdjson) {
     EXPECT_EQ(answer.at("probability").size(), static_cast<std::size_t>(archive.bank->mode_count()));
     EXPECT_EQ(answer.at("nis").is_null(), k == 1);
     EXPECT_EQ(answer.at("alarm"), false);
+  }
+}
+
+/// filter.variant = kf is the global model, not the first of the bank's modes.
+TEST_F(Track, AKalmanFilterIsTheGlobalModel) {
+  PipedProgram kf(command({"--filter.variant", "kf"})), baseline(command({"--track.filter", "baseline"}));
+  const std::vector<std::string> samples = lines("run_01.csv");
+  for (std::size_t k = 0; k < 10; ++k)
+    for (PipedProgram* program : {&kf, &baseline}) program->write(samples[k] + "\n");
+  for (std::size_t k = 0; k < 10; ++k) {
+    const auto line = kf.read_line();
+    ASSERT_TRUE(line);
+    EXPECT_EQ(line, baseline.read_line());
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tests/app/track_fixture.hpp"
+#include "tests/app/cli/track_fixture.hpp"
 
 namespace modebank::test {
 namespace {

@@ -1,11 +1,13 @@
-#include "app/config_file.hpp"
+#include "app/config/config_file.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
+#include <string>
 
-#include "app/option_table.hpp"
-#include "ident/error.hpp"
+#include "app/config/option_table.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank::app {
@@ -92,6 +94,20 @@ TEST_F(ConfigFile, KeyOutsideAnySectionIsExplained) {
     EXPECT_NE(std::string(error.what()).find("c.ini:1"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("section"), std::string::npos) << error.what();
   }
+}
+
+/// Words of former versions that are no longer understood.
+TEST_F(ConfigFile, WordsThatAreGoneAreAnsweredWithThoseThatAreLeft) {
+  using Case = std::array<std::string, 3>;
+  for (const auto& [key, gone, left] :
+       {Case{"straddling", "trim", "leave_out | keep"}, Case{"start", "hierarchical", "random | kmeans++"},
+        Case{"start", "auto", ".h5"}})
+    try {
+      load("[mixture]\n" + key + " = " + gone + "\n");
+      ADD_FAILURE() << key << " = " << gone << " is accepted";
+    } catch (const ConfigurationError& error) {
+      EXPECT_NE(std::string(error.what()).find(left), std::string::npos) << error.what();
+    }
 }
 
 }  // namespace

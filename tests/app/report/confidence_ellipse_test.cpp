@@ -1,4 +1,4 @@
-#include "mixture/confidence_ellipse.hpp"
+#include "app/report/figures/confidence_ellipse.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "ident/bucket_extremes.hpp"
-#include "ident/residual_pool.hpp"
+#include "app/report/page/bucket_extremes.hpp"
+#include "app/report/page/residual_pool.hpp"
 #include "tests/ident/ident_test_support.hpp"
 
 namespace modebank {

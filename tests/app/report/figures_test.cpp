@@ -4,9 +4,9 @@
 #include <set>
 #include <sstream>
 
-#include "app/report/figure.hpp"
-#include "filter/calibration.hpp"
-#include "io/archive.hpp"
+#include "app/report/figures/figure.hpp"
+#include "ident/base/distributions.hpp"
+#include "io/archive/archive.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {

@@ -1,4 +1,4 @@
-#include "filter/mode_dynamics.hpp"
+#include "app/report/page/mode_dynamics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "filter/window_modes.hpp"
+#include "app/report/page/window_modes.hpp"
 
 namespace modebank {
 namespace {

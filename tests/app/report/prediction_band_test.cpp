@@ -1,10 +1,10 @@
-#include "filter/prediction_band.hpp"
+#include "app/report/page/prediction_band.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "filter/pit_histogram.hpp"
+#include "app/report/page/pit_histogram.hpp"
 #include "tests/filter/filter_test_support.hpp"
 
 namespace modebank::test {

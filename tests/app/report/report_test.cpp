@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "app/report/html_page.hpp"
-#include "app/report/numbers.hpp"
-#include "app/report/series.hpp"
-#include "io/archive.hpp"
-#include "io/read_file.hpp"
+#include "app/report/page/html_page.hpp"
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/series.hpp"
+#include "io/archive/archive.hpp"
+#include "io/files/read_file.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {

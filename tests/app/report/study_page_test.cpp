@@ -1,11 +1,11 @@
-#include "app/report/study_page.hpp"
+#include "app/report/page/study_page.hpp"
 
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "app/study/merge_study.hpp"
-#include "ident/error.hpp"
+#include "app/study/answers/merge_study.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "app/study/answers.hpp"
-#include "app/study/answers_text.hpp"
-#include "app/study/value_groups.hpp"
+#include "app/study/answers/answers.hpp"
+#include "app/study/answers/answers_text.hpp"
+#include "app/study/answers/value_groups.hpp"
 
 namespace modebank::app {
 namespace {

@@ -5,11 +5,11 @@
 #include <sstream>
 #include <thread>
 
-#include "app/study/study_plan.hpp"
-#include "io/archive.hpp"
-#include "io/study_file.hpp"
+#include "app/study/space/study_plan.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/study_file.hpp"
 #include "tests/app/cli_fixture.hpp"
-#include "tests/io/archive_patch.hpp"
+#include "tests/io/archive/archive_patch.hpp"
 
 namespace modebank::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/app/study_fixture.hpp"
+#include "tests/app/study/study_fixture.hpp"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "io/inspect.hpp"
+#include "io/archive/inspect.hpp"
 
 namespace modebank::test {
 

@@ -1,14 +1,13 @@
-#include "app/study/study_plan.hpp"
+#include "app/study/space/study_plan.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "app/config_file.hpp"
-#include "app/option_table.hpp"
-#include "app/study/stage_inputs.hpp"
-#include "app/study/trial_order.hpp"
-#include "ident/error.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "app/study/run/trial_order.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
@@ -148,17 +147,6 @@ TEST_F(StudyPlans, ChangedDataAreRefusedWithTheFile) {
   const std::string text = refusal(before, now);
   EXPECT_NE(text.find("run_01.csv has SHA-256"), std::string::npos) << text;
   EXPECT_EQ(text.find("run_00.csv"), std::string::npos) << text;
-}
-
-TEST_F(StudyPlans, EveryKeyThatDecidesNumbersBelongsToAStage) {
-  Config config = configured(three);
-  std::string all;
-  for (std::size_t stage = 0; stage < trial_stage_count; ++stage)
-    all += stage_inputs(static_cast<TrialStage>(stage), config, "");
-  for (const Option& option : option_table())
-    if (decides_numbers(option.key) && option.section() != "simulate") {
-      EXPECT_NE(all.find(option.key + " = "), std::string::npos) << option.key;
-    }
 }
 
 TEST_F(StudyPlans, TrialsAreGroupedByWhatTheyShareAndShardsPartThem) {

@@ -8,11 +8,10 @@
 #include <fstream>
 #include <thread>
 
-#include "app/config_file.hpp"
-#include "app/study/trial_runner.hpp"
-#include "app/study/worker_pool.hpp"
-#include "ident/error.hpp"
-#include "io/sha256.hpp"
+#include "app/config/config_file.hpp"
+#include "app/study/run/trial_runner.hpp"
+#include "app/study/run/worker_pool.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
@@ -67,6 +66,11 @@ const std::vector<KeyValues> trials{
     {{"bank.measurement_variance", "0.01"}},
     {{"mixture.components", "2"}},
     {{"mixture.components", "2"}, {"mixture.features", "parameters"}},
+    // What merging modes cost is found by running the filter.
+    {{"mixture.components", "3"}, {"bank.modes", "2"}},
+    {{"mixture.components", "3"}, {"bank.modes", "2"}, {"filter.variant", "gpb1"}},
+    {{"mixture.components", "3"}, {"bank.modes", "2"}, {"filter.variant", "mmae"}},
+    {{"mixture.components", "3"}, {"bank.modes", "2"}, {"filter.variant", "gpb2"}},
     {{"job.seed", "9"}},
     {{"window.loss", "cauchy"}},
     {{"window.length", "20"}, {"filter.time_steps", "single"}},
@@ -83,11 +87,11 @@ TEST_F(StudySharing, TrialsAreWhatRunWritesToTheBit) {
   std::vector<std::string> alone;
   for (const KeyValues& keys : trials) alone.push_back(run_alone(keys));
   for (std::size_t i = 0; i < trials.size(); ++i)
-    EXPECT_TRUE(content(runner.run(configured(trials[i]), {})) == alone[i]) << "trial " << i;
+    EXPECT_TRUE(content(runner.run(configured(trials[i]), "")) == alone[i]) << "trial " << i;
   // Another process finds the windows in the cache.
   TrialRunner other(&cache);
   for (std::size_t i = trials.size(); i-- > 0;)
-    EXPECT_TRUE(content(other.run(configured(trials[i]), {})) == alone[i]) << "trial " << i << " from the cache";
+    EXPECT_TRUE(content(other.run(configured(trials[i]), "")) == alone[i]) << "trial " << i << " from the cache";
 }
 
 TEST_F(StudySharing, EveryStageReadsBackFromTheCacheToTheBit) {
@@ -95,7 +99,7 @@ TEST_F(StudySharing, EveryStageReadsBackFromTheCacheToTheBit) {
   const FileLocks locks(file("locks"));
   const StageCache cache(file("cache"), 100.0, locks);
   const Config trial = configured({{"bank.refine", "em"}, {"bank.max_iterations", "2"}, {"bank.folds", "1"}});
-  const Archive made = TrialRunner(nullptr).run(trial, {});
+  const Archive made = TrialRunner(nullptr).run(trial, "");
   Archive taken = made;
   const auto pass = [&](const char* name, const std::function<Archive()>& part, const auto& take) {
     const auto never = [] { return ADD_FAILURE() << "computed", false; };
@@ -147,15 +151,15 @@ TEST_F(StudySharing, TheCacheIsBounded) {
   const StageCache cache(file("cache"), 0.3, locks);
   TrialRunner runner(&cache);
   for (const char* length : {"10", "11", "12", "13", "14", "15"})
-    runner.run(configured({{"window.length", length}, {"filter.smooth", "false"}}), {});
+    runner.run(configured({{"window.length", length}, {"filter.smooth", "false"}}), "");
   EXPECT_LE(bytes(), 0.3e6);
   EXPECT_GT(bytes(), 0.0);
 }
 
 TEST_F(StudySharing, AFailedTrialLeavesNothingForTheNext) {
   TrialRunner runner(nullptr);
-  EXPECT_THROW(runner.run(configured({{"window.length", "500"}}), {}), std::exception);
-  EXPECT_TRUE(content(runner.run(configured({}), {})) == run_alone({}));
+  EXPECT_THROW(runner.run(configured({{"window.length", "500"}}), ""), std::exception);
+  EXPECT_TRUE(content(runner.run(configured({}), "")) == run_alone({}));
 }
 
 TEST_F(StudySharing, LocksHoldAmongProcessesAndEndWithThem) {
@@ -233,7 +237,7 @@ TEST(WorkerPools, WaitingForAnotherProcessIsNoTimeOfTheTrial) {
 
 TEST_F(StudySharing, TheCacheTellsOfWaitingForAnotherProcess) {
   std::filesystem::create_directory(file("cache"));
-  const std::string stem = "bank-" + sha256_hex("inputs");
+  const std::string stem = "bank-inputs";
   int ready[2];
   ASSERT_EQ(::pipe(ready), 0);
   const pid_t child = ::fork();

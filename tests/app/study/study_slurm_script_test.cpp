@@ -2,9 +2,9 @@
 
 #include <cstdlib>
 
-#include "app/study/shell.hpp"
-#include "app/study/slurm.hpp"
-#include "ident/error.hpp"
+#include "app/study/launch/shell.hpp"
+#include "app/study/launch/slurm.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank::app {

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <thread>
 
-#include "tests/app/study_fixture.hpp"
+#include "tests/app/study/study_fixture.hpp"
 #include "tests/support/slurm_cluster.hpp"
 
 namespace modebank::test {

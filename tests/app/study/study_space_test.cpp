@@ -1,4 +1,4 @@
-#include "app/study/study_space.hpp"
+#include "app/study/space/study_space.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <map>
 #include <set>
 
-#include "app/config_file.hpp"
-#include "app/option_text.hpp"
-#include "ident/error.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_text.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {

@@ -10,8 +10,8 @@
 #include <random>
 #include <thread>
 
-#include "io/inspect.hpp"
-#include "tests/app/study_fixture.hpp"
+#include "io/archive/inspect.hpp"
+#include "tests/app/study/study_fixture.hpp"
 
 namespace modebank::test {
 namespace {

@@ -1,12 +1,12 @@
 // Diagnostics on simulated truth: a true filter passes, a wrong one does not.
-#include "filter/diagnostics.hpp"
+#include "filter/judge/diagnostics.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "filter/smoother.hpp"
+#include "filter/judge/smoother.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -24,7 +24,7 @@ std::vector<DiagnosticsRow> diagnose_runs(const Bank& filter_bank, const std::ve
     evaluations.push_back(evaluate_run(filter_bank, run, options));
     smooth_run(filter_bank, run, options, evaluations.back());
   }
-  return diagnose("bank", filter_bank, options, runs, evaluations);
+  return diagnose("bank", filter_bank, options, runs, evaluations, score_runs(evaluations));
 }
 
 std::vector<Trajectory> truth_runs(const Bank& bank, Index runs, Index samples) {
@@ -89,9 +89,10 @@ TEST(Diagnostics, NisSpeaksWhereTheTailsDoNot) {
   const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
   std::vector<Trajectory> runs = truth_runs(bank, 1, 800);
   std::vector<RunEvaluation> evaluations{evaluate_run(bank, runs[0], {})};
-  EXPECT_EQ(diagnose("bank", bank, {}, runs, evaluations).front().verdict, Verdict::calibrated);
+  EXPECT_EQ(diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front().verdict,
+            Verdict::calibrated);
   evaluations[0].nis *= 0.5;
-  const DiagnosticsRow row = diagnose("bank", bank, {}, runs, evaluations).front();
+  const DiagnosticsRow row = diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front();
   EXPECT_EQ(row.verdict, Verdict::underconfident);
   EXPECT_THAT(row.flags, testing::HasSubstr("mean NIS below a true filter's"));
 }

@@ -1,10 +1,10 @@
-#include "filter/scores.hpp"
+#include "filter/judge/scores.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "filter/calibration.hpp"
+#include "ident/base/distributions.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -65,7 +65,8 @@ TEST(Calibration, KolmogorovDistanceOfKnownSamples) {
 /// Scores of the filter `bank` on data drawn from `truth`.
 SummaryRow score(const Bank& bank, const Bank& truth, Eigen::Index samples, std::uint64_t seed) {
   const std::vector<Trajectory> runs{test::simulate_bank(truth, samples, seed)};
-  return summarize("bank", runs, {evaluate_run(bank, runs[0], {})}).back();
+  const std::vector<RunEvaluation> evaluations{evaluate_run(bank, runs[0], {})};
+  return summarize("bank", runs, evaluations, score_runs(evaluations)).back();
 }
 
 double binomial_bound(double probability, double count) {
@@ -146,7 +147,7 @@ TEST(Summary, CountsScoredSamplesAndPoolsOverThem) {
       hand_made(Eigen::RowVector4d(nan, 3.0, nan, 1.0), Eigen::Vector4d(nan, -2.0, nan, -1.0)),
       hand_made(Eigen::RowVector2d(nan, 1.0), Eigen::Vector2d(nan, -5.0)),
       hand_made(Eigen::RowVector2d(nan, 2.0), Eigen::Vector2d(nan, -6.0))};
-  const std::vector<SummaryRow> rows = summarize("baseline", {a, b, c}, evaluations);
+  const std::vector<SummaryRow> rows = summarize("baseline", {a, b, c}, evaluations, score_runs(evaluations));
   ASSERT_EQ(rows.size(), 5U);
   const std::vector<std::string> names{rows[0].run, rows[1].run, rows[2].run, rows[3].run, rows[4].run};
   EXPECT_EQ(names, (std::vector<std::string>{"a", "c", "*", "b", "*"}));
@@ -169,8 +170,9 @@ TEST(Summary, CountsScoredSamplesAndPoolsOverThem) {
 
 TEST(Summary, ARunWithoutScoresIsNaN) {
   const double nan = std::nan("");
-  const auto rows = summarize("bank", {Trajectory{}},
-                              {hand_made(Eigen::RowVectorXd::Constant(1, nan), Eigen::VectorXd::Constant(1, nan))});
+  const std::vector<RunEvaluation> evaluations{
+      hand_made(Eigen::RowVectorXd::Constant(1, nan), Eigen::VectorXd::Constant(1, nan))};
+  const auto rows = summarize("bank", {Trajectory{}}, evaluations, score_runs(evaluations));
   ASSERT_EQ(rows.size(), 2U);
   for (const SummaryRow& row : rows) {
     EXPECT_EQ(row.samples, 0);
@@ -178,7 +180,7 @@ TEST(Summary, ARunWithoutScoresIsNaN) {
     EXPECT_TRUE(std::isnan(row.nis_above) && std::isnan(row.nis_below) && std::isnan(row.tail_above));
     EXPECT_TRUE(std::isnan(row.tail_below) && std::isnan(row.pit_distance) && std::isnan(row.whiteness_p));
   }
-  EXPECT_THROW(summarize("bank", {Trajectory{}}, {}), std::invalid_argument);
+  EXPECT_THROW(summarize("bank", {Trajectory{}}, {}, {}), std::invalid_argument);
 }
 
 TEST(Summary, WhitenessIsPooledOverRunsByFisher) {
@@ -189,7 +191,7 @@ TEST(Summary, WhitenessIsPooledOverRunsByFisher) {
     runs.push_back(test::simulate_bank(truth, seed == 2 ? 4 : 60, seed));  // the last is too short for a lag
     evaluations.push_back(evaluate_run(truth, runs.back(), {}));
   }
-  const auto rows = summarize("bank", runs, evaluations);
+  const auto rows = summarize("bank", runs, evaluations, score_runs(evaluations));
   EXPECT_TRUE(std::isnan(rows[2].whiteness_p));
   EXPECT_DOUBLE_EQ(rows[3].whiteness_p, fisher_p({rows[0].whiteness_p, rows[1].whiteness_p}));
   EXPECT_NE(rows[0].whiteness_p, rows[1].whiteness_p);

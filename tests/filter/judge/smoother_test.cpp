@@ -1,13 +1,13 @@
 // The smoother, the mode sequence and predictions over several steps.
-#include "filter/smoother.hpp"
+#include "filter/judge/smoother.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "filter/bank_filter.hpp"
-#include "filter/horizon.hpp"
+#include "filter/judge/horizon.hpp"
+#include "filter/step/bank_filter.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -211,10 +211,11 @@ TEST(Viterbi, MmaeNeverChangesMode) {
 }
 
 TEST(Horizon, OneSampleAheadIsWhatTheFilterSays) {
-  const Bank bank = example_bank(2, 1, 3);
-  Trajectory run = simulate_bank(bank, 60, 26);
+  const Bank modes = example_bank(2, 1, 3);
+  Trajectory run = simulate_bank(modes, 60, 26);
   run.state.col(30).setConstant(std::nan(""));
   for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2, FilterVariant::kf}) {
+    const Bank bank = test::steppable(modes, variant);
     const RunEvaluation e = evaluate_run(bank, run, {variant});
     const HorizonEvaluation h = evaluate_horizons(bank, run, {variant}, {4, 1});
     EXPECT_EQ(h.horizons, (std::vector<Index>{1, 4}));

@@ -1,5 +1,5 @@
 // Verdicts on filters whose truth is known, and the intervals they rest on.
-#include "filter/verdict.hpp"
+#include "filter/judge/verdict.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <map>
 #include <random>
 
-#include "filter/calibration.hpp"
-#include "filter/diagnostics.hpp"
+#include "filter/judge/diagnostics.hpp"
+#include "ident/base/distributions.hpp"
 #include "tests/filter/filter_test_support.hpp"
 
 namespace modebank {
@@ -31,7 +31,7 @@ std::map<Verdict, int> verdicts(const Bank& truth, double of_Q, double of_R, Ind
     std::vector<Trajectory> runs{simulate_truth(truth, samples, 7000 + static_cast<std::uint64_t>(seed)).run};
     runs[0].role = Role::test;
     const std::vector<RunEvaluation> evaluations{evaluate_run(filter, runs[0], options)};
-    ++counts[diagnose("bank", filter, options, runs, evaluations).front().verdict];
+    ++counts[diagnose("bank", filter, options, runs, evaluations, score_runs(evaluations)).front().verdict];
   }
   return counts;
 }
@@ -86,7 +86,8 @@ TEST(Verdict, GroupsOfHitsAreFewSamples) {
     run.role = Role::test;
     for (Index k = 1; k < 1000; ++k)
       run.state(0, k) = 0.9 * run.state(0, k - 1) + std::sqrt(1 - 0.9 * 0.9) * run.state(0, k);
-    const Verdict verdict = diagnose("bank", bank, {}, {run}, {evaluate_run(bank, run, {})}).front().verdict;
+    const std::vector<RunEvaluation> evaluations{evaluate_run(bank, run, {})};
+    const Verdict verdict = diagnose("bank", bank, {}, {run}, evaluations, score_runs(evaluations)).front().verdict;
     wrong += verdict == Verdict::overconfident || verdict == Verdict::underconfident;
   }
   EXPECT_LE(wrong, 4);
@@ -127,7 +128,7 @@ std::map<Verdict, int> verdicts_of_related(int samples, double rho, bool sizes_a
   std::mt19937_64 generator(17);
   std::map<Verdict, int> counts;
   for (int i = 0; i < 100; ++i)
-    ++counts[judge(evidence_of(related_scores(samples, rho, sizes_alone, generator), scale, with_nis))];
+    ++counts[verdict_of(evidence_of(related_scores(samples, rho, sizes_alone, generator), scale, with_nis))];
   return counts;
 }
 

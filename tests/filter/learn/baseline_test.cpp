@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/filter/filter_test_support.hpp"
-#include "tests/filter/learn_test_support.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

@@ -6,8 +6,8 @@
 #include <boost/random/normal_distribution.hpp>
 #include <random>
 
-#include "ident/error.hpp"
-#include "tests/filter/learn_test_support.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "filter/learn.hpp"
-#include "ident/fit_window.hpp"
+#include "filter/learn/learn.hpp"
+#include "ident/fit/global_model.hpp"
 #include "tests/support/golden.hpp"
 
 namespace modebank::test {

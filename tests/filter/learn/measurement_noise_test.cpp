@@ -1,17 +1,15 @@
-// Refinement where the states are not measured exactly: theta, Q, R and T together.
+// R by the filter's likelihood, and refinement where the states are not measured exactly: theta, Q, R and T together.
+#include "filter/learn/refine/measurement_noise.hpp"
+
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
+#include <optional>
 #include <random>
 
-#include "filter/bank_frame.hpp"
-#include "filter/refine.hpp"
-#include "filter/refine_start.hpp"
-#include "filter/switching_state_space.hpp"
-#include "filter/training_likelihood.hpp"
-#include "tests/filter/learn_test_support.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
 
 namespace modebank {
 namespace {
@@ -51,61 +49,6 @@ Bank bank_of(const Recording& recording, const Eigen::MatrixXd& theta, const Eig
     bank.modes.push_back(make_mode(structure, theta.col(j), Eigen::MatrixXd::Constant(1, 1, Q(j)), {}, {}, 1.0));
   set_mode_sequence(bank, TransitionMatrix::sticky(theta.cols(), 0.9));
   return bank;
-}
-
-SwitchingPrior prior_on(const Recording& recording, const LinearStructure& structure) {
-  const TrainingTransitions transitions = gather_training_transitions(recording, structure);
-  return switching_prior(transitions, fit_global(recording, structure), {}, 1.0);
-}
-
-TEST(StateSpaceSums, AreThoseOfTheRegressionWhereStatesAreMeasuredExactly) {
-  SystemTruth truth;
-  truth.R = 0.0;
-  const Recording recording = measured_runs(truth, 2, 200, 3);
-  const Bank bank = bank_of(recording, truth.theta, truth.Q, 1e-12);
-  const SwitchingPrior prior = prior_on(recording, bank.structure);
-  const TrainingTransitions transitions = gather_training_transitions(recording, bank.structure);
-  const SwitchingSums regression =
-      sum_transitions(transitions, smooth_modes(transitions, switching_model(bank)), prior);
-  const SwitchingSums sums = smooth_states(bank, recording, prior, TimeSteps::repeat).switching;
-  constexpr double rounding = 1e-5;  // R = 1e-12 is not quite zero, and unlikely pairs are left out
-  for (std::size_t j = 0; j < 2; ++j) {
-    EXPECT_TRUE(sums.modes[j].G.isApprox(regression.modes[j].G, rounding));
-    EXPECT_TRUE(sums.modes[j].H.isApprox(regression.modes[j].H, rounding));
-    EXPECT_TRUE(sums.modes[j].S.isApprox(regression.modes[j].S, rounding));
-    EXPECT_NEAR(sums.modes[j].transitions, regression.modes[j].transitions, rounding * regression.modes[j].transitions);
-  }
-  EXPECT_TRUE(sums.switches.isApprox(regression.switches, rounding));
-  EXPECT_TRUE(sums.first.isApprox(regression.first, rounding));
-}
-
-/// One mode, two lags, missing samples and a gap: then there is nothing approximate, and EM's law holds.
-TEST(StateSpaceStep, RaisesTheLikelihoodOfOneModeAtEveryStep) {
-  SystemTruth truth;
-  truth.theta.col(1) = truth.theta.col(0);
-  truth.Q(1) = truth.Q(0);
-  Recording recording = measured_runs(truth, 3, 150, 5);
-  recording.runs[0].state.middleCols(40, 5).setConstant(std::nan(""));
-  recording.runs[1].time_s.tail(60).array() += 0.3;
-  LinearStructure structure = test::structure_of(recording);
-  structure.state_lags = 2;
-  Bank bank = bank_frame(recording, structure, Eigen::MatrixXd::Constant(1, 1, 0.04));
-  bank.modes.push_back(
-      make_mode(structure, Eigen::Vector3d(-0.5, 0.1, 0.5), Eigen::MatrixXd::Constant(1, 1, 0.04), {}, {}, 1.0));
-  set_mode_sequence(bank, TransitionMatrix());
-  SwitchingPrior prior = prior_on(recording, structure);
-  const auto objective = [&] {
-    return training_log_likelihood(bank, recording, {}) + log_prior(prior, SharedParts::none, switching_model(bank));
-  };
-  double before = objective();
-  const double first = before;
-  for (int i = 0; i < 40; ++i) {
-    step_state_space(recording, prior, SharedParts::none, TimeSteps::repeat, Eigen::VectorXd::Zero(1), true, bank);
-    const double now = objective();
-    EXPECT_GE(now, before - 1e-9 * std::abs(before)) << "step " << i;
-    before = now;
-  }
-  EXPECT_GT(before, first + 10.0);
 }
 
 class RefineMeasured : public testing::TestWithParam<Index> {};
@@ -157,6 +100,42 @@ TEST(RefineMeasured, KeepsAGivenRAndFitsTheRest) {
     const Mode& mode = bank.modes[static_cast<std::size_t>(j)];
     EXPECT_LT(std::abs(mode.Q(0, 0) - truth.Q(j)), 3.0 * mode.Q_standard_error(0, 0)) << j;
   }
+}
+
+// R alone, where the likelihood is exact: one mode of a = -0.2 without input.
+
+constexpr double Q_true = 0.04;
+
+Recording one_mode_with(double R) {
+  SystemTruth truth;
+  truth.theta << -0.2, -0.2, 0.0, 0.0;
+  truth.Q.setConstant(Q_true);
+  truth.R = R;
+  return measured_runs(truth, 3, 800, 23);
+}
+
+Bank one_mode(const Recording& recording, double Q) {
+  return bank_of(recording, Eigen::Vector2d(-0.2, 0.0), Eigen::VectorXd::Constant(1, Q), 1e-9);
+}
+
+std::optional<Bank> with_R(const Recording& recording, const Bank& bank) {
+  return estimate_measurement_noise({recording, {}, std::nullopt}, bank, {});
+}
+
+/// The share of Q that was R is found whatever it is.
+TEST(EstimateMeasurementNoise, SplitsQAndR) {
+  for (const double R : {0.005, 0.02, 0.2}) {
+    const Recording recording = one_mode_with(R);
+    const std::optional<Bank> bank = with_R(recording, one_mode(recording, Q_true + 2.0 * R));
+    ASSERT_TRUE(bank) << R;
+    EXPECT_NEAR(bank->R(0, 0), R, 0.2 * R + 0.003) << R;
+    EXPECT_NEAR(bank->modes[0].Q(0, 0), Q_true, 0.2 * Q_true) << R;
+  }
+}
+
+TEST(EstimateMeasurementNoise, IsNoneWhereTheDataShowNone) {
+  const Recording recording = one_mode_with(0.0);
+  EXPECT_FALSE(with_R(recording, one_mode(recording, Q_true)));
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 // Each transition once, with the mean responsibility of the windows that cover it.
-#include "filter/memberships.hpp"
+#include "filter/learn/from_mixture/memberships.hpp"
 
 #include <gtest/gtest.h>
 
-#include "ident/not_a_number.hpp"
-#include "tests/filter/learn_test_support.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

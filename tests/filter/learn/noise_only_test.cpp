@@ -1,11 +1,12 @@
-// The noise-switching competitor against statsmodels, numpy and the textbook filter (tests/golden/learn_reference.py).
+// The noise-switching competitor against statsmodels, numpy and the textbook filter
+// (tests/golden/generate/learn_reference.py).
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "filter/training_likelihood.hpp"
-#include "ident/robust_regression.hpp"
-#include "tests/filter/learn_test_support.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
+#include "ident/fit/robust_regression.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

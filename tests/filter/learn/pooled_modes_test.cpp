@@ -1,5 +1,6 @@
-// Weighted regressions: against statsmodels and a general minimiser (tests/golden/learn_reference.py), and by law.
-#include "filter/pooled_modes.hpp"
+// Weighted regressions: against statsmodels and a general minimiser (tests/golden/generate/learn_reference.py), and by
+// law.
+#include "filter/learn/from_mixture/pooled_modes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +8,8 @@
 #include <boost/random/normal_distribution.hpp>
 #include <random>
 
-#include "filter/noise_floor.hpp"
-#include "tests/filter/learn_test_support.hpp"
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <vector>
 
-#include "filter/bank_coordinates.hpp"
-#include "filter/bank_frame.hpp"
-#include "filter/diagnostics.hpp"
-#include "filter/refine.hpp"
+#include "filter/judge/diagnostics.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/likelihood/information.hpp"
+#include "filter/learn/refine/refine.hpp"
 #include "tests/filter/filter_test_support.hpp"
-#include "tests/filter/learn_test_support.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
 
 /// Refinement of systems measured with noise, beside the truth that they were simulated from.
 namespace modebank::test {
@@ -113,13 +113,13 @@ inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, 
     run.role = Role::test;
     evaluations.push_back(evaluate_run(bank, run, {}));
   }
-  return diagnose("bank", bank, {}, runs, evaluations).front();
+  return diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front();
 }
 
 /// Where the mean NEES of a learned bank should lie: about n, with the scatter of a true filter's (`row`'s interval)
 /// and what the bank's own error adds. That is g' Sigma g by the delta method, g the derivative of the logarithm of the
 /// mean NEES on the held-out runs by the bank's coordinates, Sigma these coordinates' covariance: the inverse of the
-/// training runs' information (outer products of single samples' scores: Berndt, Hall, Hall & Hausman 1974).
+/// training runs' information.
 struct NeesInterval {
   double lower, upper;
   double parameter_sd, filter_sd;  ///< of the logarithm
@@ -127,21 +127,19 @@ struct NeesInterval {
 
 inline NeesInterval learned_nees_interval(const Bank& bank, const Bank& truth, const Recording& training,
                                           std::uint64_t seed, const DiagnosticsRow& row) {
-  Eigen::MatrixXd units(bank.structure.parameters(), bank.mode_count());
-  for (Index j = 0; j < bank.mode_count(); ++j) units.col(j) = bank.modes[static_cast<std::size_t>(j)].standard_error;
-  const BankCoordinates around(bank, SharedParts::none, units, Eigen::VectorXd::Zero(bank.R.rows()));
+  const Index n_y = bank.R.rows();
+  FreeParameters free;
+  free.theta_unit.resize(bank.structure.parameters(), bank.mode_count());
+  for (Index j = 0; j < bank.mode_count(); ++j)
+    free.theta_unit.col(j) = bank.modes[static_cast<std::size_t>(j)].standard_error;
+  for (Index i = 0; i < n_y; ++i) free.R.push_back(i);
+  free.least_R = Eigen::VectorXd::Zero(n_y);
+  free.transition = bank.mode_count() > 1;
+  const BankCoordinates around(bank, free);
   constexpr double step = 1e-2;
   const auto moved = [&](Index c, double by) { return around.decode(by * Eigen::VectorXd::Unit(around.size(), c)); };
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(around.size(), around.size());
-  for (const Trajectory& run : training.runs) {
-    Eigen::MatrixXd scores(run.samples(), around.size());
-    tbb::parallel_for(Index{0}, around.size(), [&](Index c) {
-      const Eigen::VectorXd difference =
-          log_densities(moved(c, step), run, {}) - log_densities(moved(c, -step), run, {});
-      scores.col(c) = difference.array().isNaN().select(0.0, difference) / (2.0 * step);
-    });
-    information += scores.transpose() * scores;
-  }
+  const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), step);
+  const Eigen::MatrixXd information = sample_gradients(around, steps, training, {}).information;
   Eigen::VectorXd gradient(around.size());
   tbb::parallel_for(Index{0}, around.size(), [&](Index c) {
     gradient(c) = std::log(held_out_diagnostics(moved(c, step), truth, seed).nees_mean /

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/filter/refine_recovery.hpp"
+#include "tests/filter/learn/refine_recovery.hpp"
 
 namespace modebank {
 namespace {

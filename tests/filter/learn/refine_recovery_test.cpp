@@ -1,15 +1,14 @@
 // With measurement noise refinement ends at the maximum of the filter's likelihood, and that recovers the truth.
-#include "tests/filter/refine_recovery.hpp"
+#include "tests/filter/learn/refine_recovery.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "filter/bank_coordinates.hpp"
-#include "filter/learn.hpp"
-#include "filter/likelihood_ascent.hpp"
-#include "filter/refine_start.hpp"
-#include "filter/training_likelihood.hpp"
+#include "filter/learn/learn.hpp"
+#include "filter/learn/likelihood/maximum_likelihood.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
+#include "filter/learn/switching/starts.hpp"
 
 namespace modebank {
 namespace {
@@ -26,8 +25,17 @@ SwitchingPrior theta_known(const Recording& recording, const LinearStructure& st
   return prior;
 }
 
+FreeParameters everything(const Bank& bank, double theta_unit) {
+  FreeParameters free;
+  free.theta_unit = Eigen::MatrixXd::Constant(bank.structure.parameters(), bank.mode_count(), theta_unit);
+  for (Index i = 0; i < bank.R.rows(); ++i) free.R.push_back(i);
+  free.least_R = Eigen::VectorXd::Zero(bank.R.rows());
+  free.transition = bank.mode_count() > 1;
+  return free;
+}
+
 /// One mode: the likelihood is exact, and the baseline maximises it over Q and R in its own way.
-TEST(RaiseLikelihood, OfOneModeReachesTheBaselinesMaximum) {
+TEST(MaximiseLikelihood, OfOneModeReachesTheBaselinesMaximum) {
   const Bank truth = test::true_pendulum({1.0}, 1.0);
   const Recording recording = simulated_recording(truth, 2, 800, 3);
   const Baseline baseline = learn_baseline(recording, fit_global(recording, truth.structure), truth.structure);
@@ -35,10 +43,10 @@ TEST(RaiseLikelihood, OfOneModeReachesTheBaselinesMaximum) {
   Bank bank = baseline.bank;
   bank.modes[0].Q *= 4.0;
   bank.R *= 0.3;
-  const LikelihoodTarget target{
-      recording, {}, theta_known(recording, truth.structure), SharedParts::none, Eigen::VectorXd::Zero(2)};
-  const Ascent ascent = raise_likelihood(target, {200, 1e-10}, bank);
-  EXPECT_EQ(ascent.end, MeasuredFit::converged);
+  const LikelihoodTarget target{recording, {}, theta_known(recording, truth.structure)};
+  const LikelihoodMaximum maximum = maximise_likelihood(target, everything(bank, 1e-3), bank, {200, 1e-10});
+  EXPECT_EQ(maximum.end, MeasuredFit::converged);
+  bank = maximum.bank;
   EXPECT_NEAR(training_log_likelihood(bank, recording, {}), baseline.log_likelihood, 1e-4);
   constexpr double near_enough = 1e-2;  // a hundredth of each is far below its standard error
   EXPECT_TRUE(bank.modes[0].Q.isApprox(baseline.bank.modes[0].Q, near_enough)) << bank.modes[0].Q;
@@ -48,35 +56,30 @@ TEST(RaiseLikelihood, OfOneModeReachesTheBaselinesMaximum) {
 }
 
 /// At a maximum no step to either side gains anything, whatever the number of modes.
-TEST(RaiseLikelihood, EndsWhereNoStepGains) {
+TEST(MaximiseLikelihood, EndsWhereNoStepGains) {
   const Bank truth = test::true_pair(1.0);
   const Recording recording = simulated_recording(truth, 3, 300, 5);
-  Bank bank = truth;
   const TrainingTransitions transitions = gather_training_transitions(recording, truth.structure);
-  const LikelihoodTarget target{recording,
-                                {},
-                                switching_prior(transitions, fit_global(recording, truth.structure), {}, 0.01),
-                                SharedParts::none,
-                                Eigen::VectorXd::Zero(2)};
-  const double before = target.value(bank);
-  const Ascent ascent = raise_likelihood(target, {}, bank);
-  EXPECT_EQ(ascent.end, MeasuredFit::converged);
-  EXPECT_EQ(ascent.value, target.value(bank));
-  EXPECT_GT(ascent.value, before);
-  const BankCoordinates around(bank, SharedParts::none, Eigen::MatrixXd::Constant(8, 2, 0.01), target.least_R);
+  const LikelihoodTarget target{
+      recording, {}, switching_prior(transitions, fit_global(recording, truth.structure), {}, 0.01)};
+  const LikelihoodMaximum maximum = maximise_likelihood(target, everything(truth, 0.01), truth, {});
+  EXPECT_EQ(maximum.end, MeasuredFit::converged);
+  EXPECT_EQ(maximum.value, target.value(maximum.bank));
+  EXPECT_GT(maximum.value, target.value(truth));
+  const BankCoordinates around(maximum.bank, everything(truth, 0.01));
   for (Index c = 0; c < around.size(); ++c)
     for (const double step : {-0.03, 0.03}) {
       const Eigen::VectorXd at = step * Eigen::VectorXd::Unit(around.size(), c);
-      EXPECT_LT(target.value(around.decode(at)), ascent.value + 1e-3) << c << ", " << step;
+      EXPECT_LT(target.value(around.decode(at)), maximum.value + 1e-3) << c << ", " << step;
     }
 }
 
 /// Only ratios of sample weights matter, and a sample of weight zero not at all.
-TEST(RaiseLikelihood, CountsSamplesByTheirWeights) {
+TEST(MaximiseLikelihood, CountsSamplesByTheirWeights) {
   const Bank truth = test::true_scalar(1.0);
   Recording recording = simulated_recording(truth, 2, 60, 7);
   const SwitchingPrior prior = theta_known(recording, truth.structure);
-  const LikelihoodTarget target{recording, {}, prior, SharedParts::none, Eigen::VectorXd::Zero(1)};
+  const LikelihoodTarget target{recording, {}, prior};
   const double plain = target.value(truth);
   for (Trajectory& run : recording.runs) run.weight.setConstant(run.samples(), 3.0);
   EXPECT_NEAR(target.value(truth), plain, 1e-9 * std::abs(plain));
@@ -85,10 +88,9 @@ TEST(RaiseLikelihood, CountsSamplesByTheirWeights) {
   EXPECT_NEAR(target.value(truth), plain - last, 1e-9 * std::abs(plain));
 }
 
-TEST(BankCoordinates, AreZeroAtTheirOriginAndMoveSharedPartsTogether) {
+TEST(BankCoordinates, AreZeroAtTheirOriginAndMoveOneThetaTogether) {
   const Bank truth = test::true_pair(1.0);
-  const Eigen::MatrixXd units = Eigen::MatrixXd::Constant(8, 2, 0.1);
-  const BankCoordinates free(truth, SharedParts::none, units, Eigen::VectorXd::Zero(2));
+  const BankCoordinates free(truth, everything(truth, 0.1));
   EXPECT_EQ(free.size(), 2 * 8 + 2 * 3 + 2 + 2);
   const Bank same = free.decode(Eigen::VectorXd::Zero(free.size()));
   for (std::size_t j = 0; j < 2; ++j) {
@@ -98,14 +100,45 @@ TEST(BankCoordinates, AreZeroAtTheirOriginAndMoveSharedPartsTogether) {
   EXPECT_TRUE(same.R.isApprox(truth.R, 1e-14));
   EXPECT_TRUE(same.transition.matrix().isApprox(truth.transition.matrix(), 1e-14));
 
-  const BankCoordinates one_noise(truth, SharedParts::noise, units, {});
-  EXPECT_EQ(one_noise.size(), 2 * 8 + 3 + 2);
-  const Bank louder = one_noise.decode(0.5 * Eigen::VectorXd::Unit(one_noise.size(), 16));
-  EXPECT_NEAR(louder.modes[0].Q(0, 0), std::exp(1.0) * truth.modes[0].Q(0, 0), 1e-12);
-  EXPECT_NEAR(louder.modes[1].Q(0, 0), std::exp(1.0) * truth.modes[1].Q(0, 0), 1e-12);
-  EXPECT_EQ(louder.R, truth.R);
-  const BankCoordinates one_theta(truth, SharedParts::theta, units, {});
-  EXPECT_EQ(one_theta.size(), 8 + 2 * 3 + 2);
+  FreeParameters one_theta = everything(truth, 0.1);
+  one_theta.theta_unit = one_theta.theta_unit.leftCols(1).eval();
+  const BankCoordinates together(truth, one_theta);
+  EXPECT_EQ(together.size(), 8 + 2 * 3 + 2 + 2);
+  const Bank moved = together.decode(2.0 * Eigen::VectorXd::Unit(together.size(), 3));
+  for (Index j = 0; j < 2; ++j) EXPECT_NEAR(moved.theta(j)(3), truth.theta(j)(3) + 0.2, 1e-14);
+}
+
+TEST(BankCoordinates, HoldWhatIsKnownAndScaleQByOneFactor) {
+  const Bank truth = test::true_pair(1.0);
+  FreeParameters noise;
+  noise.Q_by_one_factor = true;
+  noise.R = {1};
+  noise.least_R = Eigen::Vector2d(0.0, 0.01);
+  noise.transition = false;
+  const BankCoordinates around(truth, noise);
+  ASSERT_EQ(around.size(), 2);
+  const Bank moved = around.decode(Eigen::Vector2d(std::log(2.0), std::log(3.0)));
+  for (std::size_t j = 0; j < 2; ++j) EXPECT_TRUE(moved.modes[j].Q.isApprox(2.0 * truth.modes[j].Q, 1e-14));
+  EXPECT_EQ(moved.R(0, 0), truth.R(0, 0));
+  EXPECT_NEAR(moved.R(1, 1), 0.01 + 3.0 * (truth.R(1, 1) - 0.01), 1e-15);
+  EXPECT_EQ(moved.theta(1), truth.theta(1));
+  EXPECT_EQ(moved.transition.matrix(), truth.transition.matrix());
+}
+
+/// By hand: R_ii by its logarithm is R_ii, and a row of T by the logarithm of one entry is T_ij (delta - T_ik).
+TEST(BankCoordinates, JacobianIsThatOfTheParameters) {
+  const Bank truth = test::true_scalar(1.0);
+  const BankCoordinates around(truth, everything(truth, 0.1));
+  const ParameterPlaces at = around.places();
+  const Eigen::MatrixXd J = around.jacobian();
+  ASSERT_EQ(J.rows(), 2 * 2 + 2 + 1 + 4);
+  ASSERT_EQ(J.cols(), 2 * 2 + 2 + 1 + 2);
+  EXPECT_NEAR(J(at.theta(1) + 1, 3), 0.1, 1e-11);
+  EXPECT_NEAR(J(at.Q(1), 5), 2.0 * truth.modes[1].Q(0, 0), 1e-9);  // exp(z) scales the root
+  EXPECT_NEAR(J(at.R(), 6), truth.R(0, 0), 1e-9);
+  const double T = truth.transition.matrix()(0, 1);
+  EXPECT_NEAR(J(at.T(0) + 1, 7), T * (1.0 - T), 1e-9);
+  EXPECT_NEAR(J(at.T(0), 7), -T * (1.0 - T), 1e-9);
 }
 
 class RefineRecovery : public testing::TestWithParam<std::uint64_t> {};

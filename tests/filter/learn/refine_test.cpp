@@ -1,5 +1,5 @@
 // Refinement: recovery on simulated truth, choice by cross-validation, screening, and noise that follows the run.
-#include "filter/refine.hpp"
+#include "filter/learn/refine/refine.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,11 +10,11 @@
 #include <cmath>
 #include <random>
 
-#include "filter/bank_frame.hpp"
-#include "filter/refine_screening.hpp"
-#include "filter/united_bank.hpp"
-#include "filter/validation_split.hpp"
-#include "tests/filter/learn_test_support.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/refine/averaging.hpp"
+#include "filter/learn/refine/folds.hpp"
+#include "filter/learn/switching/mode_screening.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
@@ -124,7 +124,6 @@ TEST_F(Refine, ChoiceRestsOnTrainingRunsAloneForAnyNumberOfThreads) {
   RefineOptions options;
   options.max_iterations = 12;
   options.restarts = 1;
-  options.share = modebank::Sharing::best;
   const auto refine = [&](const Recording& data) {
     return refine_bank(data, test::windows_of(data, 25, 1), {start_bank(data, truth.theta)}, options, adaptive_imm());
   };
@@ -144,6 +143,41 @@ TEST_F(Refine, ChoiceRestsOnTrainingRunsAloneForAnyNumberOfThreads) {
       EXPECT_EQ(c.score, best);
     }
   EXPECT_EQ(selected, 1);
+}
+
+/// The rival that knows one motion: what its modes differ in is noise.
+TEST_F(Refine, OneThetaIsThatOfAllModes) {
+  truth.theta.colwise() = truth.theta.col(0).eval();
+  learn_from(4, 400);
+  RefineOptions options = quick();
+  options.one_theta = true;
+  Eigen::MatrixXd theta = truth.theta;
+  theta.row(1) += Eigen::RowVector3d(0.1, -0.1, 0.05);
+  const Bank bank =
+      refine_bank(recording, test::windows_of(recording, 25, 1), {start_bank(recording, theta)}, options, {}).bank;
+  ASSERT_GT(bank.mode_count(), 1);
+  for (Index j = 0; j < bank.mode_count(); ++j) {
+    const Mode& mode = bank.modes[static_cast<std::size_t>(j)];
+    EXPECT_EQ(bank.theta(j), bank.theta(0));
+    EXPECT_EQ(mode.standard_error, bank.modes[0].standard_error);
+    EXPECT_TRUE(((bank.theta(j) - truth.theta.col(0)).array().abs() < 3.0 * mode.standard_error.array()).all());
+  }
+}
+
+/// The same as without folds: nothing tells whether a stronger prior on Q would pay.
+TEST_F(Refine, WithoutAnythingToLeaveOutThePriorIsWorthOneTransition) {
+  learn_from(1, 30);
+  RefineOptions options = quick();
+  const auto refine = [&] {
+    return refine_bank(recording, test::windows_of(recording, 25, 1), {start_bank(recording, truth.theta)}, options,
+                       {});
+  };
+  const Refinement without_folds = refine();
+  options.folds = 6;
+  const Refinement refined = refine();
+  ASSERT_EQ(refined.candidates.size(), 1u);
+  EXPECT_EQ(refined.candidates[0].noise_transitions, 1.0);
+  EXPECT_EQ(refined.bank.theta(0), without_folds.bank.theta(0));
 }
 
 TEST_F(Refine, MotionModelsAreRefused) {

@@ -1,4 +1,4 @@
-#include "filter/transition_learning.hpp"
+#include "filter/learn/from_mixture/transition_learning.hpp"
 
 #include <gtest/gtest.h>
 

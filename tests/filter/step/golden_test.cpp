@@ -1,11 +1,11 @@
-// The filters against tests/golden/imm_reference.py: an independent textbook implementation in numpy.
+// The filters against tests/golden/generate/imm_reference.py: an independent textbook implementation in numpy.
 #include "tests/support/golden.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "filter/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

@@ -1,10 +1,10 @@
 // No number makes the filter give NaN, and one code serves fixed and dynamic sizes.
 #include <gtest/gtest.h>
 
-#include "filter/bank_filter.hpp"
-#include "filter/evaluate.hpp"
-#include "filter/filter_step.hpp"
-#include "filter/run_samples.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/feed/run_samples.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/effort.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -29,8 +29,9 @@ std::vector<FilterOptions> all_options() {
 }
 
 /// Everything from sample 1 on must be finite when every measurement is there.
-void expect_finite(const Bank& bank, const Trajectory& run, const std::string& what) {
+void expect_finite(const Bank& modes, const Trajectory& run, const std::string& what) {
   for (const FilterOptions& options : all_options()) {
+    const Bank bank = test::steppable(modes, options.variant);
     const RunEvaluation r = evaluate_run(bank, run, options);
     const Eigen::Index scored = run.samples() - 1;
     const std::string where = what + ", " + std::string(name_of(options.variant));
@@ -105,7 +106,7 @@ TEST(NeverNaN, AnUnstableModeWithoutMeasurementsStaysFinite) {
   Trajectory run = simulate_bank(example_bank(2, 1, 2), 3000, 6);
   run.state.middleCols(5, 2900).setConstant(std::nan(""));
   for (const FilterVariant variant : all_variants) {
-    const RunEvaluation result = evaluate_run(bank, run, {variant});
+    const RunEvaluation result = evaluate_run(test::steppable(bank, variant), run, {variant});
     EXPECT_TRUE(result.state.allFinite() && result.covariance.allFinite()) << name_of(variant);
     EXPECT_TRUE(result.log_density.tail(90).allFinite()) << name_of(variant);
   }
@@ -133,7 +134,8 @@ TEST(NeverNaN, AMillionStepsAtConstantInputInEveryVariant) {
   const Eigen::VectorXd u = Eigen::VectorXd::Constant(1, 0.5), y = Eigen::VectorXd::Constant(1, 0.3);
   for (const FilterVariant variant : all_variants) {
     const bool first = variant == FilterVariant::imm;
-    BankFilter filter(bank, {variant, false, TimeSteps::repeat, first ? FilterNoise::adaptive : FilterNoise::gaussian});
+    BankFilter filter(test::steppable(bank, variant),
+                      {variant, false, TimeSteps::repeat, first ? FilterNoise::adaptive : FilterNoise::gaussian});
     for (Eigen::Index k = 0; k < steps; ++k) filter.step(std::nan(""), u, y);
     const FilterEstimate& e = filter.estimate();
     EXPECT_TRUE(e.state.allFinite() && e.covariance.allFinite() && e.mode_probability.allFinite()) << name_of(variant);
@@ -185,10 +187,11 @@ std::vector<double> trace(const Bank& bank, const Trajectory& run, const FilterO
 
 template <int N>
 void expect_same_bits() {
-  const Bank bank = example_bank(N, 2, 3);
-  Trajectory run = simulate_bank(bank, 100, 10);
+  const Bank modes = example_bank(N, 2, 3);
+  Trajectory run = simulate_bank(modes, 100, 10);
   run.state(0, 50) = 1e6;
   for (const FilterOptions& options : all_options()) {
+    const Bank bank = test::steppable(modes, options.variant);
     const auto fixed = trace<N, N>(bank, run, options);
     const auto dynamic = trace<Eigen::Dynamic, Eigen::Dynamic>(bank, run, options);
     EXPECT_EQ(fixed, dynamic) << "n = " << N << ", " << name_of(options.variant);
@@ -224,7 +227,8 @@ TEST(Sizes, LaggedBanksToo) {
       double total = 0.0;
       RunSamples(bank, run, TimeSteps::repeat).for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {
         if (starts) return start(model, feed.start(), state);
-        advance(model, feed, state, step);
+        ASSERT_EQ(feed.steps(), 1);
+        predict(model, state, feed.inputs(), step);
         const double value = update(model, run.state.col(k), step, state);
         total += std::isnan(value) ? 0.0 : value;
       });

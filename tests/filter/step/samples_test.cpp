@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <functional>
 #include <stdexcept>
 
-#include "filter/bank_filter.hpp"
-#include "filter/evaluate.hpp"
-#include "filter/fixed_imm.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/step/bank_filter.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -95,19 +95,46 @@ TEST(MissingMeasurement, OfSomeSignalsLeavesTheOthers) {
   }
 }
 
+/// An outlier counts as no larger than some standard deviations of the signals that are there.
+TEST(MissingMeasurement, OfSomeSignalsMovesTheNoiseScaleByTheOthers) {
+  Bank bank = example_bank(3, 1, 2);
+  bank.R(0, 1) = bank.R(1, 0) = 0.4 * bank.R(0, 0);
+  const Trajectory run = simulate_bank(bank, 3, 9);
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2}) {
+    const FilterOptions adaptive{variant, false, TimeSteps::repeat, FilterNoise::adaptive};
+    BankFilter filter(bank, adaptive), reduced(measuring(bank, {0, 2}), adaptive);
+    const std::vector<int> there{0, 2};
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      filter.step(static_cast<double>(k), run.input.col(k), run.state.col(k));
+      reduced.step(static_cast<double>(k), run.input.col(k), run.state.col(k)(there));
+    }
+    FilterSnapshot snapshot = reduced.snapshot();
+    static_cast<FilterMemory&>(snapshot) = filter.snapshot();
+    reduced.restore(snapshot);
+    Eigen::Vector3d y = run.state.col(2);
+    y(0) += 10.0;
+    y(1) = std::nan("");
+    filter.step(2.0, run.input.col(2), y);
+    reduced.step(2.0, run.input.col(2), y(there));
+    const double scale = reduced.snapshot().noise_scale;
+    EXPECT_GT(scale, 1.0);
+    EXPECT_NEAR(filter.snapshot().noise_scale, scale, digits * 10 * scale) << name_of(variant);
+  }
+}
+
 TEST(MissingMeasurement, HasNoScoreInAnyForm) {
   Bank bank = example_bank(2, 1, 3);
   Trajectory run = simulate_bank(bank, 8, 21);
   for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::kf}) {
-    Imm<2, 1, 3> fixed(bank, {variant});
-    fixed.start(run.state.col(0));
-    EXPECT_FALSE(std::isnan(fixed.step(run.input.col(0), run.state.col(1))));
-    EXPECT_GE(fixed.nis(), 0.0);
-    EXPECT_TRUE(std::isnan(fixed.step(run.input.col(1), Eigen::Vector2d::Constant(std::nan("")))));
-    EXPECT_TRUE(std::isnan(fixed.nis())) << name_of(variant);
-    EXPECT_TRUE(fixed.innovation().array().isNaN().all() && fixed.state().allFinite());
-    fixed.step(run.input.col(2), Eigen::Vector2d(run.state(0, 3), std::nan("")));
-    EXPECT_TRUE(fixed.nis() >= 0.0 && std::isnan(fixed.innovation()(1)));
+    BankFilter filter(test::steppable(bank, variant), {variant});
+    filter.step(0.0, run.input.col(0), run.state.col(0));
+    EXPECT_FALSE(std::isnan(filter.step(1.0, run.input.col(1), run.state.col(1)).log_density));
+    EXPECT_GE(filter.estimate().nis, 0.0);
+    const FilterEstimate& e = filter.step(2.0, run.input.col(2), Eigen::Vector2d::Constant(std::nan("")));
+    EXPECT_TRUE(std::isnan(e.log_density) && std::isnan(e.nis)) << name_of(variant);
+    EXPECT_TRUE(e.innovation.array().isNaN().all() && e.state.allFinite());
+    filter.step(3.0, run.input.col(3), Eigen::Vector2d(run.state(0, 3), std::nan("")));
+    EXPECT_TRUE(e.nis >= 0.0 && std::isnan(e.innovation(1)));
   }
 }
 
@@ -157,7 +184,8 @@ TEST(BankFilter, GoesOnFromASnapshotAsIfNothingHadHappened) {
   Bank bank = example_bank(2, 1, 3);
   const Trajectory run = simulate_bank(bank, 20, 14);
   for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2, FilterVariant::kf}) {
-    BankFilter first(bank, {variant}), second(bank, {variant});
+    const Bank stepped = test::steppable(bank, variant);
+    BankFilter first(stepped, {variant}), second(stepped, {variant});
     for (Eigen::Index k = 0; k < 10; ++k) first.step(run.time_s(k), run.input.col(k), run.state.col(k));
     second.restore(first.snapshot());
     for (Eigen::Index k = 10; k < 20; ++k) {
@@ -174,6 +202,37 @@ TEST(BankFilter, GoesOnFromASnapshotAsIfNothingHadHappened) {
   }
   BankFilter other(example_bank(2, 1, 2), {});
   EXPECT_THROW(other.restore(BankFilter(bank, {}).snapshot()), std::invalid_argument);
+}
+
+TEST(BankFilter, ARefusedSnapshotChangesNothing) {
+  const Bank bank = example_bank(2, 1, 3);
+  const Trajectory run = simulate_bank(bank, 20, 14), other = simulate_bank(bank, 20, 15);
+  const auto stepped = [&](const Trajectory& by, Eigen::Index samples) {
+    BankFilter filter(bank, {});
+    for (Eigen::Index k = 0; k < samples; ++k) filter.step(by.time_s(k), by.input.col(k), by.state.col(k));
+    return filter;
+  };
+  const FilterSnapshot good = stepped(other, 7).snapshot();
+  const std::vector<std::function<void(FilterSnapshot&)>> spoil = {
+      [](FilterSnapshot& s) { s.means(0, 0) = std::nan(""); },
+      [](FilterSnapshot& s) { s.covariances.resize(4, 2); },
+      [](FilterSnapshot& s) { s.mode_probability.setZero(); },
+      [](FilterSnapshot& s) { s.noise_scale = INFINITY; },
+      [](FilterSnapshot& s) { s.noise_samples = -1.0; },
+      [](FilterSnapshot& s) { s.samples.inputs(0, 0) = std::nan(""); },
+      [](FilterSnapshot& s) { s.samples.measurements.resize(1, 1); },
+      [](FilterSnapshot& s) { s.samples.whole = s.samples.samples + 1; },
+  };
+  for (std::size_t i = 0; i < spoil.size(); ++i) {
+    BankFilter filter = stepped(run, 10), untouched = stepped(run, 10);
+    FilterSnapshot spoilt = good;
+    spoil[i](spoilt);
+    EXPECT_THROW(filter.restore(spoilt), std::invalid_argument) << i;
+    const FilterEstimate& a = filter.step(run.time_s(10), run.input.col(10), run.state.col(10));
+    const FilterEstimate& b = untouched.step(run.time_s(10), run.input.col(10), run.state.col(10));
+    EXPECT_EQ(a.log_density, b.log_density) << i;
+    EXPECT_TRUE(near(a.state, b.state, 0.0)) << i;
+  }
 }
 
 }  // namespace

@@ -1,9 +1,8 @@
-#include "filter/transition_matrix.hpp"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
+#include "filter/step/bank.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

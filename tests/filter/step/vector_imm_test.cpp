@@ -1,12 +1,13 @@
 // The filter with a mode per lane of the vector registers against the general steps, everything it says.
-#include "filter/vector_imm.hpp"
+#include "filter/step/detail/vector/vector_imm.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "filter/combined.hpp"
-#include "filter/filter_step.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/equations/predicted_mixture.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -26,29 +27,28 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
   FilterStep<any, any> step(model);
   const Index n = bank.structure.dimension(), n_y = bank.C.rows();
   FilterState<any> state = start(model, run.state.col(0));
-  CombinedPrediction<any, any> combined(n, n_y);
   Gaussian<any> estimate(n);
   VectorImm kernel(bank, options);
   kernel.start(run.state.col(0));
-  VectorXd mean(n), pit(n_y), expected_pit(n_y), weights(bank.mode_count());
-  MatrixXd covariance(n, n), S(n_y, n_y);
+  VectorXd mean(n), expected_mean(n), pit(n_y), expected_pit(n_y), weights(bank.mode_count());
+  MatrixXd covariance(n, n), S(n_y, n_y), expected_S(n_y, n_y);
   const auto same = [&](const MatrixXd& a, const MatrixXd& b) {
     return test::near(a, b, relative * std::max(1e-3, b.cwiseAbs().maxCoeff()));
   };
   for (Index k = 1; k < run.samples(); ++k) {
     predict(model, state, run.input.col(k - 1), step);
     kernel.predict(run.input.col(k - 1));
-    combined.expect(model, step);
-    double share = 0.0;
-    kernel.combine(mean, S, share);
-    ASSERT_TRUE(same(mean, combined.state) && same(S, combined.innovation_covariance)) << "sample " << k;
+    const double expected_share = combine(model, step, expected_mean, expected_S), share = kernel.combine(mean, S);
+    ASSERT_TRUE(same(mean, expected_mean)) << "sample " << k;
+    ASSERT_TRUE(same(S, expected_S)) << "sample " << k;
     ASSERT_TRUE(same(kernel.predicted_probability(), step.predicted_probability)) << "sample " << k;
-    ASSERT_NEAR(share, combined.spread_share, relative);
+    ASSERT_NEAR(share, expected_share, relative);
     const double expected = update(model, run.state.col(k), step, state);
     const double log_density = kernel.update(run.state.col(k));
     merge(state.modes, state.mode_probability, estimate);
     kernel.merge(mean, covariance);
-    ASSERT_TRUE(same(mean, estimate.mean) && same(covariance, estimate.covariance)) << "sample " << k;
+    ASSERT_TRUE(same(mean, estimate.mean)) << "sample " << k;
+    ASSERT_TRUE(same(covariance, estimate.covariance)) << "sample " << k;
     ASSERT_TRUE(same(kernel.mode_probability(), state.mode_probability)) << "sample " << k;
     ASSERT_EQ(std::isnan(log_density), std::isnan(expected));
     if (!std::isnan(expected)) {
@@ -69,7 +69,7 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
           ASSERT_NEAR(kernel.decorrelated(i, j), kalman.decorrelated(i), relative * 10.0);
         }
     }
-    ASSERT_NEAR(kernel.noise_scale, state.noise_scale, relative * state.noise_scale);
+    ASSERT_NEAR(kernel.noise_scale(), state.noise_scale, relative * state.noise_scale);
   }
 }
 
@@ -98,11 +98,25 @@ TEST(VectorImm, SaysWhatTheGeneralStepsSay) {
       Trajectory run = test::simulate_bank(bank, 70, 51);
       run.state(0, 30) = std::nan("");  // of some signals, with one of all
       run.state.col(40).setConstant(std::nan(""));
+      run.state(0, 50) = std::nan("");  // with an outlier in what is there
+      run.state(n - 1, 50) += n > 1 ? 0.5 : 0.0;
       run.state(n - 1, 60) += 3.0;
       SCOPED_TRACE(std::to_string(n) + " states, " + std::to_string(K) + " modes");
       expect_agreement(bank, run, {}, 1e-11);
       expect_agreement(bank, run, adaptive(), 1e-11);
     }
+}
+
+/// As many as fill one register of any width, one more and one less, and more than eight registers.
+TEST(VectorImm, AnyNumberOfModes) {
+  for (const Index K : {2, 3, 4, 5, 7, 8, 9, 16, 17, 60}) {
+    const Bank bank = many_modes(1, K);
+    Trajectory run = test::simulate_bank(bank, 300, 31);
+    run.state.middleCols(40, 3).setConstant(std::nan(""));
+    run.state(0, 200) = 50.0;
+    SCOPED_TRACE(std::to_string(K) + " modes");
+    expect_agreement(bank, run, {}, 1e-11);
+  }
 }
 
 TEST(VectorImm, OneSignalOfSeveralStates) {
@@ -127,6 +141,52 @@ TEST(VectorImm, CorrelatedNoiseAndImpossibleModes) {
   Trajectory run = test::simulate_bank(bank, 80, 53);
   run.state(1, 20) = std::nan("");
   expect_agreement(bank, run, {}, 1e-11);
+  expect_agreement(bank, run, adaptive(), 1e-11);
+}
+
+/// The scale follows the modes that can be, however well one that cannot be fits.
+TEST(VectorImm, AnImpossibleModeHasNoSayInTheNoise) {
+  Bank bank = many_modes(1, 3);
+  bank.transition = TransitionMatrix((MatrixXd(3, 3) << 0.9, 0.1, 0, 0.2, 0.8, 0, 0.5, 0.5, 0).finished());
+  bank.modes[2].model.A.setZero();
+  bank.modes[2].model.c.setConstant(1.0);
+  Trajectory run = test::simulate_bank(bank, 20, 56);
+  run.input.setZero();
+  for (Index k = 0; k < run.samples(); ++k) run.state(0, k) = static_cast<double>(k);
+  expect_agreement(bank, run, adaptive(), 1e-9);
+  const FilterModel<any, any> model(bank, adaptive());
+  FilterStep<any, any> step(model);
+  FilterState<any> state = start(model, run.state.col(0));
+  predict(model, state, run.input.col(0), step);
+  update(model, run.state.col(1), step, state);
+  EXPECT_GT(state.noise_scale, 1.5);  // one step of a hundred standard deviations, counted as five
+}
+
+/// Modes that nothing leads to, that explode, no noise at all: there is always a number.
+TEST(VectorImm, NeverSaysNaN) {
+  const Bank usual = many_modes(1, 3);
+  Bank dead = usual, exact = usual, unstable = usual, none = usual;
+  dead.initial_probability << 1.0, 0.0, 0.0;
+  dead.transition = TransitionMatrix((MatrixXd(3, 3) << 0.9, 0.1, 0, 0.2, 0.8, 0, 0.5, 0.5, 0).finished());
+  exact.R.setConstant(1e-12);
+  unstable.modes[1].model.A.setConstant(5.0);
+  none.R.setZero();
+  for (Mode& mode : none.modes) mode.Q.setZero();
+  for (const Bank& bank : {dead, exact, unstable, none}) {
+    Trajectory run = test::simulate_bank(usual, 400, 32);
+    run.state(0, 50) = 1e4;
+    run.state(0, 60) = -1e29;
+    run.state.middleCols(100, 200).setConstant(std::nan(""));
+    VectorImm kernel(bank, {});
+    kernel.start(run.state.col(0));
+    for (Index k = 1; k < run.samples(); ++k) {
+      kernel.predict(run.input.col(k - 1));
+      const double log_density = kernel.update(run.state.col(k));
+      ASSERT_EQ(std::isfinite(log_density), std::isfinite(run.state(0, k))) << "sample " << k;
+      ASSERT_TRUE(kernel.mode_probability().allFinite()) << "sample " << k;
+    }
+  }
+  expect_agreement(dead, test::simulate_bank(dead, 100, 33), {}, 1e-11);
 }
 
 /// Phi(z) to 20 digits (mpmath), far into the lower tail. All modes agree, so the transform is that of one normal
@@ -149,12 +209,12 @@ TEST(VectorImm, TransformsByTheNormalDistributionFunction) {
       {4.1, 0.99997934249308745323},       {7.7, 0.99999999999999319669},       {40.0, 1.0}};
   VectorXd pit(1);
   for (const auto& [z, probability] : cases) {
-    VectorImm imm(bank, {});
-    imm.start(VectorXd::Zero(1));
-    imm.predict(VectorXd::Zero(1));
+    VectorImm kernel(bank, {});
+    kernel.start(VectorXd::Zero(1));
+    kernel.predict(VectorXd::Zero(1));
     const VectorXd y = VectorXd::Constant(1, z);
-    imm.update(y);
-    imm.transform(y, pit);
+    kernel.update(y);
+    kernel.transform(y, pit);
     // z itself is rounded, which the tail feels as z^2.
     EXPECT_NEAR(pit(0), probability, (1e-14 + 2.3e-16 * z * z) * probability) << z;
   }
@@ -181,16 +241,12 @@ TEST(VectorImm, SnapshotsGoBackAndForth) {
     first.predict(run.input.col(k - 1));
     first.update(run.state.col(k));
   }
-  MatrixXd means, covariances;
-  VectorXd probability;
-  first.get(means, covariances, probability);
+  FilterMemory memory;
+  first.save(memory);
   second.start(run.state.col(0));
-  second.set(means, covariances, probability);
-  VectorImm copy = first;
-  for (VectorImm* filter : {&first, &second, &copy}) filter->predict(run.input.col(8));
-  const double log_density = first.update(run.state.col(9));
-  EXPECT_EQ(second.update(run.state.col(9)), log_density);
-  EXPECT_EQ(copy.update(run.state.col(9)), log_density);
+  second.restore(memory);
+  for (VectorImm* filter : {&first, &second}) filter->predict(run.input.col(8));
+  EXPECT_EQ(second.update(run.state.col(9)), first.update(run.state.col(9)));
 }
 
 TEST(VectorImm, LeavesToTheGeneralStepsWhatItCannot) {

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Reads an archive as a user of h5py does and checks it against the contract.
 
-    /usr/bin/python3 tests/golden/check_archive.py ARCHIVE.h5
+    /usr/bin/python3 tests/golden/generate/check_archive.py ARCHIVE.h5
 
-ARCHIVE.h5 is full_archive(2, 1) of tests/io/archive_fixture.cpp (n = 2 states, m = 1 input, intercept, K = 3 modes,
+ARCHIVE.h5 is full_archive(2, 1) of tests/io/archive/archive_fixture.cpp (n = 2 states, m = 1 input, intercept, K = 3 modes,
 M = 9 windows, runs of 12, 13 and 14 samples), whose entries follow the formulas stated here a second time. Exit status
 0 and no output when everything is as the contract says; else the list of differences and 1.
 """

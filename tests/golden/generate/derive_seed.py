@@ -1,4 +1,4 @@
-"""Prints the expected values of tests/ident/window_test.cpp, Seed.HasTheStatedMixing.
+"""Prints the expected values of tests/ident/data/window_test.cpp, Seed.HasTheStatedMixing.
 
 Run:  /usr/bin/python3 derive_seed.py
 """

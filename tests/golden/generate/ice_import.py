@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes ice_import.csv beside itself: what an import of the Husky-on-ice runs must give, by numpy alone.
+"""Writes ice_import.csv into data/: what an import of the Husky-on-ice runs must give, by numpy alone.
 
-Usage: /usr/bin/python3 tests/golden/ice_import.py FOLDER        FOLDER holds borealtc/ICE
+Usage: /usr/bin/python3 tests/golden/generate/ice_import.py FOLDER        FOLDER holds borealtc/ICE
 One row per run: samples, first and last time, mean of wz (numpy.interp to the pro times inside the imu's span), of its
 square and of velL and velR.
 """
@@ -11,7 +11,7 @@ import sys
 
 import numpy as np
 
-here = os.path.dirname(os.path.abspath(__file__))
+here = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data")
 rows = []
 for pro in sorted(glob.glob(os.path.join(sys.argv[1], "borealtc", "ICE", "pro_*.csv"))):
     p = np.genfromtxt(pro, delimiter=",", names=True)

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Independent interacting multiple model filter in numpy, and the golden files it writes.
 
-    /usr/bin/python3 tests/golden/imm_reference.py
+    /usr/bin/python3 tests/golden/generate/imm_reference.py
 
 writes imm_scalar.json, imm_vector.json, imm_partial.json, imm_missing.json, imm_three.json, mmae_scalar.json,
 gpb1_three.json, gpb2_three.json, gpb2_scalar.json, salvi2025_scalar.json, salvi2025_vector.json,
-imm_parameter_noise.json and scores.json beside itself. Written from the textbook (Bar-Shalom, Li & Kirubarajan 2001,
+imm_parameter_noise.json and scores.json into data/. Written from the textbook (Bar-Shalom, Li & Kirubarajan 2001,
 sections 11.6.4 to 11.6.6) in the linear domain with explicit inverses and scipy's multivariate normal; signals that are
 missing are left out of C, R and y. The filter that prints eq. 12-18 of Salvi et al. (2025) follows the paper. Nothing
 here is shared with the C++ code.
@@ -18,7 +18,7 @@ from scipy.stats import chi2, multivariate_normal, norm
 from statsmodels.stats.diagnostic import acorr_ljungbox
 
 FLOOR = 1e-12  # mode probabilities, then renormalised
-FOLDER = pathlib.Path(__file__).parent
+FOLDER = pathlib.Path(__file__).parent.parent / "data"
 
 
 def random_bank(rng, n, m, n_y, K, C=None):

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Writes interpolation_knots.csv and interpolation_expected.csv beside itself: numpy.interp on uneven knots.
+"""Writes interpolation_knots.csv and interpolation_expected.csv into data/: numpy.interp on uneven knots.
 
-Usage: /usr/bin/python3 tests/golden/interpolation.py       (numpy 1.24)
+Usage: /usr/bin/python3 tests/golden/generate/interpolation.py       (numpy 1.24)
 The targets hold times before, between, exactly on and after the knots.
 """
 import os
 
 import numpy as np
 
-here = os.path.dirname(os.path.abspath(__file__))
+here = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data")
 generator = np.random.default_rng(20250500)
 knots = np.cumsum(generator.uniform(0.001, 0.3, 60)) - 2.0
 values = np.cumsum(generator.standard_normal(60))

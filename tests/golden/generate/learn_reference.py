@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Independent references for learning banks, and the golden files they make.
 
-    /usr/bin/python3 tests/golden/learn_reference.py
+    /usr/bin/python3 tests/golden/generate/learn_reference.py
 
-writes learn_weighted.json, learn_baseline.json and learn_noise_only.json beside itself: weighted regressions by
+writes learn_weighted.json, learn_baseline.json and learn_noise_only.json into data/: weighted regressions by
 statsmodels and by a general-purpose minimiser of the penalised likelihood, Kalman filter likelihoods maximised by
 Nelder-Mead, and the noise-switching competitor by statsmodels' RLM, numpy quantiles and the textbook filter of
 imm_reference.py. Runs are lists of samples; x is (N, n), u is (N, m).

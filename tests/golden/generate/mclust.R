@@ -2,7 +2,7 @@
 # `faithful` and `iris`. mclust's BIC and ICL have the opposite sign of ours; the file holds them as mclust gives them.
 # `classification` is the one of its hierarchical start (hc, model VVV) that its EM begins from.
 #
-# Run (Debian: r-base-core r-cran-mclust r-cran-jsonlite):  Rscript tests/golden/mclust.R > tests/golden/mclust.json
+# Run (Debian: r-base-core r-cran-mclust r-cran-jsonlite):  Rscript tests/golden/generate/mclust.R > tests/golden/data/mclust.json
 suppressMessages(library(mclust))
 suppressMessages(library(jsonlite))
 

@@ -1,7 +1,7 @@
 """Golden values for tests/mixture, independent of modebank: fits by scikit-learn's GaussianMixture, densities by mpmath
 at 50 digits. scipy's logpdf only cross-checks the latter: with features of different units it is itself 5e-11 off.
 
-Run:  /usr/bin/python3 tests/golden/mixture.py > tests/golden/mixture.json
+Run:  /usr/bin/python3 tests/golden/generate/mixture.py > tests/golden/data/mixture.json
 """
 import json
 import sys

@@ -1,7 +1,7 @@
-#include "ident/data_advice.hpp"
-#include "ident/not_a_number.hpp"
-#include "ident/run_check.hpp"
-#include "ident/stream_check.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/check/advice.hpp"
+#include "ident/check/run_check.hpp"
+#include "ident/check/stream_check.hpp"
 #include "tests/ident/ident_test_support.hpp"
 
 namespace modebank::test {

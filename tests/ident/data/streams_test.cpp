@@ -1,9 +1,9 @@
-#include "ident/join_streams.hpp"
+#include "ident/data/streams.hpp"
 
 #include <gtest/gtest.h>
 
-#include "io/csv.hpp"
-#include "io/read_file.hpp"
+#include "io/files/read_file.hpp"
+#include "io/import/csv.hpp"
 #include "tests/support/matrix_compare.hpp"
 #include "tests/support/paths.hpp"
 
@@ -19,7 +19,7 @@ constexpr double time_tolerance_s = 1e-12;  // sums and products of a few times
 
 Stream golden_stream(const char* name) {
   const std::string path = (test::golden_dir() / name).string();
-  const CsvTable table = parse_csv(path, read_file(path), {{"time", "value"}, ""});
+  const Table table = parse_csv(path, read_file(path), {{"time", "value"}, ""});
   const auto rows = static_cast<Eigen::Index>(table.rows());
   return {Eigen::Map<const VectorXd>(table.numbers[0].data(), rows),
           Eigen::Map<const VectorXd>(table.numbers[1].data(), rows).transpose()};

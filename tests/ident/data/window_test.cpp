@@ -1,8 +1,8 @@
-#include "ident/window.hpp"
+#include "ident/data/window.hpp"
 
-#include "ident/local_model.hpp"
-#include "ident/seed.hpp"
-#include "ident/window_summary.hpp"
+#include "ident/base/seed.hpp"
+#include "ident/fit/window_summary.hpp"
+#include "ident/model/local_model.hpp"
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -91,7 +91,7 @@ TEST(WindowSummary, HoldsMediansOfWhatIsDefined) {
 }
 
 TEST(Seed, HasTheStatedMixing) {
-  // tests/golden/derive_seed.py prints these.
+  // tests/golden/generate/derive_seed.py prints these.
   EXPECT_EQ(derive_seed(0, ""), 12014417281350144652ULL);
   EXPECT_EQ(derive_seed(1, "simulate.modes", 7), 4341455876973663748ULL);
 }

@@ -1,53 +1,13 @@
-#include <atomic>
-#include <cerrno>
-#include <cstdlib>
 #include <memory>
 
-#include "ident/batch_solver.hpp"
+#include "ident/fit/detail/batch/solver.hpp"
 #include "tests/ident/ident_test_support.hpp"
-
-// A program of its own, since it replaces these for all of its code: whatever takes memory, Eigen and operator new
-// included, comes through here.
-namespace {
-std::atomic<long> allocations = 0;
-}  // namespace
-
-#ifdef __SANITIZE_ADDRESS__
-extern "C" void __sanitizer_malloc_hook(const volatile void* /*memory*/, std::size_t /*bytes*/) { ++allocations; }
-extern "C" void __sanitizer_free_hook(const volatile void* /*memory*/) {}
-#else
-extern "C" {
-void* __libc_malloc(std::size_t bytes);
-void* __libc_calloc(std::size_t count, std::size_t bytes);
-void* __libc_realloc(void* memory, std::size_t bytes);
-void* __libc_memalign(std::size_t alignment, std::size_t bytes);
-
-void* malloc(std::size_t bytes) noexcept {
-  ++allocations;
-  return __libc_malloc(bytes);
-}
-void* calloc(std::size_t count, std::size_t bytes) noexcept {
-  ++allocations;
-  return __libc_calloc(count, bytes);
-}
-void* realloc(void* memory, std::size_t bytes) noexcept {
-  ++allocations;
-  return __libc_realloc(memory, bytes);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t bytes) noexcept {
-  ++allocations;
-  return __libc_memalign(alignment, bytes);
-}
-int posix_memalign(void** memory, std::size_t alignment, std::size_t bytes) noexcept {
-  ++allocations;
-  *memory = __libc_memalign(alignment, bytes);
-  return *memory ? 0 : ENOMEM;
-}
-}
-#endif
+#include "tests/support/allocation_counter.hpp"
 
 namespace modebank {
 namespace {
+
+using test::allocations;
 
 TEST(BatchSolverMemory, TheCounterSeesEigenAndOperatorNew) {
   const long before = allocations;

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "ident/error.hpp"
-#include "ident/window_audit.hpp"
-#include "tests/ident/batch_test_support.hpp"
+#include "ident/fit/audit.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/ident/fit/batch_test_support.hpp"
 #include "tests/support/effort.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -67,7 +67,7 @@ class Batch : public ::testing::TestWithParam<std::tuple<Loss, Prior>> {
 };
 
 TEST_P(Batch, EveryWindowIsAtAStationaryPointAndConvexOnesAtTheReference) {
-  for (const Index inputs : {0, 1, 2, 4, 6}) {
+  for (const Index inputs : {0, 1, 2, 4}) {
     const LinearStructure structure{1, inputs, inputs == 4};
     const Recording recording = hard_recording(structure, 120, false);
     FitOptions o = options();
@@ -121,7 +121,8 @@ TEST_P(Batch, HasTheSameLocalModelsAsCeres) {
         EXPECT_TRUE(batch.rank == ceres.rank);
         if (convex(o.loss)) {
           EXPECT_LE(batch.audit.cost_difference, WindowAudit::tolerance);
-          EXPECT_LE(batch.audit.parameter_difference, 1e-7);
+          EXPECT_LE(batch.audit.gradient, 1.1e-10);  // Ceres alone, below, gets no nearer than some 1e-7
+          EXPECT_LE(batch.audit.parameter_difference, 1e-6);
         }
         for (Index i = 0; i < batch.count(); ++i) {
           if (!near(batch.parameters.col(i), ceres.parameters.col(i), 1e-7)) {
@@ -230,13 +231,53 @@ TEST(BatchSolverOption, SaysWhatItCannotDo) {
   EXPECT_THROW(fit_windows(recording, o), ConfigurationError);
   o.solver = WindowSolver::automatic;
   EXPECT_EQ(fit_windows(recording, o).audit.batch, 0);
+  o.solver = WindowSolver::batch;
+  o.model = "slip";
+  EXPECT_THROW(fit_windows(recording, o), ConfigurationError);
+}
+
+TEST(WindowSolverAuto, DependsOnTheNumberOfWindowsAlone) {
+  std::mt19937_64 generator(5);
+  FitOptions o;
+  const auto recording = [&](Index windows) {
+    return test::make_recording(
+        {test::gaussian_run(test::skid_structure, test::skid_theta, 0.05, windows + o.length, generator)});
+  };
+  const WindowFits few = fit_windows(recording(most_ceres_windows), o);
+  EXPECT_EQ(few.count(), most_ceres_windows);
+  EXPECT_EQ(few.audit.ceres, most_ceres_windows);
+  EXPECT_EQ(few.audit.batch, 0);
+  EXPECT_EQ(few.audit.checked, 0);
+  EXPECT_EQ(few.audit.ceres_method, "Ceres, then Newton's method to a relative gradient of 1e-10");
+  EXPECT_EQ(few.audit.batch_method, "");
+  const WindowFits many = fit_windows(recording(most_ceres_windows + 1), o);
+  EXPECT_EQ(many.audit.batch + many.audit.ceres, most_ceres_windows + 1);
+  EXPECT_GT(many.audit.batch, most_ceres_windows * 99 / 100);
+  EXPECT_EQ(many.audit.checked, 200);
+  EXPECT_EQ(many.audit.replaced, 0);
+}
+
+TEST(WindowSolverAuto, CountsSolutionsNotAttempts) {
+  std::mt19937_64 generator(5);
+  Trajectory run = test::gaussian_run(test::skid_structure, test::skid_theta, 0.05, 150, generator);
+  run.state.middleCols(0, 40).setConstant(std::nan(""));  // windows without a transition
+  for (const WindowSolver solver : {WindowSolver::ceres, WindowSolver::batch}) {
+    FitOptions o;
+    const WindowFits fits = fit_by(solver, test::make_recording({run}), o);
+    const Index failed = (fits.status.array() == static_cast<int>(FitStatus::failed)).count();
+    EXPECT_GT(failed, 0);
+    EXPECT_EQ(fits.audit.batch + fits.audit.ceres, fits.count() - failed);
+    EXPECT_EQ(fits.audit.batch > 0, solver == WindowSolver::batch);
+  }
 }
 
 TEST(StreamedWindows, AreTheSameAsCollectedOnes) {
   const Recording recording = hard_recording(test::skid_structure, 200, true);
-  const WindowFits whole = fit_windows(recording, {});
+  FitOptions o;
+  o.solver = WindowSolver::batch;
+  const WindowFits whole = fit_windows(recording, o);
   Index seen = 0;
-  const WindowFits common = stream_windows(recording, {}, [&](const WindowFits& chunk, Index first) {
+  const WindowFits common = stream_windows(recording, o, [&](const WindowFits& chunk, Index first) {
     EXPECT_EQ(first, seen);
     EXPECT_TRUE(test::same_bits(chunk.parameters, whole.parameters.middleCols(first, chunk.count())));
     seen += chunk.count();
@@ -257,7 +298,7 @@ TEST(WindowAudits, SampleEveryPartAndRejectAWorseSolution) {
   const Recording recording = hard_recording(test::skid_structure, 100, false);
   const WindowFits fits = fit_windows(recording, {});
   const FitOptions options;
-  const WindowContext context(recording, options, test::skid_structure, fits.global);
+  const LinearWindows context(recording, options, test::skid_structure, fits.global);
   const ParameterPrior prior{fits.global.theta, fits.prior_sd};
   LocalModel wrong = fits.at(0);
   wrong.theta(0) += 1e-3;
@@ -267,6 +308,7 @@ TEST(WindowAudits, SampleEveryPartAndRejectAWorseSolution) {
   EXPECT_TRUE(add_to_audit(audit_window(context, fits.windows[0], &prior, wrong), audit));
   EXPECT_EQ(audit.replaced, 1);
   EXPECT_GT(audit.cost_difference, WindowAudit::tolerance);
+  EXPECT_GT(audit.gradient, WindowAudit::gradient_tolerance);
 }
 
 }  // namespace

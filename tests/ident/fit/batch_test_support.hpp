@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "ident/batch_solver.hpp"
+#include "ident/fit/detail/batch/solver.hpp"
 #include "tests/ident/ident_test_support.hpp"
 
 namespace modebank::test {

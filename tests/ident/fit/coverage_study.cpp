@@ -1,4 +1,4 @@
-#include "tests/ident/coverage_study.hpp"
+#include "tests/ident/fit/coverage_study.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -10,11 +10,11 @@
 #include <functional>
 #include <random>
 
-#include "ident/confidence.hpp"
-#include "ident/fit_window.hpp"
-#include "ident/regression.hpp"
-#include "ident/robust_scale.hpp"
-#include "ident/seed.hpp"
+#include "ident/base/seed.hpp"
+#include "ident/fit/confidence.hpp"
+#include "ident/fit/fit_window.hpp"
+#include "ident/fit/scale.hpp"
+#include "ident/model/transitions.hpp"
 
 namespace modebank::test {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "ident/enum_names.hpp"
-#include "ident/local_model.hpp"
+#include "ident/model/local_model.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "tests/ident/coverage_study.hpp"
+#include "tests/ident/fit/coverage_study.hpp"
 
 namespace modebank {
 namespace {

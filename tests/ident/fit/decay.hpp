@@ -1,5 +1,5 @@
 #pragma once
-#include "ident/templated_model.hpp"
+#include "ident/model/templated_model.hpp"
 namespace modebank::models {
 struct DecayModel {  // a speed that decays toward gain * u
   static constexpr int states = 1, inputs = 1, parameters = 2;

@@ -1,6 +1,7 @@
 #include <limits>
 
-#include "ident/fit_window.hpp"
+#include "ident/fit/fit_window.hpp"
+#include "ident/fit/fit_windows.hpp"
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

@@ -1,11 +1,13 @@
+#include "ident/fit/fit_windows.hpp"
+
 #include <tbb/global_control.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cstring>
 
-#include "ident/fit_window.hpp"
-#include "ident/robust_scale.hpp"
+#include "ident/fit/fit_window.hpp"
+#include "ident/fit/scale.hpp"
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

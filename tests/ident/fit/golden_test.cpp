@@ -1,5 +1,6 @@
-#include "ident/error.hpp"
-#include "ident/fit_window.hpp"
+#include "ident/fit/fit_window.hpp"
+#include "ident/fit/global_model.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

@@ -1,12 +1,13 @@
+#include "ident/fit/loss.hpp"
+
 #include <ceres/gradient_checker.h>
 
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <functional>
 
-#include "ident/m_estimate.hpp"
-#include "ident/residuals.hpp"
-#include "ident/robust_loss.hpp"
+#include "ident/fit/minimise.hpp"
+#include "ident/fit/residuals.hpp"
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

@@ -1,11 +1,11 @@
 #include <cmath>
 #include <fstream>
 
-#include "ident/error.hpp"
-#include "ident/linear_motion.hpp"
-#include "ident/model_fit.hpp"
-#include "ident/model_windows.hpp"
-#include "tests/ident/decay.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "ident/fit/motion_fit.hpp"
+#include "ident/model/linear_motion.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/ident/fit/decay.hpp"
 #include "tests/ident/ident_test_support.hpp"
 
 namespace modebank {
@@ -263,10 +263,10 @@ TEST(MotionModel, UnexcitedWindowsAreAStatusAndTakeThePrior) {
 }
 
 TEST(MotionModel, TheReadmesExampleIsAWholeModel) {
-  std::ifstream example(test::golden_dir() / "../ident/decay.hpp"), readme(test::golden_dir() / "../../README.md");
+  std::ifstream example(test::project_dir() / "tests/ident/fit/decay.hpp"), readme(test::project_dir() / "README.md");
   const std::string code{std::istreambuf_iterator<char>(example), {}}, text{std::istreambuf_iterator<char>(readme), {}};
   ASSERT_FALSE(code.empty());
-  EXPECT_NE(text.find(code), std::string::npos) << "README.md and tests/ident/decay.hpp differ";
+  EXPECT_NE(text.find(code), std::string::npos) << "README.md and tests/ident/fit/decay.hpp differ";
 
   const auto model = models::make_decay({});
   const Eigen::Vector2d theta(0.7, 1.3);

@@ -4,8 +4,8 @@
 #include <sstream>
 #include <string>
 
-#include "ident/model_fit.hpp"
-#include "ident/templated_model.hpp"
+#include "ident/fit/motion_fit.hpp"
+#include "ident/model/templated_model.hpp"
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/paths.hpp"
 

@@ -1,9 +1,11 @@
+#include "ident/fit/prior.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "ident/error.hpp"
-#include "ident/fit_window.hpp"
-#include "ident/parameter_prior.hpp"
+#include "ident/fit/fit_window.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

@@ -2,7 +2,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "ident/lagged_samples.hpp"
+#include "ident/base/not_a_number.hpp"
 #include "tests/ident/ident_test_support.hpp"
 
 namespace modebank {
@@ -23,6 +23,24 @@ Eigen::MatrixXd read_rows(const std::filesystem::path& path) {
   for (std::size_t i = 0; i < rows.size(); ++i)
     for (std::size_t j = 0; j < rows[i].size(); ++j) result(i, j) = rows[i][j];
   return result;
+}
+
+/// Rows i * rows .. of `lags` blocks: `signal` as it was i samples earlier than its column plus `ahead`; NaN before the
+/// run.
+Eigen::MatrixXd lagged(const Eigen::MatrixXd& signal, Index lags, Index ahead, Index columns) {
+  Eigen::MatrixXd blocks = Eigen::MatrixXd::Constant(signal.rows() * lags, columns, not_a_number);
+  for (Index k = 0; k < columns; ++k)
+    for (Index i = 0; i < lags; ++i)
+      if (k + ahead - i >= 0) blocks.col(k).segment(i * signal.rows(), signal.rows()) = signal.col(k + ahead - i);
+  return blocks;
+}
+
+/// z[k] of every sample, n x N, and v[k] of every transition, m x (N - 1), of the model's state space.
+Eigen::MatrixXd stacked_states(const LinearStructure& s, const Trajectory& run) {
+  return lagged(run.state, s.state_lags, 0, run.samples());
+}
+Eigen::MatrixXd acting_inputs(const LinearStructure& s, const Trajectory& run) {
+  return lagged(run.input, s.input_lags, 1 - s.input_delay, run.transitions());
 }
 
 /// ARX na, nb, nk in modebank's terms.

@@ -1,10 +1,9 @@
-#include "ident/lag.hpp"
-
-#include "ident/lag_choice.hpp"
-#include "ident/lag_cross_validation.hpp"
-#include "ident/lag_track.hpp"
-#include "ident/pooled_estimate.hpp"
-#include "tests/ident/lag_test_support.hpp"
+#include "ident/lag/choice.hpp"
+#include "ident/lag/cross_validation.hpp"
+#include "ident/lag/estimate.hpp"
+#include "ident/lag/pooled_estimate.hpp"
+#include "ident/lag/track.hpp"
+#include "tests/ident/lag/lag_test_support.hpp"
 
 namespace modebank::test {
 namespace {

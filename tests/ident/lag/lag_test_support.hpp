@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "ident/input_clock.hpp"
-#include "ident/lag_choice.hpp"
+#include "ident/data/input_clock.hpp"
+#include "ident/lag/choice.hpp"
 #include "tests/ident/ident_test_support.hpp"
 
 namespace modebank::test {

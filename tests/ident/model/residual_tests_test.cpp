@@ -1,4 +1,4 @@
-#include "ident/residual_tests.hpp"
+#include "ident/model/residual_tests.hpp"
 
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>

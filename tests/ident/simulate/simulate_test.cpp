@@ -1,12 +1,12 @@
-#include "ident/simulate.hpp"
+#include "ident/simulate/simulate.hpp"
 
 #include <cmath>
 #include <set>
 
-#include "ident/error.hpp"
-#include "ident/fit_window.hpp"
-#include "ident/input_law.hpp"
-#include "ident/seed.hpp"
+#include "ident/base/seed.hpp"
+#include "ident/fit/global_model.hpp"
+#include "ident/simulate/input_law.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

@@ -1,4 +1,4 @@
-#include "ident/simulate_vehicle.hpp"
+#include "ident/simulate/simulate_vehicle.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ident/error.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

@@ -1,12 +1,12 @@
 // The simulated vehicle against laws that do not come from its code.
-#include "ident/vehicle.hpp"
+#include "ident/simulate/vehicle.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "ident/ground.hpp"
+#include "ident/simulate/ground.hpp"
 
 namespace modebank {
 namespace {

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "tests/io/archive_fixture.hpp"
+#include "tests/io/archive/archive_fixture.hpp"
 
 namespace modebank::test {
 

@@ -1,10 +1,12 @@
 #include <boost/random/uniform_int_distribution.hpp>
 #include <cstdlib>
 
-#include "ident/seed.hpp"
-#include "io/inspect.hpp"
-#include "tests/io/archive_file_fixture.hpp"
-#include "tests/io/archive_patch.hpp"
+#include "ident/base/seed.hpp"
+#include "io/archive/bank/load_bank.hpp"
+#include "io/archive/inspect.hpp"
+#include "io/archive/study_file.hpp"
+#include "tests/io/archive/archive_file_fixture.hpp"
+#include "tests/io/archive/archive_patch.hpp"
 #include "tests/support/effort.hpp"
 
 // HDF5 1.10 leaks inside when a metadata checksum is wrong; the sanitizer build shall still report our own leaks.
@@ -47,6 +49,25 @@ TEST_F(ArchiveDamage, TruncatedFilesAreErrorsAtEveryLength) {
   }
   test::write_file(path, bytes.substr(0, bytes.size() - 1));
   expect_unreadable("truncated file");
+}
+
+TEST_F(ArchiveDamage, TheHashIsCheckedBeforeHdf5SeesTheFile) {
+  std::string bytes = read_file(path);
+  bytes[bytes.find("OHDR") + 5] ^= 1;  // of the root group: HDF5 could not open the file
+  test::write_file(path, bytes);
+  const auto says =
+      ThrowsMessage<DataError>(AllOf(HasSubstr(path.string()), HasSubstr("damaged: the content's SHA-256")));
+  EXPECT_THAT([&] { read_archive(path); }, says);
+  EXPECT_THAT([&] { load_bank(path); }, says);
+}
+
+TEST_F(ArchiveDamage, ATrialsScoresAreReadOrAnError) {
+  EXPECT_EQ(read_trial_scores(path).config_hash, read_archive(path).provenance.config_hash);
+  test::empty_text_attribute(path, "/", "config_hash");
+  EXPECT_THAT([&] { read_trial_scores(path); }, ThrowsMessage<DataError>(HasSubstr("config_hash")));
+  const std::vector<SummaryRow> summary = test::full_archive(2, 1).summary;
+  EXPECT_NO_THROW(pooled_scores(summary, {"wz", "vx"}));
+  EXPECT_THROW(pooled_scores(summary, {"wz"}), DataError);
 }
 
 TEST_F(ArchiveDamage, WhatIsNotAnArchiveIsNamed) {

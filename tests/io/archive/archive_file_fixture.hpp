@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "ident/error.hpp"
-#include "io/archive.hpp"
-#include "io/read_file.hpp"
-#include "tests/io/archive_fixture.hpp"
+#include "io/archive/archive.hpp"
+#include "io/files/read_file.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/io/archive/archive_fixture.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank::test {

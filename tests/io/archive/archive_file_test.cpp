@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <thread>
 
-#include "io/sha256.hpp"
-#include "tests/io/archive_file_fixture.hpp"
+#include "io/files/sha256.hpp"
+#include "tests/io/archive/archive_file_fixture.hpp"
 
 namespace modebank {
 namespace {
@@ -26,6 +26,17 @@ TEST_F(ArchiveFile, UserBlockHoldsTheHashOfTheRestAndZeros) {
   EXPECT_EQ(bytes.substr(64, 448), std::string(448, '\0'));
   EXPECT_EQ(bytes.substr(512, 8), "\x89HDF\r\n\x1a\n");
   EXPECT_THAT(files(), ::testing::ElementsAre("archive.h5"));
+}
+
+TEST_F(ArchiveFile, IsWrittenByTwoThreadsAtOnce) {
+  const auto write_some = [&](const std::string& name) {
+    for (int i = 0; i < 5; ++i) write_archive(folder.path() / name, test::full_archive(2, 1));
+  };
+  std::thread other([&] { write_some("other.h5"); });
+  EXPECT_NO_THROW(write_some("one.h5"));
+  other.join();
+  EXPECT_EQ(read_file(folder.path() / "one.h5"), read_file(path));
+  EXPECT_EQ(read_file(folder.path() / "other.h5"), read_file(path));
 }
 
 TEST_F(ArchiveFile, EqualContentsGiveEqualBytes) {

@@ -1,8 +1,8 @@
-#include "tests/io/archive_fixture.hpp"
+#include "tests/io/archive/archive_fixture.hpp"
 
 #include <limits>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank::test {
 
@@ -248,7 +248,7 @@ Archive full_archive(Index n, Index m) {
   archive.baseline = make_bank(structure, 1, false);
   archive.noise_only = make_bank(structure, modes, false);
   for (const char* filter : {"bank", "baseline", "noise_only"}) {
-    FilterEvaluation evaluation{filter, {}};
+    FilterEvaluation evaluation{filter, {}, {}};
     const Index count = evaluation.filter == "baseline" ? 1 : modes;
     for (const Trajectory& run : archive.recording->runs)
       evaluation.runs.push_back(make_evaluation(n, run.samples(), count));

@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "io/archive.hpp"
+#include "io/archive/archive.hpp"
 
 namespace modebank::test {
 
 /// Every field of the Archive struct filled, three runs, K = 3 modes, M = 9 windows. Entry i of sample (window, mode)
-/// s of an array is base + 100 s + i + 1/3: tests/golden/check_archive.py states the same formula, and the third has no
-/// finite binary expansion, so a lost bit shows.
+/// s of an array is base + 100 s + i + 1/3: tests/golden/generate/check_archive.py states the same formula, and the
+/// third has no finite binary expansion, so a lost bit shows.
 Archive full_archive(Index states, Index inputs);
 
 /// rows x cols of base + 100 col + row + 1/3.

@@ -1,13 +1,13 @@
-#include "tests/io/archive_patch.hpp"
+#include "tests/io/archive/archive_patch.hpp"
 
 #include <hdf5.h>
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "io/read_file.hpp"
-#include "io/sha256.hpp"
-#include "io/user_block.hpp"
+#include "io/archive/bank/open_archive.hpp"
+#include "io/files/read_file.hpp"
+#include "io/files/sha256.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank::test {
@@ -57,14 +57,16 @@ void write_foreign_hdf5(const std::filesystem::path& path, unsigned long long us
   H5Pclose(creation);
 }
 
-void patch_text_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name,
-                          const std::string& value) {
+namespace {
+
+/// `space`: of the attribute, and closed here.
+void replace_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name,
+                       const std::string& value, hid_t space) {
   const hid_t file = open_for_change(path);
   const hid_t holder = must(H5Oopen(file, object.c_str(), H5P_DEFAULT));
   must(H5Adelete(holder, name.c_str()));
   const hid_t type = must(H5Tcopy(H5T_C_S1));
   must(H5Tset_size(type, value.size()));
-  const hid_t space = must(H5Screate(H5S_SCALAR));
   const hid_t attribute = must(H5Acreate2(holder, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT));
   must(H5Awrite(attribute, type, value.data()));
   H5Aclose(attribute);
@@ -73,6 +75,18 @@ void patch_text_attribute(const std::filesystem::path& path, const std::string& 
   H5Oclose(holder);
   must(H5Fclose(file));
   sign(path);
+}
+
+}  // namespace
+
+void patch_text_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name,
+                          const std::string& value) {
+  replace_attribute(path, object, name, value, must(H5Screate(H5S_SCALAR)));
+}
+
+void empty_text_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name) {
+  const hsize_t none = 0;
+  replace_attribute(path, object, name, "x", must(H5Screate_simple(1, &none, nullptr)));
 }
 
 void remove_member(const std::filesystem::path& path, const std::string& member) {

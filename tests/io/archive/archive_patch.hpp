@@ -15,6 +15,8 @@ enum class Kind { real, integer, text };
 void write_foreign_hdf5(const std::filesystem::path& path, unsigned long long user_block_bytes);
 void patch_text_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name,
                           const std::string& value);
+/// The attribute becomes a list of no texts.
+void empty_text_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name);
 void remove_member(const std::filesystem::path& path, const std::string& member);
 /// The table keeps its first columns only.
 void keep_columns(const std::filesystem::path& path, const std::string& table, unsigned columns);

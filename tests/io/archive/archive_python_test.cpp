@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "tests/io/archive_fixture.hpp"
+#include "tests/io/archive/archive_fixture.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank {
@@ -18,7 +18,7 @@ TEST(ArchivePython, H5pyFindsWhatTheContractPromises) {
   const test::TemporaryFolder folder;
   const std::string path = (folder.path() / "full.h5").string();
   write_archive(path, test::full_archive(2, 1));
-  const std::string script = (test::golden_dir() / "check_archive.py").string();
+  const std::string script = (test::golden_dir().parent_path() / "generate/check_archive.py").string();
   EXPECT_EQ(std::system((std::string(python) + " '" + script + "' '" + path + "'").c_str()), 0);
 }
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <boost/random/uniform_01.hpp>
 
-#include "filter/evaluate.hpp"
-#include "ident/error.hpp"
-#include "ident/fit_window.hpp"
-#include "ident/seed.hpp"
-#include "io/archive.hpp"
-#include "tests/io/archive_fixture.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/base/seed.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/bank/load_bank.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/io/archive/archive_fixture.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank {
@@ -46,6 +48,19 @@ TEST(ArchiveRoundTrip, KeepsANoiseComponent) {
   mixture.noise.lower = -Eigen::VectorXd::LinSpaced(mixture.features(), 1.0, 2.0);
   mixture.noise.upper = Eigen::VectorXd::LinSpaced(mixture.features(), 0.5, 3.0);
   expect_same(round_trip(archive), archive);
+}
+
+TEST(ArchiveRoundTrip, ABankThatNoFilterCanRunIsRefusedAtLoad) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "a.h5";
+  for (const NoiseAdaptation odd : {NoiseAdaptation{not_a_number, 5.0}, {1.5, 5.0}, {0.98, 0.0}}) {
+    Archive archive = full_archive(2, 1);
+    archive.bank->noise_adaptation = odd;
+    write_archive(path, archive);
+    EXPECT_FALSE(verify_archive(path).problems.empty());
+    EXPECT_THROW(read_archive(path), DataError);
+    EXPECT_THROW(load_bank(path), DataError);
+  }
 }
 
 TEST(ArchiveRoundTrip, LargeArchivesAreMadeInTheFileSystem) {

@@ -1,11 +1,11 @@
-#include "io/inspect.hpp"
+#include "io/archive/inspect.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "ident/error.hpp"
-#include "io/archive.hpp"
-#include "tests/io/archive_fixture.hpp"
+#include "io/archive/archive.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/io/archive/archive_fixture.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank {

@@ -1,8 +1,8 @@
-#include "io/csv.hpp"
+#include "io/import/csv.hpp"
 
-#include "ident/error.hpp"
-#include "io/csv_number.hpp"
-#include "tests/io/expect_error.hpp"
+#include "io/import/csv_number.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/io/import/expect_error.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank {
@@ -13,16 +13,16 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-CsvTable parse(std::string_view content, const CsvRequest& request = {{"a", "b"}, ""}) {
+Table parse(std::string_view content, const TableRequest& request = {{"a", "b"}, ""}) {
   return parse_csv("f.csv", content, request);
 }
 
-std::string data_error(std::string_view content, const CsvRequest& request = {{"a", "b"}, ""}) {
+std::string data_error(std::string_view content, const TableRequest& request = {{"a", "b"}, ""}) {
   return message_of<DataError>([&] { parse(content, request); });
 }
 
 TEST(Csv, ReadsNamedColumnsInAnyOrder) {
-  const CsvTable table = parse("x,b,c,a\n1,2,3,4\n5,6,7,8\n");
+  const Table table = parse("x,b,c,a\n1,2,3,4\n5,6,7,8\n");
   ASSERT_EQ(table.numbers.size(), 2);
   EXPECT_THAT(table.numbers[0], ElementsAre(4, 8));
   EXPECT_THAT(table.numbers[1], ElementsAre(2, 6));
@@ -31,14 +31,14 @@ TEST(Csv, ReadsNamedColumnsInAnyOrder) {
 }
 
 TEST(Csv, OtherColumnsMayHoldAnything) {
-  const CsvTable table = parse("a,note,b\n1,\"x, \"\"y\"\"\nz, w\",2\n3,nan,4\n5,,6\n");
+  const Table table = parse("a,note,b\n1,\"x, \"\"y\"\"\nz, w\",2\n3,nan,4\n5,,6\n");
   EXPECT_THAT(table.numbers[0], ElementsAre(1, 3, 5));
   EXPECT_THAT(table.numbers[1], ElementsAre(2, 4, 6));
   EXPECT_THAT(table.line, ElementsAre(2, 4, 5)) << "the first row spans two lines";
 }
 
 TEST(Csv, ReadsTextAndNumbersOfOneColumn) {
-  const CsvTable table = parse("a,b\n 07 ,1\n\"8\",2\n", {{"a"}, "a"});
+  const Table table = parse("a,b\n 07 ,1\n\"8\",2\n", {{"a"}, "a"});
   EXPECT_THAT(table.numbers[0], ElementsAre(7, 8));
   EXPECT_THAT(table.text, ElementsAre("07", "8"));
 }
@@ -48,7 +48,7 @@ TEST(Csv, KeepsQuotedTextAsItIs) {
 }
 
 TEST(Csv, AcceptsMarkCrlfBlanksAndQuotedNames) {
-  const CsvTable table = parse("\xEF\xBB\xBF\"a\" , \"b\"\r\n 1 ,\t+2\r\n\"3\",\" 4 \"\r\n");
+  const Table table = parse("\xEF\xBB\xBF\"a\" , \"b\"\r\n 1 ,\t+2\r\n\"3\",\" 4 \"\r\n");
   EXPECT_THAT(table.numbers[0], ElementsAre(1, 3));
   EXPECT_THAT(table.numbers[1], ElementsAre(2, 4));
   EXPECT_THAT(table.line, ElementsAre(2, 3));
@@ -59,7 +59,7 @@ TEST(Csv, AcceptsMissingLastLineBreak) { EXPECT_THAT(parse("a,b\n1,2\n3,4").numb
 TEST(Csv, AcceptsEmptyLinesAroundTheTable) {
   for (const char* content :
        {"a,b\n1,2\n\n\n", "a,b\n1,2\n  \n\t\n   ", "\n \na,b\n1,2\n", "a,b\r\n1,2\r\n\r\n  \r\n"}) {
-    const CsvTable table = parse(content);
+    const Table table = parse(content);
     EXPECT_THAT(table.numbers[0], ElementsAre(1)) << content;
   }
   EXPECT_THAT(parse("\n \na,b\n1,2\n").line, ElementsAre(4));
@@ -71,7 +71,7 @@ TEST(Csv, AcceptsHeaderOnly) {
 }
 
 TEST(Csv, ReadsEveryDoubleBack) {
-  const CsvTable table = parse("a,b\n0.1,-1.7976931348623157e308\n4.9406564584124654e-324,6.02e+23\n1e-400,.5\n");
+  const Table table = parse("a,b\n0.1,-1.7976931348623157e308\n4.9406564584124654e-324,6.02e+23\n1e-400,.5\n");
   EXPECT_THAT(table.numbers[0], ElementsAre(0.1, 4.9406564584124654e-324, 0.0));
   EXPECT_THAT(table.numbers[1], ElementsAre(-1.7976931348623157e308, 6.02e+23, 0.5));
 }
@@ -80,7 +80,7 @@ TEST(Csv, ReadsMoreThanOneChunk) {
   std::string content = "a,text,b\n";
   const int rows = 60000;  // about 1.4 MB, several chunks; quoted fields straddle their borders
   for (int i = 0; i < rows; ++i) content += std::to_string(i) + ",\"x,\ny\"," + std::to_string(2 * i) + ".5\n";
-  const CsvTable table = parse(content);
+  const Table table = parse(content);
   ASSERT_EQ(table.rows(), rows);
   for (int i = 0; i < rows; ++i) {
     ASSERT_EQ(table.numbers[0][i], i);

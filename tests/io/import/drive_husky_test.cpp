@@ -3,15 +3,15 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "ident/fit_window.hpp"
-#include "ident/model_fit.hpp"
-#include "ident/model_windows.hpp"
-#include "ident/templated_model.hpp"
-#include "io/import.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "ident/fit/global_model.hpp"
+#include "ident/fit/motion_fit.hpp"
+#include "ident/model/templated_model.hpp"
+#include "io/import/import.hpp"
 #include "tests/support/paths.hpp"
 
 // The DRIVE data (a Husky under random commands) against the figures of ../shared/data/drive_husky/README.md and of
-// tests/golden/drive_husky.py.
+// tests/golden/generate/drive_husky.py.
 namespace modebank {
 namespace {
 

@@ -1,7 +1,7 @@
-#include "io/file_patterns.hpp"
+#include "io/import/file_patterns.hpp"
 
-#include "ident/error.hpp"
-#include "tests/io/expect_error.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/io/import/expect_error.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank {

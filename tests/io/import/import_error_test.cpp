@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "tests/io/import_fixture.hpp"
+#include "tests/io/import/import_fixture.hpp"
 
 namespace modebank {
 namespace {

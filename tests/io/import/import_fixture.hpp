@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "ident/error.hpp"
-#include "io/import.hpp"
-#include "tests/io/expect_error.hpp"
+#include "io/import/import.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/io/import/expect_error.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank::test {

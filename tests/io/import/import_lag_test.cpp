@@ -1,6 +1,6 @@
 #include <sstream>
 
-#include "tests/io/import_fixture.hpp"
+#include "tests/io/import/import_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank::test {

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "ident/not_a_number.hpp"
-#include "tests/io/import_fixture.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "tests/io/import/import_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

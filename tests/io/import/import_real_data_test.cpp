@@ -2,9 +2,9 @@
 
 #include <cstdlib>
 
-#include "io/csv.hpp"
-#include "io/import.hpp"
-#include "io/read_file.hpp"
+#include "io/files/read_file.hpp"
+#include "io/import/csv.hpp"
+#include "io/import/import.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank {
@@ -37,7 +37,7 @@ TEST(ImportRealData, IceTransitions) {
 TEST(ImportRealData, IceAgreesWithNumpy) {
   MODEBANK_NEEDS_SHARED_DATA();
   const std::string path = (test::golden_dir() / "ice_import.csv").string();
-  const CsvTable golden =
+  const Table golden =
       parse_csv(path, read_file(path),
                 {{"samples", "first", "last", "mean_wz", "mean_wz_squared", "mean_velL", "mean_velR"}, "run"});
   const Recording recording = import_data(ice_options()).recording;

@@ -1,9 +1,9 @@
-#include "io/import.hpp"
+#include "io/import/import.hpp"
 
 #include <tbb/global_control.h>
 
-#include "io/sha256.hpp"
-#include "tests/io/import_fixture.hpp"
+#include "io/files/sha256.hpp"
+#include "tests/io/import/import_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

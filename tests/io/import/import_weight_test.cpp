@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/io/import_fixture.hpp"
+#include "tests/io/import/import_fixture.hpp"
 
 namespace modebank {
 namespace {

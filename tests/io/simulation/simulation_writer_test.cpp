@@ -1,10 +1,10 @@
-#include "io/simulation_writer.hpp"
+#include "io/simulation/simulation_writer.hpp"
 
-#include "ident/seed.hpp"
-#include "io/csv.hpp"
-#include "io/read_file.hpp"
-#include "io/simulation_files.hpp"
-#include "tests/io/import_fixture.hpp"
+#include "ident/base/seed.hpp"
+#include "io/files/read_file.hpp"
+#include "io/import/csv.hpp"
+#include "io/simulation/simulation_files.hpp"
+#include "tests/io/import/import_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
@@ -90,10 +90,10 @@ TEST_F(SimulationWriter, WritesTheTwoFilesOfEveryRun) {
 TEST_F(SimulationWriter, WritesModesAndExtendsTheStates) {
   const SimulatedRun run = make_run(20, 0);
   write_simulation({run}, layout);
-  const CsvTable pro = parse_csv("pro", read_file(layout.folder / "pro_00.csv"), {{"mode"}, ""});
+  const Table pro = parse_csv("pro", read_file(layout.folder / "pro_00.csv"), {{"mode"}, ""});
   ASSERT_EQ(pro.rows(), 20);
   for (Index k = 0; k < 20; ++k) EXPECT_EQ(pro.numbers[0][k], run.mode(k));
-  const CsvTable imu = parse_csv("imu", read_file(layout.folder / "imu_00.csv"), {{"time", "wz"}, ""});
+  const Table imu = parse_csv("imu", read_file(layout.folder / "imu_00.csv"), {{"time", "wz"}, ""});
   EXPECT_GE(imu.numbers[0].back(), run.measured.time_s(19) + 1.0 / 65.0 - 1e-9);
   EXPECT_EQ(imu.numbers[1].back(), run.measured.state(0, 19)) << "held after the last sample";
 }

@@ -1,10 +1,9 @@
-#include "io/vehicle_writer.hpp"
-
 #include <algorithm>
 #include <cmath>
 
-#include "io/csv.hpp"
-#include "tests/io/import_fixture.hpp"
+#include "io/import/csv.hpp"
+#include "io/simulation/simulation_writer.hpp"
+#include "tests/io/import/import_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "ident/seed.hpp"
-#include "mixture/em_step.hpp"
+#include "ident/base/seed.hpp"
+#include "mixture/detail/step.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 
 namespace modebank::test {

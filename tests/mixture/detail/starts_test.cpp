@@ -1,17 +1,15 @@
 // Starts, moves out of poor optima, and matching of components.
-#include "mixture/starts.hpp"
+#include "mixture/detail/starts.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
-#include <set>
+#include <stdexcept>
 
-#include "mixture/assignment.hpp"
-#include "mixture/hierarchical.hpp"
-#include "mixture/kmeans_kernels.hpp"
-#include "mixture/point_blocks.hpp"
-#include "mixture/split_merge.hpp"
+#include "mixture/bootstrap.hpp"
+#include "mixture/detail/cloud.hpp"
+#include "mixture/detail/split_merge.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -30,44 +28,12 @@ GaussianMixture six_clusters() {
   return mixture;
 }
 
-TEST(Agglomeration, FindsSeparateClusters) {
-  const Eigen::MatrixXd points = draw(six_clusters(), 120, 1);
-  const std::vector<int> labels = agglomerate(points).labels(6);
-  const Eigen::MatrixXd memberships = responsibilities(six_clusters(), points);
-  for (Index i = 0; i < 120; ++i)
-    for (Index j = 0; j < i; ++j) {
-      Index a = 0, b = 0;
-      memberships.col(i).maxCoeff(&a);
-      memberships.col(j).maxCoeff(&b);
-      EXPECT_EQ(labels[static_cast<std::size_t>(i)] == labels[static_cast<std::size_t>(j)], a == b) << i << " " << j;
-    }
-}
-
-TEST(Agglomeration, EveryNumberOfClustersIsAPartition) {
-  const Agglomeration tree = agglomerate(draw(three_clusters(3.0), 40, 2));
-  ASSERT_EQ(tree.merges.size(), 39u);
-  for (Index k = 1; k <= 40; ++k) {
-    const std::vector<int> labels = tree.labels(k);
-    const std::set<int> distinct(labels.begin(), labels.end());
-    EXPECT_EQ(std::ssize(distinct), k);
-    EXPECT_EQ(*distinct.rbegin(), k - 1);
-    EXPECT_EQ(labels.front(), 0);
-  }
-}
-
-TEST(Agglomeration, CoincidingPointsAndOnePoint) {
-  const std::vector<int> labels = agglomerate(Eigen::MatrixXd::Ones(2, 10)).labels(3);
-  EXPECT_EQ(labels.size(), 10u);
-  EXPECT_EQ(agglomerate(Eigen::MatrixXd::Ones(2, 1)).labels(1), std::vector<int>{0});
-}
-
 TEST(Starts, EveryKindFindsSeparateClusters) {
   const Eigen::MatrixXd points = draw(six_clusters(), 600, 3);
   EmOptions options;
   options.restarts = 3;
   const double truth = fit_em(points, six_clusters(), options).log_likelihood;
-  for (const StartKind kind :
-       {StartKind::automatic, StartKind::kmeans_plus_plus, StartKind::random, StartKind::hierarchical}) {
+  for (const StartKind kind : {StartKind::kmeans_plus_plus, StartKind::random}) {
     options.start = kind;
     const EmResult fit = fit_em(points, 6, options, 1);
     EXPECT_NEAR(fit.log_likelihood, truth, 1e-3) << name_of(kind);
@@ -75,36 +41,30 @@ TEST(Starts, EveryKindFindsSeparateClusters) {
   }
 }
 
-TEST(Kmeans, KernelsAgreeWithDistancesOneByOne) {
-  for (const Index features : {1, 3, 7}) {
-    std::mt19937_64 generator(5);
-    const auto number = [&] { return static_cast<double>(generator() % 2000) / 1000.0 - 1.0; };
-    const Eigen::MatrixXd points = Eigen::MatrixXd::NullaryExpr(features, 200, number);
-    const Eigen::VectorXd weights = Eigen::VectorXd::NullaryExpr(200, [&] { return std::abs(number()); });
-    Eigen::MatrixXd centers = Eigen::MatrixXd::NullaryExpr(features, 9, number);
-    centers.col(8) = centers.col(2);  // a tie: the lower index
-    const PointBlocks blocks(PointSet(points, weights), FeatureScale::identity(features));
-    AlignedBuffer stage = blocks.stage(), nearest(block_size);
-    std::vector<int> labels(block_size);
-    for (Index b = 0; b < blocks.blocks(); ++b) {
-      const em::Block block = blocks.block(b, stage);
-      em::kmeans_kernels().nearest(block, static_cast<int>(features), centers.data(), 9, labels.data());
-      std::fill_n(nearest.data(), block_size, 1e300);
-      double sum = 0.0, expected = 0.0;
-      for (Index k = 0; k < 9; ++k)
-        sum = em::kmeans_kernels().closer(block, static_cast<int>(features), centers.col(k).data(), nearest.data(),
-                                          nearest.data());
-      for (Index i = 0; i < blocks.points_in(b); ++i) {
-        const Index point = b * block_size + i;
-        Index best = 0;
-        const double distance = (centers.colwise() - points.col(point)).colwise().squaredNorm().minCoeff(&best);
-        EXPECT_EQ(labels[static_cast<std::size_t>(i)], best);
-        EXPECT_NEAR(nearest.data()[i], distance, 1e-14);
-        expected += weights(point) * distance;
-      }
-      EXPECT_NEAR(sum, expected, 1e-12);
-    }
-  }
+/// The moments of clusters one by one (numpy's words: within-cluster scatter and pooled scatter).
+TEST(Starts, ClustersMomentsAreDrawnTowardsThePooledOnes) {
+  Eigen::MatrixXd points(1, 4);
+  points << 0.0, 2.0, 100.0, 104.0;
+  const Eigen::VectorXd weights = (Eigen::VectorXd(4) << 1.0, 1.0, 1.0, 3.0).finished();
+  const PointBlocks blocks(PointSet(points, weights), FeatureScale::identity(1));
+  std::mt19937_64 generator(1);
+  const GaussianMixture start = kmeans_start(blocks, 2, EmOptions{}, generator);
+  const Index low = start.means(0) < 50.0 ? 0 : 1;
+  EXPECT_NEAR(start.means(low), 1.0, 1e-14);
+  EXPECT_NEAR(start.means(1 - low), 103.0, 1e-14);
+  // Scatters 2 and 12 of weights 2 and 4, pooled 14 / 6; strength (F + 1) times the mean weight 1.5.
+  EXPECT_NEAR(start.covariances[static_cast<std::size_t>(low)](0, 0), (2.0 + 3.0 * 14.0 / 6.0) / 5.0, 1e-14);
+  EXPECT_NEAR(start.covariances[static_cast<std::size_t>(1 - low)](0, 0), (12.0 + 3.0 * 14.0 / 6.0) / 7.0, 1e-14);
+  EXPECT_NEAR(start.weights(low), 3.5 / 9.0, 1e-15);
+}
+
+TEST(Starts, PointsForStartsAreNotChosenFromAgain) {
+  const Eigen::MatrixXd points = draw(six_clusters(), 200, 5);
+  const PointBlocks blocks(PointSet(points), FeatureScale::identity(2));
+  std::mt19937_64 generator(1);
+  const PointBlocks chosen = blocks.for_starts(50, generator);
+  EXPECT_EQ(chosen.count(), 50);
+  EXPECT_THROW(chosen.for_starts(10, generator), std::logic_error);  // it once read memory that was gone
 }
 
 /// Two components share one cluster, and one has two clusters: EM alone stays there.

@@ -1,12 +1,12 @@
 // The steps of vector_imm.hpp, once per instruction set.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "filter/vector_imm_kernels.cpp"
+#define HWY_TARGET_INCLUDE "filter/step/detail/vector/kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // After highway.h:
-#include "filter/vector_imm_mixture-inl.hpp"
-#include "filter/vector_imm_predict-inl.hpp"
-#include "filter/vector_imm_update-inl.hpp"
+#include "filter/step/detail/vector/mixture-inl.hpp"
+#include "filter/step/detail/vector/predict-inl.hpp"
+#include "filter/step/detail/vector/update-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {

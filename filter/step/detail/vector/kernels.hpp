@@ -14,7 +14,8 @@ struct ModeRows {
   const double* transition = nullptr;                                   ///< a row per mode: from
   // The filter's state.
   double *mean = nullptr, *covariance = nullptr, *probability = nullptr;  ///< n, packed n, 1
-  double* parts = nullptr;                                                ///< n + packed n: workspace
+  double* center = nullptr;  ///< n numbers near the mean of all modes: what the mixing takes moments about
+  double* parts = nullptr;   ///< n + packed n: workspace
   // What a step leaves behind.
   double* predicted_probability = nullptr;                            ///< 1
   double *predicted_mean = nullptr, *predicted_covariance = nullptr;  ///< n, packed n
@@ -24,9 +25,10 @@ struct ModeRows {
   double *distance = nullptr, *weight = nullptr;                      ///< 1: e' S^-1 e; unnormalised posterior
 };
 
-/// C (n_y x n) and R (n_y x n_y), row-major.
+/// C (n_y x n) and R (n_y x n_y), row-major, and how many of the n_y signals are there.
 struct Sensor {
   const double *C = nullptr, *R = nullptr;
+  double signals = 0.0;
 };
 
 /// What an update finds.

@@ -6,22 +6,17 @@
 #define MODEBANK_VECTOR_IMM_PREDICT_INL
 #endif
 
-#include "filter/vector_imm_rows-inl.hpp"
+#include "filter/step/detail/vector/rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Mode by mode mu_i, mu_i d_i and mu_i (P_i + d_i d_i'), d_i about the mean of all modes: what the mixtures are sums
-/// of. They are left in p.parts; the means in `center`.
+/// Mode by mode mu_i, mu_i d_i and mu_i (P_i + d_i d_i'), d_i about p.center: what the mixtures are sums of. They are
+/// left in p.parts.
 template <std::size_t N>
 HWY_INLINE void prepare_mixing(const ModeRows& p, V (&center)[N]) {
   const std::size_t stride = p.stride;
-  for (V& x : center) x = zero();
-  for (std::size_t r = 0; r < stride; r += hn::Lanes(D())) {
-    const V mu = load(p.probability + r);
-    for (std::size_t a = 0; a < N; ++a) center[a] = hn::MulAdd(mu, load(p.mean + a * stride + r), center[a]);
-  }
-  for (V& x : center) x = hn::SumOfLanes(D(), x);
+  for (std::size_t a = 0; a < N; ++a) center[a] = splat(p.center[a]);
   for (std::size_t r = 0; r < stride; r += hn::Lanes(D())) {
     const V mu = load(p.probability + r);
     V d[N];

@@ -1,13 +1,13 @@
-// What will be measured and what the measurement makes of each mode, a mode per lane. Included once per instruction
-// set (Highway's foreach_target.h).
-#if defined(MODEBANK_VECTOR_IMM_CORRECTION_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef MODEBANK_VECTOR_IMM_CORRECTION_INL
-#undef MODEBANK_VECTOR_IMM_CORRECTION_INL
+// What will be measured, and the step that takes a measurement in, a mode per lane. Included once per instruction set
+// (Highway's foreach_target.h).
+#if defined(MODEBANK_VECTOR_IMM_UPDATE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MODEBANK_VECTOR_IMM_UPDATE_INL
+#undef MODEBANK_VECTOR_IMM_UPDATE_INL
 #else
-#define MODEBANK_VECTOR_IMM_CORRECTION_INL
+#define MODEBANK_VECTOR_IMM_UPDATE_INL
 #endif
 
-#include "filter/vector_imm_rows-inl.hpp"
+#include "filter/step/detail/vector/rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
@@ -95,20 +95,23 @@ struct Correction {
     return hn::Sqrt(product);
   }
 
-  /// Joseph's form; an overflowing correction is no information.
-  HWY_INLINE Moments<N> posterior(const Sensor& sensor) const {
-    V PCt[N * NY], gain[N][NY], closed[N * N], product[N], gainR[NY];
+  /// The gain K = P C' S^-1, row by row.
+  HWY_INLINE void gain_of(const Sensor& sensor, V (&gain)[N][NY]) const {
+    V PCt[N * NY];
     times_sensor<N, NY>(m.P, sensor.C, PCt);
     for (std::size_t a = 0; a < N; ++a) {
       for (std::size_t i = 0; i < NY; ++i) gain[a][i] = PCt[a * NY + i];
       solve<NY>(L, inverse, gain[a]);
     }
+  }
+
+  /// x + K e and, in Joseph's form, (I - K C) P (I - K C)' + K R K'.
+  HWY_INLINE Moments<N> joseph(const Sensor& sensor, const V (&gain)[N][NY]) const {
+    V closed[N * N], product[N], gainR[NY];
     Moments<N> result;
-    V check = hn::Zero(D());
     for (std::size_t a = 0; a < N; ++a) {
       result.x[a] = m.x[a];
       for (std::size_t i = 0; i < NY; ++i) result.x[a] = hn::MulAdd(gain[a][i], e[i], result.x[a]);
-      check = hn::Add(check, result.x[a]);
       for (std::size_t b = 0; b < N; ++b) {
         V sum = splat(a == b ? 1.0 : 0.0);
         for (std::size_t i = 0; i < NY; ++i) sum = hn::NegMulAdd(gain[a][i], splat(sensor.C[i * N + b]), sum);
@@ -129,10 +132,19 @@ struct Correction {
         for (std::size_t i = 1; i < NY; ++i) sum = hn::MulAdd(gainR[i], gain[b][i], sum);
         for (std::size_t k = 0; k < N; ++k) sum = hn::MulAdd(product[k], closed[b * N + k], sum);
         result.P[packed(a, b)] = sum;
-        check = hn::Add(check, sum);
       }
     }
-    V least = result.P[0];
+    return result;
+  }
+
+  /// The estimate after the measurement; an overflowing correction is no information.
+  HWY_INLINE Moments<N> posterior(const Sensor& sensor) const {
+    V gain[N][NY];
+    gain_of(sensor, gain);
+    Moments<N> result = joseph(sensor, gain);
+    V check = result.x[0], least = result.P[0];
+    for (std::size_t a = 1; a < N; ++a) check = hn::Add(check, result.x[a]);
+    for (const V P : result.P) check = hn::Add(check, P);
     for (std::size_t a = 1; a < N; ++a) least = hn::Min(least, result.P[packed(a, a)]);
     const M sound = hn::Lt(hn::Abs(check), splat(far)), negative = hn::Lt(least, zero());
     if (HWY_LIKELY(hn::AllTrue(D(), hn::AndNot(negative, sound)))) return result;
@@ -152,6 +164,116 @@ struct Correction {
       }
   }
 };
+
+/// tr(S^-1 C s Q C') and e' S^-1 C s Q C' S^-1 e of the modes r .., the latter with e' S^-1 e cut (noise_scale.hpp).
+template <std::size_t N, std::size_t NY>
+HWY_INLINE void explained(const ModeRows& p, const Sensor& sensor, const double* y, std::size_t r, V& share,
+                          V& square) {
+  const Correction<N, NY> c(p, y, r);
+  V Q[packed_size(N)], QCt[N * NY];
+  load_rows(p.Q + r, p.stride, Q);
+  times_sensor<N, NY>(Q, sensor.C, QCt);
+  V CQC[NY][NY];
+  for (std::size_t i = 0; i < NY; ++i)
+    for (std::size_t k = 0; k < NY; ++k) {
+      V sum = hn::Mul(splat(sensor.C[k * N]), QCt[i]);
+      for (std::size_t a = 1; a < N; ++a) sum = hn::MulAdd(splat(sensor.C[k * N + a]), QCt[a * NY + i], sum);
+      CQC[i][k] = sum;  // column i of C Q C'
+    }
+  V pulled[NY];
+  for (std::size_t i = 0; i < NY; ++i) pulled[i] = c.e[i];
+  solve<NY>(c.L, c.inverse, pulled);
+  share = square = hn::Zero(D());
+  for (std::size_t i = 0; i < NY; ++i) {
+    V along = hn::Zero(D());
+    for (std::size_t k = 0; k < NY; ++k) along = hn::MulAdd(CQC[i][k], pulled[k], along);
+    square = hn::MulAdd(along, pulled[i], square);
+    solve<NY>(c.L, c.inverse, CQC[i]);
+    share = hn::Add(share, CQC[i][i]);
+  }
+  const V most = splat(largest_standardised * largest_standardised * sensor.signals), nis = c.distance();
+  square = hn::IfThenElse(hn::Gt(nis, most), hn::Mul(square, hn::Div(most, hn::Max(nis, most))), square);
+}
+
+/// Probabilities after the measurement, of `weights` that sum to `sum`: no mode dies for good.
+HWY_INLINE void floor_probabilities(const ModeRows& p, const double* weights, double sum) {
+  const V floor = splat(mode_probability_floor * sum);
+  V total = hn::Zero(D());
+  for (std::size_t r = 0; r < p.stride; r += hn::Lanes(D())) {
+    const M there = hn::FirstN(D(), p.modes > r ? p.modes - r : 0);
+    const V kept = hn::IfThenElseZero(there, hn::Max(load(weights + r), floor));
+    total = hn::Add(total, kept);
+    store(kept, p.probability + r);
+  }
+  const V normal = splat(1.0 / sum_of(total));
+  for (std::size_t r = 0; r < p.stride; r += hn::Lanes(D()))
+    store(hn::Mul(load(p.probability + r), normal), p.probability + r);
+}
+
+/// The mean of all modes, before rare ones are floored: it need not be exact, and no mixing has to wait for that.
+template <std::size_t N>
+HWY_INLINE void center_modes(const ModeRows& p, const double* weights, double sum) {
+  for (std::size_t a = 0; a < N; ++a) {
+    V moment = zero();
+    for (std::size_t r = 0; r < p.stride; r += hn::Lanes(D()))
+      moment = hn::MulAdd(load(weights + r), load(p.mean + a * p.stride + r), moment);
+    p.center[a] = sum_of(moment) / sum;
+  }
+}
+
+template <std::size_t N, std::size_t NY>
+UpdateResult update(const ModeRows& p, const Sensor& sensor, const double* y, double noise_scale) {
+  const std::size_t stride = p.stride;
+  V nearest = splat(far);
+  for (std::size_t r = 0; r < stride; r += hn::Lanes(D())) {
+    const Correction<N, NY> c(p, y, r);
+    const V prior = load(p.predicted_probability + r);
+    const M possible = hn::Ge(prior, splat(impossible_probability));
+    const V distance = hn::IfThenElse(possible, c.distance(), splat(far));
+    nearest = hn::Min(nearest, distance);
+    store_rows(c.z, stride, p.decorrelated + r);
+    store(distance, p.distance + r);
+    store(hn::IfThenElseZero(possible, hn::Mul(prior, c.root_determinant_inverse())), p.weight + r);
+    const Moments<N> posterior = c.posterior(sensor);
+    store_rows(posterior.x, stride, p.mean + r);
+    store_rows(posterior.P, stride, p.covariance + r);
+  }
+  nearest = hn::MinOfLanes(D(), nearest);
+  V sum = hn::Zero(D()), share = sum, square = sum;
+  const Exp exp;
+  for (std::size_t r = 0; r < stride; r += hn::Lanes(D())) {
+    const V exponent = hn::Mul(splat(-0.5), hn::Sub(load(p.distance + r), nearest));
+    const V w = hn::Mul(load(p.weight + r), exp(exponent));
+    store(w, p.weight + r);
+    sum = hn::Add(sum, w);
+    if (noise_scale > 0.0) {
+      V share_r, square_r;
+      explained<N, NY>(p, sensor, y, r, share_r, square_r);
+      share = hn::MulAdd(w, share_r, share);
+      square = hn::MulAdd(w, square_r, square);
+    }
+  }
+  const double total = sum_of(sum);
+  UpdateResult result;
+  const hn::CappedTag<double, 1> one;
+  result.log_density = hn::GetLane(hn::Log(one, hn::Set(one, total))) -
+                       0.5 * (static_cast<double>(NY) * log_two_pi + hn::GetLane(nearest));
+  if (noise_scale > 0.0) {
+    result.share = noise_scale * sum_of(share) / total;
+    result.square = noise_scale * sum_of(square) / total;
+  }
+  center_modes<N>(p, p.weight, total);
+  floor_probabilities(p, p.weight, total);
+  return result;
+}
+
+template <std::size_t N>
+void skip(const ModeRows& p) {
+  for (std::size_t i = 0; i < N * p.stride; ++i) p.mean[i] = p.predicted_mean[i];
+  for (std::size_t i = 0; i < packed_size(N) * p.stride; ++i) p.covariance[i] = p.predicted_covariance[i];
+  center_modes<N>(p, p.predicted_probability, 1.0);
+  floor_probabilities(p, p.predicted_probability, 1.0);
+}
 
 }  // namespace modebank::vector_imm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -1,14 +1,13 @@
-#include "filter/vector_imm.hpp"
+#include "filter/step/detail/vector/vector_imm.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 #include <new>
 
-#include "filter/filter_model.hpp"
-#include "filter/imm.hpp"
-#include "filter/measurement.hpp"
-#include "filter/noise_scale.hpp"
-#include "ident/not_a_number.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "filter/step/equations/imm.hpp"
+#include "filter/step/equations/noise_scale.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
@@ -56,14 +55,13 @@ VectorImm::VectorImm(const Bank& bank, const FilterOptions& options)
       R_(bank.R.transpose()),
       partial_C_(C_),
       partial_R_(R_),
+      sensor_{C_.data(), R_.data(), static_cast<double>(n_y_)},
       y_(n_y_),
       packed_(std::max(packed_size(n_), packed_size(n_y_))),
+      first_(start_moments(bank)),
       initial_probability_(bank.initial_probability),
       start_(n_) {
   floor_probabilities(initial_probability_);
-  const StartMoments first = start_moments(bank);
-  start_gain_ = first.gain;
-  start_covariance_ = first.covariance;
   rows_.modes = count_of(K_);
   rows_.stride = (rows_.modes + row_multiple - 1) / row_multiple * row_multiple;
   rows_.inputs = count_of(bank.structure.acting_inputs());
@@ -71,71 +69,46 @@ VectorImm::VectorImm(const Bank& bank, const FilterOptions& options)
   fill(bank);
 }
 
-VectorImm::VectorImm(const VectorImm& other)
-    : noise_scale(other.noise_scale),
-      noise_samples(other.noise_samples),
-      n_(other.n_),
-      n_y_(other.n_y_),
-      K_(other.K_),
-      adaptive_(other.adaptive_),
-      adaptation_(other.adaptation_),
-      kernels_(other.kernels_),
-      rows_(other.rows_),
-      C_(other.C_),
-      R_(other.R_),
-      partial_C_(other.partial_C_),
-      partial_R_(other.partial_R_),
-      y_(other.y_),
-      packed_(other.packed_),
-      start_gain_(other.start_gain_),
-      start_covariance_(other.start_covariance_),
-      initial_probability_(other.initial_probability_),
-      start_(other.start_) {
-  lay_out();
-  std::copy_n(other.memory_.get(), numbers_, memory_.get());
-}
-
 /// One block for all rows, so that a step after a pause finds its numbers in few cache lines.
 void VectorImm::lay_out() {
-  const std::size_t n = count_of(n_), n_y = count_of(n_y_), p = count_of(packed_size(n_)),
-                    q = count_of(packed_size(n_y_));
-  const std::size_t bank_rows = n * n + n * rows_.inputs + n + p + rows_.modes;
-  const std::size_t step_rows = 3 * (n + p) + 2 + 5 * n_y + 2 * q + 2;
-  numbers_ = (bank_rows + step_rows) * rows_.stride;
-  auto* memory = static_cast<double*>(std::aligned_alloc(register_bytes, numbers_ * sizeof(double)));
+  const Index m = static_cast<Index>(rows_.inputs), p = packed_size(n_), q = packed_size(n_y_);
+  const Index bank_rows = n_ * n_ + n_ * m + n_ + p + K_, step_rows = 3 * (n_ + p) + 3 + 5 * n_y_ + 2 * q + 2;
+  const std::size_t numbers = count_of(bank_rows + step_rows) * rows_.stride;
+  auto* memory = static_cast<double*>(std::aligned_alloc(register_bytes, numbers * sizeof(double)));
   if (memory == nullptr) throw std::bad_alloc();
-  std::fill_n(memory, numbers_, 0.0);
+  std::fill_n(memory, numbers, 0.0);
   memory_.reset(memory);
-  const auto take = [&](std::size_t rows) {
+  const auto take = [&](Index rows) {
     double* first = memory;
-    memory += rows * rows_.stride;
+    memory += count_of(rows) * rows_.stride;
     return first;
   };
-  rows_.F = take(n * n);
-  rows_.B = take(n * rows_.inputs);
-  rows_.c = take(n);
+  rows_.F = take(n_ * n_);
+  rows_.B = take(n_ * m);
+  rows_.c = take(n_);
   rows_.Q = take(p);
-  rows_.transition = take(rows_.modes);
-  rows_.mean = take(n);
+  rows_.transition = take(K_);
+  rows_.mean = take(n_);
   rows_.covariance = take(p);
   rows_.probability = take(1);
-  rows_.parts = take(n + p);
+  rows_.center = take(1);  // has room for n
+  rows_.parts = take(n_ + p);
   rows_.predicted_probability = take(1);
-  rows_.predicted_mean = take(n);
+  rows_.predicted_mean = take(n_);
   rows_.predicted_covariance = take(p);
-  rows_.expected = take(n_y);
+  rows_.expected = take(n_y_);
   rows_.innovation_covariance = take(q);
   rows_.L = take(q);
-  rows_.D = take(n_y);
-  rows_.D_inverse = take(n_y);
-  rows_.decorrelated = take(n_y);
+  rows_.D = take(n_y_);
+  rows_.D_inverse = take(n_y_);
+  rows_.decorrelated = take(n_y_);
   rows_.distance = take(1);
   rows_.weight = take(1);
 }
 
 void VectorImm::fill(const Bank& bank) {
-  const auto put = [&](const double* rows, Index i, Index j, double value) {
-    const_cast<double*>(rows)[at(i, j)] = value;
+  const auto put = [&](const double* rows, Index i, Index j, double value) {  // rows of memory_ that steps only read
+    memory_[count_of(rows - memory_.get()) + at(i, j)] = value;
   };
   const Index m = bank.structure.acting_inputs();
   for (Index j = 0; j < K_; ++j) {
@@ -153,31 +126,33 @@ void VectorImm::fill(const Bank& bank) {
 }
 
 void VectorImm::start(const Vector& y) {
-  start_.noalias() = start_gain_.lazyProduct(y);
+  start_.noalias() = first_.gain.lazyProduct(y);
   for (Index j = 0; j < K_; ++j) {
     for (Index a = 0; a < n_; ++a) rows_.mean[at(a, j)] = start_(a);
     for_each_packed(n_,
-                    [&](Index place, Index a, Index b) { rows_.covariance[at(place, j)] = start_covariance_(a, b); });
+                    [&](Index place, Index a, Index b) { rows_.covariance[at(place, j)] = first_.covariance(a, b); });
     rows_.probability[j] = initial_probability_(j);
   }
-  noise_scale = 1.0;
-  noise_samples = adaptation_.prior_samples;
+  std::copy_n(start_.data(), n_, rows_.center);
+  noise_scale_ = 1.0;
+  noise_samples_ = adaptation_.prior_samples;
 }
 
 void VectorImm::skip(const Vector& v) {
-  kernels_.predict(rows_, v.data(), noise_scale);
+  kernels_.predict(rows_, v.data(), noise_scale_);
   kernels_.skip(rows_);
 }
 
 void VectorImm::predict(const Vector& v) {
-  kernels_.predict(rows_, v.data(), noise_scale);
-  kernels_.expect(rows_, {C_.data(), R_.data()});
+  kernels_.predict(rows_, v.data(), noise_scale_);
+  kernels_.expect(rows_, sensor_);
 }
 
 /// As PartialSensor: a missing signal is one that is always zero, of variance one, unrelated to anything.
-vector_imm::Sensor VectorImm::detach_missing(const Vector& y) {
+vector_imm::Sensor VectorImm::detach_missing(const Vector& y, Index missing) {
   partial_C_ = C_;
   partial_R_ = R_;
+  y_ = y;
   for (Index i = 0; i < n_y_; ++i) {
     if (!is_missing(y(i))) continue;
     partial_C_.col(i).setZero();
@@ -186,7 +161,7 @@ vector_imm::Sensor VectorImm::detach_missing(const Vector& y) {
     partial_R_(i, i) = 1.0;
     y_(i) = 0.0;
   }
-  return {partial_C_.data(), partial_R_.data()};
+  return {partial_C_.data(), partial_R_.data(), static_cast<double>(n_y_ - missing)};
 }
 
 double VectorImm::update(const Vector& y) {
@@ -195,29 +170,27 @@ double VectorImm::update(const Vector& y) {
     kernels_.skip(rows_);
     return not_a_number;
   }
-  y_ = y;
-  vector_imm::Sensor sensor{C_.data(), R_.data()};
+  vector_imm::Sensor sensor = sensor_;
   if (missing > 0) {
-    sensor = detach_missing(y);
+    sensor = detach_missing(y, missing);
     kernels_.expect(rows_, sensor);
   }
-  const vector_imm::UpdateResult result = kernels_.update(rows_, sensor, y_.data(), adaptive_ ? noise_scale : 0.0);
+  const vector_imm::UpdateResult result =
+      kernels_.update(rows_, sensor, missing > 0 ? y_.data() : y.data(), adaptive_ ? noise_scale_ : 0.0);
   if (adaptive_)
-    move_noise_scale(adaptation_, result.share, result.square, static_cast<double>(n_y_ - missing), noise_scale,
-                     noise_samples);
+    move_noise_scale(adaptation_, result.share, result.square, sensor.signals, noise_scale_, noise_samples_);
   return result.log_density + half_log_two_pi * static_cast<double>(missing);
 }
 
-void VectorImm::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance,
-                        double& spread_share) {
+double VectorImm::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) {
   vector_imm::CombinedExpectation to{state.data(), packed_.data()};
-  kernels_.combine(rows_, {C_.data(), R_.data()}, to);
+  kernels_.combine(rows_, sensor_, to);
   unpack_symmetric(packed_, innovation_covariance);
   const double total = innovation_covariance.diagonal().sum();
-  spread_share = total > 0.0 ? std::min(1.0, to.spread / total) : 0.0;
+  return total > 0.0 ? std::min(1.0, to.spread / total) : 0.0;
 }
 
-void VectorImm::transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit) const {
+void VectorImm::transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit) {
   kernels_.transform(rows_, y.data(), pit.data());
 }
 
@@ -226,26 +199,30 @@ void VectorImm::merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::Matrix
   unpack_symmetric(packed_, covariance);
 }
 
-void VectorImm::get(Eigen::MatrixXd& means, Eigen::MatrixXd& covariances, Eigen::VectorXd& probability) const {
-  means.resize(n_, K_);
-  covariances.resize(n_ * n_, K_);
+void VectorImm::save(FilterMemory& memory) const {
+  memory.means.resize(n_, K_);
+  memory.covariances.resize(n_ * n_, K_);
   for (Index j = 0; j < K_; ++j) {
-    for (Index a = 0; a < n_; ++a) means(a, j) = rows_.mean[at(a, j)];
+    for (Index a = 0; a < n_; ++a) memory.means(a, j) = rows_.mean[at(a, j)];
     for_each_packed(n_, [&](Index place, Index a, Index b) {
-      covariances(b * n_ + a, j) = covariances(a * n_ + b, j) = rows_.covariance[at(place, j)];
+      memory.covariances(b * n_ + a, j) = memory.covariances(a * n_ + b, j) = rows_.covariance[at(place, j)];
     });
   }
-  probability = mode_probability();
+  memory.mode_probability = mode_probability();
+  memory.noise_scale = noise_scale_;
+  memory.noise_samples = noise_samples_;
 }
 
-void VectorImm::set(const Eigen::MatrixXd& means, const Eigen::MatrixXd& covariances,
-                    const Eigen::VectorXd& probability) {
+void VectorImm::restore(const FilterMemory& memory) {
   for (Index j = 0; j < K_; ++j) {
-    for (Index a = 0; a < n_; ++a) rows_.mean[at(a, j)] = means(a, j);
+    for (Index a = 0; a < n_; ++a) rows_.mean[at(a, j)] = memory.means(a, j);
     for_each_packed(
-        n_, [&](Index place, Index a, Index b) { rows_.covariance[at(place, j)] = covariances(b * n_ + a, j); });
-    rows_.probability[j] = probability(j);
+        n_, [&](Index place, Index a, Index b) { rows_.covariance[at(place, j)] = memory.covariances(b * n_ + a, j); });
+    rows_.probability[j] = memory.mode_probability(j);
   }
+  Eigen::VectorXd::Map(rows_.center, n_) = memory.means * memory.mode_probability;
+  noise_scale_ = memory.noise_scale;
+  noise_samples_ = memory.noise_samples;
 }
 
 }  // namespace modebank

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ident/batch_kernel-inl.hpp"
+#include "ident/fit/detail/batch/kernel-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
@@ -102,11 +102,10 @@ HWY_INLINE void write_verdicts(const Settings& settings, const Fit<Q>& fit, Inde
   }
 }
 
-/// akaike_criterion of ident/fit_quality.hpp for one state, from the sums; logarithms are the host's.
+/// akaike_criterion of ident/fit/describe.hpp for one state, from the sums; logarithms are the host's.
 template <int Q>
 HWY_NOINLINE void write_criterion(const Settings& settings, const Fit<Q>& fit, Index count, double* out) {
   if (!out) return;
-  constexpr double log_two_pi = 1.8378770664093454836;
   HWY_ALIGN double samples[widest], sigma[widest], deviance[widest], data_parameters[widest], price[widest];
   hn::Store(fit.samples, D(), samples);
   hn::Store(fit.sigma, D(), sigma);
@@ -133,7 +132,6 @@ HWY_NOINLINE void write(const Settings& settings, const Fit<Q>& fit, Index first
       if (i != j) scatter(fit.covariance.a[at(i, j)], count, from(out.covariance, first * Q * Q + j * Q + i), Q * Q);
     }
   scatter(fit.search.gradient, count, from(out.gradient, first), 1);
-  if (settings.bare) return;
   scatter(fit.noise_variance, count, from(out.noise_variance, first), 1);
   scatter(fit.condition, count, from(out.condition, first), 1);
   scatter(fit.inlier_fraction, count, from(out.inlier_fraction, first), 1);

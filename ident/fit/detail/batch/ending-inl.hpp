@@ -8,14 +8,11 @@
 
 #include <hwy/highway.h>
 
-#include "ident/batch_start-inl.hpp"
+#include "ident/fit/detail/batch/start-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-inline constexpr double least_one_minus_leverage = 1e-6;
-inline constexpr double inlier_weight = 0.5;
 
 /// What the residuals at the optimum say. omega = rho' is a sample's robust weight, y its increment.
 struct Ending {
@@ -49,21 +46,6 @@ HWY_NOINLINE Ending residual_sums(const View& view, const LossT& loss, const V (
   return e;
 }
 
-/// Of the bare path, whose sums the search has: absent transitions stand there as residuals of zero.
-template <int Q>
-HWY_INLINE Ending sums_of_search(const View& view, const Search<Q>& search, V count) {
-  const V absent = hn::Sub(splat(static_cast<double>(view.length)), count);
-  return {search.psi_square,
-          hn::Sub(search.slope, absent),
-          hn::Sub(search.slope_square, absent),
-          zero(),
-          zero(),
-          zero(),
-          zero(),
-          zero(),
-          zero()};
-}
-
 /// Parameters that the data determine, the sum of the samples' leverages at sigma.
 template <int Q>
 HWY_INLINE V data_parameters(const Settings& settings, const Surroundings<Q>& around) {
@@ -74,7 +56,7 @@ HWY_INLINE V data_parameters(const Settings& settings, const Surroundings<Q>& ar
   return f;
 }
 
-/// As ident/covariance.hpp states it, with Huber's correction K.
+/// As ident/fit/covariance.hpp states it, with Huber's correction K.
 template <int Q>
 HWY_NOINLINE Symmetric<Q> model_covariance(const Settings& settings, const Start<Q>& start, const Ending& e, V f) {
   const V freedom = hn::Sub(start.count, f);
@@ -98,7 +80,7 @@ HWY_NOINLINE Symmetric<Q> model_covariance(const Settings& settings, const Start
   return inverse(factor(information, information, 0.0));
 }
 
-/// HC3 as ident/covariance.hpp states it.
+/// HC3 as ident/fit/covariance.hpp states it.
 template <int Q>
 HWY_NOINLINE Symmetric<Q> sandwich_covariance(const View& view, const AnyLoss& loss, const Surroundings<Q>& around,
                                               V sigma, const V (&theta)[Q]) {

@@ -10,7 +10,7 @@
 
 #include <type_traits>
 
-#include "ident/batch_ending-inl.hpp"
+#include "ident/fit/detail/batch/ending-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
@@ -27,7 +27,7 @@ struct Fit {
   M clear, enough, reached, deficient;
 };
 
-/// R^2 and the parts of AIC as ident/fit_quality.hpp states them.
+/// R^2 and the parts of AIC as ident/fit/describe.hpp states them.
 template <int Q>
 HWY_INLINE void describe_quality(const Settings& settings, const Ending& e, V f, V sigma, Fit<Q>& fit) {
   const V nan = splat(std::numeric_limits<double>::quiet_NaN());
@@ -45,17 +45,14 @@ HWY_INLINE M finite(V x) { return hn::Lt(hn::Abs(x), splat(std::numeric_limits<d
 template <int Q, class LossT>
 HWY_INLINE void describe(const Settings& settings, const View& view, const LossT& loss, const Start<Q>& start,
                          const Surroundings<Q>& around, Fit<Q>& fit) {
-  const Ending e =
-      settings.bare ? sums_of_search(view, fit.search, start.count) : residual_sums(view, loss, fit.search.theta);
+  const Ending e = residual_sums(view, loss, fit.search.theta);
   const V f = data_parameters(settings, around);
-  const bool sandwich = settings.covariance == CovarianceKind::sandwich && !settings.bare;
-  if (sandwich) {
+  if (settings.covariance == CovarianceKind::sandwich) {
     const AnyLoss any_loss(settings.loss, hn::Mul(splat(settings.loss_scale), start.sigma));
     fit.covariance = sandwich_covariance(view, any_loss, around, start.sigma, fit.search.theta);
   } else {
     fit.covariance = model_covariance(settings, start, e, f);
   }
-  if (settings.bare) return;
   const V divisor = hn::Mul(hn::Sub(start.count, start.rank), splat(settings.consistency));
   fit.noise_variance = hn::Max(hn::Div(e.weighted_square, divisor), splat(settings.floor * settings.floor));
   fit.inlier_fraction = hn::Div(e.inliers, start.count);
@@ -70,7 +67,7 @@ HWY_INLINE void describe(const Settings& settings, const View& view, const LossT
 /// X'X + sigma^2 P and the posterior least-squares solution, from which the search starts.
 template <int Q>
 HWY_NOINLINE Surroundings<Q> surround(const Settings& settings, Start<Q>& start) {
-  Surroundings<Q> around{start.gram, {}, {}, start.square_sum, settings.max_iterations, start.factors};
+  Surroundings<Q> around{start.gram, {}, {}, start.square_sum, settings.max_iterations, {}};
   V moment[Q];
   for (int i = 0; i < Q; ++i) {
     around.information[i] = around.mean[i] = zero();
@@ -80,7 +77,7 @@ HWY_NOINLINE Surroundings<Q> surround(const Settings& settings, Start<Q>& start)
     around.mean[i] = splat(settings.prior_mean[i]);
     around.gram.a[at(i, i)] = hn::Add(around.gram.a[at(i, i)], around.information[i]);
   }
-  if (!settings.bare) around.factors = factor(around.gram, around.gram, least_weight);
+  around.factors = factor(around.gram, around.gram, least_weight);
   if (!settings.prior) return around;
   for (int i = 0; i < Q; ++i) moment[i] = hn::MulAdd(around.information[i], around.mean[i], start.moment[i]);
   solve(around.factors, moment, start.theta);
@@ -97,41 +94,6 @@ HWY_INLINE LossT make_loss(Loss kind, V scale) {
   }
 }
 
-/// The bare path of least squares without a prior. Its search is a residual pass at the solution of the normal
-/// equations, as a rule one, so that the bookkeeping of the general search would cost more than the arithmetic.
-template <int Q>
-HWY_INLINE void fit_least_squares(const Settings& settings, const View& view, M wanted, Fit<Q>& fit) {
-  const NormalEquations<Q> n = normal_equations<Q>(view);
-  const Ldl<Q> factors = factor(n.gram, n.gram, least_pivot);
-  V(&theta)[Q] = fit.search.theta;
-  solve(factors, n.moment, theta);
-  fit.samples = sample_count(view);
-  fit.enough = hn::Gt(fit.samples, splat(Q));
-  fit.clear = factors.ok;
-  fit.deficient = fit.reached = none();
-  fit.rank = splat(Q);
-  fit.search.gradient = fit.search.psi_square = zero();
-  M live = hn::And(wanted, hn::And(fit.enough, fit.clear));
-  for (int iteration = 0; any(live) && iteration < settings.max_iterations; ++iteration) {
-    const Moments<Q> at_theta = residual_moments(view, theta);
-    V step[Q];
-    solve(factors, at_theta.moment, step);
-    const V gain = dot(step, at_theta.moment), psi_square = at_theta.square_sum;
-    const V rounding = hn::Mul(splat(rounding_square), magnitude(n.gram, n.square_sum, theta));
-    const M done = hn::And(live, hn::Le(gain, hn::Max(hn::Mul(splat(stationary_square), psi_square), rounding)));
-    fit.search.psi_square = hn::IfThenElse(live, psi_square, fit.search.psi_square);
-    fit.search.gradient = hn::IfThenElse(live, hn::Div(gain, psi_square), fit.search.gradient);
-    for (int j = 0; j < Q; ++j) theta[j] = hn::IfThenElse(live, hn::Add(theta[j], step[j]), theta[j]);
-    fit.reached = hn::Or(fit.reached, done);
-    live = hn::AndNot(done, live);
-  }
-  fit.search.gradient = hn::Sqrt(hn::Max(fit.search.gradient, zero()));
-  const V variance =
-      hn::Max(hn::Div(fit.search.psi_square, hn::Sub(fit.samples, splat(Q))), splat(settings.floor * settings.floor));
-  fit.covariance = inverse(factors);
-  for (V& entry : fit.covariance.a) entry = hn::Mul(variance, entry);
-}
-
 /// A lane has converged only where what it has converged to is finite.
 template <int Q>
 HWY_INLINE void require_finite(Fit<Q>& fit) {
@@ -142,13 +104,7 @@ HWY_INLINE void require_finite(Fit<Q>& fit) {
 template <int Q, class LossT, class FirstLoss>
 HWY_INLINE void fit_group(const Settings& settings, const View& view, M wanted, double sigma, double* scratch,
                           Fit<Q>& fit) {
-  if constexpr (LossT::quadratic) {
-    if (settings.bare && !settings.prior) {
-      fit_least_squares(settings, view, wanted, fit);
-      return require_finite(fit);
-    }
-  }
-  Start<Q> start = settings.bare ? prepare_bare<Q>(view, sigma) : prepare<Q>(settings, view, wanted, sigma, scratch);
+  Start<Q> start = prepare<Q>(settings, view, wanted, sigma, scratch);
   const Surroundings<Q> around = surround(settings, start);
   for (int j = 0; j < Q; ++j) fit.search.theta[j] = start.theta[j];
   fit.enough = hn::Gt(start.count, splat(Q));
@@ -157,7 +113,7 @@ HWY_INLINE void fit_group(const Settings& settings, const View& view, M wanted, 
   fit.condition = start.condition;
   fit.rank = start.rank;
   fit.samples = start.count;
-  fit.search.gradient = fit.search.psi_square = fit.search.slope = fit.search.slope_square = zero();
+  fit.search.gradient = zero();
   M live = hn::And(hn::And(wanted, fit.enough), fit.clear);
   if (!settings.prior) live = hn::AndNot(fit.deficient, live);
   const LossT loss = make_loss<LossT>(settings.loss, hn::Mul(splat(settings.loss_scale), start.sigma));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ident/batch_problem.hpp"
+#include "ident/fit/detail/batch/problem.hpp"
 
 namespace modebank::batch {
 
@@ -8,9 +8,7 @@ namespace modebank::batch {
 /// that the machine may have; the best is chosen at run time.
 using Kernel = void (*)(const Settings& settings, const Chunk& chunk, double* scratch, const Output& out);
 
-/// Null for a shape they do not have.
-Kernel convex_kernel(Loss loss, int regressors);
-Kernel nonconvex_kernel(Loss loss, int regressors);
-Kernel any_kernel(int regressors);
+/// Null for more than max_regressors.
+Kernel find_kernel(Loss loss, int regressors);
 
 }  // namespace modebank::batch

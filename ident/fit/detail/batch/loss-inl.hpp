@@ -1,4 +1,4 @@
-// Robust losses on vectors of residuals, as ident/robust_loss.hpp defines them: D is the tuning constant times sigma
+// Robust losses on vectors of residuals, as ident/fit/loss.hpp defines them: D is the tuning constant times sigma
 // and t = r^2 / D^2. `cost` accumulates the objective up to a factor and an offset that are the window's own.
 #if defined(MODEBANK_BATCH_LOSS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_LOSS_INL
@@ -10,8 +10,8 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "ident/batch_lanes-inl.hpp"
-#include "ident/local_model.hpp"
+#include "ident/base/detail/simd-inl.hpp"
+#include "ident/model/local_model.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
@@ -22,10 +22,10 @@ struct LossTerms {
   V psi, slope, weight;
 };
 
-/// Every loss has `binary_slope` (slopes are 0 or 1), `terms(r)` and an accumulator `Cost`, whose value is sum rho in
+/// Every loss has `quadratic`, `terms(r)` and an accumulator `Cost`, whose value is sum rho in
 /// units of r^2 up to an offset.
 struct TrivialLoss {
-  static constexpr bool quadratic = true, binary_slope = true;
+  static constexpr bool quadratic = true;
   explicit TrivialLoss(V) {}
   HWY_INLINE LossTerms terms(V r) const { return {r, splat(1.0), splat(1.0)}; }
   struct Cost {
@@ -37,7 +37,7 @@ struct TrivialLoss {
 };
 
 struct HuberLoss {
-  static constexpr bool quadratic = false, binary_slope = true;
+  static constexpr bool quadratic = false;
   V bend;
   explicit HuberLoss(V scale) : bend(scale) {}
   HWY_INLINE LossTerms terms(V r) const {
@@ -58,7 +58,7 @@ struct HuberLoss {
 
 /// What most losses are made from: D^2 and its inverse.
 struct ScaledLoss {
-  static constexpr bool quadratic = false, binary_slope = false;
+  static constexpr bool quadratic = false;
   V inverse_square, square;
   explicit ScaledLoss(const V& scale) : ScaledLoss(hn::Mul(scale, scale), hn::Div(splat(1.0), hn::Mul(scale, scale))) {}
   ScaledLoss(const V& scale_square, const V& inverse) : inverse_square(inverse), square(scale_square) {}
@@ -164,7 +164,7 @@ HWY_INLINE V rho_of(const LossT& loss, V r, const LossTerms& at_r) {
 
 /// Any loss, chosen at run time; for shapes that are not worth a kernel per loss.
 struct AnyLoss {
-  static constexpr bool quadratic = false, binary_slope = false;
+  static constexpr bool quadratic = false;
   Loss kind;
   V scale, inverse_square, square;
   AnyLoss(Loss loss, V tuning)

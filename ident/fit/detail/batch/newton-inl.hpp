@@ -10,15 +10,15 @@
 
 #include <algorithm>
 
-#include "ident/batch_window-inl.hpp"
+#include "ident/fit/detail/batch/window-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// A Newton step's expected gain, g' H^-1 g, at or below this share of sum psi^2 ends the search: H is at most X'X + P,
-/// so the gradient in orthonormal coordinates is below its root, 1e-10, of |psi|.
-inline constexpr double stationary_square = 1e-20;
+/// so the gradient in orthonormal coordinates is below its root of |psi|.
+inline constexpr double stationary_square = stationary_gradient * stationary_gradient;
 /// The same share of sum y^2 cannot be told from rounding error.
 inline constexpr double rounding_square = 1e-30;
 /// A second derivative whose pivots fall below this share of the regressors' own is not stepped by.
@@ -47,8 +47,7 @@ struct Surroundings {
 template <int Q>
 struct Search {
   V theta[Q];
-  V gradient;                         // relative to |psi|, before the last step
-  V psi_square, slope, slope_square;  // sums there
+  V gradient;  // relative to |psi|, before the last step
 };
 
 /// sum_j P_j (theta_j - mean_j)^2, added to the gradient as to the cost.
@@ -135,9 +134,6 @@ HWY_NOINLINE M minimise(const View& view, const LossT& loss, const Surroundings<
                              hn::Mul(splat(rounding_square), magnitude(around.gram, around.square_sum, theta)));
     const M done = hn::And(hn::And(accepted, usable), hn::Le(gain, enough));
     search.gradient = hn::IfThenElse(accepted, hn::Div(gain, scale), search.gradient);
-    search.psi_square = hn::IfThenElse(accepted, s.psi_square, search.psi_square);
-    search.slope = hn::IfThenElse(accepted, s.slope, search.slope);
-    search.slope_square = hn::IfThenElse(accepted, s.slope_square, search.slope_square);
 
     halvings = hn::IfThenElse(worse, hn::Add(halvings, splat(1.0)), zero());
     for (int j = 0; j < Q; ++j) {

@@ -3,14 +3,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "ident/local_model.hpp"
+#include "ident/fit/constants.hpp"
+#include "ident/model/local_model.hpp"
+#include "ident/model/transitions.hpp"
 
 /// What passes between the batch solver's host code and its vector kernels: plain numbers and pointers, since a kernel
 /// is compiled once per instruction set.
 namespace modebank::batch {
 
-/// Regressors q of one state that the kernels are compiled for.
-inline constexpr int max_regressors = 8;
+/// Regressors q of one state that the kernels are compiled for: three lags of the state, two inputs and an intercept.
+inline constexpr int max_regressors = 6;
 /// Rows of samples that a kernel may read beyond the last window: one vector of the widest instruction set.
 inline constexpr Index padding = 8;
 
@@ -27,18 +29,16 @@ struct Settings {
   Index length = 1;    ///< L
   Index step = 1;      ///< samples between window starts
   Loss loss = Loss::huber;
-  double loss_scale = 1.345;   ///< c in units of sigma
-  double huber_scale = 1.345;  ///< of the Huber optimum that non-convex losses start from
-  double consistency = 1.0;    ///< gaussian_consistency of the loss
-  bool own_scale = true;       ///< sigma is each window's own; else Chunk::sigma
-  double floor = 0.0;          ///< least sigma
+  double loss_scale = huber_tuning;   ///< c in units of sigma
+  double huber_scale = huber_tuning;  ///< of the Huber optimum that non-convex losses start from
+  double consistency = 1.0;           ///< gaussian_consistency of the loss
+  bool own_scale = true;              ///< sigma is each window's own; else Chunk::sigma
+  double floor = 0.0;                 ///< least sigma
   bool prior = false;
   double prior_mean[max_regressors] = {};
   double prior_sd[max_regressors] = {};
   CovarianceKind covariance = CovarianceKind::model;
   int max_iterations = 100;
-  /// theta, `model` covariance and status only; no rank verdict beyond "the normal equations can be trusted".
-  bool bare = false;
   std::vector<Comparator> sort;    ///< puts L values in order
   std::vector<Comparator> median;  ///< the part of it that decides the middle
 };

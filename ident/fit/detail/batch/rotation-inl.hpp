@@ -8,7 +8,7 @@
 
 #include <hwy/highway.h>
 
-#include "ident/batch_newton-inl.hpp"
+#include "ident/fit/detail/batch/newton-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
@@ -17,15 +17,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// A regressor that is this small a share of itself, once the ones before it are taken out, depends on them.
 inline constexpr double dependent = 1e-9;
 /// Singular values between `dependent` and this share of the largest are left to the singular value decomposition of
-/// the slow path: the rank's tolerance, 1e-6, lies between.
+/// the slow path: excitation_tolerance lies between.
 inline constexpr double clearly_independent = 1e-5;
-inline constexpr double rank_tolerance = 1e-6;
+
 /// Samples, least squares and scale of the windows, before any loss.
 template <int Q>
 struct Start {
   Symmetric<Q> gram;      // X'X
   Symmetric<Q> unscaled;  // (X'X)^-1; meaningless where the rank is deficient
-  Ldl<Q> factors;         // of X'X, of the bare path
   V moment[Q];            // X'y
   V theta[Q];             // least squares; meaningless where the rank is deficient
   V square_sum, count, rank, condition, sigma;
@@ -110,8 +109,8 @@ HWY_INLINE void judge_rank(const Orthogonal<Q>& o, Start<Q>& start) {
   start.clear = hn::Eq(zero(), zero());
   for (int j = 0; j < Q; ++j) {
     kept = hn::Add(kept, hn::IfThenElseZero(o.kept[j], splat(1.0)));
-    start.rank =
-        hn::Add(start.rank, hn::IfThenElseZero(hn::Gt(sigma[j], hn::Mul(splat(rank_tolerance), largest)), splat(1.0)));
+    start.rank = hn::Add(
+        start.rank, hn::IfThenElseZero(hn::Gt(sigma[j], hn::Mul(splat(excitation_tolerance), largest)), splat(1.0)));
     const M doubtful = hn::And(hn::Gt(sigma[j], hn::Mul(splat(dependent), largest)),
                                hn::Lt(sigma[j], hn::Mul(splat(clearly_independent), largest)));
     start.clear = hn::AndNot(doubtful, start.clear);

@@ -1,4 +1,4 @@
-#include "ident/batch_solver.hpp"
+#include "ident/fit/detail/batch/solver.hpp"
 
 #include <hwy/targets.h>
 
@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "ident/robust_loss.hpp"
+#include "ident/fit/loss.hpp"
 
 namespace modebank {
 
@@ -47,9 +47,7 @@ batch::Kernel choose_kernel(const batch::Settings& settings) {
   // Before the machine is known Highway's pointers lead to a detour that asks for it, and would do so in every call.
   hwy::ChosenTarget& target = hwy::GetChosenTarget();
   if (!target.IsInitialized()) target.Update(hwy::SupportedTargets());
-  batch::Kernel kernel = batch::convex_kernel(settings.loss, settings.regressors);
-  if (!kernel) kernel = batch::nonconvex_kernel(settings.loss, settings.regressors);
-  return kernel ? kernel : batch::any_kernel(settings.regressors);
+  return batch::find_kernel(settings.loss, settings.regressors);
 }
 
 /// One value that is not finite makes the sum of the values times zero a NaN.
@@ -120,7 +118,6 @@ batch::Settings batch_settings(const LinearStructure& structure, const FitOption
   settings.step = options.step;
   settings.loss = options.loss;
   settings.loss_scale = loss.scale();
-  settings.huber_scale = default_loss_scale(Loss::huber);
   settings.consistency = gaussian_consistency(loss, structure.states);
   settings.own_scale = options.scale == ScaleSource::window;
   settings.floor = floor;

@@ -4,9 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "ident/batch_kernels.hpp"
-#include "ident/fit_window.hpp"
-#include "ident/regression.hpp"
+#include "ident/fit/detail/batch/kernels.hpp"
+#include "ident/fit/options.hpp"
+#include "ident/fit/prior.hpp"
+#include "ident/model/transitions.hpp"
 
 namespace modebank {
 

@@ -9,14 +9,12 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "ident/batch_rotation-inl.hpp"
+#include "ident/fit/detail/batch/rotation-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Normal equations with pivots below this share of the diagonal lose more than half of their digits.
-inline constexpr double least_pivot = 1e-8;
 /// Where every pivot of the normal equations is above this share of its diagonal, they lose four of sixteen digits.
 inline constexpr double safe_pivot = 1e-4;
 
@@ -133,27 +131,6 @@ HWY_NOINLINE Start<Q> prepare(const Settings& settings, const View& view, M want
   const V mad = normalised_mad(settings, view, rows, start.count);
   const V factor = hn::Sqrt(hn::Div(start.count, hn::Sub(start.count, start.rank)));
   start.sigma = hn::Max(hn::Mul(mad, factor), splat(settings.floor));
-  return start;
-}
-
-/// Without rank verdict and scale: normal equations, trusted where their pivots are.
-template <int Q>
-HWY_NOINLINE Start<Q> prepare_bare(const View& view, double sigma) {
-  Start<Q> start;
-  const NormalEquations<Q> n = normal_equations<Q>(view);
-  const Ldl<Q> f = factor(n.gram, n.gram, least_pivot);
-  start.gram = n.gram;
-  start.square_sum = n.square_sum;
-  start.sigma = splat(sigma);
-  start.count = sample_count(view);
-  start.rank = splat(Q);
-  start.clear = f.ok;
-  start.deficient = none();
-  for (int j = 0; j < Q; ++j) start.moment[j] = n.moment[j];
-  start.condition = zero();
-  solve(f, n.moment, start.theta);
-  start.unscaled = inverse(f);
-  start.factors = f;
   return start;
 }
 

@@ -11,9 +11,9 @@
 
 #include <limits>
 
-#include "ident/batch_lanes-inl.hpp"
-#include "ident/batch_loss-inl.hpp"
-#include "ident/batch_problem.hpp"
+#include "ident/base/detail/simd-inl.hpp"
+#include "ident/fit/detail/batch/loss-inl.hpp"
+#include "ident/fit/detail/batch/problem.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
@@ -37,7 +37,6 @@ struct Sums {
   Symmetric<Q> hessian;  // sum slope phi phi'
   V cost;                // sum rho up to an offset
   V psi_square;
-  V slope, slope_square;  // sums of d psi / d r
 };
 
 template <int Q>
@@ -65,7 +64,7 @@ HWY_INLINE Symmetric<Q> zero_matrix() {
 /// The hessian of a quadratic loss is the caller's to know.
 template <int Q, class LossT>
 HWY_INLINE Sums<Q> evaluate(const View& view, const LossT& loss, const V (&theta)[Q]) {
-  Sums<Q> s{{}, zero_matrix<Q>(), zero(), zero(), zero(), zero()};
+  Sums<Q> s{{}, zero_matrix<Q>(), zero(), zero()};
   for (V& entry : s.gradient) entry = zero();
   typename LossT::Cost cost;
   for (Index i = 0; i < view.length; ++i) {
@@ -76,14 +75,8 @@ HWY_INLINE Sums<Q> evaluate(const View& view, const LossT& loss, const V (&theta
     for (int j = 0; j < Q; ++j) s.gradient[j] = hn::MulAdd(at_r.psi, x[j], s.gradient[j]);
     s.psi_square = hn::MulAdd(at_r.psi, at_r.psi, s.psi_square);
     cost.add(loss, r, at_r);
-    if constexpr (!LossT::quadratic) {
-      s.slope = hn::Add(s.slope, at_r.slope);
-      if constexpr (!LossT::binary_slope) s.slope_square = hn::MulAdd(at_r.slope, at_r.slope, s.slope_square);
-      add_outer(at_r.slope, x, s.hessian);
-    }
+    if constexpr (!LossT::quadratic) add_outer(at_r.slope, x, s.hessian);
   }
-  if constexpr (LossT::quadratic) s.slope = splat(static_cast<double>(view.length));
-  if constexpr (LossT::binary_slope) s.slope_square = s.slope;
   s.cost = cost.value(loss);
   return s;
 }
@@ -125,28 +118,6 @@ HWY_INLINE NormalEquations<Q> normal_equations(const View& view) {
   return n;
 }
 
-/// sum r phi and sum r^2 of the residuals at theta.
-template <int Q>
-struct Moments {
-  V moment[Q];
-  V square_sum;
-};
-
-template <int Q>
-HWY_INLINE Moments<Q> residual_moments(const View& view, const V (&theta)[Q]) {
-  Moments<Q> m;
-  for (V& entry : m.moment) entry = zero();
-  m.square_sum = zero();
-  for (Index i = 0; i < view.length; ++i) {
-    V x[Q];
-    for (int j = 0; j < Q; ++j) x[j] = row(view, view.regressors[j], i);
-    const V r = residual(row(view, view.increments, i), x, theta);
-    for (int j = 0; j < Q; ++j) m.moment[j] = hn::MulAdd(r, x[j], m.moment[j]);
-    m.square_sum = hn::MulAdd(r, r, m.square_sum);
-  }
-  return m;
-}
-
 /// Median of the first `count` of the ordered rows, per lane; the mean of the middle two for an even count.
 HWY_INLINE V middle(const double* ordered, Index rows, V count, bool all_present) {
   const auto load = [&](Index i) HWY_ATTR { return hn::Load(D(), ordered + i * hn::Lanes(D())); };
@@ -178,7 +149,6 @@ HWY_INLINE void order(const std::vector<Comparator>& network, double* rows) {
 
 /// 1.4826 median |r - median r| over the samples present. Overwrites the rows of residuals.
 HWY_NOINLINE inline V normalised_mad(const Settings& settings, const View& view, double* rows, V count) {
-  constexpr double mad_to_sd = 1.4826;
   const D d;
   const Index lanes = static_cast<Index>(hn::Lanes(d));
   const bool all = view.present == nullptr;
