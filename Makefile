@@ -2,15 +2,17 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all build demo test bench uncertainty recovery check format strict seeds sanitize coverage picture readme clean
+.PHONY: all api build demo test benchmarks bench uncertainty recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
 
 all: build
 
-build/build.ninja: CMakeLists.txt CMakePresets.json | packages-build
-	cmake --preset release >/dev/null
+# Configured for the program alone; `make test` and `make bench` add to the same folder what they need.
+PROGRAM_ALONE := $(if $(wildcard build/CMakeCache.txt),,-DMODEBANK_BUILD_TESTS=OFF -DMODEBANK_BUILD_BENCHMARKS=OFF)
+build/build.ninja: CMakePresets.json | packages-build
+	cmake --preset release $(PROGRAM_ALONE) >/dev/null
 
 build: packages-build build/build.ninja
-	cmake --build --preset release -j $(JOBS)
+	cmake --build --preset release -j $(JOBS) --target modebank
 
 packages-%:
 	@sh .ci/install-packages $*
@@ -22,11 +24,17 @@ demo: build
 	build/modebank run configs/demo.ini --data.root $(DEMO)/data --archive.output $(DEMO)/demo.h5
 	@echo "Look inside: build/modebank show $(DEMO)/demo.h5"
 
-test: build packages-test
+test: packages-build packages-test build/build.ninja
+	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
+	cmake --build --preset release -j $(JOBS)
 	ctest --preset release -j $(JOBS)
 
+benchmarks: packages-build packages-bench build/build.ninja
+	cmake --preset release -DMODEBANK_BUILD_BENCHMARKS=ON >/dev/null
+	cmake --build --preset release -j $(JOBS) --target modebank benchmarks
+
 # The others compare window fits and EM with other people's, in Python too where it is installed.
-bench: build
+bench: benchmarks
 	build/bench_modebank
 	build/compare_windows 5 build/compare_windows.bin
 	build/compare_imm
@@ -37,26 +45,51 @@ bench: build
 	-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 /usr/bin/python3 tests/bench/em_peers.py build/compare_em
 
 # Coverage of the stated 95 % regions, as the README's table has it.
-uncertainty: build
+uncertainty: benchmarks
 	build/measure_coverage
 
 # How often the true number of modes is found, as the README's table has it.
-recovery: build
+recovery: benchmarks
 	build/measure_recovery
 
 # Everything CI runs beside `make test`.
-check: format strict seeds sanitize
+check: format lint shellcheck api tidy-changed seeds sanitize
 
 format: packages-check
-	git ls-files '*.hpp' '*.cpp' | xargs clang-format --dry-run --Werror
+	git ls-files '*.hpp' '*.cpp' '*.js' | xargs clang-format --dry-run --Werror
 
-# The release build again with warnings as errors; in CI it was built so already.
-strict: packages-build
-	cmake --preset release -DMODEBANK_WARNINGS_AS_ERRORS=ON >/dev/null
+# The public headers' documentation, build/api/html; a warning is an error.
+api: packages-check
+	@mkdir -p build/api
+	doxygen Doxyfile
+
+# The pages' scripts. Debian's eslint is told where Debian's modules are: another node does not know.
+lint: packages-check
+	NODE_PATH=/usr/share/nodejs eslint --format unix app/report/web/src app/report/web/test
+
+shellcheck: packages-check
+	git ls-files '*.sh' .ci | xargs grep -lE '^#!.*\b(ba)?sh$$' | xargs shellcheck
+
+# clang-tidy on every source, and on those that changed with what includes them; .ci/tidy says which these are.
+tidy: packages-build packages-check
+	.ci/tidy --all
+
+tidy-changed: packages-build packages-check
+	.ci/tidy
+
+# The numeric tests of the libraries on 64-bit ARM, cross-compiled and run under qemu.
+arm64: packages-build packages-arm64
+	.ci/arm64
+
+# The release build with warnings as errors, as CI builds it; `sanitize` has them so anyway.
+strict: packages-build packages-test packages-bench
+	cmake --preset release -DMODEBANK_WARNINGS_AS_ERRORS=ON -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_BUILD_BENCHMARKS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS)
 
 # Recovery of known systems over many seeds.
-seeds: build
+seeds: packages-build packages-test build/build.ninja
+	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
+	cmake --build --preset release -j $(JOBS)
 	ctest --preset seeds -j $(JOBS)
 
 sanitize: packages-build packages-test

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <boost/random/uniform_int_distribution.hpp>
 #include <cmath>
+#include <limits>
 #include <map>
 
-#include "ident/not_a_number.hpp"
-#include "ident/seed.hpp"
-#include "mixture/assignment.hpp"
-#include "mixture/point_part.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/base/seed.hpp"
+#include "mixture/detail/cloud.hpp"
 
 namespace modebank {
 
@@ -19,6 +19,65 @@ using Eigen::Index;
 namespace {
 
 constexpr Index points_to_match = 2000;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Rows assigned so far, with the dual prices that keep every reduced cost nonnegative. Column K is a stand-in at which
+/// each search begins.
+class Assigner {
+ public:
+  explicit Assigner(const Eigen::MatrixXd& cost)
+      : cost_(cost),
+        size_(cost.rows()),
+        row_price_(Eigen::VectorXd::Zero(size_)),
+        column_price_(Eigen::VectorXd::Zero(size_ + 1)),
+        row_of_(Eigen::VectorX<Index>::Constant(size_ + 1, -1)) {}
+
+  /// Gives `row` a column along the cheapest path of exchanges (Dijkstra on reduced costs).
+  void add(Index row) {
+    Eigen::VectorXd distance = Eigen::VectorXd::Constant(size_, infinity);
+    Eigen::VectorX<Index> previous = Eigen::VectorX<Index>::Constant(size_, size_);
+    std::vector<bool> visited(static_cast<std::size_t>(size_ + 1), false);
+    Index column = size_;
+    row_of_(size_) = row;
+    while (row_of_(column) >= 0) {
+      visited[static_cast<std::size_t>(column)] = true;
+      const Index from = row_of_(column);
+      Index nearest = -1;
+      for (Index j = 0; j < size_; ++j) {
+        if (visited[static_cast<std::size_t>(j)]) continue;
+        const double step = cost_(from, j) - row_price_(from) - column_price_(j);
+        if (step < distance(j)) {
+          distance(j) = step;
+          previous(j) = column;
+        }
+        if (nearest < 0 || distance(j) < distance(nearest)) nearest = j;
+      }
+      const double shift = distance(nearest);
+      for (Index j = 0; j <= size_; ++j)
+        if (visited[static_cast<std::size_t>(j)]) {
+          row_price_(row_of_(j)) += shift;
+          column_price_(j) -= shift;
+        } else {
+          distance(j) -= shift;
+        }
+      column = nearest;
+    }
+    for (; column != size_; column = previous(column)) row_of_(column) = row_of_(previous(column));
+  }
+
+  std::vector<Index> columns() const {
+    std::vector<Index> result(static_cast<std::size_t>(size_));
+    for (Index j = 0; j < size_; ++j) result[static_cast<std::size_t>(row_of_(j))] = j;
+    return result;
+  }
+
+ private:
+  Eigen::MatrixXd cost_;
+  Index size_;
+  Eigen::VectorXd row_price_;
+  Eigen::VectorXd column_price_;
+  Eigen::VectorX<Index> row_of_;  // -1: free
+};
 
 /// Runs numbered from 0.
 struct Runs {
@@ -71,6 +130,12 @@ Eigen::VectorXd deviation(const Eigen::MatrixXd& values) {
 
 }  // namespace
 
+std::vector<Index> best_assignment(const Eigen::MatrixXd& values) {
+  Assigner assigner(-values);
+  for (Index row = 0; row < values.rows(); ++row) assigner.add(row);
+  return assigner.columns();
+}
+
 MixtureErrors bootstrap_runs(const PointSet& points, const std::vector<Index>& runs_of_points,
                              const GaussianMixture& mixture, const EmOptions& options, int replicates,
                              std::uint64_t seed) {
@@ -84,7 +149,6 @@ MixtureErrors bootstrap_runs(const PointSet& points, const std::vector<Index>& r
                  std::vector<Eigen::MatrixXd>(static_cast<std::size_t>(K), Eigen::MatrixXd(F, replicates))};
   // From the chosen mixture alone, by extrapolated steps.
   EmOptions once = options;
-  once.start = StartKind::kmeans_plus_plus;
   once.restarts = 1;
   once.split_merge = 0;
   tbb::parallel_for(0, replicates, [&](int b) {

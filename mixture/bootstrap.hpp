@@ -8,6 +8,10 @@
 
 namespace modebank {
 
+/// For every row the column assigned to it, one to one, such that the sum of the chosen values is largest. `values`
+/// K x K, finite. Shortest augmenting paths (Jonker & Volgenant 1987, Computing 38), K^3 operations.
+std::vector<Eigen::Index> best_assignment(const Eigen::MatrixXd& values);
+
 /// Standard errors of weights and means by the bootstrap (Efron 1979) over whole runs, since windows of one run are not
 /// independent: runs are drawn with replacement, EM starts from the chosen mixture, and its components are matched one
 /// to one with the chosen ones' (assignment of largest total overlap of responsibilities), so that exchanged labels do

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
@@ -99,15 +99,14 @@ std::vector<std::string> selection_warnings(const std::vector<Candidate>& candid
   const Index components = selected->components;
   if (2 * selected->agreeing_restarts < selected->restarts)
     warnings.push_back(
-        fmt::format("{} of {} restarts reached the best optimum of {} components: there may be a better one "
-                    "(mixture.restarts)",
+        fmt::format("{} of {} restarts reached the best optimum of {} components: more of them may find a better one",
                     selected->agreeing_restarts, selected->restarts, components));
   if (!selected->converged)
-    warnings.push_back(fmt::format("EM of {} components did not converge (mixture.max_iterations)", components));
+    warnings.push_back(fmt::format("EM of {} components did not converge in max_iterations", components));
   if (candidates.size() < 2) return warnings;
   const bool least = selected == candidates.begin() && components > 1;
   if (least || selected + 1 == candidates.end())
-    warnings.push_back(fmt::format("{} components are the {} of the candidates: widen mixture.components", components,
+    warnings.push_back(fmt::format("{} components are the {} of the candidates: widen their range", components,
                                    least ? "fewest" : "most"));
   if (std::string text = disagreement(candidates, *selected); !text.empty()) warnings.push_back(std::move(text));
   return warnings;

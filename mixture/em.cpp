@@ -4,17 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
 
-#include "mixture/em_iteration.hpp"
-#include "mixture/em_step.hpp"
-#include "mixture/feature_scale.hpp"
-#include "mixture/restarts.hpp"
-#include "mixture/scaled_cloud.hpp"
-#include "mixture/starts.hpp"
+#include "mixture/detail/cloud.hpp"
+#include "mixture/detail/iterate.hpp"
+#include "mixture/detail/restarts.hpp"
+#include "mixture/detail/step.hpp"
 
 namespace modebank {
 
@@ -49,6 +46,13 @@ void check(const PointSet& set) {
     throw std::invalid_argument(fmt::format("EM is given {} points but {} weights", set.count(), set.weights.size()));
   if (!set.weights.allFinite() || set.weights.minCoeff() < 0.0 || !(set.weights.sum() > 0.0))
     throw std::invalid_argument("EM needs finite, nonnegative weights that are not all zero");
+}
+
+void check(const GaussianMixture& start, Index features) {
+  check_sizes(start);
+  if (start.features() != features)
+    throw std::invalid_argument(
+        fmt::format("EM is given points of {} features and a start of {}", features, start.features()));
 }
 
 void order_by_weight(GaussianMixture& mixture) {
@@ -89,30 +93,11 @@ GaussianMixture usable_start(const GaussianMixture& start, const ScaledCloud& cl
 
 }  // namespace
 
-EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptions& options) {
-  EmResult result;
-  result.mixture = std::move(start);
-  double previous = -std::numeric_limits<double>::infinity();
-  while (true) {
-    const bool last = result.iterations == options.max_iterations;
-    const MixtureMoments moments = last ? measure(points, result.mixture) : expect(points, result.mixture);
-    result.log_likelihood = moments.log_likelihood;
-    result.converged = result.log_likelihood - previous < options.tolerance * points.total_weight();
-    if (result.converged || last) break;
-    previous = result.log_likelihood;
-    result.floor_active = maximise(moments, options.covariance_floor, result.mixture);
-    ++result.iterations;
-  }
-  return result;
-}
-
 struct EmSweep::Prepared {
   EmOptions options;
   ScaledCloud cloud;
-  Starts starts;
 
-  Prepared(const PointSet& points, const EmOptions& given)
-      : options(given), cloud(points, options), starts(cloud, options) {}
+  Prepared(const PointSet& points, const EmOptions& given) : options(given), cloud(points, options) {}
 };
 
 EmSweep::EmSweep(const PointSet& points, const EmOptions& options) {
@@ -129,11 +114,12 @@ EmResult EmSweep::fit(Index components, std::uint64_t seed, const GaussianMixtur
   if (components < 1 || components > cloud.points.count())
     throw std::invalid_argument(
         fmt::format("EM of {} components needs 1 to {} (the number of points)", components, cloud.points.count()));
+  if (start) check(*start, cloud.points.features());
   const auto start_of = [&](int i) {
     return i == 0 && start ? Start{usable_start(*start, cloud, options), 0}
-                           : prepared_->starts.make(components, i, seed);
+                           : make_start(cloud, components, i, options, seed);
   };
-  EmResult result = best_of_restarts(cloud.points, start_of, options);
+  EmResult result = best_of_restarts(cloud.points, start_of, options, seed);
   order_by_weight(result.mixture);
   to_physical(cloud, result);
   return result;
@@ -145,10 +131,7 @@ EmResult fit_em(const PointSet& points, Index components, const EmOptions& optio
 
 EmResult fit_em(const PointSet& points, const GaussianMixture& start, const EmOptions& options) {
   check(options);
-  check_sizes(start);
-  if (start.features() != points.features())
-    throw std::invalid_argument(
-        fmt::format("EM is given points of {} features and a start of {}", points.features(), start.features()));
+  check(start, points.features());
   check(points);
   const ScaledCloud cloud(points, options);
   EmResult result = iterate(cloud.points, usable_start(start, cloud, options), options);

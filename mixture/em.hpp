@@ -8,23 +8,23 @@
 
 namespace modebank {
 
-/// Where restarts begin. kmeans_plus_plus: Arthur & Vassilvitskii 2007. random: points as centres. Both are the best of
-/// EmOptions::start_runs short runs. hierarchical: model-based agglomeration (Fraley 1998) of a subsample, another one
-/// for each restart. automatic: the first restart hierarchical, then random and k-means++ in turn.
-enum class StartKind { automatic, kmeans_plus_plus, random, hierarchical };
+/// Where restarts begin: at the best of EmOptions::start_runs short runs from points drawn as centres, or from
+/// k-means++ (Arthur & Vassilvitskii 2007). With moves random starts lead to higher optima: on three clouds of robot
+/// data and one simulated, K = 1..12 and six seeds, by 10 to 600 nats in the mean.
+enum class StartKind { random, kmeans_plus_plus };
 
 template <>
 struct EnumNames<StartKind> {
-  static constexpr Names<4> values{"auto", "kmeans++", "random", "hierarchical"};
+  static constexpr Names<2> values{"random", "kmeans++"};
 };
 
 /// Expectation-maximisation of a Gaussian mixture (Dempster, Laird & Rubin 1977), in the log domain.
 struct EmOptions {
   CovarianceType covariance = CovarianceType::full;
-  StartKind start = StartKind::automatic;
+  StartKind start = StartKind::random;
   int restarts = 5;  ///< independent, >= 1
-  /// Short runs that k-means++ and random starts are the best of (emEM: Biernacki, Celeux & Govaert 2003), on a
-  /// subsample of many points; 1: single starts.
+  /// Short runs that a start is the best of (emEM: Biernacki, Celeux & Govaert 2003), on a subsample of many points; 1:
+  /// single starts.
   int start_runs = 2;
   /// Split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000). 0: none, and restarts are
   /// not crossed (restarts.hpp).
@@ -64,7 +64,7 @@ class EmSweep {
   EmSweep(const EmSweep&) = delete;
   EmSweep& operator=(const EmSweep&) = delete;
 
-  /// With `start` (physical units, of as many components) the first restart begins there.
+  /// With `start` (physical units, of as many components) the first restart begins there. Throws like fit_em.
   EmResult fit(Eigen::Index components, std::uint64_t seed, const GaussianMixture* start = nullptr) const;
 
  private:

@@ -100,16 +100,4 @@ FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowCh
   return cloud;
 }
 
-FeatureCloud subset(const FeatureCloud& cloud, const std::vector<Index>& positions) {
-  FeatureCloud part;
-  part.names = cloud.names;
-  part.points = cloud.points(Eigen::all, positions);
-  if (cloud.covariances.size() > 0) part.covariances = cloud.covariances(Eigen::all, positions);
-  for (const Index i : positions) {
-    part.windows.push_back(cloud.windows[static_cast<std::size_t>(i)]);
-    part.runs.push_back(cloud.runs[static_cast<std::size_t>(i)]);
-  }
-  return part;
-}
-
 }  // namespace modebank

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/local_model.hpp"
+#include "ident/model/local_model.hpp"
 #include "mixture/point_set.hpp"
 
 namespace modebank {
@@ -24,13 +24,12 @@ struct EnumNames<WindowChoice> {
 
 /// What becomes of windows that straddle a switch of mode: they follow no single model and are a population of their
 /// own, which would claim a component. `leave_out` takes those out of the cloud whose residuals show it
-/// (straddling_windows); `trim` those, too, that the labels show (windows_at_switches), and clusters again until that
-/// changes nothing; `keep` clusters all like the others.
-enum class StraddlingWindows { leave_out, trim, keep };
+/// (straddling_windows); `keep` clusters them like the others.
+enum class StraddlingWindows { leave_out, keep };
 
 template <>
 struct EnumNames<StraddlingWindows> {
-  static constexpr Names<3> values{"leave_out", "trim", "keep"};
+  static constexpr Names<2> values{"leave_out", "keep"};
 };
 
 /// The cloud that is clustered: one point per clustered window.
@@ -43,9 +42,6 @@ struct FeatureCloud {
 
   PointSet point_set() const { return PointSet(points, detail::no_weights, covariances); }
 };
-
-/// The points at `positions` of the cloud, in that order.
-FeatureCloud subset(const FeatureCloud& cloud, const std::vector<Eigen::Index>& positions);
 
 /// Whether the cloud carries the windows' own covariances (error-aware clustering).
 enum class WindowErrors { ignore, include };

@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
 #include <stdexcept>
 
-#include "mixture/component_density.hpp"
-#include "mixture/feature_scale.hpp"
-#include "mixture/point_blocks.hpp"
+#include "mixture/detail/cloud.hpp"
+#include "mixture/detail/density.hpp"
 
 namespace modebank {
 
@@ -119,6 +119,23 @@ void check_errors(const PointSet& set) {
       }
     if (!sound) throw std::invalid_argument(fmt::format("the error covariance of point {} is no covariance", i));
   }
+}
+
+bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType type) {
+  if (type == CovarianceType::diagonal) {
+    const Eigen::VectorXd variances = covariance.diagonal();
+    covariance = variances.cwiseMax(floor).asDiagonal();
+    return (variances.array() < floor).any();
+  }
+  Eigen::MatrixXd excess = covariance;
+  excess.diagonal().array() -= floor;
+  // Positive definite after the floor is taken off: every eigenvalue is above it, and no decomposition is needed.
+  if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(excess).info() == Eigen::Success) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+  covariance =
+      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(floor).asDiagonal() * eigen.eigenvectors().transpose();
+  covariance = (0.5 * (covariance + covariance.transpose())).eval();
+  return true;
 }
 
 Eigen::VectorXd log_density(const GaussianMixture& mixture, const PointSet& points) {

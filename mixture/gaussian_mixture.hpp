@@ -3,10 +3,11 @@
 #include <Eigen/Core>
 #include <functional>
 #include <random>
+#include <stdexcept>
 #include <vector>
 
-#include "ident/enum_names.hpp"
 #include "mixture/point_set.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank {
 
@@ -46,6 +47,11 @@ struct GaussianMixture {
   Eigen::Index parameter_count() const;
 };
 
+/// A component's covariance is not positive definite: of a fit, that its numbers are beyond double precision.
+class NotPositiveDefinite : public std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
 /// Throws std::invalid_argument when the parts of a mixture do not fit together, or it has no component or feature.
 void check_sizes(const GaussianMixture& mixture);
 
@@ -53,8 +59,11 @@ void check_sizes(const GaussianMixture& mixture);
 /// has a negative variance or a correlation beyond one.
 void check_errors(const PointSet& points);
 
+/// Raises the eigenvalues (`diagonal`: the variances, off-diagonals are zeroed) to `floor`; whether any was below.
+bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType type);
+
 // The functions below throw std::invalid_argument for sizes that do not fit, for points, means or weights that are not
-// finite, a negative weight, a covariance that is not positive definite and for an error covariance that is none. A
+// finite, a negative weight and for an error covariance that is none, and NotPositiveDefinite. A
 // point with an error covariance S is seen through it: component k is N(mu_k, Sigma_k + S) there (Bovy, Hogg & Roweis
 // 2011, eq. 9). Weights of points are ignored.
 

@@ -6,9 +6,9 @@
 #include <iterator>
 #include <vector>
 
-#include "ident/not_a_number.hpp"
-#include "ident/seed.hpp"
-#include "mixture/point_part.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/base/seed.hpp"
+#include "mixture/detail/cloud.hpp"
 
 namespace modebank {
 
@@ -60,8 +60,6 @@ double heldout_score(const PointSet& points, const std::vector<Index>& runs, Ind
   if (count < 2) return not_a_number;
   options.restarts = std::min(options.restarts, 2);
   options.split_merge = 0;
-  // Agglomeration takes longer than all the rest of a fit this brief.
-  if (options.start == StartKind::automatic) options.start = StartKind::kmeans_plus_plus;
   Eigen::VectorXd sums = Eigen::VectorXd::Constant(count, not_a_number), weights = sums;
   tbb::parallel_for(Index(0), count, [&](Index g) {
     const std::vector<Index>& group = groups[static_cast<std::size_t>(g)];

@@ -9,7 +9,8 @@ inline const Eigen::VectorXd no_weights;
 inline const Eigen::MatrixXd no_covariances;
 }  // namespace detail
 
-/// Points to be clustered or evaluated, with what is known of each. Refers to its parts, which must outlive it.
+/// Points to be clustered or evaluated, with what is known of each. Refers to its parts, which must outlive it: parts
+/// that end with the expression are refused by the compiler.
 struct PointSet {
   const Eigen::MatrixXd& points;       ///< F x N
   const Eigen::VectorXd& weights;      ///< N, nonnegative; empty: all one
@@ -18,6 +19,10 @@ struct PointSet {
   PointSet(const Eigen::MatrixXd& points_, const Eigen::VectorXd& weights_ = detail::no_weights,
            const Eigen::MatrixXd& covariances_ = detail::no_covariances)
       : points(points_), weights(weights_), covariances(covariances_) {}
+  PointSet(Eigen::MatrixXd&&, const Eigen::VectorXd& = detail::no_weights,
+           const Eigen::MatrixXd& = detail::no_covariances) = delete;
+  PointSet(const Eigen::MatrixXd&, Eigen::VectorXd&&, const Eigen::MatrixXd& = detail::no_covariances) = delete;
+  PointSet(const Eigen::MatrixXd&, const Eigen::VectorXd&, Eigen::MatrixXd&&) = delete;
 
   Eigen::Index features() const { return points.rows(); }
   Eigen::Index count() const { return points.cols(); }

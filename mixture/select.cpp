@@ -10,12 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "ident/error.hpp"
-#include "ident/not_a_number.hpp"
-#include "ident/seed.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/base/seed.hpp"
 #include "mixture/bootstrap.hpp"
 #include "mixture/criteria.hpp"
 #include "mixture/heldout.hpp"
+#include "mixture/reduction.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -85,9 +86,11 @@ FittedCandidate fit_candidate(const Task& task, const EmSweep& sweep, Index comp
   if (components > task.distinct_points) return {{}, unfitted(row, CandidateStatus::too_few_points)};
   const bool given = options.start && options.start->components() == components;
   EmResult fit;
+  double cost = 0.0;
   try {
     fit = sweep.fit(components, task.seed_of(components), given ? &*options.start : nullptr);
-  } catch (const std::exception&) {
+    cost = classification_cost(fit.mixture, task.points);
+  } catch (const NotPositiveDefinite&) {
     return {{}, unfitted(row, CandidateStatus::failed)};
   }
   row.log_likelihood = fit.log_likelihood;
@@ -96,7 +99,7 @@ FittedCandidate fit_candidate(const Task& task, const EmSweep& sweep, Index comp
   row.converged = fit.converged;
   row.agreeing_restarts = fit.agreeing_restarts;
   row.floor_active = fit.floor_active;
-  fill_criteria(row, task.total_weight, classification_cost(fit.mixture, task.points));
+  fill_criteria(row, task.total_weight, cost);
   if (!std::isfinite(row.icl)) return {{}, unfitted(row, CandidateStatus::failed)};
   return {std::move(fit.mixture), row};
 }
@@ -150,6 +153,29 @@ std::vector<FittedCandidate> fit_all(const Task& task, const std::vector<Index>&
                               task.points.count()));
 }
 
+void check_enough(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options) {
+  const auto fewest = std::min_element(options.components.begin(), options.components.end());
+  const Index points = cloud.points.cols();
+  if (fewest == options.components.end() || *fewest <= points) return;
+  const std::string fewer = points > 0 ? fmt::format("ask for at most {} components, or ", points) : "";
+  throw DataError(fmt::format(
+      "the fewest components asked for are {}, but {} of {} windows can be clustered: {}have more windows clustered (a "
+      "prior for windows that are not excited, all ranks, shorter windows, more data)",
+      *fewest, points, fits.count(), fewer));
+}
+
+MixtureResult with_memberships(const FeatureCloud& cloud, Index windows, Selection selection) {
+  MixtureResult result;
+  result.mixture = std::move(selection.mixture);
+  result.feature_names = cloud.names;
+  result.candidates = std::move(selection.candidates);
+  result.weights_standard_error = std::move(selection.standard_error.weights);
+  result.means_standard_error = std::move(selection.standard_error.means);
+  result.labels = most_probable(result.mixture, cloud, windows);
+  result.responsibilities = WindowResponsibilities(result.mixture, cloud, windows);
+  return result;
+}
+
 }  // namespace
 
 Selection select(const PointSet& points, const SampleDesign& design, const SelectionOptions& options,
@@ -178,6 +204,29 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
   if (options.bootstrap > 0)
     result.standard_error = bootstrap_runs(points, design.runs, result.mixture, options.em, options.bootstrap,
                                            derive_seed(seed, "mixture bootstrap"));
+  return result;
+}
+
+MixtureResult select_mixture(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options,
+                             std::uint64_t seed) {
+  check_enough(fits, cloud, options);
+  const SampleDesign design{effective_samples(cloud, fits.length, fits.step), cloud.runs};
+  return with_memberships(cloud, fits.count(), select(cloud.point_set(), design, options, seed));
+}
+
+MixtureResult merge_components(MixtureResult result, Index most) {
+  if (most < 1) throw std::invalid_argument("a mixture cannot be merged into " + std::to_string(most) + " components");
+  Reduction reduction(std::move(result.mixture));
+  while (reduction.components() > most) {
+    const auto [into, absorbed] = reduction.merge_closest();
+    result.responsibilities = std::move(result.responsibilities).merged(into, absorbed);
+    for (int& label : result.labels)
+      if (label == absorbed)
+        label = static_cast<int>(into);
+      else if (label > absorbed)
+        --label;
+  }
+  result.mixture = reduction.mixture();
   return result;
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 #include "mixture/em.hpp"
 #include "mixture/features.hpp"
 #include "mixture/window_responsibilities.hpp"
@@ -36,7 +36,6 @@ struct SelectionOptions {
   EmOptions em;
   std::optional<GaussianMixture> start;  ///< the first restart of the candidate of its size begins here
   int bootstrap = 0;                     ///< resamples of the runs for standard errors, 0: none
-  StraddlingWindows straddling = StraddlingWindows::leave_out;  ///< select_mixture only
 };
 
 enum class CandidateStatus { fitted, too_few_points, failed };
@@ -109,9 +108,13 @@ struct MixtureResult {
 /// Overlapping windows share samples: N_eff = min(N, sum over runs with a clustered window of max(1, M_run step / L)).
 double effective_samples(const FeatureCloud& cloud, Eigen::Index length, Eigen::Index step);
 
-/// select() for the cloud of windows. With StraddlingWindows::trim the windows at switches (windows_at_switches) are
-/// taken out and the rest is clustered again, until that changes nothing, at most four times.
+/// select() for the cloud of windows.
 MixtureResult select_mixture(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options,
                              std::uint64_t seed);
+
+/// Merges the closest components until at most `most` are left: by moments, the pair of least merge_loss first
+/// (reduction.hpp). Responsibilities add up, labels follow the merges; the table of candidates stays. Throws
+/// std::invalid_argument for `most` below 1.
+MixtureResult merge_components(MixtureResult result, Eigen::Index most);
 
 }  // namespace modebank

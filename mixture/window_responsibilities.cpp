@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filter/bank.hpp"
+#include "filter/step/bank.hpp"
 
 namespace modebank::bench {
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "ident/simulate.hpp"
+#include "ident/simulate/simulate.hpp"
 
 namespace modebank::bench {
 

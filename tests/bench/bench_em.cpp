@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "ident/seed.hpp"
+#include "ident/base/seed.hpp"
 #include "mixture/em.hpp"
 #include "tests/bench/bench_data.hpp"
 

@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "ident/fit_window.hpp"
+#include "ident/fit/fit_windows.hpp"
 #include "tests/bench/bench_data.hpp"
 
 namespace modebank {

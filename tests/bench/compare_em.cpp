@@ -21,7 +21,7 @@
 #include <random>
 #include <sstream>
 
-#include "ident/seed.hpp"
+#include "ident/base/seed.hpp"
 #include "mixture/em.hpp"
 #include "tests/bench/bench_data.hpp"
 #include "tests/bench/em_cases.hpp"
@@ -161,7 +161,7 @@ EmRun sweep(const EmCase& problem, int threads, int most, int restarts, int seed
   EmOptions options;
   options.covariance = problem.type;
   options.restarts = restarts;
-  // What scikit-learn does: it knows no agglomeration, no short runs and no moves.
+  // What scikit-learn does: it knows no short runs and no moves.
   options.start = StartKind::kmeans_plus_plus;
   options.start_runs = 1;
   options.split_merge = 0;

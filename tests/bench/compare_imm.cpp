@@ -11,8 +11,9 @@
 #include <functional>
 #include <numbers>
 
-#include "filter/evaluate.hpp"
-#include "filter/fixed_imm.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "filter/step/equations/filter_step.hpp"
 #include "tests/bench/bench_data.hpp"
 
 namespace {
@@ -125,20 +126,21 @@ double plain(const Bank& bank, const Trajectory& run) {
   return result;
 }
 
-template <int N, int K>
-double fixed(const Bank& bank, const Trajectory& run) {
-  Imm<N, 2, K, 1> filter(bank);
-  filter.start(run.state.col(0));
+/// What a robot runs: estimate, innovation and its NIS, probability transform, sample by sample.
+double live(const Bank& bank, const Trajectory& run) {
+  BankFilter filter(bank, {});
+  filter.step(std::nan(""), run.input.col(0), run.state.col(0));
   double sum = 0.0;
-  for (Index k = 1; k < run.samples(); ++k) sum += filter.step(run.input.col(k - 1), run.state.col(k));
+  for (Index k = 1; k < run.samples(); ++k)
+    sum += filter.step(std::nan(""), run.input.col(k), run.state.col(k)).log_density;
   return sum;
 }
 
-/// The general steps, which every variant and size can take, without what only a summary needs.
-template <int N>
-double bare(const Bank& bank, const Trajectory& run) {
-  const FilterModel<N, 1> model(bank, {});
-  FilterStep<N, 1> step(model);
+/// The equations, which every variant and size can take.
+template <int N, int NY>
+double equations(const Bank& bank, const Trajectory& run) {
+  const FilterModel<N, NY> model(bank, {});
+  FilterStep<N, NY> step(model);
   FilterState<N> state = start(model, run.state.col(0));
   double sum = 0.0;
   for (Index k = 1; k < run.samples(); ++k) {
@@ -150,7 +152,6 @@ double bare(const Bank& bank, const Trajectory& run) {
 
 struct Contestant {
   std::string name;
-  double runs;
   std::function<double()> run;  ///< returns the log likelihood of one run
   std::vector<double> ns = {};
 };
@@ -171,7 +172,7 @@ void compare(const std::string& title, int rounds, std::vector<Contestant> conte
       const double spent = processor_ns() - begin;
       if (&c == &contestants.front()) expected = value;
       bench::check(std::abs(value - expected) <= 1e-9 * std::abs(expected), title + ", " + c.name);
-      c.ns.push_back(spent / (c.runs * static_cast<double>(steps - 1)));
+      c.ns.push_back(spent / static_cast<double>(steps - 1));
     }
   fmt::print("{}\n", title);
   const auto median = [](std::vector<double> v) {
@@ -183,32 +184,18 @@ void compare(const std::string& title, int rounds, std::vector<Contestant> conte
                median(contestants.front().ns) / median(c.ns));
 }
 
-template <int N>
-void compare_states(int rounds, const Trajectory& run) {
-  const Bank bank = make_bank(N, 9);
-  compare(fmt::format("K = 9, n = {}", N), rounds,
-          {{"plain dynamic Eigen", 1, [&] { return plain(bank, run); }},
-           {"general steps", 1, [&] { return bare<N>(bank, run); }},
-           {"log_likelihood, one run", 1, [&] { return log_likelihood(bank, run, {}); }},
-           {"Imm<n, 2, 9, 1>, estimate and NIS", 1, [&] { return fixed<N, 9>(bank, run); }}});
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 7;
   const Trajectory run = make_run(steps);
-  for (const Index K : {3, 9, 25}) {
-    const Bank bank = make_bank(1, K);
-    const std::vector<const Bank*> banks(32, &bank);
-    const std::vector<const Trajectory*> runs(32, &run);
-    compare(fmt::format("K = {}, n = 1", K), rounds,
-            {{"plain dynamic Eigen", 1, [&] { return plain(bank, run); }},
-             {"general steps", 1, [&] { return bare<1>(bank, run); }},
-             {"log_likelihood, one run", 1, [&] { return log_likelihood(bank, run, {}); }},
-             {"log_likelihoods, 32 runs in lanes", 32, [&] { return log_likelihoods(banks, runs, {}).back(); }}});
+  for (const auto& [n, K] : {std::pair<Index, Index>{1, 3}, {1, 9}, {1, 25}, {2, 9}, {3, 9}}) {
+    const Bank bank = make_bank(n, K);
+    compare(fmt::format("K = {}, n = {}", K, n), rounds,
+            {{"plain dynamic Eigen", [&] { return plain(bank, run); }},
+             {"equations", [&] { return n == 1 ? equations<1, 1>(bank, run) : equations<-1, -1>(bank, run); }},
+             {"log_likelihood", [&] { return log_likelihood(bank, run, {}); }},
+             {"BankFilter", [&] { return live(bank, run); }}});
   }
-  compare_states<2>(rounds, run);
-  compare_states<3>(rounds, run);
   return 0;
 }

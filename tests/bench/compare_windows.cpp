@@ -1,7 +1,6 @@
 // Window fits beside other people's programs in one run: CPU time of one thread, the programs in turn, medians over the
-// rounds.
-// Bare: fixed scale, no prior; theta, `model` covariance and status, as the peers compute. usage:
-// compare_windows [ROUNDS]
+// rounds. Ours is what users run: robust scale, prior, rank, condition, information, R^2 and AIC as well; the peers
+// have a fixed scale and no prior, and compute theta, `model` covariance and status. usage: compare_windows [ROUNDS]
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
@@ -14,10 +13,11 @@
 #include <functional>
 #include <string>
 
-#include "ident/batch_solver.hpp"
-#include "ident/model_fit.hpp"
-#include "ident/seed.hpp"
-#include "ident/templated_model.hpp"
+#include "ident/base/seed.hpp"
+#include "ident/fit/detail/batch/solver.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "ident/fit/motion_fit.hpp"
+#include "ident/model/templated_model.hpp"
 #include "tests/bench/bench_data.hpp"
 #include "tests/bench/window_peers.hpp"
 
@@ -72,7 +72,8 @@ PeerData peer_data(const Trajectory& run) {
   return data;
 }
 
-FitOptions bare_options(Loss loss) {
+/// The problem that the peers solve.
+FitOptions peer_options(Loss loss) {
   FitOptions options;
   options.loss = loss;
   options.scale = ScaleSource::fixed;
@@ -90,25 +91,22 @@ struct JobResults {
 };
 
 /// All windows job by job, staging included; `consume` sees each job's results.
-void run_batch(const Trajectory& run, const BatchSolver& solver, bool full, Index windows,
+void run_batch(const Trajectory& run, const BatchSolver& solver, Index windows,
                const std::function<void(Index, Index, const JobResults&)>& consume) {
   static BatchWorkspace workspace;
   static JobResults results;
-  batch::Output out;
-  out.verdict = results.verdict.data();
-  out.theta = results.theta.data();
-  out.covariance = results.covariance.data();
-  out.status = results.status.data();
-  if (full) {
-    out.noise_variance = results.noise.data();
-    out.condition = results.condition.data();
-    out.information = results.information.data();
-    out.inlier_fraction = results.inliers.data();
-    out.rank = results.rank.data();
-    out.r_squared = results.r_squared.data();
-    out.aic = results.aic.data();
-    out.transitions = results.transitions.data();
-  }
+  const batch::Output out{.verdict = results.verdict.data(),
+                          .theta = results.theta.data(),
+                          .covariance = results.covariance.data(),
+                          .noise_variance = results.noise.data(),
+                          .condition = results.condition.data(),
+                          .information = results.information.data(),
+                          .inlier_fraction = results.inliers.data(),
+                          .r_squared = results.r_squared.data(),
+                          .aic = results.aic.data(),
+                          .transitions = results.transitions.data(),
+                          .rank = results.rank.data(),
+                          .status = results.status.data()};
   for (Index first = 0; first < windows; first += job) {
     const Index count = std::min(job, windows - first);
     batch::Chunk chunk = workspace.stage(run, first, count, structure, solver.settings());
@@ -145,7 +143,7 @@ void measure(std::vector<Entry>& entries, int rounds) {
     }
 }
 
-/// x[k+1] = x + A x + B u as a user of the general door would write it.
+/// x[k+1] = x + A x + B u as the user of a motion model would write it.
 struct PlainModel {
   static constexpr int states = 1, inputs = 2, parameters = 3;
   std::string name() const { return "plain"; }
@@ -156,10 +154,10 @@ struct PlainModel {
   }
 };
 
-/// The first windows through the general door, from a start that suits none of the regimes.
+/// The first windows as those of a motion model, from a start that suits none of the regimes.
 void run_general(const Trajectory& run, Loss loss, Index windows, Eigen::MatrixXd& theta) {
   const auto model = make_templated_model(PlainModel());
-  const ModelEstimator estimator = make_model_estimator(*model, bare_options(loss));
+  const ModelEstimator estimator = make_model_estimator(*model, peer_options(loss));
   const Eigen::VectorXd sigma = Eigen::VectorXd::Constant(1, residual_scale / default_loss_scale(loss));
   for (Index i = 0; i < windows; ++i) {
     const ModelResiduals residuals(*model, {{&run, i, peer_length}}, ResidualKind::one_step);
@@ -173,7 +171,7 @@ void run_general(const Trajectory& run, Loss loss, Index windows, Eigen::MatrixX
 void check_against(const std::vector<PeerFit>& peers, const Trajectory& run, const BatchSolver& solver) {
   Index near = 0, solved = 0;
   const Index windows = static_cast<Index>(peers.size());
-  run_batch(run, solver, false, windows, [&](Index first, Index count, const JobResults& results) {
+  run_batch(run, solver, windows, [&](Index first, Index count, const JobResults& results) {
     for (Index i = 0; i < count; ++i) {
       solved += results.verdict[static_cast<std::size_t>(i)] == batch::Verdict::solved ? 1 : 0;
       const Eigen::Map<const Eigen::Vector3d> peer(peers[static_cast<std::size_t>(first + i)].theta);
@@ -188,9 +186,7 @@ void compare(const Trajectory& run, const PeerData& data, Loss loss, int rounds)
   const Index all = samples - peer_length - 1, naive = 1000, tiny = 20000, general = 5000;
   Eigen::MatrixXd general_theta(3, general);
   std::vector<PeerFit> naive_fits(naive), tiny_fits(tiny);
-  batch::Settings settings = batch_settings(structure, bare_options(loss), nullptr, 0.0);
-  settings.bare = true;
-  const BatchSolver bare(settings);
+  const BatchSolver same_problem(batch_settings(structure, peer_options(loss), nullptr, 0.0));
   const ParameterPrior prior{Eigen::Vector3d(-0.4, -0.6, 0.6), Eigen::Vector3d::Constant(1.0)};
   FitOptions defaults;
   defaults.loss = loss;
@@ -201,11 +197,10 @@ void compare(const Trajectory& run, const PeerData& data, Loss loss, int rounds)
        tiny,
        [&] { fit_tiny_solver(data, loss, residual_scale, tiny, tiny_fits.data()); },
        {}},
-      {"general door", general, [&] { run_general(run, loss, general, general_theta); }, {}},
-      {"batch, bare", all, [&] { run_batch(run, bare, false, all, nullptr); }, {}},
-      {"batch, full default path", all, [&] { run_batch(run, full, true, all, nullptr); }, {}}};
+      {"motion model by Ceres", general, [&] { run_general(run, loss, general, general_theta); }, {}},
+      {"batch, full default path", all, [&] { run_batch(run, full, all, nullptr); }, {}}};
   measure(entries, rounds);
-  check_against(naive_fits, run, bare);
+  check_against(naive_fits, run, same_problem);
   Index near = 0;
   for (Index i = 0; i < naive; ++i)
     near += (general_theta.col(i) - Eigen::Map<const Eigen::Vector3d>(naive_fits[static_cast<std::size_t>(i)].theta))
@@ -213,12 +208,11 @@ void compare(const Trajectory& run, const PeerData& data, Loss loss, int rounds)
                         .maxCoeff() < 1e-5
                 ? 1
                 : 0;
-  check(near > naive * 98 / 100, fmt::format("general door: {} of {} windows near Ceres' optimum", near, naive));
+  check(near > naive * 98 / 100, fmt::format("motion model: {} of {} windows near Ceres' optimum", near, naive));
   const double ns = entries[3].median();
   fmt::print("{}\n", name_of(loss));
   for (Entry& entry : entries)
-    fmt::print("  {:<28} {:>10.1f} ns/window  {:>8.2f} x the bare batch\n", entry.name, entry.median(),
-               entry.median() / ns);
+    fmt::print("  {:<28} {:>10.1f} ns/window  {:>8.2f} x the batch\n", entry.name, entry.median(), entry.median() / ns);
 }
 
 /// Two threads against one over all of fit_windows, best of 5; writes the file that the Python peers read.

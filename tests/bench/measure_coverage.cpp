@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "tests/ident/coverage_study.hpp"
+#include "tests/ident/fit/coverage_study.hpp"
 
 /// Prints the README's coverage table: the share of windows whose 95 % region holds the true parameters.
 int main() {

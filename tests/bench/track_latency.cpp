@@ -17,8 +17,8 @@
 #include <thread>
 #include <vector>
 
-#include "filter/bank_filter.hpp"
-#include "io/archive.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "io/archive/archive.hpp"
 #include "tests/bench/bench_bank.hpp"
 #include "tests/bench/bench_data.hpp"
 

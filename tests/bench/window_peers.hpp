@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ident/local_model.hpp"
+#include "ident/model/local_model.hpp"
 
 namespace modebank::bench {
 

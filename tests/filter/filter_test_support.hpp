@@ -8,8 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "filter/bank.hpp"
-#include "ident/trajectory.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
+#include "modebank/filter/options.hpp"
 
 namespace modebank::test {
 
@@ -111,6 +112,11 @@ inline Bank single_mode(Bank bank, std::size_t j) {
   bank.transition = TransitionMatrix();
   bank.initial_probability = Eigen::VectorXd::Ones(1);
   return bank;
+}
+
+/// What a filter of this variant steps of the bank: kf its first mode alone.
+inline Bank steppable(Bank bank, FilterVariant variant) {
+  return variant == FilterVariant::kf ? single_mode(std::move(bank), 0) : bank;
 }
 
 }  // namespace modebank::test

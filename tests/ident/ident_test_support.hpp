@@ -10,8 +10,10 @@
 #include <random>
 #include <string>
 
-#include "ident/fit_window.hpp"
-#include "ident/trajectory.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/fit/fit_window.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "ident/fit/global_model.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/support/paths.hpp"
 
@@ -21,7 +23,7 @@ namespace modebank::test {
 inline const LinearStructure skid_structure{1, 2, false};
 inline const Eigen::Vector3d skid_theta(-0.3, -0.4, 0.5);
 
-/// One case of tests/golden/ident_fits.json (written by ident_fits.py).
+/// One case of tests/golden/data/ident_fits.json (written by ident_fits.py).
 inline nlohmann::json golden_fit(const std::string& name) { return read_golden("ident_fits").at(name); }
 
 inline const std::vector<Loss> all_losses{Loss::trivial,  Loss::huber, Loss::cauchy,

@@ -203,7 +203,6 @@ TEST(Em, DiagonalMixtureHasDiagonalCovariances) {
 TEST(Em, SameSeedSameResultOtherSeedOtherStarts) {
   const Eigen::MatrixXd points = draw(three_clusters(1.0), 300, 14);
   EmOptions none = fixed_iterations(0);
-  none.start = StartKind::kmeans_plus_plus;  // the hierarchical start knows no seed, and may be the best of them
   EXPECT_EQ(fit_em(points, unweighted, 4, none, 1).mixture.means, fit_em(points, unweighted, 4, none, 1).mixture.means);
   EXPECT_NE(fit_em(points, unweighted, 4, none, 1).mixture.means, fit_em(points, unweighted, 4, none, 2).mixture.means);
 }

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ident/fit_window.hpp"
+#include "ident/fit/fit_windows.hpp"
 #include "mixture/select.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/golden.hpp"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank::test {

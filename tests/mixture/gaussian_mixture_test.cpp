@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <type_traits>
 
-#include "ident/not_a_number.hpp"
-#include "mixture/point_blocks.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "mixture/detail/cloud.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -13,6 +14,11 @@ namespace modebank::test {
 namespace {
 
 constexpr double rounding = 1e-14;
+
+// Points that end with the expression are refused: PointSet set(x.leftCols(3)) once referred to memory that was gone.
+static_assert(std::is_constructible_v<PointSet, Eigen::MatrixXd&>);
+static_assert(!std::is_constructible_v<PointSet, Eigen::MatrixXd>);
+static_assert(!std::is_constructible_v<PointSet, decltype(std::declval<Eigen::MatrixXd&>().leftCols(3))>);
 
 TEST(GaussianMixture, CountsFreeParameters) {
   GaussianMixture mixture = three_clusters(3.0);

@@ -1,4 +1,4 @@
-// Against scikit-learn (fits) and mpmath (densities): tests/golden/mixture.py wrote the golden file.
+// Against scikit-learn (fits) and mpmath (densities): tests/golden/generate/mixture.py wrote the golden file.
 #include "tests/support/golden.hpp"
 
 #include <gtest/gtest.h>

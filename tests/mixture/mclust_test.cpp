@@ -1,4 +1,4 @@
-// Against R's mclust: tests/golden/mclust.R wrote the golden file.
+// Against R's mclust: tests/golden/generate/mclust.R wrote the golden file.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

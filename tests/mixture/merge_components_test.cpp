@@ -1,9 +1,9 @@
 // Mixture reduction: moments are kept, the closest pair goes first, windows follow.
-#include "mixture/merge_components.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "mixture/select.hpp"
 
 namespace modebank {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

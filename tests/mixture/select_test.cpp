@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "ident/error.hpp"
-#include "ident/not_a_number.hpp"
+#include "ident/base/not_a_number.hpp"
 #include "mixture/criteria.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

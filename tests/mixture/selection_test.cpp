@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "ident/error.hpp"
 #include "mixture/criteria.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -65,7 +65,8 @@ TEST(Selection, WholeWeightsAreCopies) {
   const Eigen::VectorXd twice = Eigen::VectorXd::Constant(200, 2.0);
   SelectionOptions options = from_one_to(1);  // one component: no starts enter
   const Candidate weighted = select(PointSet(points, twice), {}, options, 1).candidates[0];
-  const Candidate copied = select(Eigen::MatrixXd(points.replicate(1, 2)), {}, options, 1).candidates[0];
+  const Eigen::MatrixXd twofold = points.replicate(1, 2);
+  const Candidate copied = select(twofold, {}, options, 1).candidates[0];
   EXPECT_NEAR(weighted.bic, copied.bic, 1e-9 * std::abs(copied.bic));
   EXPECT_NEAR(weighted.icl, copied.icl, 1e-9 * std::abs(copied.icl));
 }
@@ -159,7 +160,8 @@ TEST(SelectionRobustness, BadCloudsGiveStatedRows) {
   SelectionOptions too_many;
   too_many.components = {4, 5};
   EXPECT_THROW(select(few, design, too_many, 1), DataError);
-  EXPECT_THROW(select(Eigen::MatrixXd(2, 0), design, too_many, 1), DataError);
+  const Eigen::MatrixXd none(2, 0);
+  EXPECT_THROW(select(none, design, too_many, 1), DataError);
 }
 
 }  // namespace

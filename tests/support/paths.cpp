@@ -6,7 +6,9 @@
 
 namespace modebank::test {
 
-std::filesystem::path golden_dir() { return std::filesystem::path(MODEBANK_SOURCE_DIR) / "tests" / "golden"; }
+std::filesystem::path project_dir() { return MODEBANK_SOURCE_DIR; }
+
+std::filesystem::path golden_dir() { return project_dir() / "tests" / "golden" / "data"; }
 
 std::filesystem::path shared_data_dir() {
   const char* configured = std::getenv("MODEBANK_DATA");

@@ -5,7 +5,9 @@
 
 namespace modebank::test {
 
-/// Folder with golden files and the scripts that made them.
+/// The checkout.
+std::filesystem::path project_dir();
+/// Golden files; the scripts that made them are in generate/ beside it.
 std::filesystem::path golden_dir();
 
 /// Real data: $MODEBANK_DATA, else ../shared/data beside the checkout; empty when there is none.

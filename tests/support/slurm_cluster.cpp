@@ -66,7 +66,7 @@ SlurmCluster::~SlurmCluster() {
 }
 
 std::string SlurmCluster::script(const std::string& name) {
-  return (golden_dir().parent_path() / "support" / name).string();
+  return (project_dir() / "tests" / "support" / name).string();
 }
 
 SlurmCluster::NodeProcesses SlurmCluster::processes_of(const std::string& node) const {

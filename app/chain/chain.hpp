@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/chain/listener.hpp"
+#include "app/chain/stages.hpp"
+#include "io/import/import.hpp"
+
+namespace modebank {
+
+/// How a stage's result comes into the chain's archive, and out of it.
+struct StagePart {
+  std::function<void()> compute;
+  std::function<Archive()> copy;        ///< an archive of the result alone
+  std::function<void(Archive&&)> take;  ///< puts the result that such an archive holds in place
+};
+
+/// Decides where stages' results come from. This one computes them all.
+class StageSource {
+ public:
+  virtual ~StageSource() = default;
+  /// Calls part.compute, or part.take with what an earlier part.copy gave for the same key.
+  virtual void provide(Stage, const std::string& /*key*/, const StagePart& part) { part.compute(); }
+};
+
+/// Takes from an archive what it holds of the data and of the stages up to `until`; the others are computed.
+class StoredStages : public StageSource {
+ public:
+  /// Throws DataError when the archive holds no data.
+  StoredStages(const std::filesystem::path& file, Stage until);
+  const Archive& stored() const { return stored_; }
+  void provide(Stage stage, const std::string& key, const StagePart& part) override;
+
+ private:
+  Archive stored_;
+  Stage until_;
+};
+
+/// What an archive says of itself beside its numbers: the part on data is the chain's.
+struct Execution {
+  std::string config;  ///< resolved
+  Provenance provenance;
+};
+
+/// The one order of stages, from data to scores. Options that follow one another are fastest when they share early
+/// stages: a stage whose key is that of the last run is left as it is.
+class Chain {
+ public:
+  /// Both must outlive the chain.
+  Chain(StageSource& source, const Listener& listener) : source_(source), listener_(listener) {}
+
+  /// The archive after the stage `last` (bank_scores: all), which must not be earlier than in the run before. Throws
+  /// what the stages throw; what then is there is not used again.
+  const Archive& run(const ChainOptions& options, Stage last, const Execution& execution);
+
+  /// Scores the banks of another archive on the data; nothing is learned. Throws DataError when their channels do not
+  /// fit the data's. Not to be mixed with run().
+  const Archive& judge_stored(const std::filesystem::path& banks, const ChainOptions& options,
+                              const Execution& execution);
+
+  /// Seconds that the last run spent on each stage; 0 for those left as they were.
+  const std::array<double, stage_count>& seconds() const { return seconds_; }
+
+ private:
+  void provide(Stage stage, const StagePart& part);
+  void import(const DataInputs& inputs);
+  void identify_windows(const WindowInputs& inputs);
+  void cluster_windows(const MixtureInputs& inputs);
+  void learn_bank(const ChainInputs& inputs);
+  void judge(const ChainInputs& inputs);
+  void score(const std::string& filter, const FilterOptions& options, const ScoringOptions& scoring);
+  void put(FilterScores scores);
+  void put(ResidualTestSet tests);
+  void describe(const Execution& execution, const std::vector<InputFile>& more_files);
+
+  StageSource& source_;
+  const Listener& listener_;
+  Archive archive_;
+  ImportedData data_;                     ///< what is said of the recording: files and hash
+  std::vector<InputFile> mixture_files_;  ///< that the mixture started from
+  StageKeys wanted_, held_;
+  std::array<double, stage_count> seconds_{};
+};
+
+}  // namespace modebank

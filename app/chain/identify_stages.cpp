@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "app/chain/section.hpp"
+#include "app/chain/stages.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "mixture/features.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+bool streams_windows(const Recording& recording, const WindowInputs& inputs) {
+  constexpr Index in_memory = 1000000;  // some 150 MB for three parameters
+  return count_windows(recording, inputs.window) > in_memory;
+}
+
+WindowFits identify_into_file(const std::filesystem::path& path, const Archive& before, const WindowInputs& inputs,
+                              const std::function<void(const WindowFits&)>& hears) {
+  const Recording& recording = *before.recording;
+  const auto produce = [&](const WindowSink& sink) {
+    const WindowSink hears_and_sinks = [&](const WindowFits& fits, Index first) {
+      hears(fits);
+      sink(fits, first);
+    };
+    return in_section("window", [&] { return stream_windows(recording, inputs.window, hears_and_sinks); });
+  };
+  return write_archive(path, before, count_windows(recording, inputs.window), produce);
+}
+
+WindowFits identify(const Recording& recording, const WindowInputs& inputs) {
+  return in_section("window", [&] { return fit_windows(recording, inputs.window); });
+}
+
+namespace {
+
+/// The mixture of another archive, which must be over the same features.
+GaussianMixture stored_start(const ClusterOptions& options, const std::vector<std::string>& features,
+                             const Listener& listener) {
+  const std::string& file = options.start_file;
+  Archive stored = read_archive(file);
+  if (!stored.mixture) throw DataError(fmt::format("{} holds no mixture to start from", file));
+  if (stored.mixture->feature_names != features)
+    throw DataError(fmt::format("the mixture of {} to start from is over {}, this one over {}", file,
+                                fmt::join(stored.mixture->feature_names, ", "), fmt::join(features, ", ")));
+  const std::vector<Index>& sizes = options.selection.components;
+  const Index components = stored.mixture->mixture.components();
+  if (std::find(sizes.begin(), sizes.end(), components) == sizes.end())
+    listener.warning(fmt::format("the mixture of {} to start from has {} components, which is not among the candidates",
+                                 file, components));
+  return std::move(stored.mixture->mixture);
+}
+
+}  // namespace
+
+MixtureResult cluster(const Recording& recording, const WindowFits& windows, const MixtureInputs& inputs,
+                      const Listener& listener) {
+  const Stopwatch watch;
+  const ClusterOptions& options = inputs.mixture;
+  const FeatureCloud cloud =
+      make_features(windows, options.features, options.windows, recording.states, options.straddling,
+                    options.error_aware ? WindowErrors::include : WindowErrors::ignore);
+  SelectionOptions selection = options.selection;
+  if (!options.start_file.empty()) selection.start = stored_start(options, cloud.names, listener);
+  MixtureResult result = select_mixture(windows, cloud, selection, inputs.seed);
+  listener.progress(fmt::format("mixture: {} components from {} windows in {:.2f} s", result.mixture.components(),
+                                cloud.windows.size(), watch.seconds()));
+  return result;
+}
+
+}  // namespace modebank

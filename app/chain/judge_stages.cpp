@@ -1,0 +1,75 @@
+#include <tbb/parallel_for.h>
+
+#include "app/chain/stages.hpp"
+#include "filter/judge/diagnostics.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/horizon.hpp"
+#include "filter/judge/scores.hpp"
+#include "filter/judge/smoother.hpp"
+#include "filter/judge/statistics.hpp"
+#include "ident/model/residual_tests.hpp"
+
+namespace modebank {
+namespace {
+
+std::vector<RunEvaluation> evaluate_runs(const Bank& bank, const std::vector<Trajectory>& runs,
+                                         const FilterOptions& options, bool smooth) {
+  std::vector<RunEvaluation> evaluations(runs.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
+    evaluations[i] = evaluate_run(bank, runs[i], options);
+    if (smooth) smooth_run(bank, runs[i], options, evaluations[i]);
+  });
+  return evaluations;
+}
+
+std::vector<HorizonEvaluation> look_ahead(const Bank& bank, const std::vector<Trajectory>& runs,
+                                          const FilterOptions& options, const std::vector<Index>& horizons) {
+  std::vector<HorizonEvaluation> evaluations(runs.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(),
+                    [&](std::size_t i) { evaluations[i] = evaluate_horizons(bank, runs[i], options, horizons); });
+  return evaluations;
+}
+
+template <class Test>
+ResidualTestSet test_runs(const std::string& model, std::size_t runs, Test test) {
+  ResidualTestSet set{model, std::vector<ResidualTests>(runs)};
+  tbb::parallel_for(std::size_t{0}, runs, [&](std::size_t i) { set.runs[i] = test(i); });
+  return set;
+}
+
+}  // namespace
+
+FilterOptions competitor_filter(const std::string& name, TimeSteps time_steps) {
+  FilterOptions filter;
+  filter.variant = name == "baseline" ? FilterVariant::kf : FilterVariant::imm;
+  filter.parameter_noise = false;
+  filter.time_steps = time_steps;
+  return filter;
+}
+
+FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
+                          const FilterOptions& filter, const ScoringOptions& scoring) {
+  const std::vector<Trajectory>& runs = recording.runs;
+  FilterScores scores;
+  scores.evaluation = {name, evaluate_runs(bank, runs, filter, scoring.smooth), {}};
+  const FilterEvaluation& said = scores.evaluation;
+  scores.evaluation.scores = score_runs(said.runs);
+  scores.summary = summarize(name, runs, said.runs, said.scores);
+  scores.diagnostics = diagnose(name, bank, filter, runs, said.runs, said.scores);
+  if (scoring.horizon != std::vector<Index>{1})
+    scores.horizons = summarize_horizons(name, runs, look_ahead(bank, runs, filter, scoring.horizon));
+  return scores;
+}
+
+ResidualTestSet test_global(const Recording& recording, const WindowFits& windows, const FitOptions& window) {
+  const Eigen::VectorXd theta = linear_global(recording, windows, window).theta;
+  return test_runs("global", recording.runs.size(),
+                   [&](std::size_t i) { return test_residuals(recording.runs[i], windows.structure, theta); });
+}
+
+ResidualTestSet test_filter(const Recording& recording, const FilterEvaluation& evaluation) {
+  return test_runs(evaluation.filter, recording.runs.size(),
+                   [&](std::size_t i) { return test_innovations(recording.runs[i], evaluation.scores.at(i)); });
+}
+
+}  // namespace modebank

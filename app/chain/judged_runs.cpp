@@ -1,0 +1,13 @@
+#include "app/chain/judged_runs.hpp"
+
+namespace modebank {
+
+const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role) {
+  return modebank::pooled_row(archive.summary, filter, role);
+}
+
+Role judged_role(const Archive& archive) { return modebank::judged_role(archive.summary); }
+
+const char* words_for(Role role) { return role == Role::test ? "held-out" : "training"; }
+
+}  // namespace modebank

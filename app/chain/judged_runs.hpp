@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "io/archive/archive.hpp"
+
+namespace modebank {
+
+/// The summary's row of a filter over all runs of a role; null without.
+const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role);
+
+/// The runs that filters are judged on: those held out, or, where nothing was, those they learned from.
+Role judged_role(const Archive& archive);
+
+/// "held-out" or "training".
+const char* words_for(Role role);
+
+}  // namespace modebank

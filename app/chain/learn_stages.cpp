@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/chain/stages.hpp"
+#include "filter/judge/scores.hpp"
+#include "filter/learn/learn.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "ident/fit/linearise.hpp"
+
+namespace modebank {
+
+GlobalModel linear_global(const Recording& recording, const WindowFits& windows, const FitOptions& window) {
+  const auto motion = motion_model(window, recording.state_count(), recording.input_count());
+  return motion ? linearise(*motion, windows.global, operating_point(recording)) : windows.global;
+}
+
+Competitors learn_competitors(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
+                              const Listener& listener) {
+  Baseline baseline = learn_baseline(recording, linear_global(recording, windows, inputs.window), windows.structure);
+  baseline.bank.model = windows.model;
+  if (baseline.at_bound) listener.progress("baseline: R is at its lower bound: the data show no measurement noise");
+  if (!baseline.converged) listener.warning("baseline: its noise did not reach a maximum of the likelihood");
+  Bank noise_only = learn_noise_only(recording, windows.structure, baseline.bank.R);
+  return {std::move(baseline.bank), std::move(noise_only)};
+}
+
+namespace {
+
+/// The bank, refined if the options say so.
+Refinement learn(const LearnedFrom& from, const BankInputs& inputs, const BankOptions& options) {
+  const Eigen::MatrixXd& R = from.baseline.R;
+  if (options.refine == Refine::em)
+    return learn_refined_bank(from.recording, from.windows, from.mixture, options, R, inputs.filter.value());
+  const auto motion = motion_model(inputs.window, from.recording.state_count(), from.recording.input_count());
+  return {learn_bank(from.recording, from.windows, from.mixture, options, R, motion.get()), {}, {}, {}, {}};
+}
+
+/// What a limit on the number of modes cost: the same bank is learned without it.
+std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& inputs, const Bank& limited) {
+  const Index components = from.mixture.mixture.components();
+  if (inputs.bank.modes == 0 || components <= inputs.bank.modes) return {};
+  BankOptions unlimited = inputs.bank;
+  unlimited.modes = 0;
+  const Bank whole = learn(from, inputs, unlimited).bank;
+  return merging_costs(whole, limited, components, from.recording, inputs.filter.value());
+}
+
+void tell_of(const Refinement& refined, const Listener& listener) {
+  for (const RefineCandidate& c : refined.candidates)
+    listener.progress(
+        fmt::format("refine: {:<12} {:>3} modes, Q prior {}: {:.4f} nats/sample left out, after {} iterations{}",
+                    c.start, c.modes, c.noise_transitions, c.score, c.iterations, c.selected ? " (chosen)" : ""));
+  const MeasurementStage& measured = refined.measurement;
+  if (!std::isnan(measured.score))
+    listener.progress(fmt::format("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
+                                  measured.iterations, measured.score_before, measured.score));
+  const Averaging& averaged = refined.averaging;
+  if (!std::isnan(averaged.score))
+    listener.progress(fmt::format("refine: {} fits averaged: {:.4f} -> {:.4f} nats/sample left out", averaged.members,
+                                  averaged.score_before, averaged.score));
+}
+
+}  // namespace
+
+LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const Listener& listener) {
+  if (inputs.one_model) return {from.baseline, {}, MeasuredFit::none, {}};
+  Refinement refined = learn(from, inputs, inputs.bank);
+  tell_of(refined, listener);
+  LearnedBank learned{std::move(refined.bank), {}, refined.measurement.end, {}};
+  if (inputs.bank.refine == Refine::em) learned.unrefined = std::move(refined.start);
+  learned.merging = merging_of(from, inputs, learned.bank);
+  return learned;
+}
+
+}  // namespace modebank

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "io/archive/archive.hpp"
+
+namespace modebank {
+
+/// Program, libraries and time of this execution, with the configuration's hash and what was typed; the data's part is
+/// added by the chain.
+Provenance make_provenance(const std::string& config_hash, const std::string& command_line);
+
+}  // namespace modebank

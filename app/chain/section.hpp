@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+/// Calls the library, whose ConfigurationErrors begin with the name of an option ("step = 0 is out of range"), and puts
+/// the section of the configuration in front, in which the key has the same name: "window.step = 0 is out of range".
+template <class Call>
+auto in_section(const std::string& section, Call&& call) {
+  try {
+    return std::forward<Call>(call)();
+  } catch (const ConfigurationError& error) {
+    throw ConfigurationError(section + "." + error.what());
+  }
+}
+
+}  // namespace modebank

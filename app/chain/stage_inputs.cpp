@@ -1,0 +1,31 @@
+#include "app/chain/stage_inputs.hpp"
+
+#include "io/import/import.hpp"
+
+namespace modebank {
+namespace {
+
+BankInputs bank_inputs(const ChainOptions& options, const FitOptions& window) {
+  BankInputs inputs{window, options.bank, options.filter.variant == FilterVariant::kf, {}};
+  inputs.bank.em.seed = options.seed;
+  const bool runs_the_filter = options.bank.refine == Refine::em || options.bank.modes > 0;
+  if (runs_the_filter && !inputs.one_model) inputs.filter = options.filter;
+  return inputs;
+}
+
+}  // namespace
+
+ChainInputs chain_inputs(const ChainOptions& options) {
+  FitOptions window = options.window;
+  window.seed = options.seed;
+  const std::string& start = options.mixture.start_file;
+  return {{options.data},
+          {window},
+          {options.mixture, start.empty() ? "" : describe_file(start).sha256, options.seed},
+          {window},
+          bank_inputs(options, window),
+          {window, options.filter.time_steps, options.scoring},
+          {options.filter, options.scoring}};
+}
+
+}  // namespace modebank

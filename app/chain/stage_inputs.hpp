@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "app/chain/options.hpp"
+
+/// What each stage of the chain is given of the options, and all that it is given: a stage's key (stage_key.hpp) is
+/// made of its struct, field by field, so that no stage can depend on what its key does not hold.
+namespace modebank {
+
+struct DataInputs {
+  DataOptions data;
+};
+
+struct WindowInputs {
+  FitOptions window;  ///< with the chain's seed
+};
+
+struct MixtureInputs {
+  ClusterOptions mixture;
+  std::string start_sha256;  ///< of mixture.start_file's content; empty without one
+  std::uint64_t seed = 1;
+};
+
+/// The bank's competitors depend on the windows alone.
+struct CompetitorInputs {
+  FitOptions window;
+};
+
+struct BankInputs {
+  FitOptions window;
+  BankOptions bank;                     ///< with the chain's seed
+  bool one_model = false;               ///< the bank is the baseline: a single Kalman filter was asked for
+  std::optional<FilterOptions> filter;  ///< where learning runs the filter: refinement, and what merging modes costs
+};
+
+struct CompetitorScoreInputs {
+  FitOptions window;
+  TimeSteps time_steps = TimeSteps::repeat;
+  ScoringOptions scoring;
+};
+
+struct BankScoreInputs {
+  FilterOptions filter;
+  ScoringOptions scoring;
+};
+
+/// Of a whole chain.
+struct ChainInputs {
+  DataInputs data;
+  WindowInputs windows;
+  MixtureInputs mixture;
+  CompetitorInputs competitors;
+  BankInputs bank;
+  CompetitorScoreInputs competitor_scores;
+  BankScoreInputs bank_scores;
+};
+
+/// Parts the options into what each stage needs. Reads mixture.start_file, if there is one, for its hash: throws
+/// ConfigurationError when it cannot be read.
+ChainInputs chain_inputs(const ChainOptions& options);
+
+}  // namespace modebank

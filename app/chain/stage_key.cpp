@@ -1,0 +1,126 @@
+#include "app/chain/stage_key.hpp"
+
+#include <bit>
+#include <concepts>
+#include <type_traits>
+
+#include "app/chain/build_info.hpp"
+#include "io/files/sha256.hpp"
+
+// The fields of a struct, all of them: a field that is missing here does not compile, because a structured binding
+// names each one.
+#define MODEBANK_KEY_FIELDS(Struct, ...)            \
+  void add(KeyText& key, const Struct& fields_of) { \
+    const auto& [__VA_ARGS__] = fields_of;          \
+    key.fields(__VA_ARGS__);                        \
+  }
+
+namespace modebank {
+namespace {
+
+/// Values one after another, each so that no other value has the same text.
+class KeyText {
+ public:
+  template <class... T>
+  void fields(const T&... values) {
+    (put(values), ...);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+
+  void put(const std::string& value) { text_ += std::to_string(value.size()) + ":" + value; }
+  void put(double value) { put(std::bit_cast<std::uint64_t>(value)); }
+  template <std::integral T>
+  void put(T value) {
+    text_ += std::to_string(value) + ",";
+  }
+  template <class E>
+  requires std::is_enum_v<E>
+  void put(E value) { put(static_cast<std::int64_t>(value)); }
+  template <class T>
+  void put(const std::optional<T>& value) {
+    put(value.has_value());
+    if (value) put(*value);
+  }
+  template <class T>
+  void put(const std::vector<T>& values) {
+    put(values.size());
+    for (const T& value : values) put(value);
+  }
+  template <class T, std::size_t size>
+  void put(const std::array<T, size>& values) {
+    for (const T& value : values) put(value);
+  }
+  template <class T>
+  void put(const Eigen::DenseBase<T>& values) {
+    fields(values.rows(), values.cols());
+    for (Index column = 0; column < values.cols(); ++column)
+      for (Index row = 0; row < values.rows(); ++row) put(values(row, column));
+  }
+  template <class T>
+  requires std::is_aggregate_v<T>
+  void put(const T& value);
+};
+
+MODEBANK_KEY_FIELDS(DataOptions, root, inputs, states, state, input, truth, state_unit, input_unit, weight, time, join,
+                    run, rate_hz, lag_s, lag_auto, lag_range_s, missing, disorder, train, test)
+MODEBANK_KEY_FIELDS(FitOptions, model, state_lags, input_lags, input_delay, wheel_radius_m, residual, length, step,
+                    loss, loss_scale, scale, sigma, prior, prior_sd, intercept, covariance, max_iterations, solver,
+                    seed)
+MODEBANK_KEY_FIELDS(EmOptions, covariance, start, restarts, start_runs, split_merge, tolerance, max_iterations,
+                    covariance_floor, noise_component)
+MODEBANK_KEY_FIELDS(UniformNoise, weight, lower, upper)
+MODEBANK_KEY_FIELDS(GaussianMixture, weights, means, covariances, type, noise)
+MODEBANK_KEY_FIELDS(SelectionOptions, components, criterion, heldout, em, start, bootstrap)
+MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, straddling, error_aware, start_file)
+MODEBANK_KEY_FIELDS(RefineTuning, checkpoints, forgettings, noise_prior_samples, fewest_whole_runs, shortest_stretch,
+                    Q_transitions, other_Q_transitions, Q_transitions_unvalidated, Q_transitions_with_R,
+                    least_information, alternations, start_stay, modes_kept, duplicate_significance, growth_slack,
+                    iterations_after_screening, least_R_share, R_start_share, least_gain)
+MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, members, folds, measurement_noise, screen,
+                    one_theta, seed, tuning)
+MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, modes,
+                    refine, em)
+MODEBANK_KEY_FIELDS(FilterOptions, variant, parameter_noise, time_steps, noise)
+MODEBANK_KEY_FIELDS(ScoringOptions, horizon, smooth)
+
+MODEBANK_KEY_FIELDS(DataInputs, data)
+MODEBANK_KEY_FIELDS(WindowInputs, window)
+MODEBANK_KEY_FIELDS(MixtureInputs, mixture, start_sha256, seed)
+MODEBANK_KEY_FIELDS(CompetitorInputs, window)
+MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter)
+MODEBANK_KEY_FIELDS(CompetitorScoreInputs, window, time_steps, scoring)
+MODEBANK_KEY_FIELDS(BankScoreInputs, filter, scoring)
+
+template <class T>
+requires std::is_aggregate_v<T>
+void KeyText::put(const T& value) { add(*this, value); }
+
+/// `earlier`: whatever else the stage starts from, as text.
+template <class Inputs, class... Earlier>
+std::string key_of(Stage stage, const Inputs& inputs, const Earlier&... earlier) {
+  KeyText key;
+  key.fields(std::string(build_info::version), std::string(build_info::git_revision), std::string(name_of(stage)),
+             inputs, earlier...);
+  return sha256_hex(key.text());
+}
+
+}  // namespace
+
+StageKeys stage_keys(const ChainInputs& inputs, const std::string& data_hash) {
+  using enum Stage;
+  StageKeys keys;
+  const auto key = [&](Stage stage) -> std::string& { return keys[index_of(stage)]; };
+  key(data) = key_of(data, inputs.data, data_hash);
+  key(windows) = key_of(windows, inputs.windows, key(data));
+  key(mixture) = key_of(mixture, inputs.mixture, key(windows));
+  key(competitors) = key_of(competitors, inputs.competitors, key(windows));
+  key(bank) = key_of(bank, inputs.bank, key(mixture), key(competitors));
+  key(competitor_scores) = key_of(competitor_scores, inputs.competitor_scores, key(competitors));
+  key(bank_scores) = key_of(bank_scores, inputs.bank_scores, key(bank));
+  return keys;
+}
+
+}  // namespace modebank

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/chain/listener.hpp"
+#include "app/chain/stage_inputs.hpp"
+#include "io/archive/archive.hpp"
+
+/// The stages of the chain: functions of the data, of earlier stages' results and of their inputs struct. They throw
+/// ConfigurationError for inputs that do not fit the data, DataError for data that cannot be used.
+namespace modebank {
+
+/// Whether there are too many windows to hold in memory, so that they are best written as they are fitted.
+bool streams_windows(const Recording& recording, const WindowInputs& inputs);
+
+/// Fits windows and writes them to an archive of `before` (data) and windows alone. `hears` gets the windows part by
+/// part. Returns what they have in common.
+WindowFits identify_into_file(const std::filesystem::path& path, const Archive& before, const WindowInputs& inputs,
+                              const std::function<void(const WindowFits&)>& hears);
+
+WindowFits identify(const Recording& recording, const WindowInputs& inputs);
+
+MixtureResult cluster(const Recording& recording, const WindowFits& windows, const MixtureInputs& inputs,
+                      const Listener& listener);
+
+/// The global model of the windows in linear terms, whatever they were fitted with.
+GlobalModel linear_global(const Recording& recording, const WindowFits& windows, const FitOptions& window);
+
+struct Competitors {
+  Bank baseline;    ///< one Kalman filter
+  Bank noise_only;  ///< switches noise alone
+};
+Competitors learn_competitors(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
+                              const Listener& listener);
+
+/// What a bank is learned from.
+struct LearnedFrom {
+  const Recording& recording;
+  const WindowFits& windows;
+  const MixtureResult& mixture;
+  const Bank& baseline;
+};
+struct LearnedBank {
+  Bank bank;
+  std::optional<Bank> unrefined;  ///< that refinement started from
+  MeasuredFit measured_fit = MeasuredFit::none;
+  std::vector<MergingCost> merging;  ///< where a limit on the number of modes merged some
+};
+LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const Listener& listener);
+
+/// What a filter said about every run, and how good that was.
+struct FilterScores {
+  FilterEvaluation evaluation;
+  std::vector<SummaryRow> summary;
+  std::vector<HorizonRow> horizons;
+  std::vector<DiagnosticsRow> diagnostics;
+};
+
+/// How a competitor steps, baseline or noise_only: as it was learned, whatever filter the bank runs in.
+FilterOptions competitor_filter(const std::string& name, TimeSteps time_steps);
+
+/// `name`: bank, baseline or noise_only.
+FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
+                          const FilterOptions& filter, const ScoringOptions& scoring);
+
+/// Residual tests on all runs: of the global model's one-step residuals, and of a filter's scores z.
+ResidualTestSet test_global(const Recording& recording, const WindowFits& windows, const FitOptions& window);
+ResidualTestSet test_filter(const Recording& recording, const FilterEvaluation& evaluation);
+
+}  // namespace modebank

@@ -1,0 +1,66 @@
+#include "app/chain/stored_banks.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "io/import/import.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+namespace {
+
+bool trained_on(const Recording& recording, const Trajectory& run) {
+  return std::any_of(recording.runs.begin(), recording.runs.end(), [&](const Trajectory& other) {
+    return other.role == Role::train && other.samples() == run.samples() && other.state == run.state &&
+           other.input == run.input;
+  });
+}
+
+/// What makes a stored bank's scores mean something else than they seem to.
+void warn_of_foreign_bank(const std::string& file, const Archive& stored, const Recording& recording,
+                          const Listener& listener) {
+  std::vector<std::string> trained;
+  for (const Trajectory& run : recording.runs)
+    if (run.role == Role::test && stored.recording && trained_on(*stored.recording, run)) trained.push_back(run.run);
+  if (!trained.empty())
+    listener.warning(fmt::format("{}: its bank was trained on {}: the scores of the test runs are not held out", file,
+                                 fmt::join(trained, ", ")));
+  const Bank& bank = *stored.bank;
+  if (bank.state_names != state_names(recording, bank.structure) ||
+      bank.input_names != input_names(recording, bank.structure))
+    listener.warning(fmt::format("{}: its bank was learned from columns {}; {}, the data have {}; {}", file,
+                                 fmt::join(bank.state_names, ", "), fmt::join(bank.input_names, ", "),
+                                 fmt::join(names_of(recording.states), ", "),
+                                 fmt::join(names_of(recording.inputs), ", ")));
+  constexpr double tolerated = 0.1;  // a tenth more or less time per step changes increments by as much
+  if (const double dt_s = recording.median_period_s(); std::abs(dt_s - bank.dt_s) > tolerated * bank.dt_s)
+    listener.warning(fmt::format("{}: its bank steps by {:.4g} s, the data by {:.4g} s", file, bank.dt_s, dt_s));
+}
+
+}  // namespace
+
+StoredBanks read_banks(const std::filesystem::path& path, const Recording& recording, bool one_model,
+                       const Listener& listener) {
+  const std::string file = path.string();
+  Archive stored = read_archive(path);
+  if (!stored.bank) throw DataError(fmt::format("{}: holds no bank", file));
+  const LinearStructure& structure = stored.bank->structure;
+  if (structure.states != recording.state_count() || structure.inputs != recording.input_count())
+    throw DataError(fmt::format("{}: its bank has {} states and {} inputs, the data have {} and {}", file,
+                                structure.states, structure.inputs, recording.state_count(), recording.input_count()));
+  warn_of_foreign_bank(file, stored, recording, listener);
+  if (one_model && !stored.baseline && stored.bank->mode_count() > 1)
+    throw DataError(fmt::format("{}: holds no baseline, which the single Kalman filter kf runs", file));
+  if (one_model && stored.baseline) return {*stored.baseline, stored.baseline, std::move(stored.noise_only), {}, {}};
+  StoredBanks banks{std::move(*stored.bank), std::move(stored.baseline), std::move(stored.noise_only), {}, {}};
+  if (one_model) return banks;
+  banks.unrefined = std::move(stored.unrefined);
+  banks.measured_fit = stored.measured_fit;
+  return banks;
+}
+
+}  // namespace modebank

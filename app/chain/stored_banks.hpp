@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "app/chain/listener.hpp"
+#include "io/archive/archive.hpp"
+
+namespace modebank {
+
+/// The banks of an archive, to be scored on other data.
+struct StoredBanks {
+  Bank bank;
+  std::optional<Bank> baseline, noise_only, unrefined;
+  MeasuredFit measured_fit = MeasuredFit::none;
+};
+
+/// `one_model`: a single Kalman filter is asked for, so that the bank is the archive's baseline. Warns of what makes
+/// the scores mean something else than they seem to: test runs that the bank was trained on, other columns, another
+/// sample period. Throws DataError when there is no such bank or its channels do not fit the data's.
+StoredBanks read_banks(const std::filesystem::path& file, const Recording& recording, bool one_model,
+                       const Listener& listener);
+
+}  // namespace modebank

@@ -1,0 +1,31 @@
+#include <fmt/format.h>
+
+#include "app/chain/chain.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+StoredStages::StoredStages(const std::filesystem::path& file, Stage until)
+    : stored_(read_archive(file)), until_(until) {
+  if (!stored_.recording) throw DataError(fmt::format("{}: holds no data", file.string()));
+  stored_.provenance.inputs.push_back(describe_file(file));
+}
+
+void StoredStages::provide(Stage stage, const std::string& /*key*/, const StagePart& part) {
+  Archive result;
+  if (stage == Stage::data) {
+    result.recording = std::move(stored_.recording);
+    result.lag = std::move(stored_.lag);
+    result.provenance = stored_.provenance;
+  } else if (stage == Stage::windows && stage <= until_) {
+    result.windows = std::move(stored_.windows);
+  } else if (stage == Stage::mixture && stage <= until_) {
+    result.mixture = std::move(stored_.mixture);
+  }
+  if (result.recording || result.windows || result.mixture)
+    part.take(std::move(result));
+  else
+    part.compute();
+}
+
+}  // namespace modebank

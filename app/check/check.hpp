@@ -1,0 +1,62 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ident/check/advice.hpp"
+#include "ident/check/run_check.hpp"
+#include "ident/lag/report.hpp"
+#include "io/import/options.hpp"
+
+namespace modebank {
+
+/// One run as recorded.
+struct RunReport {
+  std::string run;
+  Role role = Role::train;
+  SamplingCheck inputs, states;
+  std::vector<ChannelCheck> input, state;                ///< per channel
+  std::vector<double> input_saturated, state_saturated;  ///< per channel, share of samples
+  CommandCheck commands;
+  RestCheck rest;
+  Index excitation = 0;
+  RunLag lag;
+  Index transitions = 0;  ///< joined, without gaps
+  DeficientWindows windows;
+  std::string problem;  ///< why it cannot be joined; empty: it can
+};
+
+/// A channel over all runs.
+struct ChannelSummary {
+  Channel channel;
+  bool is_state = false;
+  ChannelCheck values;
+  SaturationLimits limits{0.0, 0.0, false};
+  double saturated = 0.0;
+};
+
+struct DataCheck {
+  Index window_length = 0;
+  std::vector<RunReport> runs;
+  std::vector<ChannelSummary> channels;  ///< states, then inputs
+  LagReport lag;
+  bool has_lag = false;
+  RateFacts rate_facts;
+  RateAdvice rate;
+  LengthAdvice length;
+  LossAdvice loss;
+  Index longest_stretch = 0;  ///< transitions without a gap in the training runs
+  std::string unusable;       ///< why nothing can be identified; empty: something can
+};
+
+/// What is checked, and the windows that it would be cut into.
+struct CheckOptions {
+  DataOptions data;
+  Index window_length = 0;  ///< transitions
+  bool intercept = false;
+};
+
+/// Reads all runs leniently and gathers every number. Throws as read_streams does.
+DataCheck check_data(const CheckOptions& options);
+
+}  // namespace modebank

@@ -1,0 +1,142 @@
+#include "app/cli/commands.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+
+#include "app/chain/build_info.hpp"
+#include "app/config/option_table.hpp"
+#include "app/study/answers/verify_study.hpp"
+#include "ident/base/nearest_name.hpp"
+#include "io/archive/archive.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+struct Command {
+  const char* name;
+  const char* arguments;
+  const char* help;
+  int (*run)(const CommandLine&);
+};
+
+constexpr Command commands[] = {
+    {"run", "CONFIG", "the whole chain: import, windows, mixture, bank, evaluation, archive, summary", run_pipeline},
+    {"identify", "CONFIG", "fit the windows and archive them", run_pipeline},
+    {"cluster", "CONFIG", "cluster the windows (of --archive.input, if given)", run_pipeline},
+    {"evaluate", "CONFIG", "learn the bank and score it (stages of --archive.input; or the bank of --archive.bank)",
+     run_pipeline},
+    {"check", "CONFIG", "advice on the data before identification, run by run; --json", run_check},
+    {"simulate", "CONFIG", "write runs with known truth in the CSV layout that run reads", run_simulate},
+    {"study", "CONFIG", "a parameter study: plans, runs and merges, resuming what is done; --study.stage does one step",
+     run_study},
+    {"show", "ARCHIVE [PATH]", "provenance, candidates, modes, summary; or one object; --json; --form full", run_show},
+    {"track", "ARCHIVE", "live filter: samples in on standard input, estimates out on standard output, line by line",
+     run_track},
+    {"report", "ARCHIVE|STUDY [ARCHIVE]",
+     "an interactive page that opens offline in a browser (-o page.html): of a run, a study, or two runs", run_report},
+    {"verify", "ARCHIVE...",
+     "check hash, schema and completeness of archives and study folders; --repair removes what is broken in the latter",
+     run_verify},
+};
+
+std::string option_help() {
+  const Config defaults = default_config();
+  std::string text, section;
+  for (const Option& option : option_table()) {
+    if (option.section() != section) text += fmt::format("\n[{}]\n", option.section());
+    section = option.section();
+    const std::string value = option.get(defaults);
+    text +=
+        fmt::format("  --{} {}{}\n      {} (default: {})\n", option.key, option.range,
+                    option.unit.empty() ? "" : " [" + option.unit + "]", option.help, value.empty() ? "empty" : value);
+  }
+  return text;
+}
+
+/// README's table of keys, so that it is this table and no other.
+std::string option_markdown() {
+  const Config defaults = default_config();
+  std::string text = "| key | allowed | unit | default | meaning |\n|---|---|---|---|---|\n";
+  for (const Option& option : option_table()) {
+    const std::string value = option.get(defaults);
+    std::string range = option.range, help = option.help;
+    boost::replace_all(range, "|", "\\|");
+    boost::replace_all(help, "|", "\\|");
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", option.key, range, option.unit,
+                        value.empty() ? "" : "`" + value + "`", help);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string help_text() {
+  std::string text = "usage: modebank COMMAND [FILE...] [--key value ...]\n\nCommands\n";
+  for (const Command& command : commands)
+    text += fmt::format("  {:<24} {}\n", fmt::format("{} {}", command.name, command.arguments), command.help);
+  text +=
+      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report), --repair "
+      "(verify).\n"
+      "Every configuration key is an option too, and wins over the file. Exit status: 0 done; 2 usage, configuration "
+      "or "
+      "path; 1 content or run failure.\n";
+  return text + option_help();
+}
+
+int run_command(const CommandLine& line) {
+  if (line.version) {
+    fmt::print("modebank {} ({})\n", build_info::version, build_info::git_revision);
+    return 0;
+  }
+  if (line.help || line.command == "help") {
+    fmt::print("{}", line.markdown ? option_markdown() : help_text());
+    return 0;
+  }
+  for (const Command& command : commands)
+    if (line.command == command.name) return command.run(line);
+  std::vector<std::string> names;
+  for (const Command& command : commands) names.emplace_back(command.name);
+  if (line.command.empty())
+    throw ConfigurationError(fmt::format("no command; one of {} (see --help)", fmt::join(names, ", ")));
+  throw ConfigurationError(fmt::format("unknown command {}{}; commands are {}", line.command,
+                                       did_you_mean(line.command, names), fmt::join(names, ", ")));
+}
+
+namespace {
+
+bool report_archive(const std::string& file) {
+  const Verification result = verify_archive(file);
+  if (result.ok()) fmt::print("{}: ok\n", file);
+  for (const std::string& problem : result.problems) fmt::print("{}: {}\n", file, problem);
+  return result.ok();
+}
+
+/// Whether all is well, or repaired as far as files go.
+bool report_study(const std::string& folder, bool repair) {
+  const StudyVerification result = verify_study(folder);
+  for (const StudyProblem& problem : result.problems)
+    fmt::print("{}: {}{}{}\n", problem.file.string(), problem.what,
+               problem.redo.empty() ? "" : "; to redo: " + problem.redo,
+               repair && problem.removable ? "; removed" : "");
+  if (repair) repair_study(folder, result);
+  fmt::print("{}: {} trials are whole{}\n", folder, result.whole,
+             result.problems.empty() ? ": ok" : fmt::format(", {} problems", result.problems.size()));
+  return result.problems.empty();
+}
+
+}  // namespace
+
+int run_verify(const CommandLine& line) {
+  if (line.files.empty()) throw ConfigurationError("verify needs at least one archive: modebank verify ARCHIVE...");
+  bool all_good = true;
+  for (const std::string& file : line.files) {
+    const bool good = is_study_folder(file) ? report_study(file, line.repair) : report_archive(file);
+    all_good = all_good && good;
+  }
+  return all_good ? 0 : 1;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "app/cli/command_line.hpp"
+
+namespace modebank::app {
+
+/// Runs the command that was typed; returns the exit status. Errors are exceptions (ConfigurationError: 2, others: 1).
+int run_command(const CommandLine& line);
+
+int run_pipeline(const CommandLine& line);  ///< run, identify, cluster, evaluate
+int run_check(const CommandLine& line);
+int run_simulate(const CommandLine& line);
+int run_report(const CommandLine& line);
+int run_study(const CommandLine& line);
+int run_show(const CommandLine& line);
+int run_track(const CommandLine& line);
+int run_verify(const CommandLine& line);
+
+/// The help text: commands, then every option with range, unit, default and meaning.
+std::string help_text();
+
+}  // namespace modebank::app

@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <map>
+
+#include "app/chain/chain.hpp"
+#include "app/chain/provenance.hpp"
+#include "app/cli/commands.hpp"
+#include "app/config/config_file.hpp"
+#include "app/text/summary_text.hpp"
+#include "io/archive/archive.hpp"
+#include "io/import/import.hpp"
+#include "mixture/criteria.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// Stages that are taken as they are must have been made as the configuration says, which the new archive will record.
+void check_same_settings(const Config& config, const std::string& stored, const std::vector<std::string>& sections) {
+  const std::map<std::string, std::string> before = resolved_values(stored),
+                                           now = resolved_values(resolved_text(config));
+  for (const auto& [key, value] : now) {
+    const std::string section = key.substr(0, key.find('.'));
+    const bool decides = std::find(sections.begin(), sections.end(), section) != sections.end() && decides_numbers(key);
+    if (const auto stage = before.find(key); decides && stage != before.end() && stage->second != value)
+      throw ConfigurationError(
+          fmt::format("archive.input: {} was made with {} = {}, the configuration says '{}': take the stored value, or "
+                      "start from the data",
+                      config.archive.input, key, stage->second.empty() ? "''" : stage->second, value));
+  }
+}
+
+/// The last stage that a command takes from --archive.input, if it is there.
+Stage last_taken(const std::string& command) {
+  return command == "identify" ? Stage::data : command == "cluster" ? Stage::windows : Stage::mixture;
+}
+
+/// Earlier stages from --archive.input; what the file lacks is computed.
+StoredStages earlier_stages(const Config& config, const std::string& command) {
+  StoredStages source(config.archive.input, last_taken(command));
+  const Archive& stored = source.stored();
+  std::vector<std::string> sections{"data"};
+  if (command != "identify" && stored.windows) sections.emplace_back("window");
+  if (command == "evaluate" && stored.mixture) sections.insert(sections.end(), {"mixture", "job"});
+  check_same_settings(config, stored.config, sections);
+  return source;
+}
+
+void check_usage(const CommandLine& line, const Config& config) {
+  if (line.command == "run" && !config.archive.input.empty())
+    throw ConfigurationError(
+        "archive.input: run starts from the data; identify, cluster and evaluate take earlier stages");
+  if (line.command != "evaluate" && !config.archive.bank.empty())
+    throw ConfigurationError("archive.bank: only evaluate runs a stored bank");
+  if (!config.archive.bank.empty() && !config.archive.input.empty())
+    throw ConfigurationError("archive.bank and archive.input: give one of them");
+  for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture.start_file})
+    if (!file.empty() && !std::filesystem::exists(file))
+      throw ConfigurationError(fmt::format("{}: no such file", file));
+}
+
+/// An archive must not take the place of what it was made from.
+void check_output(const CommandLine& line, const Config& config) {
+  if (!std::filesystem::exists(config.archive.output)) return;
+  const auto require_other = [&](const std::filesystem::path& file) {
+    std::error_code absent;
+    if (std::filesystem::equivalent(file, config.archive.output, absent))
+      throw ConfigurationError(fmt::format("archive.output: {} is read by this run; name another file", file.string()));
+  };
+  require_other(line.files.front());
+  for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture.start_file})
+    if (!file.empty()) require_other(file);
+  if (!config.archive.input.empty()) return;
+  for (const std::filesystem::path& file : data_files(config.data)) require_other(file);
+}
+
+/// Writes to the log.
+class Log : public Listener {
+ public:
+  void progress(const std::string& line) const override { spdlog::info("{}", line); }
+  void warning(const std::string& line) const override { spdlog::warn("{}", line); }
+  void done(Stage stage, const Archive& archive) const override {
+    if (stage == Stage::windows) {
+      WindowCounts counts;
+      counts.add(*archive.windows);
+      warn_of_windows(*archive.windows, counts);
+    }
+    if (stage == Stage::mixture)
+      for (const std::string& text : selection_warnings(archive.mixture->candidates)) warning("mixture: " + text);
+    if (archive.bank && archive.measured_fit == MeasuredFit::iteration_limit && stage == Stage::bank)
+      warning("refine: the fit with measurement noise was stopped by bank.max_iterations before it had converged");
+    if (archive.bank && archive.measured_fit == MeasuredFit::stalled && stage == Stage::bank)
+      warning("refine: the fit with measurement noise stalled before it had converged");
+  }
+  void warn_of_windows(const WindowFits& windows, const WindowCounts& counts) const {
+    for (const std::string& text : window_warnings(windows, counts)) warning("windows: " + text);
+  }
+};
+
+/// Too many windows for memory: written as they are fitted. Returns the summary.
+std::string identify_many(const Config& config, const Archive& data, const Log& log) {
+  const Stopwatch watch;
+  WindowCounts counts;
+  const WindowInputs inputs = chain_inputs(chain_options(config)).windows;
+  const WindowFits common =
+      identify_into_file(config.archive.output, data, inputs, [&](const WindowFits& fits) { counts.add(fits); });
+  log.progress(fmt::format("windows: {} fitted and archived in {:.2f} s", counts.total(), watch.seconds()));
+  log.warn_of_windows(common, counts);
+  return data_text(*data.recording) + windows_text(common, counts);
+}
+
+Stage last_stage(const std::string& command) {
+  return command == "identify" ? Stage::windows : command == "cluster" ? Stage::mixture : Stage::bank_scores;
+}
+
+/// Runs the stages of the command and writes the archive. Returns the summary.
+std::string execute(const CommandLine& line, const Config& config, StageSource& source) {
+  const Log log;
+  Chain chain(source, log);
+  const ChainOptions options = chain_options(config);
+  const Execution execution{resolved_text(config), make_provenance(config_hash(config), line.typed)};
+  if (line.command == "identify") {
+    const Archive& data = chain.run(options, Stage::data, execution);
+    if (streams_windows(*data.recording, chain_inputs(options).windows)) return identify_many(config, data, log);
+  }
+  const std::string& banks = config.archive.bank;
+  const Archive& archive = banks.empty() ? chain.run(options, last_stage(line.command), execution)
+                                         : chain.judge_stored(banks, options, execution);
+  write_archive(config.archive.output, archive);
+  return summary_text(archive);
+}
+
+}  // namespace
+
+int run_pipeline(const CommandLine& line) {
+  if (line.files.size() != 1)
+    throw ConfigurationError(
+        fmt::format("{} needs one configuration file: modebank {} CONFIG", line.command, line.command));
+  const Config config = load_config(line.files.front(), line.overrides);
+  check_usage(line, config);
+  validate(config);
+  check_writable(config.archive.output);
+  check_output(line, config);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
+  std::string summary;
+  if (config.archive.input.empty()) {
+    StageSource computed;
+    summary = execute(line, config, computed);
+  } else {
+    StoredStages earlier = earlier_stages(config, line.command);
+    summary = execute(line, config, earlier);
+  }
+  fmt::print("{}\narchive {}\n", summary, config.archive.output);
+  return 0;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,54 @@
+#include <filesystem>
+
+#include "app/cli/commands.hpp"
+#include "app/config/config_file.hpp"
+#include "app/report/figures/run_figures.hpp"
+#include "app/report/page/run_page.hpp"
+#include "app/report/page/write_page.hpp"
+#include "io/archive/archive.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// Where the page goes: -o, else the archive's name with .html in the current folder.
+std::filesystem::path page_path(const CommandLine& line) {
+  if (!line.output.empty()) return line.output;
+  std::filesystem::path named = std::filesystem::path(line.files.front()).lexically_normal();
+  if (!named.has_filename()) named = named.parent_path();
+  return named.stem().string() + ".html";
+}
+
+/// Empty where figures alone are asked for.
+std::filesystem::path page_if_asked(const CommandLine& line, const ReportConfig& options) {
+  return options.figures.empty() || !line.output.empty() ? page_path(line) : "";
+}
+
+void report_run(const std::filesystem::path& file, const std::filesystem::path& page, const ReportConfig& options) {
+  if (!page.empty()) report::check_page_path(page, {file});
+  const Archive archive = read_archive(file);
+  if (!options.figures.empty()) report::write_figures(report::run_figures(archive, options.run), options);
+  if (!page.empty()) report::write_page(page, report::run_page(archive, file.filename().string(), options));
+}
+
+}  // namespace
+
+int run_report(const CommandLine& line) {
+  if (line.files.empty() || line.files.size() > 2)
+    throw ConfigurationError(
+        "report needs an archive, a study's folder, or two archives to compare: modebank report ARCHIVE [ARCHIVE] [-o "
+        "page.html]");
+  const ReportConfig options = stored_config("", line.overrides).report;
+  const std::filesystem::path page = page_if_asked(line, options);
+  if (line.files.size() == 2) {
+    if (!options.figures.empty()) throw ConfigurationError("report.figures are drawn of one archive or study");
+    report::report_comparison(line.files[0], line.files[1], page, options);
+  } else if (report::is_study(line.files.front())) {
+    report::report_study(line.files.front(), page, options);
+  } else {
+    report_run(line.files.front(), page, options);
+  }
+  return 0;
+}
+
+}  // namespace modebank::app

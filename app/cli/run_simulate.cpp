@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include "app/cli/commands.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "io/simulation/simulation_writer.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// A key that the simulated system does not have would be ignored: say so.
+void check_keys_apply(const Config& config) {
+  const Config defaults = default_config();
+  for (const Option& option : option_table())
+    if (option.only_for && *option.only_for != config.simulate.kind && option.get(config) != option.get(defaults))
+      throw ConfigurationError(fmt::format("{} = {} belongs to simulate.system = {}, but the system is {}", option.key,
+                                           option.get(config), name_of(*option.only_for),
+                                           name_of(config.simulate.kind)));
+}
+
+/// The system's sizes follow from the columns' names and from the length of a mode's parameters.
+SimulationOptions system_of(const Config& config) {
+  SimulationOptions system = config.simulate.system;
+  system.states = static_cast<Index>(config.data.state.size());
+  system.inputs = static_cast<Index>(config.data.input.size());
+  system.dt_s = 1.0 / config.simulate.rate_hz;
+  if (system.states == 0) throw ConfigurationError("data.state is empty: simulate takes the states' names from it");
+  if (system.modes.empty()) throw ConfigurationError("simulate.modes is empty: give the parameters of each mode");
+  const Index p = system.modes.front().size();
+  system.intercept = p == system.states * (system.states + system.inputs + 1);
+  return system;
+}
+
+VehicleSimulationOptions vehicle_of(const Config& config) {
+  const DataOptions& data = config.data;
+  if (data.state.empty() || data.state.size() > 3 || data.input.size() != 2)
+    throw ConfigurationError(
+        "simulate.system = vehicle needs data.state, the columns of yaw rate and, if they are to be measured, forward "
+        "and sideways speed, and data.input, those of left and right wheel speed");
+  VehicleSimulationOptions vehicle = config.simulate.vehicle;
+  const SimulationOptions& shared = config.simulate.system;
+  vehicle.commands = static_cast<const CommandOptions&>(shared);
+  vehicle.runs = shared.runs;
+  vehicle.outlier_fraction = shared.outlier_fraction;
+  vehicle.outlier_sd = shared.outlier_sd;
+  vehicle.measured = static_cast<Index>(data.state.size());
+  vehicle.dt_s = 1.0 / config.simulate.rate_hz;
+  vehicle.state_rate_hz = config.simulate.state_rate_hz;
+  return vehicle;
+}
+
+void simulate_system(const Config& config) {
+  const DataOptions& data = config.data;
+  const SimulateConfig& options = config.simulate;
+  if (options.kind == SimulatedSystem::vehicle)
+    write_simulation(simulate_vehicle(vehicle_of(config), config.job.seed), {options.output, data.state, data.input});
+  else
+    write_simulation(simulate(system_of(config), config.job.seed),
+                     {options.output, data.state, data.input, options.state_rate_hz});
+}
+
+}  // namespace
+
+int run_simulate(const CommandLine& line) {
+  if (line.files.size() != 1)
+    throw ConfigurationError("simulate needs one configuration file: modebank simulate CONFIG");
+  const Config config = load_config(line.files.front(), line.overrides);
+  check_keys_apply(config);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
+  simulate_system(config);
+  fmt::print("{} runs of {} samples in {}\n", config.simulate.system.runs, config.simulate.system.samples,
+             config.simulate.output);
+  return 0;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,14 @@
+#include "app/cli/commands.hpp"
+#include "app/config/config_file.hpp"
+#include "app/study/study.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+
+int run_study(const CommandLine& line) {
+  if (line.files.size() != 1) throw ConfigurationError("study needs one configuration file: modebank study CONFIG");
+  const std::string& file = line.files.front();
+  return do_study({load_config(file, line.overrides), file, line.overrides, line.typed});
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/cli/commands.hpp"
+#include "app/text/sparkline.hpp"
+#include "app/text/summary_tables.hpp"
+#include "app/text/summary_text.hpp"
+#include "app/text/terminal.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/inspect.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+using nlohmann::json;
+
+void print_overview(const std::string& file, bool full_form) {
+  const Archive archive = read_archive(file);
+  const Terminal terminal = standard_output();
+  const int width = terminal.width;
+  fmt::print("{}\n{}", wrapped(provenance_text(archive), width), summary_text(archive, width));
+  if (const std::string strip = mode_strip_text(archive, terminal); !strip.empty()) fmt::print("\n{}", strip);
+  if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(*archive.windows, width));
+  if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture, width));
+  if (archive.bank) fmt::print("\nmodes\n{}", modes_text(*archive.bank, full_form, width));
+  fmt::print("{}", mode_diagnostics_text(archive, width));
+}
+
+/// I + A instead of A, for datasets A (K, n, n).
+void add_identity(json& matrices) {
+  for (json& matrix : matrices)
+    for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i][i] = matrix[i][i].get<double>() + 1.0;
+}
+
+/// The same for rows of theta = vec of [A B (c)]: entry (i, i) of A stands at i (q + 1).
+void add_identity_to_theta(json& rows, const LinearStructure& structure) {
+  for (json& row : rows)
+    for (Index i = 0; i < structure.states; ++i) {
+      json& entry = row[static_cast<std::size_t>(i * (structure.regressors() + 1))];
+      entry = entry.get<double>() + 1.0;
+    }
+}
+
+void convert_to_full_form(const std::string& file, const std::string& path, json& object) {
+  const std::string name = path.substr(path.find_last_of('/') + 1);
+  if (name == "A") {
+    add_identity(object["value"]);
+  } else if (name == "parameters") {
+    const Archive archive = read_archive(file);
+    const LinearStructure structure = archive.windows ? archive.windows->structure : archive.bank.value().structure;
+    const bool one_row = object["shape"].size() == 1;
+    json rows = one_row ? json::array({object["value"]}) : object["value"];
+    add_identity_to_theta(rows, structure);
+    object["value"] = one_row ? rows[0] : rows;
+  } else {
+    throw ConfigurationError(path + ": --form full applies to A and to parameters");
+  }
+  object["form"] = "full";
+}
+
+}  // namespace
+
+int run_show(const CommandLine& line) {
+  if (line.files.empty() || line.files.size() > 2)
+    throw ConfigurationError("show needs an archive and at most one path in it: modebank show ARCHIVE [PATH]");
+  const std::string& file = line.files[0];
+  const bool full_form = line.form == "full";
+  if (line.files.size() == 1 && !line.json) {
+    print_overview(file, full_form);
+    return 0;
+  }
+  const std::string path = line.files.size() == 2 ? line.files[1] : "/";
+  json object = inspect(file, path);
+  if (full_form) convert_to_full_form(file, path, object);
+  fmt::print("{}\n", object.dump(2));
+  return 0;
+}
+
+}  // namespace modebank::app

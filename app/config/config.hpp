@@ -1,0 +1,108 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/chain/options.hpp"
+#include "app/config/study_config.hpp"
+#include "ident/simulate/simulate.hpp"
+#include "ident/simulate/simulate_vehicle.hpp"
+
+namespace modebank::app {
+
+/// Which filter of an archive `track` runs.
+enum class TrackedFilter { bank, baseline, noise_only };
+
+/// Of the lines that `track` reads and writes.
+enum class LineFormat { automatic, csv, ndjson };
+
+struct TrackConfig {
+  TrackedFilter filter = TrackedFilter::bank;
+  LineFormat format = LineFormat::automatic;
+  double level = 0.95;
+  double alarm = 0.999;
+  std::string checkpoint;
+  Index checkpoint_interval = 0;
+  std::string resume;
+};
+
+/// The [report] section: what a page may hold, and figures for papers.
+struct ReportConfig {
+  double size_mb = 64.0;  ///< largest page [1e6 bytes]
+  Index runs = 10;        ///< of a study, with pages of their own
+  std::string figures;    ///< folder for figures; empty: none
+  bool png = false;
+  bool sources = false;
+  std::string run;  ///< of the figures; empty: the first judged one
+};
+
+struct ArchiveConfig {
+  std::string output;  ///< empty: the configuration file's name with .h5, in the current folder
+  std::string input;   ///< archive that supplies earlier stages
+  std::string bank;    ///< archive whose bank is evaluated
+};
+
+struct JobConfig {
+  int threads = 0;  ///< 0: all cores
+  std::uint64_t seed = 1;
+
+  std::size_t thread_count() const {
+    return threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
+  }
+};
+
+enum class SimulatedSystem { linear, vehicle };
+
+struct SimulateConfig {
+  SimulatedSystem kind = SimulatedSystem::linear;
+  SimulationOptions system;          ///< the linear system; commands, runs and outliers also of the vehicle
+  VehicleSimulationOptions vehicle;  ///< what only a vehicle has
+  std::string output = "simulated";
+  double rate_hz = 6.5;
+  double state_rate_hz = 65.0;
+};
+
+/// Every stage's options, as one configuration file states them. The option table lists their keys.
+struct Config {
+  DataOptions data;
+  FitOptions window;
+  ClusterOptions mixture;
+  BankOptions bank;
+  FilterOptions filter;
+  ScoringOptions scoring;  ///< of the [filter] section what is not about how a filter steps
+  TrackConfig track;
+  ReportConfig report;
+  ArchiveConfig archive;
+  JobConfig job;
+  SimulateConfig simulate;
+  StudyConfig study;
+};
+
+/// Defaults that are not those of the library's own structs.
+Config default_config();
+
+/// What of it decides the numbers of a run.
+ChainOptions chain_options(const Config& config);
+
+/// Checks values against each other, before any file of data is opened. Throws ConfigurationError naming the keys.
+void validate(const Config& config);
+
+}  // namespace modebank::app
+
+template <>
+struct modebank::EnumNames<modebank::app::TrackedFilter> {
+  static constexpr Names<3> values{"bank", "baseline", "noise_only"};
+};
+
+template <>
+struct modebank::EnumNames<modebank::app::LineFormat> {
+  static constexpr Names<3> values{"auto", "csv", "ndjson"};
+};
+
+template <>
+struct modebank::EnumNames<modebank::app::SimulatedSystem> {
+  static constexpr Names<2> values{"linear", "vehicle"};
+};

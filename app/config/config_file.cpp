@@ -1,0 +1,204 @@
+#include "app/config/config_file.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+#include <boost/program_options.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "app/config/option_table.hpp"
+#include "ident/base/nearest_name.hpp"
+#include "io/files/sha256.hpp"
+#include "modebank/base/error.hpp"
+
+namespace po = boost::program_options;
+
+namespace modebank::app {
+namespace {
+
+/// A key as it stands in the file.
+struct FileEntry {
+  std::string key, value;
+  int line = 0;
+  bool has_comment = false, comment_touches_value = false;
+};
+
+/// One line at a time through Boost's parser: its grammar, and a line number for every message.
+std::vector<FileEntry> parse_lines(std::istream& stream, const std::string& path) {
+  static const po::options_description no_options;
+  std::vector<FileEntry> entries;
+  std::string section, line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    if (number == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
+    const std::size_t hash = line.find('#');
+    const bool touches = hash != std::string::npos && hash > 0 && line[hash - 1] != ' ' && line[hash - 1] != '\t';
+    std::string content = boost::trim_copy(line.substr(0, hash));
+    if (content.empty()) continue;
+    if (content.front() == '[' && content.back() == ']') {
+      section = content;
+      continue;
+    }
+    std::istringstream one(section + "\n" + line + "\n");
+    try {
+      const po::parsed_options parsed = po::parse_config_file(one, no_options, true);
+      for (const po::option& option : parsed.options)
+        entries.push_back({option.string_key, option.value.at(0), number, hash != std::string::npos, touches});
+    } catch (const po::error&) {
+      throw ConfigurationError(fmt::format("{}:{}: '{}' is neither [section] nor key = value", path, number, content));
+    }
+  }
+  return entries;
+}
+
+std::string section_list() {
+  std::vector<std::string> sections;
+  for (const Option& option : option_table())
+    if (sections.empty() || sections.back() != option.section()) sections.push_back(option.section());
+  return boost::join(sections, ", ");
+}
+
+const Option& known_option(const std::string& where, const std::string& key) {
+  const Option* option = find_option(key);
+  if (option) return *option;
+  const std::string section_hint =
+      key.find('.') == std::string::npos ? fmt::format(" (keys belong to a section: {})", section_list()) : "";
+  throw ConfigurationError(fmt::format("{}: unknown key {}{}{}", where, key, nearest_key_hint(key), section_hint));
+}
+
+void apply(Config& config, const std::string& where, const std::string& key, const std::string& value,
+           bool has_comment) {
+  const Option& option = known_option(where, key);
+  try {
+    option.set(config, value);
+  } catch (const std::invalid_argument& error) {
+    const std::string unit = option.unit.empty() ? "" : " [" + option.unit + "]";
+    const std::string hint = has_comment ? "; # starts a comment, so no value can hold one" : "";
+    throw ConfigurationError(
+        fmt::format("{}: {} = '{}' {}; allowed: {}{}{}", where, key, value, error.what(), option.range, unit, hint));
+  }
+}
+
+/// The command line's values of a repeatable key take the place of all of the file's.
+void clear_overridden(Config& config, const KeyValues& overrides) {
+  for (const auto& [key, value] : overrides)
+    if (const Option* option = find_option(key); option && option->repeatable) option->set(config, "");
+}
+
+void apply_overrides(Config& config, const KeyValues& overrides) {
+  clear_overridden(config, overrides);
+  for (const auto& [key, value] : overrides) {
+    if (value.find('#') != std::string::npos)
+      throw ConfigurationError(fmt::format(
+          "--{}: '{}' holds a #, which starts a comment in configuration files, so no value can hold one", key, value));
+    apply(config, "--" + key, key, boost::trim_copy(value), false);
+  }
+}
+
+std::filesystem::path default_root(const std::filesystem::path& config_path) {
+  const char* environment = std::getenv("MODEBANK_DATA");
+  if (environment && *environment) return environment;
+  return std::filesystem::absolute(config_path).parent_path();
+}
+
+}  // namespace
+
+std::string nearest_key_hint(const std::string& key) {
+  std::vector<std::string> keys;
+  for (const Option& option : option_table()) keys.push_back(option.key);
+  return did_you_mean(boost::trim_left_copy_if(key, boost::is_any_of("-")), keys);
+}
+
+Config load_config(const std::filesystem::path& path, const KeyValues& overrides) {
+  std::ifstream stream(path);
+  if (!stream || std::filesystem::is_directory(path))
+    throw ConfigurationError(fmt::format("{}: cannot read this configuration file", path.string()));
+  Config config = default_config();
+  std::map<std::string, int> seen;
+  for (const FileEntry& entry : parse_lines(stream, path.string())) {
+    const std::string where = fmt::format("{}:{}", path.string(), entry.line);
+    const Option* option = find_option(entry.key);
+    const auto [earlier, fresh] = seen.emplace(entry.key, entry.line);
+    if (!fresh && !(option && option->repeatable))
+      throw ConfigurationError(fmt::format("{}: {} is already set in line {}", where, entry.key, earlier->second));
+    apply(config, where, entry.key, entry.value, entry.has_comment);
+    if (entry.comment_touches_value)
+      spdlog::warn("{}: {} is cut to '{}': # starts a comment, so no value can hold one", where, entry.key,
+                   entry.value);
+    // A relative root in a file means relative to that file, wherever the program is started.
+    if (entry.key == "data.root" && !config.data.root.empty())
+      config.data.root = (std::filesystem::absolute(path).parent_path() / config.data.root).string();
+  }
+  apply_overrides(config, overrides);
+  if (config.data.root.empty()) config.data.root = default_root(path).string();
+  config.data.root = std::filesystem::absolute(config.data.root).lexically_normal().string();
+  if (config.archive.output.empty()) config.archive.output = path.stem().string() + ".h5";
+  if (config.study.output.empty()) config.study.output = path.stem().string() + ".study";
+  return config;
+}
+
+namespace {
+
+/// The known keys of a resolved configuration whose name `wanted` takes.
+template <class Wanted>
+Config config_of(const std::string& resolved, Wanted wanted) {
+  Config config = default_config();
+  for (const auto& [key, value] : resolved_values(resolved))
+    if (wanted(key) && find_option(key)) apply(config, "stored configuration", key, value, false);
+  return config;
+}
+
+}  // namespace
+
+Config stored_config(const std::string& resolved, const KeyValues& overrides) {
+  Config config = config_of(
+      resolved, [](const std::string& key) { return key.rfind("data.", 0) == 0 || key.rfind("filter.", 0) == 0; });
+  apply_overrides(config, overrides);
+  return config;
+}
+
+Config resolved_config(const std::string& resolved) {
+  return config_of(resolved, [](const std::string&) { return true; });
+}
+
+std::string resolved_text(const Config& config) {
+  std::string text, section;
+  for (const Option& option : option_table()) {
+    if (option.section() != section) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", option.section());
+    section = option.section();
+    std::vector<std::string> values;
+    boost::split(values, option.get(config), [](char c) { return c == '\n'; });
+    for (const std::string& value : values) text += option.name() + " =" + (value.empty() ? "" : " " + value) + "\n";
+  }
+  return text;
+}
+
+std::map<std::string, std::string> resolved_values(const std::string& resolved) {
+  std::istringstream stream(resolved);
+  std::map<std::string, std::string> values;
+  for (const FileEntry& entry : parse_lines(stream, "stored configuration")) {
+    std::string& value = values[entry.key];
+    value += (value.empty() ? "" : "\n") + entry.value;
+  }
+  return values;
+}
+
+bool decides_numbers(const std::string& key) {
+  return key != "data.root" && key.rfind("archive.", 0) != 0 && key.rfind("track.", 0) != 0 &&
+         key.rfind("report.", 0) != 0 && key.rfind("study.", 0) != 0 && key != "job.threads";
+}
+
+std::string config_hash(const Config& config) {
+  std::vector<std::string> lines;
+  for (const Option& option : option_table()) {
+    if (decides_numbers(option.key)) lines.push_back(option.key + "=" + option.get(config) + "\n");
+  }
+  std::sort(lines.begin(), lines.end());
+  return sha256_hex(boost::join(lines, ""));
+}
+
+}  // namespace modebank::app

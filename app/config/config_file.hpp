@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/config/config.hpp"
+
+namespace modebank::app {
+
+using KeyValues = std::vector<std::pair<std::string, std::string>>;
+
+/// Reads a configuration file as Boost.Program_options does, then applies the overrides (the command line wins).
+/// data.root becomes absolute: as configured, else $MODEBANK_DATA, else the file's folder. Throws ConfigurationError
+/// naming line, key and, for an unknown key, the nearest known one.
+Config load_config(const std::filesystem::path& path, const KeyValues& overrides);
+
+/// The [data] and [filter] keys of a configuration that an archive holds, then the overrides. Keys that this version
+/// does not know are left out.
+Config stored_config(const std::string& resolved, const KeyValues& overrides);
+
+/// A resolved configuration read back whole. Keys that this version does not know are left out.
+Config resolved_config(const std::string& resolved);
+
+/// Every key with its value, itself a valid configuration file.
+std::string resolved_text(const Config& config);
+
+/// Key and value of every line of a resolved configuration.
+std::map<std::string, std::string> resolved_values(const std::string& resolved);
+
+/// Whether a key can change a number of the result: not where data lie, archives go or how many threads work.
+bool decides_numbers(const std::string& key);
+
+/// SHA-256 over the resolved keys that decide numbers, in name order.
+std::string config_hash(const Config& config);
+
+/// ", did you mean window.length?", or nothing when no known key is close.
+std::string nearest_key_hint(const std::string& key);
+
+}  // namespace modebank::app

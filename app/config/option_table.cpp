@@ -1,0 +1,36 @@
+#include "app/config/option_table.hpp"
+
+#include <algorithm>
+
+#include "app/config/options/sections.hpp"
+
+namespace modebank::app {
+
+Config default_config() {
+  Config config;
+  for (Eigen::Index k = 1; k <= 12; ++k) config.mixture.selection.components.push_back(k);
+  return config;
+}
+
+ChainOptions chain_options(const Config& c) {
+  return {c.data, c.window, c.mixture, c.bank, c.filter, c.scoring, c.job.seed};
+}
+
+const std::vector<Option>& option_table() {
+  static const std::vector<Option> table = [] {
+    std::vector<Option> all;
+    for (auto section : {data_options, window_options, mixture_options, bank_options, filter_options, archive_options,
+                         study_options, track_options, report_options, simulate_options})
+      for (Option& entry : section()) all.push_back(std::move(entry));
+    return all;
+  }();
+  return table;
+}
+
+const Option* find_option(const std::string& key) {
+  const std::vector<Option>& table = option_table();
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Option& option) { return option.key == key; });
+  return found == table.end() ? nullptr : &*found;
+}
+
+}  // namespace modebank::app

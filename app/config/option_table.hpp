@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/config/config.hpp"
+
+namespace modebank::app {
+
+/// One configuration key: the only place that knows its name, range, unit and help text. Its default is the Config's
+/// own.
+struct Option {
+  std::string key;    ///< "section.name", also the command line's --section.name
+  std::string range;  ///< what is allowed, in words
+  std::string unit;   ///< empty: none
+  std::string help;
+  std::function<void(Config&, const std::string&)> set;  ///< throws std::invalid_argument when the text is not in range
+  std::function<std::string(const Config&)> get;         ///< text that `set` reads back to the same value
+  std::optional<SimulatedSystem> only_for = {};          ///< the simulated system that has this key; empty: all
+  bool repeatable = false;  ///< may stand in several lines of a file; `get` joins them by newlines
+
+  std::string section() const { return key.substr(0, key.find('.')); }
+  std::string name() const { return key.substr(key.find('.') + 1); }
+};
+
+/// All options, section by section, in the order of the help text.
+const std::vector<Option>& option_table();
+
+/// The option of that key; null when there is none.
+const Option* find_option(const std::string& key);
+
+}  // namespace modebank::app

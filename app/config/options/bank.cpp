@@ -1,0 +1,59 @@
+#include "app/config/option_builders.hpp"
+#include "app/config/options/sections.hpp"
+
+namespace modebank::app {
+
+std::vector<Option> bank_options() {
+  return {
+      words("bank.theta", "a mode's parameters: pooled least squares, or the component's mean",
+            MODEBANK_FIELD(bank.theta)),
+      words("bank.noise", "process noise Q", MODEBANK_FIELD(bank.noise)),
+      words("bank.transition", "transition matrix from window labels, or bank.stay", MODEBANK_FIELD(bank.transition)),
+      numeric("bank.stay", inside(0, 1), "", "probability to stay in a mode, for transition = stay",
+              MODEBANK_FIELD(bank.stay)),
+      numeric("bank.process_variance", above(0), "state unit^2", "Q for noise = fixed",
+              MODEBANK_FIELD(bank.process_variance)),
+      numeric("bank.measurement_variance", above(0), "state unit^2", "R; empty: the baseline's",
+              MODEBANK_FIELD(bank.measurement_variance)),
+      flag("bank.screen", "leave unstable and starved modes out of the bank", MODEBANK_FIELD(bank.screen)),
+      numeric("bank.modes", between(0, 1000), "",
+              "at most so many modes: the closest components are merged by moments; 0: no limit",
+              MODEBANK_FIELD(bank.modes)),
+      words("bank.refine", "em: expectation-maximisation of the switching model from the mixture's start",
+            MODEBANK_FIELD(bank.refine)),
+      numeric("bank.restarts", between(0, 1000), "",
+              "starts of em from random stretches of runs, besides the mixture's", MODEBANK_FIELD(bank.em.restarts)),
+      numeric("bank.members", between(1, 100), "",
+              "refined fits from different starts that become one bank at most, if the runs left out like it; their "
+              "modes add up",
+              MODEBANK_FIELD(bank.em.members)),
+      numeric(
+          "bank.folds", between(1, 1000), "",
+          "parts of the training runs that em leaves out in turn to choose start, number of modes and of iterations; "
+          "1: none",
+          MODEBANK_FIELD(bank.em.folds)),
+      numeric("bank.max_iterations", between(1, 1000), "", "limit of em", MODEBANK_FIELD(bank.em.max_iterations)),
+      numeric("bank.tolerance", above(0), "nats/transition", "em stops when the objective gains less",
+              MODEBANK_FIELD(bank.em.tolerance)),
+  };
+}
+
+std::vector<Option> filter_options() {
+  return {
+      words("filter.variant", "multiple-model filter", MODEBANK_FIELD(filter.variant)),
+      words("filter.noise", "the modes' noise as learned, or times a scale that follows the run",
+            MODEBANK_FIELD(filter.noise)),
+      flag("filter.parameter_noise", "add the modes' parameter spread to Q", MODEBANK_FIELD(filter.parameter_noise)),
+      words("filter.time_steps",
+            "a longer time between samples: as many prediction steps as fit, the input held; or one step always",
+            MODEBANK_FIELD(filter.time_steps)),
+      numeric("filter.horizon", each(between(1, 10'000)), "samples",
+              "predictions this far ahead are scored, too: a number, a range such as 1..10, or a list; 1: the summary "
+              "alone",
+              MODEBANK_FIELD(scoring.horizon)),
+      flag("filter.smooth", "smoothed states and the most probable sequence of modes, too",
+           MODEBANK_FIELD(scoring.smooth)),
+  };
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,67 @@
+#include "app/config/option_builders.hpp"
+#include "app/config/options/sections.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// A number, or a word in its place.
+Option lag_option() {
+  Option result = numeric("data.lag_s", any(), "s",
+                          "inputs act this much later (negative: earlier); auto estimates lag and clock drift per run "
+                          "on the training runs and applies them if cross-validation among these gains",
+                          MODEBANK_FIELD(data.lag_s));
+  result.range = "a number or auto";
+  result.set = [set = result.set](Config& config, const std::string& text) {
+    if (text != "auto") set(config, text);
+    config.data.lag_auto = text == "auto";
+    if (config.data.lag_auto) config.data.lag_s = 0.0;
+  };
+  result.get = [get = result.get](const Config& config) { return config.data.lag_auto ? "auto" : get(config); };
+  return result;
+}
+
+}  // namespace
+
+std::vector<Option> data_options() {
+  return {
+      text("data.root", "a folder", "prefix of relative data paths; empty: $MODEBANK_DATA, else this file's folder",
+           MODEBANK_FIELD(data.root)),
+      text("data.inputs", "a path with at most one *", "one file per run; the part matched by * names the run",
+           MODEBANK_FIELD(data.inputs)),
+      text("data.states", "a path with at most one *",
+           "the runs' states files; empty: states are columns of the inputs files", MODEBANK_FIELD(data.states)),
+      text("data.state", "column names", "measured states", MODEBANK_FIELD(data.state)),
+      text("data.input", "column names", "inputs", MODEBANK_FIELD(data.input)),
+      text("data.truth", "column names", "true states, one per state, where known; empty: none",
+           MODEBANK_FIELD(data.truth)),
+      text("data.weight", "a column name",
+           "sample weights >= 0 of the transitions that end in each sample, 0 leaves one out; empty: all equal",
+           MODEBANK_FIELD(data.weight)),
+      text("data.state_unit", "units", "one per state, or one for all; written to the archive and the plots",
+           MODEBANK_FIELD(data.state_unit)),
+      text("data.input_unit", "units", "one per input, or one for all", MODEBANK_FIELD(data.input_unit)),
+      text("data.time", "a column name", "time in seconds", MODEBANK_FIELD(data.time)),
+      words("data.join", "how states join the inputs: interpolated at the inputs' times, or row by row",
+            MODEBANK_FIELD(data.join)),
+      text("data.run", "a column name", "column whose value separates runs inside one file; empty: one run per file",
+           MODEBANK_FIELD(data.run)),
+      numeric("data.rate_hz", at_least(0), "Hz", "0: the inputs' own times; else resample (states linear, inputs held)",
+              MODEBANK_FIELD(data.rate_hz)),
+      lag_option(),
+      numeric("data.lag_range_s", above(0), "s",
+              "lags from minus to plus this are searched by lag_s = auto and by check",
+              MODEBANK_FIELD(data.lag_range_s)),
+      words("data.missing",
+            "NaN, infinite or empty values: an error; a gap that splits the run; or a missing state is a step of "
+            "prediction only, a missing input the last known one",
+            MODEBANK_FIELD(data.missing)),
+      words("data.disorder",
+            "time going backwards or repeated: an error, or sort the rows and keep the first of each time",
+            MODEBANK_FIELD(data.disorder)),
+      text("data.train", "run names", "training runs; empty: positions 0, 2, 4, ... in name order",
+           MODEBANK_FIELD(data.train)),
+      text("data.test", "run names", "held-out runs; empty: all that do not train", MODEBANK_FIELD(data.test)),
+  };
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,69 @@
+#include "app/config/option_builders.hpp"
+#include "app/config/options/sections.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// A way to start, or an archive that holds a mixture.
+Option start_option() {
+  Option result =
+      words("mixture.start",
+            "where EM begins: at points drawn as centres, at k-means++, or at the mixture of an archive for the "
+            "candidate of its size (the others as random)",
+            MODEBANK_FIELD(mixture.selection.em.start));
+  result.range += " | an archive";
+  result.set = [](Config& config, const std::string& text) {
+    const std::optional<StartKind> kind = parse_name<StartKind>(text);
+    if (!kind && !text.ends_with(".h5"))
+      throw std::invalid_argument("must be one of " + words_of<StartKind>() + ", or an archive (.h5)");
+    config.mixture.selection.em.start = kind.value_or(StartKind::random);
+    config.mixture.start_file = kind ? "" : text;
+  };
+  result.get = [get = result.get](const Config& config) {
+    return config.mixture.start_file.empty() ? get(config) : config.mixture.start_file;
+  };
+  return result;
+}
+
+}  // namespace
+
+std::vector<Option> mixture_options() {
+  return {
+      numeric("mixture.components", each(at_least(1)), "", "a number, a range such as 1..12, or a list",
+              MODEBANK_FIELD(mixture.selection.components)),
+      words("mixture.covariance", "shape of the components", MODEBANK_FIELD(mixture.selection.em.covariance)),
+      words("mixture.criterion", "chooses the number of components", MODEBANK_FIELD(mixture.selection.criterion)),
+      words("mixture.features", "what is clustered", MODEBANK_FIELD(mixture.features)),
+      words("mixture.windows", "which windows are clustered; automatic: all with a prior, else full_rank",
+            MODEBANK_FIELD(mixture.windows)),
+      words("mixture.straddling", "windows that straddle a switch of mode", MODEBANK_FIELD(mixture.straddling)),
+      start_option(),
+      numeric("mixture.restarts", between(1, 10'000), "", "independent starts per candidate",
+              MODEBANK_FIELD(mixture.selection.em.restarts)),
+      numeric("mixture.start_runs", between(1, 10'000), "", "short runs that a start is the best of; 1: single starts",
+              MODEBANK_FIELD(mixture.selection.em.start_runs)),
+      numeric("mixture.split_merge", between(0, 10'000), "",
+              "moves tried to leave each optimum: two components merged, one split; 0: none, and restarts are not "
+              "crossed",
+              MODEBANK_FIELD(mixture.selection.em.split_merge)),
+      words("mixture.heldout",
+            "score candidates by leaving out runs; auto: up to 20,000 windows; never: only as the criterion",
+            MODEBANK_FIELD(mixture.selection.heldout)),
+      numeric("mixture.bootstrap", between(0, 100'000), "",
+              "resamples of the runs for standard errors of weights and means; 0: none",
+              MODEBANK_FIELD(mixture.selection.bootstrap)),
+      numeric("mixture.tolerance", above(0), "nats/window", "stop when the mean log-likelihood gains less",
+              MODEBANK_FIELD(mixture.selection.em.tolerance)),
+      numeric("mixture.max_iterations", between(1, 1e6), "", "limit of each EM run",
+              MODEBANK_FIELD(mixture.selection.em.max_iterations)),
+      numeric("mixture.covariance_floor", between(0, 1), "feature variance", "smallest variance of a component",
+              MODEBANK_FIELD(mixture.selection.em.covariance_floor)),
+      flag("mixture.error_aware",
+           "the windows' own covariances enter the fit, so that components describe windows without their errors",
+           MODEBANK_FIELD(mixture.error_aware)),
+      flag("mixture.noise_component", "a uniform component for windows of no mode; they get the label -1",
+           MODEBANK_FIELD(mixture.selection.em.noise_component)),
+  };
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,56 @@
+#include "app/config/option_builders.hpp"
+#include "app/config/options/sections.hpp"
+
+namespace modebank::app {
+
+std::vector<Option> archive_options() {
+  return {
+      text("archive.output", "a path", "archive to write; empty: this file's name with .h5, in the current folder",
+           MODEBANK_FIELD(archive.output)),
+      text("archive.input", "an archive", "supplies the earlier stages of identify, cluster and evaluate",
+           MODEBANK_FIELD(archive.input)),
+      text("archive.bank", "an archive", "evaluate: its banks are run instead of learning new ones",
+           MODEBANK_FIELD(archive.bank)),
+      numeric("job.threads", between(0, 1024), "", "0: all cores; never changes a number", MODEBANK_FIELD(job.threads)),
+      option("job.seed", "a whole number >= 0", "", "the one seed; every use of randomness derives from it",
+             MODEBANK_FIELD(job.seed)),
+  };
+}
+
+std::vector<Option> track_options() {
+  return {
+      words("track.filter", "which of the archive's filters runs", MODEBANK_FIELD(track.filter)),
+      words("track.format", "of lines in and out: CSV under a header, or a JSON object each; auto: by the first line",
+            MODEBANK_FIELD(track.format)),
+      numeric("track.level", inside(0, 1), "", "probability of the interval about the prediction",
+              MODEBANK_FIELD(track.level)),
+      numeric("track.alarm", inside(0, 1), "",
+              "alarm when a measurement lies further out than this share of a true filter's would",
+              MODEBANK_FIELD(track.alarm)),
+      text("track.checkpoint", "a path", "where the filter's state is kept at the end of the input or on SIGINT",
+           MODEBANK_FIELD(track.checkpoint)),
+      numeric("track.checkpoint_interval", at_least(0), "samples", "and this often; 0: at the end only",
+              MODEBANK_FIELD(track.checkpoint_interval)),
+      text("track.resume", "a checkpoint", "go on from there", MODEBANK_FIELD(track.resume)),
+  };
+}
+
+std::vector<Option> report_options() {
+  return {
+      numeric("report.size_mb", between(8, 2000), "MB",
+              "largest page; what would exceed it is drawn by minima and maxima of more samples, and the page says so",
+              MODEBANK_FIELD(report.size_mb)),
+      numeric("report.runs", between(0, 10000), "",
+              "a study's best runs that get pages of their own, in a folder beside the study's page",
+              MODEBANK_FIELD(report.runs)),
+      text("report.figures", "a folder", "figures for papers are written there as SVG (needs gnuplot)",
+           MODEBANK_FIELD(report.figures)),
+      flag("report.png", "figures as PNG, too", MODEBANK_FIELD(report.png)),
+      flag("report.sources", "the figures' gnuplot scripts and data beside them, to restyle",
+           MODEBANK_FIELD(report.sources)),
+      text("report.run", "a run's name", "whose time series the figures draw; empty: the first that was held out",
+           MODEBANK_FIELD(report.run)),
+  };
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,68 @@
+#include <fmt/ranges.h>
+
+#include "app/config/option_builders.hpp"
+#include "app/config/options/sections.hpp"
+#include "ident/model/motion_model.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// linear, varx and every motion model that is compiled in.
+Option model_option() {
+  std::vector<std::string> models{"linear", "varx"};
+  for (const std::string& model : motion_model_names()) models.push_back(model);
+  Option result = text("window.model", fmt::format("{}", fmt::join(models, " | ")),
+                       "A x + B u; with lags; or a motion model of ident/models", MODEBANK_FIELD(window.model));
+  result.set = [set = result.set, models](Config& config, const std::string& value) {
+    if (std::find(models.begin(), models.end(), value) == models.end())
+      throw std::invalid_argument("is none of its words");
+    set(config, value);
+  };
+  return result;
+}
+
+}  // namespace
+
+std::vector<Option> window_options() {
+  return {
+      model_option(),
+      numeric("window.state_lags", between(1, 100), "samples", "varx: states x[k], x[k-1], ... that predict x[k+1]",
+              MODEBANK_FIELD(window.state_lags)),
+      numeric("window.input_lags", between(1, 100), "samples", "varx: input samples that act on one transition",
+              MODEBANK_FIELD(window.input_lags)),
+      numeric("window.input_delay", between(0, 1000), "samples",
+              "varx: from an input to its first effect; 0: u[k+1] acts on x[k+1]", MODEBANK_FIELD(window.input_delay)),
+      numeric("window.wheel_radius_m", above(0), "m",
+              "icr and slip: turns wheel speeds in rad/s into m/s; 1 for inputs that are m/s",
+              MODEBANK_FIELD(window.wheel_radius_m)),
+      words("window.residual",
+            "each sample predicted from the one before, or the window simulated from its first sample (estimated)",
+            MODEBANK_FIELD(window.residual)),
+      numeric("window.length", between(1, 1e6), "transitions", "length of a window", MODEBANK_FIELD(window.length)),
+      numeric("window.step", between(1, 1e6), "transitions", "from one window's start to the next",
+              MODEBANK_FIELD(window.step)),
+      words("window.loss", "robust loss of a sample's residual", MODEBANK_FIELD(window.loss)),
+      numeric("window.loss_scale", at_least(0), "sigma", "where the loss bends; 0: 95 % efficiency under normal noise",
+              MODEBANK_FIELD(window.loss_scale)),
+      words("window.scale", "residual scale sigma: of each window, of its run, or window.sigma",
+            MODEBANK_FIELD(window.scale)),
+      numeric("window.sigma", at_least(0), "state unit", "residual standard deviation for scale = fixed",
+              MODEBANK_FIELD(window.sigma)),
+      words("window.prior", "Gaussian prior on a window's parameters", MODEBANK_FIELD(window.prior)),
+      numeric("window.prior_sd", each(above(0)), "parameter unit",
+              "the prior's standard deviations, one per parameter or one for all; empty: 3 x the spread of full-rank "
+              "windows",
+              MODEBANK_FIELD(window.prior_sd)),
+      flag("window.intercept", "estimate a constant term c", MODEBANK_FIELD(window.intercept)),
+      words("window.covariance", "covariance of a window's parameters: M-estimator or HC3 sandwich",
+            MODEBANK_FIELD(window.covariance)),
+      words(
+          "window.solver",
+          "who minimises: Ceres window by window, the batch solver for linear models of one state, or by their number",
+          MODEBANK_FIELD(window.solver)),
+      numeric("window.max_iterations", between(1, 1e5), "", "limit of the minimiser",
+              MODEBANK_FIELD(window.max_iterations)),
+  };
+}
+
+}  // namespace modebank::app

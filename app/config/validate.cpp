@@ -1,0 +1,40 @@
+#include <fmt/format.h>
+
+#include "app/chain/section.hpp"
+#include "app/config/config.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+void require(bool condition, const std::string& message) {
+  if (!condition) throw ConfigurationError(message);
+}
+
+void check_prior(const FitOptions& window, Index parameters) {
+  const Index sds = window.prior_sd.size();
+  require(sds <= 1 || sds == parameters,
+          fmt::format("window.prior_sd has {} values: give one, or one per parameter ({}), or none", sds, parameters));
+}
+
+}  // namespace
+
+void validate(const Config& config) {
+  const DataOptions& data = config.data;
+  require(!data.inputs.empty(), "data.inputs is empty: it names the files to read, for example pro_*.csv");
+  require(!data.state.empty(), "data.state is empty: it names the columns of the measured states");
+  require(data.truth.empty() || data.truth.size() == data.state.size(),
+          fmt::format("data.truth names {} columns, data.state {}: there must be as many, or none", data.truth.size(),
+                      data.state.size()));
+  const Index states = std::ssize(data.state), inputs = std::ssize(data.input);
+  in_section("window", [&] { check_model(config.window, states, inputs); });
+  check_prior(config.window, parameter_count(config.window, states, inputs));
+  require(config.window.scale != ScaleSource::fixed || config.window.sigma > 0.0,
+          "window.scale = fixed needs window.sigma, the residual standard deviation, above 0");
+  require(config.bank.refine == Refine::none || is_linear(config.window),
+          fmt::format("bank.refine = em needs window.model = linear or varx, not {}: it fits linear modes",
+                      config.window.model));
+}
+
+}  // namespace modebank::app

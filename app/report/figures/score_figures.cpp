@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+
+#include "app/chain/judged_runs.hpp"
+#include "app/report/figures/palette.hpp"
+#include "app/report/figures/run_figures.hpp"
+#include "app/report/page/assets.hpp"
+#include "app/report/page/pit_histogram.hpp"
+
+namespace modebank::app::report {
+namespace {
+
+constexpr Index bins_of_figure = 20;
+constexpr std::array<const char*, 3> drawn_filters{"baseline", "noise_only", "bank"};
+
+std::string colour_of(const std::string& filter) {
+  const Palette colours = palette(0);
+  return filter == "baseline" ? colours.baseline : filter == "noise_only" ? colours.noise_only : colours.bank;
+}
+
+std::string title_of(const Archive& archive, const std::string& filter) {
+  return filter == "baseline" ? "baseline" : filter == "noise_only" ? "noise only" : bank_title(archive);
+}
+
+PitHistogram judged_histogram(const Archive& archive, const FilterEvaluation& evaluation) {
+  std::vector<const RunEvaluation*> runs;
+  for (std::size_t i = 0; i < evaluation.runs.size(); ++i)
+    if (archive.recording->runs[i].role == judged_role(archive)) runs.push_back(&evaluation.runs[i]);
+  return pit_histogram(runs, bins_of_figure);
+}
+
+Figure pit(const Archive& archive) {
+  Figure figure("pit", assets::figure_pit());
+  std::vector<std::string> titles, colours;
+  for (const char* filter : drawn_filters) {
+    const FilterEvaluation* evaluation = evaluation_of(archive, filter);
+    if (!evaluation) continue;
+    const PitHistogram histogram = judged_histogram(archive, *evaluation);
+    Eigen::MatrixXd rows(bins_of_figure, 2);
+    for (Index i = 0; i < bins_of_figure; ++i)
+      rows.row(i) << (static_cast<double>(i) + 0.5) / static_cast<double>(bins_of_figure),
+          histogram.counts(i) / histogram.expected;
+    figure.add_block(title_of(archive, filter), {"PIT", "density"}, rows);
+    titles.push_back(title_of(archive, filter));
+    colours.push_back(colour_of(filter));
+    if (titles.size() > 1) continue;
+    figure.set("uniform_low", histogram.band.lower / histogram.expected);
+    figure.set("uniform_high", histogram.band.upper / histogram.expected);
+  }
+  figure.set("filters", static_cast<Index>(titles.size()));
+  figure.set("filter_title", titles);
+  figure.set("filter_colour", colours);
+  return figure;
+}
+
+Figure coverage(const Archive& archive) {
+  Figure figure("coverage", assets::figure_coverage());
+  std::vector<std::string> titles;
+  Eigen::MatrixXd rows(0, 5);
+  for (const char* filter : drawn_filters) {
+    const SummaryRow* train = pooled_row(archive, filter, Role::train);
+    const SummaryRow* test = pooled_row(archive, filter, Role::test);
+    if (!train && !test) continue;
+    titles.push_back(title_of(archive, filter));
+    rows.conservativeResize(rows.rows() + 1, 5);
+    const auto percent = [](const SummaryRow* row, double SummaryRow::*member) {
+      return row ? 100 * row->*member : std::numeric_limits<double>::quiet_NaN();
+    };
+    rows.bottomRows(1) << static_cast<double>(titles.size()), percent(train, &SummaryRow::nis_above),
+        percent(train, &SummaryRow::nis_below), percent(test, &SummaryRow::nis_above),
+        percent(test, &SummaryRow::nis_below);
+  }
+  figure.set("filters", static_cast<Index>(titles.size()));
+  figure.set("filter_title", titles);
+  figure.add_block("NIS outside its 95 % interval [%]",
+                   {"position", "train above", "train below", "test above", "test below"}, rows);
+  return figure;
+}
+
+}  // namespace
+
+void add_score_figures(const Archive& archive, FigureSet& set) {
+  if (archive.summary.empty() || !archive.recording) {
+    set.left_out.emplace_back("pit and coverage: the archive holds no scores");
+    return;
+  }
+  set.figures.push_back(pit(archive));
+  set.figures.push_back(coverage(archive));
+}
+
+std::string bank_title(const Archive& archive) { return fmt::format("bank, K = {}", archive.bank->mode_count()); }
+
+const FilterEvaluation* evaluation_of(const Archive& archive, const std::string& filter) {
+  for (const FilterEvaluation& evaluation : archive.evaluations)
+    if (evaluation.filter == filter) return &evaluation;
+  return nullptr;
+}
+
+FigureSet run_figures(const Archive& archive, const std::string& run) {
+  FigureSet set;
+  add_window_figures(archive, set);
+  add_time_figures(archive, run, set);
+  add_score_figures(archive, set);
+  return set;
+}
+
+}  // namespace modebank::app::report

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "app/report/page/page_arrays.hpp"
+
+namespace modebank::app::report {
+
+/// What one page consists of beside the parts that all have (web/page.html, page.css, Plotly).
+struct Page {
+  std::string title;
+  nlohmann::json data;      ///< what the script draws; texts in it are shown as text, whatever they hold
+  PageArrays arrays;        ///< the large part of it
+  std::string_view script;  ///< one of assets.hpp
+};
+
+/// The self-contained HTML file: nothing in it refers to anything outside.
+std::string html_of(const Page& page);
+
+}  // namespace modebank::app::report

@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include "app/report/page/mode_dynamics.hpp"
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/run_sections.hpp"
+#include "app/report/page/unit_text.hpp"
+#include "io/archive/bank/units.hpp"
+
+namespace modebank::app::report {
+namespace {
+
+using nlohmann::json;
+
+std::string decay_text(const Decay& decay) {
+  const std::string time = decay.time_constant_s < 0 ? fmt::format("grows, {:.3g} s", -decay.time_constant_s)
+                                                     : number_text(decay.time_constant_s) + " s";
+  return decay.frequency_hz > 0 ? fmt::format("{} at {:.3g} Hz", time, decay.frequency_hz) : time;
+}
+
+/// All time constants in one cell, slowest first; it sorts by the slowest.
+json decays_cell(const std::vector<Decay>& decays) {
+  std::string text;
+  for (const Decay& decay : decays) text += (text.empty() ? "" : "; ") + decay_text(decay);
+  return number(decays.empty() ? 0.0 : decays.front().time_constant_s, text);
+}
+
+json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors) {
+  json cells = json::array();
+  for (Index i = 0; i < values.size(); ++i) cells.push_back(estimate(values(i), i < errors.size() ? errors(i) : NAN));
+  return cells;
+}
+
+json mode_row(const Bank& bank, Index k) {
+  const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
+  const ModeDynamics dynamics = mode_dynamics(bank, k);
+  json gains = json::array();
+  for (const double gain : dynamics.gain.transpose().reshaped()) gains.push_back(number(gain));
+  const Index n_y = bank.C.rows();
+  return {{"mode", k},
+          {"weight", number(mode.weight, fmt::format("{:.3f}", mode.weight))},
+          {"parameters", estimates(bank.theta(k), mode.standard_error)},
+          {"motion", estimates(mode.motion_theta, mode.motion_standard_error)},
+          {"noise_sd", number_list(mode.Q.diagonal().head(std::min(n_y, mode.Q.rows())).cwiseSqrt())},
+          {"decays", decays_cell(dynamics.decays)},
+          {"gains", gains}};
+}
+
+const DiagnosticsRow* mode_diagnosis(const Archive& archive, Role role, Index mode) {
+  for (const DiagnosticsRow& row : archive.diagnostics)
+    if (row.filter == "bank" && row.role == role && row.mode == mode) return &row;
+  return nullptr;
+}
+
+void add_diagnosis(json& row, const DiagnosticsRow& diagnosis) {
+  row["usage"] = number(diagnosis.usage, fmt::format("{:.3f}", diagnosis.usage));
+  row["samples"] = count(diagnosis.samples);
+  row["dwell"] = number(diagnosis.dwell);
+  row["dwell_model"] = number(diagnosis.dwell_model);
+  row["tail_above"] = percent(diagnosis.tail_above);
+  row["tail_below"] = percent(diagnosis.tail_below);
+  row["verdict"] = name_of(diagnosis.verdict);
+}
+
+json column_names(const std::vector<std::string>& names, const Unit& units) {
+  json columns = json::array();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    columns.push_back(with_unit(names[i], i < units.size() && units[i] != "1" ? units[i] : ""));
+  return columns;
+}
+
+std::vector<std::string> gain_names(const Bank& bank, const Recording& recording) {
+  std::vector<std::string> names;
+  const std::vector<std::string> inputs = names_of(recording.inputs), states = names_of(recording.states);
+  for (Index i = 0; i < bank.C.rows(); ++i)
+    for (Index j = 0; j < bank.structure.inputs; ++j)
+      names.push_back(
+          fmt::format("{} / {}", states.at(static_cast<std::size_t>(i)), inputs.at(static_cast<std::size_t>(j))));
+  return names;
+}
+
+std::vector<std::string> motion_names(const Bank& bank) {
+  std::vector<std::string> names;
+  for (const ModelParameter& parameter : bank.motion_parameters) names.push_back(parameter.name);
+  return names;
+}
+
+json transition_of(const Bank& bank) {
+  json rows = json::array();
+  const Eigen::MatrixXd& T = bank.transition.matrix();
+  for (Index i = 0; i < T.rows(); ++i) {
+    json row = json::array();
+    for (Index j = 0; j < T.cols(); ++j)
+      row.push_back(bank.transition_standard_error.size() > 0 ? estimate(T(i, j), bank.transition_standard_error(i, j))
+                                                              : number(T(i, j)));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+json screened_of(const Bank& bank) {
+  json list = json::array();
+  for (const ScreenedMode& mode : bank.screened)
+    list.push_back({{"component", mode.component},
+                    {"weight", number(mode.weight)},
+                    {"radius", number(mode.spectral_radius)},
+                    {"reason", mode.reason}});
+  return list;
+}
+
+/// What a limit on the number of modes cost on the runs of a role; null without one.
+json merging_of(const Archive& archive, Role role) {
+  for (const MergingCost& cost : archive.merging)
+    if (cost.role == role)
+      return {{"components", cost.components},
+              {"modes_unlimited", cost.modes_unlimited},
+              {"log_score_unlimited", number(cost.log_score_unlimited)},
+              {"log_score", number(cost.log_score)},
+              {"loss", number(cost.loss)}};
+  return nullptr;
+}
+
+}  // namespace
+
+nlohmann::json bank_section(const Archive& archive) {
+  if (!archive.bank || !archive.recording) return nullptr;
+  const Bank& bank = *archive.bank;
+  const Recording& recording = *archive.recording;
+  const Units units(recording);
+  const Role role = mode_diagnosis(archive, Role::test, -1) ? Role::test : Role::train;
+  json modes = json::array();
+  for (Index k = 0; k < bank.mode_count(); ++k) {
+    modes.push_back(mode_row(bank, k));
+    if (const DiagnosticsRow* row = mode_diagnosis(archive, role, k)) add_diagnosis(modes.back(), *row);
+  }
+  return {{"modes", modes},
+          {"baseline", archive.baseline ? mode_row(*archive.baseline, 0) : json()},
+          {"role", name_of(role)},
+          {"model", bank.model},
+          {"dt_s", number(bank.dt_s)},
+          {"parameter_names", column_names(bank.structure.parameter_names(),
+                                           parameter_units(bank.structure, units.states(), units.inputs()))},
+          {"motion_names", column_names(motion_names(bank), unit_of(bank.motion_parameters))},
+          {"gain_names", column_names(gain_names(bank, recording), ratios(units.states(), units.inputs()))},
+          {"noise_name", with_unit("step noise sd", common_unit(recording.states))},
+          {"R", number_list(bank.R.diagonal())},
+          {"transition", transition_of(bank)},
+          {"screened", screened_of(bank)},
+          {"merged", merging_of(archive, role)},
+          {"refined", archive.unrefined.has_value()}};
+}
+
+}  // namespace modebank::app::report

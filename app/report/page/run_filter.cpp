@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/pit_histogram.hpp"
+#include "app/report/page/residual_pool.hpp"
+#include "app/report/page/run_sections.hpp"
+#include "app/report/page/unit_text.hpp"
+
+namespace modebank::app::report {
+namespace {
+
+using nlohmann::json;
+
+constexpr Index pit_bins = 20;
+
+json score_row(const SummaryRow& row) {
+  return {{"filter", row.filter},
+          {"role", name_of(row.role)},
+          {"run", row.run},
+          {"samples", count(row.samples)},
+          {"log_score", number(row.log_score, fmt::format("{:.4f}", row.log_score))},
+          {"rmse", number_list(row.rmse)},
+          {"nis_mean", number(row.nis_mean, fmt::format("{:.3f}", row.nis_mean))},
+          {"nis_above", percent(row.nis_above)},
+          {"nis_below", percent(row.nis_below)},
+          {"tail_above", percent(row.tail_above)},
+          {"tail_below", percent(row.tail_below)},
+          {"pit_distance", number(row.pit_distance)},
+          {"whiteness_p", number(row.whiteness_p)}};
+}
+
+json histogram_of(const Archive& archive, const FilterEvaluation& evaluation, Role role) {
+  std::vector<const RunEvaluation*> runs;
+  for (std::size_t i = 0; i < evaluation.runs.size(); ++i)
+    if (archive.recording->runs[i].role == role) runs.push_back(&evaluation.runs[i]);
+  const PitHistogram histogram = pit_histogram(runs, pit_bins);
+  return {{"filter", evaluation.filter},
+          {"role", name_of(role)},
+          {"counts", std::vector<int>(histogram.counts.begin(), histogram.counts.end())},
+          {"samples", histogram.samples},
+          {"expected", histogram.expected},
+          {"band", {histogram.band.lower, histogram.band.upper}}};
+}
+
+json autocorrelation_of(const Archive& archive, const ResidualTestSet& set, Role role) {
+  std::vector<ResidualTests> runs;
+  for (std::size_t i = 0; i < set.runs.size(); ++i)
+    if (archive.recording->runs[i].role == role) runs.push_back(set.runs[i]);
+  const ResidualTests pooled = pool_autocorrelations(runs);
+  json states = json::array();
+  for (Index i = 0; i < pooled.states(); ++i)
+    states.push_back(std::vector<double>(pooled.autocorrelation.row(i).begin(), pooled.autocorrelation.row(i).end()));
+  return {{"model", set.model},
+          {"role", name_of(role)},
+          {"samples", pooled.samples},
+          {"level", pooled.level},
+          {"band", pooled.autocorrelation_band},
+          {"states", states}};
+}
+
+json horizon_row(const HorizonRow& row) {
+  return {{"filter", row.filter},
+          {"role", name_of(row.role)},
+          {"horizon", count(row.horizon)},
+          {"samples", count(row.samples)},
+          {"log_score", number(row.log_score, fmt::format("{:.4f}", row.log_score))},
+          {"rmse", number_list(row.rmse)}};
+}
+
+json verdict_row(const DiagnosticsRow& row) {
+  const auto with_interval = [](double share, double lower, double upper) {
+    return number(share, fmt::format("{} [{:.2f}, {:.2f}]", percent_text(share), 100 * lower, 100 * upper));
+  };
+  return {{"filter", row.filter},
+          {"role", name_of(row.role)},
+          {"verdict", name_of(row.verdict)},
+          {"tail_above", with_interval(row.tail_above, row.tail_above_lower, row.tail_above_upper)},
+          {"tail_below", with_interval(row.tail_below, row.tail_below_lower, row.tail_below_upper)},
+          {"nis_mean",
+           number(row.nis_mean, fmt::format("{:.3f} [{:.3f}, {:.3f}]", row.nis_mean, row.nis_lower, row.nis_upper))},
+          {"flags", row.flags}};
+}
+
+}  // namespace
+
+nlohmann::json filter_section(const Archive& archive) {
+  if (!archive.recording || archive.evaluations.empty()) return nullptr;
+  json section = {{"scores", json::array()},
+                  {"histograms", json::array()},
+                  {"autocorrelations", json::array()},
+                  {"horizons", json::array()},
+                  {"verdicts", json::array()},
+                  {"tail", 0.5 * (1.0 - drawn_level)},
+                  {"rmse_name", with_unit("RMSE", common_unit(archive.recording->states))}};
+  for (const SummaryRow& row : archive.summary) section["scores"].push_back(score_row(row));
+  for (const Role role : {Role::test, Role::train}) {
+    for (const FilterEvaluation& evaluation : archive.evaluations) {
+      json histogram = histogram_of(archive, evaluation, role);
+      if (histogram["samples"] > 0) section["histograms"].push_back(histogram);
+    }
+    for (const ResidualTestSet& set : archive.residual_tests) {
+      json autocorrelation = autocorrelation_of(archive, set, role);
+      if (autocorrelation["samples"] > 0) section["autocorrelations"].push_back(autocorrelation);
+    }
+  }
+  for (const HorizonRow& row : archive.horizons)
+    if (row.run == "*") section["horizons"].push_back(horizon_row(row));
+  for (const DiagnosticsRow& row : archive.diagnostics)
+    if (row.mode < 0) section["verdicts"].push_back(verdict_row(row));
+  return section;
+}
+
+}  // namespace modebank::app::report

@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/run_sections.hpp"
+#include "app/text/summary_text.hpp"
+
+namespace modebank::app::report {
+namespace {
+
+using nlohmann::json;
+
+/// Keys whose value is not the default, in the table's order: what makes this run different from any other.
+json changed_settings(const std::string& config) {
+  const Config defaults = default_config();
+  const std::map<std::string, std::string> values = resolved_values(config);
+  json changed = json::array();
+  for (const Option& option : option_table()) {
+    const auto value = values.find(option.key);
+    if (value == values.end() || value->second == option.get(defaults) || !decides_numbers(option.key)) continue;
+    changed.push_back(
+        {{"key", option.key}, {"value", value->second}, {"standard", option.get(defaults)}, {"help", option.help}});
+  }
+  return changed;
+}
+
+std::string roles_text(const Recording& recording) {
+  const auto runs = [&](Role role) {
+    return std::count_if(recording.runs.begin(), recording.runs.end(),
+                         [role](const Trajectory& run) { return run.role == role; });
+  };
+  return fmt::format("{} training ({} transitions), {} held out ({})", runs(Role::train),
+                     count_text(recording.transitions(Role::train)), runs(Role::test),
+                     count_text(recording.transitions(Role::test)));
+}
+
+std::string windows_line(const WindowFits& fits) {
+  return fmt::format("{} of {} transitions, model {}, loss {}", count_text(fits.count()), fits.length, fits.model,
+                     name_of(fits.loss));
+}
+
+json inputs_of(const Provenance& provenance) {
+  json inputs = json::array();
+  for (const InputFile& file : provenance.inputs)
+    inputs.push_back(
+        {{"path", file.path}, {"bytes", count(static_cast<long long>(file.bytes))}, {"sha256", file.sha256}});
+  return inputs;
+}
+
+}  // namespace
+
+nlohmann::json origin_section(const Archive& archive) {
+  const Provenance& provenance = archive.provenance;
+  json versions = json::array();
+  for (const auto& [name, version] : provenance.versions) versions.push_back({name, version});
+  json known = json::array();
+  if (archive.recording) {
+    known.push_back({"Runs", roles_text(*archive.recording)});
+    known.push_back({"Sample period", number_text(archive.recording->median_period_s()) + " s (median)"});
+  }
+  if (archive.windows) known.push_back({"Windows", windows_line(*archive.windows)});
+  return {{"created", provenance.created},
+          {"facts", known},
+          {"version", provenance.modebank_version},
+          {"command", provenance.command_line},
+          {"config_hash", provenance.config_hash},
+          {"data_hash", provenance.data_hash},
+          {"versions", versions},
+          {"inputs", inputs_of(provenance)},
+          {"config", archive.config},
+          {"changed", changed_settings(archive.config)},
+          {"summary", summary_text(archive)}};
+}
+
+}  // namespace modebank::app::report

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "app/config/config.hpp"
+#include "app/report/page/html_page.hpp"
+#include "io/archive/archive.hpp"
+
+namespace modebank::app::report {
+
+/// The page of one archive: what was run, verdict, data, local models, selection, bank, filter. `file`: its name, for
+/// the title. Parts that the archive lacks are said to be missing.
+Page run_page(const Archive& archive, const std::string& file, const ReportConfig& options);
+
+}  // namespace modebank::app::report

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "app/config/config.hpp"
+#include "app/report/page/page_arrays.hpp"
+#include "io/archive/archive.hpp"
+
+/// The parts of a run's page, each null where the archive does not hold what it shows.
+namespace modebank::app::report {
+
+/// Of the bands, regions and bounds that the page draws.
+inline constexpr double drawn_level = 0.95;
+
+nlohmann::json origin_section(const Archive& archive);
+nlohmann::json verdict_section(const Archive& archive);
+
+/// How many samples the finest drawing of a run's signals takes together: those of the data and the bank, and those of
+/// the other filters.
+struct Detail {
+  Index finest = 1, finest_others = 1;
+};
+/// Every run's signals over time, and what each filter said of them.
+nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const Detail& detail);
+/// The same in as fine a detail as at most so many bytes allow.
+nlohmann::json affordable_runs_section(const Archive& archive, PageArrays& arrays, std::size_t bytes);
+
+nlohmann::json windows_section(const Archive& archive, PageArrays& arrays);
+nlohmann::json selection_section(const Archive& archive);
+nlohmann::json bank_section(const Archive& archive);
+nlohmann::json filter_section(const Archive& archive);
+
+}  // namespace modebank::app::report

@@ -1,0 +1,169 @@
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/run_sections.hpp"
+#include "app/report/page/unit_text.hpp"
+#include "app/report/page/window_modes.hpp"
+#include "ident/base/distributions.hpp"
+#include "io/archive/bank/units.hpp"
+#include "mixture/features.hpp"
+
+namespace modebank::app::report {
+namespace {
+
+using nlohmann::json;
+
+/// More points than this hide each other: every second, third, ... window is drawn then.
+constexpr Index most_windows = 100'000;
+/// And no more numbers of covariances than this: beyond, windows have no ellipsoids.
+constexpr Index most_covariances = 2'000'000;
+
+Unit units_of_parameters(const Archive& archive) {
+  const Units units(archive.recording.value_or(Recording()));
+  const WindowFits& fits = *archive.windows;
+  return fits.model_parameters.empty() ? parameter_units(fits.structure, units.states(), units.inputs())
+                                       : unit_of(fits.model_parameters);
+}
+
+/// The cloud's axes: parameters and the logarithm of the noise variance.
+json axes_of(const FeatureCloud& cloud, const Unit& units) {
+  json axes = json::array();
+  for (std::size_t i = 0; i < cloud.names.size(); ++i)
+    axes.push_back({{"name", cloud.names[i]}, {"unit", i < units.size() && units[i] != "1" ? units[i] : ""}});
+  return axes;
+}
+
+/// The axes to begin with: the paper's A, B1, B2, which with lags are the first of each.
+std::vector<Index> default_axes(const WindowFits& fits, Index axes) {
+  const Index inputs = fits.structure.dimension();
+  std::vector<Index> chosen{0, 1, 2};
+  if (fits.model_parameters.empty() && fits.structure.inputs >= 2) chosen = {0, inputs, inputs + 1};
+  chosen.resize(static_cast<std::size_t>(std::min<Index>(axes, 3)));
+  return chosen;
+}
+
+/// The lower triangle of each drawn window's covariance, entry by entry, rows first.
+json covariances_of(PageArrays& arrays, const WindowFits& fits, const std::vector<Index>& drawn) {
+  const Index p = fits.parameter_count(), count = static_cast<Index>(drawn.size());
+  if (count * p * (p + 1) / 2 > most_covariances) return nullptr;
+  json entries = json::array();
+  for (Index i = 0; i < p; ++i)
+    for (Index j = 0; j <= i; ++j) {
+      const Eigen::VectorXd entry = fits.covariance(i + j * p, drawn).transpose();
+      entries.push_back(arrays.add(entry));
+    }
+  return entries;
+}
+
+json rows_of_matrix(const Eigen::MatrixXd& matrix) {
+  json rows = json::array();
+  for (Index i = 0; i < matrix.rows(); ++i)
+    rows.push_back(std::vector<double>(matrix.row(i).begin(), matrix.row(i).end()));
+  return rows;
+}
+
+/// The mixture in the cloud's coordinates, for ellipses.
+json components_of(const MixtureResult& result) {
+  json components = json::array();
+  for (Index k = 0; k < result.mixture.components(); ++k) {
+    const Eigen::VectorXd mean = result.mixture.means.col(k);
+    components.push_back({{"weight", number(result.mixture.weights(k))},
+                          {"mean", std::vector<double>(mean.begin(), mean.end())},
+                          {"covariance", rows_of_matrix(result.mixture.covariances[static_cast<std::size_t>(k)])}});
+  }
+  return {{"features", result.feature_names}, {"list", components}};
+}
+
+/// The bank's modes in the cloud's coordinates; their spread over the windows where the model is linear.
+json modes_of(const Bank& bank) {
+  json modes = json::array();
+  for (const Mode& mode : bank.modes) {
+    const bool linear = bank.motion_parameters.empty();
+    const Eigen::VectorXd theta = linear ? pack(bank.structure, mode.model) : mode.motion_theta;
+    modes.push_back({{"mean", std::vector<double>(theta.begin(), theta.end())},
+                     {"covariance", linear && mode.spread.size() > 0 ? rows_of_matrix(mode.spread) : json()}});
+  }
+  return modes;
+}
+
+json labels_of(PageArrays& arrays, const Eigen::VectorXi& labels, const std::vector<Index>& drawn) {
+  const Eigen::VectorXi chosen = labels(drawn);
+  return arrays.add(std::vector<std::int32_t>(chosen.begin(), chosen.end()));
+}
+
+/// The windows that are drawn, and which point of the cloud each is.
+struct Drawn {
+  Index step = 1;
+  std::vector<Index> points, windows;
+};
+
+Drawn choose(const FeatureCloud& cloud) {
+  const Index points = cloud.points.cols();
+  Drawn drawn{std::max<Index>(1, (points + most_windows - 1) / most_windows), {}, {}};
+  for (Index i = 0; i < points; i += drawn.step) {
+    drawn.points.push_back(i);
+    drawn.windows.push_back(cloud.windows[static_cast<std::size_t>(i)]);
+  }
+  return drawn;
+}
+
+/// Run, first and last time of each drawn window.
+void add_places(json& section, PageArrays& arrays, const Archive& archive, const std::vector<Index>& drawn) {
+  const WindowFits& fits = *archive.windows;
+  std::vector<std::int32_t> run;
+  Eigen::VectorXd begin(static_cast<Index>(drawn.size())), end = begin;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const Window& window = fits.windows[static_cast<std::size_t>(drawn[i])];
+    const Trajectory& trajectory = archive.recording->runs[static_cast<std::size_t>(window.run)];
+    run.push_back(static_cast<std::int32_t>(window.run));
+    begin(static_cast<Index>(i)) = trajectory.time_s(window.start);
+    end(static_cast<Index>(i)) = trajectory.time_s(window.start + fits.length);
+  }
+  section["run"] = arrays.add(run);
+  section["begin"] = arrays.add_exact(begin);
+  section["end"] = arrays.add_exact(end);
+}
+
+const FilterEvaluation* bank_evaluation(const Archive& archive) {
+  for (const FilterEvaluation& evaluation : archive.evaluations)
+    if (evaluation.filter == "bank") return &evaluation;
+  return nullptr;
+}
+
+}  // namespace
+
+nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
+  if (!archive.windows || !archive.recording || archive.windows->count() == 0) return nullptr;
+  const WindowFits& fits = *archive.windows;
+  const FeatureCloud cloud =
+      make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::all, archive.recording->states);
+  const Drawn drawn = choose(cloud);
+  json values = json::array();
+  for (Index i = 0; i < cloud.points.rows(); ++i) {
+    const Eigen::VectorXd row = cloud.points(i, drawn.points).transpose();
+    values.push_back(arrays.add(row));
+  }
+  json section = {{"count", count(fits.count())},
+                  {"drawn", count(static_cast<long long>(drawn.windows.size()))},
+                  {"step", drawn.step},
+                  {"length", fits.length},
+                  {"model", fits.model},
+                  {"parameters", fits.parameter_count()},
+                  {"axes", axes_of(cloud, units_of_parameters(archive))},
+                  {"default_axes", default_axes(fits, cloud.points.rows())},
+                  {"values", values},
+                  {"covariance", covariances_of(arrays, fits, drawn.windows)},
+                  {"refined", archive.unrefined.has_value()},
+                  {"level", drawn_level},
+                  {"limit2", chi_square_quantile(drawn_level, 2.0)},
+                  {"limit3", chi_square_quantile(drawn_level, 3.0)}};
+  add_places(section, arrays, archive, drawn.windows);
+  if (archive.mixture) {
+    section["label"] = labels_of(arrays, archive.mixture->labels, drawn.windows);
+    section["components"] = components_of(*archive.mixture);
+  }
+  if (archive.bank) section["bank"] = modes_of(*archive.bank);
+  if (const FilterEvaluation* evaluation = bank_evaluation(archive))
+    section["mode"] = labels_of(arrays, window_modes(fits.windows, fits.length, evaluation->runs), drawn.windows);
+  return section;
+}
+
+}  // namespace modebank::app::report

@@ -1,0 +1,77 @@
+#include "app/report/page/series.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/report/page/bucket_extremes.hpp"
+
+namespace modebank::app::report {
+namespace {
+
+using Eigen::Index;
+using nlohmann::json;
+
+constexpr Index level_factor = 16;
+/// Fewer buckets than this are not worth a level: the page makes them of the level below.
+constexpr Index least_buckets = 500;
+
+/// Bucket sizes of the levels above the samples themselves.
+std::vector<Index> level_buckets(Index samples, Index finest) {
+  std::vector<Index> buckets;
+  Index bucket = finest == 1 ? level_factor : finest;
+  for (; bucket == finest || samples / bucket >= least_buckets; bucket *= level_factor) buckets.push_back(bucket);
+  return buckets;
+}
+
+json level(PageArrays& arrays, const Eigen::Ref<const Eigen::VectorXd>& values, Index size, Bucket kind) {
+  json entry = {{"bucket", size}};
+  if (kind == Bucket::share) {
+    entry["low"] = arrays.add_shares(bucket_means(values, size));
+    return entry;
+  }
+  const BucketExtremes extremes = bucket_extremes(values, size);
+  if (kind != Bucket::highest) entry["low"] = arrays.add(extremes.low);
+  if (kind != Bucket::lowest) entry["high"] = arrays.add(extremes.high);
+  return entry;
+}
+
+/// Whether every time is where a clock of this period would have it, to a ten-thousandth of a period.
+bool regular(const Eigen::VectorXd& time_s, double period) {
+  constexpr double slack = 1e-4;
+  for (Index k = 0; k < time_s.size(); ++k)
+    if (std::abs(time_s(k) - time_s(0) - period * static_cast<double>(k)) > slack * period) return false;
+  return true;
+}
+
+}  // namespace
+
+nlohmann::json series(PageArrays& arrays, const Eigen::Ref<const Eigen::VectorXd>& values, Index finest, Bucket kind) {
+  json levels = json::array();
+  for (const Index size : level_buckets(values.size(), finest)) levels.push_back(level(arrays, values, size, kind));
+  const bool edge = kind == Bucket::lowest || kind == Bucket::highest;
+  json raw;
+  if (finest == 1 && !edge) raw = kind == Bucket::share ? arrays.add_shares(values) : arrays.add(values);
+  return {{"raw", raw}, {"levels", levels}};
+}
+
+nlohmann::json time_axis(PageArrays& arrays, const Eigen::VectorXd& time_s, Index finest) {
+  const Index N = time_s.size();
+  json axis = {{"samples", N},
+               {"finest", finest},
+               {"start", N ? json(time_s(0)) : json()},
+               {"end", N ? json(time_s(N - 1)) : json()}};
+  const double period = N > 1 ? (time_s(N - 1) - time_s(0)) / static_cast<double>(N - 1) : 1.0;
+  if (regular(time_s, period)) {
+    axis["period"] = period;
+    return axis;
+  }
+  axis["raw"] = finest == 1 ? arrays.add_exact(time_s) : json();
+  axis["levels"] = json::array();
+  for (const Index size : level_buckets(N, finest)) {
+    const Eigen::VectorXd first = time_s(Eigen::seq(0, N - 1, size));
+    axis["levels"].push_back({{"bucket", size}, {"low", arrays.add_exact(first)}});
+  }
+  return axis;
+}
+
+}  // namespace modebank::app::report

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/page/run_page.hpp"
+#include "app/report/page/study_page.hpp"
+#include "app/report/page/write_page.hpp"
+#include "app/study/answers/answers.hpp"
+#include "app/study/space/study_plan.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/inspect.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// study.h5 of what the user named.
+fs::path study_file(const fs::path& study) {
+  if (!fs::is_directory(study)) return study;
+  const fs::path file = study / "study.h5";
+  if (fs::exists(file)) return file;
+  if (fs::exists(plan_file(study)))
+    throw DataError(
+        fmt::format("{}: the study is not merged yet: modebank study CONFIG --study.stage merge makes "
+                    "study.h5 of the runs that are done",
+                    study.string()));
+  throw ConfigurationError(fmt::format("{}: no study's folder: it holds neither study.h5 nor plan.h5", study.string()));
+}
+
+/// Finished runs, the best by the headline score first; none without that score.
+std::vector<std::size_t> ranked_rows(const StudyTable& table) {
+  const std::string headline = answer(table).headline;
+  const auto found = std::find(table.score_names.begin(), table.score_names.end(), headline);
+  const std::optional<ScoreGoal> goal = goal_of(headline, 1);
+  std::vector<std::size_t> rows;
+  if (found == table.score_names.end() || !goal) return rows;
+  const auto loss = [&](std::size_t row) {
+    return goal->loss(table.rows[row].scores[static_cast<std::size_t>(found - table.score_names.begin())]);
+  };
+  for (std::size_t i = 0; i < table.rows.size(); ++i)
+    if (table.rows[i].status == TrialStatus::done && !std::isnan(loss(i))) rows.push_back(i);
+  std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return loss(a) < loss(b); });
+  return rows;
+}
+
+/// Archives that are there, for all rows.
+std::vector<TrialPlace> archives_of(const StudyTable& table, const fs::path& folder) {
+  std::vector<TrialPlace> places(table.rows.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const fs::path archive = trial_archive(folder, table.rows[i].key);
+    if (!table.rows[i].key.empty() && fs::exists(archive)) places[i].archive = archive.string();
+  }
+  return places;
+}
+
+/// Pages of the best runs, in a folder named after the study's page.
+void write_run_pages(const StudyTable& table, const fs::path& page, const ReportConfig& options,
+                     std::vector<TrialPlace>& places) {
+  const fs::path folder = page.parent_path() / (page.stem().string() + "_runs");
+  Index written = 0;
+  for (const std::size_t row : ranked_rows(table)) {
+    if (written == options.runs) break;
+    if (places[row].archive.empty()) continue;
+    const fs::path archive = places[row].archive, file = folder / (table.rows[row].key + ".html");
+    const Page run = run_page(read_archive(archive), archive.filename().string(), options);
+    fs::create_directories(folder);
+    write_page(file, run);
+    places[row].page = (folder.filename() / file.filename()).string();
+    ++written;
+  }
+}
+
+}  // namespace
+
+bool is_study(const fs::path& path) {
+  if (fs::is_directory(path)) return true;
+  return inspect(path.string(), "/").at("members").contains("study");
+}
+
+void report_study(const fs::path& study, const fs::path& page, const ReportConfig& options) {
+  const fs::path path = study_file(study);
+  if (!page.empty()) check_page_path(page, {path});
+  const StudyFile file = read_study_file(path, "study");
+  const StudyTable table = study_table_of(file);
+  if (!options.figures.empty()) write_figures(study_figures(table), options);
+  if (page.empty()) return;
+  std::vector<TrialPlace> places = archives_of(table, path.parent_path());
+  write_run_pages(table, page, options, places);
+  const fs::path name = fs::absolute(fs::is_directory(study) ? study : path).lexically_normal();
+  write_page(page,
+             study_page(file, table, places, (name.has_filename() ? name : name.parent_path()).filename().string()));
+}
+
+}  // namespace modebank::app::report

@@ -1,0 +1,34 @@
+#include "app/report/page/write_page.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/report/figures/gnuplot.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app::report {
+
+void check_page_path(const std::filesystem::path& path, const std::vector<std::filesystem::path>& sources) {
+  if (const std::string obstacle = write_obstacle(path); !obstacle.empty()) throw ConfigurationError("-o: " + obstacle);
+  for (const std::filesystem::path& source : sources) {
+    std::error_code none;
+    if (std::filesystem::equivalent(path, source, none))
+      throw ConfigurationError(fmt::format("-o: {} is the archive itself", path.string()));
+  }
+}
+
+void write_page(const std::filesystem::path& path, const Page& page) {
+  constexpr double bytes_per_MB = 1e6;
+  const std::string html = html_of(page);
+  replace_file(path, {html});
+  fmt::print("{}: {:.1f} MB; open it in a browser\n", path.string(), static_cast<double>(html.size()) / bytes_per_MB);
+}
+
+void write_figures(const FigureSet& set, const ReportConfig& options) {
+  const auto files = draw_figures(set.figures, {options.figures, options.png, options.sources});
+  fmt::print("{}: {}\n", options.figures, fmt::join(files, ", "));
+  for (const std::string& reason : set.left_out) fmt::print("left out: {}\n", reason);
+}
+
+}  // namespace modebank::app::report

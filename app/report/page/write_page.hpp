@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+
+#include "app/config/config.hpp"
+#include "app/report/figures/run_figures.hpp"
+#include "app/report/page/html_page.hpp"
+
+namespace modebank::app::report {
+
+/// Throws ConfigurationError when the page cannot be written to `path`, or `path` is one of the files it is made from.
+void check_page_path(const std::filesystem::path& path, const std::vector<std::filesystem::path>& sources);
+
+/// Writes the page under a temporary name and renames it; says how large it is.
+void write_page(const std::filesystem::path& path, const Page& page);
+
+/// Draws the figures into report.figures and prints what was written and what could not be.
+void write_figures(const FigureSet& set, const ReportConfig& options);
+
+/// A study's figures, where report.figures asks for them, and its page, unless `page` is empty.
+void report_study(const std::filesystem::path& study, const std::filesystem::path& page, const ReportConfig& options);
+/// The page of two archives.
+void report_comparison(const std::filesystem::path& first, const std::filesystem::path& second,
+                       const std::filesystem::path& page, const ReportConfig& options);
+
+/// Whether the path is a study's folder or its study.h5; throws as read_archive does for a file that cannot be opened.
+bool is_study(const std::filesystem::path& path);
+
+}  // namespace modebank::app::report

@@ -1,0 +1,25 @@
+// Colours as '#rrggbb'. The figures for papers mix the same way (figures/palette.cpp).
+
+const hex = (byte) => Math.round(byte).toString(16).padStart(2, '0');
+
+// `share` of the way from one colour to the other.
+export function mixed(colour, other, share) {
+  const at = (text, i) => parseInt(text.slice(1 + 2 * i, 3 + 2 * i), 16);
+  return '#' + [0, 1, 2].map((i) => hex((1 - share) * at(colour, i) + share * at(other, i))).join('');
+}
+
+export const translucent = (colour, alpha) => colour + hex(255 * alpha);
+
+// Colour of mode k, the same in every plot; where the palette ends it comes again, darker, then lighter.
+export function paletteColour(palette, k) {
+  if (k < 0) return palette.unclustered;
+  const base = palette.modes[k % palette.modes.length];
+  const round = Math.floor(k / palette.modes.length) % 3;
+  if (round === 0) return base;
+  return mixed(base, round === 1 ? '#000000' : '#ffffff', 0.45);
+}
+
+// For thin lines: lighter on a dark ground.
+export function onGround(colour, dark) {
+  return dark && /^#[0-9a-f]{6}$/i.test(colour) ? mixed(colour, '#ffffff', 0.35) : colour;
+}

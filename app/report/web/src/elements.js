@@ -1,0 +1,106 @@
+// Elements of the pages. Whatever comes from an archive enters them as text (textContent), never as markup.
+
+function fill(element, attributes, children) {
+  for (const [name, given] of Object.entries(attributes)) {
+    if (given === null || given === undefined || given === false) continue;
+    if (name.startsWith('on')) {
+      element.addEventListener(name.slice(2), given);
+    } else {
+      element.setAttribute(name, given === true ? '' : given);
+    }
+  }
+  for (const child of children.flat(Infinity)) {
+    if (child !== null && child !== undefined) element.append(child);
+  }
+  return element;
+}
+
+// h('p', {class: 'soft'}, 'text', child, ...): an element. Strings become text; null and undefined are left out.
+export function h(tag, attributes = {}, ...children) {
+  return fill(document.createElement(tag), attributes, children);
+}
+
+// s('circle', {r: 2}, 'text', child): an SVG element.
+export function s(tag, attributes = {}, ...children) {
+  return fill(document.createElementNS('http://www.w3.org/2000/svg', tag), attributes, children);
+}
+
+// A value as C++ formatted it (numbers.hpp), with the exact one in data-value.
+export function value(cell, tag = 'span') {
+  if (cell === null || cell === undefined) return h(tag, {}, '–');
+  if (typeof cell !== 'object') return h(tag, {}, String(cell));
+  return h(tag, {'data-value': JSON.stringify(cell.v)}, cell.t);
+}
+
+export function facts(pairs) {
+  const said = pairs.filter(([, text]) => text !== null && text !== undefined && text !== '');
+  return h(
+      'dl', {class: 'facts'},
+      said.map(
+          ([name, text]) =>
+              [h('dt', {}, name),
+               h('dd', {}, text instanceof Node ? text : String(text)),
+  ]));
+}
+
+export function note(text, bad = false) {
+  return h('p', {class: bad ? 'note bad' : 'note'}, text);
+}
+
+export const swatch = (colour) => h('span', {class: 'swatch', style: `background:${colour}`});
+
+// entries: [colour, text].
+export function legend(entries, label = 'Colours') {
+  return h(
+      'ul', {class: 'legend', 'aria-label': label}, entries.map(([colour, text]) => h('li', {}, swatch(colour), text)));
+}
+
+// Pages opened from a file may be refused the clipboard.
+function copyByHand(text) {
+  const area = h('textarea', {style: 'position:fixed;opacity:0'});
+  area.value = text;
+  document.body.append(area);
+  area.select();
+  const copied = document.execCommand('copy');
+  area.remove();
+  return copied;
+}
+
+export function copyButton(label, text) {
+  const button = h('button', {type: 'button', class: 'copy'}, label);
+  const done = (word) => {
+    button.textContent = word;
+    setTimeout(() => {
+      button.textContent = label;
+    }, 1500);
+  };
+  const byHand = () => done(copyByHand(text) ? 'Copied' : 'Not allowed');
+  button.addEventListener('click', () => {
+    if (!navigator.clipboard) return byHand();
+    return navigator.clipboard.writeText(text).then(() => done('Copied'), byHand);
+  });
+  return button;
+}
+
+export const controls = (...children) => h('div', {class: 'controls'}, children);
+
+// A drop-down; `choices` are texts, onchange gets the chosen position.
+export function choice(label, choices, chosen, onchange) {
+  const options = choices.map((text, i) => h('option', {value: i, selected: i === chosen}, text));
+  const select = h('select', {onchange: () => onchange(select.selectedIndex)}, options);
+  return h('label', {}, label, select);
+}
+
+// The same where there is something to choose, else nothing.
+export function choiceIfAny(label, choices, chosen, onchange) {
+  return choices.length > 1 ? choice(label, choices, chosen, onchange) : null;
+}
+
+export function check(label, chosen, onchange) {
+  const box = h('input', {type: 'checkbox', checked: chosen, onchange: () => onchange(box.checked)});
+  return h('label', {}, box, label);
+}
+
+export function details(summary, ...content) {
+  return h('details', {}, h('summary', {}, summary), content);
+}

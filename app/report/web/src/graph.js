@@ -1,0 +1,58 @@
+// The transition graph of a bank: modes on a circle, arrows by probability.
+import {s} from './elements.js';
+import {modeColour} from './plots.js';
+
+const bend = 0.14;    // of an arrow's length
+const least = 0.005;  // rarer transitions are left to the matrix
+
+const minus = (a, b) => ({x: a.x - b.x, y: a.y - b.y});
+const along = (a, v, length) => ({x: a.x + length * v.x, y: a.y + length * v.y});
+const unit = (v) => ({x: v.x / Math.hypot(v.x, v.y), y: v.y / Math.hypot(v.x, v.y)});
+const left = (v) => ({x: v.y, y: -v.x});
+const put = ({x, y}) => `${x},${y}`;
+
+// A bent arrow between two nodes {x, y, r}, and where its label goes.
+function arrow(from, to, width, colour, title) {
+  const way = minus(to, from), straight = unit(way);
+  const start = along(from, straight, from.r), end = along(to, straight, -(to.r + 7));
+  const middle = along(along(from, way, 0.5), left(straight), -bend * Math.hypot(way.x, way.y));
+  const heading = unit(minus(end, middle)), half = 0.6 * (4 + width), side = left(heading);
+  const corners = [along(end, heading, 6), along(end, side, half), along(end, side, -half)];
+  const element =
+      s('g', {}, s('title', {}, title), s('path', {
+          d: `M${put(start)}Q${put(middle)} ${put(end)}`,
+          fill: 'none',
+          stroke: colour,
+          'stroke-width': width,
+          'stroke-opacity': 0.75,
+        }),
+        s('path', {d: `M${corners.map(put).join('L')}Z`, fill: colour}));
+  return {element, at: {x: (start.x + 2 * middle.x + end.x) / 4, y: (start.y + 2 * middle.y + end.y) / 4}};
+}
+
+// `transition[i][j]`: C++'s number cells; `weights`: sizes of the nodes.
+export function transitionGraph(transition, weights) {
+  const K = transition.length, size = 420, centre = size / 2, ring = K === 1 ? 0 : size / 2 - 52;
+  const angle = (k) => (2 * Math.PI * k) / K;
+  const radius = (k) => Math.min(15 + 16 * Math.sqrt(weights[k] || 0), K > 12 ? 20 : 30);
+  const nodes = transition.map(
+      (_, k) => ({x: centre + ring * Math.sin(angle(k)), y: centre - ring * Math.cos(angle(k)), r: radius(k)}));
+  const label = `Transitions between ${K} modes; the matrix beside holds the same numbers`;
+  const picture = s('svg', {viewBox: `0 0 ${size} ${size}`, role: 'img', 'aria-label': label, class: 'graph'});
+  const labels = [];
+  transition.forEach((row, i) => row.forEach((cell, j) => {
+    if (i === j || !(cell.v >= least)) return;
+    const title = `from mode ${i} to mode ${j}: ${cell.t}`;
+    const edge = arrow(nodes[i], nodes[j], 1 + 7 * Math.sqrt(cell.v), modeColour(i), title);
+    picture.append(edge.element);
+    if (K <= 6) labels.push(s('text', {x: edge.at.x, y: edge.at.y, class: 'edge'}, cell.v.toPrecision(2)));
+  }));
+  picture.append(
+      ...nodes.map(
+          (node, k) =>
+              s('g', {}, s('title', {}, `mode ${k} stays with probability ${transition[k][k].t}`),
+                s('circle', {cx: node.x, cy: node.y, r: node.r, fill: modeColour(k), stroke: 'var(--ink)'}),
+                s('text', {x: node.x, y: node.y, class: 'node'}, String(k)))),
+      ...labels);
+  return picture;
+}

@@ -1,0 +1,94 @@
+// The page around its sections: head, contents, theme, printing.
+import {h} from './elements.js';
+
+// A section of the page with its entry in the contents.
+export function section(id, title, ...content) {
+  const heading = h('h2', {id: `${id}-title`}, title);
+  const element = h('section', {id, 'aria-labelledby': `${id}-title`}, heading, content);
+  document.getElementById('main').append(element);
+  let list = document.querySelector('#contents ul');
+  if (!list) {
+    list = h('ul');
+    document.getElementById('contents').append(list);
+  }
+  list.append(h('li', {}, h('a', {href: `#${id}`}, title)));
+  return element;
+}
+
+const darkWanted = () => matchMedia('(prefers-color-scheme: dark)');
+const listeners = [];
+export function onTheme(listener) {
+  listeners.push(listener);
+}
+export function dark() {
+  const forced = document.documentElement.dataset.theme;
+  return forced ? forced === 'dark' : darkWanted().matches;
+}
+const markTheme = () => {
+  document.documentElement.dataset.drawn = dark() ? 'dark' : 'light';
+};
+const announce = () => {
+  markTheme();
+  return Promise.all(listeners.map((listener) => listener()));
+};
+
+// What must be done before the page can be printed, e.g. drawing what is still out of sight.
+const unfinished = [];
+export function beforePrint(finish) {
+  unfinished.push(finish);
+}
+
+async function printPage() {
+  const root = document.documentElement, theme = root.dataset.theme;
+  root.dataset.theme = 'light';
+  root.dataset.printing = 'true';
+  await Promise.all(unfinished.map((finish) => finish()));
+  await announce();
+  window.print();
+  delete root.dataset.printing;
+  if (theme) {
+    root.dataset.theme = theme;
+  } else {
+    delete root.dataset.theme;
+  }
+  await announce();
+}
+
+function themeSwitch() {
+  const button = h('button', {type: 'button', id: 'theme'});
+  const label = () => {
+    button.textContent = dark() ? 'Light' : 'Dark';
+    button.setAttribute('aria-label', `Switch to ${dark() ? 'light' : 'dark'} colours`);
+  };
+  const change = () => {
+    label();
+    announce();
+  };
+  button.addEventListener('click', () => {
+    document.documentElement.dataset.theme = dark() ? 'light' : 'dark';
+    change();
+  });
+  darkWanted().addEventListener('change', change);
+  label();
+  return button;
+}
+
+export function head(title, subtitle) {
+  const name =
+      h('div', {style: 'min-width:0'}, h('h1', {}, title), subtitle ? h('div', {class: 'soft'}, subtitle) : null);
+  const print = h('button', {type: 'button', id: 'print', onclick: printPage}, 'Print');
+  document.getElementById('top').append(name, h('div', {class: 'buttons'}, print, ' ', themeSwitch()));
+  markTheme();
+}
+
+// Runs what draws the page; a failure is shown and thrown on, so that tests see it.
+export async function draw(body) {
+  try {
+    await body();
+    document.documentElement.dataset.ready = 'true';
+  } catch (error) {
+    const text = `This page failed to draw itself: ${error.message}`;
+    document.getElementById('main').append(h('p', {class: 'failure note bad', role: 'alert'}, text));
+    throw error;
+  }
+}

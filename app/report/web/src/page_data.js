@@ -1,0 +1,45 @@
+// What C++ put into the page beside its scripts: one JSON text (page-data) and packed arrays (page_arrays.hpp).
+
+export const pageData = () => JSON.parse(document.getElementById('page-data').textContent);
+
+const types = {
+  f4: [Float32Array, 4],
+  f8: [Float64Array, 8],
+  i4: [Int32Array, 4],
+  share: [Uint16Array, 2],
+};
+const nobody = 65535;  // a share that is not known
+const whole = 65534;   // a share of one
+const unpacked = new Map();
+
+function bytesOf(base64) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(base64);
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  return bytes;
+}
+
+// Values whose first bytes stand first, then their second bytes, ...: neighbours compress better so.
+export function fromPlanes(planes, {type, size}) {
+  const [Type, width] = types[type];
+  const bytes = new Uint8Array(size * width);
+  for (let b = 0; b < width; ++b) {
+    for (let i = 0; i < size; ++i) bytes[i * width + b] = planes[b * size + i];
+  }
+  const values = new Type(bytes.buffer);
+  return type === 'share' ? Float32Array.from(values, (v) => (v === nobody ? NaN : v / whole)) : values;
+}
+
+async function unpack(place) {
+  const stored = bytesOf(document.getElementById(place.id).textContent);
+  const stream = new Blob([stored]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return fromPlanes(new Uint8Array(await new Response(stream).arrayBuffer()), place);
+}
+
+// The typed array at a place of the page, unpacked once, on first need; a typed array stands for itself.
+export function array(place) {
+  if (!place || ArrayBuffer.isView(place)) return Promise.resolve(place || null);
+  if (!unpacked.has(place.id)) unpacked.set(place.id, unpack(place));
+  return unpacked.get(place.id);
+}

@@ -1,0 +1,171 @@
+// What the filter said of every sample, and whether to believe it.
+import {choice, choiceIfAny, controls, h, note} from './elements.js';
+import {autocorrelationLayout, autocorrelationTrace, outsideBars, outsideLayout, pitBars} from './filter_drawings.js';
+import {filterNames, roleNames, roleOf, shortNames} from './filters.js';
+import {section} from './page.js';
+import {dashedLine, figure, filterColour, greyBand, palette} from './plots.js';
+import {drawScores} from './run_scores.js';
+import {innovationRow, nisRow, probabilityRow, stateRow} from './time_rows.js';
+import {timeControls, timePlot} from './timeview.js';
+
+const present = (list, key) => [...new Set(list.map((row) => row[key]))];
+const legendAbove = {
+  orientation: 'h',
+  y: 1.02,
+  yanchor: 'bottom'
+};
+
+// Adds the histogram of row i of `count` to the drawing.
+function addHistogram({traces, layout}, row, i, count) {
+  const n = i ? i + 1 : '', top = 1 - i / count, bottom = 1 - (i + 1) / count, last = i === count - 1;
+  const axes = {xref: `x${n}`, yref: `y${n}`};
+  const domain = [bottom + (last ? 0 : 0.1), top - 0.02];
+  layout[`yaxis${n}`] = {title: {text: 'samples'}, domain, rangemode: 'tozero', nticks: 4};
+  layout[`xaxis${n}`] = {range: [0, 1], anchor: `y${n}`, title: last ? {text: 'PIT'} : undefined, nticks: 6};
+  traces.push({
+    type: 'bar',
+    ...pitBars(row),
+    marker: {color: filterColour(row.filter)},
+    xaxis: `x${n}`,
+    yaxis: `y${n}`,
+    textposition: 'none',
+    hoverinfo: 'text',
+  });
+  layout.shapes.push(greyBand(row.band[0], row.band[1], axes), dashedLine(row.expected, axes));
+  layout.annotations.push({
+    text: filterNames[row.filter],
+    xref: `x${n} domain`,
+    yref: `y${n} domain`,
+    x: 0,
+    y: 1,
+    xanchor: 'left',
+    yanchor: 'bottom',
+    showarrow: false,
+    font: {size: 12},
+  });
+}
+
+function histograms(filter) {
+  const roles = present(filter.histograms, 'role');
+  let [role] = roles;
+  const label = 'Histogram of probability integral transforms for each filter; equal bars mean true uncertainty';
+  const plot = figure(label, () => {
+    const rows = filter.histograms.filter((row) => row.role === role);
+    const layout = {
+      height: 200 * rows.length + 40,
+      margin: {l: 64, r: 12, t: 40, b: 44},
+      showlegend: false,
+      shapes: [],
+      annotations: [],
+      bargap: 0.06,
+    };
+    const drawing = {traces: [], layout};
+    rows.forEach((row, i) => addHistogram(drawing, row, i, rows.length));
+    return drawing;
+  }, 'Grey: where 95 % of a true filter’s bars lie. High ends: overconfident; high middle: underconfident.');
+  const pick = choiceIfAny('Runs', roles.map((name) => roleNames[name]), 0, (i) => {
+    role = roles[i];
+    plot.redraw();
+  });
+  return [h('h3', {}, 'Probability transforms (PIT)'), pick ? controls(pick) : null, plot];
+}
+
+function autocorrelations(filter, states) {
+  const list = filter.autocorrelations;
+  if (!list.length) return [];
+  const roles = present(list, 'role'), chosen = {role: roles[0], state: 0};
+  const plot = figure(
+      'Autocorrelation of the residuals for each model; within the band they are white',
+      () => {
+        const rows = list.filter((row) => row.role === chosen.role);
+        const traces = rows.map((row) => autocorrelationTrace(row.states[chosen.state], {
+                                  name: shortNames[row.model] || row.model,
+                                  line: {color: filterColour(row.model), width: 1.5},
+                                  marker: {size: 5},
+                                  hovertemplate: 'lag %{x}: %{y:.3f}',
+                                }));
+        const look = {margin: {l: 64, r: 12, t: 60, b: 44}, legend: legendAbove, showlegend: true};
+        return {traces, layout: autocorrelationLayout(rows[0].band, look)};
+      },
+      `Grey: ${100 * list[0].level} % band of white residuals. Filters: normal scores of the PIT; global model: its ` +
+          'one-step residuals.');
+  const choose = (key, value) => {
+    chosen[key] = value;
+    plot.redraw();
+  };
+  return [
+    h('h3', {}, 'Residual autocorrelation'),
+    controls(
+        choiceIfAny('Runs', roles.map((role) => roleNames[role]), 0, (i) => choose('role', roles[i])),
+        choiceIfAny('State', states.map((channel) => channel.name), 0, (i) => choose('state', i))),
+    plot
+  ];
+}
+
+// The paper's figure 5: how many samples lie outside the interval, above and below, training and held out.
+function outside(filter) {
+  const measures = [['tail', 'PIT'], ['nis', 'NIS']], pooled = filter.scores.filter((row) => row.run === '*');
+  const roles = present(pooled, 'role'), filters = present(pooled, 'filter');
+  let [[key]] = measures;
+  const bars = (side, role) => {
+    const rows = filters.map((name) => pooled.find((row) => row.filter === name && row.role === role)).filter(Boolean);
+    return {
+      ...outsideBars(rows.map((row) => row[`${key}_${side}`]), rows.map(() => `${side}, ${roleNames[role]}`)),
+      name: `${side}, ${roleOf(role)}`,
+      x: rows.map((row) => shortNames[row.filter]),
+      marker: {
+        color: palette.modes[side === 'above' ? 3 : 5],
+        opacity: role === 'test' ? 1 : 0.65,
+        pattern: {shape: role === 'test' ? '' : '/'},
+      },
+    };
+  };
+  const label = 'Shares of samples outside the 95 % interval, above and below, for each filter; the table of scores ' +
+      'holds the same numbers';
+  const look = {height: 380, margin: {l: 64, r: 12, t: 76, b: 40}, showlegend: true, legend: legendAbove};
+  const plot = figure(
+      label, () => ({
+               traces: ['above', 'below'].flatMap((side) => roles.map((role) => bars(side, role))),
+               layout: outsideLayout(filter.tail, 'samples outside [%]', look),
+             }),
+      'Dashed: a true filter’s 2.5 % on each side.');
+  const pick = choice('By', measures.map(([, name]) => name), 0, (i) => {
+    [key] = measures[i];
+    plot.redraw();
+  });
+  return [h('h3', {}, 'Samples outside the interval'), controls(pick), plot];
+}
+
+// The time plot of the filter that is chosen.
+function filterPlot(runs, state, options) {
+  const rows = () => {
+    const chosen = options.layer.of(state.current);
+    return [
+      stateRow(runs, options.state, [options.layer], 170),
+      ...(chosen && chosen.probability ? [probabilityRow(options.layer.of)] : []),
+      innovationRow(runs, options.state, options.layer.of),
+      nisRow(runs, [options.layer]),
+    ];
+  };
+  return timePlot(
+      state, 'Mode probabilities, innovations and NIS of one run over time', rows,
+      `Blue lines about the innovations: ${
+          100 * runs.level} % of a Gaussian of their variance. Dashed lines at the NIS: ` +
+          'both bounds that a true filter’s stays between with 95 %.');
+}
+
+export function drawFilter(filter, runs, state, options, picker) {
+  const absent = 'This archive holds no evaluation: no filter was run over the data.';
+  if (!filter) return section('filter', 'The filter', note(absent));
+  const pickState = choiceIfAny('State', runs.states.map((channel) => channel.name), 0, (i) => {
+    options.state = i;
+    state.changed();
+  });
+  const modes = Math.max(0, ...state.runs.map(({filters: {bank}}) => (bank && bank.probability || []).length));
+  return section(
+      'filter', 'The filter', controls(picker(), pickState, timeControls(state)),
+      modes > 1 ? options.modeLegend(modes) : null, filterPlot(runs, state, options),
+      h('div', {class: 'pair'}, h('div', {}, histograms(filter)),
+        h('div', {}, autocorrelations(filter, runs.states), outside(filter))),
+      drawScores(filter));
+}

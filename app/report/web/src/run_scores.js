@@ -1,0 +1,67 @@
+// Tables of a run's scores.
+import {details, h} from './elements.js';
+import {roleNames, roleOf, shortNames} from './filters.js';
+import {filterColour} from './plots.js';
+import {table} from './table.js';
+
+const whose = {
+  name: 'Filter',
+  text: true,
+  of: (row) => shortNames[row.filter],
+  swatch: (row) => filterColour(row.filter)
+};
+const whichRuns = {
+  name: 'Runs',
+  text: true,
+  of: (row) => roleNames[row.role]
+};
+const number = (name, key) => ({name, of: (row) => row[key]});
+
+const scoreColumns = (filter) =>
+    [whose,
+     {name: 'Runs', text: true, of: (row) => roleOf(row.role)},
+     {name: 'Run', text: true, of: (row) => (row.run === '*' ? 'all' : row.run)},
+     number('Samples', 'samples'),
+     number('Log score [nats]', 'log_score'),
+     number(filter.rmse_name, 'rmse'),
+     number('PIT above', 'tail_above'),
+     number('PIT below', 'tail_below'),
+     number('NIS above', 'nis_above'),
+     number('NIS below', 'nis_below'),
+     number('mean NIS', 'nis_mean'),
+     number('PIT distance', 'pit_distance'),
+     number('white p', 'whiteness_p'),
+];
+
+const verdictColumns = [
+  whose,
+  whichRuns,
+  {name: 'Uncertainty', text: true, of: (row) => row.verdict},
+  number('PIT above', 'tail_above'),
+  number('PIT below', 'tail_below'),
+  number('mean NIS [true filter]', 'nis_mean'),
+  {name: 'Stands out', prose: true, of: (row) => row.flags},
+];
+
+const horizonColumns = (filter) =>
+    [whose,
+     whichRuns,
+     number('Ahead [samples]', 'horizon'),
+     number('Samples', 'samples'),
+     number('Log score [nats]', 'log_score'),
+     number(filter.rmse_name, 'rmse'),
+];
+
+export function drawScores(filter) {
+  const of = (wanted) => filter.scores.filter((row) => (row.run === '*') === wanted);
+  const scores = (wanted, caption) => table(scoreColumns(filter), of(wanted), {caption, sortable: true});
+  const trueOnes = 'Is the stated uncertainty true (95 % intervals in brackets)';
+  const ahead = {caption: 'Predictions several samples ahead', sortable: true};
+  return [
+    h('h3', {}, 'Scores'),
+    scores(true, 'Scores, all runs together'),
+    details('Scores run by run', scores(false, 'Scores run by run')),
+    filter.verdicts.length ? table(verdictColumns, filter.verdicts, {caption: trueOnes}) : null,
+    filter.horizons.length ? table(horizonColumns(filter), filter.horizons, ahead) : null,
+  ];
+}

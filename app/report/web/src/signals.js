@@ -1,0 +1,177 @@
+// Runs' signals at the level of detail a plot can show (series.hpp): samples themselves where few enough are in view,
+// else extremes over buckets. Everything is drawn half a view beyond both edges, so that panning shows data at once.
+import {array} from './page_data.js';
+
+const wanted = 800;  // buckets across a plot: about one per pixel pair
+
+// Number of the first sample at or after time t.
+function indexIn(times, t) {
+  let low = 0, high = times.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] < t) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+// The clock of a run: samples by time and times by sample, at its finest level.
+export async function clock(axis) {
+  if (axis.samples === 0) return {samples: 0, start: 0, end: 0, at: () => 0, near: () => 0};
+  const {samples, start, end, period} = axis;
+  if (period !== undefined) {
+    const near = (t) => Math.max(0, Math.min(samples - 1, Math.round((t - start) / period)));
+    return {samples, start, end, at: (k) => start + period * k, near};
+  }
+  const bucket = axis.finest, times = await array(bucket === 1 ? axis.raw : axis.levels[0].low);
+  return {
+    samples,
+    start,
+    end,
+    at: (k) => times[Math.min(times.length - 1, Math.floor(k / bucket))],
+    near: (t) => Math.min(samples - 1, bucket * indexIn(times, t))
+  };
+}
+
+// Which samples a view of `range` shows and how many go into one bucket of the drawing.
+export function view(clockOf, range) {
+  const span = range[1] - range[0];
+  const first = clockOf.near(range[0]), last = clockOf.near(range[1]);
+  const per = Math.max(1, Math.floor((last - first + 1) / wanted));
+  return {first: clockOf.near(range[0] - span / 2), last: clockOf.near(range[1] + span / 2), per};
+}
+
+// The coarsest stored level whose buckets are not larger than the drawing's.
+function levelFor(signal, per) {
+  let best = signal.raw ? {bucket: 1, low: signal.raw, high: signal.raw} : null;
+  for (const level of signal.levels) {
+    if (level.bucket <= per || !best) best = level;
+  }
+  return best;
+}
+
+function merged(values, from, to, count, pick) {
+  const result = new Float32Array(Math.ceil((to - from) / count));
+  for (let i = from, j = 0; i < to; i += count, ++j) {
+    let kept = NaN;
+    for (let k = i, end = Math.min(to, i + count); k < end; ++k) kept = pick(kept, values[k]);
+    result[j] = kept;
+  }
+  return result;
+}
+// Of two values the one that is known, or the lower or higher of both.
+const lower = (a, b) => (a < b || Number.isNaN(b) ? a : b);
+const higher = (a, b) => (a > b || Number.isNaN(b) ? a : b);
+
+// A view's drawing in buckets made of `count` of a level's; `from` is the level's first bucket that is drawn.
+function grouping(level, shown) {
+  const count = Math.max(1, Math.floor(shown.per / level.bucket)), per = level.bucket * count;
+  return {count, per, from: Math.floor(shown.first / per) * count};
+}
+
+// Buckets of one signal in a view: {first, per, low, high}: bucket i holds samples first + i per ...; with per 1 low is
+// high is the samples.
+async function buckets(signal, shown, edge) {
+  const level = levelFor(signal, shown.per);
+  const {count, per, from} = grouping(level, shown);
+  const part = async (place, pick) => {
+    const values = await array(place), to = Math.min(values.length, Math.ceil((shown.last + 1) / level.bucket));
+    return count === 1 ? values.subarray(from, to) : merged(values, from, to, count, pick);
+  };
+  const low = edge === 'high' ? null : await part(level.low, lower);
+  const high = edge === 'low' ? null : await part(level.high || level.low, higher);
+  return {first: from * level.bucket, per, low, high};
+}
+
+// x and y of a line through a signal; extremes of a bucket become two points.
+export async function line(signal, clockOf, shown) {
+  const b = await buckets(signal, shown), n = b.low.length;
+  if (b.per === 1) return {x: Float64Array.from({length: n}, (_, i) => clockOf.at(b.first + i)), y: b.low, per: 1};
+  const x = new Float64Array(2 * n), y = new Float32Array(2 * n);
+  for (let i = 0; i < n; ++i) {
+    x[2 * i] = clockOf.at(b.first + i * b.per);
+    x[2 * i + 1] = clockOf.at(Math.min(clockOf.samples - 1, b.first + i * b.per + b.per / 2));
+    const rises = i === 0 || !(y[2 * i - 1] > b.high[i]);
+    y[2 * i] = rises ? b.low[i] : b.high[i];
+    y[2 * i + 1] = rises ? b.high[i] : b.low[i];
+  }
+  return {x, y, per: b.per};
+}
+
+// Means over `count` values each, of those that are known.
+function means(values, from, to, count) {
+  return Float32Array.from({length: Math.ceil((to - from) / count)}, (_, i) => {
+    let sum = 0, known = 0;
+    for (let k = from + i * count, end = Math.min(to, k + count); k < end; ++k) {
+      if (Number.isNaN(values[k])) continue;
+      sum += values[k];
+      ++known;
+    }
+    return known ? sum / known : NaN;
+  });
+}
+
+// The same for a mean per bucket: shares.
+export async function share(signal, clockOf, shown) {
+  const level = levelFor(signal, shown.per), values = await array(level.low);
+  const {count, per, from} = grouping(level, shown);
+  const y = means(values, from, Math.min(values.length, Math.ceil((shown.last + 1) / level.bucket)), count);
+  return {x: Float64Array.from(y, (_, i) => clockOf.at((from + i * count) * level.bucket)), y, per};
+}
+
+const few = 16;  // samples per bucket up to which a band's edges are computed sample by sample
+
+// Lowest and highest edge of center +- half over buckets of shown.per samples.
+async function edgesOfSamples(center, half, shown) {
+  const c = await array(center.raw), w = await array(half.raw), per = shown.per;
+  const first = Math.floor(shown.first / per) * per, length = shown.last + 1 - first;
+  const edge = (sign) => Float32Array.from({length}, (_, i) => c[first + i] + sign * w[first + i]);
+  return {first, per, low: merged(edge(-1), 0, length, per, lower), high: merged(edge(1), 0, length, per, higher)};
+}
+
+async function edgesOfBuckets(lowest, highest, shown) {
+  const {first, per, low} = await buckets({raw: null, levels: lowest.levels}, shown, 'low');
+  const {high} = await buckets({raw: null, levels: highest.levels}, shown, 'high');
+  return {first, per, low, high};
+}
+
+// Closed outlines of a band, one per stretch without gaps: between center - half and center + half, or where samples
+// are not drawn one by one between the lowest and the highest edge of each bucket.
+export async function band({center, half, lowest, highest}, clockOf, shown) {
+  const bySample = !lowest.levels.length || (center.raw && shown.per < few);
+  const {first, per, low, high} = bySample ?
+      await edgesOfSamples(center, half, {...shown, per: Math.min(shown.per, few - 1)}) :
+      await edgesOfBuckets(lowest, highest, shown);
+  return outlines(low, high, (i) => clockOf.at(Math.min(clockOf.samples - 1, first + i * per)));
+}
+
+function outlines(low, high, time) {
+  const x = [], y = [];
+  const known = (i) => !Number.isNaN(low[i]) && !Number.isNaN(high[i]);
+  const put = (at, height) => {
+    x.push(at);
+    y.push(height);
+  };
+  for (let i = 0; i < low.length;) {
+    if (!known(i)) {
+      ++i;
+      continue;
+    }
+    let end = i;
+    while (end < low.length && known(end)) ++end;
+    for (let k = i; k < end; ++k) put(time(k), high[k]);
+    for (let k = end - 1; k >= i; --k) put(time(k), low[k]);
+    put(null, null);
+    i = end;
+  }
+  return {x, y};
+}
+
+// + and - a half width, for bounds about zero.
+export async function bounds(half, clockOf, shown) {
+  const up = await line(half, clockOf, shown);
+  return {up, down: {x: up.x, y: up.y.map((v) => -v)}};
+}

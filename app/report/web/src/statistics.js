@@ -1,0 +1,34 @@
+// What the pages compute themselves, of numbers that C++ gave.
+
+export const isNumber = (v) => typeof v === 'number' && Number.isFinite(v);
+export const mean = (values) => values.reduce((a, b) => a + b, 0) / values.length;
+
+const enough = 20000;  // values of a list tell its quantiles well
+
+// Where nearly all values of the lists lie: some windows say nothing of a parameter and would hide the others.
+export function usualRange(...lists) {
+  const some = lists.flatMap((list) => {
+    const step = Math.max(1, Math.floor(list.length / enough));
+    return Array.from(list).filter((v, i) => i % step === 0 && Number.isFinite(v));
+  });
+  if (!some.length) return [-1, 1];
+  some.sort((a, b) => a - b);
+  const at = (share) => some[Math.round(share * (some.length - 1))];
+  const low = at(0.01), high = at(0.99), pad = 0.12 * (high - low) || 1e-9;
+  return [low - pad, high + pad];
+}
+
+// How bad a score is by its goal (study_page.cpp): the smaller the better.
+export function lossOf(goal, score) {
+  if (!goal || goal.kind === 'higher') return -score;
+  return goal.kind === 'lower' ? score : Math.abs(score - goal.nominal);
+}
+
+// Points {x, loss} that no other point beats in both.
+export function paretoFront(points) {
+  const front = [];
+  for (const point of [...points].sort((a, b) => a.x - b.x || a.loss - b.loss)) {
+    if (!front.length || point.loss < front[front.length - 1].loss) front.push(point);
+  }
+  return front;
+}

@@ -1,0 +1,104 @@
+// The page of a study: its runs as a table that sorts and filters, and what the varied keys do to the scores.
+import {copyButton, details, facts, h, note} from './elements.js';
+import {draw, head, section} from './page.js';
+import {pageData} from './page_data.js';
+import {drawCoverage} from './study_coverage.js';
+import {drawEffects} from './study_effects.js';
+import {drawHeatMap} from './study_heat_map.js';
+import {drawParallel} from './study_parallel.js';
+import {drawPareto} from './study_pareto.js';
+import {drawStudyTable} from './study_table.js';
+import {table} from './table.js';
+
+function drawOrigin(study, origin) {
+  const columns = [
+    {name: 'Varied key', text: true, of: (row) => row.key},
+    {name: 'Values', text: true, of: (row) => row.values},
+  ];
+  section(
+      'origin', 'What was run', facts([
+        ['Runs', study.counts.map(([status, count]) => `${count} ${status}`).join(', ')],
+        ['Command', h('code', {}, origin.command)],
+        ['Made', `${origin.created} by modebank ${origin.version}`],
+        ['Data', h('code', {}, origin.data_hash)],
+      ]),
+      table(columns, study.varied, {caption: 'What was varied'}),
+      details(
+          'The study\'s configuration', copyButton('Copy the configuration', origin.config),
+          h('pre', {tabindex: 0}, origin.config)));
+}
+
+function drawVerdict(study, showRun) {
+  const {text, row} = study.best;
+  const show = () => showRun(study.rows[row]);
+  section(
+      'verdict', 'Verdict', h('p', {class: 'verdict'}, text),
+      row === null ? null :
+                     h('p', {}, h('button', {type: 'button', id: 'show-best', onclick: show}, 'Show the best run')));
+}
+
+// [key, value]: what makes a run again.
+function configurationOf(study, row) {
+  return [...study.varied.map(({key}, i) => [key, String(row.varied[i])]), ['job.seed', String(row.seed)]];
+}
+
+function archiveOf(row) {
+  if (row.page) return h('a', {href: row.page, id: 'run-page'}, 'This run\'s page');
+  if (!row.archive) return 'Its archive is not there.';
+  return h('span', {}, 'Its page is made by ', h('code', {}, `modebank report ${row.archive}`));
+}
+
+// A run: its configuration, its scores, its page or how to make it.
+function runDetail(study, row) {
+  const configuration = configurationOf(study, row);
+  const scores = study.columns.map((column, i) => ({name: column.name, cell: row.cells[i]}))
+                     .filter(({cell}) => cell && typeof cell === 'object');
+  const columns = [{name: 'Score', text: true, of: (s) => s.name}, {name: 'Value', of: (s) => s.cell}];
+  return [
+    h('h3', {}, `Run ${row.number}: ${row.status}`),
+    row.message ? note(row.message, true) : '',
+    facts([...configuration, ['key', h('code', {}, row.key)], ['archive', archiveOf(row)]]),
+    copyButton('Copy as options', configuration.map(([key, text]) => `--${key} '${text}'`).join(' ')),
+    scores.length ? table(columns, scores, {caption: 'Scores of this run'}) : '',
+  ];
+}
+
+function markChosen(row) {
+  const runs = document.getElementById('runs');
+  runs.querySelectorAll('tr.chosen').forEach((line) => line.classList.remove('chosen'));
+  const line = runs.querySelector(`tr[data-number="${row.number}"]`);
+  if (line) line.classList.add('chosen');
+}
+
+draw(async () => {
+  const data = pageData(), {study} = data;
+  // The runs that pass the filters (base) and what was dragged in the parallel coordinates, too (rows); every plot
+  // follows.
+  const shown = {rows: study.rows, base: study.rows, listeners: []};
+  const detail = h(
+      'div', {id: 'run-detail', tabindex: -1, 'aria-live': 'polite'}, note('Choose a run in the table or in a plot.'));
+  let chosen = null;
+  const showRun = (row) => {
+    chosen = row;
+    detail.replaceChildren(...runDetail(study, row));
+    markChosen(row);
+    detail.scrollIntoView({block: 'nearest'});
+  };
+  const filter = (rows, base, dragged) => {
+    Object.assign(shown, {rows, base});
+    shown.listeners.forEach((listener) => listener(dragged));
+  };
+  document.title = `Study ${data.file}`;
+  head(`Study ${data.file}`, `${study.rows.length} runs, made ${data.origin.created}`);
+  drawOrigin(study, data.origin);
+  drawVerdict(study, showRun);
+  const runs = section('runs', 'Runs');
+  const {restrict} = drawStudyTable(runs, study, {filter, showRun, chosen: () => chosen});
+  runs.append(detail);
+  const context = {study, shown, showRun, restrict};
+  drawParallel(context);
+  drawEffects(context);
+  drawHeatMap(context);
+  drawPareto(context);
+  drawCoverage(context);
+});

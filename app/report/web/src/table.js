@@ -1,0 +1,56 @@
+// Tables with headings that sort.
+import {h, swatch, value} from './elements.js';
+import {sortedRows} from './ordering.js';
+
+// Cell of a row: columns are {name, text: true for words, prose: true for sentences, of: row => cell, swatch: row =>
+// colour}.
+export function cellOf(column, row) {
+  const cell = value(column.of(row), 'td');
+  if (column.text || column.prose) cell.classList.add('text');
+  if (column.prose) cell.classList.add('prose');
+  if (column.swatch) cell.prepend(swatch(column.swatch(row)));
+  return cell;
+}
+
+export const headingOf = (column, attributes, ...content) =>
+    h('th', {scope: 'col', class: column.text || column.prose ? 'text' : null, ...attributes}, content);
+
+// A heading's button; `order` is {column, down}: what the table is sorted by.
+export const sortButton = (onclick, ...content) => h('button', {type: 'button', onclick}, content);
+export const ariaSort = (order, column) => (order.column === column ? (order.down ? 'descending' : 'ascending') : null);
+
+// A heading was pressed: its column ascending, and descending when pressed again.
+export function pressed(order, column) {
+  return {column, down: order.column === column && !order.down};
+}
+
+export const scrolling = (label, element) =>
+    h('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': label}, element);
+
+// options: caption, chosen: row => bool, sortable.
+export function table(columns, rows, options = {}) {
+  const body = h('tbody'), headings = h('tr');
+  let order = {column: null, down: false};
+  const show = () => {
+    const list = order.column ? sortedRows(rows, order.column.of, order.down) : rows;
+    body.replaceChildren(...list.map(
+        (row) =>
+            h('tr', {class: options.chosen && options.chosen(row) ? 'chosen' : null},
+              columns.map((column) => cellOf(column, row)))));
+  };
+  const cells = columns.map((column) => {
+    if (!options.sortable) return headingOf(column, {}, column.name);
+    return headingOf(column, {}, sortButton(() => {
+                       order = pressed(order, column);
+                       cells.forEach((cell, i) => {
+                         cell.removeAttribute('aria-sort');
+                         if (columns[i] === column) cell.setAttribute('aria-sort', ariaSort(order, column));
+                       });
+                       show();
+                     }, column.name));
+  });
+  headings.append(...cells);
+  show();
+  const caption = options.caption ? h('caption', {}, options.caption) : null;
+  return scrolling(options.caption || 'table', h('table', {}, caption, h('thead', {}, headings), body));
+}

@@ -1,0 +1,127 @@
+// Local models as points of a cloud: their groups, the Gaussians behind those, what is shown of them. Draws nothing.
+import {part} from './ellipsoid.js';
+
+const few_shells = 6;
+
+export class WindowCloud {
+  // `windows`: C++'s windows_section; `arrays`: its arrays as loadWindows gives them; `runs`: names of runs.
+  constructor(windows, arrays, runs) {
+    this.windows = windows;
+    this.runs = runs;
+    Object.assign(this, arrays);  // values, run, begin, end, label, mode, covariance
+    this.count = this.run.length;
+    this.dimensions = Math.min(3, windows.axes.length);
+    this.axes = windows.default_axes;
+    this.by = this.firstGrouping();
+    this.shells = Math.max((windows.components || {list: []}).list.length, (windows.bank || []).length) <= few_shells;
+    this.showAll = false;     // outlying windows, too
+    this.showErrors = false;  // error ellipsoids of some windows
+    this.showBank = true;
+    this.picked = -1;
+    this.hidden = new Set();  // groups
+  }
+
+  firstGrouping() {
+    if (this.mode && (this.windows.refined || !this.label)) return 'mode';
+    return this.label ? 'component' : 'none';
+  }
+
+  groupings() {
+    return [['component', this.label], ['mode', this.mode]].filter(([, list]) => list).map(([name]) => name);
+  }
+
+  groupOf(i) {
+    const list = {component: this.label, mode: this.mode, none: null}[this.by];
+    return list ? list[i] : -1;
+  }
+
+  // [group, its window numbers]: components or modes in order, windows without one first.
+  groups() {
+    const lists = new Map();
+    for (let i = 0; i < this.count; ++i) {
+      const key = this.groupOf(i);
+      if (!lists.has(key)) lists.set(key, []);
+      lists.get(key).push(i);
+    }
+    return [...lists.entries()].sort((a, b) => a[0] - b[0]);
+  }
+
+  groupName(key) {
+    if (key >= 0) return `${this.by} ${key}`;
+    return this.by === 'none' ? 'windows' : 'not clustered';
+  }
+
+  // How far a group reaches over the axes.
+  reach(list, axes) {
+    const some = list.filter((_, j) => j % Math.max(1, Math.floor(list.length / 300)) === 0);
+    return axes.reduce((product, a) => {
+      const middle = some.reduce((sum, i) => sum + this.values[a][i], 0) / some.length;
+      return (product * some.reduce((sum, i) => sum + Math.abs(this.values[a][i] - middle), 0)) / some.length;
+    }, 1);
+  }
+
+  // Those that are not hidden; wide ones come first, or they would hide the narrow ones when drawn.
+  shownGroups(axes) {
+    return this.groups()
+        .filter(([key]) => !this.hidden.has(key))
+        .map(([key, list]) => ({key, list, reach: key < 0 ? Infinity : this.reach(list, axes)}))
+        .sort((a, b) => b.reach - a.reach);
+  }
+
+  // Are all these axes parameters, which have errors and stand in the bank?
+  parametersOnly(axes) {
+    return axes.every((a) => a < this.windows.parameters);
+  }
+
+  // Element of window i's error covariance, which is stored row by row below its diagonal.
+  covarianceOf(i, a, b) {
+    const row = Math.max(a, b), column = Math.min(a, b);
+    return this.covariance[(row * (row + 1)) / 2 + column][i];
+  }
+  errorMatrix(i, axes) {
+    return axes.map((a) => axes.map((b) => this.covarianceOf(i, a, b)));
+  }
+  point(i, axes) {
+    return axes.map((a) => this.values[a][i]);
+  }
+
+  // The Gaussians behind the groups that are shown: mixture components, or the spread of the bank's modes.
+  ellipses(axes) {
+    const {components, bank, parameters, axes: named} = this.windows;
+    if (this.by === 'none') return [];
+    const ofComponents = this.by === 'component';
+    const groups = ofComponents ? components.list : bank || [];
+    const places = axes.map((a) => {
+      if (ofComponents) return components.features.indexOf(named[a].name);
+      return a < parameters ? a : -1;
+    });
+    if (places.some((place) => place < 0)) return [];
+    return groups.map((group, k) => ({group, k}))
+        .filter(({group, k}) => group.covariance && !this.hidden.has(k))
+        .map(({group, k}) => ({k, mean: places.map((p) => group.mean[p]), covariance: part(group.covariance, places)}));
+  }
+
+  // The windows whose error ellipsoids are drawn when asked for: some, spread over all.
+  someWindows(most) {
+    const n = Math.min(most, this.count);
+    return Array.from({length: n}, (_, j) => Math.floor((j * this.count) / n));
+  }
+
+  place(i) {
+    return `run ${this.runs[this.run[i]]}, ${this.begin[i].toFixed(3)} to ${this.end[i].toFixed(3)} s`;
+  }
+
+  // What is said of a window: its parameters with their standard errors, its groups.
+  described(i) {
+    const numbers = this.windows.axes.map((axis, a) => {
+      const known = this.covariance && a < this.windows.parameters;
+      const error = known ? ` ± ${digits(Number(Math.sqrt(this.covarianceOf(i, a, a)).toPrecision(2)))}` : '';
+      return `${axis.name} = ${digits(this.values[a][i])}${error}`;
+    });
+    const group = (name, list) => (list ? `; ${name} ${list[i] < 0 ? 'none' : list[i]}` : '');
+    return `Window in ${this.place(i)}: ${numbers.join(', ')}${group('component', this.label)}` +
+        group('mode of the filter', this.mode);
+  }
+}
+
+export const digits = (v) => (Number.isFinite(v) ? Number(v.toPrecision(6)).toString() : '–');

@@ -1,0 +1,32 @@
+import assert from 'node:assert/strict';
+import {readFileSync} from 'node:fs';
+import {test} from 'node:test';
+
+import {mixed, onGround, paletteColour, translucent} from '../src/colour.js';
+
+const palette = JSON.parse(readFileSync(new URL('../palette.json', import.meta.url), 'utf8'));
+
+test('colours mix channel by channel', () => {
+  assert.equal(mixed('#000000', '#ffffff', 0.5), '#808080');  // 127.5 rounds up
+  assert.equal(mixed('#102030', '#ffffff', 0), '#102030');
+  assert.equal(mixed('#102030', '#ff00ff', 1), '#ff00ff');
+  assert.equal(mixed('#6496c8', '#000000', 0.25), '#4b7196');  // 100, 150, 200 by 3/4: 75, 112.5, 150
+});
+
+test('the palette comes again darker, then lighter, then as it was', () => {
+  const n = palette.modes.length;
+  assert.equal(paletteColour(palette, -1), palette.unclustered);
+  assert.equal(paletteColour(palette, n - 1), palette.modes[n - 1]);
+  assert.equal(paletteColour(palette, n), mixed(palette.modes[0], '#000000', 0.45));
+  assert.equal(paletteColour(palette, 2 * n), mixed(palette.modes[0], '#ffffff', 0.45));
+  assert.equal(paletteColour(palette, 3 * n), palette.modes[0]);
+  const first = Array.from({length: 3 * n}, (_, k) => paletteColour(palette, k));
+  assert.equal(new Set(first).size, 3 * n);
+});
+
+test('opacity is the last byte; lines are lighter on a dark ground', () => {
+  assert.equal(translucent('#123456', 0.2), '#12345633');
+  assert.equal(onGround('#000000', false), '#000000');
+  assert.equal(onGround('#000000', true), '#595959');  // 0.35 * 255 = 89.25
+  assert.equal(onGround('red', true), 'red');
+});

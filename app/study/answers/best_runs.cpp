@@ -1,0 +1,35 @@
+#include "app/study/answers/best_runs.hpp"
+
+#include <fmt/format.h>
+
+#include "app/config/config_file.hpp"
+#include "app/study/answers/answers_text.hpp"
+#include "io/files/replace_file.hpp"
+
+namespace modebank::app {
+
+std::string best_run_text(const Config& study, const StudyTable& table, const BestSetting& best) {
+  const TrialRow& row = table.rows[best.row];
+  Config config = trial_config(study, table.varied_keys, row);
+  config.archive.output.clear();  // the trial's own archive is the study's
+  std::string text =
+      fmt::format("# Best of a study by {} ({} is better): {:.6g}", best.score, best.goal.text(), best.value);
+  if (best.repeats > 1) text += fmt::format(", mean of {} repeats; the seed is that of the first", best.repeats);
+  text += fmt::format("\n# {}\n# trial {}\n", setting_text(table, best.row), row.key);
+  if (best.score.find("_test_") != std::string::npos)
+    text += "# Chosen by the held-out runs, which therefore no longer judge it fairly.\n";
+  return text + "\n" + resolved_text(config);
+}
+
+void write_best_runs(const std::filesystem::path& folder, const Config& study, const StudyTable& table,
+                     const Answers& answers) {
+  std::filesystem::create_directories(folder / "best");
+  for (const BestSetting& best : answers.best) {
+    if (best.score.rfind("bank_", 0) != 0) continue;
+    const std::string text = best_run_text(study, table, best);
+    replace_file(folder / "best" / (best.score + ".ini"), {text});
+    if (best.score == answers.headline) replace_file(folder / "study.best.ini", {text});
+  }
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/study/answers/answers.hpp"
+#include "app/study/space/study_plan.hpp"
+
+namespace modebank::app {
+
+/// Configuration of the best setting of one score, ready for `modebank run`, under a comment that says what it is.
+std::string best_run_text(const Config& study, const StudyTable& table, const BestSetting& best);
+
+/// Writes study.best.ini (by the headline) and best/<score>.ini for every score of the bank into the study's folder.
+void write_best_runs(const std::filesystem::path& folder, const Config& study, const StudyTable& table,
+                     const Answers& answers);
+
+}  // namespace modebank::app

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "app/study/answers/answers.hpp"
+#include "app/study/run/trial_store.hpp"
+#include "app/study/space/study_plan.hpp"
+#include "io/archive/study_file.hpp"
+
+namespace modebank::app {
+
+/// The plan's rows with what became of them: scores from the archives, failures from their records, the rest missing.
+/// An archive counts when its hash is right; those in `whole` are known to be.
+StudyTable collect_table(const TrialStore& store, const StudyPlan& plan, const std::set<std::string>& whole = {});
+
+/// Writes study.h5 (with the answers, and with links to the archives, or copies of them), study.csv, and the rows'
+/// status into plan.h5.
+void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTable& table, const Answers& answers,
+                 ArchiveUse use);
+
+/// The table's columns: varied keys (numbers where all are), repeat, seed, status, message, key, scores.
+std::vector<NamedColumn> table_columns(const StudyTable& table);
+
+/// Those columns as CSV (RFC 4180), numbers with all their digits, NaN empty.
+std::string table_csv(const StudyTable& table);
+
+}  // namespace modebank::app

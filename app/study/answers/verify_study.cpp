@@ -1,0 +1,116 @@
+#include "app/study/answers/verify_study.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <map>
+#include <optional>
+
+#include "app/config/config_file.hpp"
+#include "app/study/run/study_progress.hpp"
+#include "app/study/run/trial_store.hpp"
+#include "app/study/space/study_plan.hpp"
+#include "io/archive/study_file.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What is wrong with the archive of a planned trial; empty when nothing is.
+std::string trial_problem(const TrialStore& store, const Config& study, const StudyTable& table, const TrialRow& row) {
+  try {
+    if (const auto problems = verify_archive(store.archive(row.key)).problems; !problems.empty())
+      return problems.front();
+    const TrialScores stored = read_trial_scores(store.archive(row.key));
+    const Config trial = trial_config(study, table.varied_keys, row);
+    if (stored.config_hash != config_hash(trial)) return "its configuration is not that of its name";
+    if (trial_key(trial, stored.data_hash, stored.modebank_version) != row.key)
+      return "its data or version are not those of its name";
+    return {};
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+/// A file of the study that must be a whole one if it is there.
+void check_whole_file(const fs::path& file, StudyVerification& result) {
+  if (!fs::exists(file)) return;
+  for (const std::string& problem : verify_archive(file).problems) result.problems.push_back({file, problem, "", true});
+}
+
+std::optional<StudyPlan> check_plan(const fs::path& folder, StudyVerification& result) {
+  const fs::path file = plan_file(folder);
+  try {
+    return read_plan(folder);
+  } catch (const std::exception& error) {
+    result.problems.push_back({file, error.what(), "", fs::exists(file)});
+    return std::nullopt;
+  }
+}
+
+void check_trials(const TrialStore& store, const StudyPlan& plan, StudyVerification& result) {
+  Config study = resolved_config(plan.config);
+  study.study.output = store.folder().string();
+  const std::vector<TrialRow>& rows = plan.table.rows;
+  std::vector<std::string> found(rows.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
+    if (rows[i].status != TrialStatus::dropped && store.has_archive(rows[i].key))
+      found[i] = trial_problem(store, study, plan.table, rows[i]);
+  });
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].status == TrialStatus::dropped) continue;
+    const fs::path file = store.archive(rows[i].key);
+    const std::string redo = describe_trial(plan.table.varied_keys, rows[i]);
+    if (const auto failure = store.failure(rows[i].key); failure && !store.has_archive(rows[i].key))
+      result.problems.push_back({file, "failed: " + failure->message, redo, false});
+    else if (!store.has_archive(rows[i].key))
+      result.problems.push_back({file, "missing", redo, false});
+    else if (!found[i].empty())
+      result.problems.push_back({file, found[i], redo, true});
+    else
+      ++result.whole;
+  }
+}
+
+/// Half-written files, and archives of no planned trial, whose hash alone can be checked.
+void check_others(const TrialStore& store, const std::optional<StudyPlan>& plan, StudyVerification& result) {
+  if (!fs::exists(store.folder() / "trials")) return;
+  std::map<std::string, bool> planned;
+  if (plan)
+    for (const TrialRow& row : plan->table.rows) planned[row.key + ".h5"] = true;
+  for (const fs::directory_entry& entry : fs::directory_iterator(store.folder() / "trials")) {
+    const fs::path& file = entry.path();
+    if (file.extension() == ".tmp")
+      result.problems.push_back({file, "was left by a process that was killed, unless it is being written", "", true});
+    if (file.extension() != ".h5" || planned.count(file.filename().string())) continue;
+    for (const std::string& problem : store.problems(file.stem().string()))
+      result.problems.push_back({file, problem, "", true});
+  }
+}
+
+}  // namespace
+
+bool is_study_folder(const fs::path& path) {
+  return fs::is_directory(path) && (fs::exists(plan_file(path)) || fs::exists(path / "trials"));
+}
+
+StudyVerification verify_study(const fs::path& folder) {
+  const TrialStore store(folder);
+  StudyVerification result;
+  const std::optional<StudyPlan> plan = check_plan(folder, result);
+  check_whole_file(folder / "study.h5", result);
+  if (plan) check_trials(store, *plan, result);
+  check_others(store, plan, result);
+  return result;
+}
+
+void repair_study(const fs::path& folder, const StudyVerification& verification) {
+  const FileLocks locks(TrialStore(folder).lock_file());
+  TrialStore(folder).remove_leftovers(locks);
+  for (const StudyProblem& problem : verification.problems)
+    if (problem.removable && problem.file.extension() != ".tmp") fs::remove(problem.file);
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "app/study/space/study_plan.hpp"
+#include "app/study/study.hpp"
+
+namespace modebank::app {
+
+/// Hands to Slurm the shards that still have runs to do, then the merge; says what was typed for it. `table`: what
+/// became of the plan's rows so far. Throws as submit_to_slurm does.
+std::string submit_study(const StudyCall& call, const StudyPlan& plan, const StudyTable& table);
+
+}  // namespace modebank::app

@@ -1,0 +1,75 @@
+#include "app/study/run/study_progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace modebank::app {
+
+StudyProgress::StudyProgress(std::vector<std::string> varied_keys)
+    : varied_keys_(std::move(varied_keys)), terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+StudyProgress::~StudyProgress() {
+  if (line_open_) std::fputc('\n', stderr);
+}
+
+void StudyProgress::note(const TrialRow& row, const TrialReport& report) {
+  if (report.outcome == TrialOutcome::computed) ++computed_;
+  if (report.outcome == TrialOutcome::failed) ++failed_;
+  if (report.log_score > best_) {
+    best_ = report.log_score;
+    best_run_ = describe_trial(varied_keys_, row);
+  }
+  if (report.message.empty()) return;
+  if (line_open_) std::fputc('\n', stderr);
+  line_open_ = false;
+  if (report.outcome == TrialOutcome::failed)
+    fmt::print(stderr, "failed: {}: {}\n", describe_trial(varied_keys_, row), report.message);
+  else
+    fmt::print(stderr, "{}\n", report.message);
+}
+
+void StudyProgress::tell(const TrialRow& row, const TrialReport& report, std::size_t finished, std::size_t all) {
+  note(row, report);
+  const double interval_s = terminal_ ? 0.2 : 10.0;
+  const bool last = finished == all;
+  if (!last && std::chrono::duration<double>(Clock::now() - told_).count() < interval_s) return;
+  told_ = Clock::now();
+  if (terminal_)
+    fmt::print(stderr, "\r{}\x1b[K", line(finished, all));
+  else
+    fmt::print(stderr, "{}\n", line(finished, all));
+  line_open_ = terminal_;
+  std::fflush(stderr);
+}
+
+std::string StudyProgress::line(std::size_t finished, std::size_t all) const {
+  std::string text = fmt::format("{} of {} runs", finished, all);
+  if (failed_ > 0) text += fmt::format(", {} failed", failed_);
+  const double elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
+  if (computed_ > 0 && elapsed_s > 0.0) {
+    const double rate = static_cast<double>(computed_) / elapsed_s;
+    text += fmt::format(", {:.3g} per {}", rate >= 0.1 ? rate : rate * 3600.0, rate >= 0.1 ? "s" : "h");
+    if (finished < all) text += fmt::format(", {} left", duration_text(static_cast<double>(all - finished) / rate));
+  }
+  if (!best_run_.empty()) text += fmt::format(", best log score {:.4f} ({})", best_, best_run_);
+  return text;
+}
+
+std::string describe_trial(const std::vector<std::string>& varied_keys, const TrialRow& row) {
+  std::string text;
+  for (std::size_t i = 0; i < varied_keys.size(); ++i)
+    text += fmt::format("{}{} = {}", i == 0 ? "" : ", ", varied_keys[i], row.varied[i]);
+  if (row.repeat > 0) text += fmt::format(", repeat {}", row.repeat);
+  return text;
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 120.0) return fmt::format("{:.3g} s", seconds);
+  if (seconds < 7200.0) return fmt::format("{:.3g} min", seconds / 60.0);
+  return fmt::format("{:.3g} h", seconds / 3600.0);
+}
+
+}  // namespace modebank::app

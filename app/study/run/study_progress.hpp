@@ -1,0 +1,42 @@
+#pragma once
+
+#include <chrono>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "app/study/run/trial_worker.hpp"
+
+namespace modebank::app {
+
+/// Tells how a study goes on: one line that is rewritten on a terminal, plain lines now and then elsewhere (stderr).
+class StudyProgress {
+ public:
+  explicit StudyProgress(std::vector<std::string> varied_keys);
+  ~StudyProgress();
+  StudyProgress(const StudyProgress&) = delete;
+  StudyProgress& operator=(const StudyProgress&) = delete;
+
+  void tell(const TrialRow& row, const TrialReport& report, std::size_t finished, std::size_t all);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void note(const TrialRow& row, const TrialReport& report);
+  std::string line(std::size_t finished, std::size_t all) const;
+
+  std::vector<std::string> varied_keys_;
+  bool terminal_;
+  Clock::time_point start_ = Clock::now(), told_ = start_;
+  bool line_open_ = false;
+  std::size_t computed_ = 0, failed_ = 0;
+  double best_ = -std::numeric_limits<double>::infinity();
+  std::string best_run_;
+};
+
+/// "mixture.components = 9, bank.stay = 0.95", for messages.
+std::string describe_trial(const std::vector<std::string>& varied_keys, const TrialRow& row);
+
+/// "3 s", "4.2 min", "1.5 h".
+std::string duration_text(double seconds);
+
+}  // namespace modebank::app

@@ -1,0 +1,84 @@
+#include "app/study/run/trial_order.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "app/chain/stage_key.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// What trials are put together by, the coarsest first.
+constexpr std::array<Stage, 3> grouped{Stage::windows, Stage::mixture, Stage::bank};
+
+/// Numbers texts in the order in which they come.
+class Numbering {
+ public:
+  std::size_t of(const std::string& text) { return numbers_.try_emplace(text, numbers_.size()).first->second; }
+  std::size_t count() const { return numbers_.size(); }
+
+ private:
+  std::map<std::string, std::size_t> numbers_;
+};
+
+struct PlacedTrial {
+  std::array<std::size_t, 3> stages;  ///< which windows, mixture, bank
+  std::size_t row;
+};
+
+std::vector<PlacedTrial> place_trials(const Config& study, const StudyPlan& plan, std::array<Numbering, 3>& numbers) {
+  std::vector<PlacedTrial> trials;
+  for (std::size_t row = 0; row < plan.table.rows.size(); ++row) {
+    if (plan.table.rows[row].status == TrialStatus::dropped) continue;
+    const Config config = trial_config(study, plan.table.varied_keys, plan.table.rows[row]);
+    const StageKeys keys = stage_keys(chain_inputs(chain_options(config)), "");
+    PlacedTrial trial{{}, row};
+    for (std::size_t i = 0; i < grouped.size(); ++i) trial.stages[i] = numbers[i].of(keys[index_of(grouped[i])]);
+    trials.push_back(trial);
+  }
+  return trials;
+}
+
+}  // namespace
+
+TrialGroups group_trials(const Config& study, const StudyPlan& plan) {
+  std::array<Numbering, 3> numbers;
+  std::vector<PlacedTrial> trials = place_trials(study, plan, numbers);
+  std::stable_sort(trials.begin(), trials.end(),
+                   [](const PlacedTrial& a, const PlacedTrial& b) { return a.stages < b.stages; });
+  TrialGroups groups;
+  const PlacedTrial* last = nullptr;
+  for (const PlacedTrial& trial : trials) {
+    if (!last || last->stages[1] != trial.stages[1]) groups.emplace_back();
+    groups.back().push_back(trial.row);
+    last = &trial;
+  }
+  return groups;
+}
+
+TrialGroups shard_of(const TrialGroups& groups, std::int64_t index, std::int64_t count) {
+  const auto i = static_cast<std::size_t>(index), n = static_cast<std::size_t>(count);
+  TrialGroups share;
+  if (groups.size() >= n) {
+    for (std::size_t g = i; g < groups.size(); g += n) share.push_back(groups[g]);
+    return share;
+  }
+  std::size_t trials = 0, position = 0;
+  for (const auto& group : groups) trials += group.size();
+  for (const auto& group : groups) {
+    share.emplace_back();
+    for (const std::size_t row : group)
+      if (position++ * n / trials == i) share.back().push_back(row);
+    if (share.back().empty()) share.pop_back();
+  }
+  return share;
+}
+
+DistinctStages count_stages(const Config& study, const StudyPlan& plan) {
+  std::array<Numbering, 3> numbers;
+  place_trials(study, plan, numbers);
+  return {numbers[0].count(), numbers[1].count(), numbers[2].count()};
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,69 @@
+#include "app/study/run/trial_store.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "app/study/space/study_plan.hpp"
+#include "io/archive/bank/open_archive.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+
+namespace fs = std::filesystem;
+
+void TrialStore::create() const {
+  std::error_code error;
+  fs::create_directories(folder_ / "trials", error);
+  if (!error) fs::create_directories(cache(), error);
+  if (error)
+    throw ConfigurationError(fmt::format("study.output: cannot make {}: {}", folder_.string(), error.message()));
+  if (const std::string obstacle = write_obstacle(folder_ / "study.h5"); !obstacle.empty())
+    throw ConfigurationError("study.output: " + obstacle);
+}
+
+fs::path TrialStore::archive(const std::string& key) const { return trial_archive(folder_, key); }
+
+fs::path TrialStore::failure_file(const std::string& key) const { return folder_ / "trials" / (key + ".failed"); }
+
+std::vector<std::string> TrialStore::problems(const std::string& key) const { return hash_problems(archive(key)); }
+
+void TrialStore::remove_archive(const std::string& key) const { fs::remove(archive(key)); }
+
+std::optional<FailureRecord> TrialStore::failure(const std::string& key) const {
+  std::ifstream file(failure_file(key));
+  if (!file) return std::nullopt;
+  FailureRecord record{{std::istreambuf_iterator<char>(file), {}}, {}};
+  while (!record.message.empty() && record.message.back() == '\n') record.message.pop_back();
+  std::error_code gone;
+  record.time = fs::last_write_time(failure_file(key), gone);
+  return record;
+}
+
+void TrialStore::record_failure(const std::string& key, const std::string& message) const {
+  const std::string line = message + "\n";
+  replace_file(failure_file(key), {line});
+}
+
+void TrialStore::forget_failure(const std::string& key) const {
+  std::error_code ignored;
+  fs::remove(failure_file(key), ignored);
+}
+
+void TrialStore::remove_leftovers(const FileLocks& locks) const {
+  for (const fs::path& part : {folder_, folder_ / "trials", cache()})
+    for (const fs::directory_entry& entry : fs::directory_iterator(part)) {
+      // .<name>.h5.<process>-<number>.tmp, as io/files/replace_file.cpp makes it
+      const std::string file = entry.path().filename().string();
+      const auto dot = file.find('.', 1);
+      if (entry.path().extension() != ".tmp" || file.front() != '.' || dot == std::string::npos) continue;
+      std::error_code ignored;
+      const std::string lock = part == folder_ ? plan_lock : file.substr(1, dot - 1);
+      if (const FileLocks::Hold free = locks.try_lock(lock); free) fs::remove(entry.path(), ignored);
+    }
+}
+
+}  // namespace modebank::app

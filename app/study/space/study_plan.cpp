@@ -1,0 +1,254 @@
+#include "app/study/space/study_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "app/config/option_text.hpp"
+#include "app/study/space/study_space.hpp"
+#include "ident/base/seed.hpp"
+#include "io/archive/study_file.hpp"
+#include "io/files/sha256.hpp"
+#include "io/import/import.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// What the trials' data are, read once for all trials that read the same.
+class DataHashes {
+ public:
+  /// Of the files that such a [data] section reads.
+  std::string of(const Config& config) {
+    std::string section;
+    for (const Option& option : option_table())
+      if (option.section() == "data") section += "\n" + option.get(config);
+    auto [known, fresh] = by_section_.try_emplace(section);
+    if (fresh) {
+      std::vector<InputFile> files;
+      for (const std::filesystem::path& path : data_files(config.data)) files.push_back(describe(path));
+      known->second = data_hash(files);
+    }
+    return known->second;
+  }
+
+  std::vector<InputFile> files() const {
+    std::vector<InputFile> all;
+    for (const auto& [path, file] : by_path_) all.push_back(file);
+    return all;
+  }
+
+ private:
+  const InputFile& describe(const std::filesystem::path& path) {
+    auto [known, fresh] = by_path_.try_emplace(std::filesystem::absolute(path).string());
+    if (fresh) known->second = describe_file(path);
+    return known->second;
+  }
+
+  std::map<std::string, std::string> by_section_;
+  std::map<std::string, InputFile> by_path_;
+};
+
+/// Small enough for every reader of the table, JavaScript's doubles included.
+std::uint64_t repeat_seed(std::uint64_t seed, std::int64_t repeat) {
+  constexpr int bits = 32;
+  return repeat == 0 ? seed : derive_seed(seed, "study.repeat", static_cast<std::uint64_t>(repeat)) >> (64 - bits);
+}
+
+/// A point's job.seed, which may itself be varied.
+std::uint64_t own_seed(const Config& config, const std::vector<std::string>& keys, const StudyPoint& point) {
+  const auto varied = std::find(keys.begin(), keys.end(), "job.seed");
+  if (varied == keys.end()) return config.job.seed;
+  std::uint64_t seed = 0;
+  parse_value(point[static_cast<std::size_t>(varied - keys.begin())], seed);
+  return seed;
+}
+
+/// Why `modebank run` would not take it; empty when it would.
+std::string objection(const Config& config) {
+  try {
+    validate(config);
+    return {};
+  } catch (const ConfigurationError& error) {
+    return error.what();
+  }
+}
+
+void add_point(const Config& config, const StudySpace& space, const StudyPoint& point, DataHashes& data,
+               StudyPlan& plan) {
+  TrialRow row;
+  row.varied = point;
+  const std::uint64_t seed = own_seed(config, space.keys, point);
+  for (row.repeat = 0; row.repeat < config.study.repeats; ++row.repeat) {
+    row.seed = repeat_seed(seed, row.repeat);
+    const Config trial = trial_config(config, space.keys, row);
+    row.message = objection(trial);
+    row.status = row.message.empty() ? TrialStatus::planned : TrialStatus::dropped;
+    if (row.message.empty()) row.key = trial_key(trial, data.of(trial), plan.provenance.modebank_version);
+    plan.table.rows.push_back(row);
+    if (row.status == TrialStatus::dropped) return;
+  }
+}
+
+NamedColumn text_column(const std::string& name, const std::vector<TrialRow>& rows,
+                        const std::function<std::string(const TrialRow&)>& text) {
+  std::vector<std::string> values;
+  for (const TrialRow& row : rows) values.push_back(text(row));
+  return {name, std::move(values)};
+}
+
+const std::vector<std::string>& texts_of(const StudyFile& file, std::size_t column) {
+  return std::get<std::vector<std::string>>(file.columns.at(column).values);
+}
+
+/// Columns of plan.h5 that are not varied keys: key before them; repeat, seed, status and message after them.
+constexpr std::size_t columns_before = 1, columns_after = 4;
+
+std::string quoted(const std::string& value) { return value.empty() ? "''" : "'" + value + "'"; }
+
+/// "mixture.restarts '5' -> '7'", one line per key that can change a run or the list of runs.
+std::string key_differences(const std::string& before, const std::string& now) {
+  const auto values_before = resolved_values(before), values_now = resolved_values(now);
+  std::string text;
+  for (const auto& [key, value] : values_now) {
+    static const std::vector<std::string> plan_keys{"study.vary",   "study.together", "study.when",
+                                                    "study.sample", "study.sampling", "study.repeats"};
+    const bool decides = decides_numbers(key) || std::find(plan_keys.begin(), plan_keys.end(), key) != plan_keys.end();
+    const auto old = values_before.find(key);
+    const std::string old_value = old == values_before.end() ? "" : old->second;
+    if (decides && old_value != value) text += fmt::format("\n  {} {} -> {}", key, quoted(old_value), quoted(value));
+  }
+  return text;
+}
+
+std::string file_differences(const std::vector<InputFile>& before, const std::vector<InputFile>& now) {
+  std::map<std::string, std::string> hashes;
+  for (const InputFile& file : before) hashes[file.path] = file.sha256;
+  std::string text;
+  for (const InputFile& file : now) {
+    const auto old = hashes.find(file.path);
+    if (old == hashes.end())
+      text += fmt::format("\n  {} is new", file.path);
+    else if (old->second != file.sha256)
+      text +=
+          fmt::format("\n  {} has SHA-256 {}, had {}", file.path, file.sha256.substr(0, 16), old->second.substr(0, 16));
+    if (old != hashes.end()) hashes.erase(old);
+  }
+  for (const auto& [path, hash] : hashes) text += fmt::format("\n  {} is not read any more", path);
+  return text;
+}
+
+}  // namespace
+
+std::string trial_key(const Config& trial, const std::string& data_hash, const std::string& version) {
+  const std::string& start = trial.mixture.start_file;
+  return sha256_hex(config_hash(trial) + data_hash + (start.empty() ? "" : describe_file(start).sha256) + version);
+}
+
+Config trial_config(const Config& study, const std::vector<std::string>& varied_keys, const TrialRow& row) {
+  Config config = study;
+  for (std::size_t i = 0; i < varied_keys.size(); ++i) find_option(varied_keys[i])->set(config, row.varied[i]);
+  config.job.seed = row.seed;
+  config.archive = {};
+  config.archive.output = trial_archive(study.study.output, row.key).string();
+  config.study = {};
+  return config;
+}
+
+StudyPlan make_plan(const Config& config, Provenance provenance) {
+  StudyPlan plan;
+  plan.config = resolved_text(config);
+  plan.provenance = std::move(provenance);
+  const StudySpace space = lay_out(config);
+  plan.table.varied_keys = space.keys;
+  plan.repeated_points = space.repeated;
+  DataHashes data;
+  for (const StudyPoint& point : space.points) add_point(config, space, point, data, plan);
+  plan.provenance.inputs = data.files();
+  plan.provenance.data_hash = data_hash(plan.provenance.inputs);
+  return plan;
+}
+
+std::filesystem::path trial_archive(const std::filesystem::path& folder, const std::string& key) {
+  return folder / "trials" / (key + ".h5");
+}
+
+std::filesystem::path plan_file(const std::filesystem::path& folder) { return folder / "plan.h5"; }
+
+void write_plan(const std::filesystem::path& folder, const StudyPlan& plan) {
+  const std::vector<TrialRow>& rows = plan.table.rows;
+  StudyFile file{plan.provenance, plan.config, "plan", {}, {}, {}};
+  file.columns.push_back(text_column("key", rows, [](const TrialRow& row) { return row.key; }));
+  for (std::size_t i = 0; i < plan.table.varied_keys.size(); ++i)
+    file.columns.push_back(
+        text_column(plan.table.varied_keys[i], rows, [i](const TrialRow& row) { return row.varied[i]; }));
+  std::vector<std::int64_t> repeats;
+  std::vector<std::uint64_t> seeds;
+  for (const TrialRow& row : rows) {
+    repeats.push_back(row.repeat);
+    seeds.push_back(row.seed);
+  }
+  file.columns.push_back({"repeat", std::move(repeats)});
+  file.columns.push_back({"seed", std::move(seeds)});
+  file.columns.push_back(
+      text_column("status", rows, [](const TrialRow& row) { return std::string(name_of(row.status)); }));
+  file.columns.push_back(text_column("message", rows, [](const TrialRow& row) { return row.message; }));
+  write_study_file(plan_file(folder), file);
+}
+
+StudyPlan read_plan(const std::filesystem::path& folder) {
+  const StudyFile file = read_study_file(plan_file(folder), "plan");
+  if (file.columns.size() < columns_before + columns_after)
+    throw DataError(plan_file(folder).string() + ": not a plan");
+  StudyPlan plan{file.config, file.provenance, {}};
+  const std::size_t varied = file.columns.size() - columns_before - columns_after;
+  for (std::size_t i = 0; i < varied; ++i) plan.table.varied_keys.push_back(file.columns[columns_before + i].name);
+  plan.table.rows.resize(texts_of(file, 0).size());
+  const std::size_t after = columns_before + varied;
+  for (std::size_t r = 0; r < plan.table.rows.size(); ++r) {
+    TrialRow& row = plan.table.rows[r];
+    row.key = texts_of(file, 0)[r];
+    for (std::size_t i = 0; i < varied; ++i) row.varied.push_back(texts_of(file, columns_before + i)[r]);
+    row.repeat = std::get<std::vector<std::int64_t>>(file.columns[after].values)[r];
+    row.seed = std::get<std::vector<std::uint64_t>>(file.columns[after + 1].values)[r];
+    row.status = parse_name<TrialStatus>(texts_of(file, after + 2)[r]).value_or(TrialStatus::planned);
+    row.message = texts_of(file, after + 3)[r];
+  }
+  return plan;
+}
+
+void check_plan_goes_on(const StudyPlan& before, const StudyPlan& now, const std::filesystem::path& folder) {
+  std::map<std::string, bool> keys;
+  for (const TrialRow& row : now.table.rows) keys[row.key] = true;
+  std::size_t lost = 0;
+  for (const TrialRow& row : before.table.rows)
+    lost += !row.key.empty() && row.status != TrialStatus::dropped && !keys.count(row.key);
+  if (lost == 0) return;
+  const std::string head = fmt::format("{}: {} of its {} runs are not in the plan any more", folder.string(), lost,
+                                       before.table.rows.size());
+  const std::string advice = "\na study goes on with more values, not with others: take another study.output";
+  if (before.provenance.modebank_version != now.provenance.modebank_version)
+    throw ConfigurationError(fmt::format("{}: it was planned by modebank {}, this is {}{}", head,
+                                         before.provenance.modebank_version, now.provenance.modebank_version, advice));
+  const std::string files = file_differences(before.provenance.inputs, now.provenance.inputs);
+  const std::string keys_text = key_differences(before.config, now.config);
+  if (!keys_text.empty())
+    throw ConfigurationError(
+        fmt::format("{}; the configuration changed (before -> now):{}{}", head, keys_text, advice));
+  throw DataError(fmt::format("{}; the data changed:{}{}", head, files, advice));
+}
+
+void check_plan_is_of(const StudyPlan& plan, const Config& config, const std::filesystem::path& folder) {
+  const std::string differences = key_differences(plan.config, resolved_text(config));
+  if (!differences.empty())
+    throw ConfigurationError(
+        fmt::format("{} was planned with another configuration (planned -> now):{}\nplan it again "
+                    "first: --study.stage plan",
+                    folder.string(), differences));
+}
+
+}  // namespace modebank::app

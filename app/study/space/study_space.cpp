@@ -1,0 +1,221 @@
+#include "app/study/space/study_space.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/random/sobol.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <cmath>
+#include <set>
+
+#include "app/config/option_table.hpp"
+#include "app/config/option_text.hpp"
+#include "ident/base/seed.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// Keys that move together: one alone, or those of a `together` line.
+struct Axis {
+  std::vector<std::size_t> members;  ///< positions in the list of varied keys
+  std::size_t levels = 0;            ///< 0: a range
+};
+
+/// Everything that the [study] section says about points.
+struct Definition {
+  std::vector<VariedKey> varied;
+  std::vector<Axis> axes;
+  std::vector<VaryCondition> conditions;
+};
+
+/// Position of a varied key; their number when it is not among them.
+std::size_t position_of(const std::vector<VariedKey>& varied, const std::string& key) {
+  const auto found = std::find_if(varied.begin(), varied.end(), [&](const VariedKey& v) { return v.key == key; });
+  return static_cast<std::size_t>(found - varied.begin());
+}
+
+std::vector<VariedKey> read_varied(const StudyConfig& study) {
+  std::vector<VariedKey> varied;
+  for (const std::string& line : study.vary) {
+    varied.push_back(parse_vary(line));
+    if (position_of(varied, varied.back().key) + 1 != varied.size())
+      throw ConfigurationError(fmt::format("study.vary: {} is varied in two lines", varied.back().key));
+    if (varied.back().is_range() && study.sample == 0)
+      throw ConfigurationError(fmt::format(
+          "study.vary = {}: a range has no values of its own: say how many (lin N, log N), or set study.sample", line));
+  }
+  return varied;
+}
+
+/// The group of each `together` line, checked against the varied keys.
+std::vector<Axis> read_groups(const StudyConfig& study, const std::vector<VariedKey>& varied) {
+  std::vector<Axis> groups;
+  std::set<std::size_t> taken;
+  for (const std::string& line : study.together) {
+    Axis axis;
+    for (const std::string& key : parse_together(line)) {
+      const std::size_t member = position_of(varied, key);
+      const auto refuse = [&](const std::string& why) {
+        throw ConfigurationError(fmt::format("study.together = {}: {} {}", line, key, why));
+      };
+      if (member == varied.size()) refuse("is not varied");
+      if (!taken.insert(member).second) refuse("stands there twice");
+      if (varied[member].is_range()) refuse("is a range; keys in step need lists of values");
+      if (axis.levels != 0 && axis.levels != varied[member].values.size())
+        refuse(fmt::format("has {} values, {} has {}", varied[member].values.size(), varied[axis.members[0]].key,
+                           axis.levels));
+      axis.levels = varied[member].values.size();
+      axis.members.push_back(member);
+    }
+    groups.push_back(axis);
+  }
+  return groups;
+}
+
+/// Axes in the order of study.vary; a group stands where its first key does.
+std::vector<Axis> make_axes(const std::vector<VariedKey>& varied, const std::vector<Axis>& groups) {
+  std::vector<Axis> axes;
+  for (std::size_t i = 0; i < varied.size(); ++i) {
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const Axis& axis) {
+      return std::find(axis.members.begin(), axis.members.end(), i) != axis.members.end();
+    });
+    if (group == groups.end())
+      axes.push_back({{i}, varied[i].values.size()});
+    else if (*std::min_element(group->members.begin(), group->members.end()) == i)
+      axes.push_back(*group);
+  }
+  return axes;
+}
+
+Definition read_definition(const StudyConfig& study) {
+  Definition definition;
+  definition.varied = read_varied(study);
+  definition.axes = make_axes(definition.varied, read_groups(study, definition.varied));
+  for (const std::string& line : study.when) {
+    definition.conditions.push_back(parse_when(line));
+    if (position_of(definition.varied, definition.conditions.back().key) == definition.varied.size())
+      throw ConfigurationError(
+          fmt::format("study.when = {}: {} is not varied", line, definition.conditions.back().key));
+  }
+  return definition;
+}
+
+/// The texts of one axis at u in [0, 1).
+void place(const Definition& definition, const Axis& axis, double u, StudyPoint& point) {
+  for (const std::size_t member : axis.members) {
+    const VariedKey& varied = definition.varied[member];
+    if (!varied.is_range()) {
+      const auto level = static_cast<std::size_t>(u * static_cast<double>(axis.levels));
+      point[member] = varied.values[std::min(level, axis.levels - 1)];
+    } else {
+      const double value = varied.logarithmic ? varied.low * std::pow(varied.high / varied.low, u)
+                                              : varied.low + (varied.high - varied.low) * u;
+      point[member] = format_value(value);
+    }
+  }
+}
+
+std::vector<StudyPoint> grid(const Definition& definition) {
+  constexpr std::size_t most_points = 1'000'000;
+  std::size_t count = 1;
+  for (const Axis& axis : definition.axes) {
+    count *= axis.levels;
+    if (count > most_points)
+      throw ConfigurationError(
+          fmt::format("study.vary: the grid has more than {} points; study.sample = N takes N of them", most_points));
+  }
+  std::vector<StudyPoint> points(count, StudyPoint(definition.varied.size()));
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t rest = i;
+    for (auto axis = definition.axes.rbegin(); axis != definition.axes.rend(); ++axis) {
+      for (const std::size_t member : axis->members)
+        points[i][member] = definition.varied[member].values[rest % axis->levels];
+      rest /= axis->levels;
+    }
+  }
+  return points;
+}
+
+/// Coordinates in [0, 1), one row per point: on every axis each of the N strata holds one point.
+std::vector<std::vector<double>> latin_hypercube(std::size_t count, std::size_t axes, std::uint64_t seed) {
+  std::vector<std::vector<double>> coordinates(count, std::vector<double>(axes));
+  boost::random::uniform_01<double> uniform;
+  for (std::size_t a = 0; a < axes; ++a) {
+    std::mt19937_64 generator = make_generator(seed, "study.sample", a);
+    std::vector<std::size_t> strata(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t j = boost::random::uniform_int_distribution<std::size_t>(0, i)(generator);
+      strata[i] = strata[j];
+      strata[j] = i;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      coordinates[i][a] = (static_cast<double>(strata[i]) + uniform(generator)) / static_cast<double>(count);
+  }
+  return coordinates;
+}
+
+std::vector<std::vector<double>> sobol_points(std::size_t count, std::size_t axes, std::uint64_t seed) {
+  std::vector<std::vector<double>> coordinates(count, std::vector<double>(axes));
+  boost::random::sobol sequence(axes);
+  std::vector<std::uint64_t> shifts;
+  for (std::size_t a = 0; a < axes; ++a) shifts.push_back(derive_seed(seed, "study.sample", a));
+  // Boost leaves out the sequence's first point, the origin, without which no block of 2^k points fills its strata.
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t a = 0; a < axes; ++a) {
+      const std::uint64_t bits = (i == 0 ? 0 : sequence()) ^ shifts[a];
+      coordinates[i][a] = static_cast<double>(bits >> 11) * 0x1p-53;  // 53 bits, so always below 1
+    }
+  return coordinates;
+}
+
+std::vector<StudyPoint> samples(const Definition& definition, const Config& config) {
+  const auto count = static_cast<std::size_t>(config.study.sample);
+  const std::size_t axes = definition.axes.size();
+  const auto coordinates = config.study.sampling == SampleMethod::sobol ? sobol_points(count, axes, config.job.seed)
+                                                                        : latin_hypercube(count, axes, config.job.seed);
+  std::vector<StudyPoint> points(count, StudyPoint(definition.varied.size()));
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t a = 0; a < axes; ++a) place(definition, definition.axes[a], coordinates[i][a], points[i]);
+  return points;
+}
+
+/// Keys whose condition does not hold go back to the configuration's value. A condition may depend on a key that has
+/// one itself, so this goes on until nothing changes.
+void apply_conditions(const Definition& definition, const std::vector<std::string>& own, const Config& config,
+                      StudyPoint& point) {
+  const std::vector<VariedKey>& varied = definition.varied;
+  for (std::size_t pass = 0; pass <= definition.conditions.size(); ++pass)
+    for (const VaryCondition& condition : definition.conditions) {
+      const std::size_t key = position_of(varied, condition.key), other = position_of(varied, condition.other);
+      const std::string value = other < varied.size() ? point[other] : find_option(condition.other)->get(config);
+      if (std::find(condition.values.begin(), condition.values.end(), value) == condition.values.end())
+        point[key] = own[key];
+    }
+}
+
+}  // namespace
+
+StudySpace lay_out(const Config& config) {
+  const Definition definition = read_definition(config.study);
+  if (definition.varied.empty()) throw ConfigurationError("study.vary is empty: it names the keys to vary, one a line");
+  StudySpace space;
+  std::vector<std::string> own;
+  for (const VariedKey& varied : definition.varied) {
+    space.keys.push_back(varied.key);
+    own.push_back(find_option(varied.key)->get(config));
+  }
+  std::set<StudyPoint> seen;
+  for (StudyPoint& point : config.study.sample > 0 ? samples(definition, config) : grid(definition)) {
+    apply_conditions(definition, own, config, point);
+    if (seen.insert(point).second)
+      space.points.push_back(std::move(point));
+    else
+      ++space.repeated;
+  }
+  return space;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,155 @@
+#include "app/study/study.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "app/chain/provenance.hpp"
+#include "app/study/answers/answers_text.hpp"
+#include "app/study/answers/best_runs.hpp"
+#include "app/study/answers/merge_study.hpp"
+#include "app/study/answers/study_text.hpp"
+#include "app/study/launch/slurm.hpp"
+#include "app/study/launch/submit_study.hpp"
+#include "app/study/run/run_trials.hpp"
+#include "app/study/run/study_progress.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// One execution of the command.
+struct StudyCommand {
+  const StudyCall& call;
+  const Config& config;
+  TrialStore store;
+  std::filesystem::file_time_type started;
+};
+
+/// The plan of the configuration, written to the folder; one that is there must go on in it.
+StudyPlan settle_plan(const StudyCommand& command) {
+  StudyPlan plan = make_plan(command.config, make_provenance(config_hash(command.config), command.call.typed));
+  command.store.create();
+  const FileLocks locks(command.store.lock_file());
+  const FileLocks::Hold alone = locks.lock(plan_lock);
+  if (std::filesystem::exists(plan_file(command.store.folder()))) {
+    const StudyPlan before = read_plan(command.store.folder());
+    check_plan_goes_on(before, plan, command.store.folder());
+    if (before.config == plan.config && before.table.rows.size() == plan.table.rows.size()) return plan;
+  }
+  write_plan(command.store.folder(), plan);
+  return plan;
+}
+
+WorkerSettings worker_settings(const StudyCommand& command, const StudyPlan& plan) {
+  return {command.config, command.call.typed, command.store, plan.table.varied_keys, plan.provenance.modebank_version,
+          command.started};
+}
+
+void print_plan(const StudyCommand& command, const StudyPlan& plan) {
+  const WorkerSettings settings = worker_settings(command, plan);
+  fmt::print("{}", plan_text(plan, count_stages(command.config, plan), command.config.study.repeats));
+  std::fflush(stdout);
+  fmt::print("{}", estimate_text(estimate_study(settings, plan), command.store, job_count(command.config.study)));
+  std::fflush(stdout);
+}
+
+/// Throws DataError when the study had to stop.
+RunResult run_share(const StudyCommand& command, const StudyPlan& plan) {
+  const StudyConfig& study = command.config.study;
+  {
+    const FileLocks locks(command.store.lock_file());
+    command.store.remove_leftovers(locks);
+  }
+  const TrialGroups share = shard_of(group_trials(command.config, plan), study.shard_index, study.shard_count);
+  StudyProgress progress(plan.table.varied_keys);
+  const RunResult result = run_trials(worker_settings(command, plan), plan, share,
+                                      [&](const TrialRow& row, const TrialReport& report, std::size_t finished,
+                                          std::size_t all) { progress.tell(row, report, finished, all); });
+  const std::string counts = fmt::format("{} runs made, {} were there, {} failed, in {}", result.computed,
+                                         result.present, result.failed.size(), duration_text(result.seconds));
+  if (result.broken)
+    throw DataError(fmt::format("the study stopped ({}): {}\nwhat is done stays; the same command goes on from there",
+                                counts, *result.broken));
+  fmt::print("run       {}\n", counts);
+  if (!result.failed.empty() && study.on_failure == OnFailure::stop)
+    throw DataError(fmt::format("the study stopped at a run that failed (study.on_failure = stop): {}",
+                                describe_trial(plan.table.varied_keys, plan.table.rows[result.failed.front()])));
+  return result;
+}
+
+bool is_complete(const StudyTable& table) {
+  for (const TrialRow& row : table.rows)
+    if (row.status == TrialStatus::failed || row.status == TrialStatus::missing) return false;
+  return true;
+}
+
+/// What merge and status need.
+void require_plan(const StudyCommand& command) {
+  if (!std::filesystem::exists(plan_file(command.store.folder())))
+    throw ConfigurationError(fmt::format("{}: there is no plan yet: run the study, or --study.stage plan, first",
+                                         plan_file(command.store.folder()).string()));
+}
+
+int merge(const StudyCommand& command, const std::set<std::string>& whole) {
+  require_plan(command);
+  const FileLocks locks(command.store.lock_file());
+  const FileLocks::Hold alone = locks.lock(plan_lock);
+  const StudyPlan plan = read_plan(command.store.folder());  // another process may have added values
+  check_plan_is_of(plan, command.config, command.store.folder());
+  const StudyTable table = collect_table(command.store, plan, whole);
+  const Answers answers = answer(table);
+  write_study(command.store, plan, table, answers, command.config.study.flat ? ArchiveUse::copy : ArchiveUse::link);
+  fmt::print("{}", table_text(table, command.store));
+  write_best_runs(command.store.folder(), command.config, table, answers);
+  fmt::print("\n{}\n", answers_text(table, answers));
+  fmt::print("table     {}, {}\n", (command.store.folder() / "study.h5").string(),
+             (command.store.folder() / "study.csv").string());
+  return is_complete(table) ? 0 : 1;
+}
+
+int run_all(const StudyCommand& command) {
+  const StudyPlan plan = settle_plan(command);
+  print_plan(command, plan);
+  const RunResult result = run_share(command, plan);
+  return merge(command, {result.whole.begin(), result.whole.end()});
+}
+
+int show_status(const StudyCommand& command) {
+  require_plan(command);
+  const StudyPlan plan = read_plan(command.store.folder());
+  const StudyTable table = collect_table(command.store, plan);
+  fmt::print("{}{}", table_text(table, command.store), slurm_text(slurm_view(command.store.folder())));
+  return is_complete(table) ? 0 : 1;
+}
+
+int submit(const StudyCommand& command) {
+  const StudyPlan plan = settle_plan(command);
+  print_plan(command, plan);
+  fmt::print("{}", submit_study(command.call, plan, collect_table(command.store, plan)));
+  return 0;
+}
+
+}  // namespace
+
+int do_study(const StudyCall& call) {
+  const StudyCommand command{call, call.config, TrialStore(call.config.study.output),
+                             std::filesystem::file_time_type::clock::now()};
+  switch (call.config.study.stage) {
+    case StudyStage::all:
+      return run_all(command);
+    case StudyStage::plan:
+      print_plan(command, settle_plan(command));
+      return 0;
+    case StudyStage::run:
+      return run_share(command, settle_plan(command)).failed.empty() ? 0 : 1;
+    case StudyStage::merge:
+      return merge(command, {});
+    case StudyStage::status:
+      return show_status(command);
+    case StudyStage::submit:
+      return submit(command);
+  }
+  return 0;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,84 @@
+#include "app/text/lag_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/text/text_units.hpp"
+
+namespace modebank::app {
+
+namespace {
+
+constexpr std::size_t most_runs = 12;
+
+std::string_view action(LagCorrection correction) {
+  switch (correction) {
+    case LagCorrection::none:
+      return "nothing: no correction gains more than its standard error in cross-validation";
+    case LagCorrection::pooled:
+      return "the pooled lag to every run";
+    case LagCorrection::per_run:
+      return "to training runs their own lag, to test runs the pooled one";
+    case LagCorrection::drift:
+      return "to training runs their own lag and drift, to test runs the pooled ones";
+  }
+  return "";
+}
+
+std::string run_text(const RunLag& run) {
+  if (run.status == LagStatus::not_estimated) return "";
+  std::string text = fmt::format("            {:<6} lag {}", run.run,
+                                 lag_estimate_text(run.lag_s, run.lag_standard_error_s, run.status));
+  if (run.drift_status == LagStatus::converged)
+    text += fmt::format(", drift {:+.2f} +- {:.2f} ms/s", per_mille * run.clock_drift,
+                        per_mille * run.clock_drift_standard_error);
+  if (run.match_windows > 0)
+    text += fmt::format(", best match {:+.2f} [{:+.2f}, {:+.2f}] s in {} windows", run.match_s, run.match_least_s,
+                        run.match_largest_s, run.match_windows);
+  return text + fmt::format("; shifted by {:+.3f} s\n", run.applied_lag_s);
+}
+
+}  // namespace
+
+std::string lag_estimate_text(double lag_s, double standard_error_s, LagStatus status) {
+  switch (status) {
+    case LagStatus::converged:
+      return fmt::format("{:+.3f} +- {:.3f}", lag_s, standard_error_s);
+    case LagStatus::at_edge:
+      return fmt::format("beyond {:+.2f}?", lag_s);
+    case LagStatus::not_excited:
+      return "- (not excited)";
+    case LagStatus::not_estimated:
+      return "-";
+  }
+  return "";
+}
+
+std::string lag_text(const LagReport& report, bool done) {
+  std::string text = "lag       ";
+  if (report.lag.count == 0)
+    text += "no training run is excited enough to show one";
+  else
+    text += fmt::format("inputs act {:+.3f} +- {:.3f} s later ({} training runs, which differ by {:.3f} s)",
+                        report.lag.mean, report.lag.standard_error, report.lag.count, report.lag.between_sd);
+  if (report.drift.count > 0)
+    text += fmt::format("; clock drift {:+.2f} +- {:.2f} ms/s", per_mille * report.drift.mean,
+                        per_mille * report.drift.standard_error);
+  text += fmt::format("\n          {}{}\n          log score", done ? "applied: " : "data.lag_s = auto would apply ",
+                      action(report.correction));
+  for (const LagScore& score : report.scores) {
+    text += fmt::format("{} {} {:.3f}", score.correction == LagCorrection::none ? "" : ",", name_of(score.correction),
+                        score.log_score);
+    if (score.correction != LagCorrection::none)
+      text += fmt::format(" ({:+.3f} +- {:.3f})", score.gain, score.gain_standard_error);
+  }
+  text += "\n";
+  const auto estimated = std::count_if(report.runs.begin(), report.runs.end(),
+                                       [](const RunLag& run) { return run.status != LagStatus::not_estimated; });
+  if (static_cast<std::size_t>(estimated) > most_runs) return text;  // the archive has them: /lag/runs
+  for (const RunLag& run : report.runs) text += run_text(run);
+  return text;
+}
+
+}  // namespace modebank::app

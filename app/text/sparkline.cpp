@@ -1,0 +1,119 @@
+#include "app/text/sparkline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/chain/judged_runs.hpp"
+#include "app/text/stretch_means.hpp"
+
+namespace modebank::app {
+namespace {
+
+constexpr int width_of_files = 100;  // where nothing limits the width
+constexpr int shortest_run = 4;      // characters
+
+struct StripRun {
+  std::string name;
+  const RunEvaluation* evaluation;
+  Index characters = 0;
+};
+
+/// Runs of the role, in the recording's order.
+std::vector<StripRun> runs_of(const Archive& archive, Role role) {
+  std::vector<StripRun> runs;
+  for (const FilterEvaluation& filter : archive.evaluations)
+    for (std::size_t i = 0; filter.filter == "bank" && i < filter.runs.size(); ++i)
+      if (archive.recording->runs[i].role == role) runs.push_back({archive.recording->runs[i].run, &filter.runs[i]});
+  return runs;
+}
+
+/// Gives each run its characters, `width` in all with a separator between runs; drops runs at the end until the others
+/// have at least shortest_run each.
+void share_width(std::vector<StripRun>& runs, Index width) {
+  const auto most = static_cast<std::size_t>(std::max<Index>(1, (width + 1) / (shortest_run + 1)));
+  if (runs.size() > most) runs.resize(most);
+  Index samples = 0;
+  for (const StripRun& run : runs) samples += run.evaluation->mode_probability.cols();
+  const auto count = static_cast<Index>(runs.size());
+  const Index spare = std::max<Index>(0, width - (count - 1) - count * shortest_run);
+  Index seen = 0;
+  for (StripRun& run : runs) {
+    const Index before = spare * seen / std::max<Index>(1, samples);
+    seen += run.evaluation->mode_probability.cols();
+    run.characters = shortest_run + spare * seen / std::max<Index>(1, samples) - before;
+  }
+}
+
+std::string cut(const std::string& text, Index characters) {
+  std::string result;
+  for (const char c : text) {
+    if ((static_cast<unsigned char>(c) & 0xC0) != 0x80 && characters-- == 0) break;
+    result += c;
+  }
+  return result;
+}
+
+std::string names_line(const std::vector<StripRun>& runs) {
+  std::string line;
+  for (const StripRun& run : runs) {
+    const std::string name = cut(run.name, run.characters);
+    line += name + std::string(static_cast<std::size_t>(run.characters - columns_of(name)) + 1, ' ');
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line;
+}
+
+}  // namespace
+
+std::string sparkline(const Eigen::VectorXd& values, bool utf8) {
+  static constexpr std::array<const char*, 9> blocks{" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+  static constexpr std::string_view marks = " .:-=+*#%@";
+  std::string line;
+  for (const double value : values) {
+    const double height = std::clamp(value, 0.0, 1.0);
+    if (!std::isfinite(value))
+      line += '?';
+    else if (utf8)
+      line += blocks[static_cast<std::size_t>(std::lround(height * (blocks.size() - 1)))];
+    else
+      line += marks[static_cast<std::size_t>(std::lround(height * static_cast<double>(marks.size() - 1)))];
+  }
+  return line;
+}
+
+std::string mode_strip_text(const Archive& archive, const Terminal& terminal) {
+  if (!archive.bank || !archive.recording) return "";
+  const Role role = judged_role(archive);
+  std::vector<StripRun> runs = runs_of(archive, role);
+  if (runs.empty()) return "";
+  constexpr int label = 5, usage = 6;
+  const int width = terminal.width > 0 ? terminal.width : width_of_files;
+  const std::size_t all = runs.size();
+  share_width(runs, std::max(shortest_run, width - label - usage));
+  std::string text = fmt::format("mode probabilities on {} runs{}\n{:{}}{}\n", words_for(role),
+                                 runs.size() < all ? fmt::format(" (the first {} of {})", runs.size(), all) : "", "run",
+                                 label, names_line(runs));
+  std::vector<std::string> lines(static_cast<std::size_t>(archive.bank->mode_count()));
+  for (const StripRun& run : runs) {
+    const Eigen::MatrixXd means = stretch_means(run.evaluation->mode_probability, run.characters);
+    const std::string space(static_cast<std::size_t>(run.characters - means.cols()), ' ');
+    for (std::size_t k = 0; k < lines.size(); ++k)
+      lines[k] += (lines[k].empty() ? ""
+                   : terminal.utf8  ? "│"
+                                    : "|") +
+                  sparkline(means.row(static_cast<Index>(k)), terminal.utf8) + space;
+  }
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    text += fmt::format("{:>4} {}", k, lines[k]);
+    for (const DiagnosticsRow& row : archive.diagnostics)
+      if (row.filter == "bank" && row.role == role && row.mode == static_cast<Index>(k))
+        text += fmt::format(" {:>3.0f} %", 100 * row.usage);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,183 @@
+#include "app/text/summary_tables.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "app/chain/judged_runs.hpp"
+#include "app/text/number_text.hpp"
+#include "app/text/text_table.hpp"
+#include "ident/fit/window_summary.hpp"
+
+namespace modebank::app {
+namespace {
+
+std::string unit_suffix(const Archive& archive) {
+  if (!archive.recording || archive.recording->states.size() != 1) return "";
+  const std::string& unit = archive.recording->states.front().unit;
+  return unit.empty() ? "" : " [" + unit + "]";
+}
+
+std::string tails(double above, double below) { return fmt::format("{:.2f} % {:>5.2f} %", 100 * above, 100 * below); }
+
+std::string estimate(double value, double standard_error) {
+  // Four decimals say nothing of a value that is known far better, or that is far larger.
+  constexpr double smallest = 5e-5, largest = 1e5;
+  if (std::abs(value) >= largest || standard_error >= largest || standard_error < smallest)
+    return fmt::format("{:.6g} +- {:.2g}", value, standard_error);
+  return fmt::format("{:.4f} +- {:.4f}", value, standard_error);
+}
+
+}  // namespace
+
+std::string scores_text(const Archive& archive, int width) {
+  using Align = TextTable::Align;
+  TextTable table({{"filter", 11, Align::left},
+                   {"role", 5, Align::left},
+                   {"samples", 8},
+                   {"log score", 10},
+                   {"rmse" + unit_suffix(archive), 14},
+                   {"pit tails +/-", 18},
+                   {"NIS above/below", 18},
+                   {"mean NIS", 8},
+                   {"white p", 8}},
+                  2);
+  for (const SummaryRow& row : archive.summary)
+    if (row.run == "*")
+      table.add({row.filter, std::string(name_of(row.role)), std::to_string(row.samples),
+                 fixed_or_short(row.log_score, 4), fixed_or_short_list(row.rmse, 5),
+                 tails(row.tail_above, row.tail_below), tails(row.nis_above, row.nis_below),
+                 fixed_or_short(row.nis_mean, 3), fmt::format("{:.2g}", row.whiteness_p)});
+  return table.text(width) +
+         "A true filter has 2.5 % in each pit tail; log score in nats per sample, higher is better.\n";
+}
+
+namespace {
+
+/// Weights and means with their standard errors, where a bootstrap made some.
+std::string component_errors_text(const MixtureResult& mixture, int width) {
+  if (mixture.weights_standard_error.size() == 0) return "";
+  std::vector<TextTable::Column> columns{{"K", 4}, {"weight", 16}};
+  for (const std::string& name : mixture.feature_names) columns.push_back({name, 18});
+  TextTable table(std::move(columns));
+  for (Index k = 0; k < mixture.mixture.components(); ++k) {
+    std::vector<std::string> cells{std::to_string(k), fmt::format("{:.3f} +- {:.2g}", mixture.mixture.weights(k),
+                                                                  mixture.weights_standard_error(k))};
+    for (Index f = 0; f < mixture.mixture.features(); ++f)
+      cells.push_back(fmt::format("{:.4g} +- {:.2g}", mixture.mixture.means(f, k), mixture.means_standard_error(f, k)));
+    table.add(std::move(cells));
+  }
+  return "standard errors by bootstrap over runs\n" + table.text(width);
+}
+
+}  // namespace
+
+std::string candidates_text(const MixtureResult& mixture, int width) {
+  TextTable table({{"K", 4},
+                   {"shape", 8, TextTable::Align::left},
+                   {"log likelihood", 14},
+                   {"q", 6},
+                   {"N_eff", 8},
+                   {"BIC", 12},
+                   {"AIC", 12},
+                   {"ICL", 12},
+                   {"naive BIC", 12},
+                   {"held out", 10},
+                   {"iter", 6},
+                   {"converged", 9},
+                   {"agreeing", 8}},
+                  2);
+  for (const Candidate& c : mixture.candidates) {
+    const std::string count = std::to_string(c.components), shape(name_of(c.covariance));
+    if (c.status != CandidateStatus::fitted) {
+      table.add({count, shape}, fmt::format(" {}", name_of(c.status)));
+      continue;
+    }
+    table.add({count, shape, fmt::format("{:.3f}", c.log_likelihood), std::to_string(c.parameters),
+               fmt::format("{:.1f}", c.effective_samples), fmt::format("{:.3f}", c.bic), fmt::format("{:.3f}", c.aic),
+               fmt::format("{:.3f}", c.icl), fmt::format("{:.3f}", c.bic_naive), fixed_or_short(c.heldout, 4),
+               std::to_string(c.iterations), c.converged ? "yes" : "no",
+               fmt::format("{}/{}", c.agreeing_restarts, c.restarts)},
+              c.selected ? "  <- selected" : "");
+  }
+  return table.text(width) + component_errors_text(mixture, width);
+}
+
+std::string window_parameters_text(const WindowFits& fits, int width) {
+  const WindowSummary summary = summarize(fits);
+  const auto names = fits.parameter_names();
+  TextTable table({{"parameter", 9}, {"median", 12}, {"standard error", 16}, {"|t| > 2", 12}});
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto j = static_cast<Index>(i);
+    table.add({names[i], fmt::format("{:.4g}", summary.parameter(j)), fmt::format("{:.3g}", summary.standard_error(j)),
+               fmt::format("{:.0f} %", 100 * summary.significant(j))});
+  }
+  return table.text(width) + fmt::format("R^2 of the increments {:.3f}, AIC {:.2f} (medians)\n",
+                                         fmt::join(summary.r_squared, " "), summary.aic);
+}
+
+std::string mode_diagnostics_text(const Archive& archive, int width) {
+  const Role role = judged_role(archive);
+  TextTable table({{"mode", 4},
+                   {"usage", 7},
+                   {"expected", 8},
+                   {"dwell", 8},
+                   {"by T", 8},
+                   {"pit tails +/-", 20},
+                   {"mean NIS", 8},
+                   {"NEES", 8},
+                   {"white p", 8},
+                   {"verdict", 7, TextTable::Align::left}});
+  bool empty = true;
+  for (const DiagnosticsRow& row : archive.diagnostics) {
+    if (row.filter != "bank" || row.role != role || row.mode < 0) continue;
+    empty = false;
+    table.add({std::to_string(row.mode), fmt::format("{:.3f}", row.usage), std::to_string(row.samples),
+               fixed_or_short(row.dwell, 1), fixed_or_short(row.dwell_model, 1), tails(row.tail_above, row.tail_below),
+               fixed_or_short(row.nis_mean, 3), fixed_or_short(row.nees_mean, 3),
+               fmt::format("{:.2g}", row.whiteness_p), std::string(name_of(row.verdict))});
+  }
+  return empty ? "" : fmt::format("\nmodes on {} runs\n{}", words_for(role), table.text(width));
+}
+
+namespace {
+
+/// The modes in a motion model's own parameters; empty for linear models, whose table says all.
+std::string motion_parameters_text(const Bank& bank, int width) {
+  if (bank.motion_parameters.empty()) return "";
+  std::vector<TextTable::Column> columns{{"mode", 4}};
+  for (const ModelParameter& parameter : bank.motion_parameters) columns.push_back({parameter.name, 20});
+  TextTable table(std::move(columns));
+  for (Index k = 0; k < bank.mode_count(); ++k) {
+    const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
+    std::vector<std::string> cells{std::to_string(k)};
+    for (Index i = 0; i < mode.motion_theta.size(); ++i)
+      cells.push_back(estimate(mode.motion_theta(i), mode.motion_standard_error(i)));
+    table.add(std::move(cells));
+  }
+  return "\nmodes as " + bank.model + "\n" + table.text(width);
+}
+
+}  // namespace
+
+std::string modes_text(const Bank& bank, bool full_form, int width) {
+  std::vector<TextTable::Column> columns{{"mode", 4}, {"weight", 7}};
+  for (const std::string& name : bank.structure.parameter_names())
+    columns.push_back({name + (full_form && name[0] == 'A' ? " (full)" : ""), 20});
+  columns.push_back({"sqrt diag Q", 12});
+  TextTable table(std::move(columns));
+  for (Index k = 0; k < bank.mode_count(); ++k) {
+    const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
+    LinearModel model = mode.model;
+    if (full_form) model.A.diagonal().array() += 1.0;
+    const Eigen::VectorXd theta = pack(bank.structure, model);
+    std::vector<std::string> cells{std::to_string(k), fmt::format("{:.3f}", mode.weight)};
+    for (Index i = 0; i < theta.size(); ++i) cells.push_back(estimate(theta(i), mode.standard_error(i)));
+    cells.push_back(fmt::format("{:.4g}", fmt::join(mode.Q.diagonal().cwiseSqrt().eval(), " ")));
+    table.add(std::move(cells));
+  }
+  return table.text(width) + motion_parameters_text(bank, width);
+}
+
+}  // namespace modebank::app

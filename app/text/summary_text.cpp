@@ -1,0 +1,253 @@
+#include "app/text/summary_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/chain/judged_runs.hpp"
+#include "app/text/lag_text.hpp"
+#include "app/text/number_text.hpp"
+#include "app/text/summary_tables.hpp"
+#include "app/text/terminal.hpp"
+#include "mixture/criteria.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// Those labelled -1 as noise among them.
+Index clustered_windows(const MixtureResult& result) {
+  if (!result.mixture.noise.present()) return (result.labels.array() >= 0).count();
+  constexpr Index at_once = 16384;
+  Index count = 0;
+  for (Index first = 0; first < result.responsibilities.windows(); first += at_once) {
+    const Index windows = std::min(at_once, result.responsibilities.windows() - first);
+    count += (!result.responsibilities.block(first, windows).row(0).array().isNaN()).count();
+  }
+  return count;
+}
+
+std::string mixture_text(const MixtureResult& result) {
+  const auto& candidates = result.candidates;
+  const auto chosen = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.selected; });
+  std::string text = fmt::format("mixture   {} components over {}", result.mixture.components(),
+                                 fmt::join(result.feature_names, ", "));
+  if (chosen == candidates.end()) return text + "\n";
+  text += fmt::format("; BIC {:.1f} with N_eff {:.0f} of {} windows", chosen->bic, chosen->effective_samples,
+                      clustered_windows(result));
+  if (result.mixture.noise.present())
+    text += fmt::format("; noise component {:.1f} %, label -1 for {} windows", 100 * result.mixture.noise.weight,
+                        clustered_windows(result) - (result.labels.array() >= 0).count());
+  if (candidates.size() > 1)
+    text += fmt::format("; chosen from {}..{}", candidates.front().components, candidates.back().components);
+  text += fmt::format("; {} of {} restarts agree\n", chosen->agreeing_restarts, chosen->restarts);
+  for (const std::string& warning : selection_warnings(candidates)) text += "          warning: " + warning + "\n";
+  return text;
+}
+
+/// What a limit on the number of modes cost, on held-out runs if there are any.
+std::string merging_text(const Archive& archive) {
+  const Role role = judged_role(archive);
+  for (const MergingCost& cost : archive.merging)
+    if (cost.role == role)
+      return fmt::format(
+          "merged    {} components into {} modes: log score on {} runs {}, without the limit ({} modes) {}: a loss of "
+          "{}\n",
+          cost.components, cost.modes, words_for(role), fixed_or_short(cost.log_score, 4), cost.modes_unlimited,
+          fixed_or_short(cost.log_score_unlimited, 4), fixed_or_short(cost.loss, 4));
+  return "";
+}
+
+std::string bank_text(const Bank& bank) {
+  std::string text = fmt::format("bank      {} modes", bank.mode_count());
+  for (const ScreenedMode& mode : bank.screened)
+    text += fmt::format("; component {} screened: {}", mode.component, mode.reason);
+  return text + fmt::format("; R = {:.4g}\n", fmt::join(bank.R.diagonal(), " "));
+}
+
+/// Of the training and of the held-out runs, as far as there are any.
+std::string residuals_text(const Archive& archive) {
+  if (!archive.recording) return "";
+  std::string text;
+  for (const ResidualTestSet& set : archive.residual_tests) {
+    if ((set.model != "global" && set.model != "bank") || set.runs.empty()) continue;
+    std::vector<std::string> roles, autocorrelations, input_correlations;
+    for (const Role role : {Role::train, Role::test}) {
+      std::vector<ResidualTests> runs;
+      for (std::size_t i = 0; i < set.runs.size(); ++i)
+        if (archive.recording->runs[i].role == role) runs.push_back(set.runs[i]);
+      if (runs.empty()) continue;
+      const ResidualSummary summary = summarize(runs);
+      roles.emplace_back(name_of(role));
+      autocorrelations.push_back(fmt::format("{:.0f}", 100 * summary.autocorrelation_outside));
+      input_correlations.push_back(fmt::format("{:.0f}", 100 * summary.cross_correlation_outside));
+    }
+    text +=
+        fmt::format("residuals {:<6} beyond {:g} % bands: {} % of autocorrelations, {} % of input correlations ({})\n",
+                    set.model, 100 * set.runs.front().level, fmt::join(autocorrelations, " / "),
+                    fmt::join(input_correlations, " / "), fmt::join(roles, " / "));
+  }
+  return text;
+}
+
+/// Whether the filter of a row has several modes, which then have rows of their own.
+bool has_modes(const Archive& archive, const DiagnosticsRow& row) {
+  return std::any_of(archive.diagnostics.begin(), archive.diagnostics.end(), [&row](const DiagnosticsRow& other) {
+    return other.filter == row.filter && other.role == row.role && other.mode >= 0;
+  });
+}
+
+/// Whether each filter's stated uncertainty is true, with the numbers that say so, and what else stands out.
+std::string verdicts_text(const Archive& archive) {
+  std::string text;
+  const Role role = judged_role(archive);
+  for (const DiagnosticsRow& row : archive.diagnostics) {
+    if (row.mode >= 0 || row.role != role) continue;
+    text += fmt::format("{:<11} {:<14} tails {:.2f} % [{:.2f}, {:.2f}] above, {:.2f} % [{:.2f}, {:.2f}] below; ",
+                        row.filter, name_of(row.verdict), 100 * row.tail_above, 100 * row.tail_above_lower,
+                        100 * row.tail_above_upper, 100 * row.tail_below, 100 * row.tail_below_lower,
+                        100 * row.tail_below_upper);
+    text += fmt::format("mean NIS {} [{:.3f}, {:.3f}]", fixed_or_short(row.nis_mean, 3), row.nis_lower, row.nis_upper);
+    if (has_modes(archive, row)) text += fmt::format("; mean entropy {}", fixed_or_short(row.entropy, 3));
+    if (!std::isnan(row.nees_mean))
+      text +=
+          fmt::format("; NEES {} [{:.3f}, {:.3f}]", fixed_or_short(row.nees_mean, 3), row.nees_lower, row.nees_upper);
+    if (row.state_rmse.size() > 0 && row.state_rmse.allFinite())
+      text += fmt::format("; state RMSE {:.4g}", fmt::join(row.state_rmse, " "));
+    text += row.flags.empty() ? "\n" : fmt::format("\n{:>11} {}\n", "", row.flags);
+  }
+  if (text.empty()) return "";
+  return fmt::format(
+      "\nUncertainty on {} runs (calibrated: both tails between {:g} and {:g} %; brackets: 95 % intervals, for NIS "
+      "and\n"
+      "NEES where a true filter's mean lies; entropy of the mode probabilities: 0 one mode at a time, 1 all alike)\n{}",
+      words_for(role), 100 * least_tail, 100 * largest_tail, text);
+}
+
+/// Predictions several samples ahead, on held-out runs if there are any.
+std::string horizon_text(const Archive& archive) {
+  if (archive.horizons.empty()) return "";
+  const Role role = judged_role(archive);
+  std::string text = fmt::format("\nPredictions ahead, {} runs\n{:<11} {:>8} {:>8} {:>10} {:>10}\n", words_for(role),
+                                 "filter", "samples", "scored", "log score", "rmse");
+  for (const HorizonRow& row : archive.horizons)
+    if (row.run == "*" && row.role == role)
+      text += fmt::format("{:<11} {:>8} {:>8} {:>10} {:>10}\n", row.filter, row.horizon, row.samples,
+                          fixed_or_short(row.log_score, 4), fixed_or_short_list(row.rmse, 5));
+  return text;
+}
+
+std::string gained(double nats) { return (nats >= 0.0 ? "+" : "") + fixed_or_short(nats, 3); }
+
+std::string gain_text(const Archive& archive) {
+  const std::optional<BankGain> gain = bank_gain(archive.summary);
+  if (!gain || !gain->over_baseline || !gain->over_noise_only) return "";
+  return fmt::format(
+      "\nOn {} runs the bank gains {} nats/sample over one Kalman filter (baseline) and {} over noise\n"
+      "switching alone (noise_only): {}.\n",
+      words_for(gain->role), gained(*gain->over_baseline), gained(*gain->over_noise_only),
+      !gain->held_out()          ? "nothing was held out, so neither is evidence"
+      : gain->speaks_for_modes() ? "that excess is its evidence for modes of motion"
+                                 : "no evidence for modes of motion beyond changing noise");
+}
+
+}  // namespace
+
+std::string data_text(const Recording& recording) {
+  const auto count = [&](Role role) {
+    return std::count_if(recording.runs.begin(), recording.runs.end(),
+                         [role](const Trajectory& t) { return t.role == role; });
+  };
+  return fmt::format("data      {} train and {} test runs, {} and {} transitions, sample period {:.4g} s\n",
+                     count(Role::train), count(Role::test), recording.transitions(Role::train),
+                     recording.transitions(Role::test), recording.median_period_s());
+}
+
+void WindowCounts::add(const WindowFits& fits) {
+  for (const int value : fits.status) ++status[static_cast<std::size_t>(value)];
+}
+
+namespace {
+
+/// Who solved the windows, and the audit of the batch solver; empty for archives that do not say in words.
+std::string audit_text(const WindowAudit& audit) {
+  if (audit.ceres_method.empty()) return "";
+  std::string text = "solved    ";
+  if (audit.batch > 0) text += fmt::format("{} windows by {} (batch solver)", audit.batch, audit.batch_method);
+  if (audit.batch > 0 && audit.ceres > 0) text += ", ";
+  if (audit.ceres > 0) text += fmt::format("{} windows by {}", audit.ceres, audit.ceres_method);
+  if (audit.batch + audit.ceres == 0) text += "no window";
+  text += "\n";
+  if (audit.checked == 0) return text;
+  text +=
+      fmt::format("audit     {} of the batch solver's windows against Ceres alone: cost differs by {:.1e} relative, ",
+                  audit.checked, audit.cost_difference);
+  text += fmt::format("gradient {:.1e} (Ceres {:.1e}); parameters by {:.1e} standard errors", audit.gradient,
+                      audit.ceres_gradient, audit.parameter_difference);
+  if (audit.lower > 0) text += fmt::format("; {} in a lower minimum than Ceres'", audit.lower);
+  return text + "\n";
+}
+
+}  // namespace
+
+std::vector<std::string> window_warnings(const WindowFits& fits, const WindowCounts& counts) {
+  std::vector<std::string> warnings;
+  if (fits.audit.replaced > 0)
+    warnings.push_back(
+        fmt::format("the batch solver's cost was above Ceres' by more than {:.0e} relative, or its gradient above "
+                    "{:.0e}, in {} of {} "
+                    "audited windows, which have been solved by {}; window.solver = ceres solves all of them so",
+                    WindowAudit::tolerance, WindowAudit::gradient_tolerance, fits.audit.replaced, fits.audit.checked,
+                    fits.audit.ceres_method));
+  if (const Index failed = counts.of(FitStatus::failed); failed > 0)
+    warnings.push_back(
+        fmt::format("{} of {} windows have no finite fit and are left out: their samples may hold values too large to "
+                    "square; see `modebank check`",
+                    failed, counts.total()));
+  return warnings;
+}
+
+std::string windows_text(const WindowFits& fits, const WindowCounts& counts) {
+  std::string text = fmt::format(
+      "windows   {} of {} transitions: {} converged, {} rank deficient, {} at the iteration limit, {} failed\n",
+      counts.total(), fits.length, counts.of(FitStatus::converged), counts.of(FitStatus::rank_deficient),
+      counts.of(FitStatus::iteration_limit), counts.of(FitStatus::failed));
+  text += audit_text(fits.audit);
+  for (const std::string& warning : window_warnings(fits, counts)) text += "warning   " + warning + "\n";
+  const auto names = fits.parameter_names();
+  text += "global   ";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    text +=
+        fmt::format(" {} = {:.4g} +- {:.2g}", names[i], fits.global.theta(k), std::sqrt(fits.global.covariance(k, k)));
+  }
+  return text + fmt::format(", residual variance {:.4g}\n", fmt::join(fits.global.noise_variance(), " "));
+}
+
+std::string summary_text(const Archive& archive, int width) {
+  std::string text;
+  if (archive.recording) text += data_text(*archive.recording);
+  if (archive.lag) text += lag_text(*archive.lag);
+  if (archive.windows) {
+    WindowCounts counts;
+    counts.add(*archive.windows);
+    text += windows_text(*archive.windows, counts);
+  }
+  if (archive.mixture) text += mixture_text(*archive.mixture);
+  if (archive.bank) text += bank_text(*archive.bank) + merging_text(archive);
+  text += residuals_text(archive);
+  if (!archive.summary.empty())
+    text += "\n" + scores_text(archive, width) + verdicts_text(archive) + horizon_text(archive) + gain_text(archive);
+  return wrapped(text, width);
+}
+
+std::string provenance_text(const Archive& archive) {
+  const Provenance& p = archive.provenance;
+  std::string text = fmt::format("modebank  {} on {}\ncommand   {}\nconfig    {}\ndata      {}\nbuilt     ",
+                                 p.modebank_version, p.created, p.command_line, p.config_hash, p.data_hash);
+  for (const auto& [name, version] : p.versions) text += fmt::format("{} {}  ", name, version);
+  return text + fmt::format("\ninputs    {} files\n", p.inputs.size());
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "modebank/base/matrix.hpp"
+#include "modebank/filter/bank.hpp"
+#include "modebank/filter/options.hpp"
+
+namespace modebank::filter {
+
+/// What a filter says about one sample. Before it has started, and where a measurement is missing, the numbers that
+/// there are none of are NaN.
+struct Estimate {
+  std::vector<double> prediction;                  ///< n, of the state before the measurement, all modes combined
+  std::vector<double> innovation;                  ///< n_y, measurement minus prediction
+  Matrix innovation_covariance;                    ///< n_y x n_y, of the combined prediction
+  std::vector<double> state;                       ///< n, after the measurement
+  Matrix covariance;                               ///< n x n, after the measurement
+  std::vector<double> pit;                         ///< n_y, probability integral transform (Rosenblatt 1952)
+  std::vector<double> mode_probability_predicted;  ///< K, before the measurement
+  std::vector<double> mode_probability;            ///< K, after the measurement
+  double nis = 0.0;                                ///< normalised innovation squared of the signals that are there
+  double log_density = 0.0;                        ///< of the measurement as predicted [nats]
+  double spread_share = 0.0;                       ///< of the modes' differences in the innovation covariance's trace
+  std::ptrdiff_t steps = 0;                        ///< model steps since the sample before; 0: (re)started here
+};
+
+/// A bank at work, sample by sample. One object per stream; different objects may run in different threads.
+class BankFilter {
+ public:
+  /// Throws std::invalid_argument when the bank and the options do not fit each other.
+  explicit BankFilter(const Bank& bank, const FilterOptions& options = {});
+  ~BankFilter();
+  /// Takes over the other's stream.
+  BankFilter(BankFilter&&) noexcept;
+  /// Takes over the other's stream.
+  BankFilter& operator=(BankFilter&&) noexcept;
+
+  /// The next sample in the order of time: its time in seconds (NaN: one step after the last), the input recorded at it
+  /// (inputs() numbers; what is not finite is the last known one, at first zero) and the measurement (measurements()
+  /// numbers; NaN where missing). The first whole measurement is the start. Allocates nothing.
+  const Estimate& step(double time_s, const double* input, const double* measurement);
+  /// The same for anything that has data() and size(): std::vector, std::array, Eigen's vectors. Throws
+  /// std::invalid_argument for other sizes.
+  template <class Input, class Measurement>
+  const Estimate& step(double time_s, const Input& input, const Measurement& measurement) {
+    check_sizes(static_cast<std::ptrdiff_t>(input.size()), static_cast<std::ptrdiff_t>(measurement.size()));
+    return step(time_s, static_cast<const double*>(input.data()), static_cast<const double*>(measurement.data()));
+  }
+  /// What the last step said.
+  const Estimate& estimate() const;
+  /// Forgets everything; the next whole measurement is a start.
+  void restart();
+  /// Whether it has had a start.
+  bool started() const;
+
+ private:
+  void check_sizes(std::ptrdiff_t inputs, std::ptrdiff_t measurements) const;
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+}  // namespace modebank::filter

@@ -1,0 +1,177 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/feed/run_samples.hpp"
+
+/// Kim's (1994) smoother on the modes' filtered estimates, moment by moment: what smooth_run writes down and what
+/// expectation-maximisation with measurement noise takes its expectations from.
+namespace modebank {
+
+/// The filter's estimates at every moment of a run, one moment per column.
+template <int N, int NY>
+class FilteredHistory {
+ public:
+  FilteredHistory(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory)
+      : n_(model.structure.dimension()), K_(model.mode_count()) {
+    means_.resize(n_ * K_, run.count());
+    covariances_.resize(n_ * n_ * K_, run.count());
+    probability_.resize(K_, run.count());
+    noise_scale_.resize(run.count());
+    fill(model, run, trajectory);
+  }
+
+  void get(Eigen::Index t, std::size_t mode, Gaussian<N>& estimate) const {
+    const auto j = static_cast<Eigen::Index>(mode);
+    estimate.mean = means_.col(t).segment(j * n_, n_);
+    estimate.covariance = covariances_.col(t).segment(j * n_ * n_, n_ * n_).reshaped(n_, n_);
+  }
+  auto probability(Eigen::Index t) const { return probability_.col(t); }
+  double noise_scale(Eigen::Index t) const { return noise_scale_(t); }
+
+ private:
+  Eigen::Index n_, K_;
+  Eigen::MatrixXd means_, covariances_, probability_;
+  Eigen::VectorXd noise_scale_;
+
+  void fill(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory) {
+    FilterStep<N, NY> step(model);
+    FilterState<N> state = initial_state(model);
+    for (Eigen::Index t = 0; t < run.count(); ++t) {
+      step_to(model, run, t, trajectory, state, step);
+      for (Eigen::Index j = 0; j < K_; ++j) {
+        const Gaussian<N>& mode = state.modes[static_cast<std::size_t>(j)];
+        means_.col(t).segment(j * n_, n_) = mode.mean;
+        covariances_.col(t).segment(j * n_ * n_, n_ * n_) = mode.covariance.reshaped();
+      }
+      probability_.col(t) = state.mode_probability;
+      noise_scale_(t) = state.noise_scale;
+    }
+  }
+};
+
+/// Two moments that follow each other with their modes, given the whole run.
+template <int N>
+struct SmoothedPair {
+  std::size_t from, to;                     ///< mode at t, mode at t + 1
+  double weight;                            ///< P(from, to | all)
+  const Gaussian<N>&now, &next;             ///< the states at t given both modes, at t + 1 given `to`
+  const Eigen::Matrix<double, N, N>& gain;  ///< Cov(now, next) = gain next.covariance
+};
+
+/// Kim's backward pass: from the smoothed estimates of moment t + 1 to those of moment t.
+template <int N, int NY>
+class BackwardPass {
+ public:
+  /// Pairs of modes less probable than `negligible` are left out.
+  BackwardPass(const FilterModel<N, NY>& model, const FilteredHistory<N, NY>& history, double negligible = 0.0)
+      : model_(model),
+        history_(history),
+        negligible_(negligible),
+        kalman_(n(), model.C.rows(), model.structure.regressors()),
+        cholesky_(n()),
+        gain_(n(), n()),
+        product_(n(), n()),
+        closed_loop_(n(), n()),
+        filtered_(n()),
+        pairs_(model.modes.size(), Gaussian<N>(n())),
+        modes(model.modes.size(), Gaussian<N>(n())),
+        probability(model.mode_count()),
+        next_(modes),
+        weights_(model.mode_count(), model.mode_count()) {}
+
+  /// The end of a stretch: there is nothing to add to the filter.
+  void begin(Eigen::Index t) {
+    for (std::size_t j = 0; j < modes.size(); ++j) history_.get(t, j, modes[j]);
+    probability = history_.probability(t);
+  }
+
+  /// `input`: acting on the step from t to t + 1.
+  template <class U>
+  void step(Eigen::Index t, const U& input) {
+    step(t, input, [](const SmoothedPair<N>&) {});
+  }
+  /// The same; calls visit(pair) for every pair of modes that weighs anything.
+  template <class U, class Visit>
+  void step(Eigen::Index t, const U& input, Visit visit) {
+    next_ = modes;
+    weigh_pairs(t);
+    for (std::size_t j = 0; j < modes.size(); ++j) {
+      history_.get(t, j, filtered_);
+      const auto row = static_cast<Eigen::Index>(j);
+      for (std::size_t k = 0; k < modes.size(); ++k)
+        if (const double weight = weights_(row, static_cast<Eigen::Index>(k)); weight > 0.0) {
+          smooth_pair(filtered_, input, k, history_.noise_scale(t));
+          visit(SmoothedPair<N>{j, k, weight, pairs_[k], next_[k], gain_});
+        }
+      if (probability(row) > 0.0)
+        merge(pairs_, weights_.row(row) / probability(row), modes[j]);
+      else
+        modes[j] = filtered_;
+    }
+  }
+
+ private:
+  const FilterModel<N, NY>& model_;
+  const FilteredHistory<N, NY>& history_;
+  double negligible_;
+  KalmanStep<N, NY> kalman_;
+  small::Cholesky<N> cholesky_;
+  Eigen::Matrix<double, N, N> gain_, product_, closed_loop_;
+  Gaussian<N> filtered_;
+  std::vector<Gaussian<N>> pairs_;
+
+ public:
+  std::vector<Gaussian<N>> modes;  ///< smoothed, given each mode
+  Eigen::VectorXd probability;     ///< smoothed
+
+ private:
+  std::vector<Gaussian<N>> next_;
+  Eigen::MatrixXd weights_;  ///< P(mode j at t, mode k at t + 1 | all)
+
+  Eigen::Index n() const { return model_.structure.dimension(); }
+
+  void weigh_pairs(Eigen::Index t) {
+    const auto mu = history_.probability(t);
+    if (model_.variant == FilterVariant::mmae || model_.mode_count() == 1) {
+      weights_ = probability.asDiagonal();
+    } else {
+      weights_ = mu.asDiagonal() * model_.transition.matrix();
+      for (Eigen::Index k = 0; k < weights_.cols(); ++k) {
+        const double c = weights_.col(k).sum();
+        weights_.col(k) *= c < impossible_probability ? 0.0 : probability(k) / c;
+      }
+      if (negligible_ > 0.0) weights_ = (weights_.array() < negligible_).select(0.0, weights_);
+      weights_ /= weights_.sum();
+    }
+    probability = weights_.rowwise().sum();
+  }
+
+  /// Rauch, Tung & Striebel's step for mode k next; the covariance as a sum of squares, which rounding keeps definite.
+  template <class U>
+  void smooth_pair(const Gaussian<N>& filtered, const U& input, std::size_t k, double noise_scale) {
+    const auto& mode = model_.modes[k];
+    Gaussian<N>& result = pairs_[k];
+    kalman_.predict(filtered, model_, mode, input, noise_scale);
+    cholesky_.factorise(kalman_.predicted.covariance);
+    small::multiply_transposed(gain_, filtered.covariance, mode.F);
+    for (Eigen::Index i = 0; i < n(); ++i) cholesky_.solve(gain_.row(i));
+    const Eigen::Matrix<double, N, 1> change = next_[k].mean - kalman_.predicted.mean;
+    small::multiply(result.mean, gain_, change);
+    result.mean += filtered.mean;
+    small::multiply(closed_loop_, gain_, mode.F);
+    closed_loop_ = -closed_loop_;
+    closed_loop_.diagonal().array() += 1.0;
+    small::multiply(product_, closed_loop_, filtered.covariance);
+    result.covariance.setZero();
+    small::add_symmetric_product(result.covariance, product_, closed_loop_);
+    closed_loop_ = kalman_.process_noise + next_[k].covariance;
+    small::multiply(product_, gain_, closed_loop_);
+    small::add_symmetric_product(result.covariance, product_, gain_);
+    if (!is_finite(result)) result = filtered;
+  }
+};
+
+}  // namespace modebank

@@ -1,0 +1,169 @@
+#include "filter/judge/diagnostics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "filter/judge/evidence.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr double negligible_R = 1e-6;  // of the innovations' variance
+
+double total_of(const SeriesByRun& series) {
+  return std::accumulate(series.begin(), series.end(), 0.0, [](double sum, const std::vector<double>& run) {
+    return std::accumulate(run.begin(), run.end(), sum);
+  });
+}
+
+/// Fractions of the signals in the tails, and their binomial intervals.
+void set_tails(const Evidence& evidence, DiagnosticsRow& row) {
+  double scores = 0.0;
+  for (const std::vector<double>& run : evidence.above) scores += static_cast<double>(run.size());
+  row.tail_above = mean_of(evidence.above);
+  row.tail_below = mean_of(evidence.below);
+  const Interval above = binomial_interval(total_of(evidence.above), scores),
+                 below = binomial_interval(total_of(evidence.below), scores);
+  row.tail_above_lower = above.lower;
+  row.tail_above_upper = above.upper;
+  row.tail_below_lower = below.lower;
+  row.tail_below_upper = below.upper;
+}
+
+/// The states whose measurement noise is more than next to nothing, so that their stated covariance after the
+/// measurement is more than R.
+std::vector<Index> states_with_noise(const Bank& bank, Role role, const std::vector<Trajectory>& runs,
+                                     const std::vector<RunEvaluation>& evaluations) {
+  const Index n_y = bank.C.rows();
+  Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(n_y);
+  double samples = 0.0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].role != role) continue;
+    const RunEvaluation& e = evaluations.at(i);
+    for (Index k = 0; k < e.log_density.size(); ++k) {
+      if (std::isnan(e.log_density(k))) continue;
+      variance += e.innovation_covariance.col(k).reshaped(n_y, n_y).diagonal().array();
+      samples += 1.0;
+    }
+  }
+  std::vector<Index> states;
+  for (Index i = 0; i < n_y; ++i)
+    if (samples > 0.0 && bank.R(i, i) * samples >= negligible_R * variance(i)) states.push_back(i);
+  return states;
+}
+
+/// Of a mean of squared distances whose terms have that many degrees of freedom; `chi_square`: that is their law.
+Interval distance_interval(const SeriesByRun& series, bool chi_square, double degrees) {
+  const double excess = chi_square ? 1.0 : dispersion(series, degrees);
+  return chi_square_mean_interval(series, excess * autocorrelation_time(series), degrees);
+}
+
+void set_distances(const Collected& c, double n_y, double nees_states, DiagnosticsRow& row) {
+  row.nis_mean = mean_of(c.evidence.nis);
+  const Interval nis = distance_interval(c.evidence.nis, c.evidence.chi_square_nis, n_y);
+  row.nis_lower = nis.lower;
+  row.nis_upper = nis.upper;
+  const Interval nees = distance_interval(c.nees, c.evidence.chi_square_nis, nees_states);
+  row.nees_mean = mean_of(c.nees);
+  row.nees_lower = nees.lower;
+  row.nees_upper = nees.upper;
+}
+
+DiagnosticsRow make_row(const Collected& c, Index n_y, Index nees_states) {
+  DiagnosticsRow row;
+  const double N = c.samples > 0 ? static_cast<double>(c.samples) : not_a_number;
+  const double all = c.entropy_samples > 0 ? static_cast<double>(c.entropy_samples) : not_a_number;
+  row.samples = c.samples;
+  row.usage = c.usage / all;
+  row.entropy = c.entropy / all;
+  row.dwell = c.visits > 0.0 ? c.visited / c.visits : not_a_number;
+  row.dwell_model = not_a_number;
+  set_tails(c.evidence, row);
+  set_distances(c, static_cast<double>(n_y), static_cast<double>(nees_states), row);
+  row.state_rmse =
+      (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
+  row.whiteness_p = fisher_p(c.whiteness);
+  row.spread_share = c.spread / N;
+  row.verdict = verdict_of(c.evidence);
+  return row;
+}
+
+constexpr double takes_all = 0.99;         // usage of one mode
+constexpr double unused = 1e-3;            // usage
+constexpr double flat_entropy = 0.95;      // of log K
+constexpr double dominating_spread = 0.5;  // share of trace S
+constexpr double coloured = 0.01;          // whiteness p
+
+void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
+
+/// "mode 3 unused", "modes 1, 3 unused"; empty without any.
+std::string unused_modes(const std::vector<DiagnosticsRow>& modes) {
+  std::string list;
+  int count = 0;
+  for (const DiagnosticsRow& mode : modes)
+    if (mode.usage < unused) list += (count++ > 0 ? ", " : " ") + std::to_string(mode.mode);
+  return count == 0 ? "" : (count > 1 ? "modes" : "mode") + list + " unused";
+}
+
+/// What stands out of a filter's row, separated by "; ". `modes`: rows of the same filter's modes. `nees_states`: how
+/// many states the NEES is about.
+std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes, Eigen::Index nees_states) {
+  std::string flags;
+  for (const DiagnosticsRow& mode : modes)
+    if (mode.usage > takes_all) add_flag(flags, "one mode takes all (" + std::to_string(mode.mode) + ")");
+  if (const std::string list = unused_modes(modes); !list.empty()) add_flag(flags, list);
+  if (!modes.empty() && all.entropy > flat_entropy) add_flag(flags, "probabilities flat");
+  if (all.spread_share > dominating_spread) add_flag(flags, "spread dominates S");
+  if (all.tail_above_lower > largest_tail && all.tail_below_lower > largest_tail) add_flag(flags, "heavy tails");
+  if (all.nis_mean > all.nis_upper) add_flag(flags, "mean NIS above a true filter's");
+  if (all.nis_mean < all.nis_lower) add_flag(flags, "mean NIS below a true filter's");
+  if (all.nees_mean > all.nees_upper)
+    add_flag(flags, "NEES above a true filter's: the state's covariance is too small");
+  if (all.nees_mean < all.nees_lower)
+    add_flag(flags, "NEES below a true filter's: the state's covariance is too large");
+  if (all.whiteness_p < coloured) add_flag(flags, "innovations not white");
+  if (all.verdict == Verdict::undecided) add_flag(flags, "too few samples for a verdict");
+  if (nees_states < all.state_rmse.size() && all.state_rmse.allFinite())
+    add_flag(flags, nees_states == 0 ? "R is as good as zero, so the state is the measurement: no NEES"
+                                     : "R of some states is as good as zero, so they are the measurement: NEES of the "
+                                       "others alone");
+  return flags;
+}
+
+}  // namespace
+
+std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
+                                     const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
+                                     const std::vector<RunScores>& scores) {
+  // One Gaussian of known variance per prediction.
+  const bool chi_square_nis =
+      (bank.mode_count() == 1 || options.variant == FilterVariant::kf) && options.noise == FilterNoise::gaussian;
+  std::vector<DiagnosticsRow> rows;
+  for (const Role role : {Role::train, Role::test}) {
+    if (std::none_of(runs.begin(), runs.end(), [role](const Trajectory& run) { return run.role == role; })) continue;
+    const std::vector<Index> nees_states = states_with_noise(bank, role, runs, evaluations);
+    const auto row_of = [&](Index mode) {
+      const Collected collected = collect(bank, mode, role, chi_square_nis, nees_states, runs, evaluations, scores);
+      DiagnosticsRow row = make_row(collected, bank.C.rows(), std::ssize(nees_states));
+      row.filter = filter;
+      row.role = role;
+      row.mode = mode;
+      if (mode >= 0) row.dwell_model = 1.0 / (1.0 - bank.transition.matrix()(mode, mode));
+      return row;
+    };
+    DiagnosticsRow all = row_of(-1);
+    std::vector<DiagnosticsRow> modes;
+    for (Index mode = 0; bank.mode_count() > 1 && mode < bank.mode_count(); ++mode) modes.push_back(row_of(mode));
+    all.flags = flags_of(all, modes, std::ssize(nees_states));
+    rows.push_back(std::move(all));
+    rows.insert(rows.end(), modes.begin(), modes.end());
+  }
+  return rows;
+}
+
+}  // namespace modebank

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/verdict.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
+
+namespace modebank {
+
+/// One row of /evaluation/diagnostics: a filter on the pooled runs of a role, or one of its modes there. A mode is
+/// judged on the samples where it was the most probable before the measurement, so that a true filter is calibrated
+/// there, too (the transform is uniform given whatever was known before: Rosenblatt 1952; Diebold, Gunther & Tay 1998).
+/// Intervals hold with 95 %: Clopper & Pearson's (1934) for fractions; chi-square's for mean NIS and NEES, their
+/// degrees of freedom divided by the series' autocorrelation time and, for several modes or a scale learned on the way,
+/// by its dispersion (verdict.hpp). They hold for a true filter: a learned one's error comes on top. NaN: not known.
+struct DiagnosticsRow {
+  std::string filter;
+  Role role = Role::train;
+  Eigen::Index mode = -1;    ///< -1: the whole filter
+  Eigen::Index samples = 0;  ///< scored
+  double usage = 0.0;        ///< mean probability after the measurement; of the whole filter: of its most probable mode
+  double entropy = 0.0;      ///< mean entropy of the probabilities after it over log K; 0 for K = 1
+  double dwell = 0.0;        ///< mean stay in a mode along viterbi_mode (without it: the most probable) [samples]
+  double dwell_model = 0.0;  ///< 1 / (1 - T_jj), what the transition matrix says; NaN for the whole filter
+  double tail_above = 0.0, tail_above_lower = 0.0, tail_above_upper = 0.0;
+  double tail_below = 0.0, tail_below_lower = 0.0, tail_below_upper = 0.0;
+  double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< time average, interval of it if the filter is true
+  double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< of the state after the measurement, with truth;
+  ///< NaN where R is next to nothing: the state is then the measurement, and its stated covariance R no judgement of it
+  Eigen::VectorXd state_rmse;  ///< n_y, state minus truth; NaN without truth
+  double whiteness_p = 0.0;    ///< Ljung & Box, as in the summary
+  double spread_share = 0.0;   ///< mean share of the modes' differences in trace S
+  Verdict verdict = Verdict::undecided;
+  std::string flags;  ///< what stands out, separated by "; "
+};
+
+/// Rows of one filter: per role with runs the whole filter, then each mode if there are several. `options`: of the
+/// filter that made the evaluations; `scores`: of these (score_runs).
+std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
+                                     const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
+                                     const std::vector<RunScores>& scores);
+
+}  // namespace modebank

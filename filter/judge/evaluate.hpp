@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
+#include "modebank/filter/options.hpp"
+
+namespace modebank {
+
+/// What a filter said about every sample of a run, one sample per column. Column 0 is the start: its scores are NaN.
+struct RunEvaluation {
+  Eigen::MatrixXd prediction;                  ///< n x N, combined one-step prediction of the state
+  Eigen::MatrixXd innovation;                  ///< n_y x N, measurement minus combined prediction
+  Eigen::MatrixXd innovation_covariance;       ///< n_y*n_y x N, of the combined prediction
+  Eigen::MatrixXd state;                       ///< n x N, after the measurement
+  Eigen::MatrixXd covariance;                  ///< n*n x N, after the measurement
+  Eigen::VectorXd nis;                         ///< N
+  Eigen::MatrixXd pit;                         ///< n_y x N, Rosenblatt's transform
+  Eigen::VectorXd log_density;                 ///< N, nats
+  Eigen::MatrixXd mode_probability_predicted;  ///< K x N, before the measurement
+  Eigen::MatrixXd mode_probability;            ///< K x N, after the measurement
+  Eigen::VectorXd spread_share;                ///< N, of the modes' differences in the trace of innovation_covariance
+  // By smooth_run; empty without.
+  Eigen::MatrixXd smoothed_state;       ///< n x N, given the whole run
+  Eigen::MatrixXd smoothed_covariance;  ///< n*n x N
+  Eigen::VectorXi viterbi_mode;         ///< N, the most probable sequence of modes; -1 before the start
+};
+
+/// Runs the filter over one run, whose `state` holds the measurements (n_y x N), starting at x[0] = y[0], P[0] = R. A
+/// signal whose measurement is NaN is predicted only: the others are taken in, and the sample is scored by them;
+/// without any its innovation and scores are NaN. When the first measurements are NaN the first whole one is the start,
+/// and everything before it is NaN but the mode probabilities; a bank with lags starts at the first sample whose lagged
+/// samples are all measured. Longer times between samples: see TimeSteps. Throws std::invalid_argument when sizes
+/// disagree and DataError for an input that is not finite.
+RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options);
+
+/// Sum of log predictive densities over the scored samples of a run [nats]: the log-likelihood of theta, Q, R and T.
+/// Nothing is stored, so maximum likelihood may call it thousands of times. Same conditions as evaluate_run.
+double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options);
+
+/// The log predictive density of every sample of a run [nats], N; NaN where there is none.
+Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options);
+
+}  // namespace modebank

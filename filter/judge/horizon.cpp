@@ -1,0 +1,143 @@
+#include "filter/judge/horizon.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/feed/run_samples.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+/// Looks ahead from the filter's state at one moment.
+template <int N, int NY>
+class LookAhead {
+ public:
+  LookAhead(const FilterModel<N, NY>& model, const RunInstants& instants, const Trajectory& run, HorizonEvaluation& out)
+      : model_(model),
+        instants_(instants),
+        run_(run),
+        out_(out),
+        step_(model),
+        state_(initial_state(model)),
+        weights_(step_.hypothesis_probability().size()) {}
+
+  void from(Index t, const FilterState<N>& state) {
+    state_ = state;
+    Index ahead = 0;
+    std::size_t next = 0;
+    while (next < out_.horizons.size() && instants_.continues(t)) {
+      predict(model_, state_, instants_.inputs.col(++t), step_);
+      if (const Index k = instants_.instants[static_cast<std::size_t>(t)].sample;
+          k >= 0 && ++ahead == out_.horizons[next])
+        score(next++, k);
+      skip_measurement(step_, state_);
+    }
+  }
+
+ private:
+  const FilterModel<N, NY>& model_;
+  const RunInstants& instants_;
+  const Trajectory& run_;
+  HorizonEvaluation& out_;
+  FilterStep<N, NY> step_;
+  FilterState<N> state_;
+  Eigen::VectorXd weights_;
+
+  void score(std::size_t horizon, Index k) {
+    const auto y = run_.state.col(k);
+    if (missing_entries(y) > 0) return;
+    auto error = out_.error[horizon].col(k);
+    error = y;
+    for (std::size_t h = 0; h < step_.kalman.size(); ++h) {
+      const auto i = static_cast<Index>(h);
+      step_.kalman[h].observe(model_, y);
+      step_.log_likelihood(i) = step_.kalman[h].log_density;
+      error -= step_.hypothesis_probability()(i) * (y - step_.kalman[h].innovation);
+    }
+    out_.log_density(static_cast<Index>(horizon), k) =
+        bayes(step_.hypothesis_probability(), step_.log_likelihood, weights_);
+  }
+};
+
+template <int N, int NY>
+void look_ahead(const Bank& bank, const Trajectory& run, const FilterOptions& options, HorizonEvaluation& out) {
+  const FilterModel<N, NY> model(bank, options);
+  const RunInstants instants(bank, run, options.time_steps);
+  FilterStep<N, NY> step(model);
+  FilterState<N> state = initial_state(model);
+  LookAhead<N, NY> look(model, instants, run, out);
+  for (Index t = 0; t < instants.count(); ++t) {
+    step_to(model, instants, t, run, state, step);
+    if (instants.instants[static_cast<std::size_t>(t)].sample >= 0) look.from(t, state);
+  }
+}
+
+/// Sums over the scored samples of one or more runs at one horizon.
+struct HorizonSums {
+  Index samples = 0;
+  double log_density = 0.0;
+  Eigen::ArrayXd squared_error;
+
+  void add(const HorizonEvaluation& run, std::size_t horizon) {
+    const Eigen::MatrixXd& error = run.error[horizon];
+    if (squared_error.size() == 0) squared_error = Eigen::ArrayXd::Zero(error.rows());
+    for (Index k = 0; k < error.cols(); ++k) {
+      const double value = run.log_density(static_cast<Index>(horizon), k);
+      if (std::isnan(value)) continue;
+      ++samples;
+      log_density += value;
+      squared_error += error.col(k).array().square();
+    }
+  }
+};
+
+}  // namespace
+
+HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options,
+                                    std::vector<Index> horizons) {
+  check_run(bank, run);
+  std::sort(horizons.begin(), horizons.end());
+  horizons.erase(std::unique(horizons.begin(), horizons.end()), horizons.end());
+  if (!horizons.empty() && horizons.front() < 1) throw std::invalid_argument("horizons must be at least 1");
+  HorizonEvaluation out;
+  out.error.assign(horizons.size(), Eigen::MatrixXd::Constant(bank.C.rows(), run.samples(), not_a_number));
+  out.log_density.setConstant(std::ssize(horizons), run.samples(), not_a_number);
+  out.horizons = std::move(horizons);
+  with_sizes(bank.structure.dimension(), bank.C.rows(),
+             [&]<int N, int NY>() { look_ahead<N, NY>(bank, run, options, out); });
+  return out;
+}
+
+std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std::vector<Trajectory>& runs,
+                                           const std::vector<HorizonEvaluation>& evaluations) {
+  std::vector<HorizonRow> rows;
+  const auto add_row = [&](Role role, const std::string& run, Index horizon, const HorizonSums& sums) {
+    const double N = sums.samples > 0 ? static_cast<double>(sums.samples) : not_a_number;
+    rows.push_back({filter, role, run, horizon, sums.samples, sums.log_density / N, (sums.squared_error / N).sqrt()});
+  };
+  for (const Role role : {Role::train, Role::test}) {
+    std::vector<HorizonSums> pooled;
+    std::vector<Index> horizons;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (runs[i].role != role) continue;
+      horizons = evaluations.at(i).horizons;
+      pooled.resize(horizons.size());
+      for (std::size_t h = 0; h < horizons.size(); ++h) {
+        HorizonSums single;
+        single.add(evaluations[i], h);
+        pooled[h].add(evaluations[i], h);
+        add_row(role, runs[i].run, horizons[h], single);
+      }
+    }
+    for (std::size_t h = 0; h < pooled.size(); ++h) add_row(role, "*", horizons[h], pooled[h]);
+  }
+  return rows;
+}
+
+}  // namespace modebank

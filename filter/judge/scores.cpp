@@ -1,0 +1,221 @@
+#include "filter/judge/scores.hpp"
+
+#include <cmath>
+#include <locale>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include "ident/base/distributions.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+/// The two-sided 5 % region of a chi-square variable, as method section 6 counts it.
+struct ChiSquareRegion {
+  double lower, upper;
+  explicit ChiSquareRegion(double degrees_of_freedom)
+      : lower(chi_square_quantile(true_tail, degrees_of_freedom)),
+        upper(chi_square_quantile(1.0 - true_tail, degrees_of_freedom)) {}
+};
+
+/// Sums over scored samples of one or more runs. A sample is scored by the signals that it has.
+class ScoreSums {
+ public:
+  explicit ScoreSums(Index measurements)
+      : squared_error_(Eigen::ArrayXd::Zero(measurements)), errors_(Eigen::ArrayXd::Zero(measurements)) {
+    for (Index i = 1; i <= measurements; ++i) nis_regions_.emplace_back(static_cast<double>(i));
+  }
+
+  void add(const RunEvaluation& run, const RunScores& scores) {
+    for (Index k = 0; k < run.log_density.size(); ++k)
+      if (!std::isnan(run.log_density(k))) add_sample(run, k, scores);
+    whiteness_.push_back(scores.whiteness_p);
+  }
+
+  SummaryRow row() const {
+    SummaryRow row;
+    row.samples = samples_;
+    const double N = samples_ > 0 ? static_cast<double>(samples_) : not_a_number;
+    const double components = pit_.empty() ? not_a_number : static_cast<double>(pit_.size());
+    row.log_score = log_density_ / N;
+    row.rmse = (squared_error_ / errors_).sqrt();
+    row.nis_mean = nis_ / N;
+    row.nis_above = static_cast<double>(nis_above_) / N;
+    row.nis_below = static_cast<double>(nis_below_) / N;
+    row.tail_above = static_cast<double>(tail_above_) / components;
+    row.tail_below = static_cast<double>(tail_below_) / components;
+    row.pit_distance = kolmogorov_distance(pit_);
+    row.whiteness_p = fisher_p(whiteness_);
+    return row;
+  }
+
+ private:
+  Index samples_ = 0, nis_above_ = 0, nis_below_ = 0, tail_above_ = 0, tail_below_ = 0;
+  double log_density_ = 0.0, nis_ = 0.0;
+  Eigen::ArrayXd squared_error_, errors_;
+  std::vector<double> pit_, whiteness_;
+  std::vector<ChiSquareRegion> nis_regions_;  ///< of one signal, two, ...
+  ChiSquareRegion z_region_{1.0};
+
+  void add_sample(const RunEvaluation& run, Index k, const RunScores& scores) {
+    ++samples_;
+    log_density_ += run.log_density(k);
+    const auto there = (!run.pit.col(k).array().isNaN()).eval();
+    squared_error_ += there.select(run.innovation.col(k).array().square(), 0.0);
+    errors_ += there.cast<double>();
+    nis_ += run.nis(k);
+    if (there.any()) {
+      const ChiSquareRegion& nis_region = nis_regions_[static_cast<std::size_t>(there.count() - 1)];
+      nis_above_ += run.nis(k) > nis_region.upper;
+      nis_below_ += run.nis(k) < nis_region.lower;
+    }
+    for (Index i = 0; i < run.pit.rows(); ++i) {
+      if (!there(i)) continue;
+      const double score = scores.z(i, k);
+      tail_above_ += score * score > z_region_.upper;
+      tail_below_ += score * score < z_region_.lower;
+      pit_.push_back(run.pit(i, k));
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<SummaryRow> summarize(const std::string& filter, const std::vector<Trajectory>& runs,
+                                  const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores) {
+  if (runs.size() != evaluations.size() || runs.size() != scores.size())
+    throw std::invalid_argument(std::to_string(runs.size()) + " runs, but " + std::to_string(evaluations.size()) +
+                                " evaluations and " + std::to_string(scores.size()) + " of them scored");
+  std::vector<SummaryRow> rows;
+  const auto add_row = [&](const ScoreSums& sums, Role role, const std::string& run) {
+    rows.push_back(sums.row());
+    rows.back().filter = filter;
+    rows.back().role = role;
+    rows.back().run = run;
+  };
+  for (const Role role : {Role::train, Role::test}) {
+    std::optional<ScoreSums> pooled;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (runs[i].role != role) continue;
+      ScoreSums single(evaluations[i].innovation.rows());
+      single.add(evaluations[i], scores[i]);
+      add_row(single, role, runs[i].run);
+      if (!pooled) pooled.emplace(evaluations[i].innovation.rows());
+      pooled->add(evaluations[i], scores[i]);
+    }
+    if (pooled) add_row(*pooled, role, "*");
+  }
+  return rows;
+}
+
+namespace {
+
+struct MeanScore {
+  double value = not_a_number;
+  Index samples = 0;
+};
+
+/// Over the samples that have a prediction, as in the summary.
+MeanScore mean_log_score(const Bank& bank, const Recording& recording, Role role, const FilterOptions& options) {
+  double sum = 0.0;
+  Index scored = 0;
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != role) continue;
+    for (const double score : log_densities(bank, run, options)) {
+      if (std::isnan(score)) continue;
+      sum += score;
+      ++scored;
+    }
+  }
+  return {scored > 0 ? sum / static_cast<double>(scored) : not_a_number, scored};
+}
+
+}  // namespace
+
+std::vector<MergingCost> merging_costs(const Bank& unlimited, const Bank& limited, Index components,
+                                       const Recording& recording, const FilterOptions& options) {
+  std::vector<MergingCost> rows;
+  for (const Role role : {Role::train, Role::test}) {
+    if (recording.transitions(role) == 0) continue;
+    const MeanScore before = mean_log_score(unlimited, recording, role, options),
+                    after = mean_log_score(limited, recording, role, options);
+    rows.push_back({role, components, unlimited.mode_count(), limited.mode_count(), after.samples, before.value,
+                    after.value, before.value - after.value});
+  }
+  return rows;
+}
+
+namespace {
+
+std::string shortest(double value) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << value;
+  return text.str();
+}
+
+}  // namespace
+
+double ScoreGoal::loss(double score) const {
+  switch (kind) {
+    case Kind::higher:
+      return -score;
+    case Kind::lower:
+      return score;
+    case Kind::nominal:
+      return std::abs(score - nominal);
+  }
+  return not_a_number;
+}
+
+std::string ScoreGoal::text() const {
+  switch (kind) {
+    case Kind::higher:
+      return "higher";
+    case Kind::lower:
+      return "lower";
+    case Kind::nominal:
+      return "nearest " + shortest(nominal);
+  }
+  return "";
+}
+
+std::optional<ScoreGoal> goal_of(const std::string& score, int states) {
+  using Kind = ScoreGoal::Kind;
+  std::string kind = score;
+  for (const std::string role : {"_train_", "_test_"})
+    if (const auto at = score.find(role); at != std::string::npos) kind = score.substr(at + role.size());
+  if (kind == "log_score" || kind == "whiteness_p") return ScoreGoal{Kind::higher};
+  if (kind.rfind("rmse", 0) == 0 || kind == "pit_distance") return ScoreGoal{Kind::lower};
+  if (kind == "nis_mean") return ScoreGoal{Kind::nominal, static_cast<double>(states)};
+  if (kind.rfind("tail_", 0) == 0 || kind.rfind("nis_", 0) == 0) return ScoreGoal{Kind::nominal, true_tail};
+  return {};
+}
+
+const SummaryRow* pooled_row(const std::vector<SummaryRow>& summary, const std::string& filter, Role role) {
+  for (const SummaryRow& row : summary)
+    if (row.filter == filter && row.role == role && row.run == "*") return &row;
+  return nullptr;
+}
+
+Role judged_role(const std::vector<SummaryRow>& summary) {
+  return pooled_row(summary, "bank", Role::test) ? Role::test : Role::train;
+}
+
+std::optional<BankGain> bank_gain(const std::vector<SummaryRow>& summary) {
+  BankGain gain{judged_role(summary), {}, {}};
+  const SummaryRow* bank = pooled_row(summary, "bank", gain.role);
+  if (!bank) return {};
+  if (const SummaryRow* baseline = pooled_row(summary, "baseline", gain.role))
+    gain.over_baseline = bank->log_score - baseline->log_score;
+  if (const SummaryRow* noise_only = pooled_row(summary, "noise_only", gain.role))
+    gain.over_noise_only = bank->log_score - noise_only->log_score;
+  return gain;
+}
+
+}  // namespace modebank

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/statistics.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
+
+namespace modebank {
+
+/// One row of /evaluation/summary (method: section 6). Fractions are of the scored samples.
+struct SummaryRow {
+  std::string filter;  ///< bank, baseline or noise_only
+  Role role = Role::train;
+  std::string run;           ///< "*": pooled over the samples of all runs of the role
+  Eigen::Index samples = 0;  ///< scored samples
+  double log_score = 0.0;    ///< mean log predictive density [nats/sample], higher is better
+  Eigen::VectorXd rmse;      ///< n_y, of the one-step prediction [state unit]
+  double nis_mean = 0.0;
+  double nis_above = 0.0;   ///< NIS above the 97.5 % quantile of chi-square(n_y)
+  double nis_below = 0.0;   ///< NIS below the 2.5 % quantile
+  double tail_above = 0.0;  ///< z^2 above the 97.5 % quantile of chi-square(1), z = Phi^-1(pit)
+  double tail_below = 0.0;
+  double pit_distance = 0.0;  ///< Kolmogorov distance of pit from uniform
+  double whiteness_p = 0.0;   ///< Ljung & Box (1978) p of z, min(20, N/5) lags, pooled over runs by Fisher's method
+};
+
+/// Of a true filter, what lies beyond each of the two quantiles that fractions are counted by.
+inline constexpr double true_tail = 0.025;
+
+/// Rows of one filter: each run of the role in order, then the pooled "*" row, train first. A role without runs has no
+/// rows. `scores`: of the evaluations (score_runs).
+std::vector<SummaryRow> summarize(const std::string& filter, const std::vector<Trajectory>& runs,
+                                  const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores);
+
+/// What a limit on the number of modes cost on the runs of one role: a row of /bank/merged.
+struct MergingCost {
+  Role role = Role::train;
+  Eigen::Index components = 0;       ///< of the mixture, before the closest ones were merged
+  Eigen::Index modes_unlimited = 0;  ///< of the bank learned without the limit
+  Eigen::Index modes = 0;            ///< of the bank learned with it
+  Eigen::Index samples = 0;          ///< scored
+  double log_score_unlimited = 0.0;  ///< mean log predictive density [nats/sample]
+  double log_score = 0.0;
+  double loss = 0.0;  ///< of log score by the limit; negative where the bank is better with it
+};
+
+/// One row per role that has runs. `components`: of the mixture that both banks were learned from.
+std::vector<MergingCost> merging_costs(const Bank& unlimited, const Bank& limited, Eigen::Index components,
+                                       const Recording& recording, const FilterOptions& options);
+
+/// Which values of a score are good. `nominal`: the nearer to a true filter's value the better.
+struct ScoreGoal {
+  enum class Kind { higher, lower, nominal } kind = Kind::higher;
+  double nominal = 0.0;
+
+  /// The smaller, the better; NaN for NaN.
+  double loss(double score) const;
+  std::string text() const;  ///< "higher", "lower" or "nearest 0.025"
+};
+
+/// Goal of a score by its name in the summary, or by `<filter>_<role>_<score>` (studies); nothing for columns that are
+/// neither good nor bad (samples, modes). `states` is the number of measured states, the mean of a true filter's NIS.
+std::optional<ScoreGoal> goal_of(const std::string& score, int states);
+
+/// The row of a filter over all runs of a role; null without.
+const SummaryRow* pooled_row(const std::vector<SummaryRow>& summary, const std::string& filter, Role role);
+
+/// The runs that filters are judged on: those held out, or, where nothing was, those they learned from.
+Role judged_role(const std::vector<SummaryRow>& summary);
+
+/// What the bank gained over its competitors there, in mean log score [nats/sample]; empty where one was not scored.
+struct BankGain {
+  Role role = Role::train;
+  std::optional<double> over_baseline, over_noise_only;
+
+  bool held_out() const { return role == Role::test; }
+  bool predicts_better() const { return over_baseline && *over_baseline > 0.0; }
+  /// More than switching noise alone explains; evidence if the runs were held out.
+  bool speaks_for_modes() const { return over_noise_only && *over_noise_only > 0.0; }
+};
+/// Empty without a bank's scores.
+std::optional<BankGain> bank_gain(const std::vector<SummaryRow>& summary);
+
+}  // namespace modebank

@@ -1,0 +1,121 @@
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "filter/learn/from_mixture/training_transitions.hpp"
+#include "filter/learn/learn.hpp"
+#include "filter/learn/likelihood/maximum_likelihood.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+namespace {
+
+constexpr double smallest_r_share = 1e-10;  // of var(y) (method: section 5)
+constexpr double bound_tolerance = 1e-7;    // nats per sample that R at its bound may cost
+constexpr double least_gain = 1e-9;         // nats per sample: a better start has to be better than rounding
+constexpr AscentLimits limits{200, 1e-12};
+constexpr std::array<std::pair<double, double>, 2> noise_starts{{{1.0, 0.1}, {0.01, 0.5}}};  // shares of Q, R
+
+/// Lower bound of R's diagonal: its share of each output's population variance over the training samples.
+Eigen::VectorXd measurement_bound(const Recording& training) {
+  const Index n = training.state_count();
+  Eigen::VectorXd bound(n);
+  for (Index i = 0; i < n; ++i) {
+    double count = 0.0, mean = 0.0, scatter = 0.0;  // Welford's recursion
+    for (const Trajectory& run : training.runs)
+      for (const double y : run.state.row(i)) {
+        if (!std::isfinite(y)) continue;
+        const double delta = y - mean;
+        mean += delta / ++count;
+        scatter += delta * (y - mean);
+      }
+    bound(i) = count > 0.0 ? smallest_r_share * scatter / count : 0.0;
+  }
+  return bound;
+}
+
+/// The search for Q and R: theta is known, and one mode has no T.
+struct NoiseSearch {
+  LikelihoodTarget target;
+  Eigen::VectorXd scale;  ///< n residual variances: the unit of the starts
+  Eigen::VectorXd bound;  ///< n lower bounds of R's diagonal
+
+  double samples() const { return static_cast<double>(target.recording.transitions(Role::train)); }
+
+  LikelihoodMaximum maximise(const Bank& start, const std::vector<Index>& free_R) const {
+    FreeParameters free;
+    free.least_Q = rounding_share * scale;
+    free.R = free_R;
+    free.least_R = bound;
+    free.transition = false;
+    return maximise_likelihood(target, free, start, limits);
+  }
+};
+
+/// The likelihood can have one maximum with the noise in Q and another with it in R: the best of several starts.
+LikelihoodMaximum best_of_starts(const NoiseSearch& search, Bank bank, const std::vector<Index>& outputs) {
+  std::optional<LikelihoodMaximum> best;
+  for (const auto& [q_share, r_share] : noise_starts) {
+    const Index n = search.scale.size();
+    bank.modes.front().Q.topLeftCorner(n, n) = (q_share * search.scale).asDiagonal();
+    bank.R = (search.bound + r_share * search.scale).asDiagonal();
+    LikelihoodMaximum end = search.maximise(bank, outputs);
+    if (!best || end.value > best->value + least_gain * search.samples()) best = std::move(end);
+  }
+  return std::move(*best);
+}
+
+struct HeldNoise {
+  LikelihoodMaximum best;
+  std::vector<Index> free;  ///< outputs whose R is not at its bound
+};
+
+/// Holds every output's R at its bound where that costs no likelihood.
+HeldNoise hold_at_bounds(const NoiseSearch& search, LikelihoodMaximum best, std::vector<Index> outputs) {
+  HeldNoise result{std::move(best), outputs};
+  for (const Index i : outputs) {
+    std::vector<Index> rest = result.free;
+    std::erase(rest, i);
+    Bank start = result.best.bank;
+    start.R(i, i) = search.bound(i);
+    LikelihoodMaximum held = search.maximise(start, rest);
+    if (!(held.value >= result.best.value - bound_tolerance * search.samples())) continue;
+    result = {std::move(held), std::move(rest)};
+  }
+  return result;
+}
+
+/// Every sample counts the same in the baseline: its likelihood is what other filters' scores are compared with.
+Recording unweighted_training_part(const Recording& recording) {
+  Recording training = training_part(recording);
+  for (Trajectory& run : training.runs) run.weight.resize(0);
+  return training;
+}
+
+}  // namespace
+
+Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
+  const Recording training = unweighted_training_part(recording);
+  if (training.transitions(Role::train) == 0) throw DataError("no training run has a transition to learn from");
+  const Index n = structure.states, p = structure.parameters();
+  Bank bank = bank_frame(recording, structure, Eigen::MatrixXd::Zero(n, n));
+  bank.modes.push_back(make_mode(structure, global.theta, global.residual_covariance, Eigen::MatrixXd::Zero(p, p),
+                                 global.covariance.diagonal().cwiseSqrt(), 1.0));
+  set_mode_sequence(bank, TransitionMatrix());
+
+  const NoiseSearch search{{training, {FilterVariant::kf}, std::nullopt},
+                           global.noise_variance().unaryExpr(&positive_variance),
+                           measurement_bound(training)};
+  std::vector<Index> outputs(static_cast<std::size_t>(n));
+  std::iota(outputs.begin(), outputs.end(), Index{0});
+  HeldNoise noise = hold_at_bounds(search, best_of_starts(search, bank, outputs), outputs);
+  return {std::move(noise.best.bank), noise.best.value, noise.best.end == MeasuredFit::converged,
+          noise.free.size() < outputs.size()};
+}
+
+}  // namespace modebank

@@ -1,0 +1,79 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "filter/learn/learn.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
+#include "ident/fit/robust_regression.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+namespace {
+
+constexpr Index scales = 8;  // method: section 6, as all constants here
+constexpr double lowest_quantile = 0.30;
+constexpr double highest_quantile = 0.997;
+constexpr std::array<double, 4> stays{0.7, 0.8, 0.9, 0.95};
+
+/// Linear interpolation between order statistics at position (N - 1) p, as numpy and R's type 7 do.
+double quantile(const std::vector<double>& sorted, double p) {
+  const double position = static_cast<double>(sorted.size() - 1) * p;
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return std::lerp(sorted[below], sorted[above], position - static_cast<double>(below));
+}
+
+/// Variances spaced geometrically between the squared quantiles of |r|, kept positive where most residuals are zero.
+Eigen::VectorXd noise_scales(const Eigen::VectorXd& r) {
+  std::vector<double> sizes(r.size());
+  Eigen::VectorXd::Map(sizes.data(), r.size()) = r.cwiseAbs();
+  std::sort(sizes.begin(), sizes.end());
+  const double low = quantile(sizes, lowest_quantile), high = quantile(sizes, highest_quantile);
+  const double floor = rounding_share * positive_variance(r.squaredNorm() / static_cast<double>(r.size()));
+  const double log_low = std::log(std::max(low * low, floor)), log_high = std::log(std::max(high * high, floor));
+  return Eigen::VectorXd::LinSpaced(scales, log_low, log_high).array().exp();
+}
+
+/// 8 x n, one column per state: row j makes mode j's diagonal Q.
+Eigen::MatrixXd noise_scales_per_state(const Eigen::MatrixXd& residuals) {
+  Eigen::MatrixXd variances(scales, residuals.cols());
+  for (Index i = 0; i < residuals.cols(); ++i) variances.col(i) = noise_scales(residuals.col(i));
+  return variances;
+}
+
+/// Gives the bank the `stay` that makes the training runs most likely, the smallest of equals.
+void choose_stay(Bank& bank, const Recording& recording) {
+  Bank candidate = bank;
+  double best = -std::numeric_limits<double>::infinity();
+  for (const double stay : stays) {
+    set_mode_sequence(candidate, TransitionMatrix::sticky(scales, stay));
+    const double likelihood = training_log_likelihood(candidate, recording, FilterOptions{});
+    if (stay != stays.front() && !(likelihood > best)) continue;
+    best = likelihood;
+    bank = candidate;
+  }
+}
+
+}  // namespace
+
+Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R) {
+  Bank bank = bank_frame(recording, structure, R);
+  const Transitions transitions = unweighted(stack_training(recording, structure));
+  if (transitions.count() == 0) throw DataError("no training run has a transition to learn from");
+  const RobustRegression fit = huber_regression(transitions);
+  const Eigen::MatrixXd variances =
+      noise_scales_per_state(transitions.increments - transitions.regressors * fit.coefficients);
+  const Index p = structure.parameters();
+  for (Index j = 0; j < scales; ++j)
+    bank.modes.push_back(make_mode(structure, fit.coefficients.reshaped(), variances.row(j).asDiagonal(),
+                                   Eigen::MatrixXd::Zero(p, p), fit.standard_error.reshaped(),
+                                   1.0 / static_cast<double>(scales)));
+  choose_stay(bank, recording);
+  return bank;
+}
+
+}  // namespace modebank

@@ -1,0 +1,61 @@
+#include "filter/learn/from_mixture/bank_frame.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "filter/learn/from_mixture/training_transitions.hpp"
+
+namespace modebank {
+namespace {
+
+/// "wz", "wz[k-1]", ...; inputs count from their delay.
+std::vector<std::string> lagged_names(const std::vector<std::string>& names, Index lags, Index newest) {
+  std::vector<std::string> all;
+  for (Index lag = 0; lag < lags; ++lag)
+    for (const std::string& name : names) {
+      const Index age = newest + lag;
+      all.push_back(age == 0 ? name : name + (age > 0 ? "[k-" + std::to_string(age) + "]" : "[k+1]"));
+    }
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> state_names(const Recording& recording, const LinearStructure& structure) {
+  return lagged_names(names_of(recording.states), structure.state_lags, 0);
+}
+
+std::vector<std::string> input_names(const Recording& recording, const LinearStructure& structure) {
+  return lagged_names(names_of(recording.inputs), structure.input_lags, structure.input_delay - 1);
+}
+
+Bank bank_frame(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R) {
+  check_structure(recording, structure);
+  const Index n = structure.states;  // measured
+  if (R.rows() != n || R.cols() != n)
+    throw std::invalid_argument("R is " + std::to_string(R.rows()) + " x " + std::to_string(R.cols()) + " for " +
+                                std::to_string(n) + " states");
+  Bank bank;
+  bank.structure = structure;
+  bank.C = Eigen::MatrixXd::Identity(n, structure.dimension());
+  bank.R = R;
+  bank.state_names = state_names(recording, structure);
+  bank.input_names = input_names(recording, structure);
+  bank.dt_s = training_part(recording).median_period_s();
+  return bank;
+}
+
+Mode make_mode(const LinearStructure& structure, const Eigen::VectorXd& theta, const Eigen::MatrixXd& Q,
+               const Eigen::MatrixXd& spread, const Eigen::VectorXd& standard_error, double weight) {
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(structure.dimension(), structure.dimension());
+  whole.topLeftCorner(structure.states, structure.states) = Q;
+  return {unpack(structure, theta), whole, spread, standard_error, weight};
+}
+
+void set_mode_sequence(Bank& bank, const TransitionMatrix& transition) {
+  bank.transition = transition;
+  const Index K = transition.modes();
+  bank.initial_probability = Eigen::VectorXd::Constant(K, 1.0 / static_cast<double>(K));
+}
+
+}  // namespace modebank

@@ -1,0 +1,221 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/from_mixture/memberships.hpp"
+#include "filter/learn/from_mixture/motion_modes.hpp"
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "filter/learn/from_mixture/transition_learning.hpp"
+#include "filter/learn/learn.hpp"
+#include "mixture/select.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+namespace {
+
+void check(const BankOptions& options, const WindowFits& fits, const MixtureResult& mixture) {
+  if (mixture.mixture.components() < 1 || mixture.mixture.features() < fits.parameter_count())
+    throw std::invalid_argument("the mixture's features do not begin with the model's parameters");
+  if (options.noise == NoiseSource::fixed && !(options.process_variance >= 0.0))
+    throw std::invalid_argument("process variance " + std::to_string(options.process_variance) + " is negative");
+  if (options.measurement_variance && !(*options.measurement_variance >= 0.0))
+    throw std::invalid_argument("measurement variance " + std::to_string(*options.measurement_variance) +
+                                " is negative");
+}
+
+std::optional<ParameterPrior> prior_of(const WindowFits& fits) {
+  if (fits.prior_sd.size() == 0) return std::nullopt;
+  return ParameterPrior{fits.global.theta, fits.prior_sd};
+}
+
+/// A component's estimates: linear, and the motion model's behind it where there is one.
+struct ComponentEstimate {
+  ModeEstimate linear;
+  std::optional<MotionMode> motion;
+};
+
+/// What every way to estimate the components needs.
+struct EstimationInput {
+  const Recording& recording;
+  const WindowFits& fits;
+  const MixtureResult& mixture;
+  ThetaSource source;
+};
+
+/// [S25]'s way: theta is the component's mean, and Q is taken about that mean.
+Eigen::VectorXd component_mean(const EstimationInput& in, Index k) {
+  return in.mixture.mixture.means.col(k).head(in.fits.parameter_count());
+}
+
+std::vector<ModeEstimate> linear_modes(const EstimationInput& in, const TrainingTransitions& transitions,
+                                       const Eigen::MatrixXd& memberships, const ParameterPrior* prior) {
+  if (in.source == ThetaSource::pooled) return fit_pooled_modes(transitions, memberships, in.fits.global, prior);
+  std::vector<ModeEstimate> modes;
+  for (Index k = 0; k < memberships.cols(); ++k)
+    modes.push_back(
+        assess_weighted_mode(transitions, memberships.col(k), in.fits.global, prior, component_mean(in, k)));
+  return modes;
+}
+
+std::vector<MotionMode> motion_modes(const EstimationInput& in, const MotionModel& motion,
+                                     const Eigen::MatrixXd& memberships, const ParameterPrior* prior) {
+  if (in.source == ThetaSource::pooled)
+    return fit_motion_modes(in.recording, motion, memberships, in.fits.global, prior);
+  std::vector<MotionMode> modes;
+  for (Index k = 0; k < memberships.cols(); ++k) {
+    const Eigen::VectorXd theta = component_mean(in, k);
+    modes.push_back(fit_motion_mode(in.recording, motion, memberships.col(k), in.fits.global, prior, &theta));
+  }
+  return modes;
+}
+
+std::vector<ComponentEstimate> estimate_components(const EstimationInput& in, const MotionModel* motion) {
+  const TrainingTransitions transitions = gather_training_transitions(in.recording, in.fits.structure);
+  const Eigen::MatrixXd memberships = transition_memberships(transitions, in.fits, in.mixture);
+  const std::optional<ParameterPrior> prior = prior_of(in.fits);
+  const ParameterPrior* prior_or_null = prior ? &*prior : nullptr;
+  std::vector<ComponentEstimate> estimates;
+  if (!motion)
+    for (ModeEstimate& mode : linear_modes(in, transitions, memberships, prior_or_null))
+      estimates.push_back({std::move(mode), std::nullopt});
+  else
+    for (MotionMode& mode : motion_modes(in, *motion, memberships, prior_or_null))
+      estimates.push_back({mode.linear, std::move(mode)});
+  return estimates;
+}
+
+/// Positions of the components that become modes, maybe none; the others are listed in `screened`.
+std::vector<Index> screen(const LinearStructure& structure, const std::vector<ComponentEstimate>& modes,
+                          const Eigen::VectorXd& weights, std::vector<ScreenedMode>& screened) {
+  std::vector<Index> kept;
+  for (Index k = 0; k < std::ssize(modes); ++k) {
+    const std::string reason = screening_reason(structure, modes[k].linear);
+    if (reason.empty())
+      kept.push_back(k);
+    else
+      screened.push_back({k, weights(k), spectral_radius(unpack(structure, modes[k].linear.theta)), reason});
+  }
+  return kept;
+}
+
+/// "component 2 unstable (weight 0.1, spectral radius 1.31), ...".
+std::string describe(const std::vector<ScreenedMode>& screened) {
+  std::string text;
+  for (const ScreenedMode& mode : screened)
+    text += fmt::format("{}component {} {} (weight {:.3g}, spectral radius {:.6g})", text.empty() ? "" : ", ",
+                        mode.component, mode.reason, mode.weight, mode.spectral_radius);
+  return text;
+}
+
+/// Where Q of the bank's modes comes from. theta and its errors always rest on the mode's own noise.
+void set_process_noise(std::vector<ComponentEstimate>& modes, const BankOptions& options) {
+  const Index n = modes.front().linear.Q.rows();
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
+  double weight = 0.0;
+  for (const ComponentEstimate& mode : modes) {
+    sum += mode.linear.effective_transitions * mode.linear.Q;
+    weight += mode.linear.effective_transitions;
+  }
+  for (ComponentEstimate& mode : modes) {
+    if (options.noise == NoiseSource::shared) mode.linear.Q = sum / weight;
+    if (options.noise == NoiseSource::fixed) mode.linear.Q = options.process_variance * Eigen::MatrixXd::Identity(n, n);
+  }
+}
+
+TransitionMatrix learn_transition(const WindowFits& fits, const Eigen::VectorXi& labels, const std::vector<Index>& kept,
+                                  const BankOptions& options) {
+  if (options.transition == TransitionSource::stay) return TransitionMatrix::sticky(std::ssize(kept), options.stay);
+  return transition_from_counts(count_label_transitions(fits, labels, kept), fits.step);
+}
+
+/// The mode of the bank: with a motion model the windows' spread is carried over to the linear parameters.
+Mode bank_mode(const LinearStructure& structure, const ComponentEstimate& estimate, const Eigen::MatrixXd& spread,
+               double weight) {
+  const ModeEstimate& linear = estimate.linear;
+  if (!estimate.motion) return make_mode(structure, linear.theta, linear.Q, spread, linear.standard_error, weight);
+  const MotionMode& motion = *estimate.motion;
+  Mode mode = make_mode(structure, linear.theta, linear.Q, motion.by_motion * spread * motion.by_motion.transpose(),
+                        linear.standard_error, weight);
+  mode.motion_theta = motion.theta;
+  mode.motion_standard_error = motion.standard_error;
+  return mode;
+}
+
+std::vector<Index> all_positions(Index count) {
+  std::vector<Index> positions(count);
+  std::iota(positions.begin(), positions.end(), Index{0});
+  return positions;
+}
+
+/// Where no component can be a mode, all of them together may: the bank of one mode that is left.
+Bank bank_of_all(const Recording& recording, const WindowFits& fits, const MixtureResult& whole, BankOptions options,
+                 const Bank& without_modes, const MotionModel* motion) {
+  const MixtureResult all = merge_components(whole, 1);
+  const ModeEstimate one = estimate_components({recording, fits, all, options.theta}, motion).front().linear;
+  if (!screening_reason(fits.structure, one).empty())
+    throw DataError("no mode is left for the bank: " + describe(without_modes.screened));
+  options.modes = 1;
+  options.screen = false;
+  Bank bank = learn_bank(recording, fits, whole, options, without_modes.R, motion);
+  bank.screened = without_modes.screened;
+  return bank;
+}
+
+}  // namespace
+
+Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& whole,
+                const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion) {
+  check(options, fits, whole);
+  const MixtureResult mixture = options.modes > 0 ? merge_components(whole, options.modes) : whole;
+  const GaussianMixture& components = mixture.mixture;
+  const std::vector<ComponentEstimate> estimates =
+      estimate_components({recording, fits, mixture, options.theta}, motion);
+
+  Bank bank = bank_frame(recording, fits.structure, R);
+  bank.model = fits.model;
+  if (motion) bank.motion_parameters = motion->parameters();
+  if (options.measurement_variance)
+    bank.R = *options.measurement_variance * Eigen::MatrixXd::Identity(bank.R.rows(), bank.R.cols());
+  const std::vector<Index> kept = options.screen ? screen(fits.structure, estimates, components.weights, bank.screened)
+                                                 : all_positions(components.components());
+  if (kept.empty()) return bank_of_all(recording, fits, whole, options, bank, motion);
+  std::vector<ComponentEstimate> modes;
+  modes.reserve(kept.size());
+  for (const Index k : kept) modes.push_back(estimates[k]);
+  set_process_noise(modes, options);
+
+  const Index p = fits.parameter_count();
+  const double kept_weight = components.weights(kept).sum();
+  for (Index j = 0; j < std::ssize(kept); ++j)
+    bank.modes.push_back(bank_mode(fits.structure, modes[j], components.covariances[kept[j]].topLeftCorner(p, p),
+                                   components.weights(kept[j]) / kept_weight));
+  set_mode_sequence(bank, learn_transition(fits, mixture.labels, kept, options));
+  return bank;
+}
+
+Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
+                              const BankOptions& options, const Eigen::MatrixXd& R, const FilterOptions& filter) {
+  BankOptions of_start = options;
+  std::vector<Bank> starts{learn_bank(recording, fits, mixture, options, R)};
+  const auto fewer = [&](Index modes) {
+    return static_cast<Index>(options.em.tuning.modes_kept * static_cast<double>(modes));
+  };
+  for (Index modes = fewer(starts.front().mode_count()); modes >= 1; modes = fewer(modes)) {
+    of_start.modes = modes;
+    of_start.screen = options.screen && modes > 1;  // one mode is a start in any case; refinement screens it
+    starts.push_back(learn_bank(recording, fits, mixture, of_start, R));
+  }
+  RefineOptions em = options.em;
+  em.screen = options.screen;
+  if (options.modes > 0) em.members = 1;  // several fits would have more modes than that
+  em.measurement_noise = em.measurement_noise && !options.measurement_variance;
+  return refine_bank(recording, fits, starts, em, filter);
+}
+
+}  // namespace modebank

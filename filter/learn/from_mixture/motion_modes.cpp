@@ -1,0 +1,110 @@
+#include "filter/learn/from_mixture/motion_modes.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "ident/base/not_a_number.hpp"
+#include "ident/fit/linearise.hpp"
+#include "ident/fit/motion_fit.hpp"
+
+namespace modebank {
+namespace {
+
+constexpr int max_passes = 50;
+constexpr double pass_tolerance = 1e-10;  // relative change of Q's diagonal
+constexpr int search_iterations = 200;
+
+/// sum g r r' / sum g, floored; the global covariance where no transition has weight.
+Eigen::MatrixXd weighted_scatter(const ModelResiduals& residuals, const Eigen::VectorXd& theta,
+                                 const GlobalModel& global) {
+  const Index n = residuals.states();
+  Eigen::VectorXd r;
+  residuals.evaluate(theta.data(), r, nullptr);
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
+  double sum = 0.0;
+  for (Index k = 0; k < residuals.samples(); ++k) {
+    scatter += residuals.weight(k) * r.segment(k * n, n) * r.segment(k * n, n).transpose();
+    sum += residuals.weight(k);
+  }
+  if (!(sum > 0.0)) return global.residual_covariance;
+  return floored_process_noise(scatter / sum, global);
+}
+
+double sum_of_weights(const ModelResiduals& residuals) {
+  double sum = 0.0;
+  for (Index k = 0; k < residuals.samples(); ++k) sum += residuals.weight(k);
+  return sum;
+}
+
+/// (sum g J' Q^-1 J + prior)^-1 with Q free of the bias of the fitted parameters; NaN where theta is not determined.
+Eigen::MatrixXd motion_covariance(const ModelResiduals& residuals, const MotionMode& mode,
+                                  const ParameterPrior* prior) {
+  const Index n = residuals.states(), p = residuals.unknowns();
+  const double W = mode.linear.effective_transitions;
+  const double lost = static_cast<double>(p) / static_cast<double>(n);
+  const Eigen::MatrixXd Q_inverse =
+      mode.linear.Q.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) * (std::max(W - lost, 1.0) / std::max(W, 1.0));
+  Eigen::VectorXd r;
+  RowMajorJacobian J;
+  residuals.evaluate(mode.theta.data(), r, &J);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(p, p);
+  for (Index k = 0; k < residuals.samples(); ++k)
+    information += residuals.weight(k) * J.middleRows(k * n, n).transpose() * Q_inverse * J.middleRows(k * n, n);
+  if (prior) information.diagonal() += prior->sd.array().square().inverse().matrix();
+  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * information * scale.asDiagonal());
+  if (factor.info() != Eigen::Success || factor.rcond() < excitation_tolerance * excitation_tolerance)
+    return Eigen::MatrixXd::Constant(p, p, not_a_number);
+  return scale.asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(p, p)) * scale.asDiagonal();
+}
+
+/// Alternates between theta and the residual variances until both stand still.
+void estimate_theta(const ModelResiduals& residuals, const GlobalModel& global, const ParameterPrior* prior,
+                    MotionMode& mode) {
+  const RobustLoss least_squares(Loss::trivial, 0.0);
+  mode.linear.converged = false;
+  for (int pass = 0; pass < max_passes && !mode.linear.converged; ++pass) {
+    const Eigen::VectorXd variance = mode.linear.Q.diagonal();
+    const ModelMinimum minimum =
+        minimise_model(residuals, variance.cwiseSqrt(), least_squares, prior, {search_iterations}, mode.theta);
+    if (minimum.status == FitStatus::failed) return;
+    mode.theta = minimum.unknowns;
+    mode.linear.Q = weighted_scatter(residuals, mode.theta, global);
+    mode.linear.converged = (mode.linear.Q.diagonal() - variance).norm() <= pass_tolerance * variance.norm();
+  }
+}
+
+}  // namespace
+
+MotionMode fit_motion_mode(const Recording& recording, const MotionModel& model, const Eigen::VectorXd& weights,
+                           const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd* given) {
+  const ModelResiduals residuals(model, training_stretches(recording), ResidualKind::one_step, weights);
+  MotionMode mode;
+  mode.theta = given ? *given : global.theta;
+  mode.linear.effective_transitions = sum_of_weights(residuals);
+  mode.linear.Q = weighted_scatter(residuals, mode.theta, global);
+  if (!given) estimate_theta(residuals, global, prior, mode);
+
+  const Eigen::MatrixXd covariance = motion_covariance(residuals, mode, prior);
+  mode.standard_error = covariance.diagonal().cwiseSqrt();
+  const LinearisedMotion linear = linearise(model, mode.theta, operating_point(recording, weights));
+  mode.by_motion = linear.by_motion;
+  mode.linear.theta = linear.theta;
+  mode.linear.standard_error =
+      (linear.by_motion * covariance * linear.by_motion.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+  return mode;
+}
+
+std::vector<MotionMode> fit_motion_modes(const Recording& recording, const MotionModel& model,
+                                         const Eigen::MatrixXd& memberships, const GlobalModel& global,
+                                         const ParameterPrior* prior) {
+  std::vector<MotionMode> modes(static_cast<std::size_t>(memberships.cols()));
+  tbb::parallel_for(Index{0}, memberships.cols(), [&](Index k) {
+    modes[static_cast<std::size_t>(k)] = fit_motion_mode(recording, model, memberships.col(k), global, prior, nullptr);
+  });
+  return modes;
+}
+
+}  // namespace modebank

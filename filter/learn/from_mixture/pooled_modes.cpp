@@ -1,0 +1,132 @@
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <limits>
+#include <unsupported/Eigen/KroneckerProduct>
+
+#include "filter/learn/likelihood/definite_inverse.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "mixture/gaussian_mixture.hpp"
+
+namespace modebank {
+namespace {
+
+constexpr double smallest_weight = 1e-9;         // transitions; less carries no information about Q
+constexpr double alternation_tolerance = 1e-12;  // relative change of Q; rounding is three decades below
+constexpr int max_alternations = 500;
+
+/// The weighted transitions' sums about their own least squares, so that nothing cancels.
+struct WeightedRegression {
+  Eigen::MatrixXd beta;  // q x n coefficients by least squares; directions without data stay at the global model
+  RegressionSums sums;   // H is zero but for rounding and directions without data
+};
+
+WeightedRegression regress(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
+                           const Eigen::VectorXd& global_theta) {
+  const Eigen::MatrixXd& X = transitions.data.regressors;
+  const Eigen::MatrixXd beta_global = coefficients(transitions.structure, global_theta);
+  Eigen::MatrixXd r = transitions.data.increments - X * beta_global;
+  const Eigen::VectorXd root = weights.cwiseSqrt();
+  const Eigen::MatrixXd delta = solve(decompose(root.asDiagonal() * X, excitation_tolerance), root.asDiagonal() * r);
+  r -= X * delta;
+  return {beta_global + delta, regression_sums(X, weights, r)};
+}
+
+/// Inverse prior covariance, p x p; zero without a prior.
+Eigen::MatrixXd prior_information(Index parameters, const ParameterPrior* prior) {
+  if (!prior) return Eigen::MatrixXd::Zero(parameters, parameters);
+  return prior->sd.array().square().inverse().matrix().asDiagonal();
+}
+
+Eigen::MatrixXd regularised(const WeightedRegression& data, const Eigen::MatrixXd& Q, const ParameterPrior& prior) {
+  const Eigen::MatrixXd Q_inverse = definite_inverse(Q), P_inverse = prior_information(data.beta.size(), &prior);
+  const Eigen::MatrixXd information = Eigen::kroneckerProduct(Q_inverse, data.sums.G).eval() + P_inverse;
+  const Eigen::MatrixXd data_pull = data.sums.H * Q_inverse;
+  const Eigen::VectorXd pull = data_pull.reshaped() + P_inverse * (prior.mean - data.beta.reshaped());
+  return data.beta + information.ldlt().solve(pull).reshaped(data.beta.rows(), data.beta.cols());
+}
+
+Eigen::MatrixXd process_noise(const WeightedRegression& data, const Eigen::MatrixXd& beta, const GlobalModel& global) {
+  if (data.sums.weight < smallest_weight) return floored_process_noise(global.residual_covariance, global);
+  return floored_process_noise(data.sums.scatter_after(beta - data.beta) / data.sums.weight, global);
+}
+
+Eigen::VectorXd standard_errors(const WeightedRegression& data, const Eigen::MatrixXd& Q, const ParameterPrior* prior) {
+  const double q = static_cast<double>(data.sums.G.rows());
+  const Eigen::MatrixXd Q_unbiased = Q * (data.sums.weight / std::max(data.sums.weight - q, 1.0));
+  const Index p = Q.rows() * data.sums.G.rows();
+  Eigen::MatrixXd information = prior_information(p, prior);
+  if (data.sums.weight >= smallest_weight)
+    information += Eigen::kroneckerProduct(definite_inverse(Q_unbiased), data.sums.G).eval();
+  Eigen::VectorXd not_determined = Eigen::VectorXd::Constant(p, not_a_number);
+  if (!(information.diagonal().minCoeff() > 0.0) || !information.allFinite()) return not_determined;
+  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * information * scale.asDiagonal());
+  if (eigen.eigenvalues().minCoeff() < excitation_tolerance * excitation_tolerance) return not_determined;
+  const Eigen::MatrixXd root = scale.asDiagonal() * eigen.eigenvectors();
+  return (root.cwiseAbs2() * eigen.eigenvalues().cwiseInverse()).cwiseSqrt();
+}
+
+ModeEstimate estimate(const WeightedRegression& data, const Eigen::MatrixXd& beta, const Eigen::MatrixXd& Q,
+                      const ParameterPrior* prior) {
+  return {beta.reshaped(), Q, standard_errors(data, Q, prior), data.sums.weight, true};
+}
+
+}  // namespace
+
+Eigen::MatrixXd floored_process_noise(const Eigen::MatrixXd& Q, const GlobalModel& global) {
+  const Eigen::VectorXd sd = global.noise_variance().unaryExpr(&positive_variance).cwiseSqrt();
+  Eigen::MatrixXd whitened = sd.cwiseInverse().asDiagonal() * Q * sd.cwiseInverse().asDiagonal();
+  if (!raise_to_floor(whitened, process_noise_floor, CovarianceType::full)) return Q;
+  return sd.asDiagonal() * whitened * sd.asDiagonal();
+}
+
+ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
+                               const GlobalModel& global, const ParameterPrior* prior) {
+  const WeightedRegression data = regress(transitions, weights, global.theta);
+  Eigen::MatrixXd beta = data.beta;
+  Eigen::MatrixXd Q = process_noise(data, beta, global);
+  bool converged = prior == nullptr;
+  for (int i = 0; i < max_alternations && !converged; ++i) {
+    beta = regularised(data, Q, *prior);
+    const Eigen::MatrixXd previous = Q;
+    Q = process_noise(data, beta, global);
+    converged = (Q - previous).norm() <= alternation_tolerance * previous.norm();
+  }
+  ModeEstimate mode = estimate(data, beta, Q, prior);
+  mode.converged = converged;
+  return mode;
+}
+
+ModeEstimate assess_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
+                                  const GlobalModel& global, const ParameterPrior* prior,
+                                  const Eigen::VectorXd& theta) {
+  const WeightedRegression data = regress(transitions, weights, global.theta);
+  const Eigen::MatrixXd beta = coefficients(transitions.structure, theta);
+  return estimate(data, beta, process_noise(data, beta, global), prior);
+}
+
+double spectral_radius(const LinearModel& model) {
+  if (!model.A.allFinite()) return std::numeric_limits<double>::infinity();
+  const Eigen::MatrixXd full = Eigen::MatrixXd::Identity(model.A.rows(), model.A.cols()) + model.A;
+  return full.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+std::string screening_reason(const LinearStructure& structure, const ModeEstimate& mode) {
+  if (mode.effective_transitions < static_cast<double>(structure.regressors() + 1)) return "starved";
+  if (!(spectral_radius(unpack(structure, mode.theta)) <= 1.0 + spectral_radius_slack)) return "unstable";
+  return "";
+}
+
+std::vector<ModeEstimate> fit_pooled_modes(const TrainingTransitions& transitions, const Eigen::MatrixXd& memberships,
+                                           const GlobalModel& global, const ParameterPrior* prior) {
+  std::vector<ModeEstimate> modes(memberships.cols());
+  tbb::parallel_for(Index{0}, memberships.cols(),
+                    [&](Index k) { modes[k] = fit_weighted_mode(transitions, memberships.col(k), global, prior); });
+  return modes;
+}
+
+}  // namespace modebank

@@ -1,0 +1,93 @@
+#include "filter/learn/from_mixture/training_transitions.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+namespace {
+
+std::vector<RunRows> number_rows(const Recording& recording) {
+  std::vector<RunRows> runs;
+  Index first = 0;
+  for (Index r = 0; r < std::ssize(recording.runs); ++r) {
+    const Trajectory& run = recording.runs[r];
+    if (run.role != Role::train) continue;
+    runs.push_back({r, first, run.transitions()});
+    first += run.transitions();
+  }
+  return runs;
+}
+
+/// Zeros in the rows that are not finite or have no weight.
+void blank_unusable(TrainingTransitions& transitions) {
+  Transitions& data = transitions.data;
+  const bool weighted = data.weight.size() > 0;
+  transitions.usable = weighted ? data.weight : Eigen::VectorXd::Ones(data.count());
+  for (Index k = 0; k < data.count(); ++k) {
+    if (data.regressors.row(k).allFinite() && data.increments.row(k).allFinite() && transitions.usable(k) > 0.0)
+      continue;
+    data.regressors.row(k).setZero();
+    data.increments.row(k).setZero();
+    transitions.usable(k) = 0.0;
+  }
+  data.weight.resize(0);
+  const Index usable = (transitions.usable.array() > 0.0).count();
+  if (weighted && usable > 0) transitions.usable *= static_cast<double>(usable) / transitions.usable.sum();
+}
+
+}  // namespace
+
+void check_structure(const Recording& recording, const LinearStructure& s) {
+  if (recording.state_count() == s.states && recording.input_count() == s.inputs) return;
+  throw std::invalid_argument("the model has " + std::to_string(s.states) + " states and " + std::to_string(s.inputs) +
+                              " inputs, the recording " + std::to_string(recording.state_count()) + " and " +
+                              std::to_string(recording.input_count()));
+}
+
+TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure) {
+  check_structure(recording, structure);
+  const Index N = recording.transitions(Role::train);
+  TrainingTransitions all{structure,
+                          {Eigen::MatrixXd(N, structure.regressors()), Eigen::MatrixXd(N, structure.states)},
+                          {},
+                          number_rows(recording)};
+  if (recording.weighted()) all.data.weight = Eigen::VectorXd::Ones(N);
+  for (const RunRows& rows : all.runs) {
+    const Transitions run = stack_transitions(recording.runs[rows.run], 0, rows.count, structure);
+    all.data.regressors.middleRows(rows.first, rows.count) = run.regressors;
+    all.data.increments.middleRows(rows.first, rows.count) = run.increments;
+    if (run.weight.size() > 0) all.data.weight.segment(rows.first, rows.count) = run.weight;
+  }
+  blank_unusable(all);
+  if (all.usable.sum() == 0.0) throw DataError("no training run has a transition to learn from");
+  return all;
+}
+
+RegressionSums RegressionSums::operator+(const RegressionSums& other) const {
+  return {G + other.G, H + other.H, S + other.S, weight + other.weight};
+}
+
+Eigen::MatrixXd RegressionSums::scatter_after(const Eigen::MatrixXd& change) const {
+  const Eigen::MatrixXd cross = change.transpose() * H;
+  return S - cross - cross.transpose() + change.transpose() * G * change;
+}
+
+RegressionSums regression_sums(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& weights,
+                               const Eigen::MatrixXd& residuals) {
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * regressors;
+  return {weighted.transpose() * regressors, weighted.transpose() * residuals,
+          residuals.transpose() * weights.asDiagonal() * residuals, weights.sum()};
+}
+
+Recording training_part(const Recording& recording) {
+  Recording training{recording.states, recording.inputs, {}};
+  std::copy_if(recording.runs.begin(), recording.runs.end(), std::back_inserter(training.runs),
+               [](const Trajectory& run) { return run.role == Role::train; });
+  return training;
+}
+
+}  // namespace modebank

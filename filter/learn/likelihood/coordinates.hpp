@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "filter/step/bank.hpp"
+
+namespace modebank {
+
+/// What of a bank is to be estimated, and in which units.
+struct FreeParameters {
+  Eigen::MatrixXd theta_unit = {};   ///< p x K, or p x 1: one theta of all modes; positive; empty: theta is known
+  bool Q_by_one_factor = false;      ///< every Q by the same factor, instead of each by itself
+  Eigen::VectorXd least_Q = {};      ///< n, lower bounds of every Q's diagonal [state unit^2]; empty: none
+  std::vector<Eigen::Index> R = {};  ///< outputs whose variance is estimated
+  Eigen::VectorXd least_R = {};      ///< n_y, lower bounds of R's diagonal [state unit^2]
+  bool transition = true;            ///< false: T is known
+};
+
+/// Where parameters stand in the vector of a bank's free parameters: theta of every mode, the lower triangles of every
+/// Q (column by column, measured states), R of the estimated outputs, T row by row.
+struct ParameterPlaces {
+  Eigen::Index parameters = 0;  ///< p; 0: theta is known
+  Eigen::Index triangle = 0;    ///< n (n + 1) / 2
+  Eigen::Index modes = 0;
+  Eigen::Index outputs = 0;  ///< whose R is estimated
+  bool transition = false;
+
+  Eigen::Index theta(Eigen::Index mode) const { return mode * parameters; }
+  Eigen::Index Q(Eigen::Index mode) const { return modes * parameters + mode * triangle; }
+  Eigen::Index R() const { return Q(modes); }
+  Eigen::Index T(Eigen::Index from) const { return R() + outputs + from * modes; }
+  Eigen::Index size() const { return transition ? T(modes) : T(0); }
+};
+
+/// Unconstrained coordinates of everything that is estimated about a bank, relative to one bank, the origin:
+///   theta_j       = theta0_j + unit z (one coordinate per parameter);
+///   Q_j           = L0 M M' L0' with L0 L0' = Q0_j, M lower triangular, exp(z) on its diagonal (log-Cholesky: Pinheiro
+///                   & Bates 1996), its diagonal at least least_Q; or Q0_j exp(z) with one z for all modes;
+///   R_ii          = least_R_i + (R0_ii - least_R_i) exp(z);
+///   row i of T    proportional to T0_ij exp(z_j), z = 0 for its largest entry.
+/// Initial probabilities and what else a bank holds stay as they are.
+class BankCoordinates {
+ public:
+  BankCoordinates(Bank origin, FreeParameters free);
+
+  Eigen::Index size() const;
+  const Bank& origin() const { return origin_; }
+  bool has_one_theta() const { return free_.theta_unit.cols() == 1; }
+  /// `at`: size(); zero is the origin.
+  Bank decode(const Eigen::VectorXd& at) const;
+
+  ParameterPlaces places() const;
+  /// Derivative of the free parameters by the coordinates at the origin, places().size() x size().
+  Eigen::MatrixXd jacobian() const;
+
+ private:
+  Bank origin_;
+  FreeParameters free_;
+
+  const double* set_theta(const double* at, Bank& bank) const;
+  const double* set_process_noise(const double* at, Bank& bank) const;
+  const double* set_measurement_noise(const double* at, Bank& bank) const;
+  void set_transition(const double* at, Bank& bank) const;
+  Eigen::VectorXd parameters_of(const Bank& bank) const;
+};
+
+}  // namespace modebank

@@ -1,0 +1,82 @@
+#include "filter/learn/likelihood/information.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
+
+namespace modebank {
+namespace {
+
+constexpr double least_probability = 1e-100;  // its square can be divided by
+
+/// One row per sample, one column per coordinate; zero where a sample has no density.
+Eigen::MatrixXd gradients_of_run(const BankCoordinates& around, const Eigen::VectorXd& steps, const Trajectory& run,
+                                 const FilterOptions& filter) {
+  Eigen::MatrixXd gradients(run.samples(), around.size());
+  tbb::parallel_for(Index{0}, around.size(), [&](Index c) {
+    const Eigen::VectorXd step = steps(c) * Eigen::VectorXd::Unit(around.size(), c);
+    gradients.col(c) =
+        (log_densities(around.decode(step), run, filter) - log_densities(around.decode(-step), run, filter)) /
+        (2.0 * steps(c));
+  });
+  return gradients.array().isNaN().select(0.0, gradients);
+}
+
+/// Inverse variances that the prior alone would leave to Q and T: a scatter of so many transitions, and so many counts
+/// of every switch but the row's most frequent, which takes what the others give.
+Eigen::VectorXd information_of_noise_and_switches(const BankCoordinates& around, const SwitchingPrior& prior) {
+  const ParameterPlaces at = around.places();
+  const Bank& bank = around.origin();
+  const Index n = bank.structure.states;
+  Eigen::VectorXd information = Eigen::VectorXd::Zero(at.size());
+  for (Index j = 0; j < at.modes; ++j) {
+    const Eigen::MatrixXd& Q = bank.modes[static_cast<std::size_t>(j)].Q;
+    Index next = at.Q(j);
+    for (Index b = 0; b < n; ++b)
+      for (Index a = b; a < n; ++a)
+        information(next++) = (a == b ? 0.5 : 1.0) * prior.noise_transitions / (Q(a, a) * Q(b, b));
+    if (!at.transition || at.modes == 1) continue;
+    const Eigen::RowVectorXd row = bank.transition.matrix().row(j).cwiseMax(least_probability);
+    Index largest = 0;
+    row.maxCoeff(&largest);
+    for (Index k = 0; k < at.modes; ++k)
+      if (k != largest) information(at.T(j) + k) = prior.counts / row(k) / row(k);
+  }
+  return information;
+}
+
+}  // namespace
+
+SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
+                                 const Recording& recording, const FilterOptions& filter) {
+  SampleGradients result{Eigen::VectorXd::Zero(around.size()), Eigen::MatrixXd::Zero(around.size(), around.size())};
+  const double unit = mean_training_weight(recording);
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != Role::train || run.samples() < 2) continue;
+    const Eigen::MatrixXd gradients = gradients_of_run(around, steps, run, filter);
+    if (run.weight.size() == 0) {
+      result.sum += gradients.colwise().sum().transpose();
+      result.information.noalias() += gradients.transpose() * gradients;
+    } else {
+      const Eigen::MatrixXd weighted = (run.weight / unit).asDiagonal() * gradients;
+      result.sum += weighted.colwise().sum().transpose();
+      result.information.noalias() += weighted.transpose() * gradients;
+    }
+  }
+  return result;
+}
+
+Eigen::MatrixXd prior_information(const BankCoordinates& around, const SwitchingPrior& prior) {
+  const ParameterPlaces at = around.places();
+  const Eigen::MatrixXd J = around.jacobian();
+  Eigen::MatrixXd information = J.transpose() * information_of_noise_and_switches(around, prior).asDiagonal() * J;
+  const Index thetas = at.parameters == 0 ? 0 : around.has_one_theta() ? 1 : at.modes;
+  for (Index j = 0; j < thetas; ++j) {
+    const auto of_theta = J.middleRows(at.theta(j), at.parameters);
+    information.noalias() += of_theta.transpose() * prior.information * of_theta;
+  }
+  return information;
+}
+
+}  // namespace modebank

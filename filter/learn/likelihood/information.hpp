@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "filter/learn/likelihood/coordinates.hpp"
+#include "filter/learn/switching/switching_regression.hpp"
+#include "ident/data/trajectory.hpp"
+#include "modebank/filter/options.hpp"
+
+namespace modebank {
+
+/// Derivatives of the log predictive densities of single training samples by a bank's coordinates, at their origin.
+struct SampleGradients {
+  Eigen::VectorXd sum;          ///< gradient of the training runs' log-likelihood [nats per coordinate]
+  Eigen::MatrixXd information;  ///< sum of their outer products: Berndt, Hall, Hall & Hausman (1974, Annals of Economic
+                                ///< and Social Measurement 3(4)), the observed information of a model that is true
+};
+
+/// By central differences of `steps` (one per coordinate) in the filter that will run the bank. A sample of weight w,
+/// in units of their mean, counts as w samples.
+SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
+                                 const Recording& recording, const FilterOptions& filter);
+
+/// What the prior adds to the information about the coordinates, at their origin: of theta exactly, of Q as so many
+/// observations of a normal scatter, of T as so many counts. A prior on one theta of all modes counts once.
+Eigen::MatrixXd prior_information(const BankCoordinates& around, const SwitchingPrior& prior);
+
+}  // namespace modebank

@@ -1,0 +1,168 @@
+#include "filter/learn/likelihood/maximum_likelihood.hpp"
+
+#include <ceres/gradient_problem.h>
+#include <ceres/gradient_problem_solver.h>
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "filter/learn/likelihood/information.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
+
+namespace modebank {
+namespace {
+
+constexpr double step_share = 1e-2;       // of a standard error, for central differences
+constexpr double first_step = 1e-3;       // while no standard errors are known
+constexpr double least_curvature = 1e-2;  // of a coordinate that the data say nothing about: such are logarithms
+constexpr double remaining_gain = 1e-3;   // nats
+constexpr Index iterations_per_metric = 15;
+
+/// The target around one bank.
+class Neighbourhood {
+ public:
+  Neighbourhood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& origin,
+                const Eigen::VectorXd& steps)
+      : target_(target),
+        coordinates_(origin, free),
+        steps_(steps.size() > 0 ? steps : Eigen::VectorXd::Constant(coordinates_.size(), first_step)) {}
+
+  Index size() const { return coordinates_.size(); }
+  Bank decode(const Eigen::VectorXd& at) const { return coordinates_.decode(at); }
+  double value(const Eigen::VectorXd& at) const { return target_.value(decode(at)); }
+
+  /// By central differences, where the value is wanted besides.
+  Eigen::VectorXd gradient(const Eigen::VectorXd& at) const {
+    return differences(at, [this](const Bank& bank) { return target_.value(bank); });
+  }
+
+  /// Gradient and information of likelihood and prior at the origin.
+  SampleGradients gradients() const {
+    SampleGradients result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter);
+    if (!target_.prior) return result;
+    result.sum += differences(Eigen::VectorXd::Zero(size()), [this](const Bank& bank) {
+      return log_prior(*target_.prior, target_.one_theta, switching_model(bank));
+    });
+    result.information += prior_information(coordinates_, *target_.prior);
+    return result;
+  }
+
+ private:
+  const LikelihoodTarget& target_;
+  BankCoordinates coordinates_;
+  Eigen::VectorXd steps_;
+
+  template <class Value>
+  Eigen::VectorXd differences(const Eigen::VectorXd& at, Value value) const {
+    Eigen::VectorXd result(size());
+    tbb::parallel_for(Index{0}, size(), [&](Index c) {
+      const Eigen::VectorXd step = steps_(c) * Eigen::VectorXd::Unit(size(), c);
+      result(c) = (value(decode(at + step)) - value(decode(at - step))) / (2.0 * steps_(c));
+    });
+    return result;
+  }
+};
+
+/// Minus the target as Ceres minimises it, from the value at the origin on; coordinates in standard errors.
+class WhitenedTarget final : public ceres::FirstOrderFunction {
+ public:
+  WhitenedTarget(const Neighbourhood& around, Eigen::MatrixXd by_standard_errors, double origin_value)
+      : around_(around), by_(std::move(by_standard_errors)), origin_value_(origin_value) {}
+
+  int NumParameters() const override { return static_cast<int>(by_.rows()); }
+
+  bool Evaluate(const double* whitened, double* cost, double* gradient) const override {
+    const Eigen::VectorXd at = by_ * Eigen::Map<const Eigen::VectorXd>(whitened, by_.rows());
+    *cost = origin_value_ - around_.value(at);
+    if (!std::isfinite(*cost)) return false;
+    if (!gradient) return true;
+    Eigen::Map<Eigen::VectorXd> result(gradient, by_.rows());
+    result = -(by_.transpose() * around_.gradient(at));
+    return result.allFinite();
+  }
+
+ private:
+  const Neighbourhood& around_;
+  Eigen::MatrixXd by_;
+  double origin_value_;
+};
+
+/// The gradient at a bank in units of the standard errors.
+struct Metric {
+  Eigen::VectorXd steps;               ///< of central differences from now on
+  Eigen::MatrixXd by_standard_errors;  ///< coordinates from whitened ones
+  Eigen::VectorXd gradient;            ///< by whitened ones
+
+  /// Of a Newton step.
+  double expected_gain() const { return 0.5 * gradient.squaredNorm(); }
+};
+
+std::optional<Metric> metric_of(const SampleGradients& gradients) {
+  Eigen::MatrixXd information = gradients.information;
+  information.diagonal().array() += least_curvature;
+  if (!information.allFinite() || !gradients.sum.allFinite()) return std::nullopt;
+  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  return Metric{step_share * information.diagonal().cwiseSqrt().cwiseInverse(),
+                factor.matrixU().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols())),
+                factor.matrixL().solve(gradients.sum)};
+}
+
+struct BfgsEnd {
+  Eigen::VectorXd at;
+  Index iterations = 0;
+};
+
+/// `small_gain`: what no more is to be gained by.
+BfgsEnd bfgs(const Neighbourhood& nearby, const Metric& metric, double origin_value, double small_gain, Index limit) {
+  const ceres::GradientProblem problem(new WhitenedTarget(nearby, metric.by_standard_errors, origin_value));
+  ceres::GradientProblemSolver::Options options;
+  options.line_search_direction_type = ceres::BFGS;
+  options.logging_type = ceres::SILENT;
+  options.max_num_iterations = static_cast<int>(std::min(iterations_per_metric, limit));
+  options.gradient_tolerance = 0.5 * std::sqrt(2.0 * small_gain / static_cast<double>(nearby.size()));
+  options.function_tolerance = 1e-10;
+  options.parameter_tolerance = 1e-8;
+  ceres::GradientProblemSolver::Summary summary;
+  Eigen::VectorXd at = Eigen::VectorXd::Zero(nearby.size());
+  ceres::Solve(options, problem, at.data(), &summary);
+  return {metric.by_standard_errors * at, std::max<Index>(std::ssize(summary.iterations) - 1, 1)};
+}
+
+}  // namespace
+
+double LikelihoodTarget::value(const Bank& bank) const {
+  const double likelihood = weighted_training_log_likelihood(bank, recording, filter);
+  return prior ? likelihood + log_prior(*prior, one_theta, switching_model(bank)) : likelihood;
+}
+
+LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start,
+                                      const AscentLimits& limits) {
+  const double transitions = static_cast<double>(target.recording.transitions(Role::train));
+  const double small_gain = std::min(remaining_gain, limits.tolerance * transitions);
+  Eigen::VectorXd steps;
+  LikelihoodMaximum best{start, target.value(start)};
+  while (true) {
+    const std::optional<Metric> metric = metric_of(Neighbourhood(target, free, best.bank, steps).gradients());
+    if (!metric) return best;
+    if (metric->expected_gain() <= small_gain)
+      best.end = MeasuredFit::converged;
+    else if (best.iterations >= limits.max_iterations)
+      best.end = MeasuredFit::iteration_limit;
+    if (best.end != MeasuredFit::stalled) return best;
+    steps = metric->steps;
+    const Neighbourhood nearby(target, free, best.bank, steps);
+    const BfgsEnd end = bfgs(nearby, *metric, best.value, small_gain, limits.max_iterations - best.iterations);
+    best.iterations += end.iterations;
+    Bank next = nearby.decode(end.at);
+    const double value = target.value(next);
+    if (!(value > best.value)) return best;
+    best.bank = std::move(next);
+    best.value = value;
+  }
+}
+
+}  // namespace modebank

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "filter/learn/likelihood/coordinates.hpp"
+#include "filter/learn/switching/switching_regression.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
+#include "modebank/base/names.hpp"
+#include "modebank/filter/options.hpp"
+
+namespace modebank {
+
+/// What is maximised: the filter's log-likelihood of the training runs plus the prior's log density; a sample's weight
+/// is the power of its density. The likelihood is exact for one mode and the IMM's approximation for several.
+struct LikelihoodTarget {
+  const Recording& recording;
+  FilterOptions filter;                 ///< variant imm for several modes
+  std::optional<SwitchingPrior> prior;  ///< empty: the likelihood alone
+  bool one_theta = false;               ///< the prior on theta counts once
+
+  double value(const Bank& bank) const;
+};
+
+struct AscentLimits {
+  Index max_iterations = 100;
+  double tolerance = 1e-6;  ///< nats per transition: converged when no more is to be gained
+};
+
+/// How a maximisation ended, which the archive says of the one with measurement noise (measurement_noise.hpp). none:
+/// there was none, or it did not pay. iteration_limit: that came before the maximum. stalled: no step raised the
+/// likelihood though its gradient promised more.
+enum class MeasuredFit { none, converged, iteration_limit, stalled };
+
+template <>
+struct EnumNames<MeasuredFit> {
+  static constexpr Names<4> values{"none", "converged", "iteration_limit", "stalled"};
+};
+
+struct LikelihoodMaximum {
+  Bank bank;
+  double value = 0.0;  ///< of the target there; never below the start's
+  Index iterations = 0;
+  MeasuredFit end = MeasuredFit::stalled;
+};
+
+/// The target's maximum near `start` by BFGS (ceres::GradientProblemSolver) over BankCoordinates in units of the
+/// standard errors: the gradients of single samples give both the gradient and the information (information.hpp), in
+/// whose metric the problem is nearly round. Gradients are central differences. Converged means that a Newton step with
+/// that information would gain less than the tolerance, and less than 1e-3 nats in all, a twentieth of a standard
+/// error.
+LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start,
+                                      const AscentLimits& limits);
+
+}  // namespace modebank

@@ -1,0 +1,125 @@
+#include "filter/learn/likelihood/standard_errors.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "filter/learn/likelihood/information.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/data/stretch.hpp"
+
+namespace modebank {
+namespace {
+
+// Of coordinates: standard errors of theta given the modes, logarithms of the others. Truncation is a ten thousandth.
+constexpr double difference_step = 1e-2;
+// Errors are wanted to a few per cent: their own relative error falls with the root of the samples.
+constexpr double most_numbers = 4e6;  // samples times coordinates: 32 MB
+constexpr Index fewest_samples = 2000, most_samples = 20000;
+
+/// The first training samples, as many as are wanted, and by what their information is to be multiplied.
+struct FirstSamples {
+  Recording recording;
+  double factor = 1.0;
+};
+
+FirstSamples first_samples(const Recording& recording, Index coordinates) {
+  Index room =
+      std::clamp(static_cast<Index>(most_numbers / static_cast<double>(coordinates)), fewest_samples, most_samples);
+  FirstSamples first{{recording.states, recording.inputs, {}}};
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != Role::train || run.samples() < 2 || room < 2) continue;
+    first.recording.runs.push_back(run.samples() <= room ? run : stretch(run, 0, room));
+    room -= first.recording.runs.back().samples();
+  }
+  if (const Index taken = first.recording.transitions(Role::train); taken > 0)
+    first.factor = static_cast<double>(recording.transitions(Role::train)) / static_cast<double>(taken);
+  return first;
+}
+
+/// Of the parameters in ParameterPlaces' order; empty where the information has no inverse.
+std::optional<Eigen::MatrixXd> observed_covariance(const LikelihoodTarget& target, const BankCoordinates& around) {
+  const FirstSamples first = first_samples(target.recording, around.size());
+  const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), difference_step);
+  const Eigen::MatrixXd information =
+      first.factor * sample_gradients(around, steps, first.recording, target.filter).information +
+      prior_information(around, *target.prior);
+  if (!information.allFinite()) return std::nullopt;
+  // Coordinates differ in scale by orders of magnitude: the factorisation sees correlations.
+  const Eigen::VectorXd unit =
+      information.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(unit.asDiagonal() * information * unit.asDiagonal());
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  const Eigen::MatrixXd root = factor.matrixL().solve(unit.asDiagonal() * around.jacobian().transpose());
+  Eigen::MatrixXd covariance = root.transpose() * root;
+  if (!covariance.allFinite() || !(covariance.diagonal().minCoeff() > 0.0)) return std::nullopt;
+  return covariance;
+}
+
+/// Given the smoothed modes: of theta by its posterior covariance, of Q by the normal scatter's (Q_ii Q_jj + Q_ij^2) /
+/// W, of T by the binomial's.
+void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior, bool with_R, Bank& bank) {
+  const std::vector<Eigen::MatrixXd> covariances = parameter_covariances(sums, prior, switching_model(bank));
+  for (std::size_t j = 0; j < bank.modes.size(); ++j) {
+    Mode& mode = bank.modes[j];
+    const double weight = std::max(sums.modes[j].weight, std::numeric_limits<double>::min());
+    mode.spread = covariances[j];
+    mode.standard_error = mode.spread.diagonal().cwiseSqrt();
+    const Eigen::VectorXd variance = mode.Q.diagonal();
+    mode.Q_standard_error =
+        ((variance * variance.transpose()).array() + mode.Q.array().square()).sqrt() / std::sqrt(weight);
+  }
+  const Eigen::ArrayXXd T = bank.transition.matrix().array();
+  const Eigen::ArrayXd rows = sums.switches.rowwise().sum().array() + 1.0;
+  bank.transition_standard_error = ((T * (1.0 - T)).colwise() / rows).sqrt().matrix();
+  if (with_R)
+    bank.R_standard_error = Eigen::VectorXd::Constant(bank.R.rows(), not_a_number).asDiagonal().toDenseMatrix();
+}
+
+void set_observed_errors(const ParameterPlaces& at, const Eigen::MatrixXd& covariance, Bank& bank) {
+  const Index n = bank.structure.states;
+  const Eigen::VectorXd error = covariance.diagonal().cwiseSqrt();
+  for (Index j = 0; j < at.modes; ++j) {
+    Mode& mode = bank.modes[static_cast<std::size_t>(j)];
+    mode.spread = covariance.block(at.theta(j), at.theta(j), at.parameters, at.parameters);
+    mode.standard_error = error.segment(at.theta(j), at.parameters);
+    Index next = at.Q(j);
+    for (Index b = 0; b < n; ++b)
+      for (Index a = b; a < n; ++a, ++next) mode.Q_standard_error(a, b) = mode.Q_standard_error(b, a) = error(next);
+    if (at.transition) bank.transition_standard_error.row(j) = error.segment(at.T(j), at.modes);
+  }
+  if (at.outputs > 0) bank.R_standard_error = error.segment(at.R(), at.outputs).asDiagonal().toDenseMatrix();
+}
+
+}  // namespace
+
+FreeParameters all_parameters(const Bank& bank, const SwitchingSums& complete, const SwitchingPrior& prior,
+                              bool one_theta, bool estimate_R, const Eigen::VectorXd& least_R) {
+  const std::vector<Eigen::MatrixXd> covariances = parameter_covariances(complete, prior, switching_model(bank));
+  FreeParameters free;
+  free.theta_unit.resize(bank.structure.parameters(), one_theta ? 1 : bank.mode_count());
+  for (Index j = 0; j < free.theta_unit.cols(); ++j)
+    free.theta_unit.col(j) =
+        covariances[static_cast<std::size_t>(j)].diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt();
+  if (estimate_R) free.R.resize(static_cast<std::size_t>(bank.R.rows()));
+  std::iota(free.R.begin(), free.R.end(), Index{0});
+  free.least_R = least_R;
+  free.transition = bank.mode_count() > 1;
+  return free;
+}
+
+Bank with_standard_errors(const LikelihoodTarget& target, const FreeParameters& free, const SwitchingSums& complete,
+                          Bank bank) {
+  set_complete_errors(complete, *target.prior, !free.R.empty(), bank);
+  const BankCoordinates around(bank, free);
+  if (const auto covariance = observed_covariance(target, around))
+    set_observed_errors(around.places(), *covariance, bank);
+  return bank;
+}
+
+}  // namespace modebank

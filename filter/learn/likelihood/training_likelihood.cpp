@@ -1,0 +1,41 @@
+#include "filter/learn/likelihood/training_likelihood.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <numeric>
+#include <vector>
+
+namespace modebank {
+
+double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options) {
+  std::vector<double> of_run(recording.runs.size(), 0.0);
+  tbb::parallel_for(std::size_t{0}, of_run.size(), [&](std::size_t i) {
+    if (recording.runs[i].role == Role::train) of_run[i] = log_likelihood(bank, recording.runs[i], options);
+  });
+  return std::accumulate(of_run.begin(), of_run.end(), 0.0);
+}
+
+double weighted_training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options) {
+  if (!recording.weighted()) return training_log_likelihood(bank, recording, options);
+  const double unit = mean_training_weight(recording);
+  double sum = 0.0;
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != Role::train) continue;
+    const Eigen::ArrayXd densities = log_densities(bank, run, options);
+    const Eigen::ArrayXd known = densities.isNaN().select(0.0, densities);
+    sum += run.weight.size() > 0 ? (known * run.weight.array()).sum() / unit : known.sum();
+  }
+  return sum;
+}
+
+double mean_training_weight(const Recording& recording) {
+  double sum = 0.0, count = 0.0;
+  for (const Trajectory& run : recording.runs)
+    if (run.role == Role::train && run.weight.size() > 0) {
+      sum += run.weight.tail(run.transitions()).sum();
+      count += static_cast<double>((run.weight.tail(run.transitions()).array() > 0.0).count());
+    }
+  return sum > 0.0 ? sum / count : 1.0;
+}
+
+}  // namespace modebank

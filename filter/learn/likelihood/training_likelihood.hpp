@@ -1,0 +1,19 @@
+#pragma once
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
+
+namespace modebank {
+
+/// Log-likelihood of all training runs [nats], each from its second sample, whatever the samples' weights; runs in
+/// parallel, summed in an order of their own.
+double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options);
+
+/// The same with every sample's density to the power of its weight in units of mean_training_weight.
+double weighted_training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options);
+
+/// Mean of the training samples' positive weights, which only count in ratios; 1 without weights.
+double mean_training_weight(const Recording& recording);
+
+}  // namespace modebank

@@ -1,0 +1,85 @@
+#include "filter/learn/refine/refine.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "filter/learn/refine/averaging.hpp"
+#include "filter/learn/refine/cross_validation.hpp"
+#include "filter/learn/refine/measurement_noise.hpp"
+#include "filter/learn/refine/training_fit.hpp"
+#include "filter/learn/switching/starts.hpp"
+
+namespace modebank {
+namespace {
+
+/// What is not refined. The fit takes the state as measured exactly: a start's R would count what Q then holds twice.
+Bank frame_of(const Bank& start, const WindowFits& fits, const RefineOptions& options) {
+  Bank frame = start;
+  if (options.measurement_noise) frame.R = least_measurement_noise(fits, options.tuning).asDiagonal().toDenseMatrix();
+  return frame;
+}
+
+/// The mixture's banks and random stretches of the runs.
+std::vector<RefineStart> all_starts(const RefineInput& in, const std::vector<Bank>& banks, double Q_transitions) {
+  std::vector<RefineStart> starts;
+  for (const Bank& bank : banks) starts.push_back({"mixture", switching_model(bank), Q_transitions});
+  const SwitchingPrior prior = in.prior(Q_transitions);
+  for (Index i = 0; i < in.options.restarts; ++i)
+    starts.push_back({fmt::format("stretches {}", i + 1),
+                      start_from_stretches(in.transitions, prior, banks.front().mode_count(), in.fits.length,
+                                           in.options.seed, i, in.options.tuning),
+                      Q_transitions});
+  return starts;
+}
+
+/// The best start again, with weaker and stronger priors on Q.
+std::vector<RefineStart> other_priors(const RefineStart& best, const RefineTuning& tuning) {
+  std::vector<RefineStart> starts;
+  for (const double transitions : tuning.other_Q_transitions) {
+    starts.push_back(best);
+    starts.back().noise_transitions = transitions;
+  }
+  return starts;
+}
+
+/// Which start and how many iterations first; then how strong the prior on Q is.
+CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& banks) {
+  CrossValidation validation(in);
+  const RefineTuning& tuning = in.options.tuning;
+  validation.consider(
+      all_starts(in, banks, validation.possible() ? tuning.Q_transitions : tuning.Q_transitions_unvalidated));
+  if (validation.possible()) validation.consider(other_priors(validation.best(), tuning));
+  return validation;
+}
+
+}  // namespace
+
+Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& banks,
+                       const RefineOptions& options, const FilterOptions& filter) {
+  if (banks.empty()) throw std::invalid_argument("no bank to refine");
+  if (!banks.front().motion_parameters.empty())
+    throw std::invalid_argument("a bank of the motion model " + banks.front().model +
+                                " cannot be refined, a linear one can");
+  const Bank frame = frame_of(banks.front(), fits, options);
+  const TrainingTransitions transitions = gather_training_transitions(recording, frame.structure);
+  const RefineInput in{recording, fits, frame, transitions, options, filter};
+
+  const CrossValidation validation = cross_validate(in, banks);
+  const SwitchingPrior prior = in.prior(validation.best().noise_transitions);
+  const TrainingFit fit = fit_training_runs(in, validation.best(), prior, validation.iterations());
+  const Bank exact = bank_of_fit(in, fit, validation.adaptation(validation.best_banks()));
+  const MeasuredBank measured = fit_with_measurement_noise(in, validation, prior, exact);
+
+  Refinement result{with_errors(in, fit, measured.prior, measured.R_estimated, measured.bank), banks.front(),
+                    validation.table(), fit.objective, measured.stage};
+  if (options.members == 1 || measured.R_estimated || measured.stage.iterations > 0) return result;
+  AveragedBank averaged = average_fits(in, validation, result.bank);
+  result.averaging = averaged.averaging;
+  if (averaged.bank) result.bank = std::move(*averaged.bank);
+  for (const std::size_t row : averaged.rows) result.candidates[row].selected = true;
+  return result;
+}
+
+}  // namespace modebank

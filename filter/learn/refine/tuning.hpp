@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+namespace modebank {
+
+/// The numbers that decide what refinement learns, each with its reason. They are not keys: where an experiment set
+/// one it was made inside the training runs (README, "Refined modes").
+struct RefineTuning {
+  using Index = Eigen::Index;
+
+  // The cross-validation inside the training runs.
+  /// Iterations after which the runs left out are scored; the limit counts as one. Not before 10: the start has seen
+  /// all training runs, and it takes the fit to the others a while to forget that. A first version without that rule
+  /// did worse on ice.
+  std::array<Index, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
+  /// Memories of the noise scale that are tried: 20, 50 and 200 samples, and all of the run.
+  std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
+  /// Samples that a run's start at scale one is worth: from hardly any to those of most short runs.
+  std::array<double, 4> noise_prior_samples{1.0, 2.0, 5.0, 20.0};
+  Index fewest_whole_runs = 3;  ///< fewer are cut into stretches: two folds would train on half of the data
+  Index shortest_stretch = 20;  ///< samples; shorter ones would mostly be starts
+
+  // The prior.
+  double Q_transitions = 4.0;                            ///< that the prior on Q is worth while starts are compared
+  std::array<double, 2> other_Q_transitions{1.0, 16.0};  ///< tried for the best start: a factor of four either way
+  double Q_transitions_unvalidated = 1.0;                ///< where nothing is left out to choose by: unit information
+  double Q_transitions_with_R = 1.0;  ///< of the modes' own harmonic mean, once the states count as unknown
+  /// Share of the largest information that every direction of theta gets, so that unit information is definite.
+  double least_information = 1e-8;
+
+  // Expectation-maximisation and its starts.
+  int alternations = 3;      ///< of theta and Q in one maximisation; each raises the objective, three leave little
+  double start_stay = 0.95;  ///< diagonal of T of a start from stretches, as BankOptions::stay
+  double modes_kept = 0.75;  ///< share of the modes that each next smaller start of the mixture keeps
+
+  // Screening of fitted modes.
+  double duplicate_significance = 0.95;  ///< of the likelihood-ratio test that tells two modes apart
+  /// Above 1, for mean-square growth that power iteration knows to no more digits: an integrator stays.
+  double growth_slack = 1e-4;
+  Index iterations_after_screening = 10;  ///< as many as the first checkpoint: the others take over what is left
+
+  // Measurement noise and averaging.
+  double least_R_share = 1e-9;  ///< of the global residual variance: the least R that refinement knows, as good as none
+  double R_start_share = 0.05;  ///< of the mean Q, where the search for R starts
+  double least_gain = 1e-3;     ///< nats per sample for R, for its fit and for one more member: less would not survive
+                                ///< on other runs (seeds move held-out scores by 0.03 to 0.07)
+};
+
+}  // namespace modebank

@@ -1,0 +1,91 @@
+#include "filter/learn/switching/em.hpp"
+
+#include <Eigen/Cholesky>
+#include <unsupported/Eigen/KroneckerProduct>
+#include <utility>
+
+#include "filter/learn/likelihood/definite_inverse.hpp"
+
+namespace modebank {
+namespace {
+
+/// Theta and Q of all modes, each given the other.
+class ConditionalMaximiser {
+ public:
+  ConditionalMaximiser(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
+                       SwitchingRegression& model)
+      : structure_(structure), sums_(sums), prior_(prior), model_(model) {}
+
+  void set_theta(Index j) { model_.theta.col(j) = best_theta(j, j + 1); }
+  void set_one_theta() { model_.theta.colwise() = best_theta(0, model_.modes()); }
+
+  void set_noise(Index j) {
+    const RegressionSums& of_mode = at(j);
+    const Eigen::MatrixXd change = coefficients(structure_, model_.theta.col(j) - prior_.mean);
+    noise(j) = (of_mode.scatter_after(change) + prior_.noise_transitions * prior_.noise) /
+               (of_mode.weight + prior_.noise_transitions);
+  }
+
+ private:
+  Eigen::MatrixXd& noise(Index j) { return model_.Q[static_cast<std::size_t>(j)]; }
+  const RegressionSums& at(Index j) const { return sums_.modes[static_cast<std::size_t>(j)]; }
+
+  /// Of the modes first to end - 1 together, and the prior.
+  Eigen::VectorXd best_theta(Index first, Index end) {
+    Eigen::MatrixXd information = prior_.information;
+    Eigen::VectorXd pull = Eigen::VectorXd::Zero(prior_.mean.size());
+    for (Index j = first; j < end; ++j) {
+      const Eigen::MatrixXd Q_inverse = definite_inverse(noise(j));
+      information += Eigen::kroneckerProduct(Q_inverse, at(j).G).eval();
+      const Eigen::MatrixXd of_mode = at(j).H * Q_inverse;
+      pull += of_mode.reshaped();
+    }
+    return prior_.mean + information.ldlt().solve(pull);
+  }
+
+  const LinearStructure& structure_;
+  const SwitchingSums& sums_;
+  const SwitchingPrior& prior_;
+  SwitchingRegression& model_;
+};
+
+}  // namespace
+
+SwitchingRegression maximise(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
+                             const SwitchingEmOptions& options, SwitchingRegression model) {
+  ConditionalMaximiser maximiser(structure, sums, prior, model);
+  for (int i = 0; i < options.alternations; ++i) {
+    if (options.one_theta) maximiser.set_one_theta();
+    for (Index j = 0; j < model.modes(); ++j) {
+      if (!options.one_theta) maximiser.set_theta(j);
+      maximiser.set_noise(j);
+    }
+  }
+  const Eigen::MatrixXd counts = sums.switches.array() + prior.counts;
+  for (Index i = 0; i < model.modes(); ++i) {
+    const double row = counts.row(i).sum();
+    if (row > 0.0) model.transition.row(i) = counts.row(i) / row;
+  }
+  model.initial = sums.first.array() + prior.counts;
+  model.initial /= model.initial.sum();
+  return model;
+}
+
+ExpectationMaximisation::ExpectationMaximisation(const TrainingTransitions& transitions, const SwitchingPrior& prior,
+                                                 const SwitchingEmOptions& options, SwitchingRegression start)
+    : transitions_(transitions), prior_(prior), options_(options), model_(std::move(start)) {
+  posterior_ = smooth_modes(transitions_, model_);
+}
+
+void ExpectationMaximisation::step() {
+  if (converged_) return;
+  objective_.push_back(posterior_.log_likelihood + log_prior(prior_, options_.one_theta, model_));
+  const SwitchingSums sums = sum_transitions(transitions_, posterior_, prior_);
+  model_ = maximise(transitions_.structure, sums, prior_, options_, std::move(model_));
+  posterior_ = smooth_modes(transitions_, model_);
+  const double gain = posterior_.log_likelihood + log_prior(prior_, options_.one_theta, model_) - objective_.back();
+  // The first step leaves the start's own optimum for the prior's and may lose.
+  converged_ = objective_.size() > 1 && gain < options_.tolerance * static_cast<double>(transitions_.count());
+}
+
+}  // namespace modebank

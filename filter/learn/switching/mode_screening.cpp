@@ -1,0 +1,172 @@
+#include "filter/learn/switching/mode_screening.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "ident/base/distributions.hpp"
+
+namespace modebank {
+namespace {
+
+constexpr double ridge = 1e-12;  // share of the regressors' power: keeps unexcited regressions solvable
+
+/// 1/2 W log det of the residual covariance about the least squares of these transitions. Sums add: pooling modes adds
+/// theirs.
+double cost(const RegressionSums& sums) {
+  Eigen::MatrixXd normal = sums.G;
+  normal.diagonal().array() += ridge * std::max(sums.G.trace(), std::numeric_limits<double>::min());
+  const Eigen::MatrixXd Q = (sums.S - sums.H.transpose() * normal.ldlt().solve(sums.H)) / sums.weight;
+  const Eigen::VectorXd pivots = Q.ldlt().vectorD().cwiseMax(std::numeric_limits<double>::min());
+  return 0.5 * sums.weight * pivots.array().log().sum();
+}
+
+std::vector<RegressionSums> sums_of_modes(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                                          const SwitchingRegression& model) {
+  const Eigen::MatrixXd& X = transitions.data.regressors;
+  const Eigen::VectorXd middle = model.theta.rowwise().mean();  // near every mode, so that little cancels
+  const Eigen::MatrixXd r = transitions.data.increments - X * coefficients(transitions.structure, middle);
+  std::vector<RegressionSums> modes;
+  for (Index j = 0; j < model.modes(); ++j)
+    modes.push_back(regression_sums(X, posterior.probability.col(j).cwiseProduct(transitions.usable), r));
+  return modes;
+}
+
+struct Twins {
+  Index kept = 0, dropped = 0;
+};
+
+Index free_parameters(const LinearStructure& structure, bool one_theta) {
+  const Index theta = structure.parameters(), noise = structure.states * (structure.states + 1) / 2;
+  return (one_theta ? 0 : theta) + noise;
+}
+
+/// The pair of modes that is closest, if it is closer than a test of this significance can tell.
+std::optional<Twins> closest_twins(const LinearStructure& structure, const std::vector<RegressionSums>& modes,
+                                   bool one_theta, double significance) {
+  std::optional<Twins> twins;
+  double least = 0.5 * chi_square_quantile(significance, static_cast<double>(free_parameters(structure, one_theta)));
+  for (std::size_t i = 0; i < modes.size(); ++i)
+    for (std::size_t j = i + 1; j < modes.size(); ++j) {
+      const double loss = cost(modes[i] + modes[j]) - cost(modes[i]) - cost(modes[j]);
+      if (!(loss < least)) continue;
+      least = loss;
+      const bool first = modes[i].weight >= modes[j].weight;
+      twins = {static_cast<Index>(first ? i : j), static_cast<Index>(first ? j : i)};
+    }
+  return twins;
+}
+
+Eigen::MatrixXd without(const Eigen::MatrixXd& columns, Index drop) {
+  Eigen::MatrixXd rest(columns.rows(), columns.cols() - 1);
+  rest << columns.leftCols(drop), columns.rightCols(columns.cols() - drop - 1);
+  return rest;
+}
+
+/// Leaves one mode out; what led to it or from it is spread over the others as they are.
+void drop_mode(Index mode, SwitchingRegression& model) {
+  model.theta = without(model.theta, mode);
+  model.Q.erase(model.Q.begin() + mode);
+  const Eigen::MatrixXd rows = without(model.transition.transpose(), mode).transpose();
+  model.transition = without(rows, mode);
+  for (Index i = 0; i < model.transition.rows(); ++i) model.transition.row(i) /= model.transition.row(i).sum();
+  model.initial = without(model.initial.transpose(), mode).transpose();
+  model.initial /= model.initial.sum();
+}
+
+/// Gives the twin what belonged to the dropped mode, weighted as the modes are.
+void merge_sequence(const Twins& twins, const std::vector<RegressionSums>& modes, SwitchingRegression& model) {
+  const double kept = modes[static_cast<std::size_t>(twins.kept)].weight;
+  const double dropped = modes[static_cast<std::size_t>(twins.dropped)].weight;
+  Eigen::MatrixXd& T = model.transition;
+  T.row(twins.kept) = ((kept * T.row(twins.kept) + dropped * T.row(twins.dropped)) / (kept + dropped)).eval();
+  T.col(twins.kept) += T.col(twins.dropped);
+  model.initial(twins.kept) += model.initial(twins.dropped);
+}
+
+double radius(const LinearStructure& structure, const SwitchingRegression& model, Index j) {
+  return spectral_radius(unpack(structure, model.theta.col(j)));
+}
+
+/// The mode with the fewest effective transitions, if these are fewer than a regression needs.
+std::optional<Index> starved_mode(const LinearStructure& structure, const std::vector<RegressionSums>& modes) {
+  const auto least =
+      std::min_element(modes.begin(), modes.end(), [](const auto& a, const auto& b) { return a.weight < b.weight; });
+  if (!(least->weight < static_cast<double>(structure.regressors() + 1))) return std::nullopt;
+  return least - modes.begin();
+}
+
+/// The mode with the largest spectral radius above 1, if the switching system is not mean-square stable with it.
+std::optional<Index> unstable_mode(const LinearStructure& structure, const SwitchingRegression& model,
+                                   double growth_slack) {
+  std::optional<Index> unstable;
+  double largest = 1.0 + spectral_radius_slack;
+  for (Index j = 0; j < model.modes(); ++j)
+    if (const double r = radius(structure, model, j); r > largest) {
+      largest = r;
+      unstable = j;
+    }
+  if (unstable && mean_square_growth(structure, model) <= 1.0 + growth_slack) return std::nullopt;
+  return unstable;
+}
+
+}  // namespace
+
+double mean_square_growth(const LinearStructure& structure, const SwitchingRegression& model) {
+  constexpr int most = 2000;
+  constexpr double tolerance = 1e-7;
+  const Index n = structure.dimension(), K = model.modes();
+  std::vector<Eigen::MatrixXd> F, X(static_cast<std::size_t>(K), Eigen::MatrixXd::Identity(n, n));
+  for (Index j = 0; j < K; ++j) F.push_back(unpack(structure, model.theta.col(j)).full_form());
+  double growth = 0.0;
+  for (int iteration = 0; iteration < most; ++iteration) {
+    std::vector<Eigen::MatrixXd> next(X.size(), Eigen::MatrixXd::Zero(n, n));
+    double trace = 0.0, trace_before = 0.0;
+    for (std::size_t i = 0; i < X.size(); ++i) {
+      const Eigen::MatrixXd moved = F[i] * X[i] * F[i].transpose();
+      for (std::size_t j = 0; j < X.size(); ++j)
+        next[j] += model.transition(static_cast<Index>(i), static_cast<Index>(j)) * moved;
+      trace_before += X[i].trace();
+      trace += moved.trace();
+    }
+    if (!(trace > 0.0)) return 0.0;
+    const double before = growth;
+    growth = trace / trace_before;
+    for (std::size_t j = 0; j < X.size(); ++j) X[j] = next[j] / trace;
+    if (std::abs(growth - before) <= tolerance * growth) break;
+  }
+  return growth;
+}
+
+std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                                                const SwitchingRegression& model, bool one_theta,
+                                                const RefineTuning& tuning) {
+  if (model.modes() < 2) return std::nullopt;
+  const LinearStructure& structure = transitions.structure;
+  const std::vector<RegressionSums> modes = sums_of_modes(transitions, posterior, model);
+  const auto without_mode = [&](Index j, const std::string& reason) {
+    const double share = modes[static_cast<std::size_t>(j)].weight / transitions.usable.sum();
+    return ScreenedModel{model, {j, share, radius(structure, model, j), reason + " after refinement"}};
+  };
+  const std::optional<Index> starved = starved_mode(structure, modes);
+  const std::optional<Index> useless = starved ? starved : unstable_mode(structure, model, tuning.growth_slack);
+  if (useless) {
+    ScreenedModel rest = without_mode(*useless, starved ? "starved" : "unstable");
+    drop_mode(*useless, rest.model);
+    return rest;
+  }
+  const std::optional<Twins> twins = closest_twins(structure, modes, one_theta, tuning.duplicate_significance);
+  if (!twins) return std::nullopt;
+  ScreenedModel rest = without_mode(twins->dropped, fmt::format("duplicate of mode {}", twins->kept));
+  merge_sequence(*twins, modes, rest.model);
+  drop_mode(twins->dropped, rest.model);
+  return rest;
+}
+
+}  // namespace modebank

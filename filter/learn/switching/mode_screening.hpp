@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+
+#include "filter/learn/refine/tuning.hpp"
+#include "filter/learn/switching/switching_regression.hpp"
+#include "filter/step/bank.hpp"
+
+namespace modebank {
+
+/// A model that lost a mode, and which.
+struct ScreenedModel {
+  SwitchingRegression model;
+  ScreenedMode mode;
+};
+
+/// The model without one mode that cannot serve, worst reason first; empty when all can. The last mode stays whatever
+/// it is.
+/// - "starved": fewer effective transitions than regressors + 1;
+/// - "unstable": spectral radius of I + A above 1, the largest first, as long as the switching system is not
+///   mean-square stable with it (a motion that never lasts may be unstable by itself);
+/// - "duplicate" of another: pooling both modes' transitions (the moment-preserving merge of Runnalls 2007, IEEE Trans.
+///   AES 43(3), its bound on the loss being the increase of 1/2 sum W log det Q) costs less than a likelihood-ratio
+///   test at 5 % would notice. Its part in T goes to its twin.
+/// `one_theta`: modes differ in Q alone, which is what the test then counts.
+std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                                                const SwitchingRegression& model, bool one_theta,
+                                                const RefineTuning& tuning);
+
+/// Growth per step of the second moment of x[k+1] = F_j x[k] under switching by T: the spectral radius of the operator
+/// X_j -> sum_i T_ij F_i X_i F_i' (Costa, Fragoso & Marques 2005, "Discrete-Time Markov Jump Linear Systems", chapter
+/// 3). The system is mean-square stable below 1. By power iteration, to about 1e-6.
+double mean_square_growth(const LinearStructure& structure, const SwitchingRegression& model);
+
+}  // namespace modebank

@@ -1,0 +1,166 @@
+#include "filter/learn/switching/switching_regression.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <unsupported/Eigen/KroneckerProduct>
+
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/likelihood/definite_inverse.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "mixture/reduction.hpp"
+
+namespace modebank {
+namespace {
+
+/// log N(r_k; 0, Q) of every transition of one mode, to the power of its sample weight.
+Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eigen::VectorXd& theta,
+                              const Eigen::MatrixXd& Q) {
+  const Eigen::MatrixXd r =
+      transitions.data.increments - transitions.data.regressors * coefficients(transitions.structure, theta);
+  const Eigen::LLT<Eigen::MatrixXd> factor(Q);
+  const Eigen::MatrixXd whitened = factor.matrixL().solve(r.transpose());
+  const double constant = static_cast<double>(Q.rows()) * std::log(2.0 * std::numbers::pi) + log_determinant(Q);
+  return (-0.5 * (whitened.colwise().squaredNorm().array() + constant)).transpose() * transitions.usable.array();
+}
+
+/// Forward-backward over the rows of one run; adds to the posterior's sums and fills its rows.
+class RunSmoother {
+ public:
+  RunSmoother(const SwitchingRegression& model, const Eigen::MatrixXd& log_density)
+      : model_(model), log_density_(log_density) {}
+
+  /// Leading transitions that are not usable are left out, as the filter starts after them.
+  void add(RunRows rows, const Eigen::VectorXd& usable, ModePosterior& posterior) {
+    while (rows.count > 0 && usable(rows.first) == 0.0) {
+      ++rows.first;
+      --rows.count;
+    }
+    if (rows.count == 0) return;
+    forward(rows, posterior);
+    backward(rows, posterior);
+  }
+
+ private:
+  void forward(const RunRows& rows, ModePosterior& posterior) {
+    const Index K = model_.modes();
+    density_.resize(K, rows.count);
+    filtered_.resize(K, rows.count);
+    scale_.resize(rows.count);
+    for (Index k = 0; k < rows.count; ++k) {
+      const auto of_step = log_density_.row(rows.first + k).transpose();
+      filtered_.col(k).noalias() = model_.transition.transpose() * before(k);
+      const auto possible = filtered_.col(k).array() > 0.0;
+      const double largest = possible.select(of_step.array(), -std::numeric_limits<double>::infinity()).maxCoeff();
+      density_.col(k) = possible.select((of_step.array() - largest).exp(), 0.0);
+      filtered_.col(k).array() *= density_.col(k).array();
+      scale_(k) = filtered_.col(k).sum();
+      filtered_.col(k) /= scale_(k);
+      posterior.log_likelihood += largest + std::log(scale_(k));
+    }
+  }
+
+  void backward(const RunRows& rows, ModePosterior& posterior) {
+    const Index K = model_.modes();
+    Eigen::VectorXd later = Eigen::VectorXd::Ones(K), weighted(K);
+    Eigen::MatrixXd pairs = Eigen::MatrixXd::Zero(K, K);
+    for (Index k = rows.count - 1; k >= 0; --k) {
+      posterior.probability.row(rows.first + k) = filtered_.col(k).cwiseProduct(later);
+      weighted = density_.col(k).cwiseProduct(later) / scale_(k);
+      pairs.noalias() += before(k) * weighted.transpose();
+      later.noalias() = model_.transition * weighted;
+    }
+    posterior.switches += pairs.cwiseProduct(model_.transition);
+    posterior.first += model_.initial.cwiseProduct(later);
+  }
+
+  /// Mode probabilities that the step to transition k starts from.
+  Eigen::VectorXd before(Index k) const { return k > 0 ? filtered_.col(k - 1) : model_.initial; }
+
+  const SwitchingRegression& model_;
+  const Eigen::MatrixXd& log_density_;
+  Eigen::MatrixXd density_, filtered_;
+  Eigen::VectorXd scale_;
+};
+
+}  // namespace
+
+SwitchingRegression switching_model(const Bank& bank) {
+  SwitchingRegression model;
+  const Index n = bank.structure.states;
+  model.theta.resize(bank.structure.parameters(), bank.mode_count());
+  for (Index j = 0; j < bank.mode_count(); ++j) {
+    model.theta.col(j) = bank.theta(j);
+    model.Q.push_back(bank.modes[static_cast<std::size_t>(j)].Q.topLeftCorner(n, n));
+  }
+  model.transition = bank.transition.matrix();
+  model.initial = bank.initial_probability;
+  return model;
+}
+
+Bank with_modes(const Bank& frame, const SwitchingRegression& model) {
+  Bank bank = frame;
+  bank.modes.clear();
+  const Index p = bank.structure.parameters(), K = model.modes();
+  for (Index j = 0; j < K; ++j)
+    bank.modes.push_back(make_mode(bank.structure, model.theta.col(j), model.Q[static_cast<std::size_t>(j)],
+                                   Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Constant(p, not_a_number),
+                                   1.0 / static_cast<double>(K)));
+  bank.transition = TransitionMatrix(model.transition);
+  bank.initial_probability = model.initial;
+  return bank;
+}
+
+ModePosterior smooth_modes(const TrainingTransitions& transitions, const SwitchingRegression& model) {
+  const Index K = model.modes();
+  Eigen::MatrixXd log_density(transitions.count(), K);
+  tbb::parallel_for(Index{0}, K, [&](Index j) {
+    log_density.col(j) = log_densities(transitions, model.theta.col(j), model.Q[static_cast<std::size_t>(j)]);
+  });
+  ModePosterior posterior{Eigen::MatrixXd::Zero(transitions.count(), K), Eigen::MatrixXd::Zero(K, K),
+                          Eigen::VectorXd::Zero(K)};
+  RunSmoother smoother(model, log_density);
+  for (const RunRows& rows : transitions.runs) smoother.add(rows, transitions.usable, posterior);
+  return posterior;
+}
+
+SwitchingSums sum_transitions(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                              const SwitchingPrior& prior) {
+  const Eigen::MatrixXd& X = transitions.data.regressors;
+  const Eigen::MatrixXd r = transitions.data.increments - X * coefficients(transitions.structure, prior.mean);
+  SwitchingSums sums{std::vector<RegressionSums>(static_cast<std::size_t>(posterior.probability.cols())),
+                     posterior.switches, posterior.first};
+  tbb::parallel_for(Index{0}, posterior.probability.cols(), [&](Index j) {
+    const Eigen::VectorXd g = posterior.probability.col(j).cwiseProduct(transitions.usable);
+    sums.modes[static_cast<std::size_t>(j)] = regression_sums(X, g, r);
+  });
+  return sums;
+}
+
+std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, const SwitchingPrior& prior,
+                                                   const SwitchingRegression& model) {
+  std::vector<Eigen::MatrixXd> covariances;
+  for (std::size_t j = 0; j < sums.modes.size(); ++j)
+    covariances.push_back(definite_inverse(
+        Eigen::kroneckerProduct(definite_inverse(model.Q[j]), sums.modes[j].G).eval() + prior.information));
+  return covariances;
+}
+
+double log_prior(const SwitchingPrior& prior, bool one_theta, const SwitchingRegression& model) {
+  const Index thetas = one_theta ? 1 : model.modes();
+  double sum = 0.0;
+  for (Index j = 0; j < thetas; ++j) {
+    const Eigen::VectorXd difference = model.theta.col(j) - prior.mean;
+    sum -= 0.5 * difference.dot(prior.information * difference);
+  }
+  for (const Eigen::MatrixXd& Q : model.Q)
+    sum -= 0.5 * prior.noise_transitions * (log_determinant(Q) + (definite_inverse(Q) * prior.noise).trace());
+  if (prior.counts > 0.0)
+    sum += prior.counts * (model.transition.array().log().sum() + model.initial.array().log().sum());
+  return sum;
+}
+
+}  // namespace modebank

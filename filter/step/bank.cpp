@@ -1,0 +1,129 @@
+#include "filter/step/bank.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+void expect_size(const std::string& what, Index rows, Index cols, Index expected_rows, Index expected_cols) {
+  if (rows == expected_rows && cols == expected_cols) return;
+  throw std::invalid_argument(what + " is " + std::to_string(rows) + " x " + std::to_string(cols) + ", must be " +
+                              std::to_string(expected_rows) + " x " + std::to_string(expected_cols));
+}
+
+void check_mode(const Mode& mode, const LinearStructure& s, const std::string& name) {
+  const Index n = s.dimension(), p = s.parameters();
+  expect_size(name + " A", mode.model.A.rows(), mode.model.A.cols(), n, n);
+  expect_size(name + " B", mode.model.B.rows(), mode.model.B.cols(), n, s.acting_inputs());
+  expect_size(name + " c", mode.model.c.size(), 1, n, 1);
+  expect_size(name + " Q", mode.Q.rows(), mode.Q.cols(), n, n);
+  if (mode.spread.size() > 0) expect_size(name + " spread", mode.spread.rows(), mode.spread.cols(), p, p);
+  if (mode.standard_error.size() > 0) expect_size(name + " standard error", mode.standard_error.size(), 1, p, 1);
+}
+
+void require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument("the bank's " + what);
+}
+
+bool is_covariance(const Eigen::MatrixXd& S) { return S.allFinite() && (S.diagonal().array() >= 0.0).all(); }
+
+void check_numbers(const Mode& mode, const std::string& of_mode) {
+  require(mode.model.A.allFinite() && mode.model.B.allFinite() && mode.model.c.allFinite(),
+          "model" + of_mode + " is not finite");
+  require(is_covariance(mode.Q), "Q" + of_mode + " is no covariance");
+}
+
+void check_adaptation(const NoiseAdaptation& adaptation) {
+  const double f = adaptation.forgetting, n0 = adaptation.prior_samples;
+  require(f > 0.0 && f <= 1.0, "noise forgetting is " + std::to_string(f) + ", must lie above 0 and not above 1");
+  require(n0 > 0.0 && std::isfinite(n0),
+          "noise adaptation starts from " + std::to_string(n0) + " prior samples, must be above 0");
+}
+
+StartMoments measured_lags(const Bank& bank) {
+  const Eigen::Index n = bank.structure.dimension(), n_y = bank.R.rows();
+  StartMoments moments{Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd::Zero(n, n)};
+  for (Eigen::Index i = 0; i + n_y <= n; i += n_y) moments.covariance.block(i, i, n_y, n_y) = bank.R;
+  return moments;
+}
+
+}  // namespace
+
+TransitionMatrix::TransitionMatrix(Eigen::MatrixXd row_stochastic) : matrix_(std::move(row_stochastic)) {
+  constexpr double row_sum_tolerance = 1e-9;
+  if (matrix_.rows() != matrix_.cols() || matrix_.rows() == 0)
+    throw std::invalid_argument("transition matrix is " + std::to_string(matrix_.rows()) + " x " +
+                                std::to_string(matrix_.cols()) + ", must be square and not empty");
+  for (Eigen::Index i = 0; i < matrix_.rows(); ++i) {
+    const double sum = matrix_.row(i).sum();
+    if (!(std::abs(sum - 1.0) <= row_sum_tolerance))
+      throw std::invalid_argument("row " + std::to_string(i) + " of the transition matrix sums to " +
+                                  std::to_string(sum) + ", must be 1");
+    if (!(matrix_.row(i).minCoeff() >= 0.0))
+      throw std::invalid_argument("row " + std::to_string(i) + " of the transition matrix holds the negative entry " +
+                                  std::to_string(matrix_.row(i).minCoeff()));
+    // A row that was normalised before keeps its bits, so that a stored bank filters as the original did.
+    const double rounding = 2.0 * std::numeric_limits<double>::epsilon() * static_cast<double>(matrix_.cols());
+    if (std::abs(sum - 1.0) > rounding) matrix_.row(i) /= sum;
+  }
+}
+
+TransitionMatrix TransitionMatrix::sticky(Eigen::Index modes, double stay) {
+  if (modes < 1) throw std::invalid_argument("a transition matrix of " + std::to_string(modes) + " modes");
+  if (!(stay >= 0.0 && stay <= 1.0))
+    throw std::invalid_argument("stay is " + std::to_string(stay) + ", must be a probability");
+  if (modes == 1) return {};
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Constant(modes, modes, (1.0 - stay) / static_cast<double>(modes - 1));
+  matrix.diagonal().setConstant(stay);
+  return TransitionMatrix(std::move(matrix));
+}
+
+void check_sizes(const Bank& bank) {
+  if (bank.structure.states < 1) throw std::invalid_argument("a bank needs at least one state");
+  if (bank.modes.empty()) throw std::invalid_argument("a bank needs at least one mode");
+  for (std::size_t j = 0; j < bank.modes.size(); ++j)
+    check_mode(bank.modes[j], bank.structure, "mode " + std::to_string(j));
+  const Index n_y = bank.C.rows(), K = bank.mode_count();
+  if (n_y < 1) throw std::invalid_argument("C of the bank is empty");
+  expect_size("C", n_y, bank.C.cols(), n_y, bank.structure.dimension());
+  expect_size("R", bank.R.rows(), bank.R.cols(), n_y, n_y);
+  expect_size("transition matrix", bank.transition.modes(), bank.transition.modes(), K, K);
+  expect_size("initial probability", bank.initial_probability.size(), 1, K, 1);
+  if (bank.structure.state_lags > 1 && n_y != bank.structure.states)
+    throw std::invalid_argument("a bank with lagged states must measure each of its " +
+                                std::to_string(bank.structure.states) + " states");
+}
+
+void validate(const Bank& bank) {
+  check_sizes(bank);
+  require(is_covariance(bank.R), "R is no covariance");
+  require(bank.C.allFinite(), "C is not finite");
+  require(bank.initial_probability.allFinite() && bank.initial_probability.minCoeff() >= 0.0 &&
+              bank.initial_probability.sum() > 0.0,
+          "initial probabilities are none");
+  for (std::size_t j = 0; j < bank.modes.size(); ++j) check_numbers(bank.modes[j], " of mode " + std::to_string(j));
+  check_adaptation(bank.noise_adaptation);
+}
+
+StartMoments start_moments(const Bank& bank) {
+  if (bank.structure.state_lags > 1) return measured_lags(bank);
+  double largest = bank.R.diagonal().maxCoeff();
+  for (const Mode& mode : bank.modes) largest = std::max(largest, mode.Q.diagonal().maxCoeff());
+  const Eigen::Index n = bank.structure.dimension();
+  const Eigen::MatrixXd C_pinv = bank.C.completeOrthogonalDecomposition().pseudoInverse();
+  Eigen::MatrixXd P = C_pinv * bank.R * C_pinv.transpose();
+  const Eigen::MatrixXd unobserved = Eigen::MatrixXd::Identity(n, n) - C_pinv * bank.C;
+  if (bank.C.rows() < n) P += unobserved_variance_factor * largest * unobserved;
+  return {C_pinv, 0.5 * (P + P.transpose())};
+}
+
+}  // namespace modebank

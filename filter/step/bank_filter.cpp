@@ -1,0 +1,171 @@
+#include "filter/step/bank_filter.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "filter/step/equations/predicted_mixture.hpp"
+#include "filter/step/stepper.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+using Vector = Eigen::Ref<const Eigen::VectorXd>;
+
+namespace {
+
+const Bank& validated(const Bank& bank) {
+  validate(bank);
+  return bank;
+}
+
+FilterEstimate empty_estimate(const Bank& bank) {
+  const Index n = bank.structure.dimension(), n_y = bank.C.rows(), K = bank.mode_count();
+  FilterEstimate e;
+  e.prediction.setConstant(n, not_a_number);
+  e.innovation.setConstant(n_y, not_a_number);
+  e.innovation_covariance.setConstant(n_y, n_y, not_a_number);
+  e.state.setConstant(n, not_a_number);
+  e.covariance.setConstant(n, n, not_a_number);
+  e.pit.setConstant(n_y, not_a_number);
+  e.mode_probability_predicted.setZero(K);
+  e.mode_probability.setZero(K);
+  e.nis = e.log_density = e.spread_share = not_a_number;
+  return e;
+}
+
+/// Throws std::invalid_argument unless the memory is one of a filter of n states and K modes.
+void check_memory(const FilterMemory& memory, Index n, Index K) {
+  if (memory.means.rows() != n || memory.means.cols() != K || memory.covariances.rows() != n * n ||
+      memory.covariances.cols() != K || memory.mode_probability.size() != K)
+    throw std::invalid_argument("the snapshot is not of a filter of " + std::to_string(K) + " modes and " +
+                                std::to_string(n) + " states");
+  const auto is_positive = [](double value) { return value > 0.0 && std::isfinite(value); };
+  if (!memory.means.allFinite() || !memory.covariances.allFinite() || !memory.mode_probability.allFinite() ||
+      memory.mode_probability.minCoeff() < 0.0 || !is_positive(memory.mode_probability.sum()) ||
+      !is_positive(memory.noise_scale) || !(memory.noise_samples >= 0.0 && std::isfinite(memory.noise_samples)))
+    throw std::invalid_argument("the snapshot holds numbers that no filter has");
+}
+
+}  // namespace
+
+struct BankFilter::Parts {
+  FilterEstimate estimate;
+  bool started = false;
+  SampleFeed feed;
+  std::unique_ptr<Stepper> stepper;
+  Eigen::MatrixXd C;
+  Eigen::VectorXd initial_probability;
+  CombinedInnovation combined;
+
+  Parts(const Bank& bank, const FilterOptions& options)
+      : estimate(empty_estimate(bank)),
+        feed(bank, options.time_steps),
+        stepper(make_stepper(bank, options)),
+        C(bank.C),
+        initial_probability(bank.initial_probability),
+        combined(C.rows()) {}
+
+  void wait() {
+    clear_prediction();
+    estimate.state.setConstant(not_a_number);
+    estimate.covariance.setConstant(not_a_number);
+    estimate.mode_probability_predicted = initial_probability;
+    estimate.mode_probability = initial_probability;
+  }
+
+  void start() {
+    clear_prediction();
+    stepper->start(feed.start());
+    estimate.mode_probability_predicted = stepper->mode_probability();
+    record_posterior();
+  }
+
+  void step(const Vector& measurement) {
+    stepper->advance(feed.inputs(), feed.steps());
+    estimate.spread_share = stepper->combine(estimate.prediction, estimate.innovation_covariance);
+    estimate.mode_probability_predicted = stepper->predicted_probability();
+    estimate.steps = feed.steps();
+    estimate.log_density = stepper->update(measurement);
+    if (std::isnan(estimate.log_density))
+      clear_scores();
+    else
+      record_scores(measurement);
+    record_posterior();
+  }
+
+ private:
+  void record_scores(const Vector& measurement) {
+    combined.observe(C, estimate.prediction, estimate.innovation_covariance, measurement);
+    estimate.innovation = combined.innovation;
+    estimate.nis = combined.nis;
+    stepper->transform(measurement, estimate.pit);
+  }
+
+  void record_posterior() {
+    stepper->merge(estimate.state, estimate.covariance);
+    estimate.mode_probability = stepper->mode_probability();
+  }
+
+  /// Nothing was said of this sample before it came.
+  void clear_prediction() {
+    estimate.prediction.setConstant(not_a_number);
+    estimate.innovation_covariance.setConstant(not_a_number);
+    estimate.spread_share = not_a_number;
+    estimate.steps = 0;
+    clear_scores();
+  }
+  void clear_scores() {
+    estimate.innovation.setConstant(not_a_number);
+    estimate.pit.setConstant(not_a_number);
+    estimate.nis = estimate.log_density = not_a_number;
+  }
+};
+
+BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
+    : parts_(std::make_unique<Parts>(validated(bank), options)) {}
+
+BankFilter::~BankFilter() = default;
+BankFilter::BankFilter(BankFilter&&) noexcept = default;
+BankFilter& BankFilter::operator=(BankFilter&&) noexcept = default;
+
+const FilterEstimate& BankFilter::step(double time_s, const Vector& input, const Vector& measurement) {
+  Parts& p = *parts_;
+  p.feed.push(time_s, input, measurement);
+  if (p.started && p.feed.steps() > longest_gap_steps) p.started = false;
+  if (p.started) {
+    p.step(measurement);
+  } else if (p.feed.can_start()) {
+    p.start();
+    p.started = true;
+  } else {
+    p.wait();
+  }
+  return p.estimate;
+}
+
+const FilterEstimate& BankFilter::estimate() const { return parts_->estimate; }
+bool BankFilter::started() const { return parts_->started; }
+
+void BankFilter::restart() {
+  parts_->started = false;
+  parts_->feed.clear();
+}
+
+FilterSnapshot BankFilter::snapshot() const {
+  FilterSnapshot snapshot;
+  parts_->stepper->save(snapshot);
+  snapshot.started = parts_->started;
+  snapshot.samples = parts_->feed.memory();
+  return snapshot;
+}
+
+void BankFilter::restore(const FilterSnapshot& snapshot) {
+  check_memory(snapshot, parts_->estimate.state.size(), parts_->initial_probability.size());
+  parts_->feed.restore(snapshot.samples);  // refuses before it changes anything, as the line above does
+  parts_->stepper->restore(snapshot);
+  parts_->started = snapshot.started;
+}
+
+}  // namespace modebank

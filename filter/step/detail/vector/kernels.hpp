@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+
+/// Between vector_imm.cpp and its kernels, which are compiled once per instruction set. Rows hold `stride` numbers, one
+/// per mode, and begin at multiples of 64 bytes. Symmetric matrices are packed: entry (a, b), a >= b, is row
+/// a (a + 1) / 2 + b. Places beyond the last mode hold zeros and are never reached.
+namespace modebank::vector_imm {
+
+struct ModeRows {
+  std::size_t modes = 0, stride = 0, inputs = 0;
+  // The bank.
+  const double *F = nullptr, *B = nullptr, *c = nullptr, *Q = nullptr;  ///< n*n (row-major), n*inputs, n, packed n
+  const double* transition = nullptr;                                   ///< a row per mode: from
+  // The filter's state.
+  double *mean = nullptr, *covariance = nullptr, *probability = nullptr;  ///< n, packed n, 1
+  double* center = nullptr;  ///< n numbers near the mean of all modes: what the mixing takes moments about
+  double* parts = nullptr;   ///< n + packed n: workspace
+  // What a step leaves behind.
+  double* predicted_probability = nullptr;                            ///< 1
+  double *predicted_mean = nullptr, *predicted_covariance = nullptr;  ///< n, packed n
+  double *expected = nullptr, *innovation_covariance = nullptr;       ///< n_y: C x; packed n_y: S
+  double *L = nullptr, *D = nullptr, *D_inverse = nullptr;            ///< packed n_y; n_y: S = L D L'
+  double* decorrelated = nullptr;                                     ///< n_y: L^-1 (y - C x)
+  double *distance = nullptr, *weight = nullptr;                      ///< 1: e' S^-1 e; unnormalised posterior
+};
+
+/// C (n_y x n) and R (n_y x n_y), row-major, and how many of the n_y signals are there.
+struct Sensor {
+  const double *C = nullptr, *R = nullptr;
+  double signals = 0.0;
+};
+
+/// What an update finds.
+struct UpdateResult {
+  double log_density = 0.0;          ///< of n_y signals
+  double share = 0.0, square = 0.0;  ///< sums of adapt_noise_scale (noise_scale.hpp), if asked for
+};
+
+struct CombinedMoments {
+  double *mean, *covariance;  ///< n, packed n
+};
+
+struct CombinedExpectation {
+  double *state, *innovation_covariance;  ///< n, packed n_y
+  double spread = 0.0;                    ///< sum_j c_j |C x_j - C x|^2
+};
+
+/// The steps of one pair of sizes.
+struct Kernels {
+  /// Mixing and prediction: predicted_*. `v`: inputs.
+  void (*predict)(const ModeRows&, const double* v, double noise_scale) = nullptr;
+  /// C x, S and its factor.
+  void (*expect)(const ModeRows&, const Sensor&) = nullptr;
+  /// The state after y; with noise_scale > 0 also share and square.
+  UpdateResult (*update)(const ModeRows&, const Sensor&, const double* y, double noise_scale) = nullptr;
+  /// A prediction without a measurement is the state.
+  void (*skip)(const ModeRows&) = nullptr;
+  void (*merge)(const ModeRows&, CombinedMoments) = nullptr;
+  void (*combine)(const ModeRows&, const Sensor&, CombinedExpectation&) = nullptr;
+  /// The probability integral transform of the y that update took in: n_y.
+  void (*transform)(const ModeRows&, const double* y, double* pit) = nullptr;
+};
+
+/// Null entries where there are no kernels for these sizes.
+Kernels kernels(std::size_t states, std::size_t measurements);
+
+/// Rows are padded to multiples of this, enough for any instruction set.
+inline constexpr std::size_t row_multiple = 8;
+
+}  // namespace modebank::vector_imm

@@ -1,0 +1,85 @@
+// Vectors of doubles, a mode per lane, and rows of modes in them (kernels.hpp). Included once per instruction set
+// (Highway's foreach_target.h).
+#if defined(MODEBANK_VECTOR_IMM_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MODEBANK_VECTOR_IMM_ROWS_INL
+#undef MODEBANK_VECTOR_IMM_ROWS_INL
+#else
+#define MODEBANK_VECTOR_IMM_ROWS_INL
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "filter/step/detail/vector/kernels.hpp"
+#include "filter/step/equations/bounds.hpp"
+#include "ident/base/detail/simd-inl.hpp"
+#include "mixture/detail/kernels/lanes-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace modebank::vector_imm::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+using batch::HWY_NAMESPACE::reciprocal;
+using batch::HWY_NAMESPACE::reciprocal_root;
+using em::HWY_NAMESPACE::Exp;
+
+// At most the padding's width (kernels.hpp), so that rows are whole registers everywhere.
+using D = hn::CappedTag<double, 8>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+
+static_assert(hn::MaxLanes(D()) <= row_multiple);
+
+inline constexpr double log_two_pi = 1.8378770664093454836;
+inline constexpr double far = 1e300;  ///< the squared distance of an impossible mode
+
+HWY_INLINE V splat(double value) { return hn::Set(D(), value); }
+HWY_INLINE V zero() { return hn::Zero(D()); }
+HWY_INLINE V load(const double* p) { return hn::Load(D(), p); }
+HWY_INLINE void store(V v, double* p) { hn::Store(v, D(), p); }
+HWY_INLINE double sum_of(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
+
+/// The moments of a mixture come from sums about another point, the center: variance = square - shift^2, mean = center
+/// + shift. Below this variance too many bits have cancelled (more than ten of the variance's 53, or the mean's error
+/// is no longer far below a standard deviation), and the sums have to be taken about the mean.
+HWY_INLINE V least_sound(V square, V center) {
+  constexpr double least_share = 0x1p-10, least_of_center = 0x1p-80;
+  return hn::Max(hn::Mul(square, splat(least_share)), hn::Mul(hn::Mul(center, center), splat(least_of_center)));
+}
+
+constexpr std::size_t packed(std::size_t a, std::size_t b) {
+  return a >= b ? a * (a + 1) / 2 + b : b * (b + 1) / 2 + a;
+}
+constexpr std::size_t packed_size(std::size_t n) { return n * (n + 1) / 2; }
+
+/// Rows r .. r + lanes of a group of rows.
+template <std::size_t Rows>
+HWY_INLINE void load_rows(const double* p, std::size_t stride, V (&v)[Rows]) {
+  for (std::size_t i = 0; i < Rows; ++i) v[i] = load(p + i * stride);
+}
+template <std::size_t Rows>
+HWY_INLINE void store_rows(const V (&v)[Rows], std::size_t stride, double* p) {
+  for (std::size_t i = 0; i < Rows; ++i) store(v[i], p + i * stride);
+}
+
+/// Mean and covariance of as many modes as a register has lanes.
+template <std::size_t N>
+struct Moments {
+  V x[N];
+  V P[packed_size(N)];
+};
+
+/// P C' of a covariance.
+template <std::size_t N, std::size_t NY>
+HWY_INLINE void times_sensor(const V (&P)[packed_size(N)], const double* C, V (&PCt)[N * NY]) {
+  for (std::size_t a = 0; a < N; ++a)
+    for (std::size_t i = 0; i < NY; ++i) {
+      V sum = hn::Mul(P[packed(a, 0)], splat(C[i * N]));
+      for (std::size_t b = 1; b < N; ++b) sum = hn::MulAdd(P[packed(a, b)], splat(C[i * N + b]), sum);
+      PCt[a * NY + i] = sum;
+    }
+}
+
+}  // namespace modebank::vector_imm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,228 @@
+#include "filter/step/detail/vector/vector_imm.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+
+#include "filter/step/bank_filter.hpp"
+#include "filter/step/equations/imm.hpp"
+#include "filter/step/equations/noise_scale.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+using vector_imm::row_multiple;
+
+namespace {
+
+constexpr std::size_t register_bytes = row_multiple * sizeof(double);
+constexpr double half_log_two_pi = 0.91893853320467274178;
+
+std::size_t count_of(Index n) { return static_cast<std::size_t>(n); }
+Index packed_size(Index n) { return n * (n + 1) / 2; }
+
+/// Calls visit(place, a, b) for the lower triangle in the kernels' order.
+template <class Visit>
+void for_each_packed(Index n, Visit visit) {
+  for (Index a = 0, place = 0; a < n; ++a)
+    for (Index b = 0; b <= a; ++b, ++place) visit(place, a, b);
+}
+
+void unpack_symmetric(const Eigen::VectorXd& packed, Eigen::Ref<Eigen::MatrixXd> matrix) {
+  for_each_packed(matrix.rows(), [&](Index place, Index a, Index b) { matrix(a, b) = matrix(b, a) = packed(place); });
+}
+
+}  // namespace
+
+void VectorImm::Free::operator()(double* memory) const { std::free(memory); }
+
+bool VectorImm::can_step(const Bank& bank, const FilterOptions& options) {
+  const auto has_spread = [](const Mode& mode) { return mode.spread.size() > 0; };
+  return options.variant == FilterVariant::imm && bank.mode_count() > 1 &&
+         !(options.parameter_noise && std::any_of(bank.modes.begin(), bank.modes.end(), has_spread)) &&
+         vector_imm::kernels(count_of(bank.structure.dimension()), count_of(bank.C.rows())).predict != nullptr;
+}
+
+VectorImm::VectorImm(const Bank& bank, const FilterOptions& options)
+    : n_(bank.structure.dimension()),
+      n_y_(bank.C.rows()),
+      K_(bank.mode_count()),
+      adaptive_(options.noise == FilterNoise::adaptive),
+      adaptation_(bank.noise_adaptation),
+      kernels_(vector_imm::kernels(count_of(n_), count_of(n_y_))),
+      C_(bank.C.transpose()),
+      R_(bank.R.transpose()),
+      partial_C_(C_),
+      partial_R_(R_),
+      sensor_{C_.data(), R_.data(), static_cast<double>(n_y_)},
+      y_(n_y_),
+      packed_(std::max(packed_size(n_), packed_size(n_y_))),
+      first_(start_moments(bank)),
+      initial_probability_(bank.initial_probability),
+      start_(n_) {
+  floor_probabilities(initial_probability_);
+  rows_.modes = count_of(K_);
+  rows_.stride = (rows_.modes + row_multiple - 1) / row_multiple * row_multiple;
+  rows_.inputs = count_of(bank.structure.acting_inputs());
+  lay_out();
+  fill(bank);
+}
+
+/// One block for all rows, so that a step after a pause finds its numbers in few cache lines.
+void VectorImm::lay_out() {
+  const Index m = static_cast<Index>(rows_.inputs), p = packed_size(n_), q = packed_size(n_y_);
+  const Index bank_rows = n_ * n_ + n_ * m + n_ + p + K_, step_rows = 3 * (n_ + p) + 3 + 5 * n_y_ + 2 * q + 2;
+  const std::size_t numbers = count_of(bank_rows + step_rows) * rows_.stride;
+  auto* memory = static_cast<double*>(std::aligned_alloc(register_bytes, numbers * sizeof(double)));
+  if (memory == nullptr) throw std::bad_alloc();
+  std::fill_n(memory, numbers, 0.0);
+  memory_.reset(memory);
+  const auto take = [&](Index rows) {
+    double* first = memory;
+    memory += count_of(rows) * rows_.stride;
+    return first;
+  };
+  rows_.F = take(n_ * n_);
+  rows_.B = take(n_ * m);
+  rows_.c = take(n_);
+  rows_.Q = take(p);
+  rows_.transition = take(K_);
+  rows_.mean = take(n_);
+  rows_.covariance = take(p);
+  rows_.probability = take(1);
+  rows_.center = take(1);  // has room for n
+  rows_.parts = take(n_ + p);
+  rows_.predicted_probability = take(1);
+  rows_.predicted_mean = take(n_);
+  rows_.predicted_covariance = take(p);
+  rows_.expected = take(n_y_);
+  rows_.innovation_covariance = take(q);
+  rows_.L = take(q);
+  rows_.D = take(n_y_);
+  rows_.D_inverse = take(n_y_);
+  rows_.decorrelated = take(n_y_);
+  rows_.distance = take(1);
+  rows_.weight = take(1);
+}
+
+void VectorImm::fill(const Bank& bank) {
+  const auto put = [&](const double* rows, Index i, Index j, double value) {  // rows of memory_ that steps only read
+    memory_[count_of(rows - memory_.get()) + at(i, j)] = value;
+  };
+  const Index m = bank.structure.acting_inputs();
+  for (Index j = 0; j < K_; ++j) {
+    const Mode& mode = bank.modes[count_of(j)];
+    const Eigen::MatrixXd F = mode.model.full_form();
+    for (Index a = 0; a < n_; ++a) {
+      for (Index b = 0; b < n_; ++b) put(rows_.F, a * n_ + b, j, F(a, b));
+      for (Index i = 0; i < m; ++i) put(rows_.B, a * m + i, j, mode.model.B(a, i));
+      put(rows_.c, a, j, mode.model.c(a));
+    }
+    for_each_packed(n_, [&](Index place, Index a, Index b) { put(rows_.Q, place, j, mode.Q(a, b)); });
+    for (Index i = 0; i < K_; ++i) put(rows_.transition, i, j, bank.transition.matrix()(i, j));
+    rows_.probability[j] = initial_probability_(j);  // until the start
+  }
+}
+
+void VectorImm::start(const Vector& y) {
+  start_.noalias() = first_.gain.lazyProduct(y);
+  for (Index j = 0; j < K_; ++j) {
+    for (Index a = 0; a < n_; ++a) rows_.mean[at(a, j)] = start_(a);
+    for_each_packed(n_,
+                    [&](Index place, Index a, Index b) { rows_.covariance[at(place, j)] = first_.covariance(a, b); });
+    rows_.probability[j] = initial_probability_(j);
+  }
+  std::copy_n(start_.data(), n_, rows_.center);
+  noise_scale_ = 1.0;
+  noise_samples_ = adaptation_.prior_samples;
+}
+
+void VectorImm::skip(const Vector& v) {
+  kernels_.predict(rows_, v.data(), noise_scale_);
+  kernels_.skip(rows_);
+}
+
+void VectorImm::predict(const Vector& v) {
+  kernels_.predict(rows_, v.data(), noise_scale_);
+  kernels_.expect(rows_, sensor_);
+}
+
+/// As PartialSensor: a missing signal is one that is always zero, of variance one, unrelated to anything.
+vector_imm::Sensor VectorImm::detach_missing(const Vector& y, Index missing) {
+  partial_C_ = C_;
+  partial_R_ = R_;
+  y_ = y;
+  for (Index i = 0; i < n_y_; ++i) {
+    if (!is_missing(y(i))) continue;
+    partial_C_.col(i).setZero();
+    partial_R_.row(i).setZero();
+    partial_R_.col(i).setZero();
+    partial_R_(i, i) = 1.0;
+    y_(i) = 0.0;
+  }
+  return {partial_C_.data(), partial_R_.data(), static_cast<double>(n_y_ - missing)};
+}
+
+double VectorImm::update(const Vector& y) {
+  const Index missing = missing_entries(y);
+  if (missing == n_y_) {
+    kernels_.skip(rows_);
+    return not_a_number;
+  }
+  vector_imm::Sensor sensor = sensor_;
+  if (missing > 0) {
+    sensor = detach_missing(y, missing);
+    kernels_.expect(rows_, sensor);
+  }
+  const vector_imm::UpdateResult result =
+      kernels_.update(rows_, sensor, missing > 0 ? y_.data() : y.data(), adaptive_ ? noise_scale_ : 0.0);
+  if (adaptive_)
+    move_noise_scale(adaptation_, result.share, result.square, sensor.signals, noise_scale_, noise_samples_);
+  return result.log_density + half_log_two_pi * static_cast<double>(missing);
+}
+
+double VectorImm::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) {
+  vector_imm::CombinedExpectation to{state.data(), packed_.data()};
+  kernels_.combine(rows_, sensor_, to);
+  unpack_symmetric(packed_, innovation_covariance);
+  const double total = innovation_covariance.diagonal().sum();
+  return total > 0.0 ? std::min(1.0, to.spread / total) : 0.0;
+}
+
+void VectorImm::transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit) {
+  kernels_.transform(rows_, y.data(), pit.data());
+}
+
+void VectorImm::merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) {
+  kernels_.merge(rows_, {mean.data(), packed_.data()});
+  unpack_symmetric(packed_, covariance);
+}
+
+void VectorImm::save(FilterMemory& memory) const {
+  memory.means.resize(n_, K_);
+  memory.covariances.resize(n_ * n_, K_);
+  for (Index j = 0; j < K_; ++j) {
+    for (Index a = 0; a < n_; ++a) memory.means(a, j) = rows_.mean[at(a, j)];
+    for_each_packed(n_, [&](Index place, Index a, Index b) {
+      memory.covariances(b * n_ + a, j) = memory.covariances(a * n_ + b, j) = rows_.covariance[at(place, j)];
+    });
+  }
+  memory.mode_probability = mode_probability();
+  memory.noise_scale = noise_scale_;
+  memory.noise_samples = noise_samples_;
+}
+
+void VectorImm::restore(const FilterMemory& memory) {
+  for (Index j = 0; j < K_; ++j) {
+    for (Index a = 0; a < n_; ++a) rows_.mean[at(a, j)] = memory.means(a, j);
+    for_each_packed(
+        n_, [&](Index place, Index a, Index b) { rows_.covariance[at(place, j)] = memory.covariances(b * n_ + a, j); });
+    rows_.probability[j] = memory.mode_probability(j);
+  }
+  Eigen::VectorXd::Map(rows_.center, n_) = memory.means * memory.mode_probability;
+  noise_scale_ = memory.noise_scale;
+  noise_samples_ = memory.noise_samples;
+}
+
+}  // namespace modebank

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "filter/step/detail/vector/kernels.hpp"
+#include "filter/step/stepper.hpp"
+
+namespace modebank {
+
+/// The interacting multiple model filter with a mode per lane of the processor's vector registers (Highway, chosen for
+/// the machine at run time), for the sizes most robots have. It computes what equations/filter_step.hpp computes, to
+/// rounding: the same mixing, floors, adaptive noise and treatment of impossible modes, in another order of summation.
+class VectorImm final : public Stepper {
+ public:
+  /// Whether there are kernels for this bank run in this way.
+  static bool can_step(const Bank& bank, const FilterOptions& options);
+  /// Requires can_step(bank, options) and check_sizes(bank).
+  VectorImm(const Bank& bank, const FilterOptions& options);
+
+  void start(const Vector& y) override;
+  void predict(const Vector& v) override;
+  void skip(const Vector& v) override;
+  double update(const Vector& y) override;
+
+  double combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) override;
+  void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit) override;
+  void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) override;
+  Eigen::Map<const Eigen::VectorXd> predicted_probability() const override { return row(rows_.predicted_probability); }
+  Eigen::Map<const Eigen::VectorXd> mode_probability() const override { return row(rows_.probability); }
+  /// After update: signal i of mode j's innovation without what earlier signals explain, and its variance.
+  double decorrelated(Eigen::Index i, Eigen::Index j) const { return rows_.decorrelated[at(i, j)]; }
+  double variance(Eigen::Index i, Eigen::Index j) const { return rows_.D[at(i, j)]; }
+  double noise_scale() const { return noise_scale_; }
+
+  void save(FilterMemory& memory) const override;
+  void restore(const FilterMemory& memory) override;
+
+ private:
+  struct Free {
+    void operator()(double* memory) const;
+  };
+
+  Eigen::Index n_, n_y_, K_;
+  bool adaptive_;
+  NoiseAdaptation adaptation_;
+  double noise_scale_ = 1.0, noise_samples_ = 0.0;  // of FilterMemory
+  vector_imm::Kernels kernels_;
+  std::unique_ptr<double[], Free> memory_;
+  vector_imm::ModeRows rows_;              // within memory_
+  Eigen::MatrixXd C_, R_;                  // transposed: row-major
+  Eigen::MatrixXd partial_C_, partial_R_;  // of the signals that are there
+  vector_imm::Sensor sensor_;              // C_ and R_
+  Eigen::VectorXd y_, packed_;
+  StartMoments first_;
+  Eigen::VectorXd initial_probability_, start_;
+
+  std::size_t at(Eigen::Index i, Eigen::Index j) const {
+    return static_cast<std::size_t>(i) * rows_.stride + static_cast<std::size_t>(j);
+  }
+  Eigen::Map<const Eigen::VectorXd> row(const double* first) const { return {first, K_}; }
+  void lay_out();
+  void fill(const Bank& bank);
+  vector_imm::Sensor detach_missing(const Vector& y, Eigen::Index missing);
+};
+
+}  // namespace modebank

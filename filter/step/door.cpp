@@ -1,0 +1,146 @@
+// The installed face of this library: plain vectors outside, Eigen inside.
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "filter/step/bank_filter.hpp"
+#include "modebank/base/eigen.hpp"
+#include "modebank/filter/bank_filter.hpp"
+
+namespace modebank::filter {
+
+namespace {
+
+using Eigen::Index;
+
+modebank::Mode inside(const Mode& mode, Index n, Index m) {
+  modebank::Mode result;
+  result.model = {view(mode.A), view(mode.B), view(mode.c)};
+  result.Q = view(mode.Q);
+  result.spread = view(mode.parameter_covariance);
+  result.weight = mode.weight;
+  // Left out means zero: no drift, no input.
+  if (result.model.c.size() == 0) result.model.c.setZero(n);
+  if (result.model.B.size() == 0) result.model.B.setZero(n, m);
+  return result;
+}
+
+LinearStructure structure_of(const BankDescription& d) {
+  if (d.modes.empty()) throw std::invalid_argument("a bank needs a mode");
+  if (d.state_lags < 1 || d.modes.front().A.rows % d.state_lags != 0)
+    throw std::invalid_argument("A has " + std::to_string(d.modes.front().A.rows) + " rows, no multiple of " +
+                                std::to_string(d.state_lags) + " state lags");
+  return {d.modes.front().A.rows / d.state_lags, d.inputs, d.intercept, d.state_lags, d.input_lags, d.input_delay};
+}
+
+std::shared_ptr<const modebank::Bank> inside(const BankDescription& d) {
+  modebank::Bank bank;
+  bank.structure = structure_of(d);
+  const Index n = bank.structure.dimension(), K = static_cast<Index>(d.modes.size());
+  for (const Mode& mode : d.modes) bank.modes.push_back(inside(mode, n, bank.structure.acting_inputs()));
+  bank.C = d.C.values.empty() ? Eigen::MatrixXd::Identity(bank.structure.states, n) : Eigen::MatrixXd(view(d.C));
+  bank.R = view(d.R);
+  bank.transition = TransitionMatrix(view(d.transition));
+  bank.initial_probability = d.initial_probability.empty() ? Eigen::VectorXd::Constant(K, 1.0 / static_cast<double>(K))
+                                                           : Eigen::VectorXd(view(d.initial_probability));
+  bank.state_names = d.state_names;
+  bank.input_names = d.input_names;
+  bank.dt_s = d.dt_s;
+  bank.noise_adaptation = {d.noise_forgetting, d.noise_prior_samples};
+  validate(bank);
+  return std::make_shared<const modebank::Bank>(std::move(bank));
+}
+
+/// Allocates where the sizes differ, which after the first time they do not.
+template <class Source>
+void assign(const Source& source, std::vector<double>& target) {
+  target.assign(source.data(), source.data() + source.size());
+}
+template <class Source>
+void assign(const Source& source, Matrix& target) {
+  target.rows = source.rows();
+  target.cols = source.cols();
+  assign(source, target.values);
+}
+
+void assign(const FilterEstimate& source, Estimate& target) {
+  assign(source.prediction, target.prediction);
+  assign(source.innovation, target.innovation);
+  assign(source.innovation_covariance, target.innovation_covariance);
+  assign(source.state, target.state);
+  assign(source.covariance, target.covariance);
+  assign(source.pit, target.pit);
+  assign(source.mode_probability_predicted, target.mode_probability_predicted);
+  assign(source.mode_probability, target.mode_probability);
+  target.nis = source.nis;
+  target.log_density = source.log_density;
+  target.spread_share = source.spread_share;
+  target.steps = source.steps;
+}
+
+}  // namespace
+
+Bank::Bank(const BankDescription& description) : bank_(inside(description)) {}
+Bank::Bank(std::shared_ptr<const modebank::Bank> bank) : bank_(std::move(bank)) {}
+
+std::ptrdiff_t Bank::modes() const { return bank_->mode_count(); }
+std::ptrdiff_t Bank::states() const { return bank_->structure.dimension(); }
+std::ptrdiff_t Bank::measurements() const { return bank_->C.rows(); }
+std::ptrdiff_t Bank::inputs() const { return bank_->structure.inputs; }
+double Bank::dt_s() const { return bank_->dt_s; }
+
+BankDescription Bank::description() const {
+  BankDescription d;
+  for (const modebank::Mode& mode : bank_->modes)
+    d.modes.push_back({to_matrix(mode.model.A), to_matrix(mode.model.B), to_vector(mode.model.c), to_matrix(mode.Q),
+                       to_matrix(mode.spread), mode.weight});
+  d.C = to_matrix(bank_->C);
+  d.R = to_matrix(bank_->R);
+  d.transition = to_matrix(bank_->transition.matrix());
+  d.initial_probability = to_vector(bank_->initial_probability);
+  d.state_names = bank_->state_names;
+  d.input_names = bank_->input_names;
+  d.dt_s = bank_->dt_s;
+  d.inputs = bank_->structure.inputs;
+  d.state_lags = bank_->structure.state_lags;
+  d.input_lags = bank_->structure.input_lags;
+  d.input_delay = bank_->structure.input_delay;
+  d.intercept = bank_->structure.intercept;
+  d.noise_forgetting = bank_->noise_adaptation.forgetting;
+  d.noise_prior_samples = bank_->noise_adaptation.prior_samples;
+  return d;
+}
+
+struct BankFilter::Inside {
+  modebank::BankFilter filter;
+  Index inputs, measurements;
+  Estimate estimate;
+};
+
+BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
+    : inside_(new Inside{modebank::BankFilter(bank.internal(), options), bank.inputs(), bank.measurements(), {}}) {
+  assign(inside_->filter.estimate(), inside_->estimate);
+}
+BankFilter::~BankFilter() = default;
+BankFilter::BankFilter(BankFilter&&) noexcept = default;
+BankFilter& BankFilter::operator=(BankFilter&&) noexcept = default;
+
+void BankFilter::check_sizes(std::ptrdiff_t inputs, std::ptrdiff_t measurements) const {
+  if (inputs != inside_->inputs || measurements != inside_->measurements)
+    throw std::invalid_argument("a step takes " + std::to_string(inside_->inputs) + " inputs and " +
+                                std::to_string(inside_->measurements) + " measurements, not " + std::to_string(inputs) +
+                                " and " + std::to_string(measurements));
+}
+
+const Estimate& BankFilter::step(double time_s, const double* input, const double* measurement) {
+  using Numbers = Eigen::Map<const Eigen::VectorXd>;
+  assign(inside_->filter.step(time_s, Numbers(input, inside_->inputs), Numbers(measurement, inside_->measurements)),
+         inside_->estimate);
+  return inside_->estimate;
+}
+
+const Estimate& BankFilter::estimate() const { return inside_->estimate; }
+void BankFilter::restart() { inside_->filter.restart(); }
+bool BankFilter::started() const { return inside_->filter.started(); }
+
+}  // namespace modebank::filter

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "filter/step/equations/bounds.hpp"
+
+/// Products and factorisation of small matrices in one fixed order of summation. Eigen's own products add in another
+/// order for fixed than for dynamic sizes; with these, both give the same bits, and no call allocates.
+namespace modebank::small {
+
+using Eigen::Index;
+
+/// out = a b. Requires an inner size >= 1; out must not alias.
+template <class Out, class A, class B>
+void multiply(Out& out, const A& a, const B& b) {
+  for (Index j = 0; j < b.cols(); ++j)
+    for (Index i = 0; i < a.rows(); ++i) {
+      double sum = a(i, 0) * b(0, j);
+      for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(k, j);
+      out(i, j) = sum;
+    }
+}
+
+/// out = a b'. Requires an inner size >= 1; out must not alias.
+template <class Out, class A, class B>
+void multiply_transposed(Out& out, const A& a, const B& b) {
+  for (Index j = 0; j < b.rows(); ++j)
+    for (Index i = 0; i < a.rows(); ++i) {
+      double sum = a(i, 0) * b(j, 0);
+      for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(j, k);
+      out(i, j) = sum;
+    }
+}
+
+/// out += a b' where the product is known to be symmetric: the lower triangle is computed and mirrored, so `out` stays
+/// symmetric to the bit.
+template <class Out, class A, class B>
+void add_symmetric_product(Out& out, const A& a, const B& b) {
+  for (Index j = 0; j < b.rows(); ++j)
+    for (Index i = j; i < a.rows(); ++i) {
+      double sum = a(i, 0) * b(j, 0);
+      for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(j, k);
+      out(i, j) += sum;
+      if (i != j) out(j, i) = out(i, j);
+    }
+}
+
+/// out += weight (P + d d'), all symmetric.
+template <class Out, class Matrix, class D>
+void add_spread(Out& out, double weight, const Matrix& P, const D& d) {
+  for (Index j = 0; j < d.size(); ++j)
+    for (Index i = j; i < d.size(); ++i) {
+      out(i, j) += weight * (P(i, j) + d(i) * d(j));
+      if (i != j) out(j, i) = out(i, j);
+    }
+}
+
+/// Root-free Cholesky factorisation S = L D L', L unit lower triangular.
+template <int Size>
+struct Cholesky {
+  Eigen::Matrix<double, Size, Size> L;       ///< strictly lower part used
+  Eigen::Matrix<double, Size, 1> D;          ///< pivots, all positive
+  Eigen::Matrix<double, Size, 1> D_inverse;  ///< 1 / D
+
+  explicit Cholesky(Index size) : L(size, size), D(size), D_inverse(size) {}
+
+  template <class Matrix>
+  void factorise(const Matrix& S) {
+    for (Index j = 0; j < D.size(); ++j) {
+      double pivot = S(j, j);
+      for (Index k = 0; k < j; ++k) pivot -= L(j, k) * L(j, k) * D(k);
+      D(j) = std::max({pivot, relative_pivot_floor * std::abs(S(j, j)), least_variance});
+      D_inverse(j) = 1.0 / D(j);
+      for (Index i = j + 1; i < D.size(); ++i) {
+        double sum = S(i, j);
+        for (Index k = 0; k < j; ++k) sum -= L(i, k) * L(j, k) * D(k);
+        L(i, j) = sum * D_inverse(j);
+      }
+    }
+  }
+
+  /// v := L^-1 v: the part of each component that earlier ones do not explain, with variance D.
+  template <class Vector>
+  void decorrelate(Vector&& v) const {
+    for (Index i = 1; i < D.size(); ++i)
+      for (Index k = 0; k < i; ++k) v(i) -= L(i, k) * v(k);
+  }
+
+  /// v := S^-1 v.
+  template <class Vector>
+  void solve(Vector&& v) const {
+    decorrelate(v);
+    for (Index i = D.size() - 1; i >= 0; --i) {
+      v(i) *= D_inverse(i);
+      for (Index k = i + 1; k < D.size(); ++k) v(i) -= L(k, i) * v(k);
+    }
+  }
+
+  /// v' S^-1 v of a decorrelated v.
+  template <class Vector>
+  double squared_distance(const Vector& v) const {
+    double sum = 0.0;
+    for (Index i = 0; i < D.size(); ++i) sum += v(i) * v(i) * D_inverse(i);
+    return sum;
+  }
+
+  double log_determinant() const {
+    double sum = 0.0;
+    for (Index i = 0; i < D.size(); ++i) sum += std::log(D(i));
+    return sum;
+  }
+};
+
+}  // namespace modebank::small

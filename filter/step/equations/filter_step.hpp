@@ -1,0 +1,113 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <vector>
+
+#include "filter/step/equations/gpb.hpp"
+#include "filter/step/equations/imm.hpp"
+#include "filter/step/equations/noise_scale.hpp"
+#include "filter/step/equations/salvi2025.hpp"
+
+/// One step of the filters of FilterVariant, a function of model, state, input and measurement: nothing is remembered
+/// between calls but FilterState, and nothing is allocated once FilterState and FilterStep exist. After start, each
+/// sample is predict and then update, or skip_measurement where nothing was measured.
+namespace modebank {
+
+/// A state of the model's sizes.
+template <int N, int NY>
+FilterState<N> initial_state(const FilterModel<N, NY>& model) {
+  return {std::vector<Gaussian<N>>(model.modes.size(), Gaussian<N>(model.structure.dimension())),
+          model.initial_probability};
+}
+
+/// x[0] = start_gain y[0], P[0] = start_covariance, mode probabilities from the bank. `y`: the first measurement; with
+/// lags the first whole z of measurements.
+template <int N, int NY, class Y>
+void start(const FilterModel<N, NY>& model, const Y& y, FilterState<N>& state) {
+  small::multiply(state.modes[0].mean, model.start_gain, y);
+  state.modes[0].covariance = model.start_covariance;
+  for (std::size_t j = 1; j < state.modes.size(); ++j) state.modes[j] = state.modes[0];
+  state.mode_probability = model.initial_probability;
+  floor_probabilities(state.mode_probability);
+  state.noise_scale = 1.0;
+  state.noise_samples = model.noise_adaptation.prior_samples;
+}
+
+template <int N, int NY, class Y>
+FilterState<N> start(const FilterModel<N, NY>& model, const Y& y) {
+  FilterState<N> state = initial_state(model);
+  start(model, y, state);
+  return state;
+}
+
+/// Where each mode's prediction starts, and how probable each mode is before the measurement.
+template <int N, int NY>
+const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const FilterState<N>& state,
+                                    FilterStep<N, NY>& step) {
+  if (model.variant == FilterVariant::mmae || model.mode_count() == 1) {
+    step.predicted_probability = state.mode_probability;
+    return state.modes;
+  }
+  if (model.variant == FilterVariant::salvi2025) {
+    step.predicted_probability = state.mode_probability;
+    salvi2025::mixing_weights(model.transition, state.mode_probability, step.mixing);
+  } else {
+    mixing_weights(model.transition, state.mode_probability, step.predicted_probability, step.mixing);
+  }
+  if (model.variant == FilterVariant::gpb1)
+    gpb::start_from_one(state, step.mixed);
+  else
+    mix(state, step.mixing, step.mixed);
+  return step.mixed;
+}
+
+/// Fills what is known before the measurement: each hypothesis' prediction and S, and the predicted probabilities.
+template <int N, int NY, class U>
+void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u, FilterStep<N, NY>& step) {
+  if (step.pairs()) return gpb::predict_pairs(model, state, u, step);
+  predict_modes(model, mix(model, state, step), state.noise_scale, u, step);
+}
+
+/// A missing measurement: the prediction is all there is.
+template <int N, int NY>
+void skip_measurement(FilterStep<N, NY>& step, FilterState<N>& state) {
+  if (step.pairs())
+    gpb::keep_prediction(step, state);
+  else
+    keep_prediction(step, state);
+  state.mode_probability = step.predicted_probability;
+  floor_probabilities(state.mode_probability);
+}
+
+/// What `sensor` measured is taken in: the model itself, or what is left of it where signals are missing.
+template <int N, int NY, class Sensor, class Y>
+double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y, FilterStep<N, NY>& step,
+               FilterState<N>& state) {
+  correct(sensor, y, step, step.pairs() ? step.corrected : state.modes);
+  if (model.adaptive) adapt_noise_scale(model, sensor, step.hypothesis_probability(), step, state);
+  if (model.mode_count() == 1) return step.log_likelihood(0);
+  const double log_density = step.pairs()
+                                 ? gpb::merge_pairs(step, state)
+                                 : bayes(step.predicted_probability, step.log_likelihood, state.mode_probability);
+  if (model.variant == FilterVariant::salvi2025) salvi2025::weigh_by_posterior(sensor, y, step, state);
+  floor_probabilities(state.mode_probability);
+  return log_density;
+}
+
+/// Takes the measurement in after `predict` and returns the log predictive density of its signals that are there, which
+/// uses nothing but what was known before it. Without any signal that is a prediction only; the result is then NaN.
+template <int N, int NY, class Y>
+double update(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, FilterState<N>& state) {
+  step.partial.missing = missing_entries(y);
+  if (step.partial.missing == 0) return take_in(model, model, y, step, state);
+  if (step.partial.missing == y.size()) {
+    skip_measurement(step, state);
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  step.partial.assign(model, y);
+  for (KalmanStep<N, NY>& hypothesis : step.kalman) hypothesis.expect(step.partial);
+  return take_in(model, step.partial, step.partial.y, step, state);
+}
+
+}  // namespace modebank

@@ -1,0 +1,187 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "filter/step/equations/bounds.hpp"
+#include "filter/step/equations/kalman.hpp"
+#include "filter/step/equations/model.hpp"
+
+/// The interacting multiple model filter: Blom & Bar-Shalom 1988, "The interacting multiple model algorithm for systems
+/// with Markovian switching coefficients", IEEE Transactions on Automatic Control 33(8). Equation numbers are those of
+/// Bar-Shalom, Li & Kirubarajan 2001, "Estimation with Applications to Tracking and Navigation", section 11.6.6, whose
+/// five steps follow each other here:
+///   1  mixing probabilities    mixing_weights
+///   2  mixing                  mix
+///   3  mode-matched filtering  predict_modes, correct (kalman.hpp)
+///   4  mode probabilities      bayes, floor_probabilities
+///   5  combination             merge
+/// What the book leaves open is said where it is decided: modes that T forbids, likelihoods that underflow, signals
+/// that are missing. filter_step.hpp makes one step of it, and of the variants that differ in one of these steps.
+namespace modebank {
+
+/// All that a filter knows: one Gaussian per mode, how probable each mode is, and the present scale of the noise.
+template <int N>
+struct FilterState {
+  std::vector<Gaussian<N>> modes;    ///< K
+  Eigen::VectorXd mode_probability;  ///< K, mu
+  double noise_scale = 1.0;          ///< multiplies every mode's Q in the next prediction
+  double noise_samples = 0.0;        ///< how many samples the scale rests on (noise_scale.hpp)
+};
+
+/// Column j holds what each mode i contributes to the start of mode j: mu_{i|j}. Never to be confused with a
+/// TransitionMatrix, whose rows sum to one.
+struct MixingWeights {
+  Eigen::MatrixXd matrix;  ///< K x K
+};
+
+/// What one step computes on the way, sized once. A hypothesis is what a mode predicts from: one per mode, and with
+/// GPB2 one per pair of modes, hypothesis j K + i being mode j from mode i.
+template <int N, int NY>
+struct FilterStep {
+  Eigen::VectorXd predicted_probability;  ///< K, c: before the measurement
+  std::vector<KalmanStep<N, NY>> kalman;  ///< one per hypothesis
+  std::vector<Gaussian<N>> mixed;         ///< K, where each mode's prediction starts
+  MixingWeights mixing;
+  Eigen::VectorXd log_likelihood;          ///< of each hypothesis
+  PartialSensor<N, NY> partial;            ///< of the last measurement; `missing` is 0 when that was whole
+  Eigen::Matrix<double, N, 1> difference;  ///< workspace of size n
+  Eigen::Matrix<double, NY, 1> residual;   ///< workspace of size n_y
+
+  // GPB2 alone; empty otherwise.
+  Eigen::VectorXd pair_probability;    ///< K^2, before the measurement
+  std::vector<Gaussian<N>> corrected;  ///< K^2
+  Eigen::VectorXd merging;             ///< K, workspace
+  Eigen::VectorXd mode_likelihood;     ///< K, workspace: log p(y | mode)
+
+  explicit FilterStep(const FilterModel<N, NY>& model)
+      : predicted_probability(model.mode_count()),
+        partial(model.structure.dimension(), model.C.rows()),
+        difference(model.structure.dimension()),
+        residual(model.C.rows()) {
+    const Eigen::Index K = model.mode_count(), n = model.structure.dimension();
+    const bool pairs = model.variant == FilterVariant::gpb2 && K > 1;
+    const Eigen::Index hypotheses = pairs ? K * K : K;
+    kalman.assign(static_cast<std::size_t>(hypotheses),
+                  KalmanStep<N, NY>(n, model.C.rows(), model.structure.regressors()));
+    log_likelihood.resize(hypotheses);
+    mixed.assign(model.modes.size(), Gaussian<N>(n));
+    mixing.matrix.setZero(K, K);
+    if (!pairs) return;
+    pair_probability.resize(hypotheses);
+    corrected.assign(kalman.size(), Gaussian<N>(n));
+    merging.resize(K);
+    mode_likelihood.resize(K);
+  }
+
+  bool pairs() const { return pair_probability.size() > 0; }
+  /// How probable each hypothesis is before the measurement; sums to one.
+  const Eigen::VectorXd& hypothesis_probability() const { return pairs() ? pair_probability : predicted_probability; }
+};
+
+/// Step 1. c_j = sum_i T_ij mu_i (11.6.6-8) and mu_{i|j} = T_ij mu_i / c_j (11.6.6-7). An impossible mode keeps its own
+/// state.
+inline void mixing_weights(const TransitionMatrix& transition, const Eigen::VectorXd& mu, Eigen::VectorXd& c,
+                           MixingWeights& weights) {
+  const Eigen::MatrixXd& T = transition.matrix();
+  for (Eigen::Index j = 0; j < mu.size(); ++j) {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < mu.size(); ++i) sum += weights.matrix(i, j) = T(i, j) * mu(i);
+    c(j) = sum;
+    if (sum < impossible_probability)
+      weights.matrix.col(j) = Eigen::VectorXd::Unit(mu.size(), j);
+    else
+      weights.matrix.col(j) *= 1.0 / sum;
+  }
+}
+
+/// Steps 2 and 5. Mean and covariance of the mixture sum_i weights(i) N(parts[i]) (moment matching): with mu_{i|j} what
+/// mode j starts from (11.6.6-9, -10), with mu the combined estimate (11.6.6-17, -18). The spread of means is taken
+/// about the finished mean. Weights need not sum to one: [S25, eq. 12-13] is the same sum with other weights. (One sum
+/// after the other, not one part after the other: sums then live in registers.)
+template <int N, class Weights>
+void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weights& weights, Gaussian<N>& merged) {
+  const Eigen::Index n = merged.mean.size(), count = static_cast<Eigen::Index>(parts.size());
+  const Gaussian<N>* part = parts.data();
+  for (Eigen::Index a = 0; a < n; ++a) {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < count; ++i) sum += weights(i) * part[i].mean(a);
+    merged.mean(a) = sum;
+  }
+  for (Eigen::Index b = 0; b < n; ++b)
+    for (Eigen::Index a = b; a < n; ++a) {
+      const double mean_a = merged.mean(a), mean_b = merged.mean(b);
+      double sum = 0.0;
+      for (Eigen::Index i = 0; i < count; ++i)
+        sum += weights(i) * (part[i].covariance(a, b) + (part[i].mean(a) - mean_a) * (part[i].mean(b) - mean_b));
+      merged.covariance(a, b) = merged.covariance(b, a) = sum;
+    }
+}
+
+/// Step 2. Every mode j starts from x0_j = sum_i mu_{i|j} x_i (11.6.6-9) with the covariance of that mixture
+/// (11.6.6-10).
+template <int N>
+void mix(const FilterState<N>& state, const MixingWeights& weights, std::vector<Gaussian<N>>& mixed) {
+  for (std::size_t j = 0; j < mixed.size(); ++j)
+    merge(state.modes, weights.matrix.col(static_cast<Eigen::Index>(j)), mixed[j]);
+}
+
+/// Step 3, before the measurement: every mode's own prediction, and S_j.
+template <int N, int NY, class U>
+void predict_modes(const FilterModel<N, NY>& model, const std::vector<Gaussian<N>>& from, double noise_scale,
+                   const U& u, FilterStep<N, NY>& step) {
+  for (std::size_t j = 0; j < model.modes.size(); ++j) {
+    step.kalman[j].predict(from[j], model, model.modes[j], u, noise_scale);
+    step.kalman[j].expect(model);
+  }
+}
+
+/// Step 3, after it: every hypothesis takes the measurement `y` of `sensor` in: its estimate, and its log likelihood
+/// log Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) of the signals that are there.
+template <int N, int NY, class Sensor, class Y>
+void correct(const Sensor& sensor, const Y& y, FilterStep<N, NY>& step, std::vector<Gaussian<N>>& estimates) {
+  constexpr double half_log_two_pi = 0.91893853320467274178;
+  const double excess = half_log_two_pi * static_cast<double>(step.partial.missing);
+  for (std::size_t h = 0; h < step.kalman.size(); ++h) {
+    step.kalman[h].observe(sensor, y);
+    step.kalman[h].correct(sensor, estimates[h]);
+    step.log_likelihood(static_cast<Eigen::Index>(h)) = step.kalman[h].log_density + excess;
+  }
+}
+
+/// Step 4. mu_j = Lambda_j c_j / c (11.6.6-15), c = sum_j Lambda_j c_j (11.6.6-16): Bayes' rule in the log domain,
+/// posterior_j proportional to prior_j exp(log_likelihood_j). Returns log c. The largest term is taken out first, so
+/// nothing underflows to 0/0. Requires at least one possible mode.
+template <class Prior, class LogLikelihood>
+double bayes(const Prior& prior, const LogLikelihood& log_likelihood, Eigen::VectorXd& posterior) {
+  double largest = -std::numeric_limits<double>::infinity();
+  for (Eigen::Index j = 0; j < prior.size(); ++j)
+    if (prior(j) >= impossible_probability) largest = std::max(largest, log_likelihood(j));
+  double sum = 0.0;
+  for (Eigen::Index j = 0; j < prior.size(); ++j) {
+    const bool possible = prior(j) >= impossible_probability;
+    posterior(j) = possible ? prior(j) * std::exp(log_likelihood(j) - largest) : 0.0;
+    sum += posterior(j);
+  }
+  posterior *= 1.0 / sum;
+  return largest + std::log(sum);
+}
+
+inline void floor_probabilities(Eigen::VectorXd& mu) {
+  double sum = 0.0;
+  for (Eigen::Index j = 0; j < mu.size(); ++j) sum += mu(j) = std::max(mu(j), mode_probability_floor);
+  mu *= 1.0 / sum;
+}
+
+/// Steps 3 and 4 where nothing was measured: the prediction is all there is.
+template <int N, int NY>
+void keep_prediction(const FilterStep<N, NY>& step, FilterState<N>& state) {
+  for (std::size_t j = 0; j < state.modes.size(); ++j) state.modes[j] = step.kalman[j].predicted;
+}
+
+}  // namespace modebank

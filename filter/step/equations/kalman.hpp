@@ -1,0 +1,237 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "filter/step/equations/arithmetic.hpp"
+#include "filter/step/equations/bounds.hpp"
+#include "filter/step/equations/model.hpp"
+#include "ident/model/linear_model.hpp"
+
+namespace modebank {
+
+/// Mean and covariance of a state of size N, fixed or Eigen::Dynamic.
+template <int N>
+struct Gaussian {
+  Eigen::Matrix<double, N, 1> mean;
+  Eigen::Matrix<double, N, N> covariance;
+
+  explicit Gaussian(Eigen::Index size) : mean(size), covariance(size, size) {
+    mean.setZero();
+    covariance.setZero();
+  }
+};
+
+/// Makes signal i of a covariance one of variance one, unrelated to the others.
+template <class Matrix>
+void detach(Matrix& S, Eigen::Index i) {
+  S.row(i).setZero();
+  S.col(i).setZero();
+  S(i, i) = 1.0;
+}
+
+/// A sensor some of whose signals are missing: their rows of C and R become those of a signal that is always zero, of
+/// variance one, unrelated to anything, and is measured as zero. Gains, NIS and the other signals' densities are then
+/// exactly those of the signals that are there; log densities carry -log(2 pi) / 2 too much per missing signal.
+template <int N, int NY>
+struct PartialSensor {
+  Eigen::Matrix<double, NY, N> C;
+  Eigen::Matrix<double, NY, NY> R;
+  Eigen::Matrix<double, NY, 1> y;
+  Eigen::Index missing = 0;  ///< signals
+
+  PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y) {}
+
+  template <class Sensor, class Y>
+  void assign(const Sensor& whole, const Y& measured) {
+    C = whole.C;
+    R = whole.R;
+    y = measured;
+    missing = 0;
+    for (Eigen::Index i = 0; i < y.size(); ++i)
+      if (is_missing(measured(i))) {
+        C.row(i).setZero();
+        detach(R, i);
+        y(i) = 0.0;
+        ++missing;
+      }
+  }
+};
+
+/// One mode's Kalman step with the workspace it needs, sized once. Call in order: predict, expect, observe, correct.
+template <int N, int NY>
+struct KalmanStep {
+  Gaussian<N> predicted;                                ///< x, P before the measurement
+  Eigen::Matrix<double, N, N> process_noise;            ///< Q as it entered P
+  Eigen::Matrix<double, NY, 1> innovation;              ///< e = y - C x
+  Eigen::Matrix<double, NY, 1> decorrelated;            ///< L^-1 e, of variance cholesky.D
+  Eigen::Matrix<double, NY, NY> innovation_covariance;  ///< S = C P C' + R
+  small::Cholesky<NY> cholesky;                         ///< of S; a singular S is regularised there
+  double log_density = 0.0;                             ///< log N(e; 0, S)
+
+  KalmanStep(Eigen::Index n, Eigen::Index n_y, Eigen::Index regressors)
+      : predicted(n),
+        process_noise(n, n),
+        innovation(n_y),
+        decorrelated(n_y),
+        innovation_covariance(n_y, n_y),
+        cholesky(n_y),
+        NN_(n, n),
+        gain_(n, n_y),
+        PCt_(n, n_y),
+        closed_loop_(n, n),
+        NY_(n, n_y),
+        phi_(regressors) {}
+
+  /// x = x + A x + B u + c, P = F P F' + noise_scale Q (+ the spread of the parameters).
+  template <class U>
+  void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
+               const U& u, double noise_scale = 1.0);
+  /// What will be measured: S and its factor. Here and below `sensor` has C and R: the model, or what is left of it
+  /// when parts of a measurement are missing.
+  template <class Sensor>
+  void expect(const Sensor& sensor);
+  /// e and its log density.
+  template <class Sensor, class Y>
+  void observe(const Sensor& sensor, const Y& y);
+  /// The state after the measurement, covariance in Joseph's form.
+  template <class Sensor>
+  void correct(const Sensor& sensor, Gaussian<N>& posterior);
+  /// log N(residual; 0, S) of any residual; `residual` is decorrelated in place.
+  template <class Vector>
+  double log_normal(Vector& residual) const;
+
+ private:
+  Eigen::Matrix<double, N, N> NN_;
+  Eigen::Matrix<double, N, NY> gain_, PCt_;
+  Eigen::Matrix<double, N, N> closed_loop_;
+  Eigen::Matrix<double, N, NY> NY_;
+  Eigen::VectorXd phi_;
+
+  template <class U>
+  void add_parameter_noise(const LinearStructure& s, const Eigen::MatrixXd& spread,
+                           const Eigen::Matrix<double, N, 1>& x, const U& u);
+};
+
+/// Keeps a prediction usable: what diverges is scaled down, and a covariance that rounding made indefinite (possible
+/// when variances differ by more than double precision) keeps its variances and loses its correlations.
+template <int N>
+void make_usable(Gaussian<N>& g) {
+  double largest = g.covariance(0, 0), least = largest, mean = std::abs(g.mean(0));
+  for (Eigen::Index i = 1; i < g.mean.size(); ++i) {
+    largest = std::max(largest, g.covariance(i, i));
+    least = std::min(least, g.covariance(i, i));
+    mean = std::max(mean, std::abs(g.mean(i)));
+  }
+  if (least < 0.0) {
+    for (Eigen::Index j = 0; j < g.mean.size(); ++j)
+      for (Eigen::Index i = 0; i < g.mean.size(); ++i) g.covariance(i, j) = i == j ? std::abs(g.covariance(i, j)) : 0.0;
+    largest = std::max(largest, -least);
+  }
+  if (largest > largest_variance) g.covariance *= largest_variance / largest;
+  if (mean > largest_mean) g.mean *= largest_mean / mean;
+}
+
+/// A measurement never enlarges a variance. Where rounding made one negative (S near singular: R = 0 and singular Q),
+/// the estimate keeps its variances within those bounds and loses its correlations.
+template <int N>
+void bound_variances(const Gaussian<N>& predicted, Gaussian<N>& posterior) {
+  if ((posterior.covariance.diagonal().array() >= 0.0).all()) return;
+  for (Eigen::Index j = 0; j < posterior.mean.size(); ++j)
+    for (Eigen::Index i = 0; i < posterior.mean.size(); ++i)
+      posterior.covariance(i, j) =
+          i == j ? std::clamp(posterior.covariance(i, i), 0.0, std::max(0.0, predicted.covariance(i, i))) : 0.0;
+}
+
+/// Whether every number is finite: a sum is, unless one of its terms is not (terms are far below overflow).
+template <int N>
+bool is_finite(const Gaussian<N>& g) {
+  double sum = 0.0;
+  for (Eigen::Index j = 0; j < g.mean.size(); ++j) {
+    sum += g.mean(j);
+    for (Eigen::Index i = 0; i < g.mean.size(); ++i) sum += g.covariance(i, j);
+  }
+  return std::isfinite(sum);
+}
+
+template <int N, int NY>
+template <class U>
+void KalmanStep<N, NY>::predict(const Gaussian<N>& from, const FilterModel<N, NY>& model,
+                                const typename FilterModel<N, NY>::Mode& mode, const U& u, double noise_scale) {
+  propagate(mode.A, mode.B, mode.c, from.mean, u, predicted.mean);
+  process_noise = noise_scale * mode.Q;
+  if (mode.spread.size() > 0) add_parameter_noise(model.structure, mode.spread, from.mean, u);
+  small::multiply(NN_, mode.F, from.covariance);
+  predicted.covariance = process_noise;
+  small::add_symmetric_product(predicted.covariance, NN_, mode.F);
+  make_usable(predicted);
+}
+
+/// (I (x) phi') Sigma_theta (I (x) phi')' with theta the row-major vec of [A B (c)].
+template <int N, int NY>
+template <class U>
+void KalmanStep<N, NY>::add_parameter_noise(const LinearStructure& s, const Eigen::MatrixXd& spread,
+                                            const Eigen::Matrix<double, N, 1>& x, const U& u) {
+  fill_regressor(s, x, u, phi_);
+  const Eigen::Index q = s.regressors();
+  for (Eigen::Index b = 0; b < s.states; ++b)
+    for (Eigen::Index a = b; a < s.states; ++a) {
+      double sum = 0.0;
+      for (Eigen::Index j = 0; j < q; ++j)
+        for (Eigen::Index i = 0; i < q; ++i) sum += phi_(i) * spread(a * q + i, b * q + j) * phi_(j);
+      process_noise(a, b) += sum;
+      if (a != b) process_noise(b, a) = process_noise(a, b);
+    }
+}
+
+template <int N, int NY>
+template <class Sensor>
+void KalmanStep<N, NY>::expect(const Sensor& sensor) {
+  small::multiply_transposed(PCt_, predicted.covariance, sensor.C);
+  innovation_covariance = sensor.R;
+  small::add_symmetric_product(innovation_covariance, sensor.C, PCt_.transpose());
+  cholesky.factorise(innovation_covariance);
+}
+
+template <int N, int NY>
+template <class Sensor, class Y>
+void KalmanStep<N, NY>::observe(const Sensor& sensor, const Y& y) {
+  small::multiply(innovation, sensor.C, predicted.mean);
+  innovation = y - innovation;
+  decorrelated = innovation;
+  log_density = log_normal(decorrelated);
+}
+
+template <int N, int NY>
+template <class Vector>
+double KalmanStep<N, NY>::log_normal(Vector& residual) const {
+  constexpr double log_two_pi = 1.8378770664093454836;
+  cholesky.decorrelate(residual);
+  const double value = -0.5 * (static_cast<double>(residual.size()) * log_two_pi + cholesky.log_determinant() +
+                               cholesky.squared_distance(residual));
+  return value > lowest_log_density ? value : lowest_log_density;  // NaN from overflow is the lowest, too
+}
+
+template <int N, int NY>
+template <class Sensor>
+void KalmanStep<N, NY>::correct(const Sensor& sensor, Gaussian<N>& posterior) {
+  for (Eigen::Index i = 0; i < gain_.rows(); ++i) {  // row i of K = P C' S^-1, as S is symmetric
+    gain_.row(i) = PCt_.row(i);
+    cholesky.solve(gain_.row(i));
+  }
+  small::multiply(posterior.mean, gain_, innovation);
+  posterior.mean += predicted.mean;
+  small::multiply(closed_loop_, gain_, sensor.C);
+  closed_loop_ = -closed_loop_;
+  closed_loop_.diagonal().array() += 1.0;
+  small::multiply(NN_, closed_loop_, predicted.covariance);
+  posterior.covariance.setZero();
+  small::add_symmetric_product(posterior.covariance, NN_, closed_loop_);
+  small::multiply(NY_, gain_, sensor.R);
+  small::add_symmetric_product(posterior.covariance, NY_, gain_);
+  if (!is_finite(posterior)) posterior = predicted;  // an overflowing correction is no information
+  bound_variances(predicted, posterior);
+}
+
+}  // namespace modebank

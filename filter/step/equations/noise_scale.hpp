@@ -1,0 +1,99 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "filter/step/equations/bounds.hpp"
+#include "filter/step/equations/model.hpp"
+
+/// The scale of the process noise that a filter with adaptive noise learns as it goes: every mode's Q is multiplied by
+/// one factor s, because runs of the same motion differ in roughness. s is the ratio of discounted sums, as in the
+/// variance learning of West & Harrison 1997, "Bayesian Forecasting and Dynamic Models", section 10.8 (variance
+/// discounting), pulled to one as the memory of a run fades:
+///   weight  <- f weight + (1 - f) n0 + sum_j mu_j tr(G_j) / n_y,      G_j = S_j^-1 C s Q_j C'
+///   squares <- f squares + (1 - f) n0 + s sum_j mu_j e_j' S_j^-1 C s Q_j C' S_j^-1 e_j / n_y,   s = squares / weight.
+/// With R = 0 and a known state the squares are those of the standardised innovations; what measurement noise or an
+/// uncertain state explains is left out in proportion, and n_y counts the signals that are not missing. The plug-in s
+/// takes the place of the Student t of the exact conjugate update.
+namespace modebank {
+
+inline constexpr double largest_noise_scale = 1e8;
+
+/// tr(S^-1 C P C') of one Kalman step; `column` is workspace of size n_y.
+template <class Sensor, class Matrix, class Kalman, class Column>
+double explained_share(const Sensor& sensor, const Matrix& P, const Kalman& kalman, Column& column) {
+  double trace = 0.0;
+  for (Eigen::Index i = 0; i < column.size(); ++i) {
+    for (Eigen::Index a = 0; a < column.size(); ++a) {
+      double sum = 0.0;
+      for (Eigen::Index q = 0; q < P.cols(); ++q)
+        for (Eigen::Index p = 0; p < P.rows(); ++p) sum += sensor.C(a, p) * P(p, q) * sensor.C(i, q);
+      column(a) = sum;
+    }
+    kalman.cholesky.solve(column);
+    trace += column(i);
+  }
+  return trace;
+}
+
+/// e' S^-1 C P C' S^-1 e of one Kalman step, with e' S^-1 e cut at largest_standardised^2 n_y, of the signals there.
+template <class Sensor, class Matrix, class Kalman, class Column>
+double explained_square(const Sensor& sensor, const Matrix& P, const Kalman& kalman, double n_y, Column& column) {
+  const double nis = kalman.cholesky.squared_distance(kalman.decorrelated);
+  const double most = largest_standardised * largest_standardised * n_y;
+  if (!(nis < 1e300)) return 0.0;  // an overflowing innovation says nothing about the scale
+  column = kalman.innovation;
+  kalman.cholesky.solve(column);
+  double sum = 0.0;
+  for (Eigen::Index q = 0; q < P.cols(); ++q)
+    for (Eigen::Index p = 0; p < P.rows(); ++p) {
+      double left = 0.0, right = 0.0;
+      for (Eigen::Index i = 0; i < column.size(); ++i) {
+        left += sensor.C(i, p) * column(i);
+        right += sensor.C(i, q) * column(i);
+      }
+      sum += left * P(p, q) * right;
+    }
+  return nis > most ? sum * (most / nis) : sum;
+}
+
+/// One sample's move of the scale. `share`, `square`: the modes' sums above; nothing moves where they overflow.
+inline void move_noise_scale(const NoiseAdaptation& adaptation, double share, double square, double n_y, double& scale,
+                             double& samples) {
+  if (!std::isfinite(share) || !std::isfinite(square)) return;
+  const double f = adaptation.forgetting, n0 = adaptation.prior_samples;
+  const double squares = f * samples * scale + (1.0 - f) * n0 + scale * square / n_y;
+  samples = f * samples + (1.0 - f) * n0 + share / n_y;
+  scale = std::clamp(squares / samples, 1.0 / largest_noise_scale, largest_noise_scale);
+}
+
+/// Moves state.noise_scale after the measurement has been taken in. `prior`: the probability of every Kalman step's
+/// hypothesis before it (step.log_likelihood holds what the measurement says); the hypotheses of mode j follow each
+/// other. `sensor` has the C that was measured with.
+template <class Model, class Sensor, class Step, class State>
+void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::VectorXd& prior, Step& step,
+                       State& state) {
+  const double s = state.noise_scale, n_y = static_cast<double>(step.residual.size() - step.partial.missing);
+  const std::size_t per_mode = step.kalman.size() / model.modes.size();
+  // As Bayes' rule has it (imm.hpp): an impossible hypothesis takes no part, however well it fits.
+  double largest = -std::numeric_limits<double>::infinity();
+  for (Eigen::Index h = 0; h < prior.size(); ++h)
+    if (prior(h) >= impossible_probability) largest = std::max(largest, step.log_likelihood(h));
+  double total = 0.0, share = 0.0, square = 0.0;
+  for (std::size_t h = 0; h < step.kalman.size(); ++h) {
+    const auto i = static_cast<Eigen::Index>(h);
+    const double weight =
+        prior(i) >= impossible_probability ? prior(i) * std::exp(step.log_likelihood(i) - largest) : 0.0;
+    if (!(weight > 0.0)) continue;
+    const auto& Q = model.modes[h / per_mode].Q;
+    total += weight;
+    share += weight * s * explained_share(sensor, Q, step.kalman[h], step.residual);
+    square += weight * s * explained_square(sensor, Q, step.kalman[h], n_y, step.residual);
+  }
+  if (!(total > 0.0)) return;
+  move_noise_scale(model.noise_adaptation, share / total, square / total, n_y, state.noise_scale, state.noise_samples);
+}
+
+}  // namespace modebank

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "filter/step/equations/filter_step.hpp"
+
+/// What the modes say together: moments of the predicted mixture and the probability transform of a measurement.
+namespace modebank {
+
+/// Larger normalised squares are not told apart.
+inline constexpr double largest_nis = 1e300;
+
+/// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)'). Returns
+/// the share of the spread of the modes' predictions in the trace of S.
+template <int N, int NY, class State, class Covariance>
+double combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&& x, Covariance&& S) {
+  const Eigen::VectorXd& c = step.hypothesis_probability();
+  x.setZero();
+  for (std::size_t j = 0; j < step.kalman.size(); ++j)
+    x += c(static_cast<Eigen::Index>(j)) * step.kalman[j].predicted.mean;
+  S.setZero();
+  double spread = 0.0;
+  for (std::size_t j = 0; j < step.kalman.size(); ++j) {
+    const double weight = c(static_cast<Eigen::Index>(j));
+    step.difference = step.kalman[j].predicted.mean - x;
+    small::multiply(step.residual, model.C, step.difference);
+    small::add_spread(S, weight, step.kalman[j].innovation_covariance, step.residual);
+    for (Eigen::Index i = 0; i < step.residual.size(); ++i) spread += weight * step.residual(i) * step.residual(i);
+  }
+  const double total = S.diagonal().sum();
+  return total > 0.0 ? std::min(1.0, spread / total) : 0.0;
+}
+
+/// The innovation of a predicted mixture, and its normalised square; sized once.
+struct CombinedInnovation {
+  Eigen::VectorXd innovation;  ///< n_y, e = y - C x; NaN where a signal is missing
+  double nis = 0.0;            ///< e' S^-1 e, of the signals that are there; NaN without any
+
+  explicit CombinedInnovation(Eigen::Index n_y)
+      : innovation(n_y), covariance_(n_y, n_y), residual_(n_y), cholesky_(n_y) {}
+
+  void observe(const Eigen::MatrixXd& C, const Eigen::VectorXd& x, const Eigen::MatrixXd& S,
+               const Eigen::Ref<const Eigen::VectorXd>& y) {
+    small::multiply(innovation, C, x);
+    innovation = y - innovation;
+    covariance_ = S;
+    residual_ = innovation;
+    Eigen::Index missing = 0;
+    for (Eigen::Index i = 0; i < y.size(); ++i)
+      if (is_missing(y(i))) {
+        detach(covariance_, i);
+        residual_(i) = 0.0;
+        innovation(i) = std::numeric_limits<double>::quiet_NaN();
+        ++missing;
+      }
+    cholesky_.factorise(covariance_);
+    cholesky_.decorrelate(residual_);
+    nis = cholesky_.squared_distance(residual_);
+    if (!(nis < largest_nis)) nis = largest_nis;
+    if (missing == y.size()) nis = std::numeric_limits<double>::quiet_NaN();
+  }
+
+ private:
+  Eigen::MatrixXd covariance_;
+  Eigen::VectorXd residual_;
+  small::Cholesky<Eigen::Dynamic> cholesky_;
+};
+
+/// Phi(x), accurate in relative terms far into the lower tail.
+inline double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
+
+/// Probability integral transform of the measurement taken in last (Rosenblatt 1952): component i is the predictive
+/// distribution function of y_i given y_1 .. y_(i-1), whose mixture weights those components have updated; NaN where
+/// y_i is missing. `weights`: workspace, one per hypothesis. Overwrites step.log_likelihood.
+template <int N, int NY, class Y, class Pit>
+void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights, Pit&& pit) {
+  weights = step.hypothesis_probability();
+  for (Eigen::Index i = 0; i < pit.size(); ++i) {
+    if (is_missing(y(i))) {
+      pit(i) = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    const bool more = i + 1 < pit.size();
+    double sum = 0.0;
+    for (Eigen::Index j = 0; j < weights.size(); ++j) {
+      const KalmanStep<N, NY>& kalman = step.kalman[static_cast<std::size_t>(j)];
+      const double z = kalman.decorrelated(i), v = kalman.cholesky.D(i);
+      sum += weights(j) * normal_cdf(z / std::sqrt(v));
+      if (more) step.log_likelihood(j) = -0.5 * (std::log(v) + z * z / v);
+    }
+    pit(i) = sum < 1.0 ? sum : 1.0;  // weights sum to one up to rounding
+    if (more) bayes(weights, step.log_likelihood, weights);
+  }
+}
+
+}  // namespace modebank

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/feed/sample_feed.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/data/trajectory.hpp"
+
+/// A recorded run as filters see it: sample by sample, or moment by moment for those who come back to one.
+namespace modebank {
+
+/// Throws std::invalid_argument when the sizes of the bank do not fit each other or those of the run, DataError for an
+/// input that is not finite.
+void check_run(const Bank& bank, const Trajectory& run);
+
+/// Of a run that was recorded without times: NaN.
+inline double sample_time_s(const Trajectory& run, Eigen::Index k) {
+  return run.time_s.size() > 0 ? run.time_s(k) : not_a_number;
+}
+
+/// The samples of a run as filters step on them.
+class RunSamples {
+ public:
+  RunSamples(const Bank& bank, const Trajectory& run, TimeSteps time_steps) : run_(run), feed_(bank, time_steps) {}
+
+  /// Calls visit(feed, k, starts) for every sample k from the first start on; `starts`: the filter begins (anew) here.
+  template <class Visit>
+  void for_each(Visit visit) {
+    bool started = false;
+    for (Eigen::Index k = 0; k < run_.samples(); ++k) {
+      feed_.push(sample_time_s(run_, k), run_.input.col(k), run_.state.col(k));
+      started = started && feed_.steps() <= longest_gap_steps;
+      const bool starts = !started && feed_.can_start();
+      if (started || starts) visit(feed_, k, starts);
+      started = started || starts;
+    }
+  }
+
+ private:
+  const Trajectory& run_;
+  SampleFeed feed_;
+};
+
+/// One moment of a run at which a filter stood: a sample, or a step between two samples that lie further apart.
+struct Instant {
+  Eigen::Index sample = -1;    ///< -1: between samples
+  bool starts = false;         ///< the filter begins (anew) here
+  Eigen::VectorXd start = {};  ///< from these measurements; empty elsewhere
+};
+
+/// All moments of a run with the inputs that led there, as filters step through them.
+struct RunInstants {
+  std::vector<Instant> instants;
+  Eigen::MatrixXd inputs;  ///< m x instants: acting on the step into each
+
+  RunInstants(const Bank& bank, const Trajectory& run, TimeSteps time_steps) {
+    std::vector<Eigen::VectorXd> acting;
+    RunSamples(bank, run, time_steps).for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {
+      for (Eigen::Index i = 1; !starts && i < feed.steps(); ++i) add({}, feed.inputs(), acting);
+      add({k, starts, starts ? Eigen::VectorXd(feed.start()) : Eigen::VectorXd()}, feed.inputs(), acting);
+    });
+    inputs.resize(bank.structure.acting_inputs(), std::ssize(acting));
+    for (std::size_t t = 0; t < acting.size(); ++t) inputs.col(static_cast<Eigen::Index>(t)) = acting[t];
+  }
+
+  Eigen::Index count() const { return std::ssize(instants); }
+  /// Whether the moment after t belongs to the same stretch.
+  bool continues(Eigen::Index t) const { return t + 1 < count() && !instants[static_cast<std::size_t>(t + 1)].starts; }
+
+ private:
+  void add(const Instant& instant, const Eigen::VectorXd& v, std::vector<Eigen::VectorXd>& acting) {
+    instants.push_back(instant);
+    acting.push_back(v);
+  }
+};
+
+/// Takes `state` from the moment before to moment t of a run; false when there was nothing measured.
+template <int N, int NY>
+bool step_to(const FilterModel<N, NY>& model, const RunInstants& run, Eigen::Index t, const Trajectory& trajectory,
+             FilterState<N>& state, FilterStep<N, NY>& step) {
+  const Instant& instant = run.instants[static_cast<std::size_t>(t)];
+  if (instant.starts) {
+    start(model, instant.start, state);
+    return true;
+  }
+  predict(model, state, run.inputs.col(t), step);
+  if (instant.sample < 0) {
+    skip_measurement(step, state);
+    return false;
+  }
+  const auto y = trajectory.state.col(instant.sample);
+  update(model, y, step, state);
+  return step.partial.missing < y.size();
+}
+
+}  // namespace modebank

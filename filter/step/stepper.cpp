@@ -1,0 +1,90 @@
+#include "filter/step/stepper.hpp"
+
+#include "filter/step/bank_filter.hpp"
+#include "filter/step/detail/vector/vector_imm.hpp"
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/equations/predicted_mixture.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+namespace {
+
+/// By the equations.
+template <int N, int NY>
+class EquationStepper final : public Stepper {
+ public:
+  EquationStepper(const Bank& bank, const FilterOptions& options)
+      : model_(bank, options),
+        step_(model_),
+        state_(initial_state(model_)),
+        moments_(model_.structure.dimension()),
+        weights_(step_.hypothesis_probability().size()) {}
+
+  void start(const Vector& y) override { modebank::start(model_, y, state_); }
+  void predict(const Vector& v) override { modebank::predict(model_, state_, v, step_); }
+  void skip(const Vector& v) override {
+    modebank::predict(model_, state_, v, step_);
+    skip_measurement(step_, state_);
+  }
+  double update(const Vector& y) override { return modebank::update(model_, y, step_, state_); }
+
+  double combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) override {
+    return modebank::combine(model_, step_, state, innovation_covariance);
+  }
+  void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit) override {
+    probability_transform(y, step_, weights_, pit);
+  }
+  void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) override {
+    modebank::merge(state_.modes, state_.mode_probability, moments_);
+    mean = moments_.mean;
+    covariance = moments_.covariance;
+  }
+  Eigen::Map<const Eigen::VectorXd> predicted_probability() const override { return map(step_.predicted_probability); }
+  Eigen::Map<const Eigen::VectorXd> mode_probability() const override { return map(state_.mode_probability); }
+
+  void save(FilterMemory& memory) const override {
+    const Index n = model_.structure.dimension(), K = model_.mode_count();
+    memory.means.resize(n, K);
+    memory.covariances.resize(n * n, K);
+    for (Index j = 0; j < K; ++j) {
+      memory.means.col(j) = state_.modes[static_cast<std::size_t>(j)].mean;
+      memory.covariances.col(j) = state_.modes[static_cast<std::size_t>(j)].covariance.reshaped();
+    }
+    memory.mode_probability = state_.mode_probability;
+    memory.noise_scale = state_.noise_scale;
+    memory.noise_samples = state_.noise_samples;
+  }
+  void restore(const FilterMemory& memory) override {
+    const Index n = model_.structure.dimension();
+    for (Index j = 0; j < model_.mode_count(); ++j) {
+      Gaussian<N>& mode = state_.modes[static_cast<std::size_t>(j)];
+      mode.mean = memory.means.col(j);
+      mode.covariance = memory.covariances.col(j).reshaped(n, n);
+    }
+    state_.mode_probability = memory.mode_probability;
+    state_.noise_scale = memory.noise_scale;
+    state_.noise_samples = memory.noise_samples;
+  }
+
+ private:
+  FilterModel<N, NY> model_;
+  FilterStep<N, NY> step_;
+  FilterState<N> state_;
+  Gaussian<N> moments_;
+  Eigen::VectorXd weights_;
+
+  static Eigen::Map<const Eigen::VectorXd> map(const Eigen::VectorXd& v) { return {v.data(), v.size()}; }
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_stepper(const Bank& bank, const FilterOptions& options) {
+  if (VectorImm::can_step(bank, options)) return std::make_unique<VectorImm>(bank, options);
+  return with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() -> std::unique_ptr<Stepper> {
+    return std::make_unique<EquationStepper<N, NY>>(bank, options);
+  });
+}
+
+}  // namespace modebank

@@ -1,0 +1,197 @@
+#include "ident/check/stream_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "ident/base/not_a_number.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/fit/scale.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::VectorXd;
+
+std::vector<double> finite_values(const VectorXd& values) {
+  std::vector<double> kept;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(kept), [](double v) { return std::isfinite(v); });
+  return kept;
+}
+
+void check_intervals(const VectorXd& time_s, SamplingCheck& check) {
+  const double period_s = median_period_s(time_s);
+  if (!(period_s > 0.0)) return;
+  check.rate_hz = 1.0 / period_s;
+  double square_sum = 0.0;
+  Index regular = 0;
+  for (Index k = 1; k < time_s.size(); ++k) {
+    const double interval = time_s(k) - time_s(k - 1);
+    if (interval > gap_periods * period_s) {
+      ++check.gaps;
+      check.longest_gap_s = std::max(check.longest_gap_s, interval);
+      continue;
+    }
+    square_sum += std::pow(interval - period_s, 2);
+    ++regular;
+  }
+  if (regular > 0) check.jitter = std::sqrt(square_sum / static_cast<double>(regular)) / period_s;
+}
+
+/// Whether all levels lie on a lattice of spacing near `spacing`, which is refined on the way up.
+bool on_lattice(const std::vector<double>& levels, double& spacing) {
+  constexpr double tolerance = 0.1, allowed_misses = 0.01;
+  double products = 0.0, squares = 0.0;
+  std::size_t misses = 0;
+  for (const double level : levels) {
+    const double height = level - levels.front(), steps = std::round(height / spacing);
+    if (steps == 0.0) continue;
+    if (std::abs(height / spacing - steps) > tolerance) {
+      ++misses;
+      continue;
+    }
+    products += steps * height;
+    squares += steps * steps;
+    spacing = products / squares;
+  }
+  return static_cast<double>(misses) <= allowed_misses * static_cast<double>(levels.size()) && squares > 0.0;
+}
+
+/// Largest spacing of a lattice that holds all levels (increasing); 0: none that is visible.
+double quantum_of(const std::vector<double>& levels) {
+  constexpr double visible = 1e-3;  // of the range
+  constexpr int most_divisions = 6;
+  const double range = levels.back() - levels.front();
+  double closest = range;
+  for (std::size_t i = 1; i < levels.size(); ++i) closest = std::min(closest, levels[i] - levels[i - 1]);
+  if (levels.size() < 3 || closest < visible * range) return 0.0;
+  for (int part = 1; part <= most_divisions; ++part) {
+    double spacing = closest / part;
+    if (spacing >= visible * range && on_lattice(levels, spacing)) return spacing;
+  }
+  return 0.0;
+}
+
+/// Values that differ by more than rounding in the file, increasing.
+std::vector<double> levels_of(std::vector<double> values) {
+  constexpr double rounding = 1e-9;
+  std::sort(values.begin(), values.end());
+  const double same = rounding * std::max(std::abs(values.front()), std::abs(values.back()));
+  std::vector<double> levels;
+  for (const double value : values)
+    if (levels.empty() || value - levels.back() > same) levels.push_back(value);
+  return levels;
+}
+
+}  // namespace
+
+SamplingCheck check_sampling(const Stream& recorded) {
+  SamplingCheck check;
+  const VectorXd& time_s = recorded.time_s;
+  check.samples = time_s.size();
+  double latest = -std::numeric_limits<double>::infinity();
+  Index repeats = 0;
+  for (Index k = 0; k < time_s.size(); ++k) {
+    if (!recorded.values.col(k).allFinite()) ++check.missing_samples;
+    if (k > 0 && recorded.values.col(k) == recorded.values.col(k - 1)) ++repeats;
+    if (!std::isfinite(time_s(k))) {
+      ++check.missing_times;
+      continue;
+    }
+    if (time_s(k) == latest) ++check.repeated_times;
+    if (time_s(k) < latest) ++check.backward_times;
+    latest = std::max(latest, time_s(k));
+  }
+  if (check.samples > 1) check.repeated_samples = static_cast<double>(repeats) / static_cast<double>(check.samples - 1);
+  const Stream ordered = in_order(recorded);
+  if (ordered.time_s.size() > 1) check.duration_s = ordered.time_s(ordered.time_s.size() - 1) - ordered.time_s(0);
+  check_intervals(ordered.time_s, check);
+  return check;
+}
+
+Stream in_order(const Stream& recorded) {
+  const VectorXd& time_s = recorded.time_s;
+  std::vector<Index> order(static_cast<std::size_t>(time_s.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::erase_if(order, [&](Index k) { return !std::isfinite(time_s(k)); });
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return time_s(a) < time_s(b); });
+  order.erase(std::unique(order.begin(), order.end(), [&](Index a, Index b) { return time_s(a) == time_s(b); }),
+              order.end());
+  return {time_s(order), recorded.values(Eigen::all, order)};
+}
+
+ChannelCheck check_channel(const VectorXd& values) {
+  ChannelCheck check;
+  const std::vector<double> known = finite_values(values);
+  check.missing = values.size() - static_cast<Index>(known.size());
+  if (known.empty()) return check;
+  const auto known_values = Eigen::Map<const VectorXd>(known.data(), static_cast<Index>(known.size()));
+  check.least = known_values.minCoeff();
+  check.largest = known_values.maxCoeff();
+  check.mean = known_values.mean();
+  check.sd = std::sqrt((known_values.array() - check.mean).square().mean());
+  const std::vector<double> levels = levels_of(known);
+  check.levels = static_cast<Index>(levels.size());
+  check.quantum = quantum_of(levels);
+  Index repeats = 0;
+  for (Index k = 1; k < known_values.size(); ++k)
+    if (known_values(k) == known_values(k - 1)) ++repeats;
+  if (known.size() > 1) check.repeated = static_cast<double>(repeats) / static_cast<double>(known.size() - 1);
+  check.outliers = spikes(known_values, check.quantum);
+  return check;
+}
+
+Index spikes(const VectorXd& values, double quantum) {
+  constexpr Index reach = 25;
+  constexpr double far = 12.0, quanta = 3.0, share_of_range = 0.01, median_of_normal = 0.674489750196081743;
+  const Index N = values.size();
+  if (N < 2 * reach) return 0;
+  const double least = std::max(quanta * quantum, share_of_range * (values.maxCoeff() - values.minCoeff()));
+  VectorXd distance = VectorXd::Zero(N);
+  for (Index k = 1; k + 1 < N; ++k) distance(k) = std::abs(values(k) - 0.5 * (values(k - 1) + values(k + 1)));
+  Index count = 0;
+  for (Index k = 1; k + 1 < N; ++k) {
+    const double before = values(k) - values(k - 1), after = values(k) - values(k + 1);
+    const bool alone = before * after > 0.0 && std::min(std::abs(before), std::abs(after)) > 0.5 * distance(k);
+    if (distance(k) <= least || !alone) continue;
+    const Index first = std::clamp<Index>(k - reach, 0, N - 2 * reach);
+    if (distance(k) > far / median_of_normal * median(distance.segment(first, 2 * reach))) ++count;
+  }
+  return count;
+}
+
+SaturationLimits saturation_limits(const std::vector<VectorXd>& runs) {
+  constexpr double band = 0.02, least_share = 0.005, pile_up = 1.5, full = 0.8;
+  constexpr double fifth = 0.2, soft_share = 0.02, soft_pile_up = 1.2;
+  std::vector<double> all;
+  for (const VectorXd& run : runs) {
+    const std::vector<double> known = finite_values(run);
+    all.insert(all.end(), known.begin(), known.end());
+  }
+  SaturationLimits limits{not_a_number, not_a_number, false};
+  if (all.empty()) return limits;
+  const auto [least, largest] = std::minmax_element(all.begin(), all.end());
+  const double low = *least, high = *largest, width = band * (high - low), scale = std::max(-low, high);
+  if (!(width > 0.0)) return limits;
+  // Samples with from < sign * v <= to, as a share of all.
+  const auto share = [&](double sign, double from, double to) {
+    const auto inside = [&](double v) { return sign * v > from && sign * v <= to; };
+    return static_cast<double>(std::count_if(all.begin(), all.end(), inside)) / static_cast<double>(all.size());
+  };
+  const auto piled = [&](double sign, double end, double outer, double next, double least_of_all, double ratio) {
+    const double top = share(sign, end - outer, end);
+    return end >= full * scale && top > least_of_all && top > ratio * share(sign, end - outer - next, end - outer);
+  };
+  if (piled(-1.0, -low, width, 2.0 * width, least_share, pile_up)) limits.low = low + width;
+  if (piled(1.0, high, width, 2.0 * width, least_share, pile_up)) limits.high = high - width;
+  if (std::isfinite(limits.low) || std::isfinite(limits.high)) return limits;
+  const double outer = fifth * scale;
+  if (piled(-1.0, -low, outer, outer, soft_share, soft_pile_up)) limits.low = low + 0.5 * outer;
+  if (piled(1.0, high, outer, outer, soft_share, soft_pile_up)) limits.high = high - 0.5 * outer;
+  limits.soft = std::isfinite(limits.low) || std::isfinite(limits.high);
+  return limits;
+}
+
+}  // namespace modebank

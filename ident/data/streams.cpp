@@ -1,0 +1,126 @@
+#include "ident/data/streams.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "ident/data/trajectory.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double last(const VectorXd& time_s) { return time_s(time_s.size() - 1); }
+
+/// Differences of times below this are rounding: of decimal stamps, of k / rate and of t - lag. A millionth of the mean
+/// period, but never below what a double resolves at these times (epoch seconds: 2.4e-7).
+double time_tolerance(const VectorXd& time_s) {
+  constexpr double share_of_period = 1e-6, units_in_last_place = 4.0;
+  const double largest = std::max(std::abs(time_s(0)), std::abs(last(time_s)));
+  const double resolution = units_in_last_place * std::numeric_limits<double>::epsilon() * largest;
+  if (time_s.size() < 2) return resolution;
+  return std::max(resolution, share_of_period * (last(time_s) - time_s(0)) / static_cast<double>(time_s.size() - 1));
+}
+
+/// Moves `sample`, the position of the last sample at or before an earlier time, on to `time`; -1: before all samples.
+Index advance(const VectorXd& samples, Index sample, double time) {
+  while (sample + 1 < samples.size() && samples(sample + 1) <= time) ++sample;
+  return sample;
+}
+
+VectorXd uniform_times(double first, double end, double rate_hz) {
+  constexpr double rounding = 1e-6;  // of a period: keeps an end that k / rate_hz just misses
+  const double periods = std::floor((end - first) * rate_hz + rounding);
+  if (periods < 0.0) return {};
+  VectorXd time_s(static_cast<Index>(periods) + 1);
+  for (Index k = 0; k < time_s.size(); ++k) time_s(k) = first + static_cast<double>(k) / rate_hz;
+  return time_s;
+}
+
+VectorXd times_within(const VectorXd& time_s, double first, double end) {
+  const double* const from = std::lower_bound(time_s.data(), time_s.data() + time_s.size(), first);
+  const double* const to = std::upper_bound(from, time_s.data() + time_s.size(), end);
+  return Eigen::Map<const VectorXd>(from, to - from);
+}
+
+}  // namespace
+
+MatrixXd interpolate(const Stream& stream, const VectorXd& time_s) {
+  const VectorXd& t = stream.time_s;
+  const MatrixXd& v = stream.values;
+  assert(t.size() >= 1 && v.cols() == t.size());
+  MatrixXd result(v.rows(), time_s.size());
+  Index j = -1;
+  for (Index k = 0; k < time_s.size(); ++k) {
+    j = advance(t, j, time_s(k));
+    if (j < 0)
+      result.col(k) = v.col(0);
+    else if (j + 1 == t.size() || t(j) == time_s(k))
+      result.col(k) = v.col(j);
+    else
+      result.col(k) = (v.col(j + 1) - v.col(j)) / (t(j + 1) - t(j)) * (time_s(k) - t(j)) + v.col(j);
+  }
+  return result;
+}
+
+VectorXd interpolate_weights(const Stream& weights, const VectorXd& time_s) {
+  const MatrixXd positive = (weights.values.array() > 0.0).cast<double>();
+  const MatrixXd share = interpolate({weights.time_s, positive}, time_s);
+  return (share.array() < 1.0).select(0.0, interpolate(weights, time_s)).transpose();
+}
+
+MatrixXd hold(const Stream& stream, const VectorXd& time_s) {
+  assert(stream.time_s.size() >= 1 && stream.values.cols() == stream.time_s.size());
+  const double tolerance = time_tolerance(stream.time_s);
+  MatrixXd result(stream.values.rows(), time_s.size());
+  Index j = -1;
+  for (Index k = 0; k < time_s.size(); ++k) {
+    j = advance(stream.time_s, j, time_s(k) + tolerance);
+    result.col(k) = stream.values.col(std::max<Index>(j, 0));
+  }
+  return result;
+}
+
+void blank_gaps(const VectorXd& stream_time_s, const VectorXd& time_s, MatrixXd& values) {
+  const double longest = gap_periods * median_period_s(stream_time_s);
+  Index j = 0;  // the stream's first sample at or after time_s(k)
+  for (Index k = 0; k < time_s.size(); ++k) {
+    while (j < stream_time_s.size() && stream_time_s(j) < time_s(k)) ++j;
+    const bool between = j > 0 && j < stream_time_s.size() && stream_time_s(j) != time_s(k);
+    if (between && stream_time_s(j) - stream_time_s(j - 1) > longest)
+      values.col(k).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+MatrixXd hold_mid_transition(const Stream& inputs, const VectorXd& time_s, const InputClock& clock) {
+  const Index N = time_s.size();
+  const double half_period = 0.5 * median_period_s(time_s);
+  VectorXd middle(N);
+  for (Index k = 0; k < N; ++k) {
+    const double t = time_s(k) + (k + 1 < N ? std::min(0.5 * (time_s(k + 1) - time_s(k)), half_period) : half_period);
+    middle(k) = t - clock.at(t);
+  }
+  return hold(inputs, middle);
+}
+
+VectorXd joint_times(const VectorXd& states_time_s, const VectorXd& inputs_time_s, const JoinTimes& options) {
+  // t - lag(t) = s at t = s + lag on the states' clock.
+  const auto acts_at = [&](double s) {
+    return options.drift == 0.0 ? s + options.lag_s
+                                : (s + options.lag_s - options.drift * options.reference_s) / (1.0 - options.drift);
+  };
+  const double first = std::max(states_time_s(0), acts_at(inputs_time_s(0)));
+  const double end = std::min(last(states_time_s), acts_at(last(inputs_time_s)));
+  if (options.rate_hz > 0.0) return uniform_times(first, end, options.rate_hz);
+  if (options.lag_s == 0.0 && options.drift == 0.0) return times_within(inputs_time_s, first, end);
+  const double rounding = time_tolerance(inputs_time_s);  // t - lag_s must not lose a sample by it
+  return times_within(inputs_time_s, std::max(states_time_s(0), first - rounding),
+                      std::min(last(states_time_s), end + rounding));
+}
+
+}  // namespace modebank

@@ -1,0 +1,18 @@
+#include "ident/data/stretch.hpp"
+
+namespace modebank {
+
+Trajectory stretch(const Trajectory& run, Eigen::Index first, Eigen::Index count) {
+  Trajectory part;
+  part.run = run.run;
+  part.role = run.role;
+  part.lag_s = run.lag_s;
+  part.time_s = run.time_s.segment(first, count);
+  part.state = run.state.middleCols(first, count);
+  part.input = run.input.middleCols(first, count);
+  if (run.truth.size() > 0) part.truth = run.truth.middleCols(first, count);
+  if (run.weight.size() > 0) part.weight = run.weight.segment(first, count);
+  return part;
+}
+
+}  // namespace modebank

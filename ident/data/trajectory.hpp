@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "modebank/base/names.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+/// A signal's name and unit; the unit is empty when nobody stated it.
+struct Channel {
+  std::string name;
+  std::string unit;
+};
+
+std::vector<std::string> names_of(const std::vector<Channel>& channels);
+
+/// Median interval (the upper one of an even count) between successive times, over all series; 0 without any.
+double median_period_s(const std::vector<const Eigen::VectorXd*>& times_s);
+double median_period_s(const Eigen::VectorXd& time_s);
+
+enum class Role { train, test };
+
+template <>
+struct EnumNames<Role> {
+  static constexpr Names<2> values{"train", "test"};
+};
+
+/// One recorded run of N samples. Signals are stored one sample per column, so column k of `state` is x[k].
+struct Trajectory {
+  std::string run;  ///< name of the run
+  Role role = Role::train;
+  Eigen::VectorXd time_s;  ///< N, strictly increasing
+  Eigen::MatrixXd state;   ///< n x N, as measured
+  Eigen::MatrixXd input;   ///< m x N
+  Eigen::MatrixXd truth;   ///< n x N true state, or empty
+  double lag_s = 0.0;      ///< lag that was applied to the inputs
+  /// N or empty (all one). weight(k) belongs to the transition that ends in sample k, whose error it multiplies the
+  /// loss of; weight(0) is unused. At least 0, finite; 0 leaves the transition out. Only ratios matter: every fit
+  /// divides by the mean over its transitions.
+  Eigen::VectorXd weight;
+
+  Index samples() const { return state.cols(); }
+  /// Transition k leads from sample k to sample k + 1.
+  Index transitions() const { return samples() > 0 ? samples() - 1 : 0; }
+};
+
+/// All runs of one study object: same channels, same order, sorted by run name.
+struct Recording {
+  std::vector<Channel> states;  ///< n
+  std::vector<Channel> inputs;  ///< m
+  std::vector<Trajectory> runs;
+
+  Index state_count() const { return static_cast<Index>(states.size()); }
+  Index input_count() const { return static_cast<Index>(inputs.size()); }
+  /// Transitions of all runs that have the role.
+  Index transitions(Role role) const {
+    Index sum = 0;
+    for (const Trajectory& run : runs) sum += run.role == role ? run.transitions() : 0;
+    return sum;
+  }
+  /// Whether any run has sample weights.
+  bool weighted() const {
+    return std::any_of(runs.begin(), runs.end(), [](const Trajectory& run) { return run.weight.size() > 0; });
+  }
+  /// Median sample period over all runs [s]; 0 without any transition.
+  double median_period_s() const;
+};
+
+}  // namespace modebank

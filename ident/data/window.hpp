@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "ident/data/trajectory.hpp"
+
+namespace modebank {
+
+/// A stretch of `length` consecutive transitions (length + 1 samples) of one run; the length is common to all windows.
+struct Window {
+  Index run = 0;    ///< position in Recording::runs
+  Index start = 0;  ///< first sample
+};
+
+/// All windows of the training runs by their index, without a list of them: run by run from transition `first` on,
+/// advanced by `step` transitions; none crosses the border of a run. Runs with fewer than `first + length` transitions
+/// have no window. THE place where windows are formed.
+class WindowPlan {
+ public:
+  /// Throws std::invalid_argument unless length >= 1 and step >= 1.
+  WindowPlan(const Recording& recording, Index length, Index step, Index first = 0);
+
+  Index count() const { return count_; }
+  Window window(Index i) const;
+
+  /// Consecutive windows of one run.
+  struct Range {
+    Index first = 0;  ///< index of the first window
+    Index count = 0;
+    Window window;  ///< the first one
+  };
+  /// Windows first .. first + count - 1, in ranges of at most `longest`.
+  std::vector<Range> ranges(Index first, Index count, Index longest) const;
+
+ private:
+  std::vector<Range> runs_;
+  Index step_;
+  Index count_ = 0;
+};
+
+/// The windows of a WindowPlan as a list.
+std::vector<Window> make_windows(const Recording& recording, Index length, Index step, Index first = 0);
+
+}  // namespace modebank

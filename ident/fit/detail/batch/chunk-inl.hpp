@@ -1,0 +1,161 @@
+// The loop over a chunk of windows, a vector of them at a time, and the way of their results into memory.
+#if defined(MODEBANK_BATCH_CHUNK_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MODEBANK_BATCH_CHUNK_INL
+#undef MODEBANK_BATCH_CHUNK_INL
+#else
+#define MODEBANK_BATCH_CHUNK_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ident/fit/detail/batch/kernel-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace modebank::batch::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+inline constexpr Index widest = padding;
+
+HWY_INLINE View contiguous_view(const Settings& settings, const Chunk& chunk, Index first) {
+  View view{{}, chunk.increments + first, nullptr, 1, settings.length};
+  for (int j = 0; j < settings.regressors; ++j) view.regressors[j] = chunk.regressors[j] + first;
+  if (chunk.present) view.present = chunk.present + first;
+  return view;
+}
+
+/// Windows that do not start one sample apart are laid side by side, one per lane; lanes beyond the last repeat it.
+HWY_INLINE View transposed_view(const Settings& settings, const Chunk& chunk, Index first, double* memory) {
+  const Index lanes = static_cast<Index>(hn::Lanes(D()));
+  const auto transpose = [&](const double* column) {
+    double* const begin = memory;
+    for (Index lane = 0; lane < lanes; ++lane) {
+      const double* const window = column + std::min(first + lane, chunk.windows - 1) * settings.step;
+      for (Index i = 0; i < settings.length; ++i) begin[i * lanes + lane] = window[i];
+    }
+    memory += settings.length * lanes;
+    return static_cast<const double*>(begin);
+  };
+  View view{{}, transpose(chunk.increments), nullptr, lanes, settings.length};
+  for (int j = 0; j < settings.regressors; ++j) view.regressors[j] = transpose(chunk.regressors[j]);
+  if (chunk.present) view.present = transpose(chunk.present);
+  return view;
+}
+
+HWY_INLINE void scatter(V value, Index count, double* out, Index stride) {
+  if (!out) return;
+  HWY_ALIGN double lane[widest];
+  hn::Store(value, D(), lane);
+  constexpr Index all = static_cast<Index>(hn::MaxLanes(D()));
+  if (count == all) {
+    for (Index i = 0; i < all; ++i) out[i * stride] = lane[i];
+  } else {
+    for (Index i = 0; i < count; ++i) out[i * stride] = lane[i];
+  }
+}
+
+HWY_INLINE void scatter_flags(M mask, Index count, bool (&flag)[widest]) {
+  HWY_ALIGN double lane[widest];
+  hn::Store(hn::IfThenElseZero(mask, splat(1.0)), D(), lane);
+  for (Index i = 0; i < count; ++i) flag[i] = lane[i] != 0.0;
+}
+
+/// Verdicts, rank and status: the numbers that are not floating.
+template <int Q>
+HWY_INLINE void write_verdicts(const Settings& settings, const Fit<Q>& fit, Index first, Index count,
+                               const Output& out) {
+  const M rated = settings.prior ? fit.reached : hn::AndNot(fit.deficient, fit.reached);
+  const M solved = hn::And(hn::And(fit.enough, fit.clear), rated);
+  const bool plain = hn::CountTrue(D(), hn::AndNot(fit.deficient, solved)) == hn::Lanes(D());
+  if (plain && count == static_cast<Index>(hn::Lanes(D())) && !out.transitions) {  // as a rule
+    std::fill_n(out.verdict + first, count, Verdict::solved);
+    if (out.rank) std::fill_n(out.rank + first, count, Q);
+    if (out.status) std::fill_n(out.status + first, count, static_cast<int>(FitStatus::converged));
+    return;
+  }
+  bool enough[widest], clear[widest], deficient[widest], reached[widest];
+  scatter_flags(fit.enough, count, enough);
+  scatter_flags(fit.clear, count, clear);
+  scatter_flags(fit.deficient, count, deficient);
+  scatter_flags(fit.reached, count, reached);
+  HWY_ALIGN double rank[widest];
+  hn::Store(fit.rank, D(), rank);
+  HWY_ALIGN double samples[widest];
+  hn::Store(fit.samples, D(), samples);
+  for (Index i = 0; i < count; ++i) {
+    Verdict verdict = Verdict::solved;
+    if (!enough[i])
+      verdict = Verdict::too_few_samples;
+    else if (!clear[i])
+      verdict = Verdict::ill_conditioned;
+    else if (deficient[i] && !settings.prior)
+      verdict = Verdict::rank_deficient;
+    else if (!reached[i])
+      verdict = Verdict::not_converged;
+    out.verdict[first + i] = verdict;
+    if (out.rank) out.rank[first + i] = clear[i] ? static_cast<int>(rank[i]) : 0;
+    if (out.transitions) out.transitions[first + i] = static_cast<int>(samples[i]);
+    if (out.status)
+      out.status[first + i] = static_cast<int>(deficient[i] ? FitStatus::rank_deficient : FitStatus::converged);
+  }
+}
+
+/// akaike_criterion of ident/fit/describe.hpp for one state, from the sums; logarithms are the host's.
+template <int Q>
+HWY_NOINLINE void write_criterion(const Settings& settings, const Fit<Q>& fit, Index count, double* out) {
+  if (!out) return;
+  HWY_ALIGN double samples[widest], sigma[widest], deviance[widest], data_parameters[widest], price[widest];
+  hn::Store(fit.samples, D(), samples);
+  hn::Store(fit.sigma, D(), sigma);
+  hn::Store(fit.deviance, D(), deviance);
+  hn::Store(fit.data_parameters, D(), data_parameters);
+  hn::Store(fit.price, D(), price);
+  const bool gaussian = settings.loss == Loss::trivial;
+  for (Index i = 0; i < count; ++i) {
+    const double variance = std::max(deviance[i] / samples[i], settings.floor * settings.floor);
+    out[i] = gaussian ? samples[i] * (log_two_pi + std::log(variance) + 1.0) + 2.0 * (data_parameters[i] + 1.0)
+                      : samples[i] * (log_two_pi + 2.0 * std::log(sigma[i])) + deviance[i] / (sigma[i] * sigma[i]) +
+                            2.0 * (price[i] * data_parameters[i] + 1.0);
+  }
+}
+
+template <int Q>
+HWY_NOINLINE void write(const Settings& settings, const Fit<Q>& fit, Index first, Index count, const Output& out) {
+  const auto from = [](double* array, Index offset) { return array ? array + offset : nullptr; };
+  write_verdicts(settings, fit, first, count, out);
+  for (int j = 0; j < Q; ++j) scatter(fit.search.theta[j], count, from(out.theta, first * Q + j), Q);
+  for (int i = 0; i < Q; ++i)
+    for (int j = 0; j <= i; ++j) {
+      scatter(fit.covariance.a[at(i, j)], count, from(out.covariance, first * Q * Q + i * Q + j), Q * Q);
+      if (i != j) scatter(fit.covariance.a[at(i, j)], count, from(out.covariance, first * Q * Q + j * Q + i), Q * Q);
+    }
+  scatter(fit.search.gradient, count, from(out.gradient, first), 1);
+  scatter(fit.noise_variance, count, from(out.noise_variance, first), 1);
+  scatter(fit.condition, count, from(out.condition, first), 1);
+  scatter(fit.inlier_fraction, count, from(out.inlier_fraction, first), 1);
+  scatter(fit.r_squared, count, from(out.r_squared, first), 1);
+  write_criterion(settings, fit, count, from(out.aic, first));
+  for (int j = 0; j < Q; ++j) scatter(fit.information[j], count, from(out.information, first * Q + j), Q);
+}
+
+template <int Q, class LossT, class FirstLoss>
+HWY_NOINLINE void solve_chunk(const Settings& settings, const Chunk& chunk, double* scratch, const Output& out) {
+  const Index lanes = static_cast<Index>(hn::Lanes(D()));
+  double* const side_by_side = scratch + settings.length * lanes * (Q + 2);
+  for (Index first = 0; first < chunk.windows; first += lanes) {
+    const Index count = std::min(lanes, chunk.windows - first);
+    const View view = settings.step == 1 ? contiguous_view(settings, chunk, first)
+                                         : transposed_view(settings, chunk, first, side_by_side);
+    Fit<Q> fit;
+    fit_group<Q, LossT, FirstLoss>(settings, view, hn::FirstN(D(), static_cast<std::size_t>(count)), chunk.sigma,
+                                   scratch, fit);
+    write(settings, fit, first, count, out);
+  }
+}
+
+}  // namespace modebank::batch::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

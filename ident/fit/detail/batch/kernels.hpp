@@ -1,0 +1,14 @@
+#pragma once
+
+#include "ident/fit/detail/batch/problem.hpp"
+
+namespace modebank::batch {
+
+/// Fits all windows of a chunk; `scratch` has scratch_doubles, aligned to 64 bytes. Compiled for every instruction set
+/// that the machine may have; the best is chosen at run time.
+using Kernel = void (*)(const Settings& settings, const Chunk& chunk, double* scratch, const Output& out);
+
+/// Null for more than max_regressors.
+Kernel find_kernel(Loss loss, int regressors);
+
+}  // namespace modebank::batch

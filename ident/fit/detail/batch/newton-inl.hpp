@@ -1,0 +1,154 @@
+// The minimiser of one window per lane.
+#if defined(MODEBANK_BATCH_NEWTON_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MODEBANK_BATCH_NEWTON_INL
+#undef MODEBANK_BATCH_NEWTON_INL
+#else
+#define MODEBANK_BATCH_NEWTON_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+
+#include "ident/fit/detail/batch/window-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace modebank::batch::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// A Newton step's expected gain, g' H^-1 g, at or below this share of sum psi^2 ends the search: H is at most X'X + P,
+/// so the gradient in orthonormal coordinates is below its root of |psi|.
+inline constexpr double stationary_square = stationary_gradient * stationary_gradient;
+/// The same share of sum y^2 cannot be told from rounding error.
+inline constexpr double rounding_square = 1e-30;
+/// A second derivative whose pivots fall below this share of the regressors' own is not stepped by.
+inline constexpr double least_curvature = 1e-8;
+/// Nor is a reweighted gram matrix with smaller pivots than this.
+inline constexpr double least_weight = 1e-12;
+/// A second derivative that is too weak gets this share of the regressors' own on top: where all samples of a direction
+/// are outliers its steps are long, and halved where they are too long.
+inline constexpr double curvature_share = 0.01;
+/// The objective may grow by this share from rounding.
+inline constexpr double cost_rounding = 1e-12;
+inline constexpr int max_halvings = 40;
+
+/// What a search needs beside samples and loss.
+template <int Q>
+struct Surroundings {
+  Symmetric<Q> gram;  // X'X + P, the second derivative where every sample keeps its weight
+  V information[Q];   // P, diagonal, in units of sigma^2 per parameter^2; 0 without a prior
+  V mean[Q];
+  V square_sum;  // sum y^2
+  int max_iterations;
+  Ldl<Q> factors;  // of gram
+};
+
+/// Where a search has got to.
+template <int Q>
+struct Search {
+  V theta[Q];
+  V gradient;  // relative to |psi|, before the last step
+};
+
+/// sum_j P_j (theta_j - mean_j)^2, added to the gradient as to the cost.
+template <int Q>
+HWY_INLINE V add_prior(const Surroundings<Q>& around, const V (&theta)[Q], Sums<Q>& s) {
+  V square = zero();
+  for (int j = 0; j < Q; ++j) {
+    const V away = hn::Sub(around.mean[j], theta[j]), pull = hn::Mul(around.information[j], away);
+    s.gradient[j] = hn::Add(s.gradient[j], pull);
+    s.hessian.a[at(j, j)] = hn::Add(s.hessian.a[at(j, j)], around.information[j]);
+    square = hn::MulAdd(pull, away, square);
+  }
+  s.cost = hn::Add(s.cost, square);
+  return square;
+}
+
+/// sum y^2 + sum_j theta_j^2 (X'X)_jj: what cancels in the residuals.
+template <int Q>
+HWY_INLINE V magnitude(const Symmetric<Q>& gram, V square_sum, const V (&theta)[Q]) {
+  V sum = square_sum;
+  for (int j = 0; j < Q; ++j) sum = hn::MulAdd(hn::Mul(theta[j], theta[j]), gram.a[at(j, j)], sum);
+  return sum;
+}
+
+/// For the lanes in `weak`, whose second derivative is not safely positive: a step with some of the regressors' own
+/// added; where even that is not positive, the step of reweighted least squares, which cannot increase these losses.
+/// Returns the lanes that have one.
+template <int Q, class LossT>
+HWY_NOINLINE M cautious_step(const View& view, const LossT& loss, const Surroundings<Q>& around, const V (&theta)[Q],
+                             const Sums<Q>& s, M weak, V (&step)[Q]) {
+  V other[Q];
+  Symmetric<Q> damped;
+  for (int i = 0; i < at(Q, 0); ++i) damped.a[i] = hn::MulAdd(splat(curvature_share), around.gram.a[i], s.hessian.a[i]);
+  const Ldl<Q> f = factor(damped, around.gram, least_curvature);
+  solve(f, s.gradient, other);
+  const M strong = hn::And(weak, f.ok);
+  for (int j = 0; j < Q; ++j) step[j] = hn::IfThenElse(strong, other[j], step[j]);
+  weak = hn::AndNot(strong, weak);
+  if (!any(weak)) return strong;
+  Symmetric<Q> weighted = reweighted_gram(view, loss, theta);
+  for (int j = 0; j < Q; ++j) weighted.a[at(j, j)] = hn::Add(weighted.a[at(j, j)], around.information[j]);
+  const Ldl<Q> g = factor(weighted, around.gram, least_weight);
+  solve(g, s.gradient, other);
+  for (int j = 0; j < Q; ++j) step[j] = hn::IfThenElse(weak, other[j], step[j]);
+  return hn::Or(strong, hn::And(weak, g.ok));
+}
+
+/// The Newton step of the lanes in `wanted`; returns those that have one.
+template <int Q, class LossT>
+HWY_INLINE M next_step(const View& view, const LossT& loss, const Surroundings<Q>& around, const V (&theta)[Q],
+                       const Sums<Q>& s, M wanted, V (&step)[Q]) {
+  if constexpr (LossT::quadratic) {
+    solve(around.factors, s.gradient, step);
+    return around.factors.ok;
+  } else {
+    const Ldl<Q> f = factor(s.hessian, around.gram, least_curvature);
+    solve(f, s.gradient, step);
+    const M weak = hn::AndNot(f.ok, wanted);
+    if (!any(weak)) return f.ok;
+    return hn::Or(f.ok, cautious_step(view, loss, around, theta, s, weak, step));
+  }
+}
+
+/// Newton's method with the exact second derivative from search.theta, steps halved until the objective no longer
+/// grows. Returns the lanes of `live` that got to a stationary point.
+template <int Q, class LossT>
+HWY_NOINLINE M minimise(const View& view, const LossT& loss, const Surroundings<Q>& around, M live, Search<Q>& search) {
+  V(&theta)[Q] = search.theta;
+  M reached = none();
+  V best[Q], step[Q], best_cost = splat(std::numeric_limits<double>::infinity()), halvings = zero();
+  for (int j = 0; j < Q; ++j) best[j] = theta[j], step[j] = zero();
+  for (int iteration = 0; any(live) && iteration < around.max_iterations + max_halvings; ++iteration) {
+    Sums<Q> s = evaluate(view, loss, theta);
+    const V prior_square = add_prior(around, theta, s);
+    const V allowed = hn::MulAdd(splat(cost_rounding), hn::Abs(best_cost), best_cost);
+    const M worse = hn::And(live, hn::Gt(s.cost, allowed)), accepted = hn::AndNot(worse, live);
+    for (int j = 0; j < Q; ++j) best[j] = hn::IfThenElse(accepted, theta[j], best[j]);
+    best_cost = hn::IfThenElse(accepted, s.cost, best_cost);
+
+    V newton[Q];
+    const M usable = next_step(view, loss, around, theta, s, accepted, newton);
+    const V gain = dot(newton, s.gradient), scale = hn::Add(s.psi_square, prior_square);
+    const V enough = hn::Max(hn::Mul(splat(stationary_square), scale),
+                             hn::Mul(splat(rounding_square), magnitude(around.gram, around.square_sum, theta)));
+    const M done = hn::And(hn::And(accepted, usable), hn::Le(gain, enough));
+    search.gradient = hn::IfThenElse(accepted, hn::Div(gain, scale), search.gradient);
+
+    halvings = hn::IfThenElse(worse, hn::Add(halvings, splat(1.0)), zero());
+    for (int j = 0; j < Q; ++j) {
+      step[j] = hn::IfThenElse(worse, hn::Mul(splat(0.5), step[j]), newton[j]);
+      theta[j] = hn::IfThenElse(live, hn::Add(best[j], step[j]), theta[j]);
+    }
+    reached = hn::Or(reached, done);
+    const M lost = hn::Or(hn::Gt(halvings, splat(max_halvings)), hn::AndNot(usable, accepted));
+    live = hn::AndNot(hn::Or(done, lost), live);
+  }
+  search.gradient = hn::Sqrt(hn::Max(search.gradient, zero()));
+  return reached;
+}
+
+}  // namespace modebank::batch::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,67 @@
+#include "ident/fit/detail/batch/windows.hpp"
+
+#include <sstream>
+#include <string>
+
+#include "ident/fit/constants.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+double sigma_of_run(const LinearWindows& windows, Index run) {
+  if (windows.options().scale == ScaleSource::fixed) return windows.options().sigma;
+  return windows.options().scale == ScaleSource::run ? windows.run_scale(run)(0) : 1.0;
+}
+
+}  // namespace
+
+std::unique_ptr<BatchWindows> BatchWindows::make(const LinearWindows& windows, Index count,
+                                                 const ParameterPrior* prior) {
+  const FitOptions& options = windows.options();
+  const bool possible = BatchSolver::handles(windows.structure(), options.length) && !windows.recording().weighted();
+  if (options.solver == WindowSolver::batch && !possible)
+    throw ConfigurationError("solver = batch fits linear models of one state with at most " +
+                             std::to_string(batch::max_regressors) +
+                             " regressors, fewer than the window's length, without sample weights; take auto or ceres");
+  const bool wanted = options.solver == WindowSolver::batch ||
+                      (options.solver == WindowSolver::automatic && count > most_ceres_windows);
+  return possible && wanted ? std::unique_ptr<BatchWindows>(new BatchWindows(windows, prior)) : nullptr;
+}
+
+BatchWindows::BatchWindows(const LinearWindows& windows, const ParameterPrior* prior)
+    : windows_(windows), solver_(batch_settings(windows.structure(), windows.options(), prior, windows.floor()(0))) {}
+
+std::string BatchWindows::method() {
+  std::ostringstream words;
+  words << "Newton's method to a relative gradient of " << stationary_gradient;
+  return words.str();
+}
+
+const std::vector<batch::Verdict>& BatchWindows::solve(const WindowPlan::Range& range, batch::Output out) {
+  Worker& worker = workers_.local();
+  const batch::Settings& settings = solver_.settings();
+  batch::Chunk chunk = worker.workspace.stage(windows_.run_of(range.window), range.window.start, range.count,
+                                              windows_.structure(), settings);
+  chunk.sigma = sigma_of_run(windows_, range.window.run);
+  out.verdict = worker.verdict.data();
+  solver_(chunk, worker.workspace.scratch(settings.length), out);
+  return worker.verdict;
+}
+
+batch::Output columns_from(WindowFits& fits, Index i) {
+  return {.theta = fits.parameters.col(i).data(),
+          .covariance = fits.covariance.col(i).data(),
+          .noise_variance = fits.noise_variance.col(i).data(),
+          .condition = fits.condition.data() + i,
+          .information = fits.information.col(i).data(),
+          .inlier_fraction = fits.inlier_fraction.data() + i,
+          .r_squared = fits.r_squared.col(i).data(),
+          .aic = fits.aic.data() + i,
+          .transitions = fits.transitions.data() + i,
+          .rank = fits.rank.data() + i,
+          .status = fits.status.data() + i};
+}
+
+}  // namespace modebank

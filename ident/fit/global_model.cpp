@@ -1,0 +1,116 @@
+#include "ident/fit/global_model.hpp"
+
+#include <Eigen/QR>
+#include <cmath>
+#include <utility>
+
+#include "ident/base/not_a_number.hpp"
+#include "ident/fit/motion_fit.hpp"
+#include "ident/model/transitions.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+/// S (x) (X'X)^-1 for theta row-major; NaN where the transitions leave it open.
+Eigen::MatrixXd least_squares_covariance(const Decomposition& d, const Eigen::MatrixXd& residual_square_sum, Index N) {
+  const Index q = d.basis.rows(), n = residual_square_sum.rows();
+  if (d.rank() < q || N <= q) return Eigen::MatrixXd::Constant(n * q, n * q, not_a_number);
+  const Eigen::MatrixXd gram_inverse = d.basis * d.basis.transpose();
+  Eigen::MatrixXd covariance(n * q, n * q);
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < n; ++j)
+      covariance.block(i * q, j * q, q, q) = residual_square_sum(i, j) / static_cast<double>(N - q) * gram_inverse;
+  return covariance;
+}
+
+/// All training transitions turned into few rows of the same least-squares problem: the triangle of a QR decomposition
+/// that takes block after block (so that a long recording needs no copy of itself), and their count.
+std::pair<Transitions, Index> reduce(const Recording& recording, const LinearStructure& structure) {
+  const Index q = structure.regressors(), n = structure.states;
+  Eigen::MatrixXd triangle(0, q + n);
+  Index count = 0;
+  for_each_training_block(recording, structure, [&](const Transitions& block) {
+    count += block.count();
+    Eigen::MatrixXd rows(triangle.rows() + block.count(), q + n);
+    rows.topRows(triangle.rows()) = triangle;
+    rows.bottomRows(block.count()) << block.regressors, block.increments;
+    if (rows.rows() <= q + n) {
+      triangle = rows;
+      return;
+    }
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows);
+    triangle = qr.matrixQR().topRows(q + n).triangularView<Eigen::Upper>();
+  });
+  return {{triangle.leftCols(q), triangle.rightCols(n)}, count};
+}
+
+constexpr int motion_iterations = 1000;
+constexpr int scale_passes = 3;  // of the motion model's fit, each with the residuals' standard deviations of the last
+
+/// Root mean square per state.
+Eigen::VectorXd root_mean_square(const Eigen::VectorXd& r, Index n) {
+  const Index samples = std::max(Index{1}, r.size() / n);
+  return (r.reshaped(n, r.size() / n).rowwise().squaredNorm() / static_cast<double>(samples)).cwiseSqrt();
+}
+
+Eigen::VectorXd positive_or_one(const Eigen::VectorXd& values) {
+  return values.unaryExpr([](double value) { return value > 0.0 && std::isfinite(value) ? value : 1.0; });
+}
+
+Eigen::VectorXd start_of(const MotionModel& model) {
+  Eigen::VectorXd theta(model.parameter_count());
+  for (Index j = 0; j < theta.size(); ++j) theta(j) = model.parameters()[static_cast<std::size_t>(j)].start;
+  return theta;
+}
+
+}  // namespace
+
+GlobalModel fit_global(const Recording& recording, const LinearStructure& structure) {
+  const auto [transitions, N] = reduce(recording, structure);
+  if (N == 0) throw DataError("the training runs hold no transition between two finite samples");
+  const Decomposition d = decompose(transitions.regressors, excitation_tolerance);
+  const Eigen::MatrixXd coefficients = solve(d, transitions.increments);
+  Eigen::MatrixXd square_sum = Eigen::MatrixXd::Zero(structure.states, structure.states);
+  for_each_training_block(recording, structure, [&](const Transitions& block) {
+    const Eigen::MatrixXd r = block.increments - block.regressors * coefficients;
+    square_sum += r.transpose() * r;
+  });
+  GlobalModel global;
+  // Column i of the coefficients is row i of [A B c], so their column-major vec is theta.
+  global.theta = coefficients.reshaped();
+  global.covariance = least_squares_covariance(d, square_sum, N);
+  global.residual_covariance = square_sum / static_cast<double>(N);
+  global.transitions = N;
+  return global;
+}
+
+GlobalModel fit_global(const Recording& recording, const MotionModel& model) {
+  const ModelResiduals residuals(model, training_stretches(recording), ResidualKind::one_step);
+  if (residuals.samples() == 0) throw DataError("the training runs hold no transition between two finite samples");
+  const Index n = model.states(), p = model.parameter_count(), N = residuals.samples();
+  const RobustLoss least_squares(Loss::trivial, 0.0);
+  GlobalModel global;
+  global.theta = start_of(model);
+  Eigen::VectorXd r;
+  residuals.evaluate(global.theta.data(), r, nullptr);
+  for (int pass = 0; pass < (n > 1 ? scale_passes : 1); ++pass) {
+    const Eigen::VectorXd sigma = positive_or_one(root_mean_square(r, n));
+    global.theta = minimise_model(residuals, sigma, least_squares, nullptr, motion_iterations, global.theta).unknowns;
+    residuals.evaluate(global.theta.data(), r, nullptr);
+  }
+  const auto errors = r.reshaped(n, N);
+  global.residual_covariance = errors * errors.transpose() / static_cast<double>(N);
+  global.transitions = N;
+  FitOptions options;
+  options.loss = Loss::trivial;
+  const Eigen::VectorXd sigma = positive_or_one(root_mean_square(r, n));
+  global.covariance =
+      fit_model(residuals, make_model_estimator(model, options), sigma, Eigen::VectorXd::Zero(n), nullptr, global.theta)
+          .covariance;
+  if (global.covariance.rows() != p) global.covariance = Eigen::MatrixXd::Constant(p, p, not_a_number);
+  return global;
+}
+
+}  // namespace modebank

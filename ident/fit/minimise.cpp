@@ -1,0 +1,214 @@
+#include "ident/fit/minimise.hpp"
+
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "ident/fit/constants.hpp"
+#include "ident/fit/residuals.hpp"
+
+namespace modebank {
+
+namespace {
+
+/// Whitened residuals beyond this are a numerical accident: their squares would overflow.
+constexpr double largest_residual = 1e100;
+/// Ceres stops when the cost gains less than this share: first near enough for Newton's steps to do the rest, and where
+/// they do not, as far as the cost can be told apart.
+constexpr double near_tolerance = 1e-4;
+constexpr double far_tolerance = 1e-14;
+/// Below this share of b the influence psi no longer scales a gradient: stationary_gradient of it is rounding error.
+constexpr double least_influence = 1e-5;
+/// Near the optimum what a step should gain is rounding error, and Ceres calls it invalid; the trust region shrinks,
+/// and Ceres is to end there as at any small step, not as a failure.
+constexpr int most_invalid_steps = 50;
+constexpr double cost_rounding = 1e-13;
+constexpr int max_newton_steps = 60;
+constexpr int max_halvings = 30;
+
+ceres::Problem::Options problem_options() {
+  ceres::Problem::Options options;
+  // The loss is shared by all samples, windows and threads.
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.disable_all_safety_checks = true;
+  return options;
+}
+
+/// Where Ceres ends: relative change of the cost, gradient, relative step.
+struct Tolerances {
+  double function, gradient = 1e-14, parameter = 1e-12;
+};
+constexpr Tolerances tightest{1e-16, 1e-16, 1e-16};
+
+ceres::Solver::Options solver_options(const Tolerances& tolerances, int max_iterations) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;  // safe: J has orthonormal columns
+  options.max_num_iterations = max_iterations;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  options.jacobi_scaling = false;             // the columns are of unit norm already
+  options.initial_trust_region_radius = 1e8;  // start with full steps: the problem is convex or starts near its optimum
+  options.function_tolerance = tolerances.function;
+  options.gradient_tolerance = tolerances.gradient;
+  options.max_num_consecutive_invalid_steps = most_invalid_steps;
+  options.parameter_tolerance = tolerances.parameter;
+  return options;
+}
+
+FitStatus search(const WhitenedProblem& problem, const RobustLoss& loss, const Tolerances& tolerances,
+                 int max_iterations, Eigen::VectorXd& z) {
+  ceres::Problem ceres_problem(problem_options());
+  const auto add = [&](Index first, Index count, ceres::LossFunction* function) {
+    ceres_problem.AddResidualBlock(new LinearResidual(problem, first, count), function, z.data());  // Ceres owns it
+  };
+  std::vector<WeightedLoss> weighted;
+  for (const double weight : problem.weight) weighted.emplace_back(*loss.ceres_function(), weight);
+  for (Index k = 0; k < problem.samples; ++k)
+    add(k * problem.states, problem.states,
+        weighted.empty() ? loss.ceres_function() : &weighted[static_cast<std::size_t>(k)]);
+  if (problem.prior_rows() > 0) add(problem.sample_rows(), problem.prior_rows(), nullptr);
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver_options(tolerances, max_iterations), &ceres_problem, &summary);
+  if (summary.termination_type == ceres::CONVERGENCE) return FitStatus::converged;
+  return summary.termination_type == ceres::NO_CONVERGENCE ? FitStatus::iteration_limit : FitStatus::failed;
+}
+
+bool stationary(const WhitenedProblem& problem, const RobustTerms& terms) {
+  return scaled_gradient(problem, terms) <= stationary_gradient;
+}
+
+/// -H^-1 g; without rho'' where the second derivative is not positive definite. Empty where even that is not.
+Eigen::VectorXd newton_step(const WhitenedProblem& problem, const RobustTerms& terms, const Eigen::VectorXd& g) {
+  Eigen::LLT<Eigen::MatrixXd> factor(hessian(problem, terms));
+  if (factor.info() != Eigen::Success) factor.compute(weighted_information(problem, terms));
+  return factor.info() == Eigen::Success ? Eigen::VectorXd(-factor.solve(g)) : Eigen::VectorXd();
+}
+
+/// Newton steps, halved until the objective no longer grows, until z is stationary (true) or nothing is gained.
+bool polish(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::VectorXd& z) {
+  RobustTerms terms = evaluate(problem, loss, z);
+  for (int i = 0; i < max_newton_steps; ++i) {
+    if (stationary(problem, terms)) return true;
+    Eigen::VectorXd step = newton_step(problem, terms, gradient(problem, terms));
+    if (step.size() == 0 || !step.allFinite()) return false;
+    const double allowed = half_cost(problem, loss, terms) * (1.0 + cost_rounding);
+    RobustTerms candidate = evaluate(problem, loss, z + step);
+    for (int halving = 0; !(half_cost(problem, loss, candidate) <= allowed); ++halving) {
+      if (halving == max_halvings) return false;
+      step *= 0.5;
+      candidate = evaluate(problem, loss, z + step);
+    }
+    z += step;
+    terms = std::move(candidate);
+  }
+  return stationary(problem, terms);
+}
+
+/// Whether the numbers can be squared.
+bool sound(const WhitenedProblem& problem) {
+  return problem.b.cwiseAbs().maxCoeff() < largest_residual && problem.J.allFinite();
+}
+
+Minimum finite_or_failed(Minimum minimum) {
+  if (!minimum.z.allFinite()) minimum.status = FitStatus::failed;
+  return minimum;
+}
+
+}  // namespace
+
+Eigen::MatrixXd RobustTerms::influence_slope(Index k, Index states) const {
+  const auto r = sample(k, states);
+  Eigen::MatrixXd slope = 2.0 * curvature(k) * r * r.transpose();
+  slope.diagonal().array() += weight(k);
+  return slope;
+}
+
+RobustTerms evaluate(const WhitenedProblem& problem, const RobustLoss& loss, const Eigen::VectorXd& z) {
+  Eigen::VectorXd residual = problem.b;
+  residual.noalias() -= problem.J * z;
+  return evaluate_at(problem, loss, std::move(residual));
+}
+
+RobustTerms evaluate_at(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::VectorXd residual) {
+  RobustTerms terms{std::move(residual), Eigen::VectorXd(problem.samples), Eigen::VectorXd(problem.samples)};
+  for (Index k = 0; k < problem.samples; ++k) {
+    const double sample_weight = problem.sample_weight(k);
+    const LossValue value = loss(terms.sample(k, problem.states).squaredNorm() / sample_weight);
+    terms.weight(k) = value.weight;
+    terms.curvature(k) = value.curvature / sample_weight;
+  }
+  return terms;
+}
+
+double half_cost(const WhitenedProblem& problem, const RobustLoss& loss, const RobustTerms& terms) {
+  double sum = terms.residual.tail(problem.prior_rows()).squaredNorm();
+  for (Index k = 0; k < problem.samples; ++k) {
+    const double w = problem.sample_weight(k);
+    sum += w * loss(terms.sample(k, problem.states).squaredNorm() / w).rho;
+  }
+  return 0.5 * sum;
+}
+
+double scaled_gradient(const WhitenedProblem& problem, const RobustTerms& terms) {
+  double psi_square = terms.residual.tail(problem.prior_rows()).squaredNorm();
+  for (Index k = 0; k < problem.samples; ++k)
+    psi_square += terms.weight(k) * terms.weight(k) * terms.sample(k, problem.states).squaredNorm();
+  const double scale = std::max(std::sqrt(psi_square), least_influence * problem.b.norm());
+  return scale > 0.0 ? gradient(problem, terms).norm() / scale : 0.0;
+}
+
+Eigen::VectorXd gradient(const WhitenedProblem& problem, const RobustTerms& terms) {
+  Eigen::VectorXd psi = terms.residual;
+  for (Index k = 0; k < problem.samples; ++k) psi.segment(k * problem.states, problem.states) *= terms.weight(k);
+  return -(problem.J.transpose() * psi);
+}
+
+Eigen::MatrixXd weighted_information(const WhitenedProblem& problem, const RobustTerms& terms) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(problem.J.rows());
+  for (Index k = 0; k < problem.samples; ++k)
+    weights.segment(k * problem.states, problem.states).setConstant(terms.weight(k));
+  return problem.J.transpose() * weights.asDiagonal() * problem.J;
+}
+
+Eigen::MatrixXd hessian(const WhitenedProblem& problem, const RobustTerms& terms) {
+  Eigen::MatrixXd H = weighted_information(problem, terms);
+  for (Index k = 0; k < problem.samples; ++k) {
+    if (terms.curvature(k) == 0.0) continue;
+    const Eigen::VectorXd direction =
+        problem.J.middleRows(k * problem.states, problem.states).transpose() * terms.sample(k, problem.states);
+    H.noalias() += 2.0 * terms.curvature(k) * direction * direction.transpose();
+  }
+  return H;
+}
+
+Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max_iterations) {
+  Minimum minimum{Eigen::VectorXd::Zero(problem.unknowns()), FitStatus::failed};
+  if (!sound(problem)) return minimum;
+  minimum.status = FitStatus::converged;
+  if (problem.unknowns() == 0) return minimum;
+  if (!loss.convex()) minimum.z = minimise(problem, RobustLoss(Loss::huber, 0.0), max_iterations).z;
+  for (const double tolerance : {near_tolerance, far_tolerance}) {
+    minimum.status = search(problem, loss, {tolerance}, max_iterations, minimum.z);
+    if (minimum.status != FitStatus::converged || polish(problem, loss, minimum.z)) return finite_or_failed(minimum);
+  }
+  minimum.status = FitStatus::iteration_limit;  // Ceres gains nothing, and yet this is no stationary point
+  return finite_or_failed(minimum);
+}
+
+Minimum minimise_by_ceres_alone(const WhitenedProblem& problem, const RobustLoss& loss) {
+  constexpr int max_iterations = 1000;
+  Minimum minimum{Eigen::VectorXd::Zero(problem.unknowns()), FitStatus::failed};
+  if (!sound(problem)) return minimum;
+  minimum.status = FitStatus::converged;
+  if (problem.unknowns() == 0) return minimum;
+  if (!loss.convex()) minimum.z = minimise_by_ceres_alone(problem, RobustLoss(Loss::huber, 0.0)).z;
+  minimum.status = search(problem, loss, tightest, max_iterations, minimum.z);
+  return finite_or_failed(minimum);
+}
+
+}  // namespace modebank

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <ceres/cost_function.h>
+#include <ceres/loss_function.h>
+
+#include <Eigen/Core>
+
+#include "ident/fit/whitened_problem.hpp"
+
+namespace modebank {
+
+/// Rows first .. first + count - 1 of r(z) = b - J z as a Ceres cost function with its (constant) analytic Jacobian -J.
+/// The problem must outlive it.
+class LinearResidual final : public ceres::CostFunction {
+ public:
+  LinearResidual(const WhitenedProblem& problem, Index first, Index count) : problem_(&problem), first_(first) {
+    set_num_residuals(static_cast<int>(count));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.unknowns()));
+  }
+
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    const Eigen::Map<const Eigen::VectorXd> z(parameters[0], problem_->unknowns());
+    const auto J = problem_->J.middleRows(first_, num_residuals());
+    Eigen::Map<Eigen::VectorXd> r(residuals, num_residuals());
+    r.noalias() = problem_->b.segment(first_, num_residuals()) - J * z;
+    if (jacobians && jacobians[0]) Eigen::Map<RowMajorMatrix>(jacobians[0], num_residuals(), problem_->unknowns()) = -J;
+    return true;
+  }
+
+ private:
+  const WhitenedProblem* problem_;
+  Index first_;
+};
+
+/// w rho(s / w): the loss of a sample whose rows carry the root of its weight w. The wrapped loss must outlive it.
+class WeightedLoss final : public ceres::LossFunction {
+ public:
+  WeightedLoss(const ceres::LossFunction& loss, double weight) : loss_(&loss), weight_(weight) {}
+
+  void Evaluate(double s, double rho[3]) const override {
+    loss_->Evaluate(s / weight_, rho);
+    rho[0] *= weight_;
+    rho[2] /= weight_;
+  }
+
+ private:
+  const ceres::LossFunction* loss_;
+  double weight_;
+};
+
+}  // namespace modebank

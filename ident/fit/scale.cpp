@@ -1,0 +1,89 @@
+#include "ident/fit/scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "ident/base/not_a_number.hpp"
+#include "ident/fit/constants.hpp"
+
+namespace modebank {
+
+namespace {
+constexpr double floor_share = 1e-3;
+constexpr double least_scale = 1e-150;  // its square is still a normal number
+}  // namespace
+
+double median(Eigen::VectorXd values) {
+  if (values.size() == 0) return not_a_number;
+  double* const middle = values.data() + values.size() / 2;
+  std::nth_element(values.data(), middle, values.data() + values.size());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.data(), middle));
+}
+
+double normalised_mad(const Eigen::VectorXd& values) {
+  return mad_to_sd * median((values.array() - median(values)).abs());
+}
+
+namespace {
+
+/// Smallest value up to which lies half of the weight; the mean of it and the next where that half is exact.
+double weighted_median(const Eigen::VectorXd& values, const Eigen::VectorXd& weights) {
+  std::vector<Index> order(static_cast<std::size_t>(values.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return values(a) < values(b); });
+  constexpr double rounding = 1e-12;  // of sums of weights that are equal in exact arithmetic
+  const double half = 0.5 * weights.sum();
+  double below = 0.0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    below += weights(order[i]);
+    if (below < half * (1.0 - rounding)) continue;
+    const bool exact = below <= half * (1.0 + rounding) && i + 1 < order.size();
+    return exact ? 0.5 * (values(order[i]) + values(order[i + 1])) : values(order[i]);
+  }
+  return not_a_number;
+}
+
+}  // namespace
+
+double normalised_mad(const Eigen::VectorXd& values, const Eigen::VectorXd& weights) {
+  const Eigen::VectorXd distance = (values.array() - weighted_median(values, weights)).abs();
+  return mad_to_sd * weighted_median(distance, weights);
+}
+
+Eigen::VectorXd robust_scale(const Eigen::Ref<const Eigen::MatrixXd>& r, const Eigen::VectorXd& weights, double lost) {
+  const auto N = static_cast<double>(r.rows());
+  if (!(N > lost)) return Eigen::VectorXd::Constant(r.cols(), not_a_number);
+  Eigen::VectorXd scale(r.cols());
+  for (Index i = 0; i < r.cols(); ++i)
+    scale(i) = weights.size() > 0 ? normalised_mad(r.col(i), weights) : normalised_mad(r.col(i));
+  return scale * std::sqrt(N / (N - lost));
+}
+
+Eigen::VectorXd robust_scale(const Transitions& transitions, const Decomposition& decomposition) {
+  Eigen::MatrixXd r = residuals(decomposition, transitions.increments);
+  if (transitions.weight.size() > 0) r.array().colwise() /= transitions.weight.array().sqrt();
+  return robust_scale(r, transitions.weight, static_cast<double>(decomposition.rank()));
+}
+
+Eigen::VectorXd scale_floor(const Recording& recording, const LinearStructure& structure,
+                            const Eigen::VectorXd& global_noise_variance) {
+  Eigen::VectorXd floor = floor_share * global_noise_variance.cwiseSqrt();
+  Eigen::VectorXd norm = Eigen::VectorXd::Zero(floor.size());  // of the states
+  Index count = 0;
+  for_each_training_block(recording, structure, [&](const Transitions& block) {
+    count += block.count();
+    for (Index i = 0; i < norm.size(); ++i) norm(i) = std::hypot(norm(i), block.regressors.col(i).stableNorm());
+  });
+  for (Index i = 0; i < floor.size(); ++i) {
+    const double rms = norm(i) / std::sqrt(static_cast<double>(count));
+    floor(i) = std::max(floor(i), std::numeric_limits<double>::epsilon() * rms);
+    floor(i) = floor(i) > 0.0 ? std::max(floor(i), least_scale) : 1.0;
+  }
+  return floor;
+}
+
+}  // namespace modebank

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "ident/fit/prior.hpp"
+#include "ident/model/transitions.hpp"
+
+namespace modebank {
+
+/// Row-major, so that the rows of one sample lie together.
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// A window's fit in whitened form: theta = origin + basis z, residuals r(z) = b - J z in units of sigma (or of the
+/// prior's sd). Rows k n .. k n + n - 1 belong to sample k and share one loss; the rows after them are the prior's and
+/// are quadratic. J has orthonormal columns and z = 0 is the least-squares solution (J'b = 0), whatever the data's
+/// units. A sample of weight w has its rows of J and b multiplied by sqrt(w) and the loss w rho(|r_k|^2 / w), which is
+/// w times the loss of its residual.
+struct WhitenedProblem {
+  Index samples = 0;  ///< L
+  Index states = 0;   ///< n
+  RowMajorMatrix J;
+  Eigen::VectorXd b;
+  Eigen::MatrixXd basis;        ///< p x z
+  Eigen::VectorXd origin;       ///< p, least-squares theta
+  Eigen::VectorXd weight = {};  ///< L sample weights of mean one, or empty: all one
+
+  double sample_weight(Index k) const { return weight.size() > 0 ? weight(k) : 1.0; }
+  Index unknowns() const { return J.cols(); }
+  Index sample_rows() const { return samples * states; }
+  Index prior_rows() const { return J.rows() - sample_rows(); }
+  Eigen::VectorXd theta(const Eigen::VectorXd& z) const { return origin + basis * z; }
+};
+
+/// Without a prior z spans the excited directions of `decomposition` (of the regressors), and theta has minimum norm;
+/// with one it spans all of theta. `sigma` n positive entries; `prior` may be null.
+WhitenedProblem whiten(const Transitions& transitions, const Decomposition& decomposition, const Eigen::VectorXd& sigma,
+                       const ParameterPrior* prior);
+
+}  // namespace modebank

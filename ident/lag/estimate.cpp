@@ -1,0 +1,190 @@
+#include "ident/lag/estimate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "ident/lag/objective.hpp"
+#include "ident/lag/uncertainty.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr Index coarse_samples = 4000;  // enough to find the valley
+constexpr Index most_samples = 20000;   // enough to find its floor
+constexpr Index coarse_lags = 51;
+constexpr Index coarse_drifts = 21;
+constexpr double fastest_drift = 0.05;  // [s/s]: faster is no clock
+constexpr int halvings = 12;
+constexpr int most_moves = 400;
+constexpr double least_evidence_nats = 5.0;  // by which the best lag must beat the typical one
+constexpr double least_r_squared = 0.5;      // below, the inputs do not explain the states
+constexpr double largest_error = 0.2;        // standard error as a share of the range searched
+
+struct Search {
+  double range_s;          // of lags
+  double time_constant_s;  // largest
+  double drift;            // largest
+};
+
+bool inside(const LagPoint& p, const Search& search) {
+  return std::abs(p.lag_s) <= search.range_s && std::abs(p.drift) <= search.drift && p.time_constant_s >= 0.0 &&
+         p.time_constant_s <= search.time_constant_s;
+}
+
+double grid(Index i, Index count, double range) {
+  return range * (2.0 * static_cast<double>(i) / static_cast<double>(count - 1) - 1.0);
+}
+
+/// 0, then doubling from half a period up to the largest.
+std::vector<double> time_constants(const Search& search, double period_s) {
+  std::vector<double> values{0.0};
+  for (double tau = 0.5 * period_s; tau <= search.time_constant_s; tau *= 2.0) values.push_back(tau);
+  return values;
+}
+
+struct GridResult {
+  LagPoint best;
+  double typical_cost = 0.0;  // median over the lags, each at its best time constant
+};
+
+GridResult search_lags(const LagObjective& objective, const Search& search) {
+  GridResult result;
+  double lowest = 0.0;
+  std::vector<double> profile(coarse_lags, 0.0);
+  for (const double tau : time_constants(search, objective.period_s()))
+    for (Index i = 0; i < coarse_lags; ++i) {
+      const LagPoint point{grid(i, coarse_lags, search.range_s), 0.0, tau};
+      const double cost = objective.cost(point);
+      profile[static_cast<std::size_t>(i)] = std::min(profile[static_cast<std::size_t>(i)], cost);
+      if (cost < lowest) {
+        lowest = cost;
+        result.best = point;
+      }
+    }
+  std::nth_element(profile.begin(), profile.begin() + coarse_lags / 2, profile.end());
+  result.typical_cost = profile[coarse_lags / 2];
+  return result;
+}
+
+LagPoint search_drifts(const LagObjective& objective, const Search& search, const LagPoint& start) {
+  LagPoint best = start;
+  double lowest = objective.cost(start);
+  for (Index d = 0; d < coarse_drifts; ++d)
+    for (Index i = 0; i < coarse_lags; ++i) {
+      const LagPoint point{grid(i, coarse_lags, search.range_s), grid(d, coarse_drifts, search.drift),
+                           start.time_constant_s};
+      if (const double cost = objective.cost(point); cost < lowest) {
+        lowest = cost;
+        best = point;
+      }
+    }
+  return best;
+}
+
+LagPoint moved(LagPoint p, const std::array<double, 3>& direction, const LagPoint& step) {
+  p.lag_s += direction[0] * step.lag_s;
+  p.drift += direction[1] * step.drift;
+  p.time_constant_s = std::max(p.time_constant_s + direction[2] * step.lag_s, 0.0);
+  return p;
+}
+
+/// Pattern search (Hooke & Jeeves 1961) along the axes and along lag against time constant, whose sum is better known
+/// than either.
+LagPoint refine(const LagObjective& objective, const Search& search, LagPoint point, bool with_drift) {
+  static constexpr std::array<std::array<double, 3>, 8> directions{
+      {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {1, 0, -1}, {-1, 0, 1}, {0, 1, 0}, {0, -1, 0}}};
+  LagPoint step{2.0 * search.range_s / (coarse_lags - 1), 2.0 * search.drift / (coarse_drifts - 1), 0.0};
+  double lowest = objective.cost(point);
+  for (int halved = 0, moves = 0; halved < halvings && moves < most_moves; ++moves) {
+    LagPoint best = point;
+    for (std::size_t d = 0; d < (with_drift ? 8 : 6); ++d) {
+      const LagPoint candidate = moved(point, directions[d], step);
+      if (!inside(candidate, search)) continue;
+      if (const double cost = objective.cost(candidate); cost < lowest) {
+        lowest = cost;
+        best = candidate;
+      }
+    }
+    const bool improved =
+        best.lag_s != point.lag_s || best.drift != point.drift || best.time_constant_s != point.time_constant_s;
+    point = best;
+    if (improved) continue;
+    ++halved;
+    step.lag_s *= 0.5;
+    step.drift *= 0.5;
+  }
+  return point;
+}
+
+/// Samples the residuals are worth, given their autocorrelation.
+double effective_samples(const LagObjective::Fit& fit) {
+  double numerator = 0.0, denominator = 0.0;
+  const Index N = fit.samples;
+  for (Index i = 0; i < fit.residuals.rows(); ++i) {
+    const auto r = fit.residuals.row(i);
+    const double square_sum = r.squaredNorm();
+    if (!(square_sum > 0.0)) continue;
+    numerator += r.tail(N - 1).dot(r.head(N - 1)) / square_sum;
+    denominator += 1.0;
+  }
+  const double rho = denominator > 0.0 ? std::clamp(numerator / denominator, 0.0, 0.99) : 0.0;
+  return static_cast<double>(N) * (1.0 - rho) / (1.0 + rho);
+}
+
+LagFit finish(LagObjective& objective, const Search& search, const GridResult& coarse, LagPoint point,
+              bool with_drift) {
+  for (int pass = 0; pass < 3; ++pass) {
+    if (pass > 0) objective.reweight(point);
+    point = refine(objective, search, point, with_drift);
+  }
+  LagFit result;
+  result.clock = objective.clock(point);
+  result.time_constant_s = point.time_constant_s;
+  const LagVariances variances = lag_variances(objective, point, with_drift);
+  result.lag_standard_error_s = std::sqrt(variances.lag_s2);
+  if (with_drift) result.drift_standard_error = std::sqrt(variances.drift);
+  const auto fit = objective.fit(point);
+  const double cost = objective.cost(point);
+  result.r_squared = -std::expm1(cost);
+  const double states = fit ? static_cast<double>(fit->residuals.rows()) : 0.0;
+  const double evidence = fit ? 0.5 * states * effective_samples(*fit) * (coarse.typical_cost - cost) : 0.0;
+  const double edge = search.range_s * (1.0 - 1.0 / (coarse_lags - 1));
+  const double drift_edge = search.drift * (1.0 - 1.0 / (coarse_drifts - 1));
+  if (!(evidence >= least_evidence_nats) || !(result.r_squared >= least_r_squared) ||
+      !(result.lag_standard_error_s <= largest_error * search.range_s))
+    result.status = LagStatus::not_excited;
+  else if (std::abs(point.lag_s) >= edge || (with_drift && std::abs(point.drift) >= drift_edge))
+    result.status = LagStatus::at_edge;
+  else
+    result.status = LagStatus::converged;
+  return result;
+}
+
+}  // namespace
+
+LagEstimate estimate_lag(const Stream& states, const Stream& inputs, const LagOptions& options) {
+  LagEstimate estimate;
+  estimate.constant.status = estimate.drifting.status = LagStatus::not_excited;
+  const Stream y = without_missing(states), u = with_last_known(inputs);
+  constexpr Index least_samples = 10;
+  if (u.values.rows() == 0 || y.time_s.size() < least_samples || u.time_s.size() < least_samples) return estimate;
+  const LagObjective coarse(y, u, coarse_samples);
+  LagObjective fine(y, u, most_samples);
+  Search search;
+  search.range_s = std::min(options.range_s, 0.25 * fine.span_s());
+  search.time_constant_s = search.range_s;
+  search.drift = fine.span_s() > 0.0 ? std::min(search.range_s / fine.span_s(), fastest_drift) : 0.0;
+  if (!(search.range_s > 0.0) || fine.samples() < least_samples) return estimate;
+  const GridResult found = search_lags(coarse, search);
+  estimate.constant = finish(fine, search, found, found.best, false);
+  const LagPoint start{estimate.constant.clock.lag_s, 0.0, estimate.constant.time_constant_s};
+  estimate.drifting = finish(fine, search, found, search_drifts(coarse, search, start), true);
+  return estimate;
+}
+
+}  // namespace modebank

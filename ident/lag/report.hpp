@@ -1,0 +1,66 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ident/base/not_a_number.hpp"
+#include "ident/lag/estimate.hpp"
+#include "ident/lag/pooled_estimate.hpp"
+#include "modebank/base/names.hpp"
+
+namespace modebank {
+
+/// How inputs are shifted: not at all; every run by the pooled lag; every training run by its own, held-out runs by the
+/// pooled one; the same with drifts.
+enum class LagCorrection { none, pooled, per_run, drift };
+
+template <>
+struct EnumNames<LagCorrection> {
+  static constexpr Names<4> values{"none", "pooled", "per_run", "drift"};
+};
+
+/// One run's estimates (NaN: not made, as for held-out runs) and what was applied.
+struct RunLag {
+  std::string run;
+  LagStatus status = LagStatus::not_estimated;
+  double lag_s = not_a_number;  ///< dead time without drift
+  double lag_standard_error_s = not_a_number;
+  double time_constant_s = not_a_number;
+  double r_squared = not_a_number;
+  LagStatus drift_status = LagStatus::not_estimated;
+  double drifting_lag_s = not_a_number;  ///< dead time in the middle of the run, with drift
+  double drifting_lag_standard_error_s = not_a_number;
+  double clock_drift = not_a_number;  ///< [s/s]
+  double clock_drift_standard_error = not_a_number;
+  double match_s = not_a_number;  ///< delay of best match: median over windows
+  double match_least_s = not_a_number;
+  double match_largest_s = not_a_number;
+  Eigen::Index match_windows = 0;
+  double applied_lag_s = 0.0;  ///< at applied_reference_s
+  double applied_clock_drift = 0.0;
+  double applied_reference_s = 0.0;
+
+  InputClock applied() const { return {applied_lag_s, applied_clock_drift, applied_reference_s}; }
+};
+
+/// One candidate, scored on training runs left out in turn.
+struct LagScore {
+  LagCorrection correction = LagCorrection::none;
+  Eigen::Index transitions = 0;
+  double log_score = not_a_number;            ///< nats per transition of the global model's one-step prediction
+  double rmse = not_a_number;                 ///< root mean square one-step error, over all states
+  double gain = 0.0;                          ///< of log_score over `none`
+  double gain_standard_error = not_a_number;  ///< over the runs left out
+};
+
+/// What data.lag_s = auto found and did.
+struct LagReport {
+  LagCorrection correction = LagCorrection::none;
+  PooledEstimate lag;        ///< [s] dead time over the training runs
+  PooledEstimate start_lag;  ///< [s] dead time at a run's start, with drift
+  PooledEstimate drift;      ///< [s/s]
+  std::vector<LagScore> scores;
+  std::vector<RunLag> runs;  ///< in run order
+};
+
+}  // namespace modebank

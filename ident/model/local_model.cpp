@@ -1,0 +1,77 @@
+#include "ident/model/local_model.hpp"
+
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+Index WindowFits::parameter_count() const {
+  return model_parameters.empty() ? structure.parameters() : static_cast<Index>(model_parameters.size());
+}
+
+std::vector<std::string> WindowFits::parameter_names() const {
+  if (model_parameters.empty()) return structure.parameter_names();
+  std::vector<std::string> names;
+  for (const ModelParameter& parameter : model_parameters) names.push_back(parameter.name);
+  return names;
+}
+
+void WindowFits::resize(Index windows_count) {
+  const Index p = parameter_count();
+  windows.resize(static_cast<std::size_t>(windows_count));
+  parameters.resize(p, windows_count);
+  covariance.resize(p * p, windows_count);
+  noise_variance.resize(structure.states, windows_count);
+  condition.resize(windows_count);
+  rank.resize(windows_count);
+  information.resize(p, windows_count);
+  inlier_fraction.resize(windows_count);
+  status.resize(windows_count);
+  r_squared.resize(structure.states, windows_count);
+  aic.resize(windows_count);
+  transitions.resize(windows_count);
+}
+
+void WindowFits::set(Index i, const LocalModel& fit) {
+  parameters.col(i) = fit.theta;
+  covariance.col(i) = fit.covariance.reshaped();
+  noise_variance.col(i) = fit.noise_variance;
+  condition(i) = fit.condition;
+  rank(i) = static_cast<int>(fit.rank);
+  information.col(i) = fit.information;
+  inlier_fraction(i) = fit.inlier_fraction;
+  status(i) = static_cast<int>(fit.status);
+  if (fit.r_squared.size() > 0)
+    r_squared.col(i) = fit.r_squared;
+  else
+    r_squared.col(i).setConstant(not_a_number);
+  aic(i) = fit.aic;
+  transitions(i) = static_cast<int>(fit.transitions);
+}
+
+LocalModel WindowFits::at(Index i) const {
+  const Index p = parameter_count();
+  LocalModel fit;
+  fit.theta = parameters.col(i);
+  fit.covariance = covariance.col(i).reshaped(p, p);
+  fit.noise_variance = noise_variance.col(i);
+  fit.condition = condition(i);
+  fit.rank = rank(i);
+  fit.information = information.col(i);
+  fit.inlier_fraction = inlier_fraction(i);
+  fit.status = static_cast<FitStatus>(status(i));
+  if (r_squared.cols() > 0) fit.r_squared = r_squared.col(i);
+  fit.aic = aic.size() > 0 ? aic(i) : not_a_number;
+  fit.transitions = transitions.size() > 0 ? transitions(i) : length;
+  return fit;
+}
+
+Eigen::MatrixXd WindowFits::standard_errors() const {
+  const Index p = parameter_count();
+  Eigen::MatrixXd errors(p, count());
+  for (Index j = 0; j < p; ++j) errors.row(j) = covariance.row(j * (p + 1)).cwiseSqrt();
+  return errors;
+}
+
+Eigen::MatrixXd WindowFits::t_values() const { return parameters.cwiseQuotient(standard_errors()); }
+
+}  // namespace modebank

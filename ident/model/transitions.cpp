@@ -1,0 +1,193 @@
+#include "ident/model/transitions.hpp"
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+/// Samples first .. first + count - 1 of one signal, one per row; NaN before the run.
+void copy_signal(const Eigen::MatrixXd& signals, Index signal, Index first, Index count, double* out) {
+  const double* const samples = signals.data() + signal;
+  const Index stride = signals.rows(), outside = std::clamp(-first, Index{0}, count);
+  std::fill_n(out, outside, not_a_number);
+  if (stride == 1) {
+    std::copy(samples + first + outside, samples + first + count, out + outside);
+  } else {
+    for (Index k = outside; k < count; ++k) out[k] = samples[(first + k) * stride];
+  }
+}
+
+/// Writes transitions start .. start + count - 1 of `run` to the rows from `first` on; fill_regressor, column by
+/// column.
+void fill_rows(const Trajectory& run, Index start, Index count, const LinearStructure& s, Index first,
+               Transitions& transitions) {
+  const auto column = [first](Eigen::MatrixXd& matrix, Index j) { return matrix.col(j).data() + first; };
+  for (Index i = 0; i < s.state_lags; ++i)
+    for (Index j = 0; j < s.states; ++j)
+      copy_signal(run.state, j, start - i, count, column(transitions.regressors, i * s.states + j));
+  for (Index i = 0; i < s.input_lags; ++i)
+    for (Index j = 0; j < s.inputs; ++j)
+      copy_signal(run.input, j, start + 1 - s.input_delay - i, count,
+                  column(transitions.regressors, s.dimension() + i * s.inputs + j));
+  if (s.intercept) transitions.regressors.col(s.regressors() - 1).segment(first, count).setOnes();
+  for (Index j = 0; j < s.states; ++j) {
+    double* const increment = column(transitions.increments, j);
+    copy_signal(run.state, j, start + 1, count, increment);
+    const double* const samples = run.state.data() + j;
+    for (Index k = 0; k < count; ++k) increment[k] -= samples[(start + k) * run.state.rows()];
+  }
+}
+
+/// Weights of transitions start .. start + count - 1, each that of the sample it ends in.
+Eigen::VectorXd transition_weights(const Trajectory& run, Index start, Index count) {
+  if (run.weight.size() == 0) return {};
+  if (run.weight.size() != run.samples() || !(run.weight.array() >= 0.0).all() || !run.weight.allFinite())
+    throw std::invalid_argument("run '" + run.run + "' needs one finite nonnegative weight per sample");
+  return run.weight.segment(start + 1, count);
+}
+
+Transitions allocate(Index count, const LinearStructure& structure) {
+  return {Eigen::MatrixXd(count, structure.regressors()), Eigen::MatrixXd(count, structure.states)};
+}
+
+/// Norms of the columns; 1 for a zero column, which stays zero.
+Eigen::VectorXd column_scales(const Eigen::MatrixXd& X) {
+  Eigen::VectorXd scales(X.cols());
+  for (Index j = 0; j < X.cols(); ++j) {
+    const double norm = X.col(j).stableNorm();
+    scales(j) = norm > 0.0 ? norm : 1.0;
+  }
+  return scales;
+}
+
+/// Largest over smallest of decreasing singular values.
+double condition_of(const Eigen::VectorXd& sigma) {
+  const Index q = sigma.size();
+  return q > 0 && sigma(q - 1) > 0.0 ? sigma(0) / sigma(q - 1) : std::numeric_limits<double>::infinity();
+}
+
+/// The common case, where no singular vectors are needed: any orthonormal basis of all directions will do, and
+/// Householder's is much cheaper. Nothing where the rank is deficient.
+std::optional<Decomposition> decompose_full_rank(const Eigen::MatrixXd& scaled, const Eigen::VectorXd& scales,
+                                                 double tolerance) {
+  using SmallSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 16, 16>;  // on the stack
+  const Index q = scaled.cols();
+  if (q == 0 || scaled.rows() < q) return std::nullopt;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
+  const Eigen::MatrixXd R = qr.matrixQR().topRows(q).triangularView<Eigen::Upper>();
+  const Eigen::VectorXd sigma = q <= SmallSquare::MaxRowsAtCompileTime
+                                    ? Eigen::VectorXd(Eigen::JacobiSVD<SmallSquare>(R).singularValues())
+                                    : Eigen::JacobiSVD<Eigen::MatrixXd>(R).singularValues();
+  if (!(sigma(q - 1) > tolerance * sigma(0))) return std::nullopt;
+  Decomposition d;
+  d.condition = condition_of(sigma);
+  d.U = qr.householderQ() * Eigen::MatrixXd::Identity(scaled.rows(), q);
+  d.basis = scales.cwiseInverse().asDiagonal();
+  R.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(d.basis);
+  return d;
+}
+
+/// basis with U S V' D basis = U, D = diag(scales), in the row space of U S V' D.
+Eigen::MatrixXd basis_of(const Eigen::VectorXd& scales, const Eigen::MatrixXd& V, const Eigen::VectorXd& sigma) {
+  const Index q = V.rows(), rank = V.cols();
+  const Eigen::MatrixXd S_inverse = sigma.cwiseInverse().asDiagonal();
+  if (rank == q) return scales.cwiseInverse().asDiagonal() * V * S_inverse;
+  Eigen::MatrixXd basis(q, rank);
+  if (rank == 0) return basis;
+  // The row space is the span of W = D V; the pseudo-inverse of W' is Q R^-T, which stays in it.
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scales.asDiagonal() * V);
+  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(q, rank);
+  const Eigen::MatrixXd R = qr.matrixQR().topRows(rank).triangularView<Eigen::Upper>();
+  basis = Q * R.transpose().triangularView<Eigen::Lower>().solve(S_inverse);
+  return basis;
+}
+
+}  // namespace
+
+Transitions stack_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure) {
+  Transitions transitions = allocate(count, structure);
+  fill_rows(run, start, count, structure, 0, transitions);
+  transitions.weight = transition_weights(run, start, count);
+  return transitions;
+}
+
+void fill_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure,
+                      Transitions& transitions) {
+  fill_rows(run, start, count, structure, 0, transitions);
+}
+
+Transitions finite_rows(const Transitions& transitions) {
+  std::vector<Index> rows;
+  for (Index k = 0; k < transitions.count(); ++k)
+    if (transitions.regressors.row(k).allFinite() && transitions.increments.row(k).allFinite() &&
+        !(transitions.weight.size() > 0 && transitions.weight(k) == 0.0))
+      rows.push_back(k);
+  Transitions kept{transitions.regressors(rows, Eigen::all), transitions.increments(rows, Eigen::all)};
+  if (transitions.weight.size() == 0 || rows.empty()) return kept;
+  kept.weight = transitions.weight(rows);
+  kept.weight /= kept.weight.mean();
+  const Eigen::VectorXd root = kept.weight.cwiseSqrt();
+  kept.regressors.array().colwise() *= root.array();
+  kept.increments.array().colwise() *= root.array();
+  return kept;
+}
+
+Transitions unweighted(const Transitions& transitions) {
+  if (transitions.weight.size() == 0) return transitions;
+  const Eigen::VectorXd inverse_root = transitions.weight.cwiseSqrt().cwiseInverse();
+  return {inverse_root.asDiagonal() * transitions.regressors, inverse_root.asDiagonal() * transitions.increments};
+}
+
+Transitions stack_training(const Recording& recording, const LinearStructure& structure) {
+  Transitions all = allocate(recording.transitions(Role::train), structure);
+  const bool weighted = recording.weighted();
+  if (weighted) all.weight = Eigen::VectorXd::Ones(all.count());
+  Index first = 0;
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != Role::train) continue;
+    fill_rows(run, 0, run.transitions(), structure, first, all);
+    if (run.weight.size() > 0)
+      all.weight.segment(first, run.transitions()) = transition_weights(run, 0, run.transitions());
+    first += run.transitions();
+  }
+  return all.finite() && !weighted ? all : finite_rows(all);
+}
+
+void for_each_training_block(const Recording& recording, const LinearStructure& structure,
+                             const std::function<void(const Transitions&)>& body) {
+  constexpr Index block = 16384;
+  if (recording.weighted()) return body(stack_training(recording, structure));  // weights are shares of all
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != Role::train) continue;
+    for (Index start = 0; start < run.transitions(); start += block) {
+      const Transitions t = stack_transitions(run, start, std::min(block, run.transitions() - start), structure);
+      body(t.finite() ? t : finite_rows(t));
+    }
+  }
+}
+
+Decomposition decompose(const Eigen::MatrixXd& X, double tolerance) {
+  const Eigen::VectorXd scales = column_scales(X);
+  const Eigen::MatrixXd scaled = X * scales.cwiseInverse().asDiagonal();
+  if (std::optional<Decomposition> full = decompose_full_rank(scaled, scales, tolerance)) return *std::move(full);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::VectorXd& sigma = svd.singularValues();  // decreasing
+  Decomposition d;
+  d.condition = X.rows() >= X.cols() ? condition_of(sigma) : std::numeric_limits<double>::infinity();
+  const Index rank = sigma.size() > 0 ? (sigma.array() > tolerance * sigma(0)).count() : 0;
+  d.U = svd.matrixU().leftCols(rank);
+  d.basis = basis_of(scales, svd.matrixV().leftCols(rank), sigma.head(rank));
+  return d;
+}
+
+}  // namespace modebank

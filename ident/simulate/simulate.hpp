@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "ident/data/trajectory.hpp"
+#include "ident/model/linear_model.hpp"
+
+namespace modebank {
+
+/// How inputs evolve. `white` redraws every input at every sample; `hold` redraws them every `hold_samples`; `drive`
+/// follows commands of geometric length with mean `hold_samples`: random steps and ramps, standstill and equal wheels,
+/// as a driven skid-steer robot shows them. Levels are uniform in [-input_amplitude, input_amplitude].
+enum class InputLaw { white, hold, drive };
+
+template <>
+struct EnumNames<InputLaw> {
+  static constexpr Names<3> values{"white", "hold", "drive"};
+};
+
+/// What a driver does.
+struct CommandOptions {
+  InputLaw input_law = InputLaw::drive;
+  Index hold_samples = 10;           ///< length of a command (law `drive`: its mean)
+  double input_amplitude = 0.5;      ///< commands are drawn from [-amplitude, amplitude] [input unit]
+  double input_quantum = 0.0;        ///< applied inputs are rounded to multiples of this; 0: none
+  double standstill_fraction = 0.1;  ///< share of commands with all inputs zero (law `drive`)
+  double equal_fraction = 0.3;       ///< share of commands with all inputs equal (law `drive`)
+  Index samples = 300;               ///< per run
+  Index inputs = 2;
+};
+
+/// A switching linear system x[k+1] = x + A_s x + B_s u (+ c_s) + w, w ~ N(0, Q_s), y = x + v, v ~ N(0, R), s a Markov
+/// chain.
+struct SimulationOptions : CommandOptions {
+  std::vector<Eigen::VectorXd> modes;  ///< theta per mode, p entries each
+  std::vector<double> process_sd;      ///< per mode or one for all, sqrt of the diagonal of Q [state unit]
+  double measurement_sd = 0.0;         ///< sqrt of the diagonal of R [state unit]
+  Eigen::MatrixXd transition;          ///< K x K, row = from; empty: from dwell_samples, equal elsewhere
+  double dwell_samples = 0.0;  ///< mean samples in a mode, at least 1; 0: every run stays in one mode, run i in mode (i
+                               ///< / 2) mod K, so that even (training) and odd (test) runs both see every mode
+  double outlier_fraction = 0.0;  ///< share of measured samples with an outlier
+  double outlier_sd = 0.0;        ///< standard deviation of an outlier [state unit]
+  Index runs = 12;
+  double dt_s = 1.0 / 6.5;  ///< sample period
+  bool intercept = false;
+  Index states = 1;
+};
+
+/// One simulated run: what a robot would have measured, and the truth.
+struct SimulatedRun {
+  Trajectory measured;   ///< state = measurement y, truth = x
+  Eigen::VectorXi mode;  ///< N, the mode that drives transition k -> k+1
+};
+
+/// Runs "00", "01", ..., even ones training runs, odd ones test runs. A run starts at state zero, in a mode drawn from
+/// the chain's stationary distribution. The true system is driven by the quantised inputs; outliers are added to the
+/// measured sample. Run i depends on options, seed and i alone.
+/// Throws ConfigurationError when sizes disagree, a value is out of range, the matrix is not row-stochastic, or an
+/// unstable mode drives the state beyond all bounds.
+std::vector<SimulatedRun> simulate(const SimulationOptions& options, std::uint64_t seed);
+
+}  // namespace modebank

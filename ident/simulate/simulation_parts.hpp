@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <random>
+#include <string>
+
+#include "ident/simulate/simulate.hpp"
+
+namespace modebank {
+
+/// What the simulated systems share. The checks throw ConfigurationError naming the value.
+void require_setting(bool ok, const std::string& message);
+void require_nonnegative_setting(double value, const std::string& name);
+void require_fraction_setting(double value, const std::string& name);
+void check_commands(const CommandOptions& options);
+void check_runs(Index runs, double dt_s);
+
+/// "00", "01", ...: as many digits as the last run needs, at least two, so that byte order is run order.
+std::string simulated_run_name(Index run, Index runs);
+
+/// `size` values of N(0, sd^2).
+Eigen::VectorXd draw_noise(Index size, double sd, std::mt19937_64& generator);
+
+struct Outliers {
+  double fraction = 0.0, sd = 0.0;
+};
+
+/// Adds noise of the given standard deviations, one per row, to every sample (column), and an outlier to some of them.
+void add_noise(Eigen::MatrixXd& samples, const Eigen::VectorXd& sd, const Outliers& outliers,
+               std::mt19937_64& generator);
+
+}  // namespace modebank

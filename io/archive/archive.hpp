@@ -1,0 +1,103 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "filter/judge/diagnostics.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/horizon.hpp"
+#include "filter/judge/scores.hpp"
+#include "filter/learn/likelihood/maximum_likelihood.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "ident/lag/report.hpp"
+#include "ident/model/local_model.hpp"
+#include "ident/model/residual_tests.hpp"
+#include "io/archive/bank/open_archive.hpp"
+#include "io/files/input_file.hpp"
+#include "mixture/select.hpp"
+
+namespace modebank {
+
+/// Where an archive comes from.
+struct Provenance {
+  std::string modebank_version;
+  std::string created;  ///< UTC, ISO 8601
+  std::string command_line;
+  std::string config_hash;
+  std::string data_hash;
+  std::vector<std::pair<std::string, std::string>> versions;  ///< library or tool -> version
+  std::vector<InputFile> inputs;
+};
+
+/// One filter over all runs of the recording, in its order.
+struct FilterEvaluation {
+  std::string filter;  ///< bank, baseline or noise_only
+  std::vector<RunEvaluation> runs;
+  std::vector<RunScores> scores;  ///< of these, where they have just been made; archives do not hold them
+};
+
+/// Residual tests of one model over all runs of the recording, in its order.
+struct ResidualTestSet {
+  std::string model;  ///< global (its one-step residuals), or a filter: bank, baseline or noise_only (its scores z)
+  std::vector<ResidualTests> runs;
+};
+
+/// What one execution produced, stage by stage; absent stages did not run.
+struct Archive {
+  Provenance provenance;
+  std::string config;  ///< fully resolved, itself a valid configuration file
+  std::optional<Recording> recording;
+  std::optional<LagReport> lag;  ///< with data.lag_s = auto
+  std::optional<WindowFits> windows;
+  std::optional<MixtureResult> mixture;
+  std::optional<Bank> bank;
+  std::optional<Bank> unrefined;  ///< the bank that expectation-maximisation started from
+  MeasuredFit measured_fit = MeasuredFit::none;
+  std::optional<Bank> baseline;
+  std::optional<Bank> noise_only;
+  std::vector<FilterEvaluation> evaluations;
+  std::vector<SummaryRow> summary;
+  std::vector<HorizonRow> horizons;  ///< with filter.horizon
+  std::vector<DiagnosticsRow> diagnostics;
+  std::vector<ResidualTestSet> residual_tests;
+  std::vector<MergingCost> merging = {};  ///< with bank.modes, where components were merged
+};
+
+/// Throws ConfigurationError when `path` cannot become an archive: its folder is missing or not writable, or it is a
+/// folder.
+void check_writable(const std::filesystem::path& path);
+
+/// Writes under a temporary name in the same folder, flushes, closes, hashes, renames. Throws DataError on failure and
+/// leaves nothing behind. The layout is described in README.md; every number is stored as computed.
+void write_archive(const std::filesystem::path& path, const Archive& archive);
+/// The same, with the archive made in the file system rather than in memory; write_archive does so for responsibilities
+/// of more than 256 MB, which then are never in memory as a whole.
+void write_large_archive(const std::filesystem::path& path, const Archive& archive);
+
+/// The same for an archive of data and windows alone whose `count` windows come from `produce` part by part
+/// (stream_windows): nothing of the size of the archive is held in memory. Returns what `produce` returns.
+WindowFits write_archive(const std::filesystem::path& path, const Archive& archive, Index count,
+                         const std::function<WindowFits(const WindowSink&)>& produce);
+
+/// Reads all stages that the file holds, bit by bit as written. Throws DataError for a file that is unreadable,
+/// truncated, damaged (its hash does not match), not a modebank archive, or of a newer major schema; ConfigurationError
+/// when it does not exist.
+Archive read_archive(const std::filesystem::path& path);
+
+/// What verification found; empty `problems` means the archive is whole.
+struct Verification {
+  std::vector<std::string> problems;
+  bool ok() const { return problems.empty(); }
+};
+
+/// Checks the hash and zeros of the user block, format, schema version and that the layout's required members are
+/// there.
+Verification verify_archive(const std::filesystem::path& path);
+
+}  // namespace modebank

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "io/hdf5/array.hpp"
+
+namespace modebank::hdf5 {
+
+/// Every value of an array, nested as its shape; a table is a list of row objects. Integers stay exact, what JSON
+/// cannot hold (NaN, infinities, references, opaque bytes) becomes null, text that is not UTF-8 is repaired.
+nlohmann::json to_json(const StoredArray& array);
+
+/// Text as JSON, with U+FFFD for bytes that are not UTF-8.
+nlohmann::json text_json(const std::string& text);
+
+}  // namespace modebank::hdf5

@@ -1,0 +1,13 @@
+// The installed face of the bank loader.
+#include <memory>
+
+#include "io/archive/bank/load_bank.hpp"
+#include "modebank/archive/load_bank.hpp"
+
+namespace modebank::archive {
+
+filter::Bank load_bank(const std::string& path, const std::string& which) {
+  return filter::Bank(std::make_shared<const modebank::Bank>(modebank::load_bank(path, which)));
+}
+
+}  // namespace modebank::archive

@@ -1,0 +1,56 @@
+#include "io/archive/bank/load_bank.hpp"
+
+#include <fstream>
+#include <optional>
+
+#include "io/archive/bank/layout_bank.hpp"
+#include "io/archive/bank/open_archive.hpp"
+#include "io/hdf5/group_reader.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+/// Runs `body` on the root of a whole archive; messages name the path.
+template <class Body>
+void read_root(const std::filesystem::path& path, Body body) {
+  const hdf5::Quiet quiet;
+  const hdf5::Handle file = open_archive(path, HashCheck::before);
+  try {
+    GroupReader root(open_root(file), nullptr);
+    body(root);
+  } catch (const DataError& error) {
+    throw DataError(path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+Bank load_bank(const std::filesystem::path& path, const std::string& which) {
+  std::optional<Bank> bank;
+  read_root(path, [&](GroupReader& root) {
+    layout::exchange_part(root, which, bank, {}, [](GroupReader& member, Bank& part) {
+      layout::exchange_bank(member, part, Units(Recording()));
+    });
+    if (!bank) throw DataError("holds no " + which);
+  });
+  return *bank;
+}
+
+std::string load_configuration(const std::filesystem::path& path) {
+  std::string text;
+  read_root(path, [&](GroupReader& root) { root.text("config", text); });
+  return text;
+}
+
+std::string archive_digest(const std::filesystem::path& path) {
+  constexpr std::size_t hex_digits = 64;
+  std::string digest(hex_digits, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(digest.data(), hex_digits);
+  if (!file) throw DataError(path.string() + ": cannot be read");
+  return digest;
+}
+
+}  // namespace modebank

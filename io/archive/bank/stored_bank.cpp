@@ -1,0 +1,147 @@
+#include "io/archive/bank/stored_bank.hpp"
+
+#include <algorithm>
+
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+Eigen::MatrixXd one_of(const Eigen::MatrixXd& columns, Index k, Index rows, Index cols) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return Eigen::Map<const RowMajor>(columns.col(k).data(), rows, cols);
+}
+
+StoredChannels store_model_parameters(const std::vector<ModelParameter>& parameters) {
+  StoredChannels stored;
+  for (const ModelParameter& parameter : parameters) {
+    stored.names.push_back(parameter.name);
+    stored.units.push_back(parameter.unit);
+  }
+  return stored;
+}
+
+std::vector<ModelParameter> restore_model_parameters(const StoredChannels& stored) {
+  if (stored.names.size() != stored.units.size()) throw DataError("as many parameter names as units are needed");
+  std::vector<ModelParameter> parameters;
+  for (std::size_t i = 0; i < stored.names.size(); ++i) parameters.push_back({stored.names[i], stored.units[i]});
+  return parameters;
+}
+
+void check_lags(const LinearStructure& s, Index dimension) {
+  if (dimension < 1 || s.inputs < 0 || s.state_lags < 1 || s.input_lags < 1 || s.input_delay < 0 ||
+      dimension % s.state_lags != 0)
+    throw DataError(std::to_string(dimension) + " states, " + std::to_string(s.inputs) + " inputs and lags of " +
+                    std::to_string(s.state_lags) + ", " + std::to_string(s.input_lags) + ", " +
+                    std::to_string(s.input_delay) + " make no model");
+}
+
+[[noreturn]] void parameters_do_not_fit(Index parameters, Index states) {
+  throw DataError(std::to_string(parameters) + " parameters do not fit " + std::to_string(states) + " states");
+}
+
+LinearStructure restore_structure(LinearStructure structure, Index dimension, Index parameters) {
+  check_lags(structure, dimension);
+  structure.states = dimension / structure.state_lags;
+  if (structure.parameters() != parameters) parameters_do_not_fit(parameters, structure.states);
+  return structure;
+}
+
+namespace {
+
+enum class Presence { always, if_any };
+
+/// Every array of the modes: visit(where it is stored, its name in messages, rows, columns, how a mode holds it, and
+/// whether banks may lack it).
+template <class Visit>
+void for_each_mode_array(const LinearStructure& s, Index p_motion, Visit visit) {
+  const Index n = s.dimension(), p = s.parameters();
+  const Presence always = Presence::always, if_any = Presence::if_any;
+  visit(
+      &StoredBank::c, "c", n, Index{1}, [](auto& mode) -> auto& { return mode.model.c; }, always);
+  visit(
+      &StoredBank::A, "A", n, n, [](auto& mode) -> auto& { return mode.model.A; }, always);
+  visit(
+      &StoredBank::B, "B", n, s.acting_inputs(), [](auto& mode) -> auto& { return mode.model.B; }, always);
+  visit(
+      &StoredBank::Q, "Q", n, n, [](auto& mode) -> auto& { return mode.Q; }, always);
+  visit(
+      &StoredBank::spread, "parameter covariance", p, p, [](auto& mode) -> auto& { return mode.spread; }, if_any);
+  visit(
+      &StoredBank::standard_error, "parameter standard error", p, Index{1},
+      [](auto& mode) -> auto& { return mode.standard_error; }, if_any);
+  visit(
+      &StoredBank::Q_standard_error, "Q standard error", n, n,
+      [](auto& mode) -> auto& { return mode.Q_standard_error; }, if_any);
+  if (p_motion == 0) return;
+  visit(
+      &StoredBank::motion_parameters, "motion parameters", p_motion, Index{1},
+      [](auto& mode) -> auto& { return mode.motion_theta; }, always);
+  visit(
+      &StoredBank::motion_standard_error, "motion standard error", p_motion, Index{1},
+      [](auto& mode) -> auto& { return mode.motion_standard_error; }, always);
+}
+
+/// The bank's own matrices: visit(where it is stored, how the bank holds it).
+template <class Visit>
+void for_each_bank_matrix(Visit visit) {
+  visit(&StoredBank::C, &Bank::C);
+  visit(&StoredBank::R, &Bank::R);
+  visit(&StoredBank::R_standard_error, &Bank::R_standard_error);
+  visit(&StoredBank::transition_standard_error, &Bank::transition_standard_error);
+}
+
+}  // namespace
+
+StoredBank store_bank(const Bank& bank) {
+  StoredBank stored;
+  stored.model = bank.model;
+  stored.structure = bank.structure;
+  for_each_mode_array(bank.structure, std::ssize(bank.motion_parameters),
+                      [&](auto array, const char* what, Index rows, Index cols, auto of, Presence presence) {
+                        const auto absent = [&](const Mode& mode) { return of(mode).size() == 0; };
+                        if (presence == Presence::if_any && std::all_of(bank.modes.begin(), bank.modes.end(), absent))
+                          return;
+                        stored.*array = side_by_side(
+                            bank.modes.size(), rows, cols,
+                            what, [&](std::size_t k) -> const auto& { return of(bank.modes[k]); });
+                      });
+  stored.parameters.resize(bank.structure.parameters(), bank.mode_count());
+  stored.weight.resize(bank.mode_count());
+  for (Index k = 0; k < bank.mode_count(); ++k) {
+    stored.parameters.col(k) = bank.theta(k);
+    stored.weight(k) = bank.modes[static_cast<std::size_t>(k)].weight;
+  }
+  for_each_bank_matrix([&](auto array, auto matrix) { stored.*array = (bank.*matrix).transpose(); });
+  stored.transition = bank.transition.matrix().transpose();
+  stored.initial_probability = bank.initial_probability;
+  return stored;
+}
+
+Bank restore_bank(const StoredBank& stored, Bank bank) {
+  const LinearStructure& s = stored.structure;
+  const Index n = s.dimension(), p_motion = std::ssize(bank.motion_parameters);
+  if (stored.B.rows() != n * s.acting_inputs())
+    throw DataError("B has " + std::to_string(stored.B.rows() / n) + " inputs, the parameters " +
+                    std::to_string(s.acting_inputs()));
+  if (stored.motion_parameters.rows() != p_motion || stored.motion_standard_error.rows() != p_motion)
+    throw DataError("the motion parameters are not as many as their names");
+  bank.model = stored.model;
+  bank.structure = s;
+  bank.modes.assign(static_cast<std::size_t>(stored.weight.size()), Mode());
+  for (Index k = 0; k < stored.weight.size(); ++k) {
+    Mode& mode = bank.modes[static_cast<std::size_t>(k)];
+    mode.weight = stored.weight(k);
+    for_each_mode_array(s, p_motion, [&](auto array, const char*, Index rows, Index cols, auto of, Presence presence) {
+      if (presence == Presence::always || (stored.*array).size() > 0) of(mode) = one_of(stored.*array, k, rows, cols);
+    });
+  }
+  for_each_bank_matrix([&](auto array, auto matrix) { bank.*matrix = (stored.*array).transpose(); });
+  bank.transition = TransitionMatrix(stored.transition.transpose());
+  bank.initial_probability = stored.initial_probability;
+  validate(bank);
+  return bank;
+}
+
+}  // namespace modebank

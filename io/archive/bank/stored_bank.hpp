@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "filter/step/bank.hpp"
+
+namespace modebank {
+
+/// Forms in which the archive stores values whose structs are shaped otherwise. Each `store_` has a `restore_` that
+/// gives back the same bits. Arrays hold one window or mode per column; matrices within a column are row-major.
+/// store_ throws std::invalid_argument for sizes that disagree, restore_ DataError for content that cannot be.
+
+/// One matrix per mode laid into the columns of a rows * cols x count array. `what`: for messages.
+template <class Get>
+Eigen::MatrixXd side_by_side(std::size_t count, Eigen::Index rows, Eigen::Index cols, const char* what, Get get) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::MatrixXd result(rows * cols, static_cast<Eigen::Index>(count));
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto& matrix = get(k);
+    if (matrix.rows() != rows || matrix.cols() != cols)
+      throw std::invalid_argument(std::string(what) + " of mode " + std::to_string(k) + " is " +
+                                  std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols()) + ", must be " +
+                                  std::to_string(rows) + " x " + std::to_string(cols));
+    Eigen::Map<RowMajor>(result.col(static_cast<Eigen::Index>(k)).data(), rows, cols) = matrix;
+  }
+  return result;
+}
+/// One of them.
+Eigen::MatrixXd one_of(const Eigen::MatrixXd& columns, Eigen::Index k, Eigen::Index rows, Eigen::Index cols);
+
+struct StoredChannels {
+  std::vector<std::string> names;
+  std::vector<std::string> units;
+};
+
+/// Names and units of a motion model's parameters; where a search starts is not kept.
+StoredChannels store_model_parameters(const std::vector<ModelParameter>& parameters);
+std::vector<ModelParameter> restore_model_parameters(const StoredChannels& stored);
+
+/// The structure with the states that its dimension n says. Throws DataError when p parameters do not fit.
+LinearStructure restore_structure(LinearStructure stored, Eigen::Index dimension, Eigen::Index parameters);
+
+/// Throw DataError for lags that make no model of so many states, for parameters that do not fit them.
+void check_lags(const LinearStructure& structure, Eigen::Index dimension);
+[[noreturn]] void parameters_do_not_fit(Eigen::Index parameters, Eigen::Index states);
+
+/// A bank's modes side by side (K columns) and its matrices so that their memory is row-major.
+struct StoredBank {
+  std::string model;
+  LinearStructure structure;
+  Eigen::MatrixXd motion_parameters;          ///< p_motion x K, empty for linear models
+  Eigen::MatrixXd motion_standard_error;      ///< p_motion x K
+  Eigen::VectorXd weight;                     ///< K
+  Eigen::MatrixXd c;                          ///< n x K
+  Eigen::MatrixXd A;                          ///< n*n x K
+  Eigen::MatrixXd B;                          ///< n*m x K
+  Eigen::MatrixXd Q;                          ///< n*n x K
+  Eigen::MatrixXd parameters;                 ///< p x K
+  Eigen::MatrixXd spread;                     ///< p*p x K, empty without
+  Eigen::MatrixXd standard_error;             ///< p x K, empty without
+  Eigen::MatrixXd Q_standard_error;           ///< n*n x K, empty without
+  Eigen::MatrixXd R_standard_error;           ///< transposed, empty without
+  Eigen::MatrixXd transition_standard_error;  ///< transposed, empty without
+  Eigen::MatrixXd C;                          ///< transposed
+  Eigen::MatrixXd R;                          ///< transposed
+  Eigen::MatrixXd transition;                 ///< transposed
+  Eigen::VectorXd initial_probability;
+};
+StoredBank store_bank(const Bank& bank);
+/// Fills what StoredBank holds and leaves names, dt_s and the screened modes as they are.
+Bank restore_bank(const StoredBank& stored, Bank named);
+
+}  // namespace modebank

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ident/data/trajectory.hpp"
+#include "ident/model/linear_model.hpp"
+#include "ident/model/motion_model.hpp"
+#include "io/hdf5/sizes.hpp"
+
+namespace modebank {
+
+/// "(a)^2" or "(a)*(b)"; unknown when either is.
+std::string unit_product(const std::string& a, const std::string& b);
+/// "a/b", "1" for equal units; unknown when either is.
+std::string unit_ratio(const std::string& a, const std::string& b);
+
+/// Entry by entry: unit of a variance.
+Unit squared(const Unit& unit);
+/// Row-major units of a covariance matrix.
+Unit outer(const Unit& unit);
+/// Row-major units of a matrix that maps `from` to `to`.
+Unit ratios(const Unit& to, const Unit& from);
+/// One text for a table's array column: the common unit, or all of them by commas; empty when one is unknown.
+std::string joined(const Unit& unit);
+
+/// Units of the recorded channels, and what follows from them for a model's arrays.
+class Units {
+ public:
+  Units() = default;
+  explicit Units(const Recording& recording) : states_(recording.states), inputs_(recording.inputs) {}
+
+  Unit states() const { return of(states_); }
+  Unit inputs() const { return of(inputs_); }
+  /// Of named channels, which may be more than the recorded ones: a lagged one, "wz[k-1]", has its channel's unit.
+  Unit states(const std::vector<std::string>& names) const { return of(states_, names); }
+  Unit inputs(const std::vector<std::string>& names) const { return of(inputs_, names); }
+
+ private:
+  static Unit of(const std::vector<Channel>& channels);
+  static Unit of(const std::vector<Channel>& channels, const std::vector<std::string>& names);
+
+  std::vector<Channel> states_;
+  std::vector<Channel> inputs_;
+};
+
+/// Units of a motion model's parameters.
+Unit unit_of(const std::vector<ModelParameter>& parameters);
+
+/// Units of theta, the row-major vec of [A B (c)].
+Unit parameter_units(const LinearStructure& structure, const Unit& states, const Unit& inputs);
+
+}  // namespace modebank

@@ -1,0 +1,93 @@
+#include "io/archive/filter_checkpoint.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "ident/base/not_a_number.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* checkpoint_format = "modebank checkpoint 1";
+
+json to_json(const Eigen::MatrixXd& matrix) {
+  json columns = json::array();
+  for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+    json column = json::array();
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+      column.push_back(std::isfinite(matrix(i, j)) ? json(matrix(i, j)) : json());
+    columns.push_back(std::move(column));
+  }
+  return {{"rows", matrix.rows()}, {"columns", std::move(columns)}};
+}
+
+Eigen::MatrixXd matrix_of(const json& stored) {
+  const json& columns = stored.at("columns");
+  const auto rows = stored.at("rows").get<std::size_t>();
+  for (const json& column : columns)
+    if (!stored.at("rows").is_number_unsigned() || column.size() != rows) throw std::invalid_argument("column length");
+  Eigen::MatrixXd matrix(columns.empty() ? 0 : static_cast<Eigen::Index>(rows),
+                         static_cast<Eigen::Index>(columns.size()));
+  for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+      const json& value = columns.at(static_cast<std::size_t>(j)).at(static_cast<std::size_t>(i));
+      matrix(i, j) = value.is_null() ? not_a_number : value.get<double>();
+    }
+  return matrix;
+}
+
+}  // namespace
+
+void save_checkpoint(const std::filesystem::path& path, const std::string& identity, const FilterSnapshot& snapshot) {
+  const json stored{{"format", checkpoint_format},
+                    {"identity", identity},
+                    {"started", snapshot.started},
+                    {"means", to_json(snapshot.means)},
+                    {"covariances", to_json(snapshot.covariances)},
+                    {"mode_probability", to_json(snapshot.mode_probability)},
+                    {"noise_scale", snapshot.noise_scale},
+                    {"noise_samples", snapshot.noise_samples},
+                    {"inputs", to_json(snapshot.samples.inputs)},
+                    {"measurements", to_json(snapshot.samples.measurements)},
+                    {"samples", snapshot.samples.samples},
+                    {"whole", snapshot.samples.whole},
+                    {"time_s", std::isfinite(snapshot.samples.time_s) ? json(snapshot.samples.time_s) : json()}};
+  replace_file(path, {stored.dump(1), "\n"});
+}
+
+FilterSnapshot load_checkpoint(const std::filesystem::path& path, const std::string& identity) {
+  std::ifstream file(path);
+  if (!file) throw ConfigurationError(path.string() + ": no such checkpoint, or it cannot be read");
+  try {
+    const json stored = json::parse(file);
+    if (stored.at("format") != checkpoint_format) throw DataError(path.string() + ": is not a checkpoint of track");
+    if (stored.at("identity") != identity)
+      throw DataError(path.string() + ": is a checkpoint of another bank or of other filter settings");
+    FilterSnapshot snapshot;
+    snapshot.started = stored.at("started").get<bool>();
+    snapshot.means = matrix_of(stored.at("means"));
+    snapshot.covariances = matrix_of(stored.at("covariances"));
+    snapshot.mode_probability = matrix_of(stored.at("mode_probability"));
+    snapshot.noise_scale = stored.at("noise_scale").get<double>();
+    snapshot.noise_samples = stored.at("noise_samples").get<double>();
+    snapshot.samples.inputs = matrix_of(stored.at("inputs"));
+    snapshot.samples.measurements = matrix_of(stored.at("measurements"));
+    snapshot.samples.samples = stored.at("samples").get<Eigen::Index>();
+    snapshot.samples.whole = stored.at("whole").get<Eigen::Index>();
+    snapshot.samples.time_s = stored.at("time_s").is_null() ? not_a_number : stored.at("time_s").get<double>();
+    return snapshot;
+  } catch (const json::exception&) {
+    throw DataError(path.string() + ": is not a whole checkpoint of track");
+  } catch (const std::invalid_argument&) {
+    throw DataError(path.string() + ": is not a whole checkpoint of track");
+  }
+}
+
+}  // namespace modebank

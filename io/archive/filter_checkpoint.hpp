@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "filter/step/bank_filter.hpp"
+
+namespace modebank {
+
+/// Writes what a filter remembers as JSON, complete or not at all, every number as it is. `identity`: what bank and
+/// settings it is a filter of. Throws DataError when the file cannot be written.
+void save_checkpoint(const std::filesystem::path& path, const std::string& identity, const FilterSnapshot& snapshot);
+
+/// Reads it back. Throws ConfigurationError when there is no such file, DataError when it is not a checkpoint or one of
+/// another identity.
+FilterSnapshot load_checkpoint(const std::filesystem::path& path, const std::string& identity);
+
+}  // namespace modebank

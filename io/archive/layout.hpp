@@ -1,0 +1,157 @@
+#pragma once
+
+#include <string>
+
+#include "io/archive/archive.hpp"
+#include "io/archive/bank/layout_bank.hpp"
+#include "io/archive/layout_data.hpp"
+#include "io/archive/layout_evaluation.hpp"
+#include "io/archive/stored.hpp"
+
+/// The one description of the archive's layout; its other parts are layout_data.hpp, layout_evaluation.hpp and, for
+/// programs that load banks alone, bank/layout_bank.hpp. Every function names members once; `Io` is GroupWriter or
+/// GroupReader, so writing, reading and verification cannot drift apart. Letters: M windows, K modes, n states, m
+/// inputs, n_y outputs, p parameters, N samples, F features.
+namespace modebank::layout {
+
+template <class Io, class G>
+void exchange_global(Io& io, G& global, const Unit& parameters, const Unit& states) {
+  io.attribute("transitions", global.transitions);
+  io.field("parameters", global.theta, {"p"}, parameters);
+  io.field("covariance", global.covariance, {"p", "p"}, outer(parameters));
+  io.field("residual_covariance", global.residual_covariance, {"n", "n"}, outer(states));
+  const Eigen::VectorXd noise_variance = Io::reads ? Eigen::VectorXd() : global.noise_variance();
+  io.derived_field("noise_variance", noise_variance, {"n"}, squared(states));
+}
+
+inline Unit window_units(const WindowFits& fits, const Units& units) {
+  return fits.model_parameters.empty() ? parameter_units(fits.structure, units.states(), units.inputs())
+                                       : unit_of(fits.model_parameters);
+}
+
+template <class Io, class A>
+void exchange_audit(Io& io, A& audit) {
+  io.optional_attribute("audit_batch_windows", audit.batch);
+  io.optional_attribute("audit_ceres_windows", audit.ceres);
+  io.optional_attribute("audit_batch_method", audit.batch_method);
+  io.optional_attribute("audit_ceres_method", audit.ceres_method);
+  io.optional_attribute("audit_checked", audit.checked);
+  io.optional_attribute("audit_cost_difference", audit.cost_difference);
+  io.optional_attribute("audit_gradient", audit.gradient);
+  io.optional_attribute("audit_ceres_gradient", audit.ceres_gradient);
+  io.optional_attribute("audit_parameter_difference", audit.parameter_difference);
+  io.optional_attribute("audit_replaced", audit.replaced);
+  io.optional_attribute("audit_lower", audit.lower);
+}
+
+template <class Io, class W>
+void exchange_windows(Io& io, W& fits, const std::vector<Trajectory>& runs, const Units& units) {
+  const Unit parameters = window_units(fits, units);
+  io.attribute("residual", fits.residual);
+  exchange_model_parameters(io, fits.model_parameters, "model_parameter");
+  exchange_structure(io, fits.structure, fits.model);
+  io.attribute("length", fits.length);
+  io.attribute("step", fits.step);
+  io.attribute("loss", fits.loss);
+  exchange_audit(io, fits.audit);
+  io.through(
+      fits.windows, [&](const auto& windows) { return store_windows(windows, runs); },
+      [&](const StoredWindows& stored) { return restore_windows(stored, runs, fits.length); },
+      [&](auto& stored) {
+        io.texts("run", stored.run, {"M"});
+        io.field("start", stored.start, {"M"});
+      });
+  io.field("parameters", fits.parameters, {"M", "p"}, parameters);
+  io.field("covariance", fits.covariance, {"M", "p", "p"}, outer(parameters));
+  io.field("noise_variance", fits.noise_variance, {"M", "n"}, squared(units.states()));
+  io.field("condition", fits.condition, {"M"});
+  io.field("rank", fits.rank, {"M"});
+  io.field("information", fits.information, {"M", "p"});
+  io.field("inlier_fraction", fits.inlier_fraction, {"M"});
+  io.field("status", fits.status, {"M"});
+  io.optional_field("r_squared", fits.r_squared, {"M", "n"});
+  io.optional_field("aic", fits.aic, {"M"}, {"nat"});
+  io.optional_field("transitions", fits.transitions, {"M"});
+  io.optional_derived_field(
+      "standard_error", [&] { return fits.standard_errors(); }, {"M", "p"}, parameters);
+  io.optional_derived_field("t_value", [&] { return fits.t_values(); }, {"M", "p"});
+  io.optional_field("prior_sd", fits.prior_sd, {"p"}, parameters);
+  if constexpr (Io::reads) io.finish([&] { restore_window_structure(fits, io.size("n"), io.size("p")); });
+  std::vector<std::string> names = fits.parameter_names();
+  io.attribute_texts("parameter_names", names);
+  io.group("global", io.known({"n", "p"}),
+           [&](auto& member) { exchange_global(member, fits.global, parameters, units.states()); });
+}
+
+template <class Io, class C>
+void exchange_candidates(Io& io, C& candidates) {
+  io.table("candidates", candidates, column("components", &Candidate::components),
+           column("covariance", &Candidate::covariance), column("log_likelihood", &Candidate::log_likelihood, "nat"),
+           column("parameters", &Candidate::parameters), column("effective_samples", &Candidate::effective_samples),
+           column("bic", &Candidate::bic), column("aic", &Candidate::aic), column("icl", &Candidate::icl),
+           column("heldout", &Candidate::heldout, "nat"), column("iterations", &Candidate::iterations),
+           column("converged", &Candidate::converged), column("agreeing_restarts", &Candidate::agreeing_restarts),
+           column("selected", &Candidate::selected), later_column("bic_naive", &Candidate::bic_naive),
+           later_column("restarts", &Candidate::restarts), later_column("floor_active", &Candidate::floor_active),
+           later_column("status", &Candidate::status));
+}
+
+/// `parameters`: units of theta, the first features; the others are logarithms, without unit.
+template <class Io, class X>
+void exchange_mixture(Io& io, X& result, const Unit& parameters) {
+  Unit features = parameters;
+  features.resize(result.feature_names.size(), "1");
+  exchange_candidates(io, result.candidates);
+  io.attribute_texts("feature_names", result.feature_names);
+  io.attribute("covariance", result.mixture.type);
+  io.field("weights", result.mixture.weights, {"K"});
+  io.field("means", result.mixture.means, {"K", "F"}, features);
+  io.through(
+      result.mixture.covariances, store_covariances,
+      [&](const Eigen::MatrixXd& stored) { return restore_covariances(stored, result.mixture.features()); },
+      [&](auto& stored) {
+        io.field("covariances", stored, {"K", "F", "F"}, outer(features));
+      });
+  io.optional_field("weights_standard_error", result.weights_standard_error, {"K"});
+  io.optional_field("means_standard_error", result.means_standard_error, {"K", "F"}, features);
+  io.optional_attribute("noise_weight", result.mixture.noise.weight);
+  io.optional_field("noise_lower", result.mixture.noise.lower, {"F"}, features);
+  io.optional_field("noise_upper", result.mixture.noise.upper, {"F"}, features);
+  io.field("labels", result.labels, {"M"});
+  io.through_rows("responsibilities", result.responsibilities, {"M", "K"});
+}
+
+template <class Io, class A>
+void exchange_archive(Io& io, A& archive) {
+  exchange_origin(io, archive);
+  exchange_part(io, "data", archive.recording, {}, [](auto& member, auto& part) { exchange_recording(member, part); });
+  exchange_part(io, "lag", archive.lag, {}, [](auto& member, auto& part) { exchange_lag(member, part); });
+  const Recording none;
+  const Recording& recording = archive.recording ? *archive.recording : none;
+  const Units units(recording);
+  exchange_part(io, "windows", archive.windows, {},
+                [&](auto& member, auto& part) { exchange_windows(member, part, recording.runs, units); });
+  Sizes known;
+  Unit parameters;
+  if (archive.windows) {
+    if (archive.windows->count() > 0) known.set("M", static_cast<hsize_t>(archive.windows->count()));
+    parameters = window_units(*archive.windows, units);
+  }
+  exchange_part(io, "mixture", archive.mixture, known,
+                [&](auto& member, auto& part) { exchange_mixture(member, part, parameters); });
+  const auto exchange_one = [&](auto& member, auto& part) { exchange_bank(member, part, units); };
+  exchange_part(io, "bank", archive.bank, {}, [&](auto& member, auto& part) {
+    exchange_one(member, part);
+    member.optional_attribute("measured_fit", archive.measured_fit);
+    exchange_part(member, "unrefined", archive.unrefined, {}, exchange_one);
+    exchange_merging(member, archive.merging);
+  });
+  exchange_part(io, "baseline", archive.baseline, {}, exchange_one);
+  exchange_part(io, "noise_only", archive.noise_only, {}, exchange_one);
+  io.optional_group("residual_tests", !archive.residual_tests.empty(), {},
+                    [&](auto& member) { exchange_residual_tests(member, archive.residual_tests, recording); });
+  io.optional_group("evaluation", !archive.evaluations.empty() || !archive.summary.empty(), {},
+                    [&](auto& member) { exchange_evaluation(member, archive, recording, units); });
+}
+
+}  // namespace modebank::layout

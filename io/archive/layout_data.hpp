@@ -1,0 +1,105 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/archive/archive.hpp"
+#include "io/archive/bank/open_archive.hpp"
+#include "io/archive/bank/units.hpp"
+#include "io/archive/stored.hpp"
+#include "io/files/run_names.hpp"
+#include "io/hdf5/columns.hpp"
+
+/// The layout of where everything comes from, of the data, and of what data.lag_s = auto found; see
+/// io/archive/layout.hpp.
+namespace modebank::layout {
+
+template <class Io, class P>
+void exchange_provenance(Io& io, P& provenance) {
+  io.attributes(provenance.versions);
+  io.table("inputs", provenance.inputs, column("path", &InputFile::path), column("bytes", &InputFile::bytes, "byte"),
+           column("sha256", &InputFile::sha256));
+}
+
+/// The root attributes, the configuration and where everything comes from; every archive has them.
+template <class Io, class A>
+void exchange_origin(Io& io, A& archive) {
+  io.constant_attribute("format", std::string(archive_format));
+  std::string version = schema_version;
+  io.attribute("schema_version", version);
+  io.attribute("modebank_version", archive.provenance.modebank_version);
+  io.attribute("created", archive.provenance.created);
+  io.attribute("command_line", archive.provenance.command_line);
+  io.attribute("config_hash", archive.provenance.config_hash);
+  io.attribute("data_hash", archive.provenance.data_hash);
+  io.text("config", archive.config);
+  io.group("provenance", {}, [&](auto& member) { exchange_provenance(member, archive.provenance); });
+}
+
+template <class Io, class R>
+void exchange_recording(Io& io, R& recording) {
+  const auto channels = [&](auto& list, const std::string& kind) {
+    io.through(list, store_channels, restore_channels, [&](auto& stored) {
+      io.attribute_texts(kind + "_names", stored.names);
+      io.attribute_texts(kind + "_units", stored.units);
+    });
+  };
+  channels(recording.states, "state");
+  channels(recording.inputs, "input");
+  const auto named_runs = [](const std::vector<std::string>& names) {
+    std::vector<Trajectory> runs(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) runs[i].run = names[i];
+    return runs;
+  };
+  io.through(recording.runs, run_names<Trajectory>, named_runs,
+             [&](auto& names) { io.attribute_texts("runs", names); });
+  Sizes known;
+  known.set("n", recording.states.size());
+  known.set("m", recording.inputs.size());
+  const Units units(recording);
+  for (auto& run : recording.runs)
+    io.group(run.run, known, [&](auto& member) {
+      member.attribute("role", run.role);
+      member.attribute("lag_s", run.lag_s);
+      member.field("time", run.time_s, {"N"}, {"s"});
+      member.field("state", run.state, {"N", "n"}, units.states());
+      member.field("input", run.input, {"N", "m"}, units.inputs());
+      member.optional_field("truth", run.truth, {"N", "n"}, units.states());
+      member.optional_field("weight", run.weight, {"N"});
+    });
+}
+
+/// /lag: what data.lag_s = auto found.
+template <class Io, class P>
+void exchange_pooled(Io& io, const std::string& name, P& pooled) {
+  io.attribute(name, pooled.mean);
+  io.attribute(name + "_standard_error", pooled.standard_error);
+  io.attribute(name + "_between_runs_sd", pooled.between_sd);
+  io.attribute(name + "_runs", pooled.count);
+}
+
+template <class Io, class L>
+void exchange_lag(Io& io, L& lag) {
+  io.attribute("correction", lag.correction);
+  exchange_pooled(io, "lag_s", lag.lag);
+  exchange_pooled(io, "start_lag_s", lag.start_lag);
+  exchange_pooled(io, "clock_drift", lag.drift);
+  io.table("scores", lag.scores, column("correction", &LagScore::correction),
+           column("transitions", &LagScore::transitions), column("log_score", &LagScore::log_score, "nat"),
+           column("rmse", &LagScore::rmse), column("gain", &LagScore::gain, "nat"),
+           column("gain_standard_error", &LagScore::gain_standard_error, "nat"));
+  io.table("runs", lag.runs, column("run", &RunLag::run), column("status", &RunLag::status),
+           column("lag_s", &RunLag::lag_s, "s"), column("lag_standard_error_s", &RunLag::lag_standard_error_s, "s"),
+           column("time_constant_s", &RunLag::time_constant_s, "s"), column("r_squared", &RunLag::r_squared),
+           column("drift_status", &RunLag::drift_status), column("drifting_lag_s", &RunLag::drifting_lag_s, "s"),
+           column("drifting_lag_standard_error_s", &RunLag::drifting_lag_standard_error_s, "s"),
+           column("clock_drift", &RunLag::clock_drift),
+           column("clock_drift_standard_error", &RunLag::clock_drift_standard_error),
+           column("match_s", &RunLag::match_s, "s"), column("match_least_s", &RunLag::match_least_s, "s"),
+           column("match_largest_s", &RunLag::match_largest_s, "s"), column("match_windows", &RunLag::match_windows),
+           column("applied_lag_s", &RunLag::applied_lag_s, "s"),
+           column("applied_clock_drift", &RunLag::applied_clock_drift),
+           column("applied_reference_s", &RunLag::applied_reference_s, "s"));
+}
+
+}  // namespace modebank::layout

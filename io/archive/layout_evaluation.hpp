@@ -1,0 +1,153 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "io/archive/archive.hpp"
+#include "io/archive/bank/units.hpp"
+#include "io/hdf5/columns.hpp"
+
+/// The layout of what filters and models said of the runs; see io/archive/layout.hpp. T lags, from 0 on.
+namespace modebank::layout {
+
+template <class Io, class R>
+void exchange_merging(Io& io, R& rows) {
+  io.optional_table("merged", rows, column("role", &MergingCost::role), column("components", &MergingCost::components),
+                    column("modes_unlimited", &MergingCost::modes_unlimited), column("modes", &MergingCost::modes),
+                    column("samples", &MergingCost::samples),
+                    column("log_score_unlimited", &MergingCost::log_score_unlimited, "nat"),
+                    column("log_score", &MergingCost::log_score, "nat"), column("loss", &MergingCost::loss, "nat"));
+}
+
+template <class Io, class E>
+void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
+  io.field("prediction", evaluation.prediction, {"N", "n"}, states);
+  io.field("innovation", evaluation.innovation, {"N", "n_y"}, states);
+  io.field("innovation_covariance", evaluation.innovation_covariance, {"N", "n_y", "n_y"}, outer(states));
+  io.field("state", evaluation.state, {"N", "n"}, states);
+  io.field("covariance", evaluation.covariance, {"N", "n", "n"}, outer(states));
+  io.field("nis", evaluation.nis, {"N"});
+  io.field("pit", evaluation.pit, {"N", "n_y"});
+  io.field("log_density", evaluation.log_density, {"N"}, {"nat"});
+  io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"N", "K"});
+  io.field("mode_probability", evaluation.mode_probability, {"N", "K"});
+  io.optional_field("spread_share", evaluation.spread_share, {"N"});
+  io.optional_field("smoothed_state", evaluation.smoothed_state, {"N", "n"}, states);
+  io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"N", "n", "n"}, outer(states));
+  io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"N"});
+}
+
+/// One filter's evaluation of every run of the recording.
+template <class Io, class F>
+void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Unit& states) {
+  if constexpr (Io::reads) evaluation.runs.resize(recording.runs.size());
+  if (evaluation.runs.size() != recording.runs.size())
+    throw std::invalid_argument("filter " + evaluation.filter + " has evaluated " +
+                                std::to_string(evaluation.runs.size()) + " runs of " +
+                                std::to_string(recording.runs.size()));
+  for (std::size_t i = 0; i < recording.runs.size(); ++i) {
+    Sizes known;
+    if (recording.runs[i].samples() > 0) known.set("N", static_cast<hsize_t>(recording.runs[i].samples()));
+    io.group(recording.runs[i].run, known,
+             [&](auto& member) { exchange_run_evaluation(member, evaluation.runs[i], states); });
+  }
+}
+
+template <class Io, class S>
+void exchange_summary(Io& io, S& summary, const Unit& states) {
+  io.optional_table("summary", summary, column("filter", &SummaryRow::filter), column("role", &SummaryRow::role),
+                    column("run", &SummaryRow::run), column("samples", &SummaryRow::samples),
+                    column("log_score", &SummaryRow::log_score, "nat"),
+                    column("rmse", &SummaryRow::rmse, joined(states)), column("nis_mean", &SummaryRow::nis_mean),
+                    column("nis_above", &SummaryRow::nis_above), column("nis_below", &SummaryRow::nis_below),
+                    column("tail_above", &SummaryRow::tail_above), column("tail_below", &SummaryRow::tail_below),
+                    column("pit_distance", &SummaryRow::pit_distance), column("whiteness_p", &SummaryRow::whiteness_p));
+}
+
+template <class Io, class R>
+void exchange_horizon(Io& io, R& rows, const Unit& states) {
+  io.optional_table("horizon", rows, column("filter", &HorizonRow::filter), column("role", &HorizonRow::role),
+                    column("run", &HorizonRow::run), column("horizon", &HorizonRow::horizon, "samples"),
+                    column("samples", &HorizonRow::samples), column("log_score", &HorizonRow::log_score, "nat"),
+                    column("rmse", &HorizonRow::rmse, joined(states)));
+}
+
+template <class Io, class R>
+void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
+  using Row = DiagnosticsRow;
+  io.optional_table(
+      "diagnostics", rows, column("filter", &Row::filter), column("role", &Row::role), column("mode", &Row::mode),
+      column("samples", &Row::samples), column("usage", &Row::usage), column("entropy", &Row::entropy),
+      column("dwell", &Row::dwell, "samples"), column("dwell_model", &Row::dwell_model, "samples"),
+      column("tail_above", &Row::tail_above), column("tail_above_lower", &Row::tail_above_lower),
+      column("tail_above_upper", &Row::tail_above_upper), column("tail_below", &Row::tail_below),
+      column("tail_below_lower", &Row::tail_below_lower), column("tail_below_upper", &Row::tail_below_upper),
+      column("nis_mean", &Row::nis_mean), column("nis_lower", &Row::nis_lower), column("nis_upper", &Row::nis_upper),
+      column("nees_mean", &Row::nees_mean), column("nees_lower", &Row::nees_lower),
+      column("nees_upper", &Row::nees_upper), column("state_rmse", &Row::state_rmse, joined(states)),
+      column("whiteness_p", &Row::whiteness_p), column("spread_share", &Row::spread_share),
+      column("verdict", &Row::verdict), column("flags", &Row::flags));
+}
+
+template <class Io, class A>
+void exchange_evaluation(Io& io, A& archive, const Recording& recording, const Units& units) {
+  const auto names = [](const std::vector<FilterEvaluation>& list) {
+    std::vector<std::string> filters;
+    for (const FilterEvaluation& evaluation : list) filters.push_back(evaluation.filter);
+    return filters;
+  };
+  const auto named = [](const std::vector<std::string>& filters) {
+    std::vector<FilterEvaluation> list;
+    for (const std::string& filter : filters) list.push_back({filter, {}, {}});
+    return list;
+  };
+  io.through(archive.evaluations, names, named, [&](auto& filters) { io.attribute_texts("filters", filters); });
+  for (auto& evaluation : archive.evaluations)
+    io.group(evaluation.filter, {},
+             [&](auto& member) { exchange_filter(member, evaluation, recording, units.states()); });
+  exchange_summary(io, archive.summary, units.states());
+  exchange_horizon(io, archive.horizons, units.states());
+  exchange_diagnostics(io, archive.diagnostics, units.states());
+}
+
+template <class Io, class R>
+void exchange_run_residuals(Io& io, R& tests) {
+  io.attribute("samples", tests.samples);
+  io.attribute("level", tests.level);
+  io.attribute("autocorrelation_band", tests.autocorrelation_band);
+  io.field("autocorrelation", tests.autocorrelation, {"T", "n"});
+  io.field("cross_correlation", tests.cross_correlation, {"T", "n", "m"});
+  io.field("cross_correlation_band", tests.cross_correlation_band, {"n", "m"});
+  io.field("ljung_box_p", tests.ljung_box_p, {"n"});
+}
+
+/// residual_tests/<model>/<run>/, every run of the recording in its order.
+template <class Io, class S>
+void exchange_residual_tests(Io& io, S& sets, const Recording& recording) {
+  const auto names = [](const std::vector<ResidualTestSet>& list) {
+    std::vector<std::string> models;
+    for (const ResidualTestSet& set : list) models.push_back(set.model);
+    return models;
+  };
+  const auto named = [](const std::vector<std::string>& models) {
+    std::vector<ResidualTestSet> list;
+    for (const std::string& model : models) list.push_back({model, {}});
+    return list;
+  };
+  io.through(sets, names, named, [&](auto& models) { io.attribute_texts("models", models); });
+  Sizes known;
+  known.set("n", recording.states.size());
+  known.set("m", recording.inputs.size());
+  for (auto& set : sets)
+    io.group(set.model, {}, [&](auto& member) {
+      if constexpr (Io::reads) set.runs.resize(recording.runs.size());
+      if (set.runs.size() != recording.runs.size())
+        throw std::invalid_argument("residual tests of " + std::to_string(set.runs.size()) + " runs of " +
+                                    std::to_string(recording.runs.size()));
+      for (std::size_t i = 0; i < recording.runs.size(); ++i)
+        member.group(recording.runs[i].run, known, [&](auto& run) { exchange_run_residuals(run, set.runs[i]); });
+    });
+}
+
+}  // namespace modebank::layout

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ident/data/trajectory.hpp"
+#include "ident/model/local_model.hpp"
+#include "io/archive/bank/stored_bank.hpp"
+
+namespace modebank {
+
+/// Stored forms (io/archive/bank/stored_bank.hpp) of what stands in an archive beside banks.
+
+StoredChannels store_channels(const std::vector<Channel>& channels);
+std::vector<Channel> restore_channels(const StoredChannels& stored);
+
+/// Windows by the name of their run.
+struct StoredWindows {
+  std::vector<std::string> run;                          ///< M
+  Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> start;  ///< M
+};
+StoredWindows store_windows(const std::vector<Window>& windows, const std::vector<Trajectory>& runs);
+/// Every window must lie within its run.
+std::vector<Window> restore_windows(const StoredWindows& stored, const std::vector<Trajectory>& runs, Index length);
+
+/// restore_structure for windows, whose arrays have one entry per measured state; p is that of the motion model if
+/// there is one.
+void restore_window_structure(WindowFits& fits, Index states, Index parameters);
+
+/// The components' covariances, F*F x K.
+Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances);
+std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, Index features);
+
+}  // namespace modebank

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "io/archive/archive.hpp"
+
+namespace modebank {
+
+/// One column of a table whose columns are known at run time only.
+struct NamedColumn {
+  using Values = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::uint64_t>,
+                              std::vector<std::string>>;
+  std::string name;
+  Values values;
+};
+
+struct NamedTable {
+  std::string name;
+  std::vector<NamedColumn> columns;
+};
+
+/// A table of runs in a file with the root of an archive: the study's resolved /config, /provenance with the inputs,
+/// the hash in the user block, one compound dataset, and the tables of what it answers.
+struct StudyFile {
+  Provenance provenance;
+  std::string config;
+  std::string table;  ///< the dataset's name
+  std::vector<NamedColumn> columns;
+  std::vector<std::pair<std::string, std::filesystem::path>> archives;  ///< appear as /trials/<name>
+  std::vector<NamedTable> answers;  ///< drawn from the table; appear as /answers/<name>
+};
+
+/// Whether /trials/<name> are external links, relative to the file's folder, or copies of the archives' content.
+enum class ArchiveUse { link, copy };
+
+/// Writes under a temporary name, hashes, renames, as write_archive does.
+void write_study_file(const std::filesystem::path& path, const StudyFile& study, ArchiveUse use = ArchiveUse::link);
+
+/// Reads everything but the archives. Throws as read_archive does, and DataError when there is no such table.
+StudyFile read_study_file(const std::filesystem::path& path, const std::string& table);
+
+/// What a study's table takes from a trial's archive.
+struct TrialScores {
+  std::string modebank_version, config_hash, data_hash;
+  std::int64_t modes = 0;                              ///< of the bank
+  std::vector<std::pair<std::string, double>> pooled;  ///< <filter>_<role>_<score>, ..._rmse_<state>: the summary's "*"
+};
+
+/// Reads those alone, without checking the hash. Throws as read_archive does.
+TrialScores read_trial_scores(const std::filesystem::path& archive);
+
+/// The names and values of pooled scores, from a summary in memory.
+std::vector<std::pair<std::string, double>> pooled_scores(const std::vector<SummaryRow>& summary,
+                                                          const std::vector<std::string>& state_names);
+
+}  // namespace modebank

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace modebank {
+
+/// One file that was read, for provenance.
+struct InputFile {
+  std::string path;  ///< absolute
+  std::uint64_t bytes = 0;
+  std::string sha256;  ///< lowercase hex of the content
+};
+
+/// Path, size and hash of any file. Throws ConfigurationError when it cannot be read.
+InputFile describe_file(const std::filesystem::path& path);
+
+/// SHA-256 over the files' hex digests, in that order: the content, not where it lies.
+std::string data_hash(const std::vector<InputFile>& files);
+
+}  // namespace modebank

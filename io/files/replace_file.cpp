@@ -1,0 +1,146 @@
+#include "io/files/replace_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string system_reason() { return std::generic_category().message(errno); }
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+/// An open descriptor; close() reports what the destructor cannot.
+class Descriptor {
+ public:
+  Descriptor(const fs::path& path, int flags) : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) throw DataError(system_reason());
+  }
+  ~Descriptor() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  void write(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) throw DataError(system_reason());
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+  void sync() const {
+    // Some file systems cannot sync a folder, and say EINVAL; there is nothing to wait for then.
+    if (::fsync(descriptor_) != 0 && errno != EINVAL) throw DataError(system_reason());
+  }
+  void close() {
+    if (::close(std::exchange(descriptor_, -1)) != 0) throw DataError(system_reason());
+  }
+
+ private:
+  int descriptor_;
+};
+
+/// The file under its temporary name; removed unless it was moved to its final one.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& target)
+      : path_(temporary_name(target)), descriptor_(path_, O_WRONLY | O_CREAT | O_EXCL) {}
+  ~TemporaryFile() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove(path_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  const fs::path& path() const { return path_; }
+  void write(std::string_view bytes) const { descriptor_.write(bytes); }
+  void become(const fs::path& target) {
+    descriptor_.sync();
+    descriptor_.close();
+    fs::rename(path_, target);
+    path_.clear();
+  }
+
+ private:
+  /// Unique among the processes and threads of a machine.
+  static fs::path temporary_name(const fs::path& target) {
+    static std::atomic<unsigned> counter = 0;
+    return folder_of(target) / ("." + target.filename().string() + "." + std::to_string(::getpid()) + "-" +
+                                std::to_string(counter++) + ".tmp");
+  }
+
+  fs::path path_;
+  Descriptor descriptor_;
+};
+
+}  // namespace
+
+namespace {
+
+/// What stands in the way before anything is made; empty when nothing does.
+std::string seen_obstacle(const fs::path& path) {
+  std::error_code error;
+  if (!path.has_filename()) return "'" + path.string() + "' names no file";
+  const fs::path folder = folder_of(path);
+  if (!fs::is_directory(folder, error)) return "the folder '" + folder.string() + "' does not exist";
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_directory(status)) return "'" + path.string() + "' is a folder";
+  if (fs::exists(status) && !fs::is_regular_file(status)) return "'" + path.string() + "' is not a regular file";
+  return {};
+}
+
+/// The file under its temporary name, or why the folder does not take it: permissions do not tell (read-only mounts,
+/// /proc, root), only a file made there does.
+TemporaryFile make_temporary(const fs::path& path) {
+  try {
+    return TemporaryFile(path);
+  } catch (const DataError& obstacle) {
+    throw DataError("the folder '" + folder_of(path).string() + "' is not writable: " + obstacle.what());
+  }
+}
+
+}  // namespace
+
+std::string write_obstacle(const fs::path& path) {
+  if (std::string obstacle = seen_obstacle(path); !obstacle.empty()) return obstacle;
+  try {
+    make_temporary(path);  // and gone again
+  } catch (const DataError& obstacle) {
+    return obstacle.what();
+  }
+  return {};
+}
+
+void replace_file(const fs::path& path, const std::function<void(const fs::path&)>& fill) {
+  try {
+    if (const std::string obstacle = seen_obstacle(path); !obstacle.empty()) throw DataError(obstacle);
+    TemporaryFile temporary = make_temporary(path);
+    fill(temporary.path());
+    temporary.become(path);
+    Descriptor(folder_of(path), O_RDONLY | O_DIRECTORY).sync();
+  } catch (const DataError& error) {
+    throw DataError("cannot write " + path.string() + ": " + error.what());
+  } catch (const fs::filesystem_error& error) {
+    throw DataError("cannot write " + path.string() + ": " + error.code().message());
+  }
+}
+
+void replace_file(const fs::path& path, std::initializer_list<std::string_view> pieces) {
+  replace_file(path, [&](const fs::path& temporary) {
+    for (const std::string_view piece : pieces) Descriptor(temporary, O_WRONLY | O_APPEND).write(piece);
+  });
+}
+
+}  // namespace modebank

@@ -1,0 +1,22 @@
+#include "io/files/run_names.hpp"
+
+#include <set>
+#include <string_view>
+
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+void check_run_names(const std::vector<std::string>& names) {
+  constexpr std::string_view level_or_end("/\0", 2);
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (name.empty() || name == "." || name == ".." || name == "*" ||
+        name.find_first_of(level_or_end) != std::string::npos)
+      throw DataError("\"" + name +
+                      "\" cannot name a run: a name must not be empty, '*', '.' or '..' nor hold '/' or a zero byte");
+    if (!seen.insert(name).second) throw DataError("two runs are named \"" + name + "\"");
+  }
+}
+
+}  // namespace modebank

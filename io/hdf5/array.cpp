@@ -1,0 +1,193 @@
+#include "io/hdf5/array.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "modebank/base/error.hpp"
+
+namespace modebank::hdf5 {
+
+namespace {
+
+constexpr hsize_t largest = std::numeric_limits<hsize_t>::max();
+
+std::string quoted(Place place, const std::string& name) {
+  return (place == Place::dataset ? "the dataset '" : "the attribute '") + name + "'";
+}
+
+hsize_t saturating_product(hsize_t a, hsize_t b) { return a != 0 && b > largest / a ? largest : a * b; }
+
+bool is_ascii(const std::vector<std::string>& texts) {
+  const auto ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
+  return std::all_of(texts.begin(), texts.end(),
+                     [&](const std::string& text) { return std::all_of(text.begin(), text.end(), ascii); });
+}
+
+Handle make_space(const Shape& shape) {
+  const hid_t space =
+      shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+  return {space, H5Sclose, "make a dataspace"};
+}
+
+/// Our own archives hold contiguous data only; a layout that points elsewhere must not make us read other files.
+void check_own_content(hid_t dataset, const std::string& what) {
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose, "read the layout of " + what);
+  const H5D_layout_t layout = H5Pget_layout(creation.id());
+  if (layout == H5D_VIRTUAL || H5Pget_external_count(creation.id()) != 0)
+    throw DataError(what + " keeps its content in another file");
+}
+
+}  // namespace
+
+Handle string_type(std::size_t bytes) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a string type");
+  check(H5Tset_size(type.id(), std::max<std::size_t>(bytes, 1)), "size a string type");
+  check(H5Tset_cset(type.id(), H5T_CSET_UTF8), "make a UTF-8 type");
+  check(H5Tset_strpad(type.id(), H5T_STR_NULLPAD), "make a padded type");
+  return type;
+}
+
+std::size_t longest(const std::vector<std::string>& texts) {
+  std::size_t bytes = 1;
+  for (const std::string& text : texts) bytes = std::max(bytes, text.size());
+  return bytes;
+}
+
+Handle array_text_type(const std::vector<std::string>& texts) {
+  Handle type = string_type(longest(texts));
+  // UTF-8 holds ASCII, and Octave's load gives up a whole group at a dataset that says UTF-8, such as /windows/run.
+  if (is_ascii(texts)) check(H5Tset_cset(type.id(), H5T_CSET_ASCII), "make an ASCII type");
+  return type;
+}
+
+std::string pack_texts(const std::vector<std::string>& texts, std::size_t bytes) {
+  std::string cells(texts.size() * bytes, '\0');
+  for (std::size_t i = 0; i < texts.size(); ++i) texts[i].copy(cells.data() + i * bytes, bytes);
+  return cells;
+}
+
+std::vector<std::string> unpack_texts(const std::string& cells, std::size_t bytes) {
+  std::vector<std::string> texts;
+  for (std::size_t begin = 0; begin < cells.size(); begin += bytes) {
+    std::string text = cells.substr(begin, bytes);
+    text.resize(text.find_last_not_of('\0') + 1);
+    texts.push_back(std::move(text));
+  }
+  return texts;
+}
+
+hsize_t element_count(const Shape& shape) {
+  hsize_t count = 1;
+  for (const hsize_t extent : shape) count = saturating_product(count, extent);
+  return count;
+}
+
+namespace {
+
+Handle without_times() {
+  Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare datasets");
+  check(H5Pset_obj_track_times(creation.id(), false), "prepare datasets");
+  return creation;
+}
+
+/// A contiguous dataset without time stamps.
+Handle create_dataset(hid_t parent, const std::string& name, hid_t file_type, const Handle& space) {
+  // Made once: an archive has a thousand datasets. It stays until HDF5 itself ends, which may be before our statics do.
+  static const Handle& creation = *new Handle(without_times());
+  return {H5Dcreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose,
+          "create " + quoted(Place::dataset, name)};
+}
+
+}  // namespace
+
+void write_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape,
+                hsize_t first, hsize_t count, const void* data) {
+  const std::string what = quoted(Place::dataset, name);
+  const Handle space = make_space(shape);
+  const Handle dataset = first == 0 ? create_dataset(parent, name, file_type, space)
+                                    : Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + what);
+  Shape offset(shape.size(), 0), extent = shape;
+  offset.front() = first;
+  extent.front() = count;
+  check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, offset.data(), nullptr, extent.data(), nullptr),
+        "select rows of " + what);
+  const Handle memory = make_space(extent);
+  if (element_count(extent) > 0)
+    check(H5Dwrite(dataset.id(), memory_type, memory.id(), space.id(), H5P_DEFAULT, data), "write " + what);
+}
+
+Handle write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,
+                   const Shape& shape, const void* data) {
+  const std::string what = quoted(place, name);
+  const Handle space = make_space(shape);
+  if (place == Place::attribute) {
+    Handle attribute(H5Acreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                     "create " + what);
+    check(H5Awrite(attribute.id(), memory_type, data), "write " + what);
+    return attribute;
+  }
+  Handle dataset = create_dataset(parent, name, file_type, space);
+  if (element_count(shape) > 0)
+    check(H5Dwrite(dataset.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write " + what);
+  return dataset;
+}
+
+Handle write_texts(hid_t parent, Place place, const std::string& name, const std::vector<std::string>& texts,
+                   const Shape& shape) {
+  const std::size_t bytes = longest(texts);
+  const bool array = place == Place::dataset && !shape.empty();
+  const Handle type = array ? array_text_type(texts) : string_type(bytes);
+  return write_array(parent, place, name, type.id(), type.id(), shape, pack_texts(texts, bytes).data());
+}
+
+StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : place_(place), name_(name) {
+  const std::string what = quoted(place, name);
+  Handle space;
+  if (place == Place::dataset) {
+    object_ = Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + what);
+    check_own_content(object(), what);
+    type_ = Handle(H5Dget_type(object()), H5Tclose, "read the type of " + what);
+    space = Handle(H5Dget_space(object()), H5Sclose, "read the shape of " + what);
+  } else {
+    object_ = Handle(H5Aopen(parent, name.c_str(), H5P_DEFAULT), H5Aclose, "open " + what);
+    type_ = Handle(H5Aget_type(object()), H5Tclose, "read the type of " + what);
+    space = Handle(H5Aget_space(object()), H5Sclose, "read the shape of " + what);
+  }
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  check(rank, "read the rank of " + what);
+  shape_.resize(static_cast<std::size_t>(rank));
+  check(H5Sget_simple_extent_dims(space.id(), shape_.data(), nullptr), "read the shape of " + what);
+  elements_ = H5Sget_simple_extent_type(space.id()) == H5S_NULL ? 0 : element_count(shape_);
+  check_plausible();
+}
+
+void StoredArray::check_plausible() const {
+  hsize_t file_bytes = 0;
+  const Handle file(H5Iget_file_id(object()), H5Fclose, "find the file");
+  check(H5Fget_filesize(file.id(), &file_bytes), "read the size of the file");
+  // An array without elements may still declare extents, which the readers take for counts.
+  const hsize_t longest_extent = shape_.empty() ? 0 : *std::max_element(shape_.begin(), shape_.end());
+  if (saturating_product(elements_, H5Tget_size(type())) > file_bytes || longest_extent > file_bytes)
+    throw DataError(quoted(place_, name_) + " declares more content than the file holds");
+}
+
+void StoredArray::read(hid_t memory_type, void* data) const {
+  if (elements_ == 0) return;
+  const std::string what = "read " + quoted(place_, name_);
+  if (place_ == Place::attribute) return check(H5Aread(object(), memory_type, data), what);
+  check(H5Dread(object(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), what);
+}
+
+std::vector<std::string> StoredArray::texts() const {
+  if (type_class() != H5T_STRING || H5Tis_variable_str(type()) != 0)
+    throw DataError(quoted(place_, name_) + " does not hold fixed-length strings");
+  const Handle type_in_memory(H5Tcopy(type()), H5Tclose, "copy a string type");
+  check(H5Tset_strpad(type_in_memory.id(), H5T_STR_NULLPAD), "pad a string type");
+  const std::size_t bytes = H5Tget_size(type());
+  std::string cells(static_cast<std::size_t>(elements_) * bytes, '\0');
+  read(type_in_memory.id(), cells.data());
+  return unpack_texts(cells, bytes);
+}
+
+}  // namespace modebank::hdf5

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "io/hdf5/table.hpp"
+#include "modebank/base/error.hpp"
+#include "modebank/base/names.hpp"
+
+namespace modebank {
+
+/// One member of a row struct as a column of a table.
+template <class Row, class T>
+struct Column {
+  std::string name;
+  T Row::*member;
+  std::string unit = {};
+  bool optional = false;  ///< archives of earlier minor versions lack it; their rows keep the member's default
+};
+
+template <class Row, class T>
+Column<Row, T> column(std::string name, T Row::*member, std::string unit = {}) {
+  return {std::move(name), member, std::move(unit), false};
+}
+
+template <class Row, class T>
+Column<Row, T> later_column(std::string name, T Row::*member) {
+  return {std::move(name), member, {}, true};
+}
+
+/// What a value is in the file: booleans are 8-bit integers (MATLAB and Octave read HDF5's own as enumerations),
+/// enumerations are their words.
+template <class T>
+auto to_stored(const T& value) {
+  if constexpr (std::is_same_v<T, bool>)
+    return static_cast<std::int8_t>(value ? 1 : 0);
+  else if constexpr (std::is_enum_v<T>)
+    return std::string(name_of(value));
+  else if constexpr (std::is_integral_v<T> && std::is_signed_v<T> && sizeof(T) == 8)
+    return static_cast<std::int64_t>(value);
+  else
+    return value;
+}
+
+template <class T, class Stored>
+void from_stored(const Stored& stored, T& value) {
+  if constexpr (std::is_same_v<T, bool>) {
+    value = stored != 0;
+  } else if constexpr (std::is_enum_v<T>) {
+    const auto parsed = parse_name<T>(stored);
+    if (!parsed) throw DataError("'" + stored + "' is not one of the known words");
+    value = *parsed;
+  } else {
+    value = static_cast<T>(stored);
+  }
+}
+
+/// All rows' values of one column. Vectors become the columns of a matrix and must be of one length.
+template <class Row, class T>
+hdf5::TableColumn encode(const std::vector<Row>& rows, const Column<Row, T>& column) {
+  if constexpr (std::is_same_v<T, Eigen::VectorXd>) {
+    const Eigen::Index length = rows.empty() ? 0 : (rows.front().*column.member).size();
+    Eigen::MatrixXd values(length, static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Eigen::VectorXd& value = rows[i].*column.member;
+      if (value.size() != length) throw std::invalid_argument("lengths differ in the column '" + column.name + "'");
+      values.col(static_cast<Eigen::Index>(i)) = value;
+    }
+    return {column.name, std::move(values)};
+  } else {
+    std::vector<decltype(to_stored(std::declval<T>()))> values;
+    for (const Row& row : rows) values.push_back(to_stored(row.*column.member));
+    return {column.name, std::move(values)};
+  }
+}
+
+/// Reads one column into the rows, of which there are as many as the table has.
+template <class Row, class T>
+void decode(const hdf5::StoredArray& table, const Column<Row, T>& column, std::vector<Row>& rows) {
+  if (column.optional && !hdf5::has_column(table, column.name)) return;
+  hdf5::TableColumn stored = encode(std::vector<Row>(), column);
+  hdf5::read_column(table, stored);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if constexpr (std::is_same_v<T, Eigen::VectorXd>)
+      rows[i].*column.member = std::get<Eigen::MatrixXd>(stored.values).col(static_cast<Eigen::Index>(i));
+    else
+      from_stored(std::get<std::vector<decltype(to_stored(std::declval<T>()))>>(stored.values)[i],
+                  rows[i].*column.member);
+  }
+}
+
+}  // namespace modebank

@@ -1,0 +1,103 @@
+#include "io/hdf5/group_reader.hpp"
+
+#include <new>
+#include <stdexcept>
+
+namespace modebank {
+
+namespace {
+
+/// A problem that already names its place; the groups around it must not name theirs again.
+struct PlacedError : DataError {
+  using DataError::DataError;
+};
+
+}  // namespace
+
+void GroupReader::guarded(const std::string& name, const std::function<void()>& step) {
+  const auto report = [&](const std::string& problem) {
+    const std::string placed = path_ + "/" + name + ": " + problem;
+    if (!problems_) throw PlacedError(placed);
+    problems_->push_back(placed);
+  };
+  try {
+    step();
+  } catch (const PlacedError&) {
+    throw;
+  } catch (const DataError& error) {
+    report(error.what());
+  } catch (const std::invalid_argument& error) {
+    report(error.what());
+  } catch (const std::bad_alloc&) {
+    report("is too large for this machine's memory");
+  }
+}
+
+void GroupReader::finish(const std::function<void()>& step) {
+  if (!problems_ || problems_->size() == problems_before_) guarded("", step);
+}
+
+const std::string& GroupReader::require(const std::string& name) const {
+  if (!has(name)) throw DataError("is missing");
+  return name;
+}
+
+hdf5::StoredArray GroupReader::open_numbers(const std::string& name, const Letters& letters, H5T_class_t kind) {
+  hdf5::StoredArray array(group_.id(), hdf5::Place::dataset, require(name));
+  if (array.type_class() != kind) throw DataError("holds another kind of value");
+  const std::string problem = sizes_.agree(letters, array.shape());
+  if (!problem.empty()) throw DataError("has " + problem);
+  return array;
+}
+
+hdf5::StoredArray GroupReader::open_attribute(const std::string& name, H5T_class_t kind, bool scalar) const {
+  if (!hdf5::has_attribute(group_.id(), name)) throw DataError("the attribute is missing");
+  hdf5::StoredArray array(group_.id(), hdf5::Place::attribute, name);
+  if (array.type_class() != kind || array.shape().size() != (scalar ? 0 : 1) || (scalar && array.elements() != 1))
+    throw DataError("the attribute holds another kind of value");
+  return array;
+}
+
+void GroupReader::read_attribute(const std::string& name, std::string& value) const {
+  value = open_attribute(name, H5T_STRING, true).texts().front();
+}
+
+void GroupReader::constant_attribute(const std::string& name, const std::string& expected) {
+  guarded(name, [&] {
+    std::string found;
+    read_attribute(name, found);
+    if (found != expected) throw DataError("the attribute is '" + found + "', this version knows '" + expected + "'");
+  });
+}
+
+void GroupReader::attribute_texts(const std::string& name, std::vector<std::string>& texts) {
+  guarded(name, [&] { texts = open_attribute(name, H5T_STRING, false).texts(); });
+}
+
+void GroupReader::attributes(std::vector<std::pair<std::string, std::string>>& pairs) {
+  std::vector<std::string> names;
+  guarded("", [&] { names = hdf5::attribute_names(group_.id()); });
+  for (const std::string& name : names) {
+    pairs.emplace_back(name, "");
+    attribute(name, pairs.back().second);
+  }
+}
+
+void GroupReader::text(const std::string& name, std::string& value) {
+  guarded(name, [&] {
+    const hdf5::StoredArray array(group_.id(), hdf5::Place::dataset, require(name));
+    if (array.elements() != 1) throw DataError("is not one text");
+    value = array.texts().front();
+  });
+}
+
+void GroupReader::texts(const std::string& name, std::vector<std::string>& values, const Letters& letters) {
+  guarded(name, [&] {
+    const hdf5::StoredArray array(group_.id(), hdf5::Place::dataset, require(name));
+    const std::string problem = sizes_.agree(letters, array.shape());
+    if (!problem.empty()) throw DataError("has " + problem);
+    values = array.texts();
+  });
+}
+
+}  // namespace modebank

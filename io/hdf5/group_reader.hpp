@@ -1,0 +1,152 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "io/hdf5/array.hpp"
+#include "io/hdf5/columns.hpp"
+#include "io/hdf5/sizes.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+/// The reading side of the layout's description: the same calls as GroupWriter. Without a list of problems the first
+/// one is thrown as DataError; with one, problems are listed and reading goes on, which is what verification does.
+class GroupReader {
+ public:
+  static constexpr bool reads = true;
+
+  GroupReader(hdf5::Handle group, std::vector<std::string>* problems, std::string path = {})
+      : group_(std::move(group)),
+        problems_(problems),
+        problems_before_(problems ? problems->size() : 0),
+        path_(std::move(path)) {}
+
+  template <class Body>
+  void group(const std::string& name, const Sizes& known, Body body) {
+    guarded(name, [&] {
+      GroupReader member(hdf5::open_group(group_.id(), require(name)), problems_, path_ + "/" + name);
+      member.sizes_ = known;
+      body(member);
+    });
+  }
+  /// Reads the part if it is there.
+  template <class Body>
+  void optional_group(const std::string& name, bool /*present*/, const Sizes& known, Body body) {
+    if (has(name)) group(name, known, body);
+  }
+  bool has(const std::string& name) const { return hdf5::has_link(group_.id(), name); }
+
+  template <class T>
+  void attribute(const std::string& name, T& value) {
+    guarded(name, [&] {
+      auto stored = to_stored(value);
+      read_attribute(name, stored);
+      from_stored(stored, value);
+    });
+  }
+  template <class T>
+  void optional_attribute(const std::string& name, T& value) {
+    if (hdf5::has_attribute(group_.id(), name)) attribute(name, value);
+  }
+  void constant_attribute(const std::string& name, const std::string& expected);
+  void attribute_texts(const std::string& name, std::vector<std::string>& texts);
+  /// All attributes, in name order.
+  void attributes(std::vector<std::pair<std::string, std::string>>& pairs);
+
+  void text(const std::string& name, std::string& value);
+  void texts(const std::string& name, std::vector<std::string>& values, const Letters& letters);
+
+  template <class Derived>
+  void field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
+             const Unit& = {}) {
+    guarded(name, [&] {
+      using Stored = decltype(to_stored(std::declval<typename Derived::Scalar>()));
+      constexpr bool real = std::is_floating_point_v<Stored>;
+      const hdf5::StoredArray array = open_numbers(name, letters, real ? H5T_FLOAT : H5T_INTEGER);
+      const auto extent = [&](std::size_t i) { return i < letters.size() ? array.shape()[i] : 1; };
+      if constexpr (Derived::IsVectorAtCompileTime)
+        values.resize(static_cast<Eigen::Index>(extent(0)));
+      else
+        values.resize(static_cast<Eigen::Index>(extent(1) * extent(2)), static_cast<Eigen::Index>(extent(0)));
+      array.read(hdf5::memory_type<Stored>(), values.data());
+    });
+  }
+  /// One that is written block by block.
+  template <class Source>
+  void through_rows(const std::string& name, Source& values, const Letters& letters) {
+    Eigen::MatrixXd all;
+    field(name, all, letters);
+    values = Source(std::move(all));
+  }
+  template <class Derived>
+  void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>&, const Letters& letters,
+                     const Unit& = {}) {
+    Derived unused;
+    field(name, unused, letters);
+  }
+  template <class Make>
+  void optional_derived_field(const std::string& name, Make, const Letters& letters, const Unit& = {}) {
+    std::invoke_result_t<Make> unused;
+    if (has(name)) field(name, unused, letters);
+  }
+  template <class Derived>
+  void optional_field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
+                      const Unit& = {}) {
+    if (has(name)) field(name, values, letters);
+  }
+
+  template <class Row, class... T>
+  void table(const std::string& name, std::vector<Row>& rows, const Column<Row, T>&... columns) {
+    guarded(name, [&] {
+      const hdf5::StoredArray array(group_.id(), hdf5::Place::dataset, require(name));
+      rows.resize(static_cast<std::size_t>(array.elements()));
+      (guarded(name, [&] { decode(array, columns, rows); }), ...);
+    });
+  }
+
+  template <class Row, class... T>
+  void optional_table(const std::string& name, std::vector<Row>& rows, const Column<Row, T>&... columns) {
+    if (has(name)) table(name, rows, columns...);
+  }
+
+  /// Works on the stored form of a value: `body` reads it, `from` makes the value of it, unless something is amiss.
+  template <class Value, class To, class From, class Body>
+  void through(Value& value, To, From from, Body body) {
+    std::invoke_result_t<To, const Value&> stored{};
+    body(stored);
+    finish([&] { value = from(stored); });
+  }
+  /// Runs `step`, which relies on what has been read from this group, unless that had problems.
+  void finish(const std::function<void()>& step);
+
+  /// 0 for a letter that no array has bound.
+  Eigen::Index size(const std::string& letter) const {
+    return static_cast<Eigen::Index>(sizes_.find(letter).value_or(0));
+  }
+
+  /// What the arrays so far have decided, to hand on to a member group.
+  Sizes known(const Letters& letters) const { return sizes_.only(letters); }
+
+ private:
+  void guarded(const std::string& name, const std::function<void()>& step);
+  const std::string& require(const std::string& name) const;
+  hdf5::StoredArray open_numbers(const std::string& name, const Letters& letters, H5T_class_t kind);
+  hdf5::StoredArray open_attribute(const std::string& name, H5T_class_t kind, bool scalar) const;
+  void read_attribute(const std::string& name, std::string& value) const;
+  template <class Number>
+  void read_attribute(const std::string& name, Number& value) const {
+    const H5T_class_t kind = std::is_floating_point_v<Number> ? H5T_FLOAT : H5T_INTEGER;
+    open_attribute(name, kind, true).read(hdf5::memory_type<Number>(), &value);
+  }
+
+  hdf5::Handle group_;
+  std::vector<std::string>* problems_;
+  std::size_t problems_before_;
+  std::string path_;
+  Sizes sizes_;
+};
+
+}  // namespace modebank

@@ -1,0 +1,174 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/hdf5/array.hpp"
+#include "io/hdf5/columns.hpp"
+#include "io/hdf5/sizes.hpp"
+
+namespace modebank {
+
+/// The writing side of the layout's description (io/archive/layout.hpp): one group of a file in the making.
+/// Arrays hold one sample, window or mode per column, which in memory is just the row-major (count, ...) dataset.
+class GroupWriter {
+ public:
+  static constexpr bool reads = false;
+
+  explicit GroupWriter(hdf5::Handle group, std::string path = {}) : group_(std::move(group)), path_(std::move(path)) {}
+
+  /// Makes a member group and runs `body(writer)` on it.
+  template <class Body>
+  void group(const std::string& name, const Sizes& known, Body body) {
+    if (!complete()) return;
+    GroupWriter member(make_group(name), path_ + "/" + name);
+    member.sizes_ = known;
+    body(member);
+  }
+  /// An absent part is left out.
+  template <class Body>
+  void optional_group(const std::string& name, bool present, const Sizes& known, Body body) {
+    if (present) group(name, known, body);
+  }
+
+  /// From here on calls hand over windows first .. first + count - 1 of `total`: arrays over windows (letter M) are
+  /// written into their rows, everything else with the last of them. `texts`: all that their texts can be.
+  void windows_from(hsize_t first, hsize_t count, hsize_t total, std::vector<std::string> texts) {
+    part_ = Part{first, count, total, std::move(texts)};
+  }
+
+  template <class T>
+  void attribute(const std::string& name, const T& value) {
+    if (complete()) write_attribute(name, to_stored(value));
+  }
+  /// What older archives lack.
+  template <class T>
+  void optional_attribute(const std::string& name, const T& value) {
+    attribute(name, value);
+  }
+  template <class T>
+  void constant_attribute(const std::string& name, const T& value) {
+    attribute(name, value);
+  }
+  void attribute_texts(const std::string& name, const std::vector<std::string>& texts) {
+    if (complete()) hdf5::write_texts(group_.id(), hdf5::Place::attribute, name, texts, {texts.size()});
+  }
+  /// Every pair becomes an attribute.
+  void attributes(const std::vector<std::pair<std::string, std::string>>& pairs) {
+    for (const auto& [name, value] : pairs) attribute(name, value);
+  }
+
+  void text(const std::string& name, const std::string& value) {
+    hdf5::write_texts(group_.id(), hdf5::Place::dataset, name, {value}, {});
+  }
+  void texts(const std::string& name, const std::vector<std::string>& values, const Letters& letters) {
+    if (part_) return write_text_rows(name, values);
+    agree(name, letters, {values.size()});
+    hdf5::write_texts(group_.id(), hdf5::Place::dataset, name, values, {values.size()});
+  }
+
+  /// A vector has one letter; a matrix has two, or three when each column is itself a matrix. The middle extent must
+  /// then be known already.
+  template <class Derived>
+  void field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
+             const Unit& unit = {}) {
+    using Stored = decltype(to_stored(std::declval<typename Derived::Scalar>()));
+    const bool rows_only = part_ && letters.front() == "M";
+    if (!rows_only && !complete()) return;
+    hdf5::Shape shape = shape_of(name, letters, static_cast<hsize_t>(values.rows()),
+                                 static_cast<hsize_t>(values.cols()), Derived::IsVectorAtCompileTime);
+    if (rows_only) {
+      shape.front() = part_->total;
+      hdf5::write_rows(group_.id(), name, hdf5::file_type<Stored>(), hdf5::memory_type<Stored>(), shape, part_->first,
+                       part_->count, values.data());
+      return complete() ? write_unit(open_dataset(name), unit, shape) : void();
+    }
+    const hdf5::Handle dataset = hdf5::write_array(group_.id(), hdf5::Place::dataset, name, hdf5::file_type<Stored>(),
+                                                   hdf5::memory_type<Stored>(), shape, values.data());
+    write_unit(dataset, unit, shape);
+  }
+  /// An array whose columns are made as they are written: `values` has windows(), components() and block(first, count).
+  template <class Source>
+  void through_rows(const std::string& name, const Source& values, const Letters& letters) {
+    constexpr Eigen::Index rows_at_once = 16384;
+    const hdf5::Shape shape{static_cast<hsize_t>(values.windows()), static_cast<hsize_t>(values.components())};
+    agree(name, letters, shape);
+    for (Eigen::Index first = 0; first == 0 || first < values.windows(); first += rows_at_once) {
+      const Eigen::MatrixXd block = values.block(first, std::min(rows_at_once, values.windows() - first));
+      hdf5::write_rows(group_.id(), name, hdf5::file_type<double>(), hdf5::memory_type<double>(), shape,
+                       static_cast<hsize_t>(first), static_cast<hsize_t>(block.cols()), block.data());
+    }
+  }
+  /// An array computed from others: for readers of the file, ignored when read back.
+  template <class Derived>
+  void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
+                     const Unit& unit = {}) {
+    field(name, values, letters, unit);
+  }
+  /// One that older files lack; `make` computes it only when it is written.
+  template <class Make>
+  void optional_derived_field(const std::string& name, Make make, const Letters& letters, const Unit& unit = {}) {
+    optional_field(name, make(), letters, unit);
+  }
+  /// An empty array is left out.
+  template <class Derived>
+  void optional_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
+                      const Unit& unit = {}) {
+    if (values.size() > 0) field(name, values, letters, unit);
+  }
+
+  template <class Row, class... T>
+  void table(const std::string& name, const std::vector<Row>& rows, const Column<Row, T>&... columns) {
+    write_column_units(hdf5::write_table(group_.id(), name, {encode(rows, columns)...}, rows.size()),
+                       {columns.unit...});
+  }
+
+  /// An empty table is left out.
+  template <class Row, class... T>
+  void optional_table(const std::string& name, const std::vector<Row>& rows, const Column<Row, T>&... columns) {
+    if (!rows.empty()) table(name, rows, columns...);
+  }
+
+  /// Works on the stored form of a value: `to` makes it, `body` writes it.
+  template <class Value, class To, class From, class Body>
+  void through(const Value& value, To to, From, Body body) {
+    const auto stored = to(value);
+    body(stored);
+  }
+
+  /// What the arrays so far have decided, to hand on to a member group.
+  Sizes known(const Letters& letters) const { return sizes_.only(letters); }
+
+ private:
+  hdf5::Handle make_group(const std::string& name);
+  void write_attribute(const std::string& name, const std::string& value) {
+    hdf5::write_texts(group_.id(), hdf5::Place::attribute, name, {value}, {});
+  }
+  template <class Number>
+  void write_attribute(const std::string& name, Number value) {
+    hdf5::write_array(group_.id(), hdf5::Place::attribute, name, hdf5::file_type<Number>(), hdf5::memory_type<Number>(),
+                      {}, &value);
+  }
+  void agree(const std::string& name, const Letters& letters, const hdf5::Shape& shape);
+  hdf5::Shape shape_of(const std::string& name, const Letters& letters, hsize_t rows, hsize_t cols, bool is_vector);
+  hdf5::Handle open_dataset(const std::string& name) const;
+  void write_unit(const hdf5::Handle& dataset, const Unit& unit, const hdf5::Shape& shape);
+  void write_column_units(const hdf5::Handle& table, const std::vector<std::string>& units);
+
+  struct Part {
+    hsize_t first, count, total;
+    std::vector<std::string> texts;
+  };
+  bool complete() const { return !part_ || part_->first + part_->count == part_->total; }
+  void write_text_rows(const std::string& name, const std::vector<std::string>& values);
+
+  hdf5::Handle group_;
+  std::string path_;
+  Sizes sizes_;
+  std::optional<Part> part_;
+};
+
+}  // namespace modebank

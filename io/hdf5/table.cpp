@@ -1,0 +1,144 @@
+#include "io/hdf5/table.hpp"
+
+#include <algorithm>
+
+#include "modebank/base/error.hpp"
+
+namespace modebank::hdf5 {
+
+namespace {
+
+template <class T>
+using Vector = std::vector<T>;
+
+template <class T>
+Handle copy_type(hid_t type) {
+  return {H5Tcopy(type), H5Tclose, "copy a number type"};
+}
+
+Handle array_type(hid_t element, hsize_t length) {
+  return {H5Tarray_create2(element, 1, &length), H5Tclose, "make an array type"};
+}
+
+/// HDF5 knows no array type of length 0; an empty table's array column gets the least length.
+hsize_t array_length(const Eigen::MatrixXd& values) {
+  return static_cast<hsize_t>(std::max<Eigen::Index>(values.rows(), 1));
+}
+
+/// What one cell of a column is in the file, and in memory when its values lie side by side.
+struct CellTypes {
+  Handle file;
+  Handle memory;
+};
+
+template <class T>
+CellTypes cell_types(const Vector<T>&) {
+  return {copy_type<T>(file_type<T>()), copy_type<T>(memory_type<T>())};
+}
+CellTypes cell_types(const Vector<std::string>& values) {
+  return {string_type(longest(values)), string_type(longest(values))};
+}
+CellTypes cell_types(const Eigen::MatrixXd& values) {
+  return {array_type(H5T_IEEE_F64LE, array_length(values)), array_type(H5T_NATIVE_DOUBLE, array_length(values))};
+}
+
+Handle compound_of(const std::string& name, hid_t cell) {
+  Handle type(H5Tcreate(H5T_COMPOUND, H5Tget_size(cell)), H5Tclose, "make a table type");
+  check(H5Tinsert(type.id(), name.c_str(), 0, cell), "add the column '" + name + "'");
+  return type;
+}
+
+/// Members side by side; a number takes as many bytes in memory as in the file.
+Handle row_type(const std::vector<TableColumn>& columns, const std::vector<CellTypes>& cells,
+                Handle CellTypes::*where) {
+  std::size_t bytes = 0;
+  for (const CellTypes& cell : cells) bytes += H5Tget_size((cell.*where).id());
+  Handle type(H5Tcreate(H5T_COMPOUND, bytes), H5Tclose, "make a table type");
+  std::size_t offset = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const hid_t cell = (cells[i].*where).id();
+    check(H5Tinsert(type.id(), columns[i].name.c_str(), offset, cell), "add the column '" + columns[i].name + "'");
+    offset += H5Tget_size(cell);
+  }
+  return type;
+}
+
+template <class T>
+std::string raw_bytes(const Vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+std::string raw_bytes(const Vector<std::string>& values) { return pack_texts(values, longest(values)); }
+std::string raw_bytes(const Eigen::MatrixXd& values) {
+  return {reinterpret_cast<const char*>(values.data()), static_cast<std::size_t>(values.size()) * sizeof(double)};
+}
+
+/// The member's own type, after its kind has been checked.
+Handle member_type(const StoredArray& table, const std::string& name, H5T_class_t expected) {
+  if (table.type_class() != H5T_COMPOUND || table.shape().size() != 1) throw DataError("it is not a table");
+  const int index = H5Tget_member_index(table.type(), name.c_str());
+  if (index < 0) throw DataError("column '" + name + "' is missing");
+  const auto member = static_cast<unsigned>(index);
+  if (H5Tget_member_class(table.type(), member) != expected)
+    throw DataError("column '" + name + "' holds another kind of value");
+  return {H5Tget_member_type(table.type(), member), H5Tclose, "read the type of column '" + name + "'"};
+}
+
+template <class T>
+void read_values(const StoredArray& table, const std::string& name, Vector<T>& values) {
+  const H5T_class_t expected = std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INTEGER;
+  const Handle stored = member_type(table, name, expected);
+  values.resize(static_cast<std::size_t>(table.elements()));
+  table.read(compound_of(name, memory_type<T>()).id(), values.data());
+}
+
+void read_values(const StoredArray& table, const std::string& name, Vector<std::string>& values) {
+  const Handle stored = member_type(table, name, H5T_STRING);
+  if (H5Tis_variable_str(stored.id()) != 0) throw DataError("column '" + name + "' holds strings of variable length");
+  check(H5Tset_strpad(stored.id(), H5T_STR_NULLPAD), "pad a string type");
+  const std::size_t bytes = H5Tget_size(stored.id());
+  std::string cells(static_cast<std::size_t>(table.elements()) * bytes, '\0');
+  table.read(compound_of(name, stored.id()).id(), cells.data());
+  values = unpack_texts(cells, bytes);
+}
+
+void read_values(const StoredArray& table, const std::string& name, Eigen::MatrixXd& values) {
+  const Handle stored = member_type(table, name, H5T_ARRAY);
+  const Handle element(H5Tget_super(stored.id()), H5Tclose, "read an array type");
+  hsize_t length = 0;
+  if (H5Tget_array_ndims(stored.id()) != 1 || H5Tget_class(element.id()) != H5T_FLOAT)
+    throw DataError("column '" + name + "' does not hold arrays of numbers");
+  check(H5Tget_array_dims2(stored.id(), &length), "read an array type");
+  values.resize(static_cast<Eigen::Index>(length), static_cast<Eigen::Index>(table.elements()));
+  table.read(compound_of(name, array_type(H5T_NATIVE_DOUBLE, length).id()).id(), values.data());
+}
+
+}  // namespace
+
+Handle write_table(hid_t group, const std::string& name, const std::vector<TableColumn>& columns, hsize_t rows) {
+  std::vector<CellTypes> cells;
+  for (const TableColumn& column : columns)
+    cells.push_back(std::visit([](const auto& values) { return cell_types(values); }, column.values));
+  const Handle type = row_type(columns, cells, &CellTypes::file),
+               in_memory = row_type(columns, cells, &CellTypes::memory);
+  const std::size_t row_bytes = H5Tget_size(in_memory.id());
+  // Whole rows at once: member by member HDF5 would take and clear a megabyte for each.
+  std::string packed(static_cast<std::size_t>(rows) * row_bytes, '\0');
+  std::size_t offset = 0;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string bytes = std::visit([](const auto& values) { return raw_bytes(values); }, columns[i].values);
+    const std::size_t size = H5Tget_size(cells[i].memory.id());
+    for (std::size_t row = 0; row < rows; ++row) bytes.copy(packed.data() + row * row_bytes + offset, size, row * size);
+    offset += size;
+  }
+  return write_array(group, Place::dataset, name, type.id(), in_memory.id(), {rows}, packed.data());
+}
+
+bool has_column(const StoredArray& table, const std::string& name) {
+  return table.type_class() == H5T_COMPOUND && H5Tget_member_index(table.type(), name.c_str()) >= 0;
+}
+
+void read_column(const StoredArray& table, TableColumn& column) {
+  std::visit([&](auto& values) { read_values(table, column.name, values); }, column.values);
+}
+
+}  // namespace modebank::hdf5

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "io/hdf5/array.hpp"
+
+namespace modebank::hdf5 {
+
+/// One column of a compound table. The matrix is an array column: one row of the table per matrix column.
+struct TableColumn {
+  using Values =
+      std::variant<std::vector<std::int8_t>, std::vector<std::int32_t>, std::vector<std::int64_t>,
+                   std::vector<std::uint64_t>, std::vector<double>, std::vector<std::string>, Eigen::MatrixXd>;
+  std::string name;
+  Values values;
+};
+
+/// Writes a 1-D compound dataset of `rows` packed rows and hands it over open.
+Handle write_table(hid_t group, const std::string& name, const std::vector<TableColumn>& columns, hsize_t rows);
+
+/// Whether a compound dataset has a member of that name.
+bool has_column(const StoredArray& table, const std::string& name);
+
+/// Fills `column.values`, whose alternative says what is expected, from the member of that name. Throws DataError when
+/// the member is missing or of another kind. Members nobody asks for are ignored.
+void read_column(const StoredArray& table, TableColumn& column);
+
+}  // namespace modebank::hdf5

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/import/table_reader.hpp"
+
+namespace modebank {
+
+/// Comma-separated values (RFC 4180, read by libcsv): a header row names the columns, in any order and with exact case.
+/// Fields may be quoted ("" is a quote; commas and line breaks are text there). A byte-order mark, CRLF, blanks around
+/// fields, a missing last line break and empty lines before the header or after the last row are accepted; malformed
+/// quotes, rows of another width than the header and empty lines between rows are not.
+
+/// Column names of the file, which is read only as far as needed. Throws ConfigurationError when it cannot be read or
+/// has no header, DataError when the header's quotes are malformed.
+std::vector<std::string> read_csv_header(const std::filesystem::path& path);
+
+/// Reads the wanted columns of `content`, the bytes of `file` (which is only named in messages). Throws as
+/// TableReader::read does.
+Table parse_csv(std::string_view file, std::string_view content, const TableRequest& request);
+
+}  // namespace modebank

@@ -1,0 +1,47 @@
+#include "io/import/csv_number.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+namespace modebank {
+
+namespace {
+
+std::string_view trimmed(std::string_view field) {
+  constexpr std::string_view blanks = " \t\r\n";
+  const std::size_t first = field.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return field.substr(first, field.find_last_not_of(blanks) - first + 1);
+}
+
+/// from_chars reports underflow and overflow alike; the wider type tells them apart (strtod would obey the locale).
+ParsedNumber parse_extreme(std::string_view number) {
+  long double wide = 0.0L;
+  const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), wide);
+  const auto value = static_cast<double>(wide);
+  return {value, error != std::errc() || std::isinf(value) ? NumberStatus::out_of_range : NumberStatus::ok};
+}
+
+/// A finite number and nothing else: nearly every field of nearly every file.
+bool parse_plain(std::string_view field, double& value) {
+  const auto [stop, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  return error == std::errc() && stop == field.data() + field.size() && std::isfinite(value);
+}
+
+}  // namespace
+
+ParsedNumber parse_number(std::string_view field) {
+  ParsedNumber parsed;
+  if (parse_plain(field, parsed.value)) return parsed;
+  std::string_view number = trimmed(field);
+  if (number.empty()) return {0.0, NumberStatus::missing};
+  if (number.size() > 1 && number[0] == '+' && number[1] != '-') number.remove_prefix(1);
+  const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), parsed.value);
+  if (stop != number.data() + number.size() || error == std::errc::invalid_argument) return {0.0, NumberStatus::text};
+  if (error == std::errc::result_out_of_range) return parse_extreme(number);
+  if (!std::isfinite(parsed.value)) parsed.status = NumberStatus::missing;
+  return parsed;
+}
+
+}  // namespace modebank

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <csv.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <new>
+#include <string_view>
+
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+/// One pass of libcsv over a text: counts lines, tells fields and rows to `Sink`, stops at its first error. Exceptions
+/// must not cross libcsv's C frames, so errors are messages kept here until the pass is over.
+/// Sink: void field(std::string_view), void row() (also for empty lines), bool done(), and the members fields (in this
+/// row so far), line (on which the row starts) and error (empty: none).
+template <class Sink>
+class CsvPass {
+ public:
+  CsvPass(std::string_view file, Sink& sink) : file_(file), sink_(sink) {
+    csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI | CSV_REPALL_NL);
+  }
+  ~CsvPass() { csv_free(&parser_); }
+  CsvPass(const CsvPass&) = delete;
+  CsvPass& operator=(const CsvPass&) = delete;
+
+  void feed(std::string_view text) {
+    while (!text.empty() && !sink_.done()) {
+      const std::string_view chunk = text.substr(0, chunk_bytes);
+      const std::size_t parsed = csv_parse(&parser_, chunk.data(), chunk.size(), on_field, on_row, this);
+      check_sink();
+      if (parsed != chunk.size() && !sink_.done()) fail_parser();
+      text.remove_prefix(chunk.size());
+    }
+  }
+
+  void finish() {
+    if (sink_.done()) return;
+    const int failed = csv_fini(&parser_, on_field, on_row, this);
+    check_sink();
+    if (failed != 0) fail_parser();
+  }
+
+ private:
+  static CsvPass& self(void* pass) { return *static_cast<CsvPass*>(pass); }
+  static void on_field(void* text, std::size_t bytes, void* pass) {
+    self(pass).field({static_cast<const char*>(text), bytes});
+  }
+  static void on_row(int terminator, void* pass) { self(pass).row(terminator); }
+
+  void field(std::string_view text) {
+    if (sink_.done()) return;  // libcsv goes on to the end of its chunk
+    if (sink_.fields == 0) sink_.line = line_;
+    after_return_ = false;
+    sink_.field(text);
+    if (text.find('\n') != std::string_view::npos)
+      line_ += static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n'));
+  }
+
+  /// libcsv reports both bytes of CRLF: the second ends no line.
+  void row(int terminator) {
+    if (sink_.done()) return;
+    const bool second_byte = terminator == CSV_LF && after_return_ && sink_.fields == 0;
+    after_return_ = terminator == CSV_CR;
+    if (second_byte) return;
+    if (sink_.fields == 0) sink_.line = line_;
+    sink_.row();
+    sink_.fields = 0;
+    ++line_;
+  }
+
+  void check_sink() const {
+    if (!sink_.error.empty()) throw DataError(fmt::format("{}:{}: {}", file_, sink_.line, sink_.error));
+  }
+
+  [[noreturn]] void fail_parser() {
+    if (csv_error(&parser_) == CSV_ENOMEM) throw std::bad_alloc();
+    throw DataError(
+        fmt::format("{}:{}: malformed quotes (a quoted field must end before the next comma)", file_, line_));
+  }
+
+  static constexpr std::size_t chunk_bytes = 1 << 18;  // parsed between two looks at whether the sink is done
+
+  std::string_view file_;
+  Sink& sink_;
+  csv_parser parser_{};
+  std::uint64_t line_ = 1;
+  bool after_return_ = false;
+};
+
+}  // namespace modebank

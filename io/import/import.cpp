@@ -1,0 +1,164 @@
+#include "io/import/import.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <exception>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "ident/lag/choice.hpp"
+#include "io/files/run_names.hpp"
+#include "io/import/import_plan.hpp"
+#include "io/import/missing_values.hpp"
+#include "io/import/read_runs.hpp"
+#include "io/import/run_roles.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+std::vector<Channel> make_channels(const char* key, const std::vector<std::string>& names,
+                                   const std::vector<std::string>& units) {
+  if (units.size() > 1 && units.size() != names.size())
+    throw ConfigurationError(
+        fmt::format("data.{0}_unit has {1} units, but data.{0} {2} columns: one each, one for all, "
+                    "or none",
+                    key, units.size(), names.size()));
+  std::vector<Channel> channels;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    channels.push_back({names[i], units.empty() ? "" : units[units.size() == 1 ? 0 : i]});
+  return channels;
+}
+
+/// What reading one plan gave, or how it failed: the failure of the first plan in order is the one reported.
+struct Outcome {
+  FileContent content;
+  std::exception_ptr error;
+};
+
+Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_stand) {
+  Outcome outcome;
+  try {
+    outcome.content = read_runs(plan, options);
+    for (RunStreams& run : outcome.content.runs)
+      if (!as_they_stand) put_in_order(run, options.disorder);
+  } catch (...) {
+    outcome.error = std::current_exception();
+  }
+  return outcome;
+}
+
+/// Reads plans in parallel; results arrive in order, which the hash over all of them needs.
+std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data,
+                                 bool as_they_stand) {
+  std::vector<RunStreams> runs;
+  std::vector<Outcome> outcomes(plans.size());  // the pipeline passes positions on: it would leak objects on an error
+  std::size_t next = 0;
+  const auto take = [&](tbb::flow_control& flow) {
+    if (next == plans.size()) flow.stop();
+    return next++;
+  };
+  const auto read = [&](std::size_t plan) {
+    outcomes[plan] = try_read(plans[plan], options, as_they_stand);
+    return plan;
+  };
+  const auto collect = [&](std::size_t plan) {
+    Outcome outcome = std::exchange(outcomes[plan], {});
+    if (outcome.error) std::rethrow_exception(outcome.error);
+    std::move(outcome.content.files.begin(), outcome.content.files.end(), std::back_inserter(data.files));
+    std::move(outcome.content.runs.begin(), outcome.content.runs.end(), std::back_inserter(runs));
+  };
+  const auto in_flight = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  using tbb::filter_mode;
+  tbb::parallel_pipeline(in_flight, tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, take) &
+                                        tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, read) &
+                                        tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, collect));
+  data.data_hash = data_hash(data.files);
+  return runs;
+}
+
+template <class Run>
+void sort_by_name(std::vector<Run>& runs) {
+  std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.run < b.run; });
+}
+
+void set_roles(std::vector<RunStreams>& runs, const DataOptions& options) {
+  const std::vector<std::optional<Role>> roles = assign_roles(run_names(runs), options.train, options.test);
+  std::vector<RunStreams> kept;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!roles[i]) continue;
+    runs[i].role = *roles[i];
+    kept.push_back(std::move(runs[i]));
+  }
+  runs = std::move(kept);
+}
+
+/// After the roles are set: data.train and data.test name whole runs.
+void treat_missing_values(std::vector<Trajectory>& runs, Missing missing, std::vector<std::string>& notes) {
+  const bool predict = missing == Missing::predict;
+  std::vector<Trajectory> treated;
+  for (const Trajectory& run : runs) {
+    std::vector<Trajectory> parts = split_at_gaps(predict ? hold_missing_inputs(run) : run, predict);
+    if (parts.size() > 1)
+      notes.push_back(fmt::format("run {} has gaps: it is taken as {} runs, {} to {}", run.run, parts.size(),
+                                  parts.front().run, parts.back().run));
+    std::move(parts.begin(), parts.end(), std::back_inserter(treated));
+  }
+  runs = std::move(treated);
+}
+
+/// All runs that have a role, in name order.
+std::vector<RunStreams> named_streams(const std::vector<FilePlan>& plans, const DataOptions& options,
+                                      ImportedData& data, bool as_they_stand) {
+  std::vector<RunStreams> runs = read_all(plans, options, data, as_they_stand);
+  sort_by_name(runs);
+  check_run_names(run_names(runs));
+  set_roles(runs, options);
+  return runs;
+}
+
+LagReport find_lags(const std::vector<RunStreams>& streams, const DataOptions& options) {
+  std::vector<RunPair> pairs;
+  for (const RunStreams& run : streams) pairs.push_back({run.run, run.role, run.states.stream, run.inputs.stream});
+  return choose_lag(pairs, {options.lag_range_s, options.rate_hz});
+}
+
+}  // namespace
+
+ImportedData import_data(const DataOptions& options) {
+  ImportedData data;
+  data.recording.states = make_channels("state", options.state, options.state_unit);
+  data.recording.inputs = make_channels("input", options.input, options.input_unit);
+  std::vector<RunStreams> streams = named_streams(plan_import(options), options, data, false);
+  if (options.lag_auto) data.lag = find_lags(streams, options);
+  auto& runs = data.recording.runs;
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    runs.push_back(join_run(streams[i], options, data.lag ? data.lag->runs[i].applied() : InputClock{}));
+    streams[i] = {};
+  }
+  treat_missing_values(runs, options.missing, data.notes);
+  sort_by_name(runs);
+  check_run_names(run_names(runs));
+  return data;
+}
+
+std::vector<RunStreams> read_streams(const DataOptions& options) {
+  ImportedData unused;
+  std::vector<FilePlan> plans = plan_import(options);
+  for (FilePlan& plan : plans)
+    for (TableRequest& request : plan.requests) request.may_miss.assign(request.numbers.size(), true);
+  return named_streams(plans, options, unused, true);
+}
+
+std::vector<std::filesystem::path> data_files(const DataOptions& options) {
+  std::vector<std::filesystem::path> files;
+  for (const FilePlan& plan : plan_import(options)) files.insert(files.end(), plan.paths.begin(), plan.paths.end());
+  return files;
+}
+
+}  // namespace modebank

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ident/data/trajectory.hpp"
+#include "ident/lag/report.hpp"
+#include "io/files/input_file.hpp"
+#include "io/import/options.hpp"
+#include "io/import/run_streams.hpp"
+
+namespace modebank {
+
+struct ImportedData {
+  Recording recording;             ///< runs sorted by name (byte order), roles set
+  std::vector<InputFile> files;    ///< in run order, inputs before states
+  std::vector<std::string> notes;  ///< what the user should know of the data
+  std::optional<LagReport> lag;    ///< with DataOptions::lag_auto: what was found and applied
+  std::string data_hash;           ///< of files, see io/files/input_file.hpp
+};
+
+/// Finds, checks and reads all runs. Throws ConfigurationError for what can be seen before any sample is read (pattern
+/// without a match, a run without its states file, empty file, missing column: lists those that exist, unknown run
+/// name) and DataError, naming file and line, for content (text in a number, NaN, time not increasing, too few samples,
+/// streams that do not overlap, row counts that differ under Join::row).
+ImportedData import_data(const DataOptions& options);
+
+/// All runs' streams as they stand in the files, for advice on them: nothing is sorted, missing values are NaN (missing
+/// times too), roles are set, runs are sorted by name. Throws as import_data does, but for what data.missing and
+/// data.disorder treat.
+std::vector<RunStreams> read_streams(const DataOptions& options);
+
+/// The files that import_data would read. Throws ConfigurationError as it does.
+std::vector<std::filesystem::path> data_files(const DataOptions& options);
+
+}  // namespace modebank

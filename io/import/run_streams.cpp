@@ -1,0 +1,98 @@
+#include "io/import/run_streams.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::VectorXd;
+
+std::string span(const VectorXd& time_s) { return fmt::format("{} to {} s", time_s(0), time_s(time_s.size() - 1)); }
+
+void check_order(const FileStream& source) {
+  const VectorXd& time_s = source.stream.time_s;
+  for (Index k = 1; k < time_s.size(); ++k)
+    if (!(time_s(k) > time_s(k - 1)))
+      throw DataError(fmt::format("{}:{}: column {}: {} after {}: time going backwards or repeated", source.file,
+                                  source.line[static_cast<std::size_t>(k)], source.time_column, time_s(k),
+                                  time_s(k - 1)));
+}
+
+/// Positions of the samples in order of time; of those that share a time the first in the file.
+std::vector<Index> order_of(const VectorXd& time_s) {
+  std::vector<Index> order(static_cast<std::size_t>(time_s.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return time_s(a) < time_s(b); });
+  order.erase(std::unique(order.begin(), order.end(), [&](Index a, Index b) { return time_s(a) == time_s(b); }),
+              order.end());
+  return order;
+}
+
+void reorder(FileStream& source, const std::vector<Index>& order) {
+  source.stream = {source.stream.time_s(order), source.stream.values(Eigen::all, order)};
+  std::vector<std::uint64_t> line;
+  for (const Index k : order) line.push_back(source.line[static_cast<std::size_t>(k)]);
+  source.line = std::move(line);
+}
+
+void check_samples(const RunStreams& run, Index samples, const DataOptions& options, const InputClock& clock) {
+  if (samples >= 2) return;
+  const double lag_s = options.lag_auto ? clock.lag_s : options.lag_s;
+  const std::string lag = lag_s == 0.0 ? "" : fmt::format(", lag {} s", lag_s);
+  throw DataError(fmt::format("run \"{}\" has {} sample{}, but needs at least two: states {} ({}), inputs {} ({}){}{}",
+                              run.run, samples, samples == 1 ? "" : "s", span(run.states.stream.time_s),
+                              run.states.file, span(run.inputs.stream.time_s), run.inputs.file, lag,
+                              samples == 0 ? ": the streams do not overlap" : ""));
+}
+
+}  // namespace
+
+void put_in_order(RunStreams& run, Disorder disorder) {
+  if (disorder == Disorder::error) {
+    check_order(run.states);
+    check_order(run.inputs);
+    return;
+  }
+  const std::vector<Index> states = order_of(run.states.stream.time_s), inputs = order_of(run.inputs.stream.time_s);
+  reorder(run.states, states);
+  reorder(run.inputs, inputs);
+  for (std::vector<RunStreams::Companion>* columns : {&run.truth, &run.weight})
+    for (RunStreams::Companion& column : *columns)
+      column.values = VectorXd(column.values(column.with_states ? states : inputs));
+}
+
+Trajectory join_run(const RunStreams& run, const DataOptions& options, const InputClock& clock) {
+  const Stream &states = run.states.stream, &inputs = run.inputs.stream;
+  const bool shifted = options.lag_auto && (clock.lag_s != 0.0 || clock.drift != 0.0);
+  const InputClock applied = options.lag_auto ? clock : InputClock{options.lag_s, 0.0, 0.0};
+  Trajectory joined;
+  joined.run = run.run;
+  joined.role = run.role;
+  joined.lag_s = applied.lag_s;
+  joined.time_s =
+      joint_times(states.time_s, inputs.time_s, {options.rate_hz, applied.lag_s, applied.drift, applied.reference_s});
+  check_samples(run, joined.time_s.size(), options, clock);
+  joined.state = interpolate(states, joined.time_s);
+  blank_gaps(states.time_s, joined.time_s, joined.state);
+  joined.input = shifted ? hold_mid_transition(inputs, joined.time_s, applied)
+                         : hold(inputs, joined.time_s.array() - applied.lag_s);
+  joined.truth.resize(static_cast<Index>(run.truth.size()), run.truth.empty() ? 0 : joined.time_s.size());
+  for (std::size_t i = 0; i < run.truth.size(); ++i) {
+    const Stream truth{run.truth[i].with_states ? states.time_s : inputs.time_s, run.truth[i].values.transpose()};
+    joined.truth.row(static_cast<Index>(i)) = interpolate(truth, joined.time_s);
+  }
+  for (const RunStreams::Companion& weight : run.weight) {
+    const Stream stream{weight.with_states ? states.time_s : inputs.time_s, weight.values.transpose()};
+    joined.weight = weight.with_states ? interpolate_weights(stream, joined.time_s)
+                                       : VectorXd(hold(stream, joined.time_s).transpose());
+  }
+  return joined;
+}
+
+}  // namespace modebank

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ident/data/streams.hpp"
+#include "ident/data/trajectory.hpp"
+#include "io/import/options.hpp"
+
+namespace modebank {
+
+/// A stream as it stands in its file.
+struct FileStream {
+  Stream stream;                    ///< times may repeat or go backwards until put_in_order
+  std::vector<std::uint64_t> line;  ///< per sample, of the file
+  std::string file, time_column;
+};
+
+/// The streams of one run, not yet joined. Under Join::row, and where states and inputs are columns of one file, both
+/// have the same times.
+struct RunStreams {
+  std::string run;
+  Role role = Role::train;
+  FileStream states, inputs;
+  /// A column that is sampled with the states or with the inputs.
+  struct Companion {
+    bool with_states = true;
+    Eigen::VectorXd values;
+  };
+  std::vector<Companion> truth;
+  std::vector<Companion> weight;  ///< one, or none
+};
+
+/// Sorts both streams by time and keeps the first of the samples that share one (Disorder::sort), or throws DataError,
+/// naming file and line, where time repeats or goes backwards (Disorder::error).
+void put_in_order(RunStreams& run, Disorder disorder);
+
+/// The run as identification sees it: states interpolated, inputs held and delayed by the constant options.lag_s, or by
+/// `clock` when options.lag_auto (taken in the middle of each transition, see hold_mid_transition). Samples whose
+/// delayed input is not known are dropped. Throws DataError when fewer than two are left.
+Trajectory join_run(const RunStreams& run, const DataOptions& options, const InputClock& clock);
+
+}  // namespace modebank

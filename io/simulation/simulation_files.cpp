@@ -1,0 +1,126 @@
+#include "io/simulation/simulation_files.hpp"
+
+#include <csv.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A name as one CSV field, quoted only when it has to be.
+std::string quoted(const std::string& name) {
+  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+  std::string field(2 * name.size() + 2, '\0');
+  field.resize(csv_write(field.data(), field.size(), name.data(), name.size()));
+  return field;
+}
+
+std::string csv_text(const SimulationTable& table) {
+  std::string text;
+  for (std::size_t i = 0; i < table.names.size(); ++i) text += (i == 0 ? "" : ",") + quoted(table.names[i]);
+  for (Eigen::Index k = 0; k < table.values.cols(); ++k)
+    for (Eigen::Index i = 0; i < table.values.rows(); ++i)
+      fmt::format_to(std::back_inserter(text), "{}{}", i == 0 ? '\n' : ',', table.values(i, k));
+  return text + "\n";
+}
+
+std::vector<std::string> file_names(const char* kind, std::size_t runs) {
+  const std::size_t digits = std::max<std::size_t>(2, fmt::formatted_size("{}", runs == 0 ? 0 : runs - 1));
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < runs; ++i) names.push_back(fmt::format("{}_{:0{}}.csv", kind, i, digits));
+  return names;
+}
+
+bool is_run_file(const std::string& name) {
+  return (name.rfind("pro_", 0) == 0 || name.rfind("imu_", 0) == 0) && name.size() > 4 &&
+         name.substr(name.size() - 4) == ".csv";
+}
+
+void refuse_other_runs(const fs::path& folder, const std::set<std::string>& ours) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (is_run_file(name) && ours.count(name) == 0)
+      throw ConfigurationError(
+          fmt::format("{} holds {}, which is not of this simulation and would be read as one of its runs: remove it, "
+                      "or set another simulate.output",
+                      folder.string(), name));
+  }
+}
+
+/// A folder inside the target, on the same file system, gone with this object; so is the target if it was made for this
+/// and nothing came into it.
+class StagingFolder {
+ public:
+  explicit StagingFolder(const fs::path& target) : target_(target) {
+    std::error_code error;
+    made_target_ = fs::create_directory(target, error);  // no error when it exists
+    if (!error && !fs::is_directory(target)) error = std::make_error_code(std::errc::not_a_directory);
+    path_ = target / fmt::format(".simulation.{}.tmp", ::getpid());
+    if (!error) fs::create_directory(path_, error);
+    if (!error) return;
+    remove();
+    throw ConfigurationError(fmt::format("cannot make folder {}: {}", target.string(), error.message()));
+  }
+  ~StagingFolder() { remove(); }
+  StagingFolder(const StagingFolder&) = delete;
+  StagingFolder& operator=(const StagingFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  void remove() const {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+    if (made_target_) fs::remove(target_, ignored);  // only an empty one
+  }
+
+  fs::path target_, path_;
+  bool made_target_ = false;
+};
+
+void check_targets(const fs::path& folder, const std::vector<std::string>& names) {
+  refuse_other_runs(folder, {names.begin(), names.end()});
+  for (const std::string& name : names)
+    if (fs::exists(folder / name) && !fs::is_regular_file(folder / name))
+      throw ConfigurationError(fmt::format("cannot write {}: it is not a regular file", (folder / name).string()));
+}
+
+}  // namespace
+
+void check_column_names(const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i].empty() || std::count(names.begin(), names.end(), names[i]) > 1)
+      throw ConfigurationError(
+          fmt::format("simulated file: column {} \"{}\" is empty or there twice", i + 1, names[i]));
+}
+
+void write_simulation_files(const fs::path& folder, std::size_t runs,
+                            const std::function<SimulationTables(std::size_t)>& tables_of) {
+  const std::vector<std::string> inputs = file_names("pro", runs), states = file_names("imu", runs);
+  std::vector<std::string> all = inputs;
+  all.insert(all.end(), states.begin(), states.end());
+  const StagingFolder staging(folder);
+  check_targets(folder, all);
+  for (std::size_t i = 0; i < runs; ++i) {
+    const SimulationTables tables = tables_of(i);
+    replace_file(staging.path() / inputs[i], {csv_text(tables.inputs)});
+    replace_file(staging.path() / states[i], {csv_text(tables.states)});
+  }
+  try {
+    for (const std::string& name : all) fs::rename(staging.path() / name, folder / name);
+  } catch (const fs::filesystem_error& error) {
+    throw DataError(fmt::format("cannot write {}: {}", folder.string(), error.code().message()));
+  }
+}
+
+}  // namespace modebank

@@ -1,0 +1,135 @@
+#include "io/simulation/simulation_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ident/data/streams.hpp"
+#include "io/simulation/simulation_files.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+std::vector<std::string> inputs_header(const SimulationLayout& layout) {
+  std::vector<std::string> names{"time"};
+  names.insert(names.end(), layout.inputs.begin(), layout.inputs.end());
+  for (const std::string& state : layout.states) names.push_back("true_" + state);
+  names.emplace_back("mode");
+  return names;
+}
+
+std::vector<std::string> states_header(const SimulationLayout& layout) {
+  std::vector<std::string> names{"time"};
+  names.insert(names.end(), layout.states.begin(), layout.states.end());
+  return names;
+}
+
+SimulationTable inputs_table(const SimulatedRun& run, const SimulationLayout& layout) {
+  const Trajectory& measured = run.measured;
+  SimulationTable table{inputs_header(layout), {}};
+  table.values.resize(static_cast<Index>(table.names.size()), measured.samples());
+  table.values << measured.time_s.transpose(), measured.input, measured.truth, run.mode.cast<double>().transpose();
+  return table;
+}
+
+/// Covers all of the run, and one period more so that no rounding of times cuts its last sample off.
+VectorXd states_times(const VectorXd& time_s, double rate_hz) {
+  const double duration_s = time_s(time_s.size() - 1) - time_s(0);
+  VectorXd result(static_cast<Index>(std::ceil(duration_s * rate_hz)) + 2);
+  for (Index k = 0; k < result.size(); ++k) result(k) = time_s(0) + static_cast<double>(k) / rate_hz;
+  return result;
+}
+
+SimulationTable states_table(const SimulatedRun& run, const SimulationLayout& layout) {
+  const VectorXd time_s = states_times(run.measured.time_s, layout.state_rate_hz);
+  SimulationTable table{states_header(layout), {}};
+  table.values.resize(static_cast<Index>(table.names.size()), time_s.size());
+  table.values << time_s.transpose(), interpolate({run.measured.time_s, run.measured.state}, time_s);
+  return table;
+}
+
+void check_layout(const std::vector<SimulatedRun>& runs, const SimulationLayout& layout) {
+  constexpr double highest_rate_hz = 1e6;
+  if (!(layout.state_rate_hz > 0.0 && layout.state_rate_hz <= highest_rate_hz))
+    throw ConfigurationError(fmt::format("simulated states' rate {} Hz: must be above 0 and at most {}",
+                                         layout.state_rate_hz, highest_rate_hz));
+  check_column_names(inputs_header(layout));
+  check_column_names(states_header(layout));
+  for (const SimulatedRun& run : runs) {
+    const Trajectory& measured = run.measured;
+    if (measured.state.rows() != static_cast<Index>(layout.states.size()) ||
+        measured.input.rows() != static_cast<Index>(layout.inputs.size()))
+      throw ConfigurationError(fmt::format("{} state and {} input names for {} simulated states and {} inputs",
+                                           layout.states.size(), layout.inputs.size(), measured.state.rows(),
+                                           measured.input.rows()));
+    if (measured.samples() < 1) throw ConfigurationError("a simulated run has no sample");
+    if (measured.truth.rows() != measured.state.rows() || measured.truth.cols() != measured.samples() ||
+        run.mode.size() != measured.samples())
+      throw ConfigurationError("a simulated run lacks truth or modes");
+  }
+}
+
+}  // namespace
+
+void write_simulation(const std::vector<SimulatedRun>& runs, const SimulationLayout& layout) {
+  check_layout(runs, layout);
+  write_simulation_files(layout.folder, runs.size(), [&](std::size_t i) {
+    return SimulationTables{inputs_table(runs[i], layout), states_table(runs[i], layout)};
+  });
+}
+
+namespace {
+
+using HeaderNames = std::vector<std::string>;
+
+HeaderNames vehicle_inputs_header(const VehicleLayout& layout) {
+  HeaderNames names{"time"};
+  for (const std::string& input : layout.inputs) names.push_back(input);
+  for (const std::string& input : layout.inputs) names.push_back("cmd_" + input);
+  return names;
+}
+
+HeaderNames vehicle_states_header(const VehicleLayout& layout) {
+  const HeaderNames usual{"wz", "vx", "vy"};
+  HeaderNames names{"time"};
+  names.insert(names.end(), layout.states.begin(), layout.states.end());
+  for (std::size_t i = 0; i < usual.size(); ++i)
+    names.push_back("true_" + (i < layout.states.size() ? layout.states[i] : usual[i]));
+  for (const std::string& input : layout.inputs) names.push_back("true_" + input);
+  for (const char* name : {"x", "y", "heading", "friction", "mode"}) names.emplace_back(name);
+  return names;
+}
+
+SimulationTables vehicle_tables(const VehicleRun& run, const VehicleLayout& layout) {
+  SimulationTables tables{{vehicle_inputs_header(layout), {}}, {vehicle_states_header(layout), {}}};
+  tables.inputs.values.resize(static_cast<Index>(tables.inputs.names.size()), run.inputs_time_s.size());
+  tables.inputs.values << run.inputs_time_s.transpose(), run.wheel_speed, run.command;
+  tables.states.values.resize(static_cast<Index>(tables.states.names.size()), run.time_s.size());
+  tables.states.values << run.time_s.transpose(), run.measured, run.truth, run.true_wheel, run.pose,
+      run.friction.transpose(), run.kind.cast<double>().transpose();
+  return tables;
+}
+
+}  // namespace
+
+void write_simulation(const std::vector<VehicleRun>& runs, const VehicleLayout& layout) {
+  if (layout.inputs.size() != 2 || layout.states.empty() || layout.states.size() > 3)
+    throw ConfigurationError(fmt::format(
+        "{} state and {} input names for a simulated vehicle: it has 1 to 3 states (yaw rate, forward speed, "
+        "sideways speed) and 2 inputs (left and right wheel speed)",
+        layout.states.size(), layout.inputs.size()));
+  check_column_names(vehicle_inputs_header(layout));
+  check_column_names(vehicle_states_header(layout));
+  for (const VehicleRun& run : runs)
+    if (run.measured.rows() != static_cast<Index>(layout.states.size()))
+      throw ConfigurationError(
+          fmt::format("{} state names for {} simulated states", layout.states.size(), run.measured.rows()));
+  write_simulation_files(layout.folder, runs.size(), [&](std::size_t i) { return vehicle_tables(runs[i], layout); });
+}
+
+}  // namespace modebank

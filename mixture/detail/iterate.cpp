@@ -1,0 +1,167 @@
+#include "mixture/detail/iterate.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "mixture/detail/step.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+namespace {
+
+/// Components of less weight are on their way out; their logarithms would lead the others astray.
+constexpr double least_weight = 1e-9;
+
+/// On the estimate of what EM still gains, before a climb is given up.
+constexpr double margin = 10.0;
+
+/// A mixture as a vector without constraints, logarithms of weights and Cholesky factors with logarithms on the
+/// diagonal, and the size that a unit of each entry has (the square root of the complete data's Fisher information,
+/// conditional standard deviations in place of a full whitening).
+struct Coordinates {
+  Eigen::VectorXd values, scale;
+};
+
+std::optional<Coordinates> coordinates_of(const GaussianMixture& mixture) {
+  const Index K = mixture.components(), F = mixture.features();
+  const bool diagonal = mixture.type == CovarianceType::diagonal;
+  const Index per_component = 1 + F + (diagonal ? F : F * (F + 1) / 2);
+  Coordinates result{Eigen::VectorXd(K * per_component + 1), Eigen::VectorXd(K * per_component + 1)};
+  Index at = 0;
+  const auto put = [&](double value, double scale) {
+    result.values(at) = value;
+    result.scale(at++) = scale;
+  };
+  for (Index k = 0; k < K; ++k) {
+    const double weight = mixture.weights(k), root = std::sqrt(weight);
+    const Eigen::LLT<Eigen::MatrixXd> cholesky(mixture.covariances[static_cast<std::size_t>(k)]);
+    if (weight < least_weight || cholesky.info() != Eigen::Success) return {};
+    const Eigen::MatrixXd& L = cholesky.matrixLLT();
+    put(std::log(weight), root);
+    for (Index i = 0; i < F; ++i) put(mixture.means(i, k), root / L(i, i));
+    for (Index i = 0; i < F; ++i) {
+      put(std::log(L(i, i)), std::sqrt(2.0) * root);
+      for (Index j = 0; j < (diagonal ? 0 : i); ++j) put(L(i, j), root / L(i, i));
+    }
+  }
+  const double noise = mixture.noise.present() ? mixture.noise.weight : 1.0;
+  if (noise < least_weight) return {};
+  put(std::log(noise), mixture.noise.present() ? std::sqrt(noise) : 0.0);
+  return result;
+}
+
+/// Back; `pattern` tells type and noise component. Nothing where an entry is no usable number.
+std::optional<GaussianMixture> mixture_of(const Eigen::VectorXd& values, const GaussianMixture& pattern,
+                                          const EmOptions& options) {
+  constexpr double largest = 300.0;  // logarithms and scaled coordinates beyond this are no mixture of the points
+  if (!(values.array().abs().maxCoeff() < largest)) return {};
+  const Index K = pattern.components(), F = pattern.features();
+  const bool diagonal = pattern.type == CovarianceType::diagonal;
+  GaussianMixture result = pattern;
+  Eigen::MatrixXd L = Eigen::MatrixXd::Zero(F, F);
+  Index at = 0;
+  for (Index k = 0; k < K; ++k) {
+    result.weights(k) = std::exp(values(at++));
+    for (Index i = 0; i < F; ++i) result.means(i, k) = values(at++);
+    for (Index i = 0; i < F; ++i) {
+      L(i, i) = std::exp(values(at++));
+      for (Index j = 0; j < (diagonal ? 0 : i); ++j) L(i, j) = values(at++);
+    }
+    Eigen::MatrixXd& covariance = result.covariances[static_cast<std::size_t>(k)];
+    covariance.noalias() = L * L.transpose();
+    raise_to_floor(covariance, options.covariance_floor, options.covariance);
+  }
+  const double noise = pattern.noise.present() ? std::exp(values(at)) : 0.0;
+  const double total = result.weights.sum() + noise;
+  result.weights /= total;
+  if (pattern.noise.present()) result.noise.weight = noise / total;
+  return result;
+}
+
+/// Squared extrapolation (Varadhan & Roland 2008, Scand. J. Stat. 35, section 6: SQUAREM, step length S3) from two
+/// successive steps of EM. As there, the longest step grows where it was reached and shrinks where it led down.
+class Extrapolation {
+ public:
+  void forget() { before_.reset(); }
+  /// How many times its last but one step EM would still go, where the latest `next` could tell: steps shrink by the
+  /// factor 1 - 1 / steps_left.
+  std::optional<double> steps_left() const { return steps_left_; }
+  void shorten() {
+    forget();
+    longest_ = std::max(shortest, longest_ / growth);
+  }
+
+  /// EM went from `from` to `to`. Where to go on after two such steps in a row.
+  std::optional<Eigen::VectorXd> next(const std::optional<Coordinates>& from, const std::optional<Coordinates>& to) {
+    const std::optional<Coordinates> before = std::exchange(before_, from);
+    steps_left_.reset();
+    if (!from || !to) forget();
+    if (!before || !from || !to) return {};
+    const Eigen::VectorXd step = from->values - before->values, bend = to->values - from->values - step;
+    const double size = before->scale.cwiseProduct(step).norm() / before->scale.cwiseProduct(bend).norm();
+    steps_left_ = std::max(1.0, size);
+    if (!(size > 1.0)) return {};  // what EM does itself
+    const double length = std::min(size, longest_);
+    if (length == longest_) longest_ *= growth;
+    forget();
+    return before->values + 2.0 * length * step + length * length * bend;
+  }
+
+ private:
+  static constexpr double growth = 2.0, shortest = 2.0;
+  std::optional<Coordinates> before_;
+  std::optional<double> steps_left_;
+  double longest_ = 4.0;
+};
+
+}  // namespace
+
+EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptions& options, Steps steps,
+                 double hopeless_below) {
+  const double least_gain = options.tolerance * points.total_weight();
+  EmResult result;
+  result.log_likelihood = -std::numeric_limits<double>::infinity();
+  Extrapolation extrapolation;
+  GaussianMixture trial = std::move(start), plain;
+  bool extrapolated = false;
+  while (true) {
+    const bool last = result.iterations == options.max_iterations;
+    const MixtureMoments moments = last ? measure(points, trial) : expect(points, trial);
+    const double gain = moments.log_likelihood - result.log_likelihood;
+    if (extrapolated && !(gain >= 0.0)) {
+      trial = std::move(plain);
+      extrapolated = false;
+      extrapolation.shorten();
+      continue;
+    }
+    result.log_likelihood = moments.log_likelihood;
+    // Only what EM itself gains says how near its end is.
+    result.converged = !extrapolated && gain < least_gain;
+    if (result.converged || last) break;
+    if (steps == Steps::extrapolated) result.mixture = trial;
+    result.floor_active = maximise(moments, options.covariance_floor, trial);
+    ++result.iterations;
+    extrapolated = false;
+    if (steps == Steps::plain) continue;
+    const auto next = extrapolation.next(coordinates_of(result.mixture), coordinates_of(trial));
+    // One geometric series would gain at most half of gain * steps; several together more than the fastest of them
+    // shows.
+    if (const auto left = extrapolation.steps_left();
+        left && result.log_likelihood + margin * gain * *left < hopeless_below)
+      return result;
+    std::optional<GaussianMixture> mixture = next ? mixture_of(*next, trial, options) : std::nullopt;
+    if (!mixture) continue;
+    plain = std::exchange(trial, std::move(*mixture));
+    extrapolated = true;
+  }
+  result.mixture = std::move(trial);
+  return result;
+}
+
+}  // namespace modebank

@@ -1,0 +1,124 @@
+// Vectors, and what a block's log densities become. Included once per instruction set (Highway's
+// foreach_target.h).
+#if defined(MODEBANK_EM_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MODEBANK_EM_LANES_INL
+#undef MODEBANK_EM_LANES_INL
+#else
+#define MODEBANK_EM_LANES_INL
+#endif
+
+#include "mixture/detail/kernels/exp-inl.hpp"
+#include "mixture/detail/kernels/kernels.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace modebank::em::HWY_NAMESPACE {
+
+using batch::HWY_NAMESPACE::reciprocal;
+
+inline constexpr Index L = hn::MaxLanes(D());
+static_assert(block_size % (2 * L) == 0 && L <= most_lanes);
+
+HWY_INLINE V zero() { return hn::Zero(D()); }
+HWY_INLINE V load(const double* from) { return hn::Load(D(), from); }
+HWY_INLINE void store(V value, double* to) { hn::Store(value, D(), to); }
+HWY_INLINE void add_to(double* sum, V value) { store(hn::Add(load(sum), value), sum); }
+
+/// Squared distances beyond this (points so far out that squares overflow, or not a number where the parts of a
+/// distance overflow with different signs) count as this, so that no density is ever NaN.
+inline constexpr double largest_distance = 2e300;
+
+HWY_INLINE V bounded(V distance) {
+  const V largest = splat(largest_distance);
+  return hn::IfThenElse(hn::Lt(distance, largest), distance, largest);
+}
+
+// Of a block's points the functions below look at the first `points`, an even number of vectors.
+
+/// scratch.relative holds log densities of `rows` components and scratch.log_density their largest; turns the former
+/// into densities relative to the largest, and the latter into the log density of the mixture.
+HWY_INLINE void normalise(int rows, const Scratch& scratch, Index points = block_size) {
+  const Exp exp;
+  const Log log;
+  for (int k = 0; k < rows; ++k) {
+    double* relative = scratch.relative + k * block_size;
+    for (Index n = 0; n < points; n += 2 * L) {
+      const V a = exp(hn::Sub(load(relative + n), load(scratch.log_density + n)));
+      const V b = exp(hn::Sub(load(relative + n + L), load(scratch.log_density + n + L)));
+      store(a, relative + n);
+      store(b, relative + n + L);
+      store(k == 0 ? a : hn::Add(load(scratch.sum + n), a), scratch.sum + n);
+      store(k == 0 ? b : hn::Add(load(scratch.sum + n + L), b), scratch.sum + n + L);
+    }
+  }
+  for (Index n = 0; n < points; n += L) add_to(scratch.log_density + n, log(load(scratch.sum + n)));
+}
+
+/// The noise component's row comes after those of the Gaussians.
+HWY_INLINE int add_noise(const Components& components, const Block& block, const Scratch& scratch,
+                         Index points = block_size) {
+  if (!block.noise) return components.count;
+  double* row = scratch.relative + components.count * block_size;
+  for (Index n = 0; n < points; n += L) {
+    const V noise = load(block.noise + n);
+    store(noise, row + n);
+    store(hn::Max(load(scratch.log_density + n), noise), scratch.log_density + n);
+  }
+  return components.count + 1;
+}
+
+/// What densities are relative to where that is one number for a whole block: no log density lies above it.
+HWY_INLINE double largest_log_constant(const Components& components) {
+  double largest = components.log_constants[0];
+  for (int k = 1; k < components.count; ++k)
+    largest = components.log_constants[k] > largest ? components.log_constants[k] : largest;
+  return largest;
+}
+
+/// Ends what densities relative to exp(shift) began: adds the noise component and turns their sums into log densities.
+/// False where a point is too far from all components (or the noise too dense) for one shift to do.
+HWY_INLINE bool finish_shifted(const Components& components, const Block& block, double shift, const Scratch& scratch,
+                               Index points = block_size) {
+  const V least = splat(1e-150), most = splat(1e150), by = splat(shift);
+  const Exp exp;
+  const Log log;
+  auto sound = hn::Eq(by, by);
+  for (Index n = 0; n < points; n += L) {
+    V sum = load(scratch.sum + n);
+    if (block.noise) {
+      const V noise = exp(hn::Sub(load(block.noise + n), by));
+      store(noise, scratch.relative + components.count * block_size + n);
+      sum = hn::Add(sum, noise);
+      store(sum, scratch.sum + n);
+    }
+    sound = hn::And(sound, hn::And(hn::Ge(sum, least), hn::Le(sum, most)));
+    store(hn::Add(by, log(sum)), scratch.log_density + n);
+  }
+  return hn::AllTrue(D(), sound);
+}
+
+/// Adds log-likelihood and noise of a block to the first two of the lane sums; leaves weight / sum in scratch.sum.
+HWY_INLINE void begin_sums(const Components& components, const Block& block, const Scratch& scratch,
+                           Index points = block_size) {
+  V likelihood = load(scratch.lanes), noise = load(scratch.lanes + L);
+  const double* row = scratch.relative + components.count * block_size;
+  for (Index n = 0; n < points; n += L) {
+    const V weight = load(block.weights + n);
+    likelihood = hn::MulAdd(weight, load(scratch.log_density + n), likelihood);
+    const V scale = hn::Mul(weight, reciprocal(load(scratch.sum + n)));
+    store(scale, scratch.sum + n);
+    if (block.noise) noise = hn::MulAdd(scale, load(row + n), noise);
+  }
+  store(likelihood, scratch.lanes);
+  store(noise, scratch.lanes + L);
+}
+
+template <class Kernel>
+void measure(const Components& components, const Block& block, const Scratch& scratch) {
+  Kernel::evaluate(components, block, scratch);
+  begin_sums(components, block, scratch);
+}
+
+}  // namespace modebank::em::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

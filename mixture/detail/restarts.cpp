@@ -1,0 +1,112 @@
+#include "mixture/detail/restarts.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "mixture/detail/iterate.hpp"
+#include "mixture/detail/split_merge.hpp"
+#include "mixture/reduction.hpp"
+
+namespace modebank {
+
+namespace {
+
+/// Mean log-likelihood per unit weight within which restarts are at the same optimum [nats].
+constexpr double agreement_per_point = 1e-4;
+/// Near enough to an optimum to try moves out of it.
+constexpr double coarse_tolerance = 1e-5;
+
+std::size_t best_of(const std::vector<EmResult>& results) {
+  return static_cast<std::size_t>(
+      std::max_element(results.begin(), results.end(),
+                       [](const EmResult& a, const EmResult& b) { return a.log_likelihood < b.log_likelihood; }) -
+      results.begin());
+}
+
+EmOptions with_iterations_left(const EmOptions& options, int spent) {
+  EmOptions rest = options;
+  rest.max_iterations = std::max(0, options.max_iterations - spent);
+  return rest;
+}
+
+GaussianMixture union_of(const GaussianMixture& a, const GaussianMixture& b) {
+  GaussianMixture both = a;
+  both.weights.resize(a.components() + b.components());
+  both.weights << 0.5 * a.weights, 0.5 * b.weights;
+  both.means.resize(a.features(), both.weights.size());
+  both.means << a.means, b.means;
+  both.covariances.insert(both.covariances.end(), b.covariances.begin(), b.covariances.end());
+  both.noise.weight = 0.5 * (a.noise.weight + b.noise.weight);
+  return both;
+}
+
+/// From a start to an optimum that split-and-merge moves do not leave.
+EmResult climb(const PointBlocks& points, Start start, const EmOptions& options, std::uint64_t seed) {
+  const EmOptions rest = with_iterations_left(options, start.iterations);
+  EmResult result =
+      split_and_merge(points, iterate(points, std::move(start.mixture), rest, Steps::extrapolated), rest, seed);
+  result.iterations += start.iterations;
+  return result;
+}
+
+/// Goes on from where `result` stopped.
+void follow(const PointBlocks& points, const EmOptions& options, double hopeless_below, EmResult& result) {
+  const int spent = result.iterations;
+  EmResult rest = iterate(points, std::move(result.mixture), with_iterations_left(options, spent), Steps::extrapolated,
+                          hopeless_below);
+  result = std::move(rest);
+  result.iterations += spent;
+}
+
+}  // namespace
+
+GaussianMixture cross(const GaussianMixture& a, const GaussianMixture& b) {
+  Reduction reduction(union_of(a, b));
+  while (reduction.components() > a.components()) reduction.merge_closest();
+  return reduction.mixture();
+}
+
+EmResult best_of_restarts(const PointBlocks& points, const std::function<Start(int)>& start_of,
+                          const EmOptions& options, std::uint64_t seed) {
+  EmOptions coarse = options;
+  if (options.tolerance > 0.0) coarse.tolerance = std::max(options.tolerance, coarse_tolerance);
+  std::vector<EmResult> results(static_cast<std::size_t>(options.restarts));
+  std::vector<std::optional<EmResult>> crossing(results.size());
+  const auto for_each = [&](auto action) {
+    tbb::parallel_for(0, options.restarts, [&](int i) { action(static_cast<std::size_t>(i)); });
+  };
+  for_each([&](std::size_t i) { results[i] = climb(points, start_of(static_cast<int>(i)), coarse, seed); });
+  std::size_t best = best_of(results);
+  if (options.split_merge > 0 && results[best].mixture.components() > 1) {
+    for_each([&](std::size_t i) {
+      if (i == best) return;
+      const int spent = results[i].iterations;
+      EmResult crossed = climb(points, {cross(results[best].mixture, results[i].mixture), spent}, coarse, seed);
+      if (crossed.log_likelihood > results[i].log_likelihood) crossing[i] = std::move(crossed);
+    });
+    for (std::size_t i = 0; i < results.size(); ++i)
+      if (crossing[i]) results[i] = std::move(*crossing[i]);
+    best = best_of(results);
+  }
+  const double reach = agreement_per_point * points.total_weight();
+  if (coarse.tolerance > options.tolerance) {
+    follow(points, options, -std::numeric_limits<double>::infinity(), results[best]);
+    const double wanted = results[best].log_likelihood - reach;
+    for_each([&](std::size_t i) {
+      if (i != best) follow(points, options, wanted, results[i]);
+    });
+    best = best_of(results);
+  }
+  EmResult result = std::move(results[best]);
+  result.agreeing_restarts = 1;
+  for (std::size_t i = 0; i < results.size(); ++i)
+    if (i != best && results[i].log_likelihood >= result.log_likelihood - reach) ++result.agreeing_restarts;
+  return result;
+}
+
+}  // namespace modebank

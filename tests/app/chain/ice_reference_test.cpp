@@ -1,0 +1,139 @@
+// The values of the reference analysis of the Husky-on-ice runs (BorealTC): computed by an independent numpy script.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "app/chain/chain.hpp"
+#include "app/config/config.hpp"
+#include "filter/judge/scores.hpp"
+#include "filter/learn/learn.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "io/import/import.hpp"
+#include "tests/support/paths.hpp"
+
+namespace modebank::app {
+namespace {
+
+constexpr double theta_tolerance = 2e-4;      // the reference is printed to four decimals
+constexpr double variance_tolerance = 1e-3;   // relative; printed to four digits
+constexpr double log_score_tolerance = 0.01;  // both maximise a flat likelihood
+constexpr double rmse_tolerance = 2e-4;
+constexpr double tail_tolerance = 1e-3;  // printed to three decimals
+
+Config ice_config(bool odd_runs_train) {
+  Config config = default_config();
+  config.data.root = test::shared_data_dir().string();
+  config.data.inputs = "borealtc/ICE/pro_*.csv";
+  config.data.states = "borealtc/ICE/imu_*.csv";
+  config.data.state = {"wz"};
+  config.data.input = {"velL", "velR"};
+  if (odd_runs_train) config.data.train = {"02", "04", "06", "08", "10", "12"};
+  return config;
+}
+
+/// What the reference states for one fold.
+struct Fold {
+  bool odd_runs_train;
+  Index transitions, windows;
+  Eigen::Vector3d theta;
+  double residual_variance;
+  double train_log_score, test_log_score, train_rmse, test_rmse;
+  double noise_only_log_score;
+  double bank_log_score_at_least, bank_rmse_at_most;  // 12 components, mean over seeds
+};
+
+void PrintTo(const Fold& fold, std::ostream* out) {
+  *out << (fold.odd_runs_train ? "odd runs train" : "even runs train");
+}
+
+const Fold even{false, 2636, 2492,  {-0.1561, -0.1615, 0.1610}, 6.015e-4, 2.289, 2.519, 0.0245, 0.0180,
+                3.264, 2.9,  0.0180};
+const Fold odd{true,  2921, 2777,  {-0.3524, -0.4440, 0.4465}, 2.096e-4, 2.816, 1.684, 0.0145, 0.0262,
+               2.741, 2.5,  0.0260};
+
+const SummaryRow& pooled(const std::vector<SummaryRow>& rows, const std::string& filter, Role role) {
+  return *std::find_if(rows.begin(), rows.end(), [&](const SummaryRow& row) {
+    return row.filter == filter && row.role == role && row.run == "*";
+  });
+}
+
+/// The reference's residual variance is about the residuals' mean; ours is the mean square, as Q is.
+double variance_about_mean(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
+  const LinearModel model = unpack(structure, global.theta);
+  double sum = 0.0;
+  for (const Trajectory& run : recording.runs)
+    for (Index k = 0; run.role == Role::train && k < run.transitions(); ++k)
+      sum += run.state(0, k + 1) - model.next(run.state.col(k), run.input.col(k))(0);
+  const double mean = sum / static_cast<double>(global.transitions);
+  return global.residual_covariance(0, 0) - mean * mean;
+}
+
+class IceReference : public ::testing::TestWithParam<Fold> {};
+
+TEST_P(IceReference, CountsGlobalModelAndBaseline) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  const Fold& fold = GetParam();
+  const ChainOptions options = chain_options(ice_config(fold.odd_runs_train));
+  StageSource computed;
+  const Listener silent;
+  Chain chain(computed, silent);
+  const Archive& archive = chain.run(options, Stage::windows, {});
+  EXPECT_EQ(archive.recording->transitions(Role::train), fold.transitions);
+  EXPECT_EQ(archive.windows->count(), fold.windows);
+  const GlobalModel& global = archive.windows->global;
+  EXPECT_LE((global.theta - fold.theta).cwiseAbs().maxCoeff(), theta_tolerance) << global.theta.transpose();
+  EXPECT_NEAR(variance_about_mean(*archive.recording, global, archive.windows->structure), fold.residual_variance,
+              variance_tolerance * fold.residual_variance);
+
+  const Baseline baseline = learn_baseline(*archive.recording, global, archive.windows->structure);
+  EXPECT_TRUE(baseline.at_bound) << "smooth gyro data show no measurement noise";
+  const auto rows_of = [&](const std::string& name, const Bank& bank) {
+    const FilterOptions filter = competitor_filter(name, options.filter.time_steps);
+    return score_filter(name, bank, *archive.recording, filter, options.scoring).summary;
+  };
+  const std::vector<SummaryRow> summary = rows_of("baseline", baseline.bank);
+  const SummaryRow& train = pooled(summary, "baseline", Role::train);
+  const SummaryRow& test = pooled(summary, "baseline", Role::test);
+  EXPECT_NEAR(train.log_score, fold.train_log_score, log_score_tolerance);
+  EXPECT_NEAR(test.log_score, fold.test_log_score, log_score_tolerance);
+  EXPECT_NEAR(train.rmse(0), fold.train_rmse, rmse_tolerance);
+  EXPECT_NEAR(test.rmse(0), fold.test_rmse, rmse_tolerance);
+  if (!fold.odd_runs_train) {
+    EXPECT_NEAR(test.tail_above, 0.009, tail_tolerance);
+    EXPECT_NEAR(test.tail_below, 0.030, tail_tolerance);
+  }
+  const Bank noise_only = learn_noise_only(*archive.recording, archive.windows->structure, baseline.bank.R);
+  EXPECT_NEAR(pooled(rows_of("noise_only", noise_only), "noise_only", Role::test).log_score, fold.noise_only_log_score,
+              0.05);
+}
+
+TEST_P(IceReference, TwelveComponentsReachTheLevel) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  const Fold& fold = GetParam();
+  Config config = ice_config(fold.odd_runs_train);
+  config.mixture.selection.components = {12};
+  constexpr int seeds = 10;
+  double log_score = 0.0, rmse = 0.0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    config.job.seed = static_cast<std::uint64_t>(seed);
+    StageSource computed;
+    const Listener silent;
+    Chain chain(computed, silent);
+    const Archive& archive = chain.run(chain_options(config), Stage::bank_scores, {});
+    const SummaryRow& test = pooled(archive.summary, "bank", Role::test);
+    log_score += test.log_score / seeds;
+    rmse += test.rmse(0) / seeds;
+  }
+  RecordProperty("log_score", std::to_string(log_score));
+  RecordProperty("rmse", std::to_string(rmse));
+  EXPECT_GE(log_score, fold.bank_log_score_at_least);
+  EXPECT_LE(rmse, fold.bank_rmse_at_most);
+}
+
+INSTANTIATE_TEST_SUITE_P(BothFolds, IceReference, ::testing::Values(even, odd),
+                         [](const auto& test) { return test.param.odd_runs_train ? "OddRunsTrain" : "EvenRunsTrain"; });
+
+}  // namespace
+}  // namespace modebank::app

@@ -1,0 +1,97 @@
+// Every window of real runs and of simulated ones, solved by both solvers of linear models.
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "ident/fit/audit.hpp"
+#include "ident/simulate/simulate.hpp"
+#include "io/import/import.hpp"
+#include "tests/ident/fit/batch_test_support.hpp"
+#include "tests/support/paths.hpp"
+
+namespace modebank {
+namespace {
+
+constexpr double stationary = 1e-10;
+
+/// What one window says of its two solutions.
+struct Comparison {
+  double cost_above = 0.0;      ///< of the batch solver, relative to Ceres'
+  double gradient = 0.0;        ///< relative, at what the batch solver gives
+  double ceres_gradient = 0.0;  ///< at what Ceres and Newton's method give
+};
+
+/// Ceres starts where the batch solver does: at least squares, or the Huber optimum.
+std::vector<Comparison> compare(const Recording& recording, FitOptions options) {
+  options.solver = WindowSolver::batch;
+  const LinearStructure structure = linear_structure(recording.state_count(), recording.input_count(), options);
+  const WindowFits fits = fit_windows(recording, options);
+  EXPECT_GT(fits.audit.batch, fits.count() * 9 / 10);
+  const LinearWindows context(recording, options, structure, fits.global);
+  const ParameterPrior prior{fits.global.theta, fits.prior_sd};
+  std::vector<Comparison> result(static_cast<std::size_t>(fits.count()));
+  tbb::parallel_for(std::size_t{0}, result.size(), [&](std::size_t w) {
+    const LocalModel fit = fits.at(static_cast<Index>(w));
+    const Window& window = fits.windows[w];
+    const AuditedWindow audited = audit_window(context, window, &prior, fit);
+    const auto data = context.load(window);
+    if (!audited.compared || !data) return;
+    const test::ReferenceProblem problem{options.loss, default_loss_scale(options.loss), data->scale.sigma(0),
+                                         prior.mean.cast<test::Real>(),
+                                         prior.sd.array().square().inverse().cast<test::Real>()};
+    const test::Regression samples = test::window_of(context.run_of(window), window.start, options.length, structure);
+    const auto gradient = [&](const LocalModel& model) {
+      if (model.status == FitStatus::iteration_limit) return 0.0;  // says so itself
+      return problem.relative_gradient(samples, model.theta.cast<test::Real>());
+    };
+    result[w] = {audited.cost, gradient(fit), gradient(context.fit(window, &prior))};
+  });
+  return result;
+}
+
+/// Non-convex losses may end in another minimum in one window of a thousand; audits count those and take Ceres'.
+void expect_agreement(const Recording& recording, FitOptions options, const std::string& name) {
+  for (const Loss loss : test::all_losses) {
+    options.loss = loss;
+    const std::vector<Comparison> windows = compare(recording, options);
+    const auto count = [&](auto&& condition) { return std::count_if(windows.begin(), windows.end(), condition); };
+    const auto above = count([](const Comparison&c) { return c.cost_above > WindowAudit::tolerance; }),
+               below = count([](const Comparison&c) { return c.cost_above < -WindowAudit::tolerance; });
+    const std::string what = name + ", " + std::string(name_of(loss)) + ": of " + std::to_string(windows.size());
+    const bool convex = RobustLoss(loss, 0.0).convex();
+    EXPECT_LE(above, convex ? 0 : std::ssize(windows) / 1000) << what;
+    EXPECT_TRUE(!convex || below == 0) << what;
+    EXPECT_EQ(count([](const Comparison& c) { return !(c.gradient <= stationary); }), 0) << what;
+    EXPECT_EQ(count([](const Comparison& c) { return !(c.ceres_gradient <= stationary); }), 0) << what;
+    std::cout << what << " windows " << above << " above Ceres' cost, " << below << " below\n";
+  }
+}
+
+TEST(SolverAgreement, EveryWindowOfTheHuskyOnIce) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  DataOptions data;
+  data.root = test::shared_data_dir().string();
+  data.inputs = "borealtc/ICE/pro_*.csv";
+  data.states = "borealtc/ICE/imu_*.csv";
+  data.state = {"wz"};
+  data.input = {"velL", "velR"};
+  expect_agreement(import_data(data).recording, {}, "ice");
+}
+
+TEST(SolverAgreement, EveryWindowOfASwitchingSystemWithOutliers) {
+  std::mt19937_64 generator(43);
+  std::vector<Trajectory> runs;
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector3d theta = i % 2 ? Eigen::Vector3d(-0.6, -0.8, 0.75) : Eigen::Vector3d(test::skid_theta);
+    runs.push_back(test::gaussian_run(test::skid_structure, theta, 0.05, 1300, generator));
+    runs.back().run = std::to_string(i);
+    for (Index k = 0; k < 1300; ++k)
+      if (generator() % 20 == 0) runs.back().state(0, k) += generator() % 2 ? 1.5 : -0.7;
+  }
+  expect_agreement(test::make_recording(runs), {}, "switching");
+}
+
+}  // namespace
+}  // namespace modebank

@@ -1,0 +1,259 @@
+// A stage whose output another value of a key changes has another key then: trials of a study that share stages by
+// their keys are what `run` writes. Every key of the option table is tried with other values of its range.
+#include "app/chain/stage_key.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <random>
+#include <set>
+#include <sstream>
+
+#include "app/chain/chain.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "io/files/read_file.hpp"
+#include "io/files/sha256.hpp"
+#include "tests/support/paths.hpp"
+
+namespace modebank::app {
+namespace {
+
+using test::TemporaryFolder;
+using test::write_file;
+
+/// A scalar system that switches between three ways to answer its inputs, in two blocks of time.
+std::string csv_run(unsigned seed) {
+  std::mt19937_64 generator(seed);
+  const auto uniform = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53 - 0.5; };
+  constexpr std::array<double, 3> gains{0.1, 0.5, 1.2};
+  std::ostringstream text;
+  text.precision(17);
+  text << "time,clock,wz,other,left,right,weight,block\n";
+  double wz = 0.0;
+  for (int k = 0; k < 90; ++k) {
+    const double left = uniform(), right = uniform();
+    text << 0.1 * k << ',' << 0.12 * k << ',' << wz + 0.02 * uniform() << ',' << 0.9 * wz + 0.01 * uniform() << ','
+         << left << ',' << right << ',' << 1.0 + 0.5 * uniform() << ',' << k / 45 << '\n';
+    wz += -0.4 * wz + gains[static_cast<std::size_t>(k / 15 % 3)] * (right - left) + 0.03 * uniform();
+  }
+  return text.str();
+}
+
+/// Computes every stage and remembers its key and the bytes of its part of the archive.
+class Recorder : public StageSource {
+ public:
+  explicit Recorder(std::filesystem::path scratch) : scratch_(std::move(scratch)) {}
+  void provide(Stage stage, const std::string& key, const StagePart& part) override {
+    part.compute();
+    Archive content = part.copy();
+    content.provenance = {};
+    write_archive(scratch_, content);
+    keys[index_of(stage)] = key;
+    contents[index_of(stage)] = sha256_hex(read_file(scratch_));
+  }
+  StageKeys keys;
+  std::array<std::string, stage_count> contents;
+
+ private:
+  std::filesystem::path scratch_;
+};
+
+class StageKey : public ::testing::Test {
+ protected:
+  StageKey() {
+    std::filesystem::create_directory(file("elsewhere"));
+    for (unsigned run = 0; run < 3; ++run) {
+      const std::string name = "run_0" + std::to_string(run) + ".csv";
+      write_file(file(name), csv_run(run));
+      write_file(file("elsewhere") / name, csv_run(run + 3));
+    }
+    write_file(file("base.ini"),
+               "[data]\ninputs = run_*.csv\nstate = wz\ninput = left, right\n[window]\nlength = 10\nstep = 3\n"
+               "[mixture]\ncomponents = 3\nrestarts = 2\nsplit_merge = 1\nheldout = never\n"
+               "[bank]\nfolds = 2\nmax_iterations = 2\nrestarts = 1\n");
+  }
+
+  std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
+  Config configured(const KeyValues& keys) const { return load_config(file("base.ini"), keys); }
+  Recorder recorded(const Config& config) const {
+    Recorder recorder(file("part.h5"));
+    const Listener silent;
+    Chain(recorder, silent).run(chain_options(config), Stage::bank_scores, {});
+    return recorder;
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+const std::vector<KeyValues> bases{
+    {{"bank.modes", "2"}},
+    {{"bank.modes", "2"}, {"bank.refine", "em"}},
+    {{"bank.refine", "em"}, {"bank.members", "2"}, {"filter.noise", "adaptive"}},
+    {{"window.model", "varx"}, {"bank.modes", "2"}},
+    {{"window.scale", "fixed"}, {"window.sigma", "0.1"}, {"bank.noise", "fixed"}, {"bank.transition", "stay"}},
+};
+
+/// Other values of keys whose range no rule can be read from.
+const std::map<std::string, std::vector<std::string>> texts{
+    {"data.root", {"elsewhere"}}, {"data.inputs", {"run_0*.csv"}}, {"data.states", {"run_*.csv"}},
+    {"data.state", {"other"}},    {"data.input", {"left"}},        {"data.truth", {"other"}},
+    {"data.weight", {"weight"}},  {"data.state_unit", {"rad/s"}},  {"data.input_unit", {"m/s"}},
+    {"data.time", {"clock"}},     {"data.run", {"block"}},         {"data.train", {"01"}},
+    {"data.test", {"00"}},        {"data.lag_s", {"0.1", "auto"}}, {"mixture.components", {"2", "1..3"}},
+    {"window.prior_sd", {"0.3"}}, {"job.seed", {"2", "3"}},        {"filter.horizon", {"2", "1..3"}},
+};
+
+/// Other values that the option accepts: words, or some numbers.
+std::vector<std::string> others(const Option& option, const Config& base) {
+  std::vector<std::string> candidates{"2", "0.5", "0", "7", "0.05", "1"};
+  const auto text = texts.find(option.key);
+  if (text != texts.end()) candidates = text->second;
+  if (text == texts.end() && option.range.find(" | ") != std::string::npos) {
+    candidates.clear();
+    std::istringstream words(option.range);
+    for (std::string word; words >> word;)
+      if (word != "|") candidates.push_back(word);
+  }
+  std::vector<std::string> values;
+  for (const std::string& candidate : candidates) try {
+      Config other = base;
+      option.set(other, candidate);
+      if (option.get(other) != option.get(base)) values.push_back(candidate);
+    } catch (const std::invalid_argument&) {
+    }
+  constexpr std::size_t numbers = 3;
+  if (text == texts.end() && candidates.front() == "2" && values.size() > numbers) values.resize(numbers);
+  return values;
+}
+
+struct Case {
+  std::string name() const { return key + " = " + value + " (base " + std::to_string(base) + ")"; }
+
+  std::size_t base;
+  std::string key, value;
+  std::string refusal = {};             ///< what was thrown; empty: the chain ran
+  std::vector<std::string> stale = {};  ///< stages that changed while their keys did not
+  bool changed = false;
+};
+
+/// Why a chain may refuse a value. Whatever else is thrown is a failure of this test, not a value it could not try.
+struct RuledOut {
+  std::string key, reason;
+};
+const std::vector<RuledOut> ruled_out{
+    {"data.rate_hz", "no training run has the 10 transitions of a window"},
+    {"window.model", "it fits linear modes"},
+    {"window.state_lags", "are those of model = varx"},
+    {"window.input_lags", "are those of model = varx"},
+    {"window.input_delay", "are those of model = varx"},
+    {"window.residual", "does not simulate model = varx"},
+    {"window.scale", "window.scale = fixed needs window.sigma"},
+    {"window.sigma", "window.scale = fixed needs window.sigma"},
+    {"mixture.bootstrap", "needs 2 resamples or more"},
+    {"mixture.covariance_floor", "needs a finite covariance_floor"},
+};
+
+/// Keys that change nothing on these data, so that this test says nothing about them.
+const std::map<std::string, std::string> without_effect{
+    {"data.states", "the other value names the same files"},
+    {"data.join", "there are no states files to join"},
+    {"data.lag_range_s", "no lag is searched"},
+    {"data.missing", "nothing is missing"},
+    {"data.disorder", "time is in order"},
+    {"window.wheel_radius_m", "is read by icr and slip alone, which are no base"},
+    {"mixture.windows", "every choice takes the same windows (cause not looked into)"},
+    {"mixture.straddling", "every choice treats all windows alike (cause not looked into)"},
+    {"bank.screen", "no mode is left out"},
+    {"bank.members", "the number of members changed no bank (cause not looked into)"},
+    {"bank.tolerance", "two iterations are the limit"},
+    {"filter.time_steps", "samples are equally far apart"},
+};
+
+bool may_be_refused(const Case& c) {
+  return std::any_of(ruled_out.begin(), ruled_out.end(), [&](const RuledOut& known) {
+    return known.key == c.key && c.refusal.find(known.reason) != std::string::npos;
+  });
+}
+
+std::vector<Case> all_cases(const std::vector<Config>& configs) {
+  std::vector<Case> cases;
+  for (std::size_t base = 0; base < configs.size(); ++base)
+    for (const Option& option : option_table())
+      if ((decides_numbers(option.key) || option.key == "data.root") && option.section() != "simulate")
+        for (const std::string& value : others(option, configs[base])) cases.push_back({base, option.key, value});
+  return cases;
+}
+
+TEST_F(StageKey, ChangesWhereverAnotherValueOfAKeyChangesTheStage) {
+  std::vector<Config> configs;
+  std::vector<Recorder> before;
+  for (const KeyValues& keys : bases) {
+    configs.push_back(configured(keys));
+    before.push_back(recorded(configs.back()));
+  }
+  std::vector<Case> cases = all_cases(configs);
+  // One after another: HDF5 refuses a second archive in the making, whose image in memory has the name of the first.
+  for (Case& c : cases) try {
+      Config config = configs[c.base];
+      const std::string value = c.key == "data.root" ? file(c.value).string() : c.value;
+      find_option(c.key)->set(config, value);
+      validate(config);
+      const Recorder now = recorded(config);
+      for (std::size_t stage = 0; stage < stage_count; ++stage) {
+        const bool other = now.contents[stage] != before[c.base].contents[stage];
+        c.changed = c.changed || other;
+        if (other && now.keys[stage] == before[c.base].keys[stage])
+          c.stale.emplace_back(name_of(static_cast<Stage>(stage)));
+      }
+    } catch (const std::exception& error) {
+      c.refusal = error.what();
+    }
+  std::set<std::string> tried, effective;
+  for (const Case& c : cases) {
+    if (c.refusal.empty()) tried.insert(c.key);
+    if (c.changed) effective.insert(c.key);
+    EXPECT_TRUE(c.refusal.empty() || may_be_refused(c)) << c.name() << ": " << c.refusal;
+    for (const std::string& stage : c.stale) ADD_FAILURE() << c.name() << " changes " << stage << " but not its key";
+  }
+  for (const Option& option : option_table())
+    if (decides_numbers(option.key) && option.section() != "simulate") {
+      EXPECT_TRUE(tried.contains(option.key)) << option.key << ": no other value could be tried";
+      EXPECT_NE(effective.contains(option.key), without_effect.contains(option.key))
+          << option.key << (effective.contains(option.key) ? " has an effect after all" : " changed nothing");
+    }
+  EXPECT_GE(effective.size(), 60U) << "too few changed anything for this test to mean much (63 did)";
+}
+
+/// The stages that the merging scores of a study once came from: the defect that made these keys.
+TEST_F(StageKey, OfABankWhoseModesAreMergedHoldsTheFilter) {
+  const auto key = [&](const KeyValues& keys) {
+    return stage_keys(chain_inputs(chain_options(configured(keys))), "data")[index_of(Stage::bank)];
+  };
+  EXPECT_NE(key({{"bank.modes", "2"}, {"filter.variant", "imm"}}),
+            key({{"bank.modes", "2"}, {"filter.variant", "mmae"}}));
+  EXPECT_EQ(key({{"filter.variant", "imm"}}), key({{"filter.variant", "mmae"}})) << "is shared where no filter is run";
+}
+
+TEST_F(StageKey, HoldsTheContentOfFiles) {
+  const auto keys = [&](const Config& config, const char* data_hash) {
+    return stage_keys(chain_inputs(chain_options(config)), data_hash);
+  };
+  Config config = configured({});
+  const StageKeys a = keys(config, "a"), b = keys(config, "b");
+  for (std::size_t stage = 0; stage < stage_count; ++stage) EXPECT_NE(a[stage], b[stage]);
+  write_file(file("start.h5"), "one");
+  config.mixture.start_file = file("start.h5").string();
+  const StageKeys one = keys(config, "a");
+  write_file(file("start.h5"), "two");
+  const StageKeys two = keys(config, "a");
+  EXPECT_EQ(one[index_of(Stage::windows)], two[index_of(Stage::windows)]);
+  EXPECT_NE(one[index_of(Stage::mixture)], two[index_of(Stage::mixture)]);
+  EXPECT_NE(one[index_of(Stage::bank_scores)], two[index_of(Stage::bank_scores)]);
+}
+
+}  // namespace
+}  // namespace modebank::app

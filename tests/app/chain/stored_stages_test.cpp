@@ -1,0 +1,125 @@
+// Stages and banks taken from archives, and archives made again: the same numbers every time.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "io/archive/archive.hpp"
+#include "io/archive/inspect.hpp"
+#include "io/files/read_file.hpp"
+#include "io/files/sha256.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+class StoredStages : public CliTest {};
+
+/// All numbers of an archive, as text that round-trips.
+std::string numbers_of(const std::string& archive, const std::string& path) {
+  const nlohmann::json object = inspect(archive, path);
+  if (!object.contains("members")) return path + object.at("value").dump() + "\n";
+  std::string text = path + object.at("attributes").dump() + "\n";
+  for (const auto& [name, member] : object.at("members").items())
+    text += numbers_of(archive, (path == "/" ? "" : path) + "/" + name);
+  return text;
+}
+
+std::string all_stages(const std::string& archive) {
+  std::string text;
+  for (const char* stage :
+       {"/data", "/windows", "/mixture", "/bank", "/baseline", "/noise_only", "/evaluation", "/residual_tests"})
+    text += numbers_of(archive, stage);
+  return text;
+}
+
+TEST_F(StoredStages, NumbersAreTheSameForAnyThreadCount) {
+  ASSERT_EQ(run({"--job.threads", "1"}).status, 0);
+  const std::string one = all_stages(archive());
+  ASSERT_EQ(run({"--job.threads", "2"}).status, 0);
+  EXPECT_EQ(all_stages(archive()), one);
+}
+
+TEST_F(StoredStages, StoredConfigurationReproducesTheArchive) {
+  ASSERT_EQ(run().status, 0);
+  const Archive first = read_archive(archive());
+  const std::string numbers = all_stages(archive());
+  write("test.ini", first.config);
+  ASSERT_EQ(modebank({"run", config()}).status, 0);
+  EXPECT_EQ(all_stages(archive()), numbers);
+  EXPECT_EQ(read_archive(archive()).provenance.config_hash, first.provenance.config_hash);
+}
+
+TEST_F(StoredStages, StoredBankGivesBitIdenticalScores) {
+  ASSERT_EQ(run().status, 0);
+  const std::string again = file("again.h5").string();
+  const ProgramResult result = modebank({"evaluate", config(), "--archive.bank", archive(), "--archive.output", again});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(numbers_of(again, "/evaluation"), numbers_of(archive(), "/evaluation"));
+  EXPECT_EQ(numbers_of(again, "/bank"), numbers_of(archive(), "/bank"));
+}
+
+/// kf is one global model, whatever bank is stored.
+TEST_F(StoredStages, AStoredBankRunAsOneKalmanFilterIsTheBaseline) {
+  ASSERT_EQ(run({"--mixture.components", "3"}).status, 0);
+  const std::string again = file("again.h5").string();
+  const ProgramResult result = modebank(
+      {"evaluate", config(), "--archive.bank", archive(), "--archive.output", again, "--filter.variant", "kf"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Archive content = read_archive(again);
+  EXPECT_EQ(content.bank->mode_count(), 1);
+  EXPECT_EQ(content.evaluations.at(0).runs.at(0).log_density.tail(70),
+            content.evaluations.at(1).runs.at(0).log_density.tail(70));
+}
+
+TEST_F(StoredStages, StagesOneByOneGiveWhatRunGives) {
+  ASSERT_EQ(run().status, 0);
+  const std::string a = file("a.h5").string(), b = file("b.h5").string(), c = file("c.h5").string();
+  ASSERT_EQ(modebank({"identify", config(), "--archive.output", a}).status, 0);
+  EXPECT_FALSE(read_archive(a).mixture.has_value());
+  ASSERT_EQ(modebank({"cluster", config(), "--archive.input", a, "--archive.output", b}).status, 0);
+  EXPECT_FALSE(read_archive(b).bank.has_value());
+  ASSERT_EQ(modebank({"evaluate", config(), "--archive.input", b, "--archive.output", c}).status, 0);
+  EXPECT_EQ(all_stages(c), all_stages(archive()));
+}
+
+TEST_F(StoredStages, StoredStagesMustBeAsConfigured) {
+  ASSERT_EQ(run().status, 0);
+  const std::string again = file("again.h5").string();
+  const auto refusal = [&](const char* command, const char* key, const char* value) {
+    const ProgramResult result = modebank({command, config(), "--data.root", file(".").string(), "--archive.input",
+                                           archive(), "--archive.output", again, key, value});
+    EXPECT_EQ(result.status, 2) << key;
+    EXPECT_THAT(result.err, ::testing::HasSubstr(key + 2)) << "without the dashes";
+    EXPECT_FALSE(std::filesystem::exists(again));
+  };
+  refusal("cluster", "--window.length", "30");
+  refusal("evaluate", "--mixture.components", "1");
+  refusal("identify", "--data.train", "01");
+  const ProgramResult replaced =
+      modebank({"cluster", config(), "--archive.input", archive(), "--archive.output", archive()});
+  EXPECT_EQ(replaced.status, 2) << "an archive must not replace its source";
+}
+
+TEST_F(StoredStages, DamagedBanksAreNotRun) {
+  ASSERT_EQ(run().status, 0);
+  std::string bytes = read_file(archive());
+  bytes[bytes.size() - 9] = static_cast<char>(bytes[bytes.size() - 9] ^ 1);
+  write("damaged.h5", bytes);
+  const ProgramResult result = modebank({"evaluate", config(), "--archive.bank", file("damaged.h5").string(),
+                                         "--archive.output", file("again.h5").string()});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, ::testing::HasSubstr("SHA-256"));
+}
+
+TEST_F(StoredStages, AStoredBankLeavesItsTraceAndIsNotHeldOutOnItsTrainingRuns) {
+  ASSERT_EQ(run().status, 0);
+  const std::string again = file("again.h5").string();
+  const ProgramResult result = modebank({"evaluate", config(), "--archive.bank", archive(), "--archive.output", again,
+                                         "--data.train", "01", "--data.test", "00"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, ::testing::HasSubstr("its bank was trained on 00"));
+  EXPECT_EQ(read_archive(again).provenance.inputs.back().sha256, sha256_hex(read_file(archive())));
+}
+
+}  // namespace
+}  // namespace modebank::test

@@ -1,0 +1,79 @@
+// modebank check: what it prints and its exit status.
+#include <sstream>
+
+#include "tests/app/check/check_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+TEST_F(Check, PrintsAPageAndTheSameNumbersAsJson) {
+  const ProgramResult page = modebank({"check", config(), "--data.root", file(".").string()});
+  ASSERT_EQ(page.status, 0) << page.err;
+  for (const char* part :
+       {"data check: 2 runs", "channel", "findings", "suggested", "data.rate_hz", "window.length", "window.loss"})
+    EXPECT_THAT(page.out, HasSubstr(part));
+  const json check = check_json(config(), {"--data.root", file(".").string()});
+  EXPECT_TRUE(check.at("usable").get<bool>());
+  const json& run = run_of(check, "00");
+  EXPECT_EQ(run.at("inputs_sampling").at("samples"), 80);
+  EXPECT_NEAR(run.at("inputs_sampling").at("rate_hz").get<double>(), 10.0, 1e-6);
+  for (const char* key :
+       {"role", "states_sampling", "states", "inputs", "still", "longest_constant_s", "changes", "rest_s", "rest_mean",
+        "rest_sd", "excitation_order", "transitions", "windows", "deficient_windows", "lag", "problem"})
+    EXPECT_TRUE(run.contains(key)) << key;
+  for (const char* key :
+       {"missing", "least", "largest", "mean", "sd", "quantum", "levels", "repeated", "outliers", "saturated"})
+    EXPECT_TRUE(run.at("inputs")[0].contains(key)) << key;
+  for (const char* key : {"rate_hz", "window_length", "window_loss"})
+    EXPECT_FALSE(check.at("advice").at(key).at("reason").get<std::string>().empty()) << key;
+  EXPECT_EQ(left_behind(), std::vector<std::string>{}) << "nothing is written";
+}
+
+TEST_F(Check, ReadsWhatRunWouldRefuseAndSaysWhatAcceptsIt) {
+  std::istringstream lines(csv_run(90, 5));
+  std::string text, line;
+  for (int k = 0; std::getline(lines, line); ++k) {
+    if (k == 30) text += line + "\n";                                  // time repeats
+    if (k == 50) line = line.substr(0, line.find(',')) + ",,0.1,0.1";  // a missing state
+    text += line + "\n";
+  }
+  write("run_00.csv", text);
+  const std::vector<std::string> root{"--data.root", file(".").string()};
+  EXPECT_EQ(run().status, 1);
+  const json check = check_json(config(), root);
+  const std::string findings = check.at("findings").dump();
+  EXPECT_THAT(findings, HasSubstr("data.disorder = sort"));
+  EXPECT_THAT(findings, HasSubstr("data.missing = gap or predict"));
+  EXPECT_EQ(run_of(check, "00").at("inputs_sampling").at("repeated_times"), 1);
+  EXPECT_EQ(run_of(check, "00").at("states_sampling").at("missing_samples"), 1);
+  EXPECT_EQ(run({"--data.disorder", "sort", "--data.missing", "gap"}).status, 0) << "as it said";
+}
+
+TEST_F(Check, ExitStatusTellsUsageFromUnusableData) {
+  EXPECT_EQ(modebank({"check"}).status, 2);
+  EXPECT_EQ(modebank({"check", file("nothing.ini").string()}).status, 2);
+  EXPECT_EQ(modebank({"check", config(), "--data.root", file(".").string(), "--data.state", "nothing"}).status, 2);
+  const ProgramResult tiny = modebank({"check", config(), "--data.root", file(".").string(), "--window.length", "500"});
+  EXPECT_EQ(tiny.status, 1);
+  EXPECT_THAT(tiny.err, HasSubstr("window.length is 500"));
+  EXPECT_THAT(tiny.out, HasSubstr("UNUSABLE"));
+}
+
+TEST_F(Check, LagAutoReachesSummaryAndArchive) {
+  const ProgramResult result = run({"--data.lag_s", "auto"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("log score none"));
+  const ProgramResult shown = modebank({"show", archive(), "lag/runs", "--json"});
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  EXPECT_EQ(json::parse(shown.out).at("value")[0].at("run"), "00");
+  EXPECT_EQ(modebank({"verify", archive()}).status, 0);
+  const ProgramResult bad = run({"--data.lag_s", "automatic"});
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(bad.err, HasSubstr("a number or auto"));
+}
+
+}  // namespace
+}  // namespace modebank::test

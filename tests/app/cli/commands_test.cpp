@@ -1,0 +1,199 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "io/archive/archive.hpp"
+#include "io/archive/inspect.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+class Commands : public CliTest {};
+
+TEST_F(Commands, RunWritesACompleteArchiveAndASummary) {
+  const ProgramResult result = run();
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* part : {"windows", "mixture", "baseline", "noise_only", "the bank gains"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part;
+  EXPECT_EQ(left_behind(), std::vector<std::string>{"out.h5"});
+  EXPECT_EQ(modebank({"verify", archive()}).status, 0);
+}
+
+TEST_F(Commands, ResidualTestsAreInTheArchiveAndInTheSummary) {
+  const ProgramResult result = run();
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("residuals global"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("% of input correlations (train / test)"), std::string::npos) << result.out;
+  for (const char* model : {"global", "bank", "baseline", "noise_only"})
+    for (const char* name : {"00", "01"}) {
+      const std::string group = std::string("/residual_tests/") + model + "/" + name;
+      EXPECT_EQ(inspect(archive(), group + "/autocorrelation").at("shape"), nlohmann::json({26, 1})) << group;
+      EXPECT_EQ(inspect(archive(), group + "/cross_correlation").at("shape"), nlohmann::json({26, 1, 2})) << group;
+    }
+  const ProgramResult shown = modebank({"show", archive()});
+  EXPECT_NE(shown.out.find("R^2 of the increments"), std::string::npos) << shown.out;
+}
+
+/// The loss is the difference of the summary's scores, also where lags leave samples unscored.
+TEST_F(Commands, MergingModesSaysWhatItCostsInTheSummarysScores) {
+  std::vector<std::string> options{"--window.model", "varx", "--window.state_lags", "3", "--mixture.components", "3"};
+  const auto pooled = [&](Role role) {
+    for (const SummaryRow& row : read_archive(archive()).summary)
+      if (row.filter == "bank" && row.role == role && row.run == "*") return row;
+    return SummaryRow();
+  };
+  ASSERT_EQ(run(options).status, 0);
+  EXPECT_TRUE(read_archive(archive()).merging.empty());
+  const SummaryRow before[]{pooled(Role::train), pooled(Role::test)};
+  options.insert(options.end(), {"--bank.modes", "1"});
+  const ProgramResult result = run(options);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::vector<MergingCost> merging = read_archive(archive()).merging;
+  ASSERT_EQ(merging.size(), 2u);
+  for (const std::size_t i : {0u, 1u}) {
+    const SummaryRow after = pooled(i == 0 ? Role::train : Role::test);
+    EXPECT_EQ(merging[i].role, after.role);
+    EXPECT_EQ(merging[i].components, 3);
+    EXPECT_EQ(merging[i].modes, 1);
+    EXPECT_EQ(merging[i].samples, after.samples);
+    EXPECT_NEAR(merging[i].log_score_unlimited, before[i].log_score, 1e-10);
+    EXPECT_NEAR(merging[i].log_score, after.log_score, 1e-10);
+    EXPECT_NEAR(merging[i].loss, before[i].log_score - after.log_score, 1e-10);
+  }
+  const std::string cost = fmt::format("a loss of {:.4f}", before[1].log_score - pooled(Role::test).log_score);
+  EXPECT_NE(result.out.find("merged    3 components into 1 modes: log score on held-out runs"), std::string::npos);
+  EXPECT_NE(result.out.find(cost), std::string::npos) << cost << '\n' << result.out;
+  EXPECT_NE(modebank({"show", archive()}).out.find(cost), std::string::npos);
+}
+
+/// A gyro that reads 1e15 now and then: every line keeps its columns.
+TEST_F(Commands, HugeNumbersStayInTheirColumns) {
+  std::string text = csv_run(80, 1);
+  for (const double share : {0.3, 0.6}) {
+    const std::size_t row = text.find("\n", static_cast<std::size_t>(share * static_cast<double>(text.size()))) + 1;
+    const std::size_t state = text.find(',', row) + 1;
+    text.replace(state, text.find(',', state) - state, "1e15");
+  }
+  write("run_01.csv", text);
+  const ProgramResult result = run({"--filter.horizon", "1,3"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::istringstream lines(result.out);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("archive") != 0) {
+      EXPECT_LE(line.size(), 220u) << line;
+    }
+  EXPECT_EQ(result.out.find("00000000000"), std::string::npos) << result.out;
+}
+
+/// A column of zeros and ones is the same as leaving the transitions out; the column named must hold weights.
+TEST_F(Commands, SampleWeightsComeFromAColumn) {
+  std::string text = csv_run(80, 1), weighted = "time,wz,left,right,w\n";
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  for (int k = 0; std::getline(lines, line); ++k) weighted += line + (k % 9 == 4 ? ",0\n" : ",3\n");
+  write("run_00.csv", weighted);
+  write("run_01.csv", weighted);
+  ASSERT_EQ(run({"--data.weight", "w"}).status, 0);
+  const Archive archived = read_archive(archive());
+  EXPECT_EQ(archived.recording->runs[0].weight(4), 0.0);
+  EXPECT_EQ(archived.windows->global.transitions, 79 - 9);
+  EXPECT_EQ(archived.windows->transitions(0), 25 - 3);
+  const ProgramResult negative = run({"--data.weight", "left"});
+  EXPECT_EQ(negative.status, 1);
+  EXPECT_NE(negative.err.find("run_00.csv:"), std::string::npos) << negative.err;
+}
+
+TEST_F(Commands, WindowsWithoutAFiniteFitAreAWarning) {
+  std::string text = csv_run(60, 1);
+  const std::size_t row = text.find("\n", text.size() / 2) + 1;
+  const std::size_t state = text.find(',', row) + 1;
+  text.replace(state, text.find(',', state) - state, "1e200");
+  write("run_00.csv", text);
+  const ProgramResult result = modebank({"identify", config(), "--archive.output", archive()});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("windows have no finite fit"), std::string::npos) << result.err;
+  EXPECT_NE(result.out.find("windows have no finite fit"), std::string::npos) << result.out;
+}
+
+TEST_F(Commands, ShowPrintsTheSameSummaryAndAnyObject) {
+  const ProgramResult result = run();
+  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult shown = modebank({"show", archive()});
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  EXPECT_NE(shown.out.find(result.out.substr(0, result.out.find("\narchive"))), std::string::npos);
+  for (const char* part : {"candidates", "modes", "config", "<- selected"})
+    EXPECT_NE(shown.out.find(part), std::string::npos);
+  const ProgramResult object = modebank({"show", archive(), "bank/A", "--json"});
+  ASSERT_EQ(object.status, 0) << object.err;
+  const Archive content = read_archive(archive());
+  const double A = content.bank->modes[0].model.A(0, 0);
+  EXPECT_EQ(nlohmann::json::parse(object.out).at("value")[0][0][0].get<double>(), A);
+  const ProgramResult full = modebank({"show", archive(), "bank/A", "--json", "--form", "full"});
+  EXPECT_EQ(nlohmann::json::parse(full.out).at("value")[0][0][0].get<double>(), 1.0 + A);
+  EXPECT_EQ(modebank({"show", archive(), "bank/nothing"}).status, 2);
+}
+
+TEST_F(Commands, OptionsMayBeGivenWithEqualSignAndMayBeEmpty) {
+  write("test.ini", std::string(config_text()) + "[bank]\nmeasurement_variance = 0.25\n");
+  ASSERT_EQ(run({"--mixture.components=1"}).status, 0);
+  EXPECT_EQ(read_archive(archive()).bank->R(0, 0), 0.25);
+  for (const std::vector<std::string>& empty :
+       {std::vector<std::string>{"--bank.measurement_variance="}, {"--bank.measurement_variance", ""}}) {
+    ASSERT_EQ(run(empty).status, 0);
+    EXPECT_LT(read_archive(archive()).bank->R(0, 0), 0.25);
+  }
+}
+
+TEST_F(Commands, ThePapersOwnLayoutRunsByChangingDataOptionsOnly) {
+  for (const char* run : {"01", "02"}) {
+    std::istringstream lines(csv_run(90, static_cast<unsigned>(run[1])));
+    std::string line, states = "time,IMU_fil_AngZ\n", joints = "Time,name,velocity_0,velocity_1\n";
+    std::getline(lines, line);
+    for (int k = 0; std::getline(lines, line); ++k) {
+      std::istringstream fields(line);
+      std::string time, wz, left, right;
+      std::getline(fields, time, ',');
+      std::getline(fields, wz, ',');
+      std::getline(fields, left, ',');
+      std::getline(fields, right);
+      states += time + "," + wz + "\n";
+      joints += std::to_string(1700000000 + k) + ",\"['front_left', 'front_right']\"," + left + "," + right + "\n";
+    }
+    write("TSyn_" + std::string(run) + ".csv", states);
+    write("joint_states_" + std::string(run) + ".csv", joints);
+  }
+  const std::string husky = (project_dir() / "configs/husky_ice.ini").string();
+  const ProgramResult result =
+      modebank({"run", husky, "--data.root", file(".").string(), "--data.inputs", "joint_states_*.csv", "--data.states",
+                "TSyn_*.csv", "--data.state", "IMU_fil_AngZ", "--data.input", "velocity_0, velocity_1", "--data.join",
+                "row", "--archive.output", archive()});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Archive content = read_archive(archive());
+  ASSERT_EQ(content.recording->runs.size(), 2u);
+  EXPECT_EQ(content.recording->runs[0].samples(), 90);
+  EXPECT_EQ(content.recording->runs[0].run, "01");
+}
+
+TEST_F(Commands, HelpNamesEveryCommandAndOption) {
+  const ProgramResult result = modebank({"--help"});
+  EXPECT_EQ(result.status, 0);
+  for (const char* part :
+       {"run CONFIG", "verify ARCHIVE", "--window.length", "--simulate.state_rate_hz", "default: 25"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part;
+}
+
+TEST_F(Commands, ReadmeHoldsTheTableOfKeysAsHelpPrintsIt) {
+  const ProgramResult result = modebank({"help", "--markdown"});
+  ASSERT_EQ(result.status, 0);
+  std::ifstream stream(project_dir() / "README.md");
+  const std::string readme{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_NE(readme.find(result.out), std::string::npos) << "run: make readme";
+}
+
+}  // namespace
+}  // namespace modebank::test

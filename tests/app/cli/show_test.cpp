@@ -1,0 +1,119 @@
+#include <cstdlib>
+#include <limits>
+#include <sstream>
+
+#include "app/text/number_text.hpp"
+#include "app/text/sparkline.hpp"
+#include "app/text/terminal.hpp"
+#include "app/text/text_table.hpp"
+#include "io/archive/archive.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+/// Sets a variable of the environment for one test.
+class WithVariable {
+ public:
+  WithVariable(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
+  ~WithVariable() { unsetenv(name_); }
+  WithVariable(const WithVariable&) = delete;
+  WithVariable& operator=(const WithVariable&) = delete;
+
+ private:
+  const char* name_;
+};
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(Sparkline, HeightsAreEighthsOrAMarkEach) {
+  Eigen::VectorXd values(6);
+  values << 0, 0.125, 0.5, 1, 7, std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(app::sparkline(values, true), " ▁▄██?");
+  EXPECT_EQ(app::sparkline(values, false), " .+@@?");
+}
+
+TEST(NumberText, IsFixedWhereThatFits) {
+  EXPECT_EQ(app::fixed_or_short(0.0348, 5), "0.03480");
+  EXPECT_EQ(app::fixed_or_short(-99999.25, 1), "-99999.2");
+  EXPECT_EQ(app::fixed_or_short(1e5, 3), "1e+05");
+  EXPECT_EQ(app::fixed_or_short(-1.23456e15, 5), "-1.235e+15");
+  EXPECT_EQ(app::fixed_or_short(std::numeric_limits<double>::quiet_NaN(), 2), "nan");
+  EXPECT_EQ(app::fixed_or_short_list(std::vector<double>{0.5, 2e15}, 2), "0.50 2e+15");
+}
+
+TEST(Wrapped, ContinuesUnderTheLabel) {
+  EXPECT_EQ(app::wrapped("windows   2250 of 25 transitions: all\nshort\n", 26),
+            "windows   2250 of 25\n          transitions: all\nshort\n");
+  EXPECT_EQ(app::wrapped("baseline    underconfident tails\n", 28), "baseline    underconfident\n            tails\n");
+  EXPECT_EQ(app::wrapped("one/word/that/cannot/be/broken and more", 12), "one/word/that/cannot/be/broken\nand more");
+  EXPECT_EQ(app::wrapped("no limit at all", 0), "no limit at all");
+  EXPECT_EQ(app::columns_of("ü│▁x"), 4);
+}
+
+TEST(TextTable, GoesOnBelowWithItsKeyRepeated) {
+  app::TextTable table({{"K", 4}, {"BIC", 8}, {"AIC", 8}, {"ICL", 8}});
+  table.add({"1", "10.5", "20.5", "30.5"});
+  table.add({"2", "1.5", "2.5", "3.5"}, " <-");
+  EXPECT_EQ(table.text(0),
+            "   K      BIC      AIC      ICL\n   1     10.5     20.5     30.5\n   2      1.5      2.5      3.5 <-\n");
+  EXPECT_EQ(table.text(15), "K  BIC  AIC\n1 10.5 20.5\n2  1.5  2.5 <-\nK  ICL\n1 30.5\n2  3.5 <-\n");
+  for (const std::string& line : lines_of(table.text(15))) EXPECT_LE(app::columns_of(line), 15) << line;
+}
+
+class Show : public CliTest {};
+
+TEST_F(Show, DrawsModeProbabilitiesOfHeldOutRunsAtTheWidthOfTheTerminal) {
+  ASSERT_EQ(run().status, 0);
+  const WithVariable locale("LC_ALL", "C.UTF-8"), columns("COLUMNS", "72");
+  const ProgramResult shown = modebank({"show", archive()});
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  for (const char* part : {"mode probabilities on held-out runs", "candidates", "<- selected", "modes\n"})
+    EXPECT_NE(shown.out.find(part), std::string::npos) << part;
+  for (const std::string& line : lines_of(shown.out)) {
+    const bool one_long_word = line.find(archive()) != std::string::npos || line.rfind(' ') < 10;
+    EXPECT_TRUE(one_long_word || app::columns_of(line) <= 72) << line;
+  }
+}
+
+/// At every place the marks of all modes add up to one, as probabilities do.
+TEST_F(Show, SparklineIsTheArchivesProbabilities) {
+  ASSERT_EQ(run({"--mixture.components", "2"}).status, 0);
+  Archive archived = read_archive(archive());
+  ASSERT_EQ(archived.bank->mode_count(), 2);
+  auto& probability = archived.evaluations.at(0).runs.at(1).mode_probability;
+  ASSERT_EQ(archived.evaluations.at(0).filter, "bank");
+  probability.row(0).setZero();
+  probability.row(0).head(40).setOnes();
+  probability.row(1) = 1.0 - probability.row(0).array();
+  const std::vector<std::string> lines = lines_of(app::mode_strip_text(archived, {31, true}));
+  ASSERT_EQ(lines.size(), 4u);
+  EXPECT_EQ(lines[1], "run  01");
+  EXPECT_EQ(lines[2].substr(0, 5 + 10 * 3 + 10), "   0 ██████████          ");
+  EXPECT_EQ(lines[3].substr(0, 5 + 10 + 10 * 3), "   1           ██████████");
+}
+
+TEST_F(Show, IsPlainWithoutUtf8) {
+  ASSERT_EQ(run().status, 0);
+  const WithVariable locale("LC_ALL", "C");
+  const ProgramResult shown = modebank({"show", archive()});
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  for (const char c : shown.out) ASSERT_LT(static_cast<unsigned char>(c), 128);
+}
+
+TEST_F(Show, ArchiveWithoutABankHasNoStrip) {
+  ASSERT_EQ(modebank({"identify", config(), "--archive.output", archive(), "--data.root", file("").string()}).status,
+            0);
+  const ProgramResult shown = modebank({"show", archive()});
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  EXPECT_EQ(shown.out.find("mode probabilities"), std::string::npos);
+  EXPECT_NE(shown.out.find("windows"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace modebank::test

@@ -1,0 +1,190 @@
+// The live filter from outside: a program between two pipes.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "io/archive/archive.hpp"
+#include "tests/app/cli/track_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+std::vector<std::string> header_of(const std::string& line) {
+  std::vector<std::string> names;
+  std::istringstream stream(line);
+  for (std::string name; std::getline(stream, name, ',');) names.push_back(name);
+  return names;
+}
+
+TEST_F(Track, SaysLineByLineWhatEvaluateSaidOfTheSameRun) {
+  const Archive archive = read_archive(this->archive());
+  const RunEvaluation& expected = archive.evaluations[0].runs[1];
+  PipedProgram program(command());
+  const std::vector<std::string> samples = lines("run_01.csv");
+  program.write(samples[0] + "\n");
+  const auto header = program.read_line();
+  ASSERT_TRUE(header);
+  const std::vector<std::string> names = header_of(*header);
+  const auto column = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    program.write(samples[k] + "\n");
+    const auto line = program.read_line();  // each answer before the next sample is sent
+    ASSERT_TRUE(line) << "sample " << k;
+    const std::vector<double> v = numbers(*line);
+    ASSERT_EQ(v.size(), names.size());
+    const auto i = static_cast<Eigen::Index>(k - 1);
+    EXPECT_EQ(v[column("wz")], expected.state(0, i));
+    EXPECT_EQ(v[column("p0")], expected.mode_probability(0, i));
+    EXPECT_EQ(v[column("steps")], i == 0 ? 0 : 1);
+    if (i == 0) continue;
+    EXPECT_EQ(v[column("wz_predicted")], expected.prediction(0, i));
+    EXPECT_EQ(v[column("nis")], expected.nis(i));
+    EXPECT_EQ(v[column("log_density")], expected.log_density(i));
+    const double half = 1.959963984540054 * std::sqrt(expected.innovation_covariance(0, i));
+    EXPECT_NEAR(v[column("wz_upper")], expected.prediction(0, i) + half, 1e-12);
+    EXPECT_NEAR(v[column("wz_lower")], expected.prediction(0, i) - half, 1e-12);
+  }
+  program.close_input();
+  EXPECT_FALSE(program.read_line());
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_EQ(program.errors(), "");
+}
+
+TEST_F(Track, SpeaksNdjson) {
+  const Archive archive = read_archive(this->archive());
+  PipedProgram program(command());
+  const std::vector<std::string> samples = lines("run_01.csv");
+  for (std::size_t k = 1; k < 6; ++k) {
+    const std::vector<double> v = numbers(samples[k]);
+    program.write(json{{"time", v[0]}, {"wz", v[1]}, {"left", v[2]}, {"right", v[3]}, {"note", "ignored"}}.dump() +
+                  "\n");
+    const json answer = json::parse(program.read_line().value());
+    const auto i = static_cast<Eigen::Index>(k - 1);
+    EXPECT_EQ(answer.at("wz").at("estimate"), archive.evaluations[0].runs[1].state(0, i));
+    EXPECT_EQ(answer.at("probability").size(), static_cast<std::size_t>(archive.bank->mode_count()));
+    EXPECT_EQ(answer.at("nis").is_null(), k == 1);
+    EXPECT_EQ(answer.at("alarm"), false);
+  }
+}
+
+/// filter.variant = kf is the global model, not the first of the bank's modes.
+TEST_F(Track, AKalmanFilterIsTheGlobalModel) {
+  PipedProgram kf(command({"--filter.variant", "kf"})), baseline(command({"--track.filter", "baseline"}));
+  const std::vector<std::string> samples = lines("run_01.csv");
+  for (std::size_t k = 0; k < 10; ++k)
+    for (PipedProgram* program : {&kf, &baseline}) program->write(samples[k] + "\n");
+  for (std::size_t k = 0; k < 10; ++k) {
+    const auto line = kf.read_line();
+    ASSERT_TRUE(line);
+    EXPECT_EQ(line, baseline.read_line());
+  }
+}
+
+TEST_F(Track, AnswersMalformedLinesOnStderrAndKeepsItsState) {
+  const std::vector<std::string> samples = lines("run_01.csv");
+  const auto answers = [&](bool disturbed) {
+    PipedProgram program(command());
+    std::vector<std::string> result;
+    for (std::size_t k = 0; k < 12; ++k) {
+      program.write(samples[k] + "\n");
+      result.push_back(program.read_line().value());
+      if (disturbed && k == 5)
+        program.write("0.6,abc,0,0\n0.6,0.1\n\n0.1,0.1,0,0\n,0.1,0,0\n{\"time\": 3}\n" + std::string(2'000'000, 'x') +
+                      "\n");
+    }
+    program.close_input();
+    EXPECT_EQ(program.wait(), 0);
+    if (disturbed) {
+      EXPECT_THAT(program.errors(), HasSubstr("line 7: wz is not a number; skipped"));
+      EXPECT_THAT(program.errors(), HasSubstr("line 8: 2 fields, the header has 4; skipped"));
+      EXPECT_THAT(program.errors(), HasSubstr("line 10: time 0.1 s is not after 0.4 s; skipped"));
+      EXPECT_THAT(program.errors(), HasSubstr("line 11: time is missing; skipped"));
+      EXPECT_THAT(program.errors(), HasSubstr("line 13: is too long"));
+    }
+    return result;
+  };
+  EXPECT_EQ(answers(true), answers(false));
+}
+
+TEST_F(Track, TakesWhatOtherProgramsWrite) {
+  const std::vector<std::string> samples = lines("run_01.csv");
+  const auto answer = [&](const std::vector<std::string>& input, std::size_t answers) {
+    PipedProgram program(command());
+    for (const std::string& line : input) program.write(line);
+    program.close_input();
+    std::vector<std::string> result;
+    for (std::size_t k = 0; k < answers; ++k) result.push_back(program.read_line().value_or("none"));
+    EXPECT_FALSE(program.read_line());
+    EXPECT_EQ(program.wait(), 0);
+    EXPECT_EQ(program.errors(), "");
+    return result;
+  };
+  const std::vector<double> a = numbers(samples[1]), b = numbers(samples[2]);
+  const auto plain = answer({samples[0] + "\n", samples[1] + "\n", samples[2] + "\n"}, 3);
+  // A byte order mark, CR LF, empty lines, columns in another order and more of them, no newline at the end.
+  const auto row = [](const std::vector<double>& v) { return fmt::format("{},x,{},{},{}", v[3], v[1], v[0], v[2]); };
+  EXPECT_EQ(answer({"\xEF\xBB\xBF"
+                    "right,note,\"wz\",time,left\r\n",
+                    "\r\n", row(a) + "\r\n\n", row(b)},
+                   3),
+            plain);
+  // Python's NaN and Infinity are nothing measured.
+  const auto object = [](const std::vector<double>& v, const std::string& wz) {
+    return fmt::format("{{\"time\": {}, \"note\": \"NaN\", \"wz\": {}, \"left\": {}, \"right\": {}}}\n", v[0], wz, v[2],
+                       v[3]);
+  };
+  const std::string first = object(a, fmt::format("{}", a[1]));
+  EXPECT_EQ(answer({"\xEF\xBB\xBF" + first, object(b, "NaN")}, 2), answer({first, object(b, "null")}, 2));
+  EXPECT_EQ(answer({first, object(b, "-Infinity")}, 2), answer({first, object(b, "null")}, 2));
+}
+
+TEST_F(Track, EndsCleanlyWhenNobodyReadsOrASignalComes) {
+  const std::vector<std::string> samples = lines("run_01.csv");
+  {
+    PipedProgram program(command());
+    program.write(samples[0] + "\n" + samples[1] + "\n");
+    program.read_line();
+    program.close_output();
+    program.write(samples[2] + "\n");
+    EXPECT_EQ(program.wait(), 0);
+  }
+  for (const int signal : {SIGINT, SIGTERM}) {
+    PipedProgram program(command());
+    program.write(samples[0] + "\n" + samples[1] + "\n" + samples[2].substr(0, 3));
+    program.read_line();
+    program.read_line();
+    program.send_signal(signal);
+    EXPECT_EQ(program.wait(), 0);
+    EXPECT_EQ(program.errors(), "");
+  }
+  PipedProgram empty(command());
+  empty.close_input();
+  EXPECT_EQ(empty.wait(), 0);
+}
+
+TEST_F(Track, RefusesWhatDoesNotFitBeforeAnySample) {
+  PipedProgram program(command());
+  program.write("time,yaw,left,right\n");
+  EXPECT_EQ(program.wait(), 2);
+  EXPECT_THAT(program.errors(), HasSubstr("no column \"wz\"; columns: time, yaw, left, right"));
+  PipedProgram ambiguous(command());
+  ambiguous.write("time,wz,wz,left,right\n");
+  EXPECT_EQ(ambiguous.wait(), 2);
+  EXPECT_THAT(ambiguous.errors(), HasSubstr("standard input has column \"wz\" twice"));
+  EXPECT_EQ(modebank({"track"}).status, 2);
+  EXPECT_EQ(modebank({"track", file("none.h5").string()}).status, 2);
+  EXPECT_EQ(modebank({"track", archive(), "--data.input", "left"}).status, 2);
+  EXPECT_EQ(modebank({"track", archive(), "--track.level", "1.5"}).status, 2);
+}
+
+}  // namespace
+}  // namespace modebank::test

@@ -1,0 +1,87 @@
+// The live filter's clock from outside: gaps, times that go back, times that are wrong.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/app/cli/track_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+class TrackTime : public Track {};
+
+TEST_F(TrackTime, PredictsOverMissingMeasurementsAndGaps) {
+  PipedProgram program(command());
+  const std::vector<std::string> samples = lines("run_01.csv");
+  for (std::size_t k = 0; k < 10; ++k) {
+    program.write(samples[k] + "\n");
+    program.read_line();
+  }
+  program.write("0.9,,0.1,0.1\n");
+  const std::vector<double> missing = numbers(program.read_line().value());
+  EXPECT_EQ(missing[1], 1);
+  EXPECT_TRUE(std::isfinite(missing[2]) && missing[2] == missing[5]) << "prediction is the estimate";
+  EXPECT_TRUE(std::isnan(missing[7])) << "no NIS";
+  program.write("1.2,0.01,,\n");  // three periods later; the inputs are held
+  EXPECT_EQ(numbers(program.read_line().value())[1], 3);
+  program.write("900,0.01,0.1,0.1\n");
+  const std::vector<double> fresh = numbers(program.read_line().value());
+  EXPECT_EQ(fresh[1], 0);
+  EXPECT_EQ(fresh[5], 0.01);
+  program.write("0.5,0.02,0.1,0.1\n");  // another clock
+  EXPECT_EQ(numbers(program.read_line().value())[1], 0);
+  program.write("0.6,100,0.1,0.1\n");
+  const std::vector<double> outlier = numbers(program.read_line().value());
+  EXPECT_EQ(outlier[9], 1) << "alarm";
+  program.close_input();
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_THAT(program.errors(), HasSubstr("898.8 s without a sample: the filter starts anew"));
+  EXPECT_THAT(program.errors(), HasSubstr("time goes back from 900 s to 0.5 s"));
+}
+
+TEST_F(TrackTime, OneTimeFarAheadCostsNoMoreThanItsOwnSample) {
+  const std::vector<std::string> samples = lines("run_01.csv");
+  const auto answers = [&](bool disturbed) {
+    PipedProgram program(command());
+    std::vector<std::string> result;
+    for (std::size_t k = 0; k < 20; ++k) {
+      program.write(samples[k] + "\n");
+      result.push_back(program.read_line().value());
+      if (!disturbed || k != 10) continue;
+      program.write("1.7e9,0.01,0.1,0.1\n");
+      EXPECT_EQ(numbers(program.read_line().value())[1], 0) << "a start";
+    }
+    program.close_input();
+    EXPECT_EQ(program.wait(), 0);
+    if (disturbed) {
+      EXPECT_THAT(program.errors(), HasSubstr("s without a sample: the filter starts anew"));
+      EXPECT_THAT(program.errors(), HasSubstr("time goes back from 1700000000 s to 1 s, which follows 0.9 s: the "
+                                              "filter goes on from there"));
+    }
+    return result;
+  };
+  EXPECT_EQ(answers(true), answers(false));
+}
+
+TEST_F(TrackTime, AClockThatGoesOnFarAheadIsBelieved) {
+  PipedProgram program(command());
+  const std::vector<std::string> samples = lines("run_01.csv");
+  for (std::size_t k = 0; k < 10; ++k) {
+    program.write(samples[k] + "\n");
+    program.read_line();
+  }
+  for (const char* line : {"900,0.01,0.1,0.1\n", "900.1,0.01,0.1,0.1\n"}) {
+    program.write(line);
+    program.read_line();
+  }
+  program.write("1.0,0.02,0.1,0.1\n");  // back after two samples: another clock
+  EXPECT_EQ(numbers(program.read_line().value())[1], 0);
+  program.close_input();
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_THAT(program.errors(), HasSubstr("time goes back from 900.1 s to 1 s: the filter starts anew"));
+}
+
+}  // namespace
+}  // namespace modebank::test

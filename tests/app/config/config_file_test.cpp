@@ -1,0 +1,114 @@
+#include "app/config/config_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <string>
+
+#include "app/config/option_table.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/support/paths.hpp"
+
+namespace modebank::app {
+namespace {
+
+using test::TemporaryFolder;
+using test::write_file;
+
+class ConfigFile : public ::testing::Test {
+ protected:
+  Config load(const std::string& text, const KeyValues& overrides = {}) const {
+    write_file(folder_.path() / "c.ini", text);
+    return load_config(folder_.path() / "c.ini", overrides);
+  }
+  std::filesystem::path folder() const { return folder_.path(); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(ConfigFile, ReadsValuesCommentsAndLists) {
+  const Config config = load(
+      "\xEF\xBB\xBF# a comment\r\n[data]\r\nstate = wz , vx # trailing\r\n\n[window]\nlength=30\nloss = cauchy\n"
+      "[mixture]\ncomponents = 2..4\n[bank]\nmeasurement_variance =\n");
+  EXPECT_EQ(config.data.state, (std::vector<std::string>{"wz", "vx"}));
+  EXPECT_EQ(config.window.length, 30);
+  EXPECT_EQ(config.window.loss, Loss::cauchy);
+  EXPECT_EQ(config.mixture.selection.components, (std::vector<Eigen::Index>{2, 3, 4}));
+  EXPECT_FALSE(config.bank.measurement_variance.has_value());
+}
+
+TEST_F(ConfigFile, CommandLineWins) {
+  EXPECT_EQ(load("[window]\nlength = 30\n", {{"window.length", "40"}}).window.length, 40);
+}
+
+TEST_F(ConfigFile, ResolvedTextIsAConfigurationWithTheSameValues) {
+  const Config first = load(
+      "[data]\nstate = wz\ninput = a, b\n[window]\nprior_sd = 0.1, 0.2, 0.30000000000000004\n"
+      "[simulate]\nmodes = -0.5, 1, 2 | -0.25, 3, 4\ntransition = 0.9, 0.1 | 0.2, 0.8\n");
+  const std::string text = resolved_text(first);
+  const Config second = load(text);
+  EXPECT_EQ(resolved_text(second), text);
+  EXPECT_EQ(second.window.prior_sd, first.window.prior_sd);
+  EXPECT_EQ(second.simulate.system.transition, first.simulate.system.transition);
+}
+
+TEST_F(ConfigFile, RootIsAbsoluteFromFileThenEnvironmentThenFolder) {
+  unsetenv("MODEBANK_DATA");
+  EXPECT_EQ(load("").data.root, folder().string());
+  EXPECT_EQ(load("[data]\nroot = sub\n").data.root, (folder() / "sub").string());
+  setenv("MODEBANK_DATA", "/somewhere", 1);
+  EXPECT_EQ(load("").data.root, "/somewhere");
+  EXPECT_EQ(load("[data]\nroot = sub\n").data.root, (folder() / "sub").string());
+  unsetenv("MODEBANK_DATA");
+}
+
+TEST_F(ConfigFile, HashIgnoresWhatDecidesNoNumber) {
+  const std::string hash = config_hash(load("[window]\nlength = 30\n"));
+  EXPECT_EQ(
+      config_hash(load("[job]\nthreads = 2\n[archive]\noutput = x.h5\n[data]\nroot = /x\n[window]\nlength = 30\n")),
+      hash);
+  EXPECT_NE(config_hash(load("[window]\nlength = 31\n")), hash);
+  EXPECT_NE(config_hash(load("[window]\nlength = 30\n[job]\nseed = 2\n")), hash);
+}
+
+TEST_F(ConfigFile, EveryOptionReadsItsOwnDefaultBack) {
+  const Config defaults = default_config();
+  for (const Option& option : option_table()) {
+    Config config = default_config();
+    const std::string text = option.get(defaults);
+    // An empty number would mean nothing; only texts, lists and optional numbers may be empty.
+    EXPECT_NO_THROW(option.set(config, text)) << option.key << " = " << text;
+    EXPECT_EQ(option.get(config), text) << option.key;
+    EXPECT_FALSE(option.help.empty()) << option.key;
+    EXPECT_FALSE(option.range.empty()) << option.key;
+  }
+}
+
+TEST_F(ConfigFile, KeyOutsideAnySectionIsExplained) {
+  try {
+    load("length = 3\n");
+    FAIL() << "accepted";
+  } catch (const ConfigurationError& error) {
+    EXPECT_NE(std::string(error.what()).find("c.ini:1"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("section"), std::string::npos) << error.what();
+  }
+}
+
+/// Words of former versions that are no longer understood.
+TEST_F(ConfigFile, WordsThatAreGoneAreAnsweredWithThoseThatAreLeft) {
+  using Case = std::array<std::string, 3>;
+  for (const auto& [key, gone, left] :
+       {Case{"straddling", "trim", "leave_out | keep"}, Case{"start", "hierarchical", "random | kmeans++"},
+        Case{"start", "auto", ".h5"}})
+    try {
+      load("[mixture]\n" + key + " = " + gone + "\n");
+      ADD_FAILURE() << key << " = " << gone << " is accepted";
+    } catch (const ConfigurationError& error) {
+      EXPECT_NE(std::string(error.what()).find(left), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace modebank::app

@@ -1,0 +1,155 @@
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "app/report/figures/figure.hpp"
+#include "ident/base/distributions.hpp"
+#include "io/archive/archive.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+bool has_gnuplot() { return std::system("gnuplot --version >/dev/null 2>&1") == 0; }
+
+#define MODEBANK_NEEDS_GNUPLOT() MODEBANK_NEEDS(has_gnuplot(), "gnuplot is not installed (Debian package gnuplot-nox)")
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// The rows of one block of a figure's data.
+std::vector<std::vector<double>> block(const std::string& data, int number) {
+  std::vector<std::vector<double>> rows;
+  std::istringstream lines(data);
+  int empty = 0, current = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() && ++empty % 2 == 0) ++current;
+    if (line.empty() || line[0] == '#' || current != number) continue;
+    std::istringstream words(line);
+    rows.emplace_back();
+    for (std::string word; words >> word;) rows.back().push_back(word == "NaN" ? std::nan("") : std::stod(word));
+  }
+  return rows;
+}
+
+class Figures : public CliTest {
+ protected:
+  std::set<std::string> drawn() const {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(file("figures")))
+      names.insert(entry.path().filename().string());
+    return names;
+  }
+  /// Into a folder named as seen from the current one.
+  ProgramResult report(std::vector<std::string> options = {}) const {
+    const std::string folder = std::filesystem::relative(file("figures")).string();
+    options.insert(options.begin(), {"report", archive(), "--report.figures", folder});
+    return modebank(options);
+  }
+};
+
+TEST(Figure, TextsAreQuotedAndEmptyBlocksKeepTheirNumber) {
+  app::report::Figure figure("name", "plot x\n");
+  figure.set("label", std::string("it's `date` \"$x\"\nnext"));
+  figure.set("K", Eigen::Index{3});
+  figure.add_block("none", {"a", "b"}, Eigen::MatrixXd(0, 2));
+  figure.add_block("one", {"a", "b"}, (Eigen::MatrixXd(1, 2) << 1, 0.1).finished());
+  EXPECT_NE(figure.script().find("label = 'it''s `date` \"$x\" next'\nK = 3\n"), std::string::npos) << figure.script();
+  EXPECT_EQ(figure.data(), "# none\n# a | b\nNaN NaN\n\n\n# one\n# a | b\n1 0.1\n");
+}
+
+TEST_F(Figures, AreDrawnFromTheArchivesNumbers) {
+  MODEBANK_NEEDS_GNUPLOT();
+  ASSERT_EQ(run().status, 0);
+  const ProgramResult result = report({"--report.sources", "true", "--report.png", "true"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* name : {"local_models", "selection", "estimates", "prediction", "nis", "pit", "coverage"})
+    for (const char* kind : {".svg", ".png", ".gp", ".dat"})
+      EXPECT_TRUE(drawn().count(std::string(name) + kind)) << name << kind;
+  const Archive archived = read_archive(archive());
+  const RunEvaluation& evaluation = archived.evaluations.at(0).runs.at(1);  // bank, the held-out run
+  ASSERT_EQ(archived.recording->runs[1].role, Role::test);
+  const auto nis = block(text_of(file("figures/nis.dat")), 0);
+  const auto band = block(text_of(file("figures/prediction.dat")), 0);
+  ASSERT_EQ(nis.size(), 80u);
+  ASSERT_EQ(band.size(), 80u);
+  for (std::size_t k = 1; k < nis.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    EXPECT_NEAR(nis[k][2], evaluation.nis(i), 1e-8 * evaluation.nis(i));
+    const double sd = std::sqrt(evaluation.innovation_covariance(0, i));
+    EXPECT_NEAR(band[k][3] - band[k][2], 2 * 1.959963984540054 * sd, 1e-7);
+    EXPECT_EQ(std::isnan(band[k][4]), std::abs(evaluation.innovation(0, i)) <= 1.959963984540054 * sd);
+  }
+  const auto sums = block(text_of(file("figures/nis.dat")), 1);
+  for (const auto& row : sums) EXPECT_NEAR(row.back(), 1.0, 1e-8);
+  const auto coverage = block(text_of(file("figures/coverage.dat")), 0);
+  ASSERT_EQ(coverage.size(), 3u);
+  for (const SummaryRow& row : archived.summary)
+    if (row.filter == "bank" && row.run == "*") {
+      EXPECT_NEAR(coverage[2][row.role == Role::train ? 1 : 3], 100 * row.nis_above, 1e-6);
+    }
+}
+
+TEST_F(Figures, HostileNamesAreText) {
+  MODEBANK_NEEDS_GNUPLOT();
+  for (const char* name : {"run_00.csv", "run_01.csv"}) {
+    std::string text = csv_run(80, 3);
+    text.replace(text.find("wz"), 2, "<script>'w{z}_`date`&\xC3\xBC</script>");
+    write(name, text);
+  }
+  ASSERT_EQ(run({"--data.state", "<script>'w{z}_`date`&\xC3\xBC</script>"}).status, 0);
+  const ProgramResult result = report();
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string svg = text_of(file("figures/prediction.svg"));
+  EXPECT_EQ(svg.find("<script>"), std::string::npos);
+  EXPECT_NE(svg.find("&lt;script>'w{z}_`date`&amp;\xC3\xBC&lt;/script>"), std::string::npos);
+}
+
+TEST_F(Figures, OneModeAndNothingHeldOut) {
+  MODEBANK_NEEDS_GNUPLOT();
+  ASSERT_EQ(run({"--mixture.components", "1", "--data.train", "00,01"}).status, 0);
+  const ProgramResult result = report();
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("left out: selection"), std::string::npos) << result.out;
+  EXPECT_TRUE(drawn().count("coverage.svg"));
+}
+
+TEST_F(Figures, AnArchiveWithoutABankSaysWhatIsMissing) {
+  MODEBANK_NEEDS_GNUPLOT();
+  ASSERT_EQ(modebank({"identify", config(), "--archive.output", archive(), "--data.root", file("").string()}).status,
+            0);
+  const ProgramResult result = report();
+  EXPECT_NE(result.out.find("no mixture"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("no evaluation"), std::string::npos) << result.out;
+}
+
+TEST_F(Figures, AMissingGnuplotIsNamedAndNothingIsWritten) {
+  ASSERT_EQ(run().status, 0);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", "/nonexistent", 1);
+  const ProgramResult result = report();
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("gnuplot-nox"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(file("figures")));
+}
+
+TEST_F(Figures, AnUnknownRunAndABrokenArchiveWriteNothing) {
+  ASSERT_EQ(run().status, 0);
+  const ProgramResult unknown = report({"--report.run", "17"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("00, 01"), std::string::npos) << unknown.err;
+  std::string bytes = text_of(archive());
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  write("out.h5", bytes);
+  EXPECT_EQ(report().status, 1);
+  EXPECT_FALSE(std::filesystem::exists(file("figures")));
+}
+
+}  // namespace
+}  // namespace modebank::test

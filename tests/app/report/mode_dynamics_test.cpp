@@ -1,0 +1,94 @@
+#include "app/report/page/mode_dynamics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "app/report/page/window_modes.hpp"
+
+namespace modebank {
+namespace {
+
+constexpr double dynamics_rounding = 1e-12;
+
+Bank bank_of(const LinearStructure& structure, const Eigen::VectorXd& theta, double dt_s) {
+  Bank bank;
+  bank.structure = structure;
+  bank.modes.resize(1);
+  bank.modes[0].model = unpack(structure, theta);
+  bank.C = Eigen::MatrixXd::Identity(structure.states, structure.dimension());
+  bank.dt_s = dt_s;
+  return bank;
+}
+
+Eigen::VectorXd vector(std::initializer_list<double> values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.begin(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// x[k+1] = e^(-dt/tau) x[k] + (1 - e^(-dt/tau)) g u[k], the exact step response of tau x' = g u - x.
+TEST(ModeDynamics, FirstOrderLag) {
+  const double dt = 0.1, tau = 0.7, gain = -2.5, a = std::expm1(-dt / tau);
+  const ModeDynamics dynamics = mode_dynamics(bank_of({1, 1}, vector({a, -a * gain}), dt), 0);
+  ASSERT_EQ(dynamics.decays.size(), 1u);
+  EXPECT_NEAR(dynamics.decays[0].time_constant_s, tau, dynamics_rounding);
+  EXPECT_EQ(dynamics.decays[0].frequency_hz, 0.0);
+  EXPECT_NEAR(dynamics.gain(0, 0), gain, dynamics_rounding);
+}
+
+/// A rotation by w dt shrinking with tau: one conjugate pair.
+TEST(ModeDynamics, DampedOscillation) {
+  const double dt = 0.05, tau = 2.0, hertz = 1.5, angle = 2 * std::numbers::pi * hertz * dt, size = std::exp(-dt / tau);
+  const double c = size * std::cos(angle), s = size * std::sin(angle);
+  const ModeDynamics dynamics = mode_dynamics(bank_of({2, 1}, vector({c - 1, -s, 1, s, c - 1, 0}), dt), 0);
+  ASSERT_EQ(dynamics.decays.size(), 1u);
+  EXPECT_NEAR(dynamics.decays[0].time_constant_s, tau, dynamics_rounding);
+  EXPECT_NEAR(dynamics.decays[0].frequency_hz, hertz, dynamics_rounding);
+  // The fixed point of x = (I + A) x + B.
+  Eigen::Matrix2d A;
+  A << c - 1, -s, s, c - 1;
+  const Eigen::Vector2d fixed = -A.inverse() * Eigen::Vector2d(1, 0);
+  EXPECT_NEAR((dynamics.gain - fixed).norm(), 0.0, dynamics_rounding);
+}
+
+/// With lags an input held over all of them acts by the sum of its coefficients, and the state's lags sum likewise.
+TEST(ModeDynamics, LaggedModelsGainIsThatOfTheirSums) {
+  const LinearStructure structure{1, 2, false, 2, 2, 1};  // A_lag1 A_lag2 B1_lag1 B2_lag1 B1_lag2 B2_lag2
+  const ModeDynamics dynamics = mode_dynamics(bank_of(structure, vector({-0.5, 0.1, 0.3, -0.2, 0.1, -0.4}), 0.1), 0);
+  ASSERT_EQ(dynamics.gain.cols(), 2);
+  EXPECT_NEAR(dynamics.gain(0, 0), 0.4 / 0.4, dynamics_rounding);
+  EXPECT_NEAR(dynamics.gain(0, 1), -0.6 / 0.4, dynamics_rounding);
+  // lambda^2 = 0.5 lambda + 0.1: one root of each sign.
+  ASSERT_EQ(dynamics.decays.size(), 2u);
+  const double root = std::sqrt(0.25 + 0.4);
+  EXPECT_NEAR(dynamics.decays[0].time_constant_s, -0.1 / std::log((0.5 + root) / 2), dynamics_rounding);
+  EXPECT_NEAR(dynamics.decays[1].time_constant_s, -0.1 / std::log((root - 0.5) / 2), dynamics_rounding);
+  EXPECT_NEAR(dynamics.decays[1].frequency_hz, 5.0, dynamics_rounding);  // alternates at half the sample rate
+}
+
+TEST(ModeDynamics, IntegratorsDeadBeatAndGrowth) {
+  const ModeDynamics integrator = mode_dynamics(bank_of({1, 1}, vector({0.0, 0.2}), 0.1), 0);
+  EXPECT_EQ(integrator.decays[0].time_constant_s, std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(std::isnan(integrator.gain(0, 0)));
+  EXPECT_EQ(mode_dynamics(bank_of({1, 1}, vector({-1.0, 0.2}), 0.1), 0).decays[0].time_constant_s, 0.0);
+  EXPECT_NEAR(mode_dynamics(bank_of({1, 1}, vector({std::expm1(0.1), 0.2}), 0.1), 0).decays[0].time_constant_s, -1.0,
+              dynamics_rounding);
+  EXPECT_EQ(mode_dynamics(bank_of({1, 0}, vector({-0.3}), 0.1), 0).gain.cols(), 0);
+}
+
+TEST(WindowModes, TheMostProbableOverTheTransitions) {
+  RunEvaluation evaluation;
+  evaluation.mode_probability.resize(2, 5);
+  evaluation.mode_probability << 0.9, 0.2, 0.3, std::nan(""), 0.9,  //
+      0.1, 0.8, 0.7, std::nan(""), 0.1;
+  const Eigen::VectorXi modes = window_modes({{0, 0}, {0, 2}, {0, 1}}, 2, {evaluation});
+  EXPECT_EQ(modes(0), 1);  // samples 1 and 2; the window's first sample is no transition's end
+  EXPECT_EQ(modes(1), 0);  // sample 4, because 3 is unknown
+  EXPECT_EQ(modes(2), 1);
+  EXPECT_EQ(window_modes({{0, 2}}, 1, {evaluation})(0), -1);
+}
+
+}  // namespace
+}  // namespace modebank

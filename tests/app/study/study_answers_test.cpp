@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/study/answers/answers.hpp"
+#include "app/study/answers/answers_text.hpp"
+#include "app/study/answers/value_groups.hpp"
+
+namespace modebank::app {
+namespace {
+
+constexpr double absent = std::numeric_limits<double>::quiet_NaN();
+
+TrialRow trial(std::vector<std::string> varied, std::vector<double> scores, std::int64_t repeat = 0) {
+  TrialRow row;
+  row.key = "key";
+  for (const std::string& value : varied) row.key += "-" + value;
+  row.key += "-" + std::to_string(repeat);
+  row.varied = std::move(varied);
+  row.repeat = repeat;
+  row.seed = 1 + static_cast<std::uint64_t>(repeat);
+  row.status = TrialStatus::done;
+  row.scores = std::move(scores);
+  return row;
+}
+
+/// Two keys, two values each, two repeats: log score = 10 K + (full ? 1 : 0) + repeat / 10, K modes.
+StudyTable grid() {
+  StudyTable table{
+      {"mixture.components", "mixture.covariance"}, {"modes", "bank_test_log_score", "bank_test_tail_above"}, {}};
+  for (const int components : {2, 3})
+    for (const std::string covariance : {"full", "diagonal"})
+      for (const int repeat : {0, 1}) {
+        const double log_score = 10.0 * components + (covariance == "full") + 0.1 * repeat;
+        table.rows.push_back(trial({std::to_string(components), covariance},
+                                   {static_cast<double>(components), log_score, 0.01 * components}, repeat));
+      }
+  return table;
+}
+
+const MainEffect& effect(const Answers& answers, const std::string& key, const std::string& value,
+                         const std::string& score) {
+  for (const MainEffect& candidate : answers.main_effects)
+    if (candidate.key == key && candidate.value == value && candidate.score == score) return candidate;
+  throw std::runtime_error("no effect of " + key + " = " + value + " on " + score);
+}
+
+TEST(StudyAnswers, MainEffectsAreMeansOverTheOtherKeys) {
+  const Answers answers = answer(grid());
+  EXPECT_EQ(answers.headline, "bank_test_log_score");
+  const MainEffect& two = effect(answers, "mixture.components", "2", answers.headline);
+  EXPECT_EQ(two.trials, 4);
+  EXPECT_NEAR(two.mean, (21.0 + 21.1 + 20.0 + 20.1) / 4, 1e-12);
+  EXPECT_NEAR(two.sd, std::sqrt(4 * (0.25 + 0.0025) / 3), 1e-12);  // +-0.5 +-0.05 about the mean
+  EXPECT_NEAR(effect(answers, "mixture.covariance", "full", answers.headline).mean, 26.05, 1e-12);
+  EXPECT_NEAR(effect(answers, "mixture.components", "3", "bank_test_tail_above").mean, 0.03, 1e-12);
+}
+
+/// In a full grid the shares of the keys and what repeats leave add up to one.
+TEST(StudyAnswers, InfluenceIsTheShareOfVarianceExplained) {
+  const Answers answers = answer(grid());
+  double components = 0, covariance = 0;
+  for (const KeyInfluence& influence : answers.influences)
+    if (influence.score == answers.headline)
+      (influence.key == "mixture.components" ? components : covariance) = influence.share;
+  const double total = 25.0 + 0.25 + 0.0025;  // +-5, +-0.5 and +-0.05 about the mean
+  EXPECT_NEAR(components, 25.0 / total, 1e-12);
+  EXPECT_NEAR(covariance, 0.25 / total, 1e-12);
+}
+
+TEST(StudyAnswers, BestIsJudgedByTheMeanOverRepeats) {
+  StudyTable table = grid();
+  table.rows[0].scores[1] = 100.0;   // one lucky seed of K = 2 full ...
+  table.rows[1].scores[1] = -100.0;  // ... whose other seed is as bad
+  const Answers answers = answer(table);
+  const auto best = std::find_if(answers.best.begin(), answers.best.end(),
+                                 [](const BestSetting& b) { return b.score == "bank_test_log_score"; });
+  ASSERT_NE(best, answers.best.end());
+  EXPECT_NEAR(best->value, 31.05, 1e-12);
+  EXPECT_EQ(best->repeats, 2);
+  EXPECT_EQ(table.rows[best->row].varied, (std::vector<std::string>{"3", "full"}));
+}
+
+TEST(StudyAnswers, GoalsFollowFromTheScoresNames) {
+  using Kind = ScoreGoal::Kind;
+  EXPECT_EQ(goal_of("bank_test_log_score", 1)->kind, Kind::higher);
+  EXPECT_EQ(goal_of("noise_only_train_rmse_wz", 1)->kind, Kind::lower);
+  EXPECT_EQ(goal_of("baseline_test_pit_distance", 1)->kind, Kind::lower);
+  EXPECT_EQ(goal_of("bank_test_nis_mean", 3)->nominal, 3.0);
+  EXPECT_EQ(goal_of("bank_test_nis_below", 3)->nominal, 0.025);
+  EXPECT_EQ(goal_of("noise_only_test_tail_above", 1)->nominal, 0.025);
+  EXPECT_FALSE(goal_of("bank_test_samples", 1));
+  EXPECT_FALSE(goal_of("modes", 1));
+  const ScoreGoal tail = *goal_of("bank_test_tail_above", 1);
+  EXPECT_LT(tail.loss(0.02), tail.loss(0.04));
+  EXPECT_LT(tail.loss(0.03), tail.loss(0.0));
+}
+
+TEST(StudyAnswers, MeanNisIsNearestToTheNumberOfStates) {
+  StudyTable table{{"a"}, {"bank_test_rmse_vx", "bank_test_rmse_wz", "bank_test_nis_mean"}, {}};
+  table.rows = {trial({"x"}, {1, 1, 1.1}), trial({"y"}, {1, 1, 1.9})};
+  const Answers answers = answer(table);
+  EXPECT_EQ(answers.best.back().row, 1U);
+}
+
+TEST(StudyAnswers, ParetoSetHasOnlyWhatNothingBeats) {
+  StudyTable table{{"k"}, {"modes", "bank_test_log_score"}, {}};
+  table.rows = {trial({"a"}, {5, 2.0}), trial({"b"}, {2, 1.0}), trial({"c"}, {3, 0.5}),
+                trial({"d"}, {4, 2.0}), trial({"e"}, {2, 0.9}), trial({"f"}, {8, 3.0})};
+  const Answers answers = answer(table);
+  std::vector<std::size_t> rows;
+  for (const ParetoSetting& point : answers.pareto) rows.push_back(point.row);
+  EXPECT_EQ(rows, (std::vector<std::size_t>{1, 3, 5}));
+}
+
+TEST(StudyAnswers, SpreadSeparatesRepeatsFromSettings) {
+  const Answers answers = answer(grid());
+  const RepeatSpread& spread = answers.spread.front();
+  EXPECT_EQ(spread.score, "bank_test_log_score");
+  EXPECT_EQ(spread.settings, 4);
+  EXPECT_NEAR(spread.sd, 0.1 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(spread.largest_sd, 0.1 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(spread.between_sd, std::sqrt(4 * 25.25 / 3), 1e-12);
+}
+
+TEST(StudyAnswers, OnlyFinishedTrialsCount) {
+  StudyTable table = grid();
+  table.rows[0].status = TrialStatus::failed;
+  table.rows[1].status = TrialStatus::missing;
+  table.rows[2].scores[1] = absent;
+  const Answers answers = answer(table);
+  EXPECT_EQ(effect(answers, "mixture.components", "2", answers.headline).trials, 1);
+  EXPECT_EQ(answers.spread.front().settings, 2);
+  for (TrialRow& row : table.rows) row.status = TrialStatus::failed;
+  const Answers nothing = answer(table);
+  EXPECT_TRUE(nothing.best.empty());
+  EXPECT_EQ(answers_text(table, nothing), "");
+}
+
+TEST(StudyAnswers, ASampledKeyDoesNotExplainAllByHavingAValuePerTrial) {
+  StudyTable table{{"window.prior_sd", "filter.variant"}, {"modes", "bank_test_log_score"}, {}};
+  for (int i = 0; i < 20; ++i)  // the score follows the variant alone
+    for (const int repeat : {0, 1})
+      table.rows.push_back(trial({std::to_string(0.01 * (i * 7 % 20 + 1)), i % 2 == 0 ? "imm" : "kf"},
+                                 {2.0, i % 2 == 0 ? 1.0 : 0.0}, repeat));
+  EXPECT_EQ(value_groups(table, 0).size(), value_range_count);
+  EXPECT_EQ(value_groups(table, 1).size(), 2u);
+  for (const KeyInfluence& influence : answer(table).influences) {
+    if (influence.key == "filter.variant") {
+      EXPECT_NEAR(influence.share, 1.0, 1e-12);
+    } else {
+      EXPECT_LT(influence.share, 0.3);
+    }
+  }
+  StudyTable sweep{{"window.prior_sd"}, table.score_names, {}};  // nothing else varies: each value stays
+  for (int i = 0; i < 20; ++i) sweep.rows.push_back(trial({std::to_string(i)}, {2.0, 1.0 * i}));
+  EXPECT_EQ(value_groups(sweep, 0).size(), 20u);
+}
+
+TEST(StudyAnswers, ManyNumbersAreGroupedIntoRanges) {
+  StudyTable table{{"window.prior_sd"}, {"bank_test_log_score"}, {}};
+  for (int i = 0; i < 100; ++i) table.rows.push_back(trial({std::to_string((i * 37) % 100)}, {0.0}));
+  const std::vector<ValueGroup> groups = value_groups(table, 0);
+  ASSERT_EQ(groups.size(), value_range_count);
+  EXPECT_EQ(groups.front().label, "0..19");
+  EXPECT_EQ(groups.back().label, "80..99");
+  for (const ValueGroup& group : groups) EXPECT_EQ(group.rows.size(), 20U);
+  table.rows[0].varied[0] = "word";  // not all are numbers any more
+  EXPECT_EQ(value_groups(table, 0).size(), 100U);
+}
+
+TEST(StudyAnswers, TextNamesKeysValuesAndTrials) {
+  const StudyTable table = grid();
+  const std::string text = answers_text(table, answer(table));
+  for (const char* part : {"mixture.components (share 99 %)", "26.0500", "components = 3, covariance = full", "Pareto",
+                           "Spread over repeats", "nearest 0.025"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+TEST(StudyAnswers, KeysVariedInStepAreShownOnce) {
+  StudyTable table = grid();
+  table.varied_keys.emplace_back("window.length");
+  for (TrialRow& row : table.rows) row.varied.push_back(row.varied[0] == "2" ? "20" : "30");
+  const std::string text = answers_text(table, answer(table));
+  EXPECT_NE(text.find("mixture.components with window.length (share 99 %)"), std::string::npos) << text;
+  EXPECT_EQ(text.find("\nwindow.length"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace modebank::app

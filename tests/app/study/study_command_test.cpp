@@ -1,0 +1,222 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "app/study/space/study_plan.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/study_file.hpp"
+#include "tests/app/cli_fixture.hpp"
+#include "tests/io/archive/archive_patch.hpp"
+
+namespace modebank::test {
+namespace {
+
+/// `modebank study` from outside.
+class StudyCommands : public CliTest {
+ protected:
+  static const std::vector<std::string>& six() {
+    static const std::vector<std::string> keys{"--study.vary", "mixture.components = 1 | 2 | 3", "--study.vary",
+                                               "filter.variant = imm | gpb1"};
+    return keys;
+  }
+  ProgramResult study(std::vector<std::string> options, const std::string& folder = "s") const {
+    std::vector<std::string> arguments{"study",           config(),         "--data.root",
+                                       file("").string(), "--study.output", file(folder).string(),
+                                       "--filter.smooth", "false"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return modebank(arguments);
+  }
+  ProgramResult study_six(std::vector<std::string> options = {}, const std::string& folder = "s") const {
+    options.insert(options.begin(), six().begin(), six().end());
+    return study(options, folder);
+  }
+  std::string text(const std::string& name) const {
+    std::ifstream stream(file(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  std::vector<std::filesystem::path> trials(const std::string& folder = "s") const {
+    std::vector<std::filesystem::path> paths;
+    for (const auto& entry : std::filesystem::directory_iterator(file(folder) / "trials"))
+      paths.push_back(entry.path());
+    std::sort(paths.begin(), paths.end());
+    return paths;
+  }
+  static std::size_t count(const std::string& in, const std::string& part) {
+    std::size_t found = 0;
+    for (auto at = in.find(part); at != std::string::npos; at = in.find(part, at + 1)) ++found;
+    return found;
+  }
+};
+
+TEST_F(StudyCommands, LeavesATableOfWhatEachRunWouldSay) {
+  const ProgramResult result = study_six();
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("6 runs: 1 fits of the windows, 3 mixtures"), std::string::npos) << result.out;
+  const StudyFile table = read_study_file(file("s/study.h5"), "study");
+  const auto numbers = [&](const std::string& name) {
+    for (const NamedColumn& column : table.columns)
+      if (column.name == name) return std::get<std::vector<double>>(column.values);
+    throw std::runtime_error("no column " + name);
+  };
+  const ProgramResult alone =
+      run({"--mixture.components", "2", "--filter.variant", "gpb1", "--filter.smooth", "false"});
+  ASSERT_EQ(alone.status, 0) << alone.err;
+  const Archive archive_alone = read_archive(archive());
+  EXPECT_EQ(numbers("mixture.components"), (std::vector<double>{1, 1, 2, 2, 3, 3}));
+  EXPECT_EQ(numbers("modes")[3], static_cast<double>(archive_alone.bank->mode_count()));
+  for (const SummaryRow& row : archive_alone.summary) {
+    if (row.run != "*") continue;
+    const std::string name = row.filter + "_" + std::string(name_of(row.role)) + "_";
+    EXPECT_EQ(numbers(name + "log_score")[3], row.log_score);
+    EXPECT_EQ(numbers(name + "rmse_wz")[3], row.rmse(0));
+    EXPECT_EQ(numbers(name + "tail_above")[3], row.tail_above);
+  }
+  EXPECT_TRUE(verify_archive(file("s/study.h5")).ok());
+  EXPECT_EQ(count(text("s/study.csv"), "\n"), 7u);
+}
+
+TEST_F(StudyCommands, ARepeatedStudyMakesNothingAgain) {
+  ASSERT_EQ(study_six().status, 0);
+  const std::string table = text("s/study.csv");
+  const ProgramResult again = study_six();
+  EXPECT_EQ(again.status, 0);
+  EXPECT_NE(again.out.find("0 runs made, 6 were there"), std::string::npos) << again.out;
+  EXPECT_EQ(text("s/study.csv"), table);
+  const ProgramResult more = study_six({"--study.vary", "bank.stay = 0.95 | 0.9", "--bank.transition", "labels"});
+  EXPECT_NE(more.out.find("6 runs made, 6 were there"), std::string::npos) << more.out << more.err;
+}
+
+TEST_F(StudyCommands, OtherSettingsAndOtherDataAreRefused) {
+  ASSERT_EQ(study_six({"--study.stage", "plan"}).status, 0);
+  const ProgramResult settings = study_six({"--mixture.restarts", "2"});
+  EXPECT_EQ(settings.status, 2);
+  EXPECT_NE(settings.err.find("mixture.restarts '5' -> '2'"), std::string::npos) << settings.err;
+  write("run_00.csv", csv_run(80, 7));
+  const ProgramResult data = study_six();
+  EXPECT_EQ(data.status, 1);
+  EXPECT_NE(data.err.find("run_00.csv has SHA-256"), std::string::npos) << data.err;
+}
+
+TEST_F(StudyCommands, ShardsAndThreadsChangeNoNumber) {
+  ASSERT_EQ(study_six().status, 0);
+  ASSERT_EQ(study_six({"--study.stage", "plan"}, "parts").status, 0);
+  const ProgramResult early = study_six({"--study.stage", "merge"}, "parts");
+  EXPECT_EQ(early.status, 1);
+  EXPECT_NE(early.out.find("missing: mixture.components = "), std::string::npos) << early.out;
+  for (const char* shard : {"2/7", "0/7", "1/7", "3/7", "6/7", "5/7", "4/7"})
+    ASSERT_EQ(study_six({"--study.stage", "run", "--study.shard", shard, "--job.threads", "2"}, "parts").status, 0);
+  ASSERT_EQ(study_six({"--study.stage", "merge"}, "parts").status, 0);
+  EXPECT_EQ(text("parts/study.csv"), text("s/study.csv"));
+  EXPECT_EQ(count(text("parts/log.csv"), ",done,"), 6u);
+}
+
+TEST_F(StudyCommands, ProcessesOnOneStudyShareTheWork) {
+  ASSERT_EQ(study_six({"--study.stage", "plan"}).status, 0);
+  std::vector<std::thread> processes;
+  std::vector<int> status(3, -1);
+  for (std::size_t i = 0; i < status.size(); ++i) processes.emplace_back([&, i] { status[i] = study_six().status; });
+  for (std::thread& process : processes) process.join();
+  EXPECT_EQ(status, std::vector<int>(3, 0));
+  EXPECT_EQ(count(text("s/log.csv"), ",done,"), 6u);  // nothing was made twice
+  ASSERT_EQ(study_six({}, "one").status, 0);
+  EXPECT_EQ(text("s/study.csv"), text("one/study.csv"));
+}
+
+TEST_F(StudyCommands, FlatTablesHoldTheArchives) {
+  ASSERT_EQ(study_six({"--study.flat", "true"}).status, 0);
+  const std::string key = trials().front().stem();
+  std::filesystem::remove_all(file("s/trials"));
+  const ProgramResult shown = modebank({"show", file("s/study.h5").string(), "/trials/" + key + "/bank/weight"});
+  EXPECT_EQ(shown.status, 0) << shown.err;
+  EXPECT_TRUE(verify_archive(file("s/study.h5")).ok());
+}
+
+TEST_F(StudyCommands, FailuresAreOnRecordAndDoNotStopTheOthers) {
+  const std::vector<std::string> keys{"--study.vary", "window.length = 10 | 500 | 12"};
+  const ProgramResult result = study(keys);
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.out.find("2 done, 1 failed"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("failed: window.length = 500: "), std::string::npos) << result.out;
+  EXPECT_EQ(count(text("s/study.csv"), ",failed,"), 1u);
+  std::vector<std::string> stop = keys;
+  stop.insert(stop.end(), {"--study.on_failure", "stop", "--study.jobs", "1"});
+  const ProgramResult stopped = study(stop);
+  EXPECT_EQ(stopped.status, 1);
+  EXPECT_NE(stopped.err.find("study.on_failure = stop"), std::string::npos) << stopped.err;
+}
+
+TEST_F(StudyCommands, RunsThatTakeTooLongHaveFailed) {
+  const ProgramResult result = study({"--study.vary", "mixture.components = 2", "--study.timeout_s", "0.001"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.out.find("longer than study.timeout_s = 0.001"), std::string::npos) << result.out;
+}
+
+TEST_F(StudyCommands, DamageIsFoundNamedAndRepaired) {
+  ASSERT_EQ(study_six().status, 0);
+  const std::string table = text("s/study.csv");
+  const ProgramResult whole = modebank({"verify", file("s").string()});
+  EXPECT_EQ(whole.status, 0) << whole.out;
+  const auto flip = [](const std::filesystem::path& path, long at) {
+    std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out);
+    stream.seekg(at);
+    const char byte = static_cast<char>(stream.get() ^ 16);
+    stream.seekp(at);
+    stream.put(byte);
+  };
+  flip(trials()[1], 5000);
+  flip(trials()[3], 70);  // in the user block
+  write("s/trials/." + trials()[0].stem().string() + ".h5.1-0.tmp", "half");
+  const ProgramResult found = modebank({"verify", file("s").string()});
+  EXPECT_EQ(found.status, 1);
+  EXPECT_EQ(count(found.out, "to redo: mixture.components = "), 2u) << found.out;
+  EXPECT_EQ(trials().size(), 7u);
+  modebank({"verify", file("s").string(), "--repair"});
+  EXPECT_EQ(trials().size(), 4u);
+  flip(trials()[0], 3000);  // resuming finds damage by itself
+  write("s/.study.h5.1-0.tmp", "half");
+  ASSERT_EQ(study_six().status, 0);
+  EXPECT_EQ(text("s/study.csv"), table);
+  EXPECT_FALSE(std::filesystem::exists(file("s/.study.h5.1-0.tmp")));
+  EXPECT_EQ(modebank({"verify", file("s").string()}).status, 0);
+}
+
+TEST_F(StudyCommands, AnArchiveThatLacksAMemberIsFoundThoughItsHashIsRight) {
+  ASSERT_EQ(study({"--study.vary", "mixture.components = 2"}).status, 0);
+  remove_member(trials()[0], "bank/Q");
+  const ProgramResult found = modebank({"verify", file("s").string()});
+  EXPECT_EQ(found.status, 1) << found.out;
+  EXPECT_NE(found.out.find("bank/Q"), std::string::npos) << found.out;
+  EXPECT_NE(found.out.find("to redo: mixture.components = 2"), std::string::npos) << found.out;
+}
+
+TEST_F(StudyCommands, WithoutARunThatSucceedsNoTimeIsPromised) {
+  const ProgramResult result = study({"--study.vary", "window.length = 500 | 600"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.out.find("estimate  2 runs left: how long is unknown"), std::string::npos) << result.out;
+}
+
+TEST_F(StudyCommands, AnArchiveUnderAnothersNameIsFound) {
+  ASSERT_EQ(study_six().status, 0);
+  std::filesystem::copy_file(trials()[0], trials()[1], std::filesystem::copy_options::overwrite_existing);
+  const ProgramResult found = modebank({"verify", file("s").string()});
+  EXPECT_EQ(found.status, 1);
+  EXPECT_NE(found.out.find("not that of its name"), std::string::npos) << found.out;
+}
+
+TEST_F(StudyCommands, UsageErrorsLeaveNothing) {
+  const ProgramResult nothing = study({});
+  EXPECT_EQ(nothing.status, 2);
+  EXPECT_NE(nothing.err.find("study.vary is empty"), std::string::npos) << nothing.err;
+  const ProgramResult value = study({"--study.vary", "mixture.components = none"});
+  EXPECT_EQ(value.status, 2);
+  EXPECT_NE(value.err.find("mixture.components the value 'none'"), std::string::npos) << value.err;
+  EXPECT_EQ(study({"--study.shard", "7/7"}).status, 2);
+  EXPECT_EQ(study_six({"--study.stage", "merge"}).status, 2);  // there is no plan
+  EXPECT_FALSE(std::filesystem::exists(file("s")));
+}
+
+}  // namespace
+}  // namespace modebank::test

@@ -1,0 +1,270 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spdlog/spdlog.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "app/config/config_file.hpp"
+#include "app/study/run/trial_runner.hpp"
+#include "app/study/run/worker_pool.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+using namespace modebank::app;
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Trials that share with `modebank run`'s own archives beside them.
+class StudySharing : public CliTest {
+ protected:
+  StudySharing() { spdlog::set_level(spdlog::level::off); }
+  ~StudySharing() override { spdlog::set_level(spdlog::level::info); }
+  /// An archive's bytes without what says who made it and where it went: they depend on its content alone.
+  std::string content(Archive archive) const {
+    archive.provenance = {};
+    archive.config.clear();
+    write_archive(file("content.h5"), archive);
+    return bytes_of(file("content.h5"));
+  }
+  std::string run_alone(const KeyValues& keys) const {
+    std::vector<std::string> options;
+    for (const auto& [key, value] : keys) {
+      options.push_back("--" + key);
+      options.push_back(value);
+    }
+    const ProgramResult result = run(options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return content(read_archive(archive()));
+  }
+  Config configured(const KeyValues& keys) const {
+    Config trial = load_config(config(), keys);
+    trial.study = {};
+    return trial;
+  }
+};
+
+/// Neighbours differ in a key of each stage in turn, and come back to what was before.
+const std::vector<KeyValues> trials{
+    {},
+    {{"filter.variant", "gpb2"}},
+    {{"filter.variant", "kf"}},
+    {},
+    {{"filter.smooth", "false"}, {"filter.horizon", "1..3"}},
+    {{"bank.theta", "mean"}},
+    {{"bank.refine", "em"}, {"bank.max_iterations", "2"}, {"bank.folds", "1"}},
+    {{"bank.refine", "em"}, {"bank.max_iterations", "2"}, {"bank.folds", "1"}, {"filter.variant", "gpb1"}},
+    {{"bank.measurement_variance", "0.01"}},
+    {{"mixture.components", "2"}},
+    {{"mixture.components", "2"}, {"mixture.features", "parameters"}},
+    // What merging modes cost is found by running the filter.
+    {{"mixture.components", "3"}, {"bank.modes", "2"}},
+    {{"mixture.components", "3"}, {"bank.modes", "2"}, {"filter.variant", "gpb1"}},
+    {{"mixture.components", "3"}, {"bank.modes", "2"}, {"filter.variant", "mmae"}},
+    {{"mixture.components", "3"}, {"bank.modes", "2"}, {"filter.variant", "gpb2"}},
+    {{"job.seed", "9"}},
+    {{"window.loss", "cauchy"}},
+    {{"window.length", "20"}, {"filter.time_steps", "single"}},
+    {{"data.rate_hz", "5"}},
+    {{"data.train", "01"}, {"data.test", "00"}},
+    {},
+};
+
+TEST_F(StudySharing, TrialsAreWhatRunWritesToTheBit) {
+  std::filesystem::create_directory(file("cache"));
+  const FileLocks locks(file("locks"));
+  const StageCache cache(file("cache"), 100.0, locks);
+  TrialRunner runner(&cache);
+  std::vector<std::string> alone;
+  for (const KeyValues& keys : trials) alone.push_back(run_alone(keys));
+  for (std::size_t i = 0; i < trials.size(); ++i)
+    EXPECT_TRUE(content(runner.run(configured(trials[i]), "")) == alone[i]) << "trial " << i;
+  // Another process finds the windows in the cache.
+  TrialRunner other(&cache);
+  for (std::size_t i = trials.size(); i-- > 0;)
+    EXPECT_TRUE(content(other.run(configured(trials[i]), "")) == alone[i]) << "trial " << i << " from the cache";
+}
+
+TEST_F(StudySharing, EveryStageReadsBackFromTheCacheToTheBit) {
+  std::filesystem::create_directory(file("cache"));
+  const FileLocks locks(file("locks"));
+  const StageCache cache(file("cache"), 100.0, locks);
+  const Config trial = configured({{"bank.refine", "em"}, {"bank.max_iterations", "2"}, {"bank.folds", "1"}});
+  const Archive made = TrialRunner(nullptr).run(trial, "");
+  Archive taken = made;
+  const auto pass = [&](const char* name, const std::function<Archive()>& part, const auto& take) {
+    const auto never = [] { return ADD_FAILURE() << "computed", false; };
+    cache.provide(
+        name, "inputs", [](Archive&&) { FAIL(); }, [] { return true; }, part);
+    cache.provide(name, "inputs", take, never, part);
+  };
+  pass(
+      "windows",
+      [&] {
+        Archive part;
+        part.recording = made.recording;
+        part.windows = made.windows;
+        return part;
+      },
+      [&](Archive&& part) { taken.windows = std::move(part.windows); });
+  pass(
+      "mixture",
+      [&] {
+        Archive part;
+        part.mixture = made.mixture;
+        return part;
+      },
+      [&](Archive&& part) { taken.mixture = std::move(part.mixture); });
+  pass(
+      "bank",
+      [&] {
+        Archive part;
+        part.bank = made.bank;
+        part.unrefined = made.unrefined;
+        return part;
+      },
+      [&](Archive&& part) {
+        taken.bank = std::move(part.bank);
+        taken.unrefined = std::move(part.unrefined);
+      });
+  EXPECT_TRUE(content(taken) == content(made));
+}
+
+TEST_F(StudySharing, TheCacheIsBounded) {
+  std::filesystem::create_directory(file("cache"));
+  const FileLocks locks(file("locks"));
+  const auto bytes = [&] {
+    double sum = 0.0;
+    for (const auto& entry : std::filesystem::directory_iterator(file("cache")))
+      sum += static_cast<double>(entry.file_size());
+    return sum;
+  };
+  const StageCache cache(file("cache"), 0.3, locks);
+  TrialRunner runner(&cache);
+  for (const char* length : {"10", "11", "12", "13", "14", "15"})
+    runner.run(configured({{"window.length", length}, {"filter.smooth", "false"}}), "");
+  EXPECT_LE(bytes(), 0.3e6);
+  EXPECT_GT(bytes(), 0.0);
+}
+
+TEST_F(StudySharing, AFailedTrialLeavesNothingForTheNext) {
+  TrialRunner runner(nullptr);
+  EXPECT_THROW(runner.run(configured({{"window.length", "500"}}), ""), std::exception);
+  EXPECT_TRUE(content(runner.run(configured({}), "")) == run_alone({}));
+}
+
+TEST_F(StudySharing, LocksHoldAmongProcessesAndEndWithThem) {
+  int ready[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const FileLocks locks(file("locks"));
+    const FileLocks::Hold hold = locks.lock("a");
+    static_cast<void>(::write(ready[1], "x", 1));
+    for (;;) ::pause();
+  }
+  char signal = 0;
+  ASSERT_EQ(::read(ready[0], &signal, 1), 1);
+  const FileLocks locks(file("locks"));
+  EXPECT_FALSE(locks.try_lock("a"));
+  EXPECT_TRUE(locks.is_held_elsewhere("a"));
+  EXPECT_TRUE(locks.try_lock("b"));
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  EXPECT_TRUE(locks.try_lock("a"));
+}
+
+TEST(WorkerPools, CrashesAndOverrunsEndTheirTrialOnly) {
+  constexpr double timeout_s = 0.5;
+  WorkerPool pool(2, timeout_s, [](const WorkerPool::TellWaiting&) {
+    return [](std::size_t trial) {
+      if (trial == 1) ::raise(SIGKILL);
+      if (trial == 2) ::pause();
+      TrialReport report;
+      report.outcome = TrialOutcome::computed;
+      report.message = std::string(trial, 'x');
+      return report;
+    };
+  });
+  std::size_t given = 0, finished = 0;
+  std::string messages[6];
+  while (finished < 6) {
+    for (std::size_t worker = 0; worker < pool.size(); ++worker)
+      if (pool.is_idle(worker) && given < 6) pool.give(worker, given++);
+    if (const auto done = pool.wait(10.0)) {
+      ++finished;
+      EXPECT_EQ(done->crashed, done->trial == 1 || done->trial == 2);
+      EXPECT_EQ(done->report.outcome == TrialOutcome::computed, !done->crashed);
+      messages[done->trial] = done->report.message;
+    }
+  }
+  EXPECT_NE(messages[1].find("signal 9"), std::string::npos) << messages[1];
+  EXPECT_NE(messages[2].find("study.timeout_s = 0.5"), std::string::npos) << messages[2];
+  EXPECT_EQ(messages[5], "xxxxx");
+}
+
+TEST(WorkerPools, WaitingForAnotherProcessIsNoTimeOfTheTrial) {
+  constexpr double timeout_s = 0.2;
+  WorkerPool pool(2, timeout_s, [](const WorkerPool::TellWaiting& tell_waiting) {
+    return [tell_waiting](std::size_t trial) {
+      tell_waiting(true);
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+      tell_waiting(false);
+      if (trial == 1) ::pause();  // from here its own time runs
+      TrialReport report;
+      report.outcome = TrialOutcome::computed;
+      return report;
+    };
+  });
+  pool.give(0, 0);
+  pool.give(1, 1);
+  for (int i = 0; i < 2; ++i) {
+    const auto done = pool.wait(10.0);
+    ASSERT_TRUE(done);
+    EXPECT_EQ(done->report.outcome, done->trial == 0 ? TrialOutcome::computed : TrialOutcome::failed)
+        << done->report.message;
+  }
+}
+
+TEST_F(StudySharing, TheCacheTellsOfWaitingForAnotherProcess) {
+  std::filesystem::create_directory(file("cache"));
+  const std::string stem = "bank-inputs";
+  int ready[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const FileLocks locks(file("locks"));
+    const FileLocks::Hold hold = locks.lock(stem);
+    static_cast<void>(::write(ready[1], "x", 1));
+    for (;;) ::pause();
+  }
+  char signal = 0;
+  ASSERT_EQ(::read(ready[0], &signal, 1), 1);
+  const FileLocks locks(file("locks"));
+  std::vector<bool> told;
+  const StageCache cache(file("cache"), 1.0, locks, [&](bool waiting) {
+    told.push_back(waiting);
+    if (waiting) ::kill(child, SIGKILL);
+  });
+  const auto provide = [&] {
+    cache.provide(
+        "bank", "inputs", [](Archive&&) {}, [] { return false; }, [] { return Archive{}; });
+  };
+  provide();
+  EXPECT_EQ(told, (std::vector<bool>{true, false}));
+  ::waitpid(child, nullptr, 0);
+  provide();  // nobody is at it now
+  EXPECT_EQ(told.size(), 2u);
+}
+
+}  // namespace
+}  // namespace modebank::test

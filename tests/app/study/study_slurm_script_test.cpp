@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "app/study/launch/shell.hpp"
+#include "app/study/launch/slurm.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/support/paths.hpp"
+
+namespace modebank::app {
+namespace {
+
+SlurmRequest request() {
+  return {"/opt/modebank",
+          "/home/me/my study.ini",
+          "/scratch/ice.study",
+          "/data",
+          {{"study.vary", "bank.stay = 0.9 | 0.95"}, {"study.stage", "submit"}},
+          7,
+          {0, 1, 2},
+          {"--time=60"}};
+}
+
+TEST(StudySlurmScript, TasksRunOneShardEach) {
+  const std::string script = run_script(request());
+  EXPECT_NE(script.find("#!/bin/bash\n"), std::string::npos);
+  for (const char* line : {"#SBATCH --requeue\n", "#SBATCH --open-mode=append\n"})
+    EXPECT_NE(script.find(line), std::string::npos) << script;
+  EXPECT_NE(script.find("exec /opt/modebank study '/home/me/my study.ini' --study.vary 'bank.stay = 0.9 | 0.95' "
+                        "--data.root /data --study.output /scratch/ice.study --study.stage run "
+                        "--study.jobs \"${SLURM_CPUS_PER_TASK:-1}\" --study.shard \"$SLURM_ARRAY_TASK_ID/7\"\n"),
+            std::string::npos)
+      << script;
+  EXPECT_EQ(script.find("submit "), std::string::npos) << script;
+}
+
+TEST(StudySlurmScript, JobsThatWereGivenStay) {
+  SlurmRequest with_jobs = request();
+  with_jobs.overrides.emplace_back("study.jobs", "4");
+  EXPECT_EQ(run_script(with_jobs).find("SLURM_CPUS_PER_TASK"), std::string::npos);
+}
+
+TEST(StudySlurmScript, ArrayListsNameRanges) {
+  EXPECT_EQ(array_list({0, 1, 2, 3}), "0-3");
+  EXPECT_EQ(array_list({1, 4, 5, 9}), "1,4-5,9");
+}
+
+/// What the shell makes of a quoted word is the word.
+TEST(StudySlurmScript, ShellWordsComeBackAsTheyWere) {
+  for (const std::string word : {"plain", "two words", "it's", "$HOME", "a\"b", "back\\slash", "", "{1..3} | *"})
+    EXPECT_EQ(run_shell("printf %s " + shell_word(word)).out, word);
+}
+
+TEST(StudySlurmScript, AbsentSbatchIsSaid) {
+  const test::TemporaryFolder folder;
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", folder.path().c_str(), 1);
+  SlurmRequest wanted = request();
+  wanted.folder = folder.path();
+  try {
+    submit_to_slurm(wanted);
+    ADD_FAILURE() << "submitted without sbatch";
+  } catch (const ConfigurationError& error) {
+    EXPECT_NE(std::string(error.what()).find("no sbatch in PATH"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("--study.shard"), std::string::npos) << error.what();
+  }
+  setenv("PATH", path.c_str(), 1);
+}
+
+/// sbatch, squeue and sacct that say what a test wants.
+class FakeSlurm : public ::testing::Test {
+ protected:
+  FakeSlurm() : before_(std::getenv("PATH")) { setenv("PATH", (folder_.path().string() + ":" + before_).c_str(), 1); }
+  ~FakeSlurm() override { setenv("PATH", before_.c_str(), 1); }
+  void program(const std::string& name, const std::string& body) const {
+    test::write_file(folder_.path() / name, "#!/bin/sh\n" + body + "\n");
+    std::filesystem::permissions(folder_.path() / name, std::filesystem::perms::owner_all);
+  }
+  SlurmSubmission submit() const {
+    SlurmRequest wanted = request();
+    wanted.folder = study();
+    return submit_to_slurm(wanted);
+  }
+  std::filesystem::path study() const { return folder_.path() / "ice.study"; }
+
+ private:
+  test::TemporaryFolder folder_;
+  std::string before_;
+};
+
+TEST_F(FakeSlurm, ArrayThenMergeWhateverBecomesOfIt) {
+  program("sbatch", "case \"$*\" in *afterany:41*) echo 42;; *--array=0-2*) echo '41;cluster';; esac");
+  const SlurmSubmission submission = submit();
+  EXPECT_EQ(submission.array_job, "41");
+  EXPECT_EQ(submission.merge_job, "42");
+  ASSERT_EQ(submission.commands.size(), 2U);
+  EXPECT_NE(submission.commands[0].find("--time=60"), std::string::npos);
+}
+
+TEST_F(FakeSlurm, RefusalGivesSlurmsReason) {
+  program("sbatch", "echo 'sbatch: error: invalid partition specified: nowhere' >&2; exit 1");
+  try {
+    submit();
+    ADD_FAILURE() << "was not refused";
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find("invalid partition"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(FakeSlurm, StatusJoinsQueueAndAccounting) {
+  program("sbatch", "case \"$*\" in *afterany*) echo 42;; *) echo 41;; esac");
+  submit();
+  program("squeue",
+          "case \"$*\" in *'-j 41'*) echo '41_1|RUNNING|None'; "
+          "echo '41_2|PENDING|launch failed requeued held';; *) exit 1;; esac");
+  program("sacct",
+          "case \"$*\" in *'-j 41'*) echo '41_0|COMPLETED'; echo '41_1|PENDING'; echo '41_[2-3]|PENDING';; "
+          "*) exit 1;; esac");
+  const std::vector<SlurmJobView> jobs = slurm_view(study());
+  ASSERT_EQ(jobs.size(), 2U);
+  using States = std::vector<std::pair<std::string, int>>;
+  EXPECT_EQ(jobs[0].states, (States{{"COMPLETED", 1}, {"PENDING", 1}, {"RUNNING", 1}}));
+  ASSERT_EQ(jobs[0].notes.size(), 1U);
+  EXPECT_NE(jobs[0].notes[0].find("scontrol release 41_2"), std::string::npos);
+  EXPECT_TRUE(jobs[1].states.empty());
+  const std::string text = slurm_text(jobs);
+  EXPECT_NE(text.find("run job 41: 1 completed 1 pending 1 running (squeue and sacct)"), std::string::npos) << text;
+  EXPECT_NE(text.find("merge job 42: no longer known to Slurm"), std::string::npos) << text;
+}
+
+TEST_F(FakeSlurm, NoSubmissionNoView) { EXPECT_TRUE(slurm_view(study()).empty()); }
+
+}  // namespace
+}  // namespace modebank::app

@@ -1,0 +1,167 @@
+#include "app/study/space/study_space.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "app/config/config_file.hpp"
+#include "app/config/option_text.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+Config with(const std::vector<std::string>& vary) {
+  Config config = default_config();
+  config.study.vary = vary;
+  return config;
+}
+
+std::vector<double> column(const StudySpace& space, std::size_t key) {
+  std::vector<double> values;
+  for (const StudyPoint& point : space.points) parse_value(point[key], values.emplace_back());
+  return values;
+}
+
+/// How many of N values in [0, 1) each of the N strata holds.
+std::multiset<int> strata(const std::vector<double>& values) {
+  std::vector<int> counts(values.size(), 0);
+  for (const double value : values) ++counts.at(static_cast<std::size_t>(value * static_cast<double>(values.size())));
+  return {counts.begin(), counts.end()};
+}
+
+TEST(VaryText, ExpandsValuesAndBraces) {
+  EXPECT_EQ(parse_vary("mixture.components = {3..5} | 8").values, (Texts{"3", "4", "5", "8"}));
+  EXPECT_EQ(parse_vary("mixture.components = {2..9 step 3}").values, (Texts{"2", "5", "8"}));
+  EXPECT_EQ(parse_vary("bank.stay = {0.1..0.9 lin 5}").values, (Texts{"0.1", "0.3", "0.5", "0.7", "0.9"}));
+  EXPECT_EQ(parse_vary("window.prior_sd = {0.001..1 log 4}").values, (Texts{"0.001", "0.01", "0.1", "1"}));
+  EXPECT_EQ(parse_vary("data.lag_s = {0..1 step 0.1}").values.size(), 11u);
+  EXPECT_EQ(parse_vary("filter.variant = imm|gpb1").values, (Texts{"imm", "gpb1"}));
+  EXPECT_EQ(parse_vary("mixture.components = 1..{5..7}").values, (Texts{"1..5", "1..6", "1..7"}));
+  EXPECT_EQ(parse_vary("bank.measurement_variance =  | 0.010").values, (Texts{"", "0.01"}));  // as resolved
+}
+
+TEST(VaryText, RangesAreForSampling) {
+  const VariedKey uniform = parse_vary("bank.stay = {0.5..0.99}");
+  EXPECT_TRUE(uniform.is_range());
+  EXPECT_FALSE(uniform.logarithmic);
+  const VariedKey logarithmic = parse_vary("window.prior_sd = {0.001..1 log}");
+  EXPECT_TRUE(logarithmic.is_range() && logarithmic.logarithmic);
+  EXPECT_THROW(lay_out(with({"bank.stay = {0.5..0.99}"})), ConfigurationError);
+}
+
+TEST(VaryText, ErrorsSayWhatIsWrong) {
+  const auto reason = [](const std::string& line) {
+    try {
+      parse_vary(line);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  const std::map<std::string, std::string> cases{{"mixture.component = 3", "did you mean mixture.components"},
+                                                 {"mixture.components", "has no ="},
+                                                 {"mixture.components = 0", "mixture.components the value '0'"},
+                                                 {"mixture.components = {5..3}", "upwards"},
+                                                 {"bank.stay = {0..1 log 3}", "above 0"},
+                                                 {"bank.stay = {0..1 lin 1}", "2 to"},
+                                                 {"bank.stay = {0..1 cubic 3}", "it must be"},
+                                                 {"bank.stay = {0.5", "one pair of braces"},
+                                                 {"bank.stay = {0.1..0.5} | 0.9", "a range stands alone"},
+                                                 {"mixture.restarts = {1.5..3}", "whole number"},
+                                                 {"job.threads = 1 | 2", "decides no number"},
+                                                 {"study.repeats = 1 | 2", "decides no number"}};
+  for (const auto& [line, part] : cases) EXPECT_NE(reason(line).find(part), std::string::npos) << reason(line);
+}
+
+TEST(VaryText, FileErrorsNameTheLine) {
+  try {
+    resolved_config("[study]\nvary = mixture.component = 3\n");
+    FAIL();
+  } catch (const ConfigurationError& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean mixture.components"), std::string::npos) << error.what();
+  }
+}
+
+TEST(StudySpace, GridVariesTheLastKeyFastest) {
+  const StudySpace space = lay_out(with({"mixture.components = 2 | 3", "filter.variant = imm | kf | gpb1"}));
+  EXPECT_EQ(space.keys, (Texts{"mixture.components", "filter.variant"}));
+  ASSERT_EQ(space.points.size(), 6u);
+  EXPECT_EQ(space.points[1], (StudyPoint{"2", "kf"}));
+  EXPECT_EQ(space.points[3], (StudyPoint{"3", "imm"}));
+}
+
+TEST(StudySpace, KeysTogetherGoInStep) {
+  Config config = with({"mixture.components = 2 | 3", "bank.stay = 0.9 | 0.95", "filter.variant = imm | kf"});
+  config.study.together = {"mixture.components, filter.variant"};
+  const StudySpace space = lay_out(config);
+  ASSERT_EQ(space.points.size(), 4u);
+  for (const StudyPoint& point : space.points) EXPECT_EQ(point[0] == "2", point[2] == "imm");
+  config.study.vary[2] = "filter.variant = imm | kf | gpb1";
+  EXPECT_THROW(lay_out(config), ConfigurationError);
+  config.study.together = {"mixture.components, window.length"};
+  EXPECT_THROW(lay_out(config), ConfigurationError);
+}
+
+TEST(StudySpace, ConditionalKeysVaryOnlyWhereTheirConditionHolds) {
+  Config config = with({"bank.transition = labels | stay", "bank.stay = 0.8 | 0.9 | 0.95"});
+  config.study.when = {"bank.stay if bank.transition = stay"};
+  const StudySpace space = lay_out(config);
+  const std::vector<StudyPoint> expected{{"labels", "0.95"}, {"stay", "0.8"}, {"stay", "0.9"}, {"stay", "0.95"}};
+  EXPECT_EQ(space.points, expected);
+  EXPECT_EQ(space.repeated, 2u);
+  config.study.when = {"window.length if bank.transition = stay"};
+  EXPECT_THROW(lay_out(config), ConfigurationError);
+}
+
+TEST(StudySpace, ConditionsOnKeysThatAreNotVariedLookAtTheConfiguration) {
+  Config config = with({"bank.stay = 0.8 | 0.9"});
+  config.study.when = {"bank.stay if bank.transition = stay"};
+  EXPECT_EQ(lay_out(config).points.size(), 1u);  // the default is labels
+  config.bank.transition = TransitionSource::stay;
+  EXPECT_EQ(lay_out(config).points.size(), 2u);
+}
+
+TEST(StudySpace, LatinHypercubeFillsEveryStratumOfEveryAxisOnce) {
+  Config config = with({"data.lag_s = {0..1 lin}", "filter.variant = imm | gpb1", "window.prior_sd = {0.001..1 log}"});
+  config.study.sample = 20;
+  const StudySpace space = lay_out(config);
+  ASSERT_EQ(space.points.size(), 20u);
+  for (const int count : strata(column(space, 0))) EXPECT_EQ(count, 1);
+  const auto imm =
+      std::count_if(space.points.begin(), space.points.end(), [](const StudyPoint& p) { return p[1] == "imm"; });
+  EXPECT_EQ(imm, 10);
+  std::vector<double> exponents;
+  for (const double value : column(space, 2)) exponents.push_back((std::log10(value) + 3.0) / 3.0);
+  for (const int count : strata(exponents)) EXPECT_EQ(count, 1);
+}
+
+TEST(StudySpace, SobolPointsFillDyadicStrataAlsoInPairs) {
+  Config config = with({"data.lag_s = {0..1 lin}", "filter.variant = imm | gpb1 | mmae | kf"});
+  config.study.sampling = SampleMethod::sobol;
+  config.study.sample = 64;
+  const StudySpace space = lay_out(config);
+  ASSERT_EQ(space.points.size(), 64u);
+  for (const int count : strata(column(space, 0))) EXPECT_EQ(count, 1);
+  // A (0, 6, 2)-net in base 2: 16 x 4 boxes hold one point each.
+  std::map<std::pair<int, std::string>, int> boxes;
+  for (std::size_t i = 0; i < 64; ++i) ++boxes[{static_cast<int>(column(space, 0)[i] * 16.0), space.points[i][1]}];
+  EXPECT_EQ(boxes.size(), 64u);
+}
+
+TEST(StudySpace, SamplesFollowTheSeedAlone) {
+  Config config = with({"data.lag_s = {0..1 lin}", "window.prior_sd = {0.001..1 log}"});
+  config.study.sample = 10;
+  const std::vector<StudyPoint> first = lay_out(config).points;
+  EXPECT_EQ(lay_out(config).points, first);
+  config.job.seed = 2;
+  EXPECT_NE(lay_out(config).points, first);
+}
+
+}  // namespace
+}  // namespace modebank::app

@@ -1,0 +1,189 @@
+// Diagnostics on simulated truth: a true filter passes, a wrong one does not.
+#include "filter/judge/diagnostics.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filter/judge/smoother.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+using test::example_bank;
+using test::simulate_truth;
+
+std::vector<DiagnosticsRow> diagnose_runs(const Bank& filter_bank, const std::vector<Trajectory>& runs,
+                                          const FilterOptions& options = {}) {
+  std::vector<RunEvaluation> evaluations;
+  for (const Trajectory& run : runs) {
+    evaluations.push_back(evaluate_run(filter_bank, run, options));
+    smooth_run(filter_bank, run, options, evaluations.back());
+  }
+  return diagnose("bank", filter_bank, options, runs, evaluations, score_runs(evaluations));
+}
+
+std::vector<Trajectory> truth_runs(const Bank& bank, Index runs, Index samples) {
+  std::vector<Trajectory> result;
+  for (Index i = 0; i < runs; ++i) {
+    result.push_back(simulate_truth(bank, samples, 1000 + static_cast<std::uint64_t>(i)).run);
+    result.back().role = Role::test;
+  }
+  return result;
+}
+
+bool inside(double value, double lower, double upper) { return value >= lower && value <= upper; }
+
+TEST(Diagnostics, ATrueFilterIsInsideItsBoundsAndAWrongOneIsNot) {
+  for (const Index n : {1, 2}) {
+    Bank bank = test::single_mode(example_bank(n, 1, 1, 5e-5), 0);  // Q = 1.3e-4
+    const std::vector<Trajectory> runs = truth_runs(bank, 4, 1500);
+    const DiagnosticsRow right = diagnose_runs(bank, runs).front();
+    EXPECT_TRUE(inside(right.nis_mean, right.nis_lower, right.nis_upper)) << right.nis_mean;
+    EXPECT_TRUE(inside(right.nees_mean, right.nees_lower, right.nees_upper)) << right.nees_mean;
+    EXPECT_EQ(right.verdict, Verdict::calibrated);
+    EXPECT_NEAR(right.nis_mean, static_cast<double>(n), 0.1);
+    EXPECT_EQ(right.flags, "");
+    for (const double factor : {0.25, 4.0})
+      for (const bool process : {true, false}) {
+        Bank wrong = bank;
+        if (process)
+          wrong.modes[0].Q *= factor;
+        else
+          wrong.R *= factor;
+        const DiagnosticsRow row = diagnose_runs(wrong, runs).front();
+        const std::string what = (process ? "Q x " : "R x ") + std::to_string(factor);
+        EXPECT_FALSE(inside(row.nis_mean, row.nis_lower, row.nis_upper)) << what << ": " << row.nis_mean;
+        EXPECT_FALSE(inside(row.nees_mean, row.nees_lower, row.nees_upper)) << what << ": " << row.nees_mean;
+        EXPECT_EQ(row.nis_mean > right.nis_mean, factor < 1.0) << what;
+      }
+  }
+}
+
+TEST(Diagnostics, VerdictsNameTheDirection) {
+  const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
+  const std::vector<Trajectory> runs = truth_runs(bank, 2, 1500);
+  for (const auto& [factor, verdict] : {std::pair(1.0, Verdict::calibrated), std::pair(0.25, Verdict::overconfident),
+                                        std::pair(4.0, Verdict::underconfident)}) {
+    Bank scaled = bank;
+    scaled.modes[0].Q *= factor;
+    EXPECT_EQ(diagnose_runs(scaled, runs).front().verdict, verdict) << factor;
+  }
+}
+
+TEST(Diagnostics, FewSamplesAllowNoVerdictUnlessTheyArePlain) {
+  const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
+  const DiagnosticsRow few = diagnose_runs(bank, truth_runs(bank, 1, 120)).front();
+  EXPECT_EQ(few.verdict, Verdict::undecided);
+  EXPECT_THAT(few.flags, testing::HasSubstr("too few samples for a verdict"));
+  Bank narrow = bank;
+  narrow.modes[0].Q *= 0.05;
+  EXPECT_EQ(diagnose_runs(narrow, truth_runs(bank, 1, 120)).front().verdict, Verdict::overconfident);
+}
+
+TEST(Diagnostics, NisSpeaksWhereTheTailsDoNot) {
+  const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
+  std::vector<Trajectory> runs = truth_runs(bank, 1, 800);
+  std::vector<RunEvaluation> evaluations{evaluate_run(bank, runs[0], {})};
+  EXPECT_EQ(diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front().verdict,
+            Verdict::calibrated);
+  evaluations[0].nis *= 0.5;
+  const DiagnosticsRow row = diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front();
+  EXPECT_EQ(row.verdict, Verdict::underconfident);
+  EXPECT_THAT(row.flags, testing::HasSubstr("mean NIS below a true filter's"));
+}
+
+TEST(Diagnostics, FlagsAStateCovarianceThatIsWrong) {
+  const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-3), 0);
+  const std::vector<Trajectory> runs = truth_runs(bank, 2, 1500);
+  for (const double factor : {1.0 / 16, 16.0}) {
+    Bank wrong = bank;
+    wrong.modes[0].Q *= factor;
+    EXPECT_THAT(diagnose_runs(wrong, runs).front().flags,
+                testing::HasSubstr(factor < 1 ? "NEES above a true filter's" : "NEES below a true filter's"));
+  }
+}
+
+TEST(Diagnostics, NoNeesWhereTheStateIsTheMeasurement) {
+  Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
+  const std::vector<Trajectory> runs = truth_runs(bank, 2, 800);
+  EXPECT_TRUE(std::isfinite(diagnose_runs(bank, runs).front().nees_mean));
+  bank.R *= 1e-6;
+  const DiagnosticsRow row = diagnose_runs(bank, runs).front();
+  EXPECT_TRUE(std::isnan(row.nees_mean) && std::isnan(row.nees_upper));
+  EXPECT_NEAR(row.state_rmse(0), 1e-3, 1e-4);
+  EXPECT_THAT(row.flags, testing::HasSubstr("no NEES"));
+}
+
+/// One gyro of two says exactly what there is: the other is judged.
+TEST(Diagnostics, NeesIsAboutTheStatesThatAreNotTheMeasurement) {
+  Bank bank = test::single_mode(example_bank(2, 1, 1, 1e-4), 0);
+  const std::vector<Trajectory> runs = truth_runs(bank, 2, 1500);
+  bank.R(1, 1) = 1e-13;
+  const DiagnosticsRow row = diagnose_runs(bank, runs).front();
+  EXPECT_NEAR(row.nees_mean, 1.0, 0.35);  // one degree of freedom; the filter trusts the other gyro too much
+  EXPECT_LT(row.nees_upper, 1.2);
+  EXPECT_THAT(row.flags, testing::HasSubstr("NEES of the others alone"));
+}
+
+TEST(Diagnostics, ASwitchingBankIsCalibratedModeByMode) {
+  Bank bank = example_bank(1, 2, 3, 1e-6);
+  bank.transition = TransitionMatrix::sticky(3, 0.95);
+  const std::vector<Trajectory> runs = truth_runs(bank, 3, 3000);
+  const std::vector<DiagnosticsRow> rows = diagnose_runs(bank, runs);
+  ASSERT_EQ(rows.size(), 4u);
+  double usage = 0.0;
+  Index samples = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(rows[i].mode, static_cast<Index>(i) - 1);
+    EXPECT_EQ(rows[i].verdict, Verdict::calibrated) << "mode " << rows[i].mode;
+    EXPECT_TRUE(inside(0.025, rows[i].tail_above_lower, rows[i].tail_above_upper)) << "mode " << rows[i].mode;
+    if (i == 0) continue;
+    usage += rows[i].usage;
+    samples += rows[i].samples;
+    EXPECT_NEAR(rows[i].usage, 1.0 / 3.0, 0.1);
+    EXPECT_NEAR(rows[i].dwell_model, 20.0, 1e-9);
+    EXPECT_GT(rows[i].dwell, 15.0);  // the best sequence passes over the shortest stays
+    EXPECT_LT(rows[i].dwell, 40.0);
+  }
+  EXPECT_NEAR(usage, 1.0, 1e-12);
+  EXPECT_EQ(samples, rows[0].samples);
+  EXPECT_GT(rows[0].entropy, 0.0);
+  EXPECT_LT(rows[0].entropy, 0.5);
+}
+
+TEST(Diagnostics, FlagsWhatStandsOut) {
+  Bank bank = example_bank(1, 1, 2, 1e-6);
+  const auto flags = [&](const Bank& filter, const std::vector<Trajectory>& runs) {
+    return diagnose_runs(filter, runs).front().flags;
+  };
+  // One mode's runs through a bank of two that are easily told apart.
+  Bank distinct = bank;
+  distinct.modes[1].model.c(0) = 1.0;
+  const std::string one = flags(distinct, truth_runs(test::single_mode(bank, 0), 1, 600));
+  EXPECT_THAT(one, testing::AllOf(testing::HasSubstr("one mode takes all (0)"), testing::HasSubstr("mode 1 unused"),
+                                  testing::Not(testing::HasSubstr("flat"))));
+  // Modes that say the same.
+  Bank twins = bank;
+  twins.modes[1] = twins.modes[0];
+  EXPECT_THAT(flags(twins, truth_runs(test::single_mode(bank, 0), 1, 600)), testing::HasSubstr("probabilities flat"));
+  // Modes without noise of their own that differ in c, on a run that is in neither for long.
+  Bank apart = bank;
+  for (Mode& mode : apart.modes) mode.Q.setConstant(1e-6);
+  apart.modes[0].model.c(0) = 1.0;
+  apart.modes[1].model.c(0) = -1.0;
+  apart.transition = TransitionMatrix::sticky(2, 0.5);
+  EXPECT_THAT(flags(apart, truth_runs(apart, 1, 300)), testing::HasSubstr("spread dominates S"));
+  // A model that is wrong about the motion.
+  Bank wrong = test::single_mode(bank, 0);
+  wrong.modes[0].model.A *= 0.1;
+  wrong.modes[0].Q *= 4.0;
+  EXPECT_THAT(flags(wrong, truth_runs(test::single_mode(bank, 0), 1, 1500)), testing::HasSubstr("not white"));
+}
+
+}  // namespace
+}  // namespace modebank

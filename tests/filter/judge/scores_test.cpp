@@ -1,0 +1,201 @@
+#include "filter/judge/scores.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "ident/base/distributions.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/support/golden.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+/// Boost.Math against scipy: both good to a few units in the last place.
+constexpr double special_function_tolerance = 1e-11;
+/// Standard deviations that a simulated fraction may lie off its expectation: about one in 16000 by chance, and the
+/// seeds are fixed.
+constexpr double sigmas = 4.0;
+
+nlohmann::json golden() { return test::read_golden("scores"); }
+
+TEST(Calibration, ChiSquareQuantilesAgreeWithScipy) {
+  const nlohmann::json rows = golden().at("chi_square");  // outlives the loop
+  for (const auto& row : rows) {
+    const double expected = row.at("value");
+    EXPECT_NEAR(chi_square_quantile(row.at("p"), row.at("dof")) / expected, 1.0, special_function_tolerance);
+  }
+}
+
+TEST(Calibration, NormalScoresAgreeWithScipyAndAreClipped) {
+  const nlohmann::json rows = golden().at("normal_score");
+  for (const auto& row : rows)
+    EXPECT_NEAR(normal_score(row.at("pit")), row.at("z").get<double>(), special_function_tolerance);
+  EXPECT_EQ(normal_score(0.0), normal_score(1e-15));
+  EXPECT_EQ(normal_score(1.0), normal_score(1.0 - 1e-15));
+  EXPECT_TRUE(std::isfinite(normal_score(0.0)) && std::isfinite(normal_score(1.0)));
+}
+
+TEST(Calibration, LjungBoxAgreesWithStatsmodels) {
+  const nlohmann::json expected = golden();
+  for (std::size_t i = 0; i < expected.at("series").size(); ++i)
+    EXPECT_NEAR(ljung_box_p(expected["series"][i].get<std::vector<double>>()), expected["ljung_box_p"][i].get<double>(),
+                special_function_tolerance);
+  EXPECT_TRUE(std::isnan(ljung_box_p({1.0, 2.0, 3.0, 4.0})));
+  EXPECT_TRUE(std::isnan(ljung_box_p(std::vector<double>(50, 1.0))));
+}
+
+TEST(Calibration, FisherAgreesWithScipyAndSkipsNaN) {
+  const double expected = golden().at("fisher");
+  EXPECT_NEAR(fisher_p({0.03, 0.4, 0.81}), expected, special_function_tolerance);
+  EXPECT_NEAR(fisher_p({0.03, std::nan(""), 0.4, 0.81}), expected, special_function_tolerance);
+  EXPECT_NEAR(fisher_p({0.37}), 0.37, special_function_tolerance);
+  EXPECT_TRUE(std::isnan(fisher_p({std::nan("")})));
+  EXPECT_TRUE(std::isfinite(fisher_p({0.0, 0.5})));
+}
+
+TEST(Calibration, KolmogorovDistanceOfKnownSamples) {
+  EXPECT_DOUBLE_EQ(kolmogorov_distance({0.5}), 0.5);
+  EXPECT_DOUBLE_EQ(kolmogorov_distance({0.75, 0.25}), 0.25);
+  EXPECT_DOUBLE_EQ(kolmogorov_distance({0.9, 0.8}), 0.8);
+  EXPECT_TRUE(std::isnan(kolmogorov_distance({})));
+}
+
+/// Scores of the filter `bank` on data drawn from `truth`.
+SummaryRow score(const Bank& bank, const Bank& truth, Eigen::Index samples, std::uint64_t seed) {
+  const std::vector<Trajectory> runs{test::simulate_bank(truth, samples, seed)};
+  const std::vector<RunEvaluation> evaluations{evaluate_run(bank, runs[0], {})};
+  return summarize("bank", runs, evaluations, score_runs(evaluations)).back();
+}
+
+double binomial_bound(double probability, double count) {
+  return sigmas * std::sqrt(probability * (1.0 - probability) / count);
+}
+
+void expect_calibrated(const SummaryRow& row, double components) {
+  const double N = static_cast<double>(row.samples);
+  EXPECT_NEAR(row.tail_above, 0.025, binomial_bound(0.025, N * components));
+  EXPECT_NEAR(row.tail_below, 0.025, binomial_bound(0.025, N * components));
+  EXPECT_LT(row.pit_distance, 1.95 / std::sqrt(N * components));  // Kolmogorov's 0.1 % critical value
+  EXPECT_GT(row.whiteness_p, 1e-3);
+}
+
+TEST(Summary, TheTrueKalmanFilterIsCalibrated) {
+  for (const Eigen::Index n : {1, 2}) {
+    const Bank truth = test::single_mode(test::example_bank(n, 1, 1), 0);
+    const SummaryRow row = score(truth, truth, 20000, 11);
+    const double N = static_cast<double>(row.samples), dof = static_cast<double>(n);
+    EXPECT_EQ(row.samples, 19999);
+    expect_calibrated(row, dof);
+    EXPECT_NEAR(row.nis_above, 0.025, binomial_bound(0.025, N));
+    EXPECT_NEAR(row.nis_below, 0.025, binomial_bound(0.025, N));
+    EXPECT_NEAR(row.nis_mean, dof, sigmas * std::sqrt(2.0 * dof / N));
+  }
+}
+
+TEST(Summary, TheTrueBankIsCalibrated) {
+  // With almost no measurement noise the mixing of histories is exact, so the bank is the true filter.
+  for (const Eigen::Index n : {1, 2}) {
+    const Bank truth = test::example_bank(n, 1, 3, 1e-10);
+    expect_calibrated(score(truth, truth, 20000, 12), static_cast<double>(n));
+  }
+}
+
+TEST(Summary, AWrongProcessNoiseShows) {
+  const Bank truth = test::single_mode(test::example_bank(1, 1, 1), 0);
+  const double best = score(truth, truth, 20000, 13).log_score;
+  for (const double factor : {0.25, 4.0}) {
+    Bank wrong = truth;
+    wrong.modes[0].Q *= factor;
+    const SummaryRow row = score(wrong, truth, 20000, 13);
+    const double bound = binomial_bound(0.025, static_cast<double>(row.samples));
+    EXPECT_GT(std::abs(row.tail_above - 0.025), bound) << factor;
+    EXPECT_GT(std::abs(row.nis_above - 0.025), bound) << factor;
+    EXPECT_GT(std::abs(row.tail_below - 0.025), bound) << factor;
+    EXPECT_GT(row.pit_distance, 1.95 / std::sqrt(static_cast<double>(row.samples))) << factor;
+    EXPECT_EQ(row.tail_above > 0.025, factor < 1.0);
+    EXPECT_LT(row.log_score, best) << factor;
+  }
+}
+
+TEST(Summary, AWrongModelIsNotWhite) {
+  const Bank truth = test::single_mode(test::example_bank(1, 1, 1), 0);
+  Bank wrong = truth;
+  wrong.modes[0].model.A(0, 0) = -0.9;
+  EXPECT_LT(score(wrong, truth, 2000, 14).whiteness_p, 1e-6);
+}
+
+/// An evaluation with given innovations (one component) and standard normal scores elsewhere.
+RunEvaluation hand_made(const Eigen::RowVectorXd& innovation, const Eigen::VectorXd& log_density) {
+  RunEvaluation e;
+  e.innovation = innovation;
+  e.log_density = log_density;
+  e.nis = innovation.transpose().array().square();
+  e.pit = Eigen::RowVectorXd::Constant(innovation.size(), 0.5);
+  return e;
+}
+
+TEST(Summary, CountsScoredSamplesAndPoolsOverThem) {
+  const double nan = std::nan("");
+  Trajectory a, b, c;
+  a.run = "a";
+  b.run = "b";
+  b.role = Role::test;
+  c.run = "c";
+  const std::vector<RunEvaluation> evaluations{
+      hand_made(Eigen::RowVector4d(nan, 3.0, nan, 1.0), Eigen::Vector4d(nan, -2.0, nan, -1.0)),
+      hand_made(Eigen::RowVector2d(nan, 1.0), Eigen::Vector2d(nan, -5.0)),
+      hand_made(Eigen::RowVector2d(nan, 2.0), Eigen::Vector2d(nan, -6.0))};
+  const std::vector<SummaryRow> rows = summarize("baseline", {a, b, c}, evaluations, score_runs(evaluations));
+  ASSERT_EQ(rows.size(), 5U);
+  const std::vector<std::string> names{rows[0].run, rows[1].run, rows[2].run, rows[3].run, rows[4].run};
+  EXPECT_EQ(names, (std::vector<std::string>{"a", "c", "*", "b", "*"}));
+  EXPECT_EQ(rows[2].role, Role::train);
+  EXPECT_EQ(rows[4].role, Role::test);
+  EXPECT_EQ(rows[2].filter, "baseline");
+  EXPECT_EQ(rows[0].samples, 2);
+  EXPECT_DOUBLE_EQ(rows[0].log_score, -1.5);
+  EXPECT_DOUBLE_EQ(rows[0].rmse(0), std::sqrt(5.0));
+  EXPECT_EQ(rows[2].samples, 3);
+  EXPECT_DOUBLE_EQ(rows[2].log_score, -3.0);
+  EXPECT_DOUBLE_EQ(rows[2].rmse(0), std::sqrt(14.0 / 3.0));
+  EXPECT_DOUBLE_EQ(rows[2].nis_mean, 14.0 / 3.0);
+  EXPECT_DOUBLE_EQ(rows[2].nis_above, 1.0 / 3.0);  // 9 > 5.02
+  EXPECT_DOUBLE_EQ(rows[2].nis_below, 0.0);
+  EXPECT_DOUBLE_EQ(rows[2].tail_below, 1.0);  // pit = 0.5 gives z = 0
+  EXPECT_DOUBLE_EQ(rows[2].pit_distance, 0.5);
+  EXPECT_TRUE(std::isnan(rows[2].whiteness_p));
+}
+
+TEST(Summary, ARunWithoutScoresIsNaN) {
+  const double nan = std::nan("");
+  const std::vector<RunEvaluation> evaluations{
+      hand_made(Eigen::RowVectorXd::Constant(1, nan), Eigen::VectorXd::Constant(1, nan))};
+  const auto rows = summarize("bank", {Trajectory{}}, evaluations, score_runs(evaluations));
+  ASSERT_EQ(rows.size(), 2U);
+  for (const SummaryRow& row : rows) {
+    EXPECT_EQ(row.samples, 0);
+    EXPECT_TRUE(std::isnan(row.log_score) && std::isnan(row.rmse(0)) && std::isnan(row.nis_mean));
+    EXPECT_TRUE(std::isnan(row.nis_above) && std::isnan(row.nis_below) && std::isnan(row.tail_above));
+    EXPECT_TRUE(std::isnan(row.tail_below) && std::isnan(row.pit_distance) && std::isnan(row.whiteness_p));
+  }
+  EXPECT_THROW(summarize("bank", {Trajectory{}}, {}, {}), std::invalid_argument);
+}
+
+TEST(Summary, WhitenessIsPooledOverRunsByFisher) {
+  const Bank truth = test::example_bank(1, 1, 2);
+  std::vector<Trajectory> runs;
+  std::vector<RunEvaluation> evaluations;
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    runs.push_back(test::simulate_bank(truth, seed == 2 ? 4 : 60, seed));  // the last is too short for a lag
+    evaluations.push_back(evaluate_run(truth, runs.back(), {}));
+  }
+  const auto rows = summarize("bank", runs, evaluations, score_runs(evaluations));
+  EXPECT_TRUE(std::isnan(rows[2].whiteness_p));
+  EXPECT_DOUBLE_EQ(rows[3].whiteness_p, fisher_p({rows[0].whiteness_p, rows[1].whiteness_p}));
+  EXPECT_NE(rows[0].whiteness_p, rows[1].whiteness_p);
+}
+
+}  // namespace
+}  // namespace modebank

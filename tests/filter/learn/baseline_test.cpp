@@ -1,0 +1,216 @@
+// Q and R of the baseline by maximum likelihood.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <vector>
+
+#include "modebank/base/error.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using test::near;
+
+Bank single_filter(double a, double q, double r) {
+  Bank bank = test::single_mode(test::example_bank(1, 1, 1, r), 0);
+  bank.structure.intercept = false;
+  bank.modes[0].model.A(0, 0) = a;
+  bank.modes[0].model.B(0, 0) = 0.5;
+  bank.modes[0].Q(0, 0) = q;
+  return bank;
+}
+
+Recording simulated(const Bank& bank, Index runs, Index samples, std::uint64_t seed = 100) {
+  Recording recording = test::empty_recording(bank.structure.states, bank.structure.inputs);
+  for (Index i = 0; i < runs; ++i) {
+    const Trajectory run = test::simulate_bank(bank, samples, seed + static_cast<std::uint64_t>(i));
+    test::add_run(recording, run.state, run.input);
+  }
+  return recording;
+}
+
+/// theta fixed at the truth: how well Q and R are found is the question here.
+GlobalModel model_at(const Recording& recording, const Bank& truth) {
+  GlobalModel global = fit_global(recording, test::structure_of(recording));
+  global.theta = truth.theta(0);
+  return global;
+}
+
+Baseline learn(const Recording& recording, const GlobalModel& global) {
+  return learn_baseline(recording, global, test::structure_of(recording));
+}
+
+double likelihood_at(Bank bank, const Recording& recording, const Eigen::MatrixXd& Q, const Eigen::MatrixXd& R) {
+  bank.modes[0].Q = Q;
+  bank.R = R;
+  double sum = 0.0;
+  for (const Trajectory& run : recording.runs) sum += log_likelihood(bank, run, {FilterVariant::kf, false});
+  return sum;
+}
+
+/// Q's lower triangle and R's diagonal as one vector.
+Eigen::VectorXd noise_vector(const Eigen::MatrixXd& Q, const Eigen::MatrixXd& R) {
+  std::vector<double> values;
+  for (Index j = 0; j < Q.cols(); ++j)
+    for (Index i = j; i < Q.rows(); ++i) values.push_back(Q(i, j));
+  for (const double r : R.diagonal()) values.push_back(r);
+  return Eigen::VectorXd::Map(values.data(), std::ssize(values));
+}
+
+double likelihood_at(const Bank& bank, const Recording& recording, const Eigen::VectorXd& noise) {
+  const Index n = bank.structure.states;
+  Eigen::MatrixXd Q(n, n);
+  Index next = 0;
+  for (Index j = 0; j < n; ++j)
+    for (Index i = j; i < n; ++i) Q(i, j) = Q(j, i) = noise(next++);
+  return likelihood_at(bank, recording, Q, noise.tail(n).asDiagonal());
+}
+
+/// Standard errors from the curvature of the log-likelihood at the estimate, by central differences.
+Eigen::VectorXd noise_standard_errors(const Baseline& fit, const Recording& recording) {
+  const Eigen::VectorXd at = noise_vector(fit.bank.modes[0].Q, fit.bank.R);
+  const Index d = at.size();
+  const Eigen::MatrixXd steps = 1e-2 * at.minCoeff() * Eigen::MatrixXd::Identity(d, d);
+  Eigen::MatrixXd information(d, d);
+  const auto value = [&](const Eigen::VectorXd& move) { return likelihood_at(fit.bank, recording, at + move); };
+  for (Index i = 0; i < d; ++i)
+    for (Index j = 0; j < d; ++j) {
+      const Eigen::VectorXd a = steps.col(i), b = steps.col(j);
+      information(i, j) =
+          -(value(a + b) - value(a - b) - value(b - a) + value(-a - b)) / (4 * steps(i, i) * steps(j, j));
+    }
+  return information.inverse().diagonal().cwiseSqrt();
+}
+
+/// (estimate - truth) / standard error of every entry of noise_vector.
+Eigen::VectorXd standardised_errors(const Baseline& fit, const Recording& recording, const Bank& truth) {
+  const Eigen::VectorXd expected = noise_vector(truth.modes[0].Q, truth.R);
+  const Eigen::VectorXd error = noise_standard_errors(fit, recording);
+  EXPECT_LT(error.cwiseQuotient(expected).maxCoeff(), 0.3) << "the data must be telling";
+  return (noise_vector(fit.bank.modes[0].Q, fit.bank.R) - expected).cwiseQuotient(error);
+}
+
+TEST(Baseline, ErrorsOfQAndRAreAsLargeAsTheirStandardErrors) {
+  constexpr int repetitions = 20;
+  const Bank truth = single_filter(-0.3, 0.04, 0.01);
+  Eigen::Vector2d squares = Eigen::Vector2d::Zero();
+  for (int i = 0; i < repetitions; ++i) {
+    const Recording recording = simulated(truth, 2, 500, 1000 + 10 * static_cast<std::uint64_t>(i));
+    const Baseline fit = learn(recording, model_at(recording, truth));
+    EXPECT_TRUE(fit.converged && !fit.at_bound) << "repetition " << i;
+    squares += standardised_errors(fit, recording, truth).cwiseAbs2();
+  }
+  // chi-square(20): 0.1 % and 99.9 % quantiles.
+  EXPECT_GT(squares.minCoeff(), 5.92);
+  EXPECT_LT(squares.maxCoeff(), 45.31);
+}
+
+TEST(Baseline, NoGridPointIsMoreLikely) {
+  for (const auto& [q, r] : {std::pair{0.04, 0.01}, std::pair{0.001, 0.05}, std::pair{0.04, 1e-5}}) {
+    const Bank truth = single_filter(-0.2, q, r);
+    const Recording recording = simulated(truth, 2, 200);
+    const Baseline fit = learn(recording, fit_global(recording, test::structure_of(recording)));
+    EXPECT_TRUE(fit.converged);
+    // 1e-7 per sample may be given away at the bound.
+    const double slack = 1e-7 * static_cast<double>(recording.transitions(Role::train));
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
+    for (int i = -24; i <= 4; ++i)
+      for (int j = -24; j <= 4; ++j)
+        EXPECT_GE(fit.log_likelihood + slack,
+                  likelihood_at(fit.bank, recording, std::exp2(0.5 * i) * one, std::exp2(0.5 * j) * one))
+            << "Q " << std::exp2(0.5 * i) << " R " << std::exp2(0.5 * j);
+  }
+}
+
+TEST(Baseline, AgreesWithNelderMead) {
+  const nlohmann::json golden = test::read_golden("learn_baseline");
+  for (const char* name : {"scalar", "vector"}) {
+    const nlohmann::json& expected = golden.at(name);
+    const Recording recording = test::golden_recording(expected.at("runs"));
+    const GlobalModel global = fit_global(recording, test::structure_of(recording));
+    EXPECT_TRUE(near(global.theta, test::golden_rows(expected.at("theta")), 1e-10)) << name;
+    const Baseline fit = learn(recording, global);
+    EXPECT_TRUE(fit.converged) << name;
+    // The simplex stops at 1e-11 in the likelihood, so at some 1e-5 of the flattest direction.
+    EXPECT_NEAR(fit.log_likelihood, expected.at("log_likelihood").get<double>(), 1e-7) << name;
+    EXPECT_TRUE(near(fit.bank.modes[0].Q, test::golden_rows(expected.at("Q")), 1e-5)) << name;
+    EXPECT_TRUE(near(fit.bank.R, test::golden_rows(expected.at("R")), 1e-5)) << name;
+  }
+}
+
+TEST(Baseline, WithoutMeasurementNoiseStopsAtTheBound) {
+  const Bank truth = single_filter(-0.3, 0.04, 1e-30);
+  const Recording recording = simulated(truth, 3, 400);
+  // Measurement noise correlates successive errors negatively; a theta that forgets too fast makes them positive.
+  GlobalModel global = fit_global(recording, test::structure_of(recording));
+  global.theta(0) = -0.5;
+  const Baseline fit = learn(recording, global);
+  EXPECT_TRUE(fit.converged);
+  EXPECT_TRUE(fit.at_bound);
+  double count = 0.0, sum = 0.0, squares = 0.0;
+  for (const Trajectory& run : recording.runs) {
+    count += static_cast<double>(run.samples());
+    sum += run.state.sum();
+    squares += run.state.squaredNorm();
+  }
+  const double variance = squares / count - (sum / count) * (sum / count);
+  EXPECT_NEAR(fit.bank.R(0, 0), 1e-10 * variance, 1e-20);
+}
+
+TEST(Baseline, RecoversTwoStates) {
+  Bank truth = test::single_mode(test::example_bank(2, 1, 1, 0.02), 0);
+  truth.structure.intercept = false;
+  truth.modes[0].Q << 0.08, 0.02, 0.02, 0.05;
+  const Recording recording = simulated(truth, 4, 500);
+  const Baseline fit = learn(recording, model_at(recording, truth));
+  EXPECT_TRUE(fit.converged);
+  EXPECT_EQ(fit.bank.R(0, 1), 0.0);
+  EXPECT_GE(fit.log_likelihood, likelihood_at(fit.bank, recording, truth.modes[0].Q, truth.R));
+  EXPECT_LT(standardised_errors(fit, recording, truth).cwiseAbs().maxCoeff(), 3.0);
+}
+
+TEST(Baseline, CarriesTheGlobalModel) {
+  const Bank truth = single_filter(-0.3, 0.04, 0.01);
+  const Recording recording = simulated(truth, 2, 60);
+  const GlobalModel global = fit_global(recording, test::structure_of(recording));
+  const Bank bank = learn(recording, global).bank;
+  EXPECT_NO_THROW(check_sizes(bank));
+  EXPECT_TRUE(near(bank.theta(0), global.theta, 0.0));
+  EXPECT_TRUE(near(bank.modes[0].standard_error, global.covariance.diagonal().cwiseSqrt(), 0.0));
+}
+
+TEST(Baseline, ConstantDataEndFinite) {
+  Recording recording = test::empty_recording(1, 1);
+  test::add_run(recording, Eigen::MatrixXd::Zero(1, 30), Eigen::MatrixXd::Zero(1, 30));
+  const Baseline fit = learn(recording, fit_global(recording, test::structure_of(recording)));
+  EXPECT_TRUE(fit.bank.modes[0].Q.allFinite() && fit.bank.R.allFinite());
+  EXPECT_TRUE(std::isfinite(fit.log_likelihood));
+}
+
+TEST(Baseline, WithoutTrainingRunsIsAnError) {
+  const Recording recording = test::empty_recording(1, 1);
+  GlobalModel global;
+  global.theta = Eigen::Vector2d::Zero();
+  global.covariance.setZero(2, 2);
+  global.residual_covariance.setOnes(1, 1);
+  EXPECT_THROW(learn(recording, global), DataError);
+}
+
+TEST(Baseline, IsTheSameForAnyNumberOfThreads) {
+  const Recording recording = simulated(single_filter(-0.3, 0.04, 0.01), 5, 80);
+  const GlobalModel global = fit_global(recording, test::structure_of(recording));
+  const Baseline parallel = learn(recording, global);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Baseline serial = learn(recording, global);
+  EXPECT_EQ(parallel.bank.modes[0].Q, serial.bank.modes[0].Q);
+  EXPECT_EQ(parallel.bank.R, serial.bank.R);
+  EXPECT_EQ(parallel.log_likelihood, serial.log_likelihood);
+}
+
+}  // namespace
+}  // namespace modebank

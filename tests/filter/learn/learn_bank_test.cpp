@@ -1,0 +1,245 @@
+// Banks from mixtures: laws, sources of theta, Q, R and T, and screening.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <boost/random/normal_distribution.hpp>
+#include <random>
+
+#include "modebank/base/error.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using test::near;
+
+constexpr double bank_exact = 1e-10;
+const Eigen::MatrixXd R_given = Eigen::MatrixXd::Constant(1, 1, 1e-4);
+
+/// Runs of 40 transitions, each in one mode of x[k+1] = x + a x + 0.5 u + 0.1 w, and a test run that must not matter.
+Recording runs_in_modes(const std::vector<double>& a) {
+  std::mt19937_64 generator(9);
+  boost::random::normal_distribution<double> normal;
+  Recording recording = test::empty_recording(1, 1);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, 41), u(1, 41);
+    for (Index k = 0; k < 41; ++k) {
+      u(k) = normal(generator);
+      if (k < 40) x(k + 1) = x(k) + a[i] * x(k) + 0.5 * u(k) + 0.1 * normal(generator);
+    }
+    test::add_run(recording, x, u);
+  }
+  test::add_run(recording, Eigen::MatrixXd::Constant(1, 10, 100.0), Eigen::MatrixXd::Zero(1, 10), Role::test);
+  recording.runs.back().time_s *= 50.0;
+  return recording;
+}
+
+/// Windows of run i belong to component i alone.
+Eigen::MatrixXd memberships_by_run(const WindowFits& fits, Index components) {
+  Eigen::MatrixXd gamma = Eigen::MatrixXd::Zero(components, fits.count());
+  for (Index i = 0; i < fits.count(); ++i) gamma(fits.windows[i].run, i) = 1.0;
+  return gamma;
+}
+
+struct Case {
+  Recording recording;
+  WindowFits fits;
+  MixtureResult mixture;
+  explicit Case(const std::vector<double>& a, Index step = 1)
+      : recording(runs_in_modes(a)),
+        fits(test::windows_of(recording, 10, step)),
+        mixture(test::mixture_of(fits, memberships_by_run(fits, std::ssize(a)))) {}
+  Bank learn(const BankOptions& options = {}) const { return learn_bank(recording, fits, mixture, options, R_given); }
+  GlobalModel alone(Index run) const {
+    Recording one{recording.states, recording.inputs, {recording.runs[run]}};
+    return fit_global(one, fits.structure);
+  }
+};
+
+TEST(LearnBank, OneModeWithoutPriorIsTheGlobalModel) {
+  Case data({-0.3, -0.3});
+  data.mixture = test::mixture_of(data.fits, Eigen::MatrixXd::Ones(1, data.fits.count()));
+  const Bank bank = data.learn();
+  ASSERT_EQ(bank.mode_count(), 1);
+  EXPECT_TRUE(near(bank.theta(0), data.fits.global.theta, bank_exact));
+  EXPECT_TRUE(near(bank.modes[0].Q, data.fits.global.residual_covariance, bank_exact));
+  EXPECT_TRUE(near(bank.modes[0].standard_error, data.fits.global.covariance.diagonal().cwiseSqrt(), bank_exact));
+  EXPECT_TRUE(near(bank.transition.matrix(), Eigen::MatrixXd::Ones(1, 1), 0.0));
+}
+
+TEST(LearnBank, EachModeIsTheRegressionOfItsRun) {
+  const Case data({-0.2, -0.5, -0.8});
+  const Bank bank = data.learn();
+  ASSERT_EQ(bank.mode_count(), 3);
+  for (Index j = 0; j < 3; ++j) {
+    EXPECT_TRUE(near(bank.theta(j), data.alone(j).theta, bank_exact));
+    EXPECT_TRUE(near(bank.modes[j].Q, data.alone(j).residual_covariance, bank_exact));
+    EXPECT_TRUE(near(bank.modes[j].spread, data.mixture.mixture.covariances[j], 0.0));
+    EXPECT_NEAR(bank.modes[j].weight, 1.0 / 3.0, bank_exact);
+  }
+  EXPECT_NO_THROW(check_sizes(bank));
+  EXPECT_TRUE(near(bank.C, Eigen::MatrixXd::Identity(1, 1), 0.0));
+  EXPECT_TRUE(near(bank.R, R_given, 0.0));
+  EXPECT_TRUE(near(bank.initial_probability, Eigen::Vector3d::Constant(1.0 / 3.0), bank_exact));
+  EXPECT_THAT(bank.state_names, testing::ElementsAre("x0"));
+  EXPECT_THAT(bank.input_names, testing::ElementsAre("u0"));
+  EXPECT_NEAR(bank.dt_s, 0.1, bank_exact) << "of the training runs";
+  EXPECT_TRUE(bank.screened.empty());
+}
+
+TEST(LearnBank, PriorPullsTowardTheGlobalModel) {
+  Case data({-0.2, -0.8});
+  const Bank free = data.learn();
+  data.fits.prior_sd = Eigen::VectorXd::Constant(2, 1e-6);
+  const Bank held = data.learn();
+  data.fits.prior_sd = Eigen::VectorXd::Constant(2, 1e6);
+  const Bank loose = data.learn();
+  for (Index j = 0; j < 2; ++j) {
+    EXPECT_TRUE(near(held.theta(j), data.fits.global.theta, 1e-6));
+    EXPECT_TRUE(near(loose.theta(j), free.theta(j), 1e-9));
+  }
+}
+
+TEST(LearnBank, MeanTakesTheComponentsMeansAndNoiseAboutThem) {
+  Case data({-0.2, -0.8});
+  data.mixture.mixture.means.col(0) << -0.25, 0.4;
+  data.mixture.mixture.means.col(1) << -0.75, 0.6;
+  BankOptions options;
+  options.theta = ThetaSource::mean;
+  const Bank bank = data.learn(options);
+  for (Index j = 0; j < 2; ++j) {
+    EXPECT_TRUE(near(bank.theta(j), data.mixture.mixture.means.col(j), 0.0));
+    const Trajectory& run = data.recording.runs[j];
+    double sum = 0.0;
+    for (Index k = 0; k < 40; ++k)
+      sum += std::pow(run.state(k + 1) - bank.modes[j].model.next(run.state.col(k), run.input.col(k))(0), 2);
+    EXPECT_NEAR(bank.modes[j].Q(0, 0), sum / 40.0, bank_exact);
+  }
+}
+
+TEST(LearnBank, NoiseMayBeSharedOrFixed) {
+  const Case data({-0.2, -0.8});
+  const Bank own = data.learn();
+  BankOptions options;
+  options.noise = NoiseSource::shared;
+  const Bank shared = data.learn(options);
+  options.noise = NoiseSource::fixed;
+  options.process_variance = 0.02;
+  options.measurement_variance = 0.03;
+  const Bank fixed = data.learn(options);
+  EXPECT_NE(own.modes[0].Q(0, 0), own.modes[1].Q(0, 0));
+  for (Index j = 0; j < 2; ++j) {
+    EXPECT_NEAR(shared.modes[j].Q(0, 0), 0.5 * (own.modes[0].Q(0, 0) + own.modes[1].Q(0, 0)), bank_exact);
+    EXPECT_EQ(fixed.modes[j].Q(0, 0), 0.02);
+    EXPECT_TRUE(near(fixed.theta(j), own.theta(j), 0.0));
+  }
+  EXPECT_EQ(fixed.R(0, 0), 0.03);
+}
+
+TEST(LearnBank, TransitionsComeFromLabelsOrStay) {
+  const Case data({-0.2, -0.8}, 2);  // 16 windows in each run, 15 pairs
+  const double stay = std::sqrt(15.1 / 15.2);
+  Eigen::Matrix2d expected;
+  expected << stay, 1 - stay, 1 - stay, stay;
+  EXPECT_TRUE(near(data.learn().transition.matrix(), expected, bank_exact));
+  BankOptions options;
+  options.transition = TransitionSource::stay;
+  options.stay = 0.9;
+  expected << 0.9, 0.1, 0.1, 0.9;
+  EXPECT_TRUE(near(data.learn(options).transition.matrix(), expected, bank_exact));
+}
+
+TEST(Screening, UnstableAndStarvedModesAreListedAndLeftOut) {
+  Case data({-0.2, 0.1, -0.8});  // the second grows by a tenth per step
+  Eigen::MatrixXd gamma = Eigen::MatrixXd::Zero(4, data.fits.count());
+  gamma.topRows(3) = memberships_by_run(data.fits, 3);
+  gamma.col(0) << 0.9, 0.0, 0.0, 0.1;  // a tenth of one transition, shares of nine more
+  data.mixture = test::mixture_of(data.fits, gamma);
+  data.mixture.mixture.weights << 0.4, 0.2, 0.3, 0.1;
+  const Bank bank = data.learn();
+  ASSERT_EQ(bank.mode_count(), 2);
+  EXPECT_NEAR(bank.modes[0].weight, 4.0 / 7.0, bank_exact);
+  EXPECT_NEAR(bank.modes[1].weight, 3.0 / 7.0, bank_exact);
+  EXPECT_TRUE(near(bank.theta(1), data.alone(2).theta, bank_exact));
+  EXPECT_EQ(bank.transition.modes(), 2);
+  ASSERT_EQ(bank.screened.size(), 2);
+  EXPECT_EQ(bank.screened[0].component, 1);
+  EXPECT_EQ(bank.screened[0].reason, "unstable");
+  EXPECT_EQ(bank.screened[0].weight, 0.2);
+  EXPECT_NEAR(bank.screened[0].spectral_radius, 1.0 + data.alone(1).theta(0), bank_exact);
+  EXPECT_EQ(bank.screened[1].component, 3);
+  EXPECT_EQ(bank.screened[1].reason, "starved");
+
+  BankOptions keep;
+  keep.screen = false;
+  const Bank all = data.learn(keep);
+  EXPECT_EQ(all.mode_count(), 4);
+  EXPECT_TRUE(all.screened.empty());
+  for (const Mode& mode : all.modes) EXPECT_TRUE(pack(all.structure, mode.model).allFinite() && mode.Q.allFinite());
+}
+
+TEST(Screening, AnIntegratorIsStable) {
+  Case data({-0.2, -0.3});
+  BankOptions options;
+  options.theta = ThetaSource::mean;
+  data.mixture.mixture.means.row(0) << 0.0, 1e-8;
+  const Bank bank = data.learn(options);
+  ASSERT_EQ(bank.mode_count(), 1);
+  EXPECT_EQ(bank.modes[0].model.A(0, 0), 0.0);
+}
+
+TEST(Screening, WhereNoComponentIsLeftAllOfThemTogetherAreOneMode) {
+  Case data({-0.2, -0.3});
+  BankOptions options;
+  options.theta = ThetaSource::mean;
+  data.mixture.mixture.means.row(0) << -2.5, 0.3;
+  const Bank bank = data.learn(options);
+  ASSERT_EQ(bank.mode_count(), 1);
+  EXPECT_NEAR(bank.theta(0)(0), data.mixture.mixture.means.row(0).dot(data.mixture.mixture.weights), bank_exact);
+  EXPECT_EQ(bank.transition.matrix()(0, 0), 1.0);
+  ASSERT_EQ(bank.screened.size(), 2);
+  EXPECT_EQ(bank.screened[1].reason, "unstable");
+}
+
+TEST(Screening, ABankWithoutModesIsAnError) {
+  Case data({-0.2, -0.3});
+  BankOptions options;
+  options.theta = ThetaSource::mean;
+  data.mixture.mixture.means.row(0) << 0.4, 0.3;
+  try {
+    data.learn(options);
+    FAIL() << "nothing thrown";
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("component 0 unstable"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("component 1 unstable"));
+  }
+}
+
+TEST(LearnBank, BadArgumentsAreNamed) {
+  Case data({-0.2, -0.3});
+  BankOptions options;
+  options.measurement_variance = -1.0;
+  EXPECT_THROW(data.learn(options), std::invalid_argument);
+  EXPECT_THROW(learn_bank(data.recording, data.fits, data.mixture, {}, Eigen::MatrixXd::Identity(2, 2)),
+               std::invalid_argument);
+  data.fits.structure.inputs = 2;
+  EXPECT_THROW(data.learn(), std::invalid_argument);
+}
+
+TEST(LearnBank, IsTheSameForAnyNumberOfThreads) {
+  Case data({-0.2, -0.5, -0.8});
+  data.fits.prior_sd = Eigen::VectorXd::Constant(2, 0.3);
+  const Bank parallel = data.learn();
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Bank serial = data.learn();
+  for (Index j = 0; j < 3; ++j) {
+    EXPECT_EQ(parallel.theta(j), serial.theta(j));
+    EXPECT_EQ(parallel.modes[j].Q, serial.modes[j].Q);
+    EXPECT_EQ(parallel.modes[j].standard_error, serial.modes[j].standard_error);
+  }
+}
+
+}  // namespace
+}  // namespace modebank

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "filter/learn/learn.hpp"
+#include "ident/fit/global_model.hpp"
+#include "tests/support/golden.hpp"
+
+namespace modebank::test {
+
+inline Recording empty_recording(Index n, Index m) {
+  Recording recording;
+  for (Index i = 0; i < n; ++i) recording.states.push_back({"x" + std::to_string(i), "m"});
+  for (Index i = 0; i < m; ++i) recording.inputs.push_back({"u" + std::to_string(i), ""});
+  return recording;
+}
+
+/// Adds a run of samples 0.1 s apart.
+inline void add_run(Recording& recording, Eigen::MatrixXd state, Eigen::MatrixXd input, Role role = Role::train) {
+  Trajectory run;
+  run.run = "run" + std::to_string(recording.runs.size());
+  run.role = role;
+  run.time_s = Eigen::VectorXd::LinSpaced(state.cols(), 0.0, 0.1 * static_cast<double>(state.cols() - 1));
+  run.state = std::move(state);
+  run.input = std::move(input);
+  recording.runs.push_back(std::move(run));
+}
+
+/// The training runs a golden file holds, x and u one sample per row.
+inline Recording golden_recording(const nlohmann::json& runs) {
+  Recording recording;
+  for (const nlohmann::json& run : runs) {
+    const Eigen::MatrixXd x = golden_columns(run.at("x")), u = golden_columns(run.at("u"));
+    if (recording.runs.empty()) recording = empty_recording(x.rows(), u.rows());
+    add_run(recording, x, u);
+  }
+  return recording;
+}
+
+inline LinearStructure structure_of(const Recording& recording) {
+  return {recording.state_count(), recording.input_count(), false};
+}
+
+/// Windows of every training run without any fit but the global one, as far as banks need them.
+inline WindowFits windows_of(const Recording& recording, Index length, Index step) {
+  WindowFits fits;
+  fits.structure = structure_of(recording);
+  fits.length = length;
+  fits.step = step;
+  fits.windows = make_windows(recording, length, step);
+  fits.global = fit_global(recording, fits.structure);
+  return fits;
+}
+
+/// A mixture of K components of equal weight around the global theta whose memberships are `responsibilities` (K x M,
+/// NaN columns: not clustered).
+inline MixtureResult mixture_of(const WindowFits& fits, const Eigen::MatrixXd& responsibilities) {
+  const Index K = responsibilities.rows(), p = fits.parameter_count();
+  MixtureResult result;
+  result.mixture.weights = Eigen::VectorXd::Constant(K, 1.0 / static_cast<double>(K));
+  result.mixture.means = fits.global.theta.replicate(1, K);
+  result.mixture.covariances.assign(K, Eigen::MatrixXd::Identity(p, p));
+  result.responsibilities = responsibilities;
+  result.labels = Eigen::VectorXi::Constant(fits.count(), -1);
+  for (Index i = 0; i < fits.count(); ++i)
+    if (!std::isnan(responsibilities(0, i))) responsibilities.col(i).maxCoeff(&result.labels(i));
+  return result;
+}
+
+}  // namespace modebank::test

@@ -1,0 +1,142 @@
+// R by the filter's likelihood, and refinement where the states are not measured exactly: theta, Q, R and T together.
+#include "filter/learn/refine/measurement_noise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+#include <optional>
+#include <random>
+
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
+
+namespace modebank {
+namespace {
+
+struct SystemTruth {
+  Eigen::MatrixXd theta{{-0.2, -0.6}, {0.3, 1.0}};
+  Eigen::Vector2d Q{0.01, 0.04};
+  Eigen::Matrix2d T{{0.97, 0.03}, {0.04, 0.96}};
+  double R = 0.01;
+};
+
+/// y = x + v, x[k+1] = x + a x + b u + w in switching modes.
+Recording measured_runs(const SystemTruth& truth, Index runs, Index samples, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  boost::random::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Recording recording = test::empty_recording(1, 1);
+  for (Index i = 0; i < runs; ++i) {
+    Eigen::MatrixXd y(1, samples), u(1, samples);
+    double x = 0.0;
+    Index mode = i % 2;
+    for (Index k = 0; k < samples; ++k) {
+      y(k) = x + std::sqrt(truth.R) * normal(generator);
+      u(k) = normal(generator);
+      if (uniform(generator) > truth.T(mode, mode)) mode = 1 - mode;
+      x += truth.theta(0, mode) * x + truth.theta(1, mode) * u(k) + std::sqrt(truth.Q(mode)) * normal(generator);
+    }
+    test::add_run(recording, y, u);
+  }
+  return recording;
+}
+
+Bank bank_of(const Recording& recording, const Eigen::MatrixXd& theta, const Eigen::VectorXd& Q, double R) {
+  const LinearStructure structure = test::structure_of(recording);
+  Bank bank = bank_frame(recording, structure, Eigen::MatrixXd::Constant(1, 1, R));
+  for (Index j = 0; j < theta.cols(); ++j)
+    bank.modes.push_back(make_mode(structure, theta.col(j), Eigen::MatrixXd::Constant(1, 1, Q(j)), {}, {}, 1.0));
+  set_mode_sequence(bank, TransitionMatrix::sticky(theta.cols(), 0.9));
+  return bank;
+}
+
+class RefineMeasured : public testing::TestWithParam<Index> {};
+
+/// folds 1: to convergence; more: stopped by cross-validation.
+TEST_P(RefineMeasured, RecoversEverythingWithinThreeStandardErrors) {
+  const SystemTruth truth;
+  const Recording recording = measured_runs(truth, 6, 600, 11);
+  const WindowFits fits = test::windows_of(recording, 25, 1);
+  RefineOptions options;
+  options.restarts = 0;
+  options.folds = GetParam();
+  const Eigen::MatrixXd theta = truth.theta + Eigen::MatrixXd{{-0.1, 0.1}, {0.05, -0.1}};
+  const Refinement refined =
+      refine_bank(recording, fits, {bank_of(recording, theta, Eigen::Vector2d(0.03, 0.06), 1e-9)}, options, {});
+  const Bank& bank = refined.bank;
+  ASSERT_EQ(bank.mode_count(), 2);
+  EXPECT_GT(refined.measurement.iterations, 0);
+  for (Index j = 0; j < 2; ++j) {
+    const Mode& mode = bank.modes[static_cast<std::size_t>(j)];
+    for (Index a = 0; a < 2; ++a)
+      EXPECT_LT(std::abs(bank.theta(j)(a) - truth.theta(a, j)), 3.0 * mode.standard_error(a)) << j << ", " << a;
+    EXPECT_LT(std::abs(mode.Q(0, 0) - truth.Q(j)), 3.0 * mode.Q_standard_error(0, 0)) << j;
+    EXPECT_LT(mode.standard_error.maxCoeff(), 0.06);
+    EXPECT_LT(mode.Q_standard_error(0, 0), 0.3 * truth.Q(j));
+  }
+  ASSERT_EQ(bank.R_standard_error.rows(), 1);
+  EXPECT_LT(std::abs(bank.R(0, 0) - truth.R), 3.0 * bank.R_standard_error(0, 0));
+  EXPECT_LT(bank.R_standard_error(0, 0), 0.3 * truth.R);
+  const Eigen::MatrixXd error = bank.transition.matrix() - truth.T;
+  EXPECT_TRUE((error.array().abs() < 3.0 * bank.transition_standard_error.array()).all()) << error;
+  EXPECT_LT(bank.transition_standard_error.maxCoeff(), 0.03);
+}
+
+INSTANTIATE_TEST_SUITE_P(Folds, RefineMeasured, testing::Values(1, 3));
+
+TEST(RefineMeasured, KeepsAGivenRAndFitsTheRest) {
+  const SystemTruth truth;
+  const Recording recording = measured_runs(truth, 4, 400, 13);
+  RefineOptions options;
+  options.restarts = 0;
+  options.folds = 1;
+  options.measurement_noise = false;
+  const Bank start = bank_of(recording, truth.theta, Eigen::Vector2d(0.03, 0.06), truth.R);
+  const Bank bank = refine_bank(recording, test::windows_of(recording, 25, 1), {start}, options, {}).bank;
+  EXPECT_EQ(bank.R(0, 0), truth.R);
+  EXPECT_EQ(bank.R_standard_error.size(), 0);
+  for (Index j = 0; j < 2; ++j) {
+    const Mode& mode = bank.modes[static_cast<std::size_t>(j)];
+    EXPECT_LT(std::abs(mode.Q(0, 0) - truth.Q(j)), 3.0 * mode.Q_standard_error(0, 0)) << j;
+  }
+}
+
+// R alone, where the likelihood is exact: one mode of a = -0.2 without input.
+
+constexpr double Q_true = 0.04;
+
+Recording one_mode_with(double R) {
+  SystemTruth truth;
+  truth.theta << -0.2, -0.2, 0.0, 0.0;
+  truth.Q.setConstant(Q_true);
+  truth.R = R;
+  return measured_runs(truth, 3, 800, 23);
+}
+
+Bank one_mode(const Recording& recording, double Q) {
+  return bank_of(recording, Eigen::Vector2d(-0.2, 0.0), Eigen::VectorXd::Constant(1, Q), 1e-9);
+}
+
+std::optional<Bank> with_R(const Recording& recording, const Bank& bank) {
+  return estimate_measurement_noise({recording, {}, std::nullopt}, bank, {});
+}
+
+/// The share of Q that was R is found whatever it is.
+TEST(EstimateMeasurementNoise, SplitsQAndR) {
+  for (const double R : {0.005, 0.02, 0.2}) {
+    const Recording recording = one_mode_with(R);
+    const std::optional<Bank> bank = with_R(recording, one_mode(recording, Q_true + 2.0 * R));
+    ASSERT_TRUE(bank) << R;
+    EXPECT_NEAR(bank->R(0, 0), R, 0.2 * R + 0.003) << R;
+    EXPECT_NEAR(bank->modes[0].Q(0, 0), Q_true, 0.2 * Q_true) << R;
+  }
+}
+
+TEST(EstimateMeasurementNoise, IsNoneWhereTheDataShowNone) {
+  const Recording recording = one_mode_with(0.0);
+  EXPECT_FALSE(with_R(recording, one_mode(recording, Q_true)));
+}
+
+}  // namespace
+}  // namespace modebank

@@ -1,0 +1,153 @@
+// Weighted regressions: against statsmodels and a general minimiser (tests/golden/generate/learn_reference.py), and by
+// law.
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <boost/random/normal_distribution.hpp>
+#include <random>
+
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using test::near;
+
+/// Closed forms on well-conditioned data (condition below 1e2).
+constexpr double exact = 1e-10;
+/// The golden minimiser differences its cost: its theta is good to some 1e-7.
+constexpr double minimiser = 2e-6;
+
+struct WeightedGolden {
+  nlohmann::json golden = test::read_golden("learn_weighted");
+  Recording recording = test::golden_recording(golden.at("runs"));
+  LinearStructure structure = test::structure_of(recording);
+  TrainingTransitions transitions = gather_training_transitions(recording, structure);
+  GlobalModel global = fit_global(recording, structure);
+  Eigen::VectorXd weights = test::golden_rows(golden.at("weights"));
+};
+
+TEST(WeightedMode, AgreesWithFrequencyWeightedRegression) {
+  const WeightedGolden data;
+  const nlohmann::json& expected = data.golden.at("plain");
+  const ModeEstimate mode = fit_weighted_mode(data.transitions, data.weights, data.global, nullptr);
+  EXPECT_TRUE(near(mode.theta, test::golden_rows(expected.at("theta")), exact));
+  EXPECT_TRUE(near(mode.Q, test::golden_rows(expected.at("Q")), exact));
+  EXPECT_TRUE(near(mode.standard_error, test::golden_rows(expected.at("standard_error")), exact));
+  EXPECT_NEAR(mode.effective_transitions, data.weights.sum(), exact);
+}
+
+TEST(WeightedMode, PriorMaximisesThePenalisedLikelihood) {
+  const WeightedGolden data;
+  const nlohmann::json& expected = data.golden.at("penalised");
+  const ParameterPrior prior{data.global.theta, test::golden_rows(expected.at("sd"))};
+  const ModeEstimate mode = fit_weighted_mode(data.transitions, data.weights, data.global, &prior);
+  EXPECT_TRUE(mode.converged);
+  EXPECT_TRUE(near(mode.theta, test::golden_rows(expected.at("theta")), minimiser));
+  EXPECT_TRUE(near(mode.Q, test::golden_rows(expected.at("Q")), minimiser));
+}
+
+TEST(WeightedMode, WithOneModeIsTheGlobalModelOfTheSampleWeights) {
+  WeightedGolden data;
+  for (Trajectory& run : data.recording.runs)
+    run.weight = Eigen::VectorXd::LinSpaced(run.samples(), 0.0, 2.0).array().square();
+  const GlobalModel global = fit_global(data.recording, data.structure);
+  EXPECT_GT((global.theta - data.global.theta).norm(), 1e-3);
+  const TrainingTransitions transitions = gather_training_transitions(data.recording, data.structure);
+  // A run's first weight belongs to no transition.
+  EXPECT_NEAR(transitions.usable.mean(), 1.0, exact);
+  const ModeEstimate mode = fit_weighted_mode(transitions, transitions.usable, global, nullptr);
+  EXPECT_TRUE(near(mode.theta, global.theta, exact));
+  EXPECT_TRUE(near(mode.Q, global.residual_covariance, exact));
+  EXPECT_TRUE(near(mode.standard_error, global.covariance.diagonal().cwiseSqrt(), exact));
+}
+
+TEST(WeightedMode, WithOneModeAndNoPriorIsTheGlobalModel) {
+  const WeightedGolden data;
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(data.transitions.count());
+  const ModeEstimate mode = fit_weighted_mode(data.transitions, ones, data.global, nullptr);
+  EXPECT_TRUE(near(mode.theta, data.global.theta, exact));
+  EXPECT_TRUE(near(mode.Q, data.global.residual_covariance, exact));
+  EXPECT_TRUE(near(mode.standard_error, data.global.covariance.diagonal().cwiseSqrt(), exact));
+}
+
+TEST(WeightedMode, WithoutWeightStaysAtTheGlobalModel) {
+  const WeightedGolden data;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(data.transitions.count());
+  const Eigen::VectorXd sd = Eigen::VectorXd::Constant(6, 0.3);
+  const ParameterPrior prior{data.global.theta, sd};
+  const ModeEstimate mode = fit_weighted_mode(data.transitions, none, data.global, &prior);
+  EXPECT_TRUE(near(mode.theta, data.global.theta, exact));
+  EXPECT_TRUE(near(mode.Q, data.global.residual_covariance, exact));
+  EXPECT_TRUE(near(mode.standard_error, sd, exact)) << "the prior is all that is known";
+  const ModeEstimate unknown = fit_weighted_mode(data.transitions, none, data.global, nullptr);
+  EXPECT_TRUE(near(unknown.theta, data.global.theta, exact));
+  EXPECT_TRUE(unknown.standard_error.array().isNaN().all());
+}
+
+TEST(WeightedMode, UnexcitedDirectionsStayAtTheGlobalModel) {
+  // Two inputs that differ in the first half only: a mode of the second half knows the sum of their gains.
+  std::mt19937_64 generator(4);
+  boost::random::normal_distribution<double> normal;
+  const Index N = 121;
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, N), u(2, N);
+  for (Index k = 0; k < N; ++k) {
+    u(0, k) = normal(generator);
+    u(1, k) = k < 60 ? normal(generator) : u(0, k);
+    if (k + 1 < N) x(k + 1) = 0.6 * x(k) + 0.5 * u(0, k) - 0.2 * u(1, k) + 0.1 * normal(generator);
+  }
+  Recording recording = test::empty_recording(1, 2);
+  test::add_run(recording, x, u);
+  const LinearStructure structure = test::structure_of(recording);
+  const GlobalModel global = fit_global(recording, structure);
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(N - 1);
+  weights.tail(60).setOnes();
+  const TrainingTransitions transitions = gather_training_transitions(recording, structure);
+  const ModeEstimate mode = fit_weighted_mode(transitions, weights, global, nullptr);
+  EXPECT_NEAR(mode.theta(1) - mode.theta(2), global.theta(1) - global.theta(2), exact);
+  EXPECT_GT(std::abs(mode.theta(1) + mode.theta(2) - global.theta(1) - global.theta(2)), 1e-4);
+  EXPECT_TRUE(mode.standard_error.array().isNaN().all());
+}
+
+TEST(WeightedMode, NoiseIsFlooredWhereAModeFitsExactly) {
+  const WeightedGolden data;
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(data.transitions.count());
+  weights.head(3).setOnes();  // as many transitions as regressors
+  const ModeEstimate mode = fit_weighted_mode(data.transitions, weights, data.global, nullptr);
+  const Eigen::MatrixXd floor = process_noise_floor * data.global.noise_variance().asDiagonal().toDenseMatrix();
+  EXPECT_TRUE(near(mode.Q, floor, 1e-6 * floor.maxCoeff()));
+}
+
+TEST(AssessedMode, TakesNoiseAboutTheGivenTheta) {
+  const WeightedGolden data;
+  const Eigen::VectorXd theta = data.global.theta.array() + 0.1;
+  const ModeEstimate mode = assess_weighted_mode(data.transitions, data.weights, data.global, nullptr, theta);
+  const Eigen::MatrixXd r =
+      data.transitions.data.increments - data.transitions.data.regressors * coefficients(data.structure, theta);
+  EXPECT_TRUE(near(mode.theta, theta, 0.0));
+  EXPECT_TRUE(near(mode.Q, r.transpose() * data.weights.asDiagonal() * r / data.weights.sum(), exact));
+}
+
+TEST(PooledModes, KnownMembershipsGiveSeparateRegressions) {
+  const WeightedGolden data;
+  const Index N = data.transitions.count();
+  Eigen::MatrixXd memberships = Eigen::MatrixXd::Zero(N, 2);
+  for (Index k = 0; k < N; ++k) memberships(k, k % 2) = 1.0;
+  const std::vector<ModeEstimate> modes = fit_pooled_modes(data.transitions, memberships, data.global, nullptr);
+  for (Index mode = 0; mode < 2; ++mode) {
+    const auto rows = Eigen::seq(mode, N - 1, 2);
+    const Eigen::MatrixXd X = data.transitions.data.regressors(rows, Eigen::all);
+    const Eigen::MatrixXd D = data.transitions.data.increments(rows, Eigen::all);
+    const Eigen::MatrixXd beta = (X.transpose() * X).inverse() * X.transpose() * D;
+    const Eigen::MatrixXd r = D - X * beta;
+    EXPECT_TRUE(near(modes[mode].theta, beta.reshaped(), exact)) << "mode " << mode;
+    EXPECT_TRUE(near(modes[mode].Q, r.transpose() * r / static_cast<double>(X.rows()), exact)) << "mode " << mode;
+  }
+}
+
+}  // namespace
+}  // namespace modebank

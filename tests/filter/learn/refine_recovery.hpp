@@ -1,0 +1,157 @@
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "filter/judge/diagnostics.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/likelihood/information.hpp"
+#include "filter/learn/refine/refine.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
+
+/// Refinement of systems measured with noise, beside the truth that they were simulated from.
+namespace modebank::test {
+
+/// A bank to simulate from. `theta`: one column per mode; `stay`: of the modes, `R`: diagonal.
+inline Bank true_bank(const LinearStructure& structure, const Eigen::MatrixXd& theta,
+                      const std::vector<Eigen::MatrixXd>& Q, const Eigen::VectorXd& R, double stay) {
+  Bank bank = bank_frame(empty_recording(structure.states, structure.inputs), structure, R.asDiagonal());
+  for (Index j = 0; j < theta.cols(); ++j)
+    bank.modes.push_back(make_mode(structure, theta.col(j), Q[static_cast<std::size_t>(j)], {}, {}, 1.0));
+  set_mode_sequence(bank, theta.cols() > 1 ? TransitionMatrix::sticky(theta.cols(), stay) : TransitionMatrix());
+  return bank;
+}
+
+/// A pendulum (angle, rate) driven by a torque, one mode for every damping, R as many times what such sensors have.
+inline Bank true_pendulum(const std::vector<double>& dampings, double R_factor) {
+  const double dt = 0.02, torque = 70.0;
+  Eigen::MatrixXd theta(6, std::ssize(dampings));
+  for (Index j = 0; j < theta.cols(); ++j)
+    theta.col(j) << 0.0, dt, 0.0, -9.81 * dt, -dampings[static_cast<std::size_t>(j)] * dt, torque * dt;
+  const Eigen::MatrixXd Q = Eigen::Vector2d(2.5e-7, 1e-4).asDiagonal();
+  return true_bank({2, 1, false}, theta, std::vector<Eigen::MatrixXd>(dampings.size(), Q),
+                   R_factor * Eigen::Vector2d(4e-6, 4e-4), 0.995);
+}
+
+/// Two states, two inputs, two modes, R of about Q's size times `R_factor`.
+inline Bank true_pair(double R_factor) {
+  Eigen::MatrixXd theta(8, 2);
+  theta.col(0) << -0.2, 0.1, 1.5, 0.0, 0.0, -0.3, 0.3, 1.2;
+  theta.col(1) << -0.5, 0.0, 3.0, 0.6, 0.2, -0.6, 0.0, 3.0;
+  const Eigen::MatrixXd Q{{0.02, 0.005}, {0.005, 0.03}};
+  return true_bank({2, 2, false}, theta, {Q, 2.0 * Q}, R_factor * Eigen::Vector2d(0.02, 0.03), 0.975);
+}
+
+/// One state, one input, two modes.
+inline Bank true_scalar(double R_factor) {
+  const Eigen::MatrixXd theta{{-0.2, -0.6}, {1.0, 3.0}};
+  return true_bank({1, 1, false}, theta, {Eigen::MatrixXd{{0.01}}, Eigen::MatrixXd{{0.04}}},
+                   Eigen::VectorXd::Constant(1, 0.01 * R_factor), 0.965);
+}
+
+inline Recording simulated_recording(const Bank& truth, Index runs, Index samples, std::uint64_t seed) {
+  Recording recording = empty_recording(truth.structure.states, truth.structure.inputs);
+  for (Index i = 0; i < runs; ++i) {
+    recording.runs.push_back(simulate_truth(truth, samples, 1000 * seed + static_cast<std::uint64_t>(i)).run);
+    recording.runs.back().run += std::to_string(i);
+  }
+  return recording;
+}
+
+/// A start as clustered windows leave it: theta shrunk, measurement noise counted in Q, modes that do not last.
+inline Bank blurred(const Bank& truth, const Recording& recording) {
+  Bank start = bank_frame(recording, truth.structure, 1e-3 * truth.R);
+  for (Index j = 0; j < truth.mode_count(); ++j)
+    start.modes.push_back(make_mode(truth.structure, 0.9 * truth.theta(j),
+                                    truth.modes[static_cast<std::size_t>(j)].Q + 2.0 * truth.R, {}, {}, 1.0));
+  set_mode_sequence(start,
+                    truth.mode_count() > 1 ? TransitionMatrix::sticky(truth.mode_count(), 0.95) : TransitionMatrix());
+  return start;
+}
+
+inline Refinement refine_blurred(const Bank& truth, const Recording& recording, Index folds,
+                                 Index max_iterations = 100) {
+  RefineOptions options;
+  options.restarts = 0;
+  options.folds = folds;
+  options.max_iterations = max_iterations;
+  return refine_bank(recording, windows_of(recording, 25, 1), {blurred(truth, recording)}, options, {});
+}
+
+/// Errors of everything that was learned in its standard errors: theta, Q (lower triangles), R, T's diagonal. Modes in
+/// the truth's order, which starts keep.
+inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
+  std::vector<double> z;
+  const Index n = truth.structure.states;
+  for (Index j = 0; j < truth.mode_count(); ++j) {
+    const Mode& mode = bank.modes[static_cast<std::size_t>(j)];
+    const Mode& right = truth.modes[static_cast<std::size_t>(j)];
+    for (Index a = 0; a < truth.structure.parameters(); ++a)
+      z.push_back((bank.theta(j)(a) - truth.theta(j)(a)) / mode.standard_error(a));
+    for (Index b = 0; b < n; ++b)
+      for (Index a = b; a < n; ++a) z.push_back((mode.Q(a, b) - right.Q(a, b)) / mode.Q_standard_error(a, b));
+    if (truth.mode_count() > 1)
+      z.push_back((bank.transition.matrix()(j, j) - truth.transition.matrix()(j, j)) /
+                  bank.transition_standard_error(j, j));
+  }
+  for (Index i = 0; i < n; ++i) z.push_back((bank.R(i, i) - truth.R(i, i)) / bank.R_standard_error(i, i));
+  return z;
+}
+
+/// Of a bank on runs that it has not seen.
+inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, std::uint64_t seed,
+                                           Index samples = 1000) {
+  std::vector<Trajectory> runs = simulated_recording(truth, 4, samples, seed + 1000).runs;
+  std::vector<RunEvaluation> evaluations;
+  for (Trajectory& run : runs) {
+    run.role = Role::test;
+    evaluations.push_back(evaluate_run(bank, run, {}));
+  }
+  return diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front();
+}
+
+/// Where the mean NEES of a learned bank should lie: about n, with the scatter of a true filter's (`row`'s interval)
+/// and what the bank's own error adds. That is g' Sigma g by the delta method, g the derivative of the logarithm of the
+/// mean NEES on the held-out runs by the bank's coordinates, Sigma these coordinates' covariance: the inverse of the
+/// training runs' information.
+struct NeesInterval {
+  double lower, upper;
+  double parameter_sd, filter_sd;  ///< of the logarithm
+};
+
+inline NeesInterval learned_nees_interval(const Bank& bank, const Bank& truth, const Recording& training,
+                                          std::uint64_t seed, const DiagnosticsRow& row) {
+  const Index n_y = bank.R.rows();
+  FreeParameters free;
+  free.theta_unit.resize(bank.structure.parameters(), bank.mode_count());
+  for (Index j = 0; j < bank.mode_count(); ++j)
+    free.theta_unit.col(j) = bank.modes[static_cast<std::size_t>(j)].standard_error;
+  for (Index i = 0; i < n_y; ++i) free.R.push_back(i);
+  free.least_R = Eigen::VectorXd::Zero(n_y);
+  free.transition = bank.mode_count() > 1;
+  const BankCoordinates around(bank, free);
+  constexpr double step = 1e-2;
+  const auto moved = [&](Index c, double by) { return around.decode(by * Eigen::VectorXd::Unit(around.size(), c)); };
+  const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), step);
+  const Eigen::MatrixXd information = sample_gradients(around, steps, training, {}).information;
+  Eigen::VectorXd gradient(around.size());
+  tbb::parallel_for(Index{0}, around.size(), [&](Index c) {
+    gradient(c) = std::log(held_out_diagnostics(moved(c, step), truth, seed).nees_mean /
+                           held_out_diagnostics(moved(c, -step), truth, seed).nees_mean) /
+                  (2.0 * step);
+  });
+  constexpr double two_sided = 1.959964;
+  const auto states = static_cast<double>(bank.structure.states);
+  const double filter_sd = std::log(row.nees_upper / row.nees_lower) / (2.0 * two_sided);
+  const double parameter_sd = std::sqrt(gradient.dot(information.ldlt().solve(gradient)));
+  const double reach = two_sided * std::hypot(filter_sd, parameter_sd);
+  return {states * std::exp(-reach), states * std::exp(reach), parameter_sd, filter_sd};
+}
+
+}  // namespace modebank::test

@@ -1,0 +1,184 @@
+// With measurement noise refinement ends at the maximum of the filter's likelihood, and that recovers the truth.
+#include "tests/filter/learn/refine_recovery.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filter/learn/learn.hpp"
+#include "filter/learn/likelihood/maximum_likelihood.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
+#include "filter/learn/switching/starts.hpp"
+
+namespace modebank {
+namespace {
+
+using test::refine_blurred;
+using test::simulated_recording;
+
+/// A prior that says nothing but that theta is the global model's, as the baseline has it.
+SwitchingPrior theta_known(const Recording& recording, const LinearStructure& structure) {
+  const TrainingTransitions transitions = gather_training_transitions(recording, structure);
+  SwitchingPrior prior = switching_prior(transitions, fit_global(recording, structure), {}, 0.0);
+  prior.information *= 1e12;
+  prior.counts = 0.0;
+  return prior;
+}
+
+FreeParameters everything(const Bank& bank, double theta_unit) {
+  FreeParameters free;
+  free.theta_unit = Eigen::MatrixXd::Constant(bank.structure.parameters(), bank.mode_count(), theta_unit);
+  for (Index i = 0; i < bank.R.rows(); ++i) free.R.push_back(i);
+  free.least_R = Eigen::VectorXd::Zero(bank.R.rows());
+  free.transition = bank.mode_count() > 1;
+  return free;
+}
+
+/// One mode: the likelihood is exact, and the baseline maximises it over Q and R in its own way.
+TEST(MaximiseLikelihood, OfOneModeReachesTheBaselinesMaximum) {
+  const Bank truth = test::true_pendulum({1.0}, 1.0);
+  const Recording recording = simulated_recording(truth, 2, 800, 3);
+  const Baseline baseline = learn_baseline(recording, fit_global(recording, truth.structure), truth.structure);
+  ASSERT_TRUE(baseline.converged);
+  Bank bank = baseline.bank;
+  bank.modes[0].Q *= 4.0;
+  bank.R *= 0.3;
+  const LikelihoodTarget target{recording, {}, theta_known(recording, truth.structure)};
+  const LikelihoodMaximum maximum = maximise_likelihood(target, everything(bank, 1e-3), bank, {200, 1e-10});
+  EXPECT_EQ(maximum.end, MeasuredFit::converged);
+  bank = maximum.bank;
+  EXPECT_NEAR(training_log_likelihood(bank, recording, {}), baseline.log_likelihood, 1e-4);
+  constexpr double near_enough = 1e-2;  // a hundredth of each is far below its standard error
+  EXPECT_TRUE(bank.modes[0].Q.isApprox(baseline.bank.modes[0].Q, near_enough)) << bank.modes[0].Q;
+  EXPECT_NEAR(bank.modes[0].Q(0, 0), baseline.bank.modes[0].Q(0, 0), near_enough * bank.modes[0].Q(0, 0));
+  EXPECT_NEAR(bank.R(0, 0), baseline.bank.R(0, 0), near_enough * bank.R(0, 0));
+  EXPECT_NEAR(bank.R(1, 1), baseline.bank.R(1, 1), near_enough * bank.R(1, 1));
+}
+
+/// At a maximum no step to either side gains anything, whatever the number of modes.
+TEST(MaximiseLikelihood, EndsWhereNoStepGains) {
+  const Bank truth = test::true_pair(1.0);
+  const Recording recording = simulated_recording(truth, 3, 300, 5);
+  const TrainingTransitions transitions = gather_training_transitions(recording, truth.structure);
+  const LikelihoodTarget target{
+      recording, {}, switching_prior(transitions, fit_global(recording, truth.structure), {}, 0.01)};
+  const LikelihoodMaximum maximum = maximise_likelihood(target, everything(truth, 0.01), truth, {});
+  EXPECT_EQ(maximum.end, MeasuredFit::converged);
+  EXPECT_EQ(maximum.value, target.value(maximum.bank));
+  EXPECT_GT(maximum.value, target.value(truth));
+  const BankCoordinates around(maximum.bank, everything(truth, 0.01));
+  for (Index c = 0; c < around.size(); ++c)
+    for (const double step : {-0.03, 0.03}) {
+      const Eigen::VectorXd at = step * Eigen::VectorXd::Unit(around.size(), c);
+      EXPECT_LT(target.value(around.decode(at)), maximum.value + 1e-3) << c << ", " << step;
+    }
+}
+
+/// Only ratios of sample weights matter, and a sample of weight zero not at all.
+TEST(MaximiseLikelihood, CountsSamplesByTheirWeights) {
+  const Bank truth = test::true_scalar(1.0);
+  Recording recording = simulated_recording(truth, 2, 60, 7);
+  const SwitchingPrior prior = theta_known(recording, truth.structure);
+  const LikelihoodTarget target{recording, {}, prior};
+  const double plain = target.value(truth);
+  for (Trajectory& run : recording.runs) run.weight.setConstant(run.samples(), 3.0);
+  EXPECT_NEAR(target.value(truth), plain, 1e-9 * std::abs(plain));
+  const double last = log_densities(truth, recording.runs[1], {})(59);
+  recording.runs[1].weight(59) = 0.0;
+  EXPECT_NEAR(target.value(truth), plain - last, 1e-9 * std::abs(plain));
+}
+
+TEST(BankCoordinates, AreZeroAtTheirOriginAndMoveOneThetaTogether) {
+  const Bank truth = test::true_pair(1.0);
+  const BankCoordinates free(truth, everything(truth, 0.1));
+  EXPECT_EQ(free.size(), 2 * 8 + 2 * 3 + 2 + 2);
+  const Bank same = free.decode(Eigen::VectorXd::Zero(free.size()));
+  for (std::size_t j = 0; j < 2; ++j) {
+    EXPECT_TRUE(same.modes[j].Q.isApprox(truth.modes[j].Q, 1e-14));
+    EXPECT_EQ(same.theta(static_cast<Index>(j)), truth.theta(static_cast<Index>(j)));
+  }
+  EXPECT_TRUE(same.R.isApprox(truth.R, 1e-14));
+  EXPECT_TRUE(same.transition.matrix().isApprox(truth.transition.matrix(), 1e-14));
+
+  FreeParameters one_theta = everything(truth, 0.1);
+  one_theta.theta_unit = one_theta.theta_unit.leftCols(1).eval();
+  const BankCoordinates together(truth, one_theta);
+  EXPECT_EQ(together.size(), 8 + 2 * 3 + 2 + 2);
+  const Bank moved = together.decode(2.0 * Eigen::VectorXd::Unit(together.size(), 3));
+  for (Index j = 0; j < 2; ++j) EXPECT_NEAR(moved.theta(j)(3), truth.theta(j)(3) + 0.2, 1e-14);
+}
+
+TEST(BankCoordinates, HoldWhatIsKnownAndScaleQByOneFactor) {
+  const Bank truth = test::true_pair(1.0);
+  FreeParameters noise;
+  noise.Q_by_one_factor = true;
+  noise.R = {1};
+  noise.least_R = Eigen::Vector2d(0.0, 0.01);
+  noise.transition = false;
+  const BankCoordinates around(truth, noise);
+  ASSERT_EQ(around.size(), 2);
+  const Bank moved = around.decode(Eigen::Vector2d(std::log(2.0), std::log(3.0)));
+  for (std::size_t j = 0; j < 2; ++j) EXPECT_TRUE(moved.modes[j].Q.isApprox(2.0 * truth.modes[j].Q, 1e-14));
+  EXPECT_EQ(moved.R(0, 0), truth.R(0, 0));
+  EXPECT_NEAR(moved.R(1, 1), 0.01 + 3.0 * (truth.R(1, 1) - 0.01), 1e-15);
+  EXPECT_EQ(moved.theta(1), truth.theta(1));
+  EXPECT_EQ(moved.transition.matrix(), truth.transition.matrix());
+}
+
+/// By hand: R_ii by its logarithm is R_ii, and a row of T by the logarithm of one entry is T_ij (delta - T_ik).
+TEST(BankCoordinates, JacobianIsThatOfTheParameters) {
+  const Bank truth = test::true_scalar(1.0);
+  const BankCoordinates around(truth, everything(truth, 0.1));
+  const ParameterPlaces at = around.places();
+  const Eigen::MatrixXd J = around.jacobian();
+  ASSERT_EQ(J.rows(), 2 * 2 + 2 + 1 + 4);
+  ASSERT_EQ(J.cols(), 2 * 2 + 2 + 1 + 2);
+  EXPECT_NEAR(J(at.theta(1) + 1, 3), 0.1, 1e-11);
+  EXPECT_NEAR(J(at.Q(1), 5), 2.0 * truth.modes[1].Q(0, 0), 1e-9);  // exp(z) scales the root
+  EXPECT_NEAR(J(at.R(), 6), truth.R(0, 0), 1e-9);
+  const double T = truth.transition.matrix()(0, 1);
+  EXPECT_NEAR(J(at.T(0) + 1, 7), T * (1.0 - T), 1e-9);
+  EXPECT_NEAR(J(at.T(0), 7), -T * (1.0 - T), 1e-9);
+}
+
+class RefineRecovery : public testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(RefineRecovery, TwoModesOfTwoStatesWithinThreeStandardErrors) {
+  const Bank truth = test::true_pair(1.0);
+  const Recording recording = simulated_recording(truth, 4, 600, GetParam());
+  const Refinement refined = refine_blurred(truth, recording, 1);
+  ASSERT_EQ(refined.bank.mode_count(), 2);
+  EXPECT_EQ(refined.measurement.end, MeasuredFit::converged);
+  ASSERT_EQ(refined.bank.R_standard_error.rows(), 2);
+  for (const double z : test::z_values(refined.bank, truth)) EXPECT_LT(std::abs(z), 3.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RefineRecovery, testing::Values(11, 12, 13));
+
+/// The pendulum whose modes differ so much that the global residual covariance, as a prior on Q, outweighed the data.
+TEST(RefineRecovery, PendulumOfTwoDampingsIsCalibratedOnHeldOutRuns) {
+  const Bank truth = test::true_pendulum({0.2, 20.0}, 1.0);
+  const Recording recording = simulated_recording(truth, 4, 1500, 2);
+  const Refinement refined = refine_blurred(truth, recording, 3);
+  const Bank& bank = refined.bank;
+  ASSERT_EQ(bank.mode_count(), 2);
+  EXPECT_EQ(refined.measurement.end, MeasuredFit::converged);
+  for (const double z : test::z_values(bank, truth)) EXPECT_LT(std::abs(z), 3.0);
+  const DiagnosticsRow row = test::held_out_diagnostics(bank, truth, 2);
+  EXPECT_GT(row.nees_mean, row.nees_lower);
+  EXPECT_LT(row.nees_mean, row.nees_upper);
+  // Switches are rare and far: their NIS is not chi-square's, of a true filter neither.
+  EXPECT_NEAR(row.nis_mean, test::held_out_diagnostics(truth, truth, 2).nis_mean, 0.05);
+}
+
+TEST(RefineRecovery, SaysThatTheLimitStoppedIt) {
+  const Bank truth = test::true_pendulum({1.0}, 1.0);
+  const Recording recording = simulated_recording(truth, 2, 800, 3);
+  const Refinement stopped = refine_blurred(truth, recording, 1, 3);
+  EXPECT_EQ(stopped.measurement.end, MeasuredFit::iteration_limit);
+  EXPECT_LE(stopped.measurement.iterations, 3);
+  EXPECT_EQ(refine_blurred(truth, recording, 1).measurement.end, MeasuredFit::converged);
+}
+
+}  // namespace
+}  // namespace modebank

@@ -1,0 +1,71 @@
+// Standard errors of a bank by single samples' gradients: in which filter, and by which weights.
+#include "filter/learn/likelihood/standard_errors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filter/learn/switching/starts.hpp"
+#include "tests/filter/learn/refine_recovery.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using test::near;
+
+class StandardErrors : public testing::Test {
+ protected:
+  Bank truth = test::true_scalar(1.0);
+  Recording recording = test::simulated_recording(truth, 2, 500, 9);
+
+  /// Of the truth, given a target's recording and filter; everything else is that of the whole recording.
+  Bank errors_in(const Recording& of, const FilterOptions& filter) const {
+    const TrainingTransitions transitions = gather_training_transitions(recording, truth.structure);
+    const SwitchingPrior prior = switching_prior(transitions, fit_global(recording, truth.structure), {}, 1.0);
+    const SwitchingSums sums = sum_transitions(transitions, smooth_modes(transitions, switching_model(truth)), prior);
+    const FreeParameters free = all_parameters(truth, sums, prior, false, true, Eigen::VectorXd::Zero(1));
+    return with_standard_errors({of, filter, prior}, free, sums, truth);
+  }
+
+  static void expect_same(const Bank& a, const Bank& b, double tolerance) {
+    for (std::size_t j = 0; j < 2; ++j) {
+      EXPECT_TRUE(near(a.modes[j].spread, b.modes[j].spread, tolerance));
+      EXPECT_TRUE(near(a.modes[j].Q_standard_error, b.modes[j].Q_standard_error, tolerance));
+    }
+    EXPECT_TRUE(near(a.R_standard_error, b.R_standard_error, tolerance));
+    EXPECT_TRUE(near(a.transition_standard_error, b.transition_standard_error, tolerance));
+  }
+};
+
+/// Weights count in ratios, and one of zero leaves a sample out.
+TEST_F(StandardErrors, GoByTheSamplesWeights) {
+  const Bank plain = errors_in(recording, {});
+  Recording weighted = recording;
+  for (Trajectory& run : weighted.runs) run.weight.setConstant(run.samples(), 3.0);
+  expect_same(errors_in(weighted, {}), plain, 1e-12);
+
+  // The second run's samples weigh nothing: twice the first run's information per transition is not there.
+  weighted.runs[1].weight.setZero();
+  Recording first = recording;
+  first.runs.resize(1);
+  expect_same(errors_in(weighted, {}), errors_in(first, {}), 1e-12);
+  EXPECT_GT(errors_in(weighted, {}).modes[0].standard_error(1), 1.2 * plain.modes[0].standard_error(1));
+}
+
+/// Where the filter does not look at the clock gaps are as if they were not there.
+TEST_F(StandardErrors, AreThoseOfTheFilterThatRuns) {
+  truth.dt_s = recording.median_period_s();
+  const Bank plain = errors_in(recording, {});
+  Recording gaps = recording;
+  for (Trajectory& run : gaps.runs)
+    for (Index k = 0; k < run.samples(); ++k)
+      run.time_s(k) += 3.0 * truth.dt_s * std::floor(static_cast<double>(k) / 10.0);
+  FilterOptions filter;
+  filter.time_steps = TimeSteps::single;
+  expect_same(errors_in(gaps, filter), plain, 1e-12);
+  EXPECT_FALSE(errors_in(gaps, {}).modes[0].spread.isApprox(plain.modes[0].spread, 0.05));
+}
+
+}  // namespace
+}  // namespace modebank

@@ -1,0 +1,192 @@
+// The switching regression: against enumeration of every sequence of modes, the filter's likelihood, and its own laws.
+#include "filter/learn/switching/switching_regression.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/likelihood/definite_inverse.hpp"
+#include "filter/learn/switching/em.hpp"
+#include "filter/learn/switching/starts.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using test::near;
+
+/// Runs of n states and one input under a random walk of modes that does not matter here.
+Recording noisy_runs(Index n, const std::vector<Index>& samples, double missing = 0.0) {
+  std::mt19937_64 generator(3);
+  boost::random::normal_distribution<double> normal;
+  Recording recording = test::empty_recording(n, 1);
+  for (const Index count : samples) {
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(n, count), u(1, count);
+    for (Index k = 0; k < count; ++k) {
+      u(k) = normal(generator);
+      const double gain = k / 7 % 2 == 0 ? 0.2 : 1.0, noise = k / 11 % 2 == 0 ? 0.1 : 0.5;
+      for (Index i = 0; k + 1 < count && i < n; ++i)
+        x(i, k + 1) = 0.7 * x(i, k) + gain * u(k) + noise * normal(generator);
+    }
+    if (missing > 0.0) x(0, count / 2) = std::numeric_limits<double>::quiet_NaN();
+    test::add_run(recording, x, u);
+  }
+  return recording;
+}
+
+SwitchingRegression two_modes(const LinearStructure& s) {
+  SwitchingRegression model;
+  model.theta.resize(s.parameters(), 2);
+  model.theta.col(0).setConstant(-0.1);
+  model.theta.col(1).setConstant(0.2);
+  const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(s.states, s.states);
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(s.states, s.states);
+  model.Q = {0.05 * identity + 0.02 * ones, 0.3 * identity - 0.05 * ones};
+  model.transition.resize(2, 2);
+  model.transition << 0.9, 0.1, 0.3, 0.7;
+  model.initial = Eigen::Vector2d(0.25, 0.75);
+  return model;
+}
+
+double density(const Eigen::VectorXd& r, const Eigen::MatrixXd& Q) {
+  return std::exp(-0.5 * r.dot(Q.inverse() * r)) / std::sqrt((2.0 * std::numbers::pi * Q).determinant());
+}
+
+/// p(run, modes before and at every transition) summed over all sequences, by enumeration.
+ModePosterior enumerate(const TrainingTransitions& t, const SwitchingRegression& model) {
+  const Index K = model.modes();
+  ModePosterior sum{Eigen::MatrixXd::Zero(t.count(), K), Eigen::MatrixXd::Zero(K, K), Eigen::VectorXd::Zero(K)};
+  for (const RunRows& rows : t.runs) {
+    double total = 0.0;
+    ModePosterior of_run{Eigen::MatrixXd::Zero(rows.count, K), Eigen::MatrixXd::Zero(K, K), Eigen::VectorXd::Zero(K)};
+    for (Index code = 0; code < Index{1} << (rows.count + 1); ++code) {
+      const auto mode = [&](Index k) { return (code >> k) & 1; };  // k = 0: before the first transition
+      double p = model.initial(mode(0));
+      for (Index k = 0; k < rows.count; ++k) {
+        const Index j = mode(k + 1);
+        const Eigen::MatrixXd beta = coefficients(t.structure, model.theta.col(j));
+        const Eigen::VectorXd r =
+            (t.data.increments.row(rows.first + k) - t.data.regressors.row(rows.first + k) * beta).transpose();
+        p *= model.transition(mode(k), j) * density(r, model.Q[static_cast<std::size_t>(j)]);
+      }
+      total += p;
+      of_run.first(mode(0)) += p;
+      for (Index k = 0; k < rows.count; ++k) {
+        of_run.probability(k, mode(k + 1)) += p;
+        of_run.switches(mode(k), mode(k + 1)) += p;
+      }
+    }
+    sum.log_likelihood += std::log(total);
+    sum.first += of_run.first / total;
+    sum.switches += of_run.switches / total;
+    sum.probability.middleRows(rows.first, rows.count) = of_run.probability / total;
+  }
+  return sum;
+}
+
+TEST(SwitchingRegression, SmootherIsTheSumOverAllSequences) {
+  for (const Index n : {1, 2}) {
+    const Recording recording = noisy_runs(n, {7, 5});
+    const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+    const SwitchingRegression model = two_modes(t.structure);
+    const ModePosterior is = smooth_modes(t, model), expected = enumerate(t, model);
+    EXPECT_NEAR(is.log_likelihood, expected.log_likelihood, 1e-11);
+    EXPECT_TRUE(near(is.probability, expected.probability, 1e-12));
+    EXPECT_TRUE(near(is.switches, expected.switches, 1e-11));
+    EXPECT_TRUE(near(is.first, expected.first, 1e-12));
+  }
+}
+
+TEST(SwitchingRegression, LikelihoodIsTheFiltersWithoutMeasurementNoise) {
+  const Recording recording = noisy_runs(2, {200, 50});
+  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+  const SwitchingRegression model = two_modes(t.structure);
+  Bank bank = bank_frame(recording, t.structure, Eigen::MatrixXd::Zero(2, 2));
+  for (Index j = 0; j < 2; ++j)
+    bank.modes.push_back(make_mode(t.structure, model.theta.col(j), model.Q[static_cast<std::size_t>(j)], {}, {}, 0.5));
+  bank.transition = TransitionMatrix(model.transition);
+  bank.initial_probability = model.initial;
+  double expected = 0.0;
+  for (const Trajectory& run : recording.runs) expected += log_likelihood(bank, run, {});
+  EXPECT_NEAR(smooth_modes(t, model).log_likelihood, expected, 1e-6);  // the filter floors probabilities
+}
+
+class SwitchingRegressionEm : public testing::TestWithParam<bool> {};
+
+TEST_P(SwitchingRegressionEm, EveryIterationRaisesTheObjective) {
+  const Recording recording = noisy_runs(2, {150, 90, 60}, 1.0);
+  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+  const GlobalModel global = fit_global(recording, t.structure);
+  const SwitchingPrior prior = switching_prior(t, global, {}, 4.0);
+  SwitchingRegression model = two_modes(t.structure);
+  if (GetParam()) model.theta.col(1) = model.theta.col(0);
+  ModePosterior posterior = smooth_modes(t, model);
+  double before = posterior.log_likelihood + log_prior(prior, GetParam(), model);
+  const double first = before;
+  for (int i = 0; i < 40; ++i) {
+    model = maximise(t.structure, sum_transitions(t, posterior, prior), prior, {.one_theta = GetParam()}, model);
+    posterior = smooth_modes(t, model);
+    const double after = posterior.log_likelihood + log_prior(prior, GetParam(), model);
+    EXPECT_GE(after, before - 1e-9 * std::abs(before)) << "iteration " << i;
+    before = after;
+  }
+  EXPECT_GT(before, first + 10.0);
+  if (GetParam()) {
+    EXPECT_TRUE(near(model.theta.col(0), model.theta.col(1), 0.0));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OneTheta, SwitchingRegressionEm, testing::Bool(),
+                         [](const auto& test) { return test.param ? "yes" : "no"; });
+
+/// Where T has zeros the likeliest mode may be one that cannot be: the log domain's scale has to be that of one that
+/// can.
+TEST(SwitchingRegression, ImpossibleModesDoNotScaleTheOthersAway) {
+  Recording recording = noisy_runs(1, {4});
+  recording.runs[0].state << 0.0, 100.0, 100.0, 100.0;
+  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+  SwitchingRegression model = two_modes(t.structure);
+  model.theta.setZero();
+  model.Q = {Eigen::MatrixXd::Ones(1, 1), Eigen::MatrixXd::Constant(1, 1, 1e4)};
+  model.transition.setIdentity();
+  model.initial = Eigen::Vector2d(1.0, 0.0);
+  const ModePosterior posterior = smooth_modes(t, model);
+  EXPECT_NEAR(posterior.log_likelihood, -0.5 * 1e4 - 1.5 * std::log(2.0 * std::numbers::pi), 1e-9);
+  EXPECT_TRUE(near(posterior.probability.col(0), Eigen::VectorXd::Ones(3), 1e-15));
+  EXPECT_TRUE(near(posterior.switches, Eigen::MatrixXd{{3.0, 0.0}, {0.0, 0.0}}, 1e-15));
+  EXPECT_TRUE(near(posterior.first, Eigen::Vector2d(1.0, 0.0), 1e-15));
+}
+
+TEST(DefiniteInverse, IsNotFiniteWhereThereIsNone) {
+  EXPECT_TRUE(near(definite_inverse(Eigen::MatrixXd{{2.0, 1.0}, {1.0, 2.0}}),
+                   Eigen::MatrixXd{{2.0 / 3.0, -1.0 / 3.0}, {-1.0 / 3.0, 2.0 / 3.0}}, 1e-15));
+  for (const Eigen::MatrixXd& matrix :
+       {Eigen::MatrixXd{{1.0, 2.0}, {2.0, 1.0}}, Eigen::MatrixXd{{1.0, 1.0}, {1.0, 1.0}}})
+    EXPECT_TRUE(definite_inverse(matrix).array().isNaN().all());
+}
+
+TEST(SwitchingRegression, OneModeWithoutPriorIsTheGlobalModel) {
+  const Recording recording = noisy_runs(2, {100, 80});
+  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+  const GlobalModel global = fit_global(recording, t.structure);
+  const Index p = t.structure.parameters();
+  const SwitchingPrior none{Eigen::VectorXd::Zero(p), Eigen::MatrixXd::Zero(p, p), Eigen::MatrixXd::Identity(2, 2)};
+  SwitchingRegression model{Eigen::VectorXd::Zero(p),
+                            {Eigen::MatrixXd::Identity(2, 2)},
+                            Eigen::MatrixXd::Ones(1, 1),
+                            Eigen::VectorXd::Ones(1)};
+  model = maximise(t.structure, sum_transitions(t, smooth_modes(t, model), none), none, {}, model);
+  EXPECT_TRUE(near(model.theta, global.theta, 1e-10));
+  EXPECT_TRUE(near(model.Q[0], global.residual_covariance, 1e-10));
+}
+
+}  // namespace
+}  // namespace modebank

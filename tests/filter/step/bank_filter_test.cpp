@@ -1,0 +1,84 @@
+// What the live filter makes of banks and samples that are not as they should be.
+#include "filter/step/bank_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/filter/filter_test_support.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+TEST(BankFilter, RefusesBanksWhoseNumbersAreNone) {
+  const std::vector<std::function<void(Bank&)>> spoil = {
+      [](Bank& b) { b.modes[1].model.A(0, 0) = std::nan(""); },
+      [](Bank& b) { b.modes[0].Q(0, 0) = std::nan(""); },
+      [](Bank& b) { b.modes[0].Q(1, 1) = -1.0; },
+      [](Bank& b) { b.R(0, 0) = -1e-9; },
+      [](Bank& b) { b.C(0, 0) = std::nan(""); },
+      [](Bank& b) { b.initial_probability(0) = std::nan(""); },
+      [](Bank& b) { b.initial_probability.setZero(); },
+      [](Bank& b) { b.noise_adaptation.forgetting = std::nan(""); },
+      [](Bank& b) { b.noise_adaptation.forgetting = 1.01; },
+      [](Bank& b) { b.noise_adaptation.forgetting = 0.0; },
+      [](Bank& b) { b.noise_adaptation.prior_samples = 0.0; },
+      [](Bank& b) { b.noise_adaptation.prior_samples = INFINITY; },
+  };
+  for (std::size_t i = 0; i < spoil.size(); ++i) {
+    Bank bank = test::example_bank(2, 1, 3);
+    EXPECT_NO_THROW(BankFilter(bank, {}));
+    spoil[i](bank);
+    EXPECT_THROW(BankFilter(bank, {}), std::invalid_argument) << i;
+  }
+}
+
+TEST(BankFilter, RefusesSamplesOfOtherSizes) {
+  BankFilter filter(test::example_bank(2, 1, 3), {});
+  EXPECT_THROW(filter.step(0.0, VectorXd::Zero(2), VectorXd::Zero(2)), std::invalid_argument);
+  EXPECT_THROW(filter.step(0.0, VectorXd::Zero(1), VectorXd::Zero(3)), std::invalid_argument);
+  EXPECT_FALSE(filter.started());
+}
+
+TEST(BankFilter, AnInputThatIsNoNumberIsTheLastKnownOne) {
+  const Bank bank = test::example_bank(2, 1, 3);
+  const auto last = [&](double odd) {
+    BankFilter filter(bank, {});
+    for (int k = 0; k < 20; ++k) {
+      const double u = k == 10 ? odd : (k == 9 ? 0.3 : 0.1 * k);
+      filter.step(k, VectorXd::Constant(1, u), VectorXd::Constant(2, 0.01 * k));
+    }
+    return filter.estimate().state;
+  };
+  EXPECT_EQ(last(std::nan("")), last(0.3));
+  EXPECT_EQ(last(INFINITY), last(0.3));
+}
+
+/// No measurement noise and process noise of rank one or none: S becomes singular.
+TEST(BankFilter, VariancesAreNeverNegative) {
+  for (const Index n : {2, 3})
+    for (const double q : {0.0, 1e-4})
+      for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::gpb2}) {
+        Bank bank = test::example_bank(n, 1, 3);
+        bank.R.setZero();
+        for (Mode& mode : bank.modes) mode.Q.setConstant(q);
+        BankFilter filter(bank, {variant});
+        for (int k = 0; k < 500; ++k) {
+          VectorXd y(n);
+          for (Index i = 0; i < n; ++i) y(i) = 0.1 * std::sin(0.1 * k + static_cast<double>(i));
+          if (k == 200) y.setConstant(1e6);
+          const FilterEstimate& e = filter.step(k, VectorXd::Constant(1, std::cos(0.05 * k)), y);
+          ASSERT_TRUE(e.state.allFinite() && e.covariance.allFinite());
+          ASSERT_GE(e.covariance.diagonal().minCoeff(), 0.0)
+              << name_of(variant) << ", n = " << n << ", q = " << q << ", sample " << k;
+        }
+      }
+}
+
+}  // namespace
+}  // namespace modebank

@@ -1,0 +1,215 @@
+// Laws every filter bank must obey, whatever its numbers.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <stdexcept>
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "filter/step/equations/imm.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using test::example_bank;
+using test::near;
+using test::simulate_bank;
+using test::single_mode;
+
+/// Two double-precision routes to one number of order one.
+constexpr double rounding = 1e-12;
+constexpr FilterOptions imm{}, mmae{FilterVariant::mmae}, kf{FilterVariant::kf};
+
+void expect_same_estimates(const RunEvaluation& a, const RunEvaluation& b) {
+  EXPECT_TRUE(near(a.prediction, b.prediction, rounding));
+  EXPECT_TRUE(near(a.innovation_covariance, b.innovation_covariance, rounding));
+  EXPECT_TRUE(near(a.state, b.state, rounding));
+  EXPECT_TRUE(near(a.covariance, b.covariance, rounding));
+  EXPECT_TRUE(near(a.log_density, b.log_density, rounding * 10));  // log densities reach about ten
+  EXPECT_TRUE(near(a.pit, b.pit, rounding));
+}
+
+TEST(MixingWeights, PredictedProbabilitiesFollowTheRowsOfTheTransitionMatrix) {
+  // 0.7 * 0.95 + 0.3 * 0.10 = 0.695; with rows and columns swapped it would be 0.68.
+  const TransitionMatrix T((Eigen::MatrixXd(2, 2) << 0.95, 0.05, 0.10, 0.90).finished());
+  Eigen::VectorXd c(2);
+  MixingWeights weights{Eigen::MatrixXd(2, 2)};
+  mixing_weights(T, Eigen::Vector2d(0.7, 0.3), c, weights);
+  EXPECT_TRUE(near(c, Eigen::Vector2d(0.695, 0.305), rounding));
+  EXPECT_TRUE(near(weights.matrix.colwise().sum(), Eigen::RowVector2d::Ones(), rounding));
+  EXPECT_NEAR(weights.matrix(1, 0), 0.3 * 0.10 / 0.695, rounding);
+}
+
+TEST(Imm, EqualLikelihoodsLeaveThePredictedProbabilities) {
+  Bank bank = example_bank(1, 2, 2);
+  bank.modes[1] = bank.modes[0];
+  bank.transition = TransitionMatrix((Eigen::MatrixXd(2, 2) << 0.95, 0.05, 0.10, 0.90).finished());
+  bank.initial_probability << 0.7, 0.3;
+  const RunEvaluation result = evaluate_run(bank, simulate_bank(bank, 2, 1), imm);
+  EXPECT_TRUE(near(result.mode_probability_predicted.col(1), Eigen::Vector2d(0.695, 0.305), rounding));
+  EXPECT_TRUE(near(result.mode_probability.col(1), Eigen::Vector2d(0.695, 0.305), rounding));
+}
+
+TEST(Imm, IdenticalModesAreOneFilter) {
+  for (const Eigen::Index n : {1, 2, 4}) {
+    Bank bank = example_bank(n, 2, 3);
+    bank.modes[1] = bank.modes[2] = bank.modes[0];
+    const Trajectory run = simulate_bank(bank, 60, 2);
+    expect_same_estimates(evaluate_run(bank, run, imm), evaluate_run(single_mode(bank, 0), run, kf));
+  }
+}
+
+TEST(Imm, OneModeIsTheKalmanFilter) {
+  const Bank bank = single_mode(example_bank(2, 1, 2), 1);
+  const Trajectory run = simulate_bank(bank, 60, 3);
+  expect_same_estimates(evaluate_run(bank, run, imm), evaluate_run(bank, run, kf));
+}
+
+/// Which of the modes it ought to be would be a guess.
+TEST(Kf, RefusesSeveralModes) {
+  const Bank bank = example_bank(1, 2, 3);
+  const Trajectory run = simulate_bank(bank, 60, 3);
+  EXPECT_THROW(BankFilter(bank, kf), std::invalid_argument);
+  EXPECT_THROW(evaluate_run(bank, run, kf), std::invalid_argument);
+  EXPECT_THROW(log_likelihood(bank, run, kf), std::invalid_argument);
+  EXPECT_NO_THROW(evaluate_run(single_mode(bank, 2), run, kf));
+}
+
+TEST(Imm, ProbabilitiesSumToOne) {
+  const Bank bank = example_bank(2, 1, 4);
+  const Trajectory run = simulate_bank(bank, 200, 4);
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::mmae, FilterVariant::salvi2025}) {
+    const RunEvaluation result = evaluate_run(bank, run, {variant});
+    EXPECT_TRUE(near(result.mode_probability.colwise().sum(), Eigen::RowVectorXd::Ones(200), rounding));
+    EXPECT_TRUE(near(result.mode_probability_predicted.colwise().sum(), Eigen::RowVectorXd::Ones(200), rounding));
+    EXPECT_GE(result.mode_probability.minCoeff(), 0.5 * mode_probability_floor);
+  }
+}
+
+TEST(Mmae, IsBayesRuleOverSeparateFilters) {
+  Bank bank = example_bank(2, 1, 3);
+  for (std::size_t j = 0; j < 3; ++j) bank.modes[j] = bank.modes[0];
+  for (std::size_t j = 1; j < 3; ++j) bank.modes[j].Q *= 1.0 + 0.3 * static_cast<double>(j);
+  const Trajectory run = simulate_bank(bank, 40, 5);
+  Eigen::MatrixXd log_weight(3, 40);
+  for (std::size_t j = 0; j < 3; ++j) {
+    const RunEvaluation alone = evaluate_run(single_mode(bank, j), run, kf);
+    double sum = std::log(bank.initial_probability(static_cast<Eigen::Index>(j)));
+    for (Eigen::Index k = 0; k < 40; ++k)
+      log_weight(static_cast<Eigen::Index>(j), k) = sum += k > 0 ? alone.log_density(k) : 0.0;
+  }
+  Eigen::MatrixXd expected(3, 40);
+  Eigen::VectorXd evidence(40);
+  for (Eigen::Index k = 0; k < 40; ++k) {
+    const double largest = log_weight.col(k).maxCoeff();
+    expected.col(k) = (log_weight.col(k).array() - largest).exp();
+    evidence(k) = largest + std::log(expected.col(k).sum());
+    expected.col(k) /= expected.col(k).sum();
+  }
+  ASSERT_GT(expected.minCoeff(), 1e-9) << "the floor of probabilities would interfere";
+
+  const RunEvaluation result = evaluate_run(bank, run, mmae);
+  EXPECT_TRUE(near(result.mode_probability, expected, rounding * 100));  // sums of 40 log densities of order ten
+  EXPECT_NEAR(result.log_density.tail(39).sum(), evidence(39), rounding * 1000);
+
+  bank.transition = TransitionMatrix(Eigen::MatrixXd::Identity(3, 3));
+  expect_same_estimates(evaluate_run(bank, run, imm), result);
+}
+
+TEST(Kf, WithoutProcessNoiseIsBatchLeastSquares) {
+  Bank bank = single_mode(example_bank(2, 1, 1, 0.01), 0);
+  bank.modes[0].Q.setZero();
+  const Trajectory run = simulate_bank(bank, 30, 6);
+  // y_k = F^k x_0 + d_k + v_k: normal equations for x_0, then the estimate carried to the last sample.
+  const LinearModel& model = bank.modes[0].model;
+  const Eigen::Matrix2d F = model.full_form();
+  Eigen::Matrix2d power = Eigen::Matrix2d::Identity(), information = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d offset = Eigen::Vector2d::Zero(), right = Eigen::Vector2d::Zero();
+  for (Eigen::Index k = 0; k < 30; ++k) {
+    if (k > 0) {
+      power = F * power;
+      offset = F * offset + model.B * run.input.col(k - 1) + model.c;
+    }
+    information += power.transpose() * bank.R.inverse() * power;
+    right += power.transpose() * bank.R.inverse() * (run.state.col(k) - offset);
+  }
+  const Eigen::Vector2d x = power * information.inverse() * right + offset;
+  const Eigen::Matrix2d P = power * information.inverse() * power.transpose();
+
+  const RunEvaluation result = evaluate_run(bank, run, kf);
+  EXPECT_TRUE(near(result.state.col(29), x, rounding));
+  EXPECT_TRUE(near(result.covariance.col(29), P.reshaped(), rounding));
+}
+
+TEST(Gpb, OneModeIsTheKalmanFilterAndIdenticalModesAreOneFilter) {
+  for (const FilterVariant variant : {FilterVariant::gpb1, FilterVariant::gpb2}) {
+    const Bank one = single_mode(example_bank(2, 1, 2), 1);
+    const Trajectory run = simulate_bank(one, 60, 3);
+    expect_same_estimates(evaluate_run(one, run, {variant}), evaluate_run(one, run, imm));
+    Bank same = example_bank(3, 2, 3);
+    same.modes[1] = same.modes[2] = same.modes[0];
+    const Trajectory other = simulate_bank(same, 60, 4);
+    expect_same_estimates(evaluate_run(same, other, {variant}), evaluate_run(single_mode(same, 0), other, kf));
+  }
+}
+
+TEST(Gpb2, IsExactForTwoSteps) {
+  // All histories of two steps, each a Kalman filter of its own: GPB2 merges only after the second.
+  const Bank bank = example_bank(2, 1, 3);
+  const Trajectory run = simulate_bank(bank, 3, 15);
+  double evidence = 0.0, first = 0.0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      Bank path = single_mode(bank, i);
+      BankFilter filter(path, kf);
+      filter.step(0.0, run.input.col(0), run.state.col(0));
+      const double l1 = filter.step(1.0, run.input.col(1), run.state.col(1)).log_density;
+      BankFilter second(single_mode(bank, j), kf);
+      second.restore(filter.snapshot());
+      const double l2 = second.step(2.0, run.input.col(2), run.state.col(2)).log_density;
+      double c = 0.0;
+      for (Eigen::Index h = 0; h < 3; ++h)
+        c += bank.initial_probability(h) * bank.transition.matrix()(h, static_cast<Eigen::Index>(i));
+      evidence +=
+          c * bank.transition.matrix()(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) * std::exp(l1 + l2);
+      if (j == 0) first += c * std::exp(l1);
+    }
+  const RunEvaluation gpb2 = evaluate_run(bank, run, {FilterVariant::gpb2});
+  EXPECT_NEAR(gpb2.log_density(1), std::log(first), rounding * 10);
+  EXPECT_NEAR(gpb2.log_density(2), std::log(evidence) - std::log(first), rounding * 10);
+}
+
+TEST(LogLikelihood, IsTheSumOfLogDensities) {
+  for (const Eigen::Index n : {1, 2, 3, 4})
+    for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::mmae, FilterVariant::gpb1,
+                                        FilterVariant::gpb2, FilterVariant::salvi2025}) {
+      const Bank bank = example_bank(n, 1, 3);
+      Trajectory run = simulate_bank(bank, 50, 10);
+      run.state(0, 20) = std::nan("");
+      const RunEvaluation result = evaluate_run(bank, run, {variant, true});
+      double sum = 0.0;
+      for (const double value : result.log_density) sum += std::isnan(value) ? 0.0 : value;
+      EXPECT_EQ(log_likelihood(bank, run, {variant, true}), sum);
+    }
+}
+
+TEST(EvaluateRun, RejectsWhatDoesNotFit) {
+  const Bank bank = example_bank(2, 1, 2);
+  Trajectory run = simulate_bank(bank, 10, 11);
+  Bank wrong = bank;
+  wrong.modes[1].Q.resize(1, 1);
+  EXPECT_THROW(evaluate_run(wrong, run, imm), std::invalid_argument);
+  wrong = bank;
+  wrong.transition = TransitionMatrix::sticky(3, 0.9);
+  EXPECT_THROW(evaluate_run(wrong, run, imm), std::invalid_argument);
+  EXPECT_THROW(evaluate_run(example_bank(2, 2, 2), run, imm), std::invalid_argument);
+  EXPECT_THROW(evaluate_run(example_bank(1, 1, 2), run, imm), std::invalid_argument);
+  run.input(0, 4) = std::nan("");
+  EXPECT_THROW(evaluate_run(bank, run, imm), DataError);
+}
+
+}  // namespace
+}  // namespace modebank

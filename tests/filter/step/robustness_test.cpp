@@ -1,0 +1,244 @@
+// No number makes the filter give NaN, and one code serves fixed and dynamic sizes.
+#include <gtest/gtest.h>
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/feed/run_samples.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/support/effort.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using test::example_bank;
+using test::simulate_bank;
+
+constexpr FilterVariant all_variants[] = {FilterVariant::imm,  FilterVariant::mmae,      FilterVariant::gpb1,
+                                          FilterVariant::gpb2, FilterVariant::salvi2025, FilterVariant::kf};
+
+/// Every variant, with and without parameter noise and adaptive noise.
+std::vector<FilterOptions> all_options() {
+  std::vector<FilterOptions> all;
+  for (const FilterVariant variant : all_variants)
+    for (const bool parameter_noise : {false, true})
+      for (const FilterNoise noise : {FilterNoise::gaussian, FilterNoise::adaptive})
+        all.push_back({variant, parameter_noise, TimeSteps::repeat, noise});
+  return all;
+}
+
+/// Everything from sample 1 on must be finite when every measurement is there.
+void expect_finite(const Bank& modes, const Trajectory& run, const std::string& what) {
+  for (const FilterOptions& options : all_options()) {
+    const Bank bank = test::steppable(modes, options.variant);
+    const RunEvaluation r = evaluate_run(bank, run, options);
+    const Eigen::Index scored = run.samples() - 1;
+    const std::string where = what + ", " + std::string(name_of(options.variant));
+    EXPECT_TRUE(r.prediction.rightCols(scored).allFinite()) << where;
+    EXPECT_TRUE(r.innovation_covariance.rightCols(scored).allFinite()) << where;
+    EXPECT_TRUE(r.state.allFinite() && r.covariance.allFinite()) << where;
+    EXPECT_TRUE(r.nis.tail(scored).allFinite() && r.log_density.tail(scored).allFinite()) << where;
+    EXPECT_TRUE(r.pit.rightCols(scored).allFinite()) << where;
+    EXPECT_TRUE((r.pit.rightCols(scored).array() >= 0.0).all() && (r.pit.rightCols(scored).array() <= 1.0).all());
+    EXPECT_TRUE(r.mode_probability.allFinite() && r.mode_probability_predicted.allFinite()) << where;
+  }
+}
+
+TEST(NeverNaN, OutliersOfAMillionSigma) {
+  for (const Eigen::Index n : {1, 2, 4}) {
+    const Bank bank = example_bank(n, 1, 3);
+    Trajectory run = simulate_bank(bank, 40, 1);
+    run.state.col(10).setConstant(1e6 * std::sqrt(bank.R(0, 0)));
+    run.state(0, 20) = -1e6;
+    run.state(n - 1, 30) = 1e29;
+    expect_finite(bank, run, "outliers, n = " + std::to_string(n));
+  }
+}
+
+TEST(NeverNaN, AlmostNoMeasurementNoise) {
+  const Bank clean = example_bank(2, 1, 3, 1e-12);
+  expect_finite(clean, simulate_bank(clean, 40, 2), "R = 1e-12");
+}
+
+TEST(NeverNaN, ADeadMode) {
+  Bank bank = example_bank(1, 2, 3);
+  bank.initial_probability << 1.0, 0.0, 0.0;
+  bank.transition = TransitionMatrix((Eigen::MatrixXd(3, 3) << 0.9, 0.1, 0, 0.2, 0.8, 0, 0.5, 0.5, 0).finished());
+  expect_finite(bank, simulate_bank(bank, 40, 3), "mode that no other leads to");
+}
+
+TEST(NeverNaN, SingularNoise) {
+  Bank bank = example_bank(2, 1, 2);
+  for (Mode& mode : bank.modes) mode.Q = Eigen::MatrixXd::Constant(2, 2, 1e-4);
+  const Trajectory run = simulate_bank(bank, 40, 4);
+  expect_finite(bank, run, "rank-one Q");
+  bank.R.setZero();
+  expect_finite(bank, run, "rank-one Q, R = 0");
+  for (Mode& mode : bank.modes) mode.Q.setZero();
+  expect_finite(bank, run, "Q = R = 0");
+}
+
+TEST(NeverNaN, TinyAndHugeUnits) {
+  const Bank bank = example_bank(2, 1, 2);
+  const Trajectory run = simulate_bank(bank, 40, 5);
+  for (const double unit : {1e-9, 1e9}) {
+    Bank scaled = bank;
+    Trajectory scaled_run = run;
+    scaled_run.state *= unit;
+    scaled.R *= unit * unit;
+    for (Mode& mode : scaled.modes) {
+      mode.Q *= unit * unit;
+      mode.model.B *= unit;
+      mode.model.c *= unit;
+    }
+    expect_finite(scaled, scaled_run, "unit " + std::to_string(unit));
+    // The units of a signal do not change which mode it speaks for.
+    constexpr double relative = 1e-9;
+    EXPECT_TRUE(test::near(evaluate_run(scaled, scaled_run, {}).mode_probability,
+                           evaluate_run(bank, run, {}).mode_probability, relative));
+  }
+}
+
+TEST(NeverNaN, AnUnstableModeWithoutMeasurementsStaysFinite) {
+  Bank bank = example_bank(2, 1, 2);
+  bank.modes[1].model.A = 2.0 * Eigen::Matrix2d::Identity();
+  Trajectory run = simulate_bank(example_bank(2, 1, 2), 3000, 6);
+  run.state.middleCols(5, 2900).setConstant(std::nan(""));
+  for (const FilterVariant variant : all_variants) {
+    const RunEvaluation result = evaluate_run(test::steppable(bank, variant), run, {variant});
+    EXPECT_TRUE(result.state.allFinite() && result.covariance.allFinite()) << name_of(variant);
+    EXPECT_TRUE(result.log_density.tail(90).allFinite()) << name_of(variant);
+  }
+}
+
+TEST(NeverNaN, AMillionStepsAtConstantInput) {
+  Bank bank = example_bank(1, 1, 3);
+  bank.modes[1].model.A(0, 0) = 0.0;  // an integrator
+  Trajectory run;
+  constexpr Eigen::Index samples = test::in_release(1'000'000, 50'000) + 1;
+  run.state = Eigen::MatrixXd::Constant(1, samples, 0.3);
+  run.input = Eigen::MatrixXd::Constant(1, samples, 0.5);
+  const RunEvaluation result = evaluate_run(bank, run, {});
+  EXPECT_TRUE(result.state.allFinite() && result.covariance.allFinite() && result.mode_probability.allFinite());
+  EXPECT_TRUE(result.log_density.tail(samples - 1).allFinite());
+  EXPECT_GT(result.covariance.minCoeff(), 0.0);
+  // Long settled: the same numbers for ever.
+  EXPECT_NEAR(result.log_density(samples - 1), result.log_density(1000), 1e-9);
+}
+
+TEST(NeverNaN, AMillionStepsAtConstantInputInEveryVariant) {
+  constexpr Eigen::Index steps = test::in_release(1'000'000, 20'000);
+  Bank bank = example_bank(1, 1, 2);
+  bank.modes[1].model.A(0, 0) = 0.0;  // an integrator
+  const Eigen::VectorXd u = Eigen::VectorXd::Constant(1, 0.5), y = Eigen::VectorXd::Constant(1, 0.3);
+  for (const FilterVariant variant : all_variants) {
+    const bool first = variant == FilterVariant::imm;
+    BankFilter filter(test::steppable(bank, variant),
+                      {variant, false, TimeSteps::repeat, first ? FilterNoise::adaptive : FilterNoise::gaussian});
+    for (Eigen::Index k = 0; k < steps; ++k) filter.step(std::nan(""), u, y);
+    const FilterEstimate& e = filter.estimate();
+    EXPECT_TRUE(e.state.allFinite() && e.covariance.allFinite() && e.mode_probability.allFinite()) << name_of(variant);
+    EXPECT_TRUE(std::isfinite(e.log_density) && std::isfinite(e.nis) && e.pit.allFinite()) << name_of(variant);
+    EXPECT_GT(e.covariance(0, 0), 0.0) << name_of(variant);
+  }
+}
+
+TEST(NeverNaN, InfinityCountsAsMissing) {
+  const Bank bank = example_bank(1, 1, 2);
+  Trajectory run = simulate_bank(bank, 10, 7), missing = run;
+  run.state(0, 4) = std::numeric_limits<double>::infinity();
+  missing.state(0, 4) = std::nan("");
+  EXPECT_TRUE(test::near(evaluate_run(bank, run, {}).state, evaluate_run(bank, missing, {}).state, 0.0));
+}
+
+TEST(DeadMode, ComesBackWhenTheMotionChanges) {
+  Bank bank = example_bank(1, 2, 2);
+  bank.modes[1].model.c(0) = 0.5;
+  Trajectory calm = simulate_bank(test::single_mode(bank, 0), 400, 8);
+  Trajectory run = simulate_bank(test::single_mode(bank, 1), 420, 9);
+  run.state.leftCols(400) = calm.state;
+  run.input.leftCols(400) = calm.input;
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::mmae}) {
+    const RunEvaluation result = evaluate_run(bank, run, {variant});
+    EXPECT_GT(result.mode_probability(0, 399), 0.99) << name_of(variant);
+    EXPECT_GT(result.mode_probability(1, 419), 0.99) << name_of(variant);
+  }
+}
+
+/// Steps through `run` with the given sizes; the last state and the log densities, bit for bit.
+template <int N, int NY>
+std::vector<double> trace(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  const FilterModel<N, NY> model(bank, options);
+  FilterStep<N, NY> step(model);
+  FilterState<N> state = start(model, run.state.col(0));
+  std::vector<double> numbers;
+  for (Eigen::Index k = 1; k < run.samples(); ++k) {
+    predict(model, state, run.input.col(k - 1), step);
+    numbers.push_back(update(model, run.state.col(k), step, state));
+    for (const Gaussian<N>& mode : state.modes) {
+      numbers.insert(numbers.end(), mode.mean.begin(), mode.mean.end());
+      for (const double entry : mode.covariance.reshaped()) numbers.push_back(entry);
+    }
+    numbers.insert(numbers.end(), state.mode_probability.begin(), state.mode_probability.end());
+  }
+  return numbers;
+}
+
+template <int N>
+void expect_same_bits() {
+  const Bank modes = example_bank(N, 2, 3);
+  Trajectory run = simulate_bank(modes, 100, 10);
+  run.state(0, 50) = 1e6;
+  for (const FilterOptions& options : all_options()) {
+    const Bank bank = test::steppable(modes, options.variant);
+    const auto fixed = trace<N, N>(bank, run, options);
+    const auto dynamic = trace<Eigen::Dynamic, Eigen::Dynamic>(bank, run, options);
+    EXPECT_EQ(fixed, dynamic) << "n = " << N << ", " << name_of(options.variant);
+  }
+}
+
+TEST(Sizes, FixedAndDynamicGiveTheSameBits) {
+  expect_same_bits<1>();
+  expect_same_bits<2>();
+  expect_same_bits<3>();
+}
+
+/// With lags a run starts from several measurements of one signal.
+TEST(Sizes, LaggedBanksToo) {
+  for (const Eigen::Index lags : {2, 3}) {
+    Bank bank = example_bank(1, 1, 3);
+    bank.structure.state_lags = lags;
+    for (Mode& mode : bank.modes) {
+      const Eigen::VectorXd theta = Eigen::VectorXd::Constant(bank.structure.parameters(), -0.1);
+      mode.model = unpack(bank.structure, theta);
+      mode.spread.resize(0, 0);
+      const double q = mode.Q(0, 0);
+      mode.Q = Eigen::MatrixXd::Zero(lags, lags);
+      mode.Q(0, 0) = q;
+    }
+    bank.C = Eigen::MatrixXd::Identity(1, lags);
+    Trajectory run = simulate_bank(example_bank(1, 1, 3), 60, 11);
+    run.state(0, 30) = std::nan("");
+    const auto sum = [&]<int N>() {
+      const FilterModel<N, 1> model(bank, {});
+      FilterStep<N, 1> step(model);
+      FilterState<N> state = initial_state(model);
+      double total = 0.0;
+      RunSamples(bank, run, TimeSteps::repeat).for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {
+        if (starts) return start(model, feed.start(), state);
+        ASSERT_EQ(feed.steps(), 1);
+        predict(model, state, feed.inputs(), step);
+        const double value = update(model, run.state.col(k), step, state);
+        total += std::isnan(value) ? 0.0 : value;
+      });
+      return total;
+    };
+    const double dynamic = sum.operator()<Eigen::Dynamic>();
+    EXPECT_EQ(lags == 2 ? sum.operator()<2>() : sum.operator()<3>(), dynamic);
+    EXPECT_NEAR(log_likelihood(bank, run, {}), dynamic, 1e-11 * std::abs(dynamic));
+  }
+}
+
+}  // namespace
+}  // namespace modebank

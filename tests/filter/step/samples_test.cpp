@@ -1,0 +1,239 @@
+// Samples as they come: starts, missing signals, uneven times, and going on from a snapshot.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <functional>
+#include <stdexcept>
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using test::example_bank;
+using test::near;
+using test::simulate_bank;
+
+constexpr double digits = 1e-12;  // two double-precision routes to one number of order one
+
+TEST(Start, IsTheFirstMeasurementWithItsCovariance) {
+  const Bank bank = example_bank(3, 2, 2);
+  const Trajectory run = simulate_bank(bank, 5, 7);
+  const RunEvaluation result = evaluate_run(bank, run, {});
+  EXPECT_TRUE(near(result.state.col(0), run.state.col(0), digits));
+  EXPECT_TRUE(near(result.covariance.col(0), bank.R.reshaped(), digits));
+  EXPECT_TRUE(std::isnan(result.log_density(0)) && std::isnan(result.nis(0)) && std::isnan(result.pit(0, 0)));
+}
+
+TEST(Start, WaitsForTheFirstWholeMeasurement) {
+  const Bank bank = example_bank(2, 1, 2);
+  Trajectory run = simulate_bank(bank, 20, 8);
+  Trajectory tail = run;
+  tail.time_s = run.time_s.tail(17).eval();
+  tail.state = run.state.rightCols(17).eval();
+  tail.input = run.input.rightCols(17).eval();
+  run.state.leftCols(2).setConstant(std::nan(""));
+  run.state(1, 2) = std::nan("");
+  const RunEvaluation late = evaluate_run(bank, run, {}), fresh = evaluate_run(bank, tail, {});
+  EXPECT_TRUE(near(late.state.rightCols(17), fresh.state, 0.0));
+  EXPECT_TRUE(near(late.log_density.tail(17), fresh.log_density, 0.0));
+  EXPECT_TRUE(late.state.leftCols(3).array().isNaN().all());
+  EXPECT_TRUE(near(late.mode_probability.col(1), bank.initial_probability, 0.0));
+  EXPECT_EQ(log_likelihood(bank, run, {}), log_likelihood(bank, tail, {}));
+}
+
+TEST(MissingMeasurement, IsAPredictionOnlyStep) {
+  const Bank bank = example_bank(2, 1, 2);
+  Trajectory run = simulate_bank(bank, 10, 9);
+  run.state.col(6).setConstant(std::nan(""));
+  const RunEvaluation result = evaluate_run(bank, run, {});
+  EXPECT_TRUE(near(result.state.col(6), result.prediction.col(6), digits));
+  EXPECT_TRUE(near(result.mode_probability.col(6), result.mode_probability_predicted.col(6), digits));
+  EXPECT_TRUE(near(result.covariance.col(6) + bank.R.reshaped(), result.innovation_covariance.col(6), digits));
+  EXPECT_TRUE(std::isnan(result.log_density(6)) && std::isnan(result.nis(6)));
+  EXPECT_TRUE(result.innovation.col(6).array().isNaN().all() && result.pit.col(6).array().isNaN().all());
+  EXPECT_TRUE(std::isfinite(result.log_density(7)));
+}
+
+/// The bank that measures only the signals `rows`.
+Bank measuring(Bank bank, const std::vector<Eigen::Index>& rows) {
+  bank.C = bank.C(rows, Eigen::all).eval();
+  bank.R = bank.R(rows, rows).eval();
+  return bank;
+}
+
+TEST(MissingMeasurement, OfSomeSignalsLeavesTheOthers) {
+  Bank bank = example_bank(3, 1, 2);
+  bank.R(0, 1) = bank.R(1, 0) = 0.4 * bank.R(0, 0);
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2, FilterVariant::salvi2025}) {
+    Trajectory run = simulate_bank(bank, 3, 9);
+    run.state(1, 2) = std::nan("");
+    const RunEvaluation partial = evaluate_run(bank, run, {variant});
+    // The same step with a sensor that has no such signal, from the same start.
+    BankFilter filter(bank, {variant}), reduced(measuring(bank, {0, 2}), {variant});
+    filter.step(0.0, run.input.col(0), run.state.col(0));
+    filter.step(1.0, run.input.col(1), run.state.col(1));
+    reduced.step(0.0, run.input.col(0), run.state.col(0)(std::vector<int>{0, 2}));
+    reduced.step(1.0, run.input.col(1), run.state.col(1)(std::vector<int>{0, 2}));
+    FilterSnapshot snapshot = reduced.snapshot();
+    const FilterSnapshot whole = filter.snapshot();
+    snapshot.means = whole.means;
+    snapshot.covariances = whole.covariances;
+    snapshot.mode_probability = whole.mode_probability;
+    reduced.restore(snapshot);
+    const FilterEstimate& e = reduced.step(2.0, run.input.col(2), run.state.col(2)(std::vector<int>{0, 2}));
+    EXPECT_TRUE(near(partial.state.col(2), e.state, digits)) << name_of(variant);
+    EXPECT_TRUE(near(partial.covariance.col(2), e.covariance.reshaped(), digits));
+    EXPECT_TRUE(near(partial.mode_probability.col(2), e.mode_probability, digits));
+    EXPECT_NEAR(partial.log_density(2), e.log_density, digits * 10);
+    EXPECT_NEAR(partial.nis(2), e.nis, digits * 10);
+    EXPECT_TRUE(near(partial.pit.col(2), Eigen::Vector3d(e.pit(0), std::nan(""), e.pit(1)), digits));
+    EXPECT_TRUE(std::isnan(partial.innovation(1, 2)) && !std::isnan(partial.innovation(2, 2)));
+  }
+}
+
+/// An outlier counts as no larger than some standard deviations of the signals that are there.
+TEST(MissingMeasurement, OfSomeSignalsMovesTheNoiseScaleByTheOthers) {
+  Bank bank = example_bank(3, 1, 2);
+  bank.R(0, 1) = bank.R(1, 0) = 0.4 * bank.R(0, 0);
+  const Trajectory run = simulate_bank(bank, 3, 9);
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2}) {
+    const FilterOptions adaptive{variant, false, TimeSteps::repeat, FilterNoise::adaptive};
+    BankFilter filter(bank, adaptive), reduced(measuring(bank, {0, 2}), adaptive);
+    const std::vector<int> there{0, 2};
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      filter.step(static_cast<double>(k), run.input.col(k), run.state.col(k));
+      reduced.step(static_cast<double>(k), run.input.col(k), run.state.col(k)(there));
+    }
+    FilterSnapshot snapshot = reduced.snapshot();
+    static_cast<FilterMemory&>(snapshot) = filter.snapshot();
+    reduced.restore(snapshot);
+    Eigen::Vector3d y = run.state.col(2);
+    y(0) += 10.0;
+    y(1) = std::nan("");
+    filter.step(2.0, run.input.col(2), y);
+    reduced.step(2.0, run.input.col(2), y(there));
+    const double scale = reduced.snapshot().noise_scale;
+    EXPECT_GT(scale, 1.0);
+    EXPECT_NEAR(filter.snapshot().noise_scale, scale, digits * 10 * scale) << name_of(variant);
+  }
+}
+
+TEST(MissingMeasurement, HasNoScoreInAnyForm) {
+  Bank bank = example_bank(2, 1, 3);
+  Trajectory run = simulate_bank(bank, 8, 21);
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::kf}) {
+    BankFilter filter(test::steppable(bank, variant), {variant});
+    filter.step(0.0, run.input.col(0), run.state.col(0));
+    EXPECT_FALSE(std::isnan(filter.step(1.0, run.input.col(1), run.state.col(1)).log_density));
+    EXPECT_GE(filter.estimate().nis, 0.0);
+    const FilterEstimate& e = filter.step(2.0, run.input.col(2), Eigen::Vector2d::Constant(std::nan("")));
+    EXPECT_TRUE(std::isnan(e.log_density) && std::isnan(e.nis)) << name_of(variant);
+    EXPECT_TRUE(e.innovation.array().isNaN().all() && e.state.allFinite());
+    filter.step(3.0, run.input.col(3), Eigen::Vector2d(run.state(0, 3), std::nan("")));
+    EXPECT_TRUE(e.nis >= 0.0 && std::isnan(e.innovation(1)));
+  }
+}
+
+TEST(TimeSteps, ALongerTimeIsSeveralPredictionsWithTheInputHeld) {
+  Bank bank = example_bank(2, 1, 3);
+  bank.dt_s = 0.1;
+  Trajectory run = simulate_bank(bank, 12, 13), every = run;
+  run.time_s *= 0.1;
+  // The run that had all samples, but measured nothing at two of them and held the input.
+  every.time_s = run.time_s;
+  every.state.middleCols(5, 2).setConstant(std::nan(""));
+  every.input.col(5) = every.input.col(6) = every.input.col(4);
+  Trajectory gap = run;
+  const std::vector<int> kept{0, 1, 2, 3, 4, 7, 8, 9, 10, 11};
+  gap.time_s = run.time_s(kept).eval();
+  gap.state = run.state(Eigen::all, kept).eval();
+  gap.input = run.input(Eigen::all, kept).eval();
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::gpb2}) {
+    const RunEvaluation filled = evaluate_run(bank, every, {variant}), short_run = evaluate_run(bank, gap, {variant});
+    EXPECT_TRUE(near(short_run.state.rightCols(5), filled.state.rightCols(5), digits)) << name_of(variant);
+    EXPECT_TRUE(near(short_run.log_density.tail(5), filled.log_density.tail(5), digits * 10));
+    EXPECT_NEAR(log_likelihood(bank, gap, {variant}), log_likelihood(bank, every, {variant}), 1e-10);
+  }
+  // Who does not look at the clock takes one step.
+  Trajectory steady = gap;
+  steady.time_s = run.time_s.head(10);
+  const FilterOptions single{FilterVariant::imm, false, TimeSteps::single};
+  EXPECT_TRUE(near(evaluate_run(bank, gap, single).state, evaluate_run(bank, steady, {}).state, 0.0));
+  EXPECT_FALSE(near(evaluate_run(bank, gap, {}).state, evaluate_run(bank, steady, {}).state, 1e-6));
+}
+
+TEST(TimeSteps, AVeryLongTimeIsANewStart) {
+  Bank bank = example_bank(2, 1, 3);
+  bank.dt_s = 1.0;
+  Trajectory run = simulate_bank(bank, 12, 13), tail = run;
+  run.time_s.tail(5).array() += longest_gap_steps;
+  tail.time_s = run.time_s.tail(5).eval();
+  tail.state = run.state.rightCols(5).eval();
+  tail.input = run.input.rightCols(5).eval();
+  const RunEvaluation all = evaluate_run(bank, run, {}), fresh = evaluate_run(bank, tail, {});
+  EXPECT_TRUE(std::isnan(all.log_density(7)));
+  EXPECT_TRUE(near(all.state.rightCols(5), fresh.state, 0.0));
+  EXPECT_TRUE(near(all.log_density.tail(5), fresh.log_density, 0.0));
+}
+
+TEST(BankFilter, GoesOnFromASnapshotAsIfNothingHadHappened) {
+  Bank bank = example_bank(2, 1, 3);
+  const Trajectory run = simulate_bank(bank, 20, 14);
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2, FilterVariant::kf}) {
+    const Bank stepped = test::steppable(bank, variant);
+    BankFilter first(stepped, {variant}), second(stepped, {variant});
+    for (Eigen::Index k = 0; k < 10; ++k) first.step(run.time_s(k), run.input.col(k), run.state.col(k));
+    second.restore(first.snapshot());
+    for (Eigen::Index k = 10; k < 20; ++k) {
+      const FilterEstimate& a = first.step(run.time_s(k), run.input.col(k), run.state.col(k));
+      const FilterEstimate& b = second.step(run.time_s(k), run.input.col(k), run.state.col(k));
+      EXPECT_EQ(a.log_density, b.log_density);
+      EXPECT_TRUE(near(a.state, b.state, 0.0));
+    }
+  }
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2}) {  // before there was anything to know
+    BankFilter fresh(bank, {variant}), restored(bank, {variant});
+    EXPECT_NO_THROW(restored.restore(fresh.snapshot())) << name_of(variant);
+    EXPECT_FALSE(restored.started());
+  }
+  BankFilter other(example_bank(2, 1, 2), {});
+  EXPECT_THROW(other.restore(BankFilter(bank, {}).snapshot()), std::invalid_argument);
+}
+
+TEST(BankFilter, ARefusedSnapshotChangesNothing) {
+  const Bank bank = example_bank(2, 1, 3);
+  const Trajectory run = simulate_bank(bank, 20, 14), other = simulate_bank(bank, 20, 15);
+  const auto stepped = [&](const Trajectory& by, Eigen::Index samples) {
+    BankFilter filter(bank, {});
+    for (Eigen::Index k = 0; k < samples; ++k) filter.step(by.time_s(k), by.input.col(k), by.state.col(k));
+    return filter;
+  };
+  const FilterSnapshot good = stepped(other, 7).snapshot();
+  const std::vector<std::function<void(FilterSnapshot&)>> spoil = {
+      [](FilterSnapshot& s) { s.means(0, 0) = std::nan(""); },
+      [](FilterSnapshot& s) { s.covariances.resize(4, 2); },
+      [](FilterSnapshot& s) { s.mode_probability.setZero(); },
+      [](FilterSnapshot& s) { s.noise_scale = INFINITY; },
+      [](FilterSnapshot& s) { s.noise_samples = -1.0; },
+      [](FilterSnapshot& s) { s.samples.inputs(0, 0) = std::nan(""); },
+      [](FilterSnapshot& s) { s.samples.measurements.resize(1, 1); },
+      [](FilterSnapshot& s) { s.samples.whole = s.samples.samples + 1; },
+  };
+  for (std::size_t i = 0; i < spoil.size(); ++i) {
+    BankFilter filter = stepped(run, 10), untouched = stepped(run, 10);
+    FilterSnapshot spoilt = good;
+    spoil[i](spoilt);
+    EXPECT_THROW(filter.restore(spoilt), std::invalid_argument) << i;
+    const FilterEstimate& a = filter.step(run.time_s(10), run.input.col(10), run.state.col(10));
+    const FilterEstimate& b = untouched.step(run.time_s(10), run.input.col(10), run.state.col(10));
+    EXPECT_EQ(a.log_density, b.log_density) << i;
+    EXPECT_TRUE(near(a.state, b.state, 0.0)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace modebank

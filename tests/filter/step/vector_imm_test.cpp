@@ -1,0 +1,260 @@
+// The filter with a mode per lane of the vector registers against the general steps, everything it says.
+#include "filter/step/detail/vector/vector_imm.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filter/step/bank_filter.hpp"
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/equations/predicted_mixture.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int any = Eigen::Dynamic;
+
+/// Steps both through the run and compares everything; `relative` to the size of each number.
+void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptions& options, double relative) {
+  ASSERT_TRUE(VectorImm::can_step(bank, options));
+  const FilterModel<any, any> model(bank, options);
+  FilterStep<any, any> step(model);
+  const Index n = bank.structure.dimension(), n_y = bank.C.rows();
+  FilterState<any> state = start(model, run.state.col(0));
+  Gaussian<any> estimate(n);
+  VectorImm kernel(bank, options);
+  kernel.start(run.state.col(0));
+  VectorXd mean(n), expected_mean(n), pit(n_y), expected_pit(n_y), weights(bank.mode_count());
+  MatrixXd covariance(n, n), S(n_y, n_y), expected_S(n_y, n_y);
+  const auto same = [&](const MatrixXd& a, const MatrixXd& b) {
+    return test::near(a, b, relative * std::max(1e-3, b.cwiseAbs().maxCoeff()));
+  };
+  for (Index k = 1; k < run.samples(); ++k) {
+    predict(model, state, run.input.col(k - 1), step);
+    kernel.predict(run.input.col(k - 1));
+    const double expected_share = combine(model, step, expected_mean, expected_S), share = kernel.combine(mean, S);
+    ASSERT_TRUE(same(mean, expected_mean)) << "sample " << k;
+    ASSERT_TRUE(same(S, expected_S)) << "sample " << k;
+    ASSERT_TRUE(same(kernel.predicted_probability(), step.predicted_probability)) << "sample " << k;
+    ASSERT_NEAR(share, expected_share, relative);
+    const double expected = update(model, run.state.col(k), step, state);
+    const double log_density = kernel.update(run.state.col(k));
+    merge(state.modes, state.mode_probability, estimate);
+    kernel.merge(mean, covariance);
+    ASSERT_TRUE(same(mean, estimate.mean)) << "sample " << k;
+    ASSERT_TRUE(same(covariance, estimate.covariance)) << "sample " << k;
+    ASSERT_TRUE(same(kernel.mode_probability(), state.mode_probability)) << "sample " << k;
+    ASSERT_EQ(std::isnan(log_density), std::isnan(expected));
+    if (!std::isnan(expected)) {
+      kernel.transform(run.state.col(k), pit);
+      probability_transform(run.state.col(k), step, weights, expected_pit);
+      for (Index i = 0; i < n_y; ++i) {
+        ASSERT_EQ(std::isnan(pit(i)), std::isnan(expected_pit(i)));
+        if (std::isnan(pit(i))) continue;
+        // Relative to the smaller tail, of which the upper one has the bits that 1 - pit leaves.
+        const double tail = std::min(expected_pit(i), 1.0 - expected_pit(i));
+        ASSERT_NEAR(pit(i), expected_pit(i), 1e-15 + 1e3 * relative * tail) << "sample " << k << ", signal " << i;
+      }
+      ASSERT_NEAR(log_density, expected, relative * std::max(1.0, std::abs(expected))) << "sample " << k;
+      for (Index j = 0; j < bank.mode_count(); ++j)
+        for (Index i = 0; i < n_y; ++i) {
+          const KalmanStep<any, any>& kalman = step.kalman[static_cast<std::size_t>(j)];
+          ASSERT_NEAR(kernel.variance(i, j), kalman.cholesky.D(i), relative * kalman.cholesky.D(i));
+          ASSERT_NEAR(kernel.decorrelated(i, j), kalman.decorrelated(i), relative * 10.0);
+        }
+    }
+    ASSERT_NEAR(kernel.noise_scale(), state.noise_scale, relative * state.noise_scale);
+  }
+}
+
+/// The example's modes, slowed down so that many of them are stable, and noises of one order.
+Bank many_modes(Index n, Index K) {
+  Bank bank = test::example_bank(n, 2, K);
+  for (Index j = 0; j < K; ++j) {
+    Mode& mode = bank.modes[static_cast<std::size_t>(j)];
+    const double share = static_cast<double>(j) / static_cast<double>(K);
+    mode.model.A = -(0.1 + 0.8 * share) * MatrixXd::Identity(n, n) + MatrixXd::Constant(n, n, 0.03);
+    mode.Q = 1e-4 * (1.0 + 3.0 * share) * (MatrixXd::Identity(n, n) + MatrixXd::Constant(n, n, 0.3));
+  }
+  return bank;
+}
+
+FilterOptions adaptive() {
+  FilterOptions options;
+  options.noise = FilterNoise::adaptive;
+  return options;
+}
+
+TEST(VectorImm, SaysWhatTheGeneralStepsSay) {
+  for (const Index n : {1, 2, 3})
+    for (const Index K : {2, 8, 9, 25}) {
+      const Bank bank = many_modes(n, K);
+      Trajectory run = test::simulate_bank(bank, 70, 51);
+      run.state(0, 30) = std::nan("");  // of some signals, with one of all
+      run.state.col(40).setConstant(std::nan(""));
+      run.state(0, 50) = std::nan("");  // with an outlier in what is there
+      run.state(n - 1, 50) += n > 1 ? 0.5 : 0.0;
+      run.state(n - 1, 60) += 3.0;
+      SCOPED_TRACE(std::to_string(n) + " states, " + std::to_string(K) + " modes");
+      expect_agreement(bank, run, {}, 1e-11);
+      expect_agreement(bank, run, adaptive(), 1e-11);
+    }
+}
+
+/// As many as fill one register of any width, one more and one less, and more than eight registers.
+TEST(VectorImm, AnyNumberOfModes) {
+  for (const Index K : {2, 3, 4, 5, 7, 8, 9, 16, 17, 60}) {
+    const Bank bank = many_modes(1, K);
+    Trajectory run = test::simulate_bank(bank, 300, 31);
+    run.state.middleCols(40, 3).setConstant(std::nan(""));
+    run.state(0, 200) = 50.0;
+    SCOPED_TRACE(std::to_string(K) + " modes");
+    expect_agreement(bank, run, {}, 1e-11);
+  }
+}
+
+TEST(VectorImm, OneSignalOfSeveralStates) {
+  for (const Index n : {2, 3, 4}) {
+    Bank bank = many_modes(n, 5);
+    bank.C = MatrixXd::Zero(1, n);
+    bank.C(0, 0) = 2.0;
+    bank.C(0, n - 1) = 0.3;
+    bank.R = MatrixXd::Constant(1, 1, 1e-3);
+    const Trajectory run = test::simulate_bank(bank, 60, 52);
+    expect_agreement(bank, run, {}, 1e-11);
+    expect_agreement(bank, run, adaptive(), 1e-11);
+  }
+}
+
+TEST(VectorImm, CorrelatedNoiseAndImpossibleModes) {
+  Bank bank = many_modes(3, 4);
+  bank.R << 2e-4, 1e-4, 0, 1e-4, 3e-4, -5e-5, 0, -5e-5, 1e-4;
+  bank.initial_probability << 0.5, 0.5, 0.0, 0.0;
+  bank.transition = TransitionMatrix(
+      (MatrixXd(4, 4) << 0.9, 0.1, 0, 0, 0.2, 0.7, 0.1, 0, 0.3, 0.3, 0.4, 0, 0.5, 0.5, 0, 0).finished());
+  Trajectory run = test::simulate_bank(bank, 80, 53);
+  run.state(1, 20) = std::nan("");
+  expect_agreement(bank, run, {}, 1e-11);
+  expect_agreement(bank, run, adaptive(), 1e-11);
+}
+
+/// The scale follows the modes that can be, however well one that cannot be fits.
+TEST(VectorImm, AnImpossibleModeHasNoSayInTheNoise) {
+  Bank bank = many_modes(1, 3);
+  bank.transition = TransitionMatrix((MatrixXd(3, 3) << 0.9, 0.1, 0, 0.2, 0.8, 0, 0.5, 0.5, 0).finished());
+  bank.modes[2].model.A.setZero();
+  bank.modes[2].model.c.setConstant(1.0);
+  Trajectory run = test::simulate_bank(bank, 20, 56);
+  run.input.setZero();
+  for (Index k = 0; k < run.samples(); ++k) run.state(0, k) = static_cast<double>(k);
+  expect_agreement(bank, run, adaptive(), 1e-9);
+  const FilterModel<any, any> model(bank, adaptive());
+  FilterStep<any, any> step(model);
+  FilterState<any> state = start(model, run.state.col(0));
+  predict(model, state, run.input.col(0), step);
+  update(model, run.state.col(1), step, state);
+  EXPECT_GT(state.noise_scale, 1.5);  // one step of a hundred standard deviations, counted as five
+}
+
+/// Modes that nothing leads to, that explode, no noise at all: there is always a number.
+TEST(VectorImm, NeverSaysNaN) {
+  const Bank usual = many_modes(1, 3);
+  Bank dead = usual, exact = usual, unstable = usual, none = usual;
+  dead.initial_probability << 1.0, 0.0, 0.0;
+  dead.transition = TransitionMatrix((MatrixXd(3, 3) << 0.9, 0.1, 0, 0.2, 0.8, 0, 0.5, 0.5, 0).finished());
+  exact.R.setConstant(1e-12);
+  unstable.modes[1].model.A.setConstant(5.0);
+  none.R.setZero();
+  for (Mode& mode : none.modes) mode.Q.setZero();
+  for (const Bank& bank : {dead, exact, unstable, none}) {
+    Trajectory run = test::simulate_bank(usual, 400, 32);
+    run.state(0, 50) = 1e4;
+    run.state(0, 60) = -1e29;
+    run.state.middleCols(100, 200).setConstant(std::nan(""));
+    VectorImm kernel(bank, {});
+    kernel.start(run.state.col(0));
+    for (Index k = 1; k < run.samples(); ++k) {
+      kernel.predict(run.input.col(k - 1));
+      const double log_density = kernel.update(run.state.col(k));
+      ASSERT_EQ(std::isfinite(log_density), std::isfinite(run.state(0, k))) << "sample " << k;
+      ASSERT_TRUE(kernel.mode_probability().allFinite()) << "sample " << k;
+    }
+  }
+  expect_agreement(dead, test::simulate_bank(dead, 100, 33), {}, 1e-11);
+}
+
+/// Phi(z) to 20 digits (mpmath), far into the lower tail. All modes agree, so the transform is that of one normal
+/// distribution.
+TEST(VectorImm, TransformsByTheNormalDistributionFunction) {
+  Bank bank = test::example_bank(1, 1, 3);
+  for (Mode& mode : bank.modes) {
+    mode.model = {MatrixXd::Constant(1, 1, -1.0), MatrixXd::Zero(1, 1), VectorXd::Zero(1)};  // predicts zero
+    mode.Q.setConstant(1.0);
+  }
+  bank.R.setZero();
+  const struct {
+    double z, probability;
+  } cases[] = {
+      {-37.0, 5.7255712225245768227e-300}, {-30.0, 4.9067139271481870595e-198}, {-20.5, 1.0764673258790960335e-93},
+      {-12.3, 4.5287069561587846514e-35},  {-8.0, 6.2209605742717841235e-16},   {-5.2, 9.9644263169334717467e-8},
+      {-3.7, 0.00010779973347738826148},   {-2.4, 0.0081975359245961314334},    {-1.1, 0.13566606094638265582},
+      {-0.6, 0.27425311775007358769},      {-0.05, 0.4800611941616275373},      {0.0, 0.5},
+      {0.02, 0.50797831371690198119},      {0.9, 0.81593987465324051735},       {2.2, 0.98609655248650139569},
+      {4.1, 0.99997934249308745323},       {7.7, 0.99999999999999319669},       {40.0, 1.0}};
+  VectorXd pit(1);
+  for (const auto& [z, probability] : cases) {
+    VectorImm kernel(bank, {});
+    kernel.start(VectorXd::Zero(1));
+    kernel.predict(VectorXd::Zero(1));
+    const VectorXd y = VectorXd::Constant(1, z);
+    kernel.update(y);
+    kernel.transform(y, pit);
+    // z itself is rounded, which the tail feels as z^2.
+    EXPECT_NEAR(pit(0), probability, (1e-14 + 2.3e-16 * z * z) * probability) << z;
+  }
+}
+
+/// Modes that predict far apart, each with a small variance: moments about their common mean cancel.
+TEST(VectorImm, ModesFarApartKeepTheirVariances) {
+  Bank bank = many_modes(2, 9);
+  for (Mode& mode : bank.modes) mode.Q *= 1e-6;
+  bank.R.setIdentity();
+  bank.R *= 1e4;  // nothing measured pulls them together
+  bank.transition = TransitionMatrix::sticky(9, 1.0 - 1e-9);
+  for (Index j = 0; j < 9; ++j) bank.modes[static_cast<std::size_t>(j)].model.c.setConstant(static_cast<double>(j));
+  const Trajectory run = test::simulate_bank(bank, 60, 55);
+  expect_agreement(bank, run, {}, 1e-9);
+}
+
+TEST(VectorImm, SnapshotsGoBackAndForth) {
+  const Bank bank = many_modes(2, 5);
+  const Trajectory run = test::simulate_bank(bank, 10, 54);
+  VectorImm first(bank, {}), second(bank, {});
+  first.start(run.state.col(0));
+  for (Index k = 1; k < 9; ++k) {
+    first.predict(run.input.col(k - 1));
+    first.update(run.state.col(k));
+  }
+  FilterMemory memory;
+  first.save(memory);
+  second.start(run.state.col(0));
+  second.restore(memory);
+  for (VectorImm* filter : {&first, &second}) filter->predict(run.input.col(8));
+  EXPECT_EQ(second.update(run.state.col(9)), first.update(run.state.col(9)));
+}
+
+TEST(VectorImm, LeavesToTheGeneralStepsWhatItCannot) {
+  EXPECT_FALSE(VectorImm::can_step(test::example_bank(4, 1, 3), {}));
+  EXPECT_FALSE(VectorImm::can_step(test::example_bank(2, 1, 3), {FilterVariant::gpb1}));
+  EXPECT_FALSE(VectorImm::can_step(test::example_bank(2, 1, 3), {FilterVariant::imm, true}));
+  EXPECT_FALSE(VectorImm::can_step(test::single_mode(test::example_bank(2, 1, 3), 0), {}));
+}
+
+}  // namespace
+}  // namespace modebank

@@ -1,0 +1,171 @@
+#include "ident/base/not_a_number.hpp"
+#include "ident/check/advice.hpp"
+#include "ident/check/run_check.hpp"
+#include "ident/check/stream_check.hpp"
+#include "tests/ident/ident_test_support.hpp"
+
+namespace modebank::test {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+VectorXd noise(Index count, std::uint64_t seed, double sd = 1.0) {
+  std::mt19937_64 generator(seed);
+  boost::random::normal_distribution<double> normal(0.0, sd);
+  return VectorXd::NullaryExpr(count, [&](Index) { return normal(generator); });
+}
+
+TEST(CheckSampling, CountsWhatIsWrongWithTimes) {
+  Stream stream{VectorXd::LinSpaced(101, 0.0, 10.0), noise(101, 1).transpose()};
+  const SamplingCheck clean = check_sampling(stream);
+  EXPECT_NEAR(clean.rate_hz, 10.0, 1e-9);
+  EXPECT_NEAR(clean.jitter, 0.0, 1e-9);
+  EXPECT_EQ(clean.gaps + clean.repeated_times + clean.backward_times + clean.missing_samples, 0);
+  stream.time_s(20) = stream.time_s(19);            // repeats
+  std::swap(stream.time_s(40), stream.time_s(41));  // one step back
+  stream.time_s(60) = not_a_number;
+  stream.values(0, 70) = not_a_number;
+  stream.time_s.tail(20).array() += 3.0;
+  const SamplingCheck found = check_sampling(stream);
+  EXPECT_EQ(found.repeated_times, 1);
+  EXPECT_EQ(found.backward_times, 1);
+  EXPECT_EQ(found.missing_times, 1);
+  EXPECT_EQ(found.missing_samples, 1);
+  EXPECT_EQ(found.gaps, 1);
+  EXPECT_NEAR(found.longest_gap_s, 3.1, 1e-9);
+  EXPECT_NEAR(found.duration_s, 13.0, 1e-9);
+  EXPECT_EQ(in_order(stream).time_s.size(), 99);
+}
+
+TEST(CheckChannel, FindsTheQuantumAlsoWhenNoTwoLevelsAreNeighbours) {
+  const VectorXd smooth = noise(2000, 2);
+  EXPECT_EQ(check_channel(smooth).quantum, 0.0);
+  const VectorXd coarse = (smooth.array() * 127.0 / 4.0).round() / 127.0;
+  EXPECT_NEAR(check_channel(coarse).quantum, 1.0 / 127.0, 1e-6);
+  const VectorXd offset = coarse.array() + 0.1234;
+  EXPECT_NEAR(check_channel(offset).quantum, 1.0 / 127.0, 1e-6);
+  EXPECT_NEAR(check_channel((VectorXd(6) << 0, 0.2, 0.5, 0.5, 0.9, 1.4).finished()).quantum, 0.1, 1e-9);
+  const ChannelCheck levels = check_channel((VectorXd(5) << 1, 1, 2, 2, 1).finished());
+  EXPECT_EQ(levels.levels, 2);
+  EXPECT_EQ(levels.repeated, 0.5);
+}
+
+TEST(Spikes, AreCountedInNoiseButNotInOscillation) {
+  VectorXd signal = VectorXd::NullaryExpr(4000, [](Index k) { return std::sin(0.05 * static_cast<double>(k)); });
+  signal += noise(4000, 3, 0.02);
+  EXPECT_EQ(spikes(signal, 0.0), 0);
+  for (Index k = 50; k < 4000; k += 100) signal(k) += k % 200 == 50 ? 1.0 : -1.0;
+  EXPECT_EQ(spikes(signal, 0.0), 40);
+  const VectorXd steps = VectorXd::NullaryExpr(4000, [](Index k) { return k / 500 % 2 == 0 ? 0.0 : 1.0; });
+  EXPECT_EQ(spikes(steps, 0.0), 0) << "a step is no spike";
+}
+
+TEST(Saturation, IsAPileUpAtFullScale) {
+  const VectorXd smooth = noise(20000, 4);
+  EXPECT_FALSE(std::isfinite(saturation_limits({smooth}).high));
+  const SaturationLimits both = saturation_limits({smooth.cwiseMin(1.5).cwiseMax(-1.5)});
+  EXPECT_NEAR(both.high, 1.5, 0.07);
+  EXPECT_NEAR(both.low, -1.5, 0.07);
+  EXPECT_FALSE(both.soft);
+  const SaturationLimits upper = saturation_limits({smooth.cwiseMin(1.5).cwiseMax(-0.5)});
+  EXPECT_FALSE(std::isfinite(upper.low)) << "far from full scale: a rest, not a limit";
+}
+
+TEST(CheckCommands, StillnessAndConstancy) {
+  Stream inputs{VectorXd::LinSpaced(10, 0.0, 9.0), MatrixXd(2, 10)};
+  inputs.values << 0, 0, 1, 1, 1, 1, 0, 0, 2, 2,  //
+      0, 0, 1, 1, 1, 2, 0, 0, 2, 2;
+  const CommandCheck check = check_commands(inputs, Eigen::Vector2d(0.01, 0.01));
+  EXPECT_DOUBLE_EQ(check.still, 0.4);
+  EXPECT_DOUBLE_EQ(check.longest_constant_s, 2.0);
+  EXPECT_DOUBLE_EQ(check.changes, 4.0 / 9.0);
+}
+
+TEST(CheckRest, MeasuresTheBiasWhereInputsAreStill) {
+  Stream states{VectorXd::LinSpaced(1001, 0.0, 10.0), MatrixXd(1, 1001)}, inputs = states;
+  for (Index k = 0; k <= 1000; ++k) {
+    const bool rests = k >= 300 && k < 800;
+    inputs.values(0, k) = rests ? 0.0 : 1.0;
+    states.values(0, k) = rests && k >= 340 ? 0.02 : 1.0;  // comes to rest within the half second that is left out
+  }
+  const RestCheck rest = check_rest(states, inputs, VectorXd::Constant(1, 0.01));
+  EXPECT_NEAR(rest.mean(0), 0.02, 1e-12);
+  EXPECT_NEAR(rest.sd(0), 0.0, 1e-9);
+  EXPECT_NEAR(rest.duration_s, 4.49, 0.02);
+  inputs.values.setOnes();
+  EXPECT_TRUE(std::isnan(check_rest(states, inputs, VectorXd::Constant(1, 0.01)).mean(0)));
+}
+
+TEST(ExcitationOrder, OfKnownSignals) {
+  constexpr Index N = 2000;
+  const auto signal = [](auto f) { return MatrixXd(Eigen::RowVectorXd::NullaryExpr(N, f)); };
+  EXPECT_EQ(excitation_order(signal([](Index) { return 0.7; })), 1) << "a constant tells one number";
+  EXPECT_EQ(excitation_order(signal([](Index k) { return std::sin(0.9 * static_cast<double>(k)); })), 2);
+  EXPECT_EQ(excitation_order(signal([](Index k) {
+              return std::sin(0.9 * static_cast<double>(k)) + std::sin(2.1 * static_cast<double>(k));
+            })),
+            4);
+  EXPECT_EQ(excitation_order(noise(N, 5).transpose()), 10);
+  MatrixXd proportional(2, N);
+  proportional.row(0) = noise(N, 6).transpose();
+  proportional.row(1) = -proportional.row(0);
+  EXPECT_EQ(excitation_order(proportional), 0);
+  EXPECT_EQ(excitation_order(MatrixXd::Zero(1, N)), 0);
+}
+
+Trajectory driven_run(Index samples, Index hold) {
+  MatrixXd input(2, samples), state(1, samples);
+  const VectorXd left = noise(samples, 7), right = noise(samples, 8), w = noise(samples, 9, 0.05);
+  double x = 0.0;
+  for (Index k = 0; k < samples; ++k) {
+    const Index command = k / hold * hold;
+    input.col(k) << left(command), right(command);
+    state(0, k) = x;
+    x += -0.3 * x - 0.4 * input(0, k) + 0.5 * input(1, k) + w(k);
+  }
+  return make_run(state, input);
+}
+
+TEST(DeficientWindows, AreThoseWithinOneCommand) {
+  const Trajectory run = driven_run(401, 40);
+  // A window of 10 transitions lies within one command of 40 at 31 of every 40 starts: two held inputs are collinear.
+  const DeficientWindows windows = count_deficient_windows(run, 10, skid_structure);
+  EXPECT_EQ(windows.windows, 391);
+  EXPECT_EQ(windows.deficient, 310);
+  EXPECT_EQ(count_deficient_windows(driven_run(401, 1), 10, skid_structure).deficient, 0);
+}
+
+TEST(AdviseLength, IsTheShortestThatExcites) {
+  const LengthAdvice held = advise_length({driven_run(4001, 40)}, skid_structure);
+  EXPECT_TRUE(held.enough);
+  EXPECT_EQ(held.length, 40) << "all but one in 40 such windows see a change of command";
+  EXPECT_EQ(advise_length({driven_run(4001, 1)}, skid_structure).length, 25) << "eight transitions per regressor";
+}
+
+TEST(AdviseLoss, ByTheTailsOfOneStepErrors) {
+  Recording recording;
+  recording.runs = {driven_run(4001, 1)};
+  EXPECT_EQ(advise_loss(recording, skid_structure).loss, Loss::trivial);
+  const VectorXd size = noise(4001, 10, 1.0);
+  for (Index k = 0; k < 4001; k += 200) recording.runs[0].state(0, k) += 0.5 * size(k);
+  EXPECT_EQ(advise_loss(recording, skid_structure).loss, Loss::huber);
+  for (Index k = 0; k < 4001; k += 20) recording.runs[0].state(0, k) += 5.0;
+  EXPECT_EQ(advise_loss(recording, skid_structure).loss, Loss::tukey);
+}
+
+TEST(AdviseRate, ByTheTimeConstant) {
+  EXPECT_EQ(advise_rate({10.0, 100.0, 0.01, 0.0, 0.5}).reason, RateReason::keep);
+  const RateAdvice fast = advise_rate({100.0, 100.0, 0.01, 0.0, 0.5});
+  EXPECT_EQ(fast.reason, RateReason::too_fast);
+  EXPECT_DOUBLE_EQ(fast.rate_hz, 20.0);
+  EXPECT_EQ(advise_rate({5.0, 100.0, 0.01, 0.0, 0.2}).reason, RateReason::too_slow);
+  EXPECT_EQ(advise_rate({5.0, 5.0, 0.01, 0.0, 0.2}).reason, RateReason::keep) << "no state shows more";
+  EXPECT_EQ(advise_rate({10.0, 100.0, 0.3, 0.0, 0.5}).reason, RateReason::jitter);
+  const RateAdvice repeated = advise_rate({20.0, 20.0, 0.0, 0.5, 0.5});
+  EXPECT_EQ(repeated.reason, RateReason::repeats);
+  EXPECT_DOUBLE_EQ(repeated.rate_hz, 10.0);
+}
+
+}  // namespace
+}  // namespace modebank::test

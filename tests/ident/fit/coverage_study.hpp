@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+
+#include "ident/model/local_model.hpp"
+#include "modebank/base/names.hpp"
+
+namespace modebank {
+
+/// Windows of L = 25 transitions of one state and two inputs, every window a run of its own, hence independent.
+enum class CoverageCase {
+  gaussian,       ///< white inputs, Gaussian noise of sd 0.1
+  outliers,       ///< 5 % of the noise terms ten times as large
+  growing_noise,  ///< noise sd 0.02 + 0.3 |x|
+  poor  ///< theta drawn from the prior; every other window holds one command (rank 2 of 3), the others vary it
+        ///< by 2 % (nearly rank 2); fitted with that prior
+};
+
+template <>
+struct EnumNames<CoverageCase> {
+  static constexpr Names<4> values{"gaussian", "outliers", "growing_noise", "poor"};
+};
+
+namespace test {
+
+/// Share of windows whose 95 % region (confidence_region) holds the true theta, sigma estimated from each window.
+double measure_coverage(CoverageCase which, Loss loss, CovarianceKind kind, Index windows);
+
+}  // namespace test
+}  // namespace modebank

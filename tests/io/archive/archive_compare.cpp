@@ -1,0 +1,308 @@
+#include <cmath>
+#include <cstring>
+
+#include "tests/io/archive/archive_fixture.hpp"
+
+namespace modebank::test {
+
+namespace {
+
+using test::expect_same;  // beside the overloads of this file
+
+void expect_same(const Recording& actual, const Recording& expected) {
+  const auto same_channels = [](const std::vector<Channel>& a, const std::vector<Channel>& e) {
+    ASSERT_EQ(a.size(), e.size());
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].name, e[i].name);
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].unit, e[i].unit);
+  };
+  same_channels(actual.states, expected.states);
+  same_channels(actual.inputs, expected.inputs);
+  ASSERT_EQ(actual.runs.size(), expected.runs.size());
+  for (std::size_t r = 0; r < actual.runs.size(); ++r) {
+    const Trajectory &a = actual.runs[r], &e = expected.runs[r];
+    EXPECT_EQ(a.run, e.run);
+    EXPECT_EQ(a.role, e.role);
+    EXPECT_EQ(a.lag_s, e.lag_s);
+    EXPECT_TRUE(same_bits(a.time_s, e.time_s));
+    EXPECT_TRUE(same_bits(a.state, e.state));
+    EXPECT_TRUE(same_bits(a.input, e.input));
+    EXPECT_TRUE(same_bits(a.truth, e.truth));
+    EXPECT_TRUE(same_bits(a.weight, e.weight));
+  }
+}
+
+void expect_same(const LagReport& actual, const LagReport& expected) {
+  EXPECT_EQ(actual.correction, expected.correction);
+  EXPECT_EQ(actual.lag.mean, expected.lag.mean);
+  EXPECT_EQ(actual.lag.between_sd, expected.lag.between_sd);
+  EXPECT_EQ(actual.lag.count, expected.lag.count);
+  EXPECT_EQ(actual.drift.mean, expected.drift.mean);
+  EXPECT_EQ(std::isnan(actual.drift.standard_error), std::isnan(expected.drift.standard_error));
+  ASSERT_EQ(actual.scores.size(), expected.scores.size());
+  EXPECT_EQ(actual.scores.back().correction, expected.scores.back().correction);
+  EXPECT_EQ(actual.scores.back().gain_standard_error, expected.scores.back().gain_standard_error);
+  ASSERT_EQ(actual.runs.size(), expected.runs.size());
+  for (std::size_t r = 0; r < actual.runs.size(); ++r) {
+    EXPECT_EQ(actual.runs[r].run, expected.runs[r].run);
+    EXPECT_EQ(actual.runs[r].status, expected.runs[r].status);
+    EXPECT_EQ(std::isnan(actual.runs[r].lag_s), std::isnan(expected.runs[r].lag_s));
+    EXPECT_EQ(actual.runs[r].match_windows, expected.runs[r].match_windows);
+    EXPECT_EQ(actual.runs[r].applied_lag_s, expected.runs[r].applied_lag_s);
+    EXPECT_EQ(actual.runs[r].applied_clock_drift, expected.runs[r].applied_clock_drift);
+  }
+}
+
+void expect_same(const WindowFits& actual, const WindowFits& expected) {
+  EXPECT_EQ(actual.structure, expected.structure);
+  EXPECT_EQ(actual.length, expected.length);
+  EXPECT_EQ(actual.step, expected.step);
+  EXPECT_EQ(actual.loss, expected.loss);
+  ASSERT_EQ(actual.windows.size(), expected.windows.size());
+  for (std::size_t i = 0; i < actual.windows.size(); ++i) {
+    EXPECT_EQ(actual.windows[i].run, expected.windows[i].run);
+    EXPECT_EQ(actual.windows[i].start, expected.windows[i].start);
+  }
+  EXPECT_TRUE(same_bits(actual.parameters, expected.parameters));
+  EXPECT_TRUE(same_bits(actual.covariance, expected.covariance));
+  EXPECT_TRUE(same_bits(actual.noise_variance, expected.noise_variance));
+  EXPECT_TRUE(same_bits(actual.condition, expected.condition));
+  EXPECT_EQ(actual.rank, expected.rank);
+  EXPECT_TRUE(same_bits(actual.information, expected.information));
+  EXPECT_TRUE(same_bits(actual.inlier_fraction, expected.inlier_fraction));
+  EXPECT_EQ(actual.status, expected.status);
+  EXPECT_TRUE(same_bits(actual.r_squared, expected.r_squared));
+  EXPECT_TRUE(same_bits(actual.aic, expected.aic));
+  EXPECT_EQ(actual.transitions, expected.transitions);
+  EXPECT_TRUE(same_bits(actual.prior_sd, expected.prior_sd));
+  EXPECT_TRUE(same_bits(actual.global.theta, expected.global.theta));
+  EXPECT_TRUE(same_bits(actual.global.covariance, expected.global.covariance));
+  EXPECT_TRUE(same_bits(actual.global.residual_covariance, expected.global.residual_covariance));
+  EXPECT_EQ(actual.global.transitions, expected.global.transitions);
+}
+
+void expect_same(const ResidualTests& a, const ResidualTests& e) {
+  EXPECT_EQ(a.samples, e.samples);
+  EXPECT_EQ(a.level, e.level);
+  EXPECT_EQ(a.autocorrelation_band, e.autocorrelation_band);
+  EXPECT_TRUE(same_bits(a.autocorrelation, e.autocorrelation));
+  EXPECT_TRUE(same_bits(a.cross_correlation, e.cross_correlation));
+  EXPECT_TRUE(same_bits(a.cross_correlation_band, e.cross_correlation_band));
+  EXPECT_TRUE(same_bits(a.ljung_box_p, e.ljung_box_p));
+}
+
+void expect_same(const Candidate& a, const Candidate& e) {
+  EXPECT_EQ(a.components, e.components);
+  EXPECT_EQ(a.covariance, e.covariance);
+  EXPECT_EQ(a.parameters, e.parameters);
+  EXPECT_EQ(a.iterations, e.iterations);
+  EXPECT_EQ(a.converged, e.converged);
+  EXPECT_EQ(a.agreeing_restarts, e.agreeing_restarts);
+  EXPECT_EQ(a.selected, e.selected);
+  EXPECT_EQ(a.bic_naive, e.bic_naive);
+  EXPECT_EQ(a.restarts, e.restarts);
+  EXPECT_EQ(a.floor_active, e.floor_active);
+  EXPECT_EQ(a.status, e.status);
+  const auto reals = [](const Candidate& c) {
+    return Eigen::Matrix<double, 6, 1>(c.log_likelihood, c.effective_samples, c.bic, c.aic, c.icl, c.heldout);
+  };
+  EXPECT_TRUE(same_bits(reals(a), reals(e)));
+}
+
+void expect_same(const MixtureResult& actual, const MixtureResult& expected) {
+  EXPECT_TRUE(same_bits(actual.mixture.weights, expected.mixture.weights));
+  EXPECT_TRUE(same_bits(actual.mixture.means, expected.mixture.means));
+  ASSERT_EQ(actual.mixture.covariances.size(), expected.mixture.covariances.size());
+  for (std::size_t k = 0; k < actual.mixture.covariances.size(); ++k)
+    EXPECT_TRUE(same_bits(actual.mixture.covariances[k], expected.mixture.covariances[k]));
+  EXPECT_EQ(actual.mixture.type, expected.mixture.type);
+  EXPECT_EQ(actual.mixture.noise.weight, expected.mixture.noise.weight);
+  EXPECT_TRUE(same_bits(actual.mixture.noise.lower, expected.mixture.noise.lower));
+  EXPECT_TRUE(same_bits(actual.mixture.noise.upper, expected.mixture.noise.upper));
+  EXPECT_EQ(actual.feature_names, expected.feature_names);
+  EXPECT_TRUE(same_bits(actual.weights_standard_error, expected.weights_standard_error));
+  EXPECT_TRUE(same_bits(actual.means_standard_error, expected.means_standard_error));
+  EXPECT_EQ(actual.labels, expected.labels);
+  EXPECT_TRUE(same_bits(actual.responsibilities.all(), expected.responsibilities.all()));
+  ASSERT_EQ(actual.candidates.size(), expected.candidates.size());
+  for (std::size_t i = 0; i < actual.candidates.size(); ++i) expect_same(actual.candidates[i], expected.candidates[i]);
+}
+
+void expect_same(const SummaryRow& a, const SummaryRow& e) {
+  EXPECT_EQ(a.filter, e.filter);
+  EXPECT_EQ(a.role, e.role);
+  EXPECT_EQ(a.run, e.run);
+  EXPECT_EQ(a.samples, e.samples);
+  EXPECT_TRUE(same_bits(a.rmse, e.rmse));
+  const auto reals = [](const SummaryRow& r) {
+    Eigen::VectorXd values(8);
+    values << r.log_score, r.nis_mean, r.nis_above, r.nis_below, r.tail_above, r.tail_below, r.pit_distance,
+        r.whiteness_p;
+    return values;
+  };
+  EXPECT_TRUE(same_bits(reals(a), reals(e)));
+}
+
+void expect_same(const HorizonRow& actual, const HorizonRow& expected) {
+  EXPECT_EQ(actual.filter, expected.filter);
+  EXPECT_EQ(actual.role, expected.role);
+  EXPECT_EQ(actual.run, expected.run);
+  EXPECT_EQ(actual.horizon, expected.horizon);
+  EXPECT_EQ(actual.samples, expected.samples);
+  EXPECT_EQ(actual.log_score, expected.log_score);
+  EXPECT_TRUE(same_bits(actual.rmse, expected.rmse));
+}
+
+void expect_same(const DiagnosticsRow& actual, const DiagnosticsRow& expected) {
+  EXPECT_EQ(actual.filter, expected.filter);
+  EXPECT_EQ(actual.role, expected.role);
+  EXPECT_EQ(actual.mode, expected.mode);
+  EXPECT_EQ(actual.samples, expected.samples);
+  for (const auto member :
+       {&DiagnosticsRow::usage, &DiagnosticsRow::entropy, &DiagnosticsRow::dwell, &DiagnosticsRow::dwell_model,
+        &DiagnosticsRow::tail_above, &DiagnosticsRow::tail_above_lower, &DiagnosticsRow::tail_above_upper,
+        &DiagnosticsRow::tail_below, &DiagnosticsRow::tail_below_lower, &DiagnosticsRow::tail_below_upper,
+        &DiagnosticsRow::nis_mean, &DiagnosticsRow::nis_lower, &DiagnosticsRow::nis_upper, &DiagnosticsRow::nees_mean,
+        &DiagnosticsRow::nees_lower, &DiagnosticsRow::nees_upper, &DiagnosticsRow::whiteness_p,
+        &DiagnosticsRow::spread_share})
+    EXPECT_EQ(actual.*member, expected.*member);
+  EXPECT_TRUE(same_bits(actual.state_rmse, expected.state_rmse));
+  EXPECT_EQ(actual.verdict, expected.verdict);
+  EXPECT_EQ(actual.flags, expected.flags);
+}
+
+void expect_same(const Provenance& actual, const Provenance& expected) {
+  EXPECT_EQ(actual.modebank_version, expected.modebank_version);
+  EXPECT_EQ(actual.created, expected.created);
+  EXPECT_EQ(actual.command_line, expected.command_line);
+  EXPECT_EQ(actual.config_hash, expected.config_hash);
+  EXPECT_EQ(actual.data_hash, expected.data_hash);
+  EXPECT_EQ(actual.versions, expected.versions);
+  ASSERT_EQ(actual.inputs.size(), expected.inputs.size());
+  for (std::size_t i = 0; i < actual.inputs.size(); ++i) {
+    EXPECT_EQ(actual.inputs[i].path, expected.inputs[i].path);
+    EXPECT_EQ(actual.inputs[i].bytes, expected.inputs[i].bytes);
+    EXPECT_EQ(actual.inputs[i].sha256, expected.inputs[i].sha256);
+  }
+}
+
+template <class T>
+void expect_same_part(const std::optional<T>& actual, const std::optional<T>& expected, const char* part) {
+  SCOPED_TRACE(part);
+  ASSERT_EQ(actual.has_value(), expected.has_value());
+  if (actual) expect_same(*actual, *expected);
+}
+
+}  // namespace
+
+::testing::AssertionResult same_bits(const Eigen::MatrixXd& actual, const Eigen::MatrixXd& expected) {
+  if (actual.rows() != expected.rows() || actual.cols() != expected.cols())
+    return ::testing::AssertionFailure() << "shape " << actual.rows() << " x " << actual.cols() << ", expected "
+                                         << expected.rows() << " x " << expected.cols();
+  for (Index j = 0; j < actual.cols(); ++j)
+    for (Index i = 0; i < actual.rows(); ++i)
+      if (std::memcmp(&actual(i, j), &expected(i, j), sizeof(double)) != 0)
+        return ::testing::AssertionFailure()
+               << "at (" << i << ", " << j << "): " << actual(i, j) << ", expected " << expected(i, j);
+  return ::testing::AssertionSuccess();
+}
+
+void expect_same(const RunEvaluation& a, const RunEvaluation& e) {
+  EXPECT_TRUE(same_bits(a.prediction, e.prediction));
+  EXPECT_TRUE(same_bits(a.innovation, e.innovation));
+  EXPECT_TRUE(same_bits(a.innovation_covariance, e.innovation_covariance));
+  EXPECT_TRUE(same_bits(a.state, e.state));
+  EXPECT_TRUE(same_bits(a.covariance, e.covariance));
+  EXPECT_TRUE(same_bits(a.nis, e.nis));
+  EXPECT_TRUE(same_bits(a.pit, e.pit));
+  EXPECT_TRUE(same_bits(a.log_density, e.log_density));
+  EXPECT_TRUE(same_bits(a.mode_probability_predicted, e.mode_probability_predicted));
+  EXPECT_TRUE(same_bits(a.mode_probability, e.mode_probability));
+  EXPECT_TRUE(same_bits(a.spread_share, e.spread_share));
+  EXPECT_TRUE(same_bits(a.smoothed_state, e.smoothed_state));
+  EXPECT_TRUE(same_bits(a.smoothed_covariance, e.smoothed_covariance));
+  EXPECT_EQ(a.viterbi_mode, e.viterbi_mode);
+}
+
+void expect_same(const Bank& actual, const Bank& expected) {
+  EXPECT_EQ(actual.structure, expected.structure);
+  ASSERT_EQ(actual.modes.size(), expected.modes.size());
+  for (std::size_t k = 0; k < actual.modes.size(); ++k) {
+    const Mode &a = actual.modes[k], &e = expected.modes[k];
+    EXPECT_TRUE(same_bits(a.model.A, e.model.A));
+    EXPECT_TRUE(same_bits(a.model.B, e.model.B));
+    EXPECT_TRUE(same_bits(a.model.c, e.model.c));
+    EXPECT_TRUE(same_bits(a.Q, e.Q));
+    EXPECT_TRUE(same_bits(a.spread, e.spread));
+    EXPECT_TRUE(same_bits(a.standard_error, e.standard_error));
+    EXPECT_TRUE(same_bits(a.Q_standard_error, e.Q_standard_error));
+    EXPECT_EQ(a.weight, e.weight);
+  }
+  EXPECT_TRUE(same_bits(actual.C, expected.C));
+  EXPECT_TRUE(same_bits(actual.R, expected.R));
+  EXPECT_TRUE(same_bits(actual.transition.matrix(), expected.transition.matrix()));
+  EXPECT_TRUE(same_bits(actual.initial_probability, expected.initial_probability));
+  EXPECT_TRUE(same_bits(actual.R_standard_error, expected.R_standard_error));
+  EXPECT_TRUE(same_bits(actual.transition_standard_error, expected.transition_standard_error));
+  EXPECT_EQ(actual.noise_adaptation.forgetting, expected.noise_adaptation.forgetting);
+  EXPECT_EQ(actual.noise_adaptation.prior_samples, expected.noise_adaptation.prior_samples);
+  EXPECT_EQ(actual.state_names, expected.state_names);
+  EXPECT_EQ(actual.input_names, expected.input_names);
+  EXPECT_EQ(actual.dt_s, expected.dt_s);
+  ASSERT_EQ(actual.screened.size(), expected.screened.size());
+  for (std::size_t i = 0; i < actual.screened.size(); ++i) {
+    EXPECT_EQ(actual.screened[i].component, expected.screened[i].component);
+    EXPECT_EQ(actual.screened[i].weight, expected.screened[i].weight);
+    EXPECT_EQ(actual.screened[i].spectral_radius, expected.screened[i].spectral_radius);
+    EXPECT_EQ(actual.screened[i].reason, expected.screened[i].reason);
+  }
+}
+
+void expect_same(const MergingCost& actual, const MergingCost& expected) {
+  EXPECT_EQ(actual.role, expected.role);
+  EXPECT_EQ(actual.components, expected.components);
+  EXPECT_EQ(actual.modes_unlimited, expected.modes_unlimited);
+  EXPECT_EQ(actual.modes, expected.modes);
+  EXPECT_EQ(actual.samples, expected.samples);
+  EXPECT_EQ(actual.log_score_unlimited, expected.log_score_unlimited);
+  EXPECT_EQ(actual.log_score, expected.log_score);
+  EXPECT_EQ(actual.loss, expected.loss);
+}
+
+void expect_same(const Archive& actual, const Archive& expected) {
+  expect_same(actual.provenance, expected.provenance);
+  EXPECT_EQ(actual.config, expected.config);
+  expect_same_part(actual.recording, expected.recording, "recording");
+  expect_same_part(actual.lag, expected.lag, "lag");
+  expect_same_part(actual.windows, expected.windows, "windows");
+  expect_same_part(actual.mixture, expected.mixture, "mixture");
+  expect_same_part(actual.bank, expected.bank, "bank");
+  EXPECT_EQ(actual.measured_fit, expected.measured_fit);
+  expect_same_part(actual.unrefined, expected.unrefined, "unrefined");
+  ASSERT_EQ(actual.merging.size(), expected.merging.size());
+  for (std::size_t i = 0; i < actual.merging.size(); ++i) expect_same(actual.merging[i], expected.merging[i]);
+  expect_same_part(actual.baseline, expected.baseline, "baseline");
+  expect_same_part(actual.noise_only, expected.noise_only, "noise_only");
+  ASSERT_EQ(actual.evaluations.size(), expected.evaluations.size());
+  for (std::size_t f = 0; f < actual.evaluations.size(); ++f) {
+    EXPECT_EQ(actual.evaluations[f].filter, expected.evaluations[f].filter);
+    ASSERT_EQ(actual.evaluations[f].runs.size(), expected.evaluations[f].runs.size());
+    for (std::size_t r = 0; r < actual.evaluations[f].runs.size(); ++r)
+      expect_same(actual.evaluations[f].runs[r], expected.evaluations[f].runs[r]);
+  }
+  ASSERT_EQ(actual.residual_tests.size(), expected.residual_tests.size());
+  for (std::size_t s = 0; s < actual.residual_tests.size(); ++s) {
+    EXPECT_EQ(actual.residual_tests[s].model, expected.residual_tests[s].model);
+    ASSERT_EQ(actual.residual_tests[s].runs.size(), expected.residual_tests[s].runs.size());
+    for (std::size_t r = 0; r < actual.residual_tests[s].runs.size(); ++r)
+      expect_same(actual.residual_tests[s].runs[r], expected.residual_tests[s].runs[r]);
+  }
+  ASSERT_EQ(actual.summary.size(), expected.summary.size());
+  for (std::size_t i = 0; i < actual.summary.size(); ++i) expect_same(actual.summary[i], expected.summary[i]);
+  ASSERT_EQ(actual.horizons.size(), expected.horizons.size());
+  for (std::size_t i = 0; i < actual.horizons.size(); ++i) expect_same(actual.horizons[i], expected.horizons[i]);
+  ASSERT_EQ(actual.diagnostics.size(), expected.diagnostics.size());
+  for (std::size_t i = 0; i < actual.diagnostics.size(); ++i)
+    expect_same(actual.diagnostics[i], expected.diagnostics[i]);
+}
+
+}  // namespace modebank::test

@@ -1,0 +1,132 @@
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+#include "io/files/sha256.hpp"
+#include "tests/io/archive/archive_file_fixture.hpp"
+
+namespace modebank {
+namespace {
+
+namespace fs = std::filesystem;
+using test::ArchiveFile;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+TEST_F(ArchiveFile, UserBlockHoldsTheHashOfTheRestAndZeros) {
+  const std::string bytes = read_file(path);
+  ASSERT_GT(bytes.size(), 512u);
+  EXPECT_EQ(bytes.substr(0, 64), sha256_hex(std::string_view(bytes).substr(512)));
+  EXPECT_EQ(bytes.substr(64, 448), std::string(448, '\0'));
+  EXPECT_EQ(bytes.substr(512, 8), "\x89HDF\r\n\x1a\n");
+  EXPECT_THAT(files(), ::testing::ElementsAre("archive.h5"));
+}
+
+TEST_F(ArchiveFile, IsWrittenByTwoThreadsAtOnce) {
+  const auto write_some = [&](const std::string& name) {
+    for (int i = 0; i < 5; ++i) write_archive(folder.path() / name, test::full_archive(2, 1));
+  };
+  std::thread other([&] { write_some("other.h5"); });
+  EXPECT_NO_THROW(write_some("one.h5"));
+  other.join();
+  EXPECT_EQ(read_file(folder.path() / "one.h5"), read_file(path));
+  EXPECT_EQ(read_file(folder.path() / "other.h5"), read_file(path));
+}
+
+TEST_F(ArchiveFile, EqualContentsGiveEqualBytes) {
+  const fs::path other = folder.path() / "other.h5";
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5's time stamps count seconds
+  write_archive(other, test::full_archive(2, 1));
+  EXPECT_EQ(read_file(path), read_file(other));
+  write_archive(other, read_archive(path));
+  EXPECT_EQ(read_file(path), read_file(other));
+  Archive later = test::full_archive(2, 1);
+  later.provenance.created = "2027-01-01T00:00:00Z";
+  write_archive(other, later);
+  EXPECT_NE(read_file(path), read_file(other));
+}
+
+TEST_F(ArchiveFile, NothingIsLeftWhenTheFolderIsMissing) {
+  const fs::path missing = folder.path() / "none" / "a.h5";
+  EXPECT_THROW(check_writable(missing), ConfigurationError);
+  EXPECT_THROW(write_archive(missing, Archive()), DataError);
+  EXPECT_FALSE(fs::exists(missing.parent_path()));
+  EXPECT_THROW(check_writable(folder.path()), ConfigurationError);
+  EXPECT_THROW(write_archive(folder.path(), Archive()), DataError);
+  EXPECT_THROW(check_writable("/dev/full"), ConfigurationError);
+  EXPECT_THROW(write_archive("/dev/full", Archive()), DataError);
+  EXPECT_THROW(check_writable(""), ConfigurationError);
+  EXPECT_NO_THROW(check_writable(path));
+}
+
+/// Root may write everywhere, so the test becomes nobody for a while.
+class AsNobody {
+ public:
+  AsNobody() : was_(geteuid()) {
+    constexpr uid_t nobody = 65534;
+    if (was_ == 0) changed_ = seteuid(nobody) == 0;
+  }
+  ~AsNobody() {
+    if (changed_ && seteuid(was_) != 0) std::abort();
+  }
+  AsNobody(const AsNobody&) = delete;
+  AsNobody& operator=(const AsNobody&) = delete;
+
+ private:
+  uid_t was_;
+  bool changed_ = false;
+};
+
+TEST_F(ArchiveFile, NothingIsLeftWhenTheFolderIsNotWritable) {
+  const std::string before = read_file(path);
+  ASSERT_EQ(chmod(folder.path().c_str(), 0555), 0);
+  {
+    const AsNobody nobody;
+    EXPECT_THAT([&] { check_writable(path); }, ThrowsMessage<ConfigurationError>(HasSubstr("not writable")));
+    EXPECT_THAT([&] { write_archive(path, Archive()); }, ThrowsMessage<DataError>(HasSubstr("Permission denied")));
+  }
+  ASSERT_EQ(chmod(folder.path().c_str(), 0755), 0);
+  EXPECT_THAT(files(), ::testing::ElementsAre("archive.h5"));
+  EXPECT_EQ(read_file(path), before);
+}
+
+/// Files of this process cannot grow beyond the limit: the system's write fails as on a full disk.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limited{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limited);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+TEST_F(ArchiveFile, AFailingWriteKeepsTheOldFileAndLeavesNothing) {
+  const std::string before = read_file(path);
+  for (const rlim_t bytes : {0, 600, 20000}) {
+    const FileSizeLimit limit(bytes);
+    EXPECT_THAT([&] { write_archive(path, test::full_archive(2, 1)); },
+                ThrowsMessage<DataError>(AllOf(HasSubstr(path.string()), HasSubstr("File too large"))));
+  }
+  EXPECT_THAT(files(), ::testing::ElementsAre("archive.h5"));
+  EXPECT_EQ(read_file(path), before);
+  EXPECT_TRUE(verify_archive(path).ok());
+}
+
+}  // namespace
+}  // namespace modebank

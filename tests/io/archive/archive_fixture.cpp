@@ -1,0 +1,268 @@
+#include "tests/io/archive/archive_fixture.hpp"
+
+#include <limits>
+
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank::test {
+
+namespace {
+
+constexpr Index modes = 3;
+constexpr Index length = 5;
+
+Recording make_recording(Index n, Index m) {
+  Recording recording;
+  const char* state_units[] = {"rad/s", "m/s"};
+  const char* input_units[] = {"m/s", "", "V"};
+  for (Index i = 0; i < n; ++i) recording.states.push_back({"x" + std::to_string(i), state_units[i % 2]});
+  for (Index i = 0; i < m; ++i) recording.inputs.push_back({"u" + std::to_string(i), input_units[i % 3]});
+  // Names that are awkward in a file but printable; the order is not the byte order.
+  const char* names[] = {"run 2", "Gelände.ä", "10"};
+  for (Index r = 0; r < 3; ++r) {
+    const Index samples = 12 + r;
+    Trajectory run;
+    run.run = names[r];
+    run.role = r == 1 ? Role::test : Role::train;
+    run.time_s = Eigen::VectorXd::LinSpaced(samples, 0.1, 3.0);
+    run.state = pattern(n, samples, 1000.0 * static_cast<double>(r));
+    run.input = pattern(m, samples, 0.0);
+    if (r == 0) run.weight = pattern(samples, 1, 0.5);
+    if (r != 2) run.truth = pattern(n, samples, 7.0);
+    run.lag_s = 0.1 * static_cast<double>(r);
+    recording.runs.push_back(run);
+  }
+  recording.runs[0].state(0, 3) = not_a_number;
+  return recording;
+}
+
+LagReport make_lag_report(const std::vector<Trajectory>& runs) {
+  LagReport report;
+  report.correction = LagCorrection::per_run;
+  report.lag = {0.25, 0.125, 0.5, 2};
+  report.drift = {-1e-3, not_a_number, 0.0, 0};
+  report.scores = {{LagCorrection::none, 35, 1.5, 0.25, 0.0, 0.0},
+                   {LagCorrection::drift, 35, 1.75, 0.125, 0.25, 0.0625}};
+  for (const Trajectory& run : runs) {
+    RunLag& entry = report.runs.emplace_back();
+    entry.run = run.run;
+    entry.status = run.role == Role::train ? LagStatus::at_edge : LagStatus::not_estimated;
+    entry.lag_s = run.role == Role::train ? -0.75 : not_a_number;
+    entry.match_windows = 3;
+    entry.applied_lag_s = run.lag_s;
+    entry.applied_clock_drift = 2e-3;
+  }
+  return report;
+}
+
+WindowFits make_windows_fits(const LinearStructure& structure) {
+  const Index n = structure.states, p = structure.parameters(), count = 9;
+  WindowFits fits;
+  fits.structure = structure;
+  fits.length = length;
+  fits.step = 2;
+  fits.loss = Loss::tukey;
+  for (Index i = 0; i < count; ++i) fits.windows.push_back({i % 3 == 2 ? 2 : 0, i % 7});
+  fits.parameters = pattern(p, count, 1.0);
+  fits.covariance = pattern(p * p, count, 2.0);
+  fits.noise_variance = pattern(n, count, 3.0);
+  fits.condition = pattern(count, 1, 4.0);
+  fits.condition(2) = std::numeric_limits<double>::infinity();
+  fits.rank = Eigen::VectorXi::LinSpaced(count, 1, 9);
+  fits.information = pattern(p, count, 5.0);
+  fits.information.col(1).setConstant(not_a_number);
+  fits.inlier_fraction = pattern(count, 1, 6.0);
+  fits.status = Eigen::VectorXi::LinSpaced(count, 0, 3);
+  fits.r_squared = pattern(n, count, 12.0);
+  fits.r_squared(0, 1) = not_a_number;
+  fits.aic = pattern(count, 1, 13.0);
+  fits.transitions = Eigen::VectorXi::Constant(count, length);
+  fits.prior_sd = pattern(p, 1, 8.0);
+  fits.global = {pattern(p, 1, 9.0), pattern(p, p, 10.0), pattern(n, n, 11.0), 35};
+  return fits;
+}
+
+MixtureResult make_mixture(const WindowFits& fits) {
+  const Index features = fits.parameter_count() + 1, count = fits.count();
+  MixtureResult result;
+  result.mixture.weights = Eigen::Vector3d(0.5, 0.3, 0.2);
+  result.mixture.means = pattern(features, modes, 20.0);
+  for (Index k = 0; k < modes; ++k)
+    result.mixture.covariances.push_back(pattern(features, features, 30.0 + static_cast<double>(k)));
+  result.mixture.type = CovarianceType::diagonal;
+  result.feature_names = fits.structure.parameter_names();
+  result.feature_names.push_back("log_noise_variance_x0");
+  result.labels = Eigen::VectorXi::Constant(count, -1);
+  result.labels.head(3) << 0, 2, 1;
+  Eigen::MatrixXd responsibilities = Eigen::MatrixXd::Constant(modes, count, not_a_number);
+  responsibilities.leftCols(3) = pattern(modes, 3, 40.0);
+  result.responsibilities = responsibilities;
+  result.candidates.push_back({2, CovarianceType::full, -10.25, 13, 7.5, 1.0 / 3.0, 2.0 / 3.0, 4.0 / 3.0, not_a_number,
+                               17, false, 1, false, 0.5, 5, true, CandidateStatus::fitted});
+  result.candidates.push_back({3, CovarianceType::diagonal, -9.5, 20, 7.5, 0.1, 0.2, 0.3, -1.5, 40, true, 4, true, 0.6,
+                               5, false, CandidateStatus::failed});
+  result.weights_standard_error = Eigen::Vector3d(0.05, 0.04, 0.03);
+  result.means_standard_error = pattern(features, modes, 50.0);
+  return result;
+}
+
+/// A bank that a filter can run: weakly coupled states, positive definite noise. A(k)(i, j) = -0.1 - (k + (i+2j)/8)/64.
+Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
+  const Index n = structure.states, m = structure.inputs, p = structure.parameters();
+  Bank bank;
+  bank.structure = structure;
+  for (Index k = 0; k < count; ++k) {
+    Mode mode;
+    const double scale = static_cast<double>(k) + 1.0;
+    mode.model.A.resize(n, n);
+    for (Index i = 0; i < n; ++i)
+      for (Index j = 0; j < n; ++j)
+        mode.model.A(i, j) = -0.1 - (static_cast<double>(k) + static_cast<double>(i + 2 * j) / 8.0) / 64.0;
+    mode.model.B = 1e-3 * pattern(n, m, scale);
+    mode.model.c = structure.intercept ? Eigen::VectorXd(1e-3 * pattern(n, 1, scale)) : Eigen::VectorXd::Zero(n);
+    mode.Q = scale * Eigen::MatrixXd::Identity(n, n);
+    mode.Q(0, n - 1) += 0.125;
+    mode.Q(n - 1, 0) += 0.125;
+    if (uncertain) mode.spread = pattern(p, p, 50.0);
+    if (uncertain) mode.standard_error = pattern(p, 1, 60.0 + scale);
+    if (uncertain) mode.Q_standard_error = pattern(n, n, 70.0 + scale);
+    mode.weight = 1.0 / scale;
+    bank.modes.push_back(mode);
+  }
+  bank.C = Eigen::MatrixXd::Identity(n, n);
+  bank.R = 0.01 * Eigen::MatrixXd::Identity(n, n);
+  if (count == modes) {
+    Eigen::Matrix3d transition;
+    transition << 0.7, 0.2, 0.1, 0.05, 0.9, 0.05, 0.15, 0.25, 0.6;
+    bank.transition = TransitionMatrix(transition);
+  }
+  bank.initial_probability = Eigen::VectorXd::Constant(count, 1.0 / static_cast<double>(count));
+  for (Index i = 0; i < n; ++i) bank.state_names.push_back("x" + std::to_string(i));
+  for (Index i = 0; i < m; ++i) bank.input_names.push_back("u" + std::to_string(i));
+  bank.dt_s = 2.0 / 13.0;
+  if (uncertain) {
+    bank.R_standard_error = pattern(n, n, 80.0);
+    bank.transition_standard_error = pattern(count, count, 90.0);
+    bank.noise_adaptation = {0.995, 20.0};
+  }
+  if (uncertain) bank.screened.push_back({4, 0.01, 1.25, "unstable: spectral radius 1.25"});
+  return bank;
+}
+
+RunEvaluation make_evaluation(Index n, Index samples, Index count) {
+  RunEvaluation evaluation;
+  evaluation.prediction = pattern(n, samples, 70.0);
+  evaluation.innovation = pattern(n, samples, 71.0);
+  evaluation.innovation_covariance = pattern(n * n, samples, 72.0);
+  evaluation.state = pattern(n, samples, 73.0);
+  evaluation.covariance = pattern(n * n, samples, 74.0);
+  evaluation.nis = pattern(samples, 1, 75.0);
+  evaluation.nis(0) = not_a_number;
+  evaluation.pit = pattern(n, samples, 76.0);
+  evaluation.log_density = pattern(samples, 1, 77.0);
+  evaluation.mode_probability_predicted = pattern(count, samples, 78.0);
+  evaluation.mode_probability = pattern(count, samples, 79.0);
+  evaluation.spread_share = pattern(samples, 1, 81.0);
+  if (count == 1) return evaluation;  // as without filter.smooth
+  evaluation.smoothed_state = pattern(n, samples, 82.0);
+  evaluation.smoothed_covariance = pattern(n * n, samples, 83.0);
+  evaluation.viterbi_mode = Eigen::VectorXi::LinSpaced(samples, -1, static_cast<int>(samples) - 2);
+  return evaluation;
+}
+
+ResidualTests make_residual_tests(Index n, Index m, Index run) {
+  constexpr Index lags = 4;
+  ResidualTests tests;
+  tests.samples = 10 + run;
+  tests.autocorrelation = pattern(n, lags, 90.0 + static_cast<double>(run));
+  tests.cross_correlation = pattern(n * m, lags, 91.0);
+  tests.autocorrelation_band = 0.25;
+  tests.cross_correlation_band = pattern(m, n, 92.0);
+  tests.ljung_box_p = pattern(n, 1, 93.0);
+  return tests;
+}
+
+SummaryRow make_row(const std::string& filter, Role role, const std::string& run, Index n) {
+  return {filter, role, run, 123, 2.5, pattern(n, 1, 80.0), 0.9, 0.02, 0.03, 0.01, 0.04, 0.1, not_a_number};
+}
+
+DiagnosticsRow make_diagnostics(const std::string& filter, Index n) {
+  return {filter,
+          Role::test,
+          2,
+          123,
+          0.25,
+          0.5,
+          12.5,
+          20.0,
+          0.03,
+          0.01,
+          0.06,
+          0.02,
+          0.005,
+          0.05,
+          1.1,
+          0.9,
+          1.2,
+          2.1,
+          1.8,
+          2.2,
+          pattern(n, 1, 85.0),
+          0.4,
+          0.1,
+          Verdict::overconfident,
+          "probabilities flat; heavy tails"};
+}
+
+}  // namespace
+
+Eigen::MatrixXd pattern(Index rows, Index cols, double base) {
+  Eigen::MatrixXd result(rows, cols);
+  for (Index s = 0; s < cols; ++s)
+    for (Index i = 0; i < rows; ++i)
+      result(i, s) = base + 100.0 * static_cast<double>(s) + static_cast<double>(i) + 1.0 / 3.0;
+  return result;
+}
+
+Archive full_archive(Index n, Index m) {
+  Archive archive;
+  archive.provenance = {
+      "0.1.0",
+      "2026-08-01T12:00:00Z",
+      "modebank run \"a b.ini\" --window.length 5",
+      std::string(64, 'c'),
+      std::string(64, 'd'),
+      {{"Boost", "1.74.0"}, {"Ceres", "2.1.0"}, {"compiler", "GCC 12.2"}},
+      {{"/data/pro_00.csv", 9007199254740993u, std::string(64, '1')}, {"/data/Gelände.csv", 12, std::string(64, '2')}}};
+  archive.config = "[window]\nlength = 5  # fünf\n";
+  const LinearStructure structure{n, m, m == 1};
+  archive.recording = make_recording(n, m);
+  archive.lag = make_lag_report(archive.recording->runs);
+  archive.windows = make_windows_fits(structure);
+  archive.mixture = make_mixture(*archive.windows);
+  archive.bank = make_bank(structure, modes, true);
+  archive.unrefined = make_bank(structure, 1, false);
+  archive.merging = {{Role::train, 7, 6, modes, 300, 1.25, 1.125, 0.125},
+                     {Role::test, 7, 6, modes, 299, 1.5, 1.75, -0.25}};
+  archive.measured_fit = MeasuredFit::iteration_limit;
+  archive.baseline = make_bank(structure, 1, false);
+  archive.noise_only = make_bank(structure, modes, false);
+  for (const char* filter : {"bank", "baseline", "noise_only"}) {
+    FilterEvaluation evaluation{filter, {}, {}};
+    const Index count = evaluation.filter == "baseline" ? 1 : modes;
+    for (const Trajectory& run : archive.recording->runs)
+      evaluation.runs.push_back(make_evaluation(n, run.samples(), count));
+    archive.evaluations.push_back(evaluation);
+    archive.summary.push_back(make_row(filter, Role::train, "run 2", n));
+    archive.summary.push_back(make_row(filter, Role::test, "*", n));
+    archive.horizons.push_back({filter, Role::test, "*", 5, 118, 1.5, pattern(n, 1, 84.0)});
+    archive.diagnostics.push_back(make_diagnostics(filter, n));
+  }
+  for (const char* model : {"global", "bank"}) {
+    archive.residual_tests.push_back({model, {}});
+    for (Index r = 0; r < 3; ++r) archive.residual_tests.back().runs.push_back(make_residual_tests(n, m, r));
+  }
+  return archive;
+}
+
+}  // namespace modebank::test

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "io/archive/archive.hpp"
+
+namespace modebank::test {
+
+/// Every field of the Archive struct filled, three runs, K = 3 modes, M = 9 windows. Entry i of sample (window, mode)
+/// s of an array is base + 100 s + i + 1/3: tests/golden/generate/check_archive.py states the same formula, and the
+/// third has no finite binary expansion, so a lost bit shows.
+Archive full_archive(Index states, Index inputs);
+
+/// rows x cols of base + 100 col + row + 1/3.
+Eigen::MatrixXd pattern(Index rows, Index cols, double base);
+
+/// All fields of both archives are the same bits (NaN included).
+void expect_same(const Archive& actual, const Archive& expected);
+void expect_same(const Bank& actual, const Bank& expected);
+::testing::AssertionResult same_bits(const Eigen::MatrixXd& actual, const Eigen::MatrixXd& expected);
+void expect_same(const RunEvaluation& actual, const RunEvaluation& expected);
+
+}  // namespace modebank::test

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace modebank::test {
+
+/// Makes the user block hold the hash of what the file now contains.
+void sign(const std::filesystem::path& path);
+
+/// Changes to an archive that only another program would make, by the HDF5 C API, signed afterwards.
+enum class Kind { real, integer, text };
+
+void write_foreign_hdf5(const std::filesystem::path& path, unsigned long long user_block_bytes);
+void patch_text_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name,
+                          const std::string& value);
+/// The attribute becomes a list of no texts.
+void empty_text_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name);
+void remove_member(const std::filesystem::path& path, const std::string& member);
+/// The table keeps its first columns only.
+void keep_columns(const std::filesystem::path& path, const std::string& table, unsigned columns);
+/// The member becomes a dataset without stored content: as large as declared, all zeros.
+void replace_by_zeros(const std::filesystem::path& path, const std::string& member,
+                      const std::vector<unsigned long long>& shape, Kind kind);
+/// The member becomes nine doubles that lie in another file.
+void replace_by_external(const std::filesystem::path& path, const std::string& member, const std::string& elsewhere);
+
+}  // namespace modebank::test

@@ -1,0 +1,219 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/random/uniform_01.hpp>
+
+#include "filter/judge/evaluate.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/base/seed.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/bank/load_bank.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/io/archive/archive_fixture.hpp"
+#include "tests/support/paths.hpp"
+
+namespace modebank {
+namespace {
+
+using test::expect_same;
+using test::full_archive;
+
+Archive round_trip(const Archive& archive) {
+  const test::TemporaryFolder folder;
+  write_archive(folder.path() / "a.h5", archive);
+  EXPECT_EQ(verify_archive(folder.path() / "a.h5").problems, std::vector<std::string>());
+  return read_archive(folder.path() / "a.h5");
+}
+
+TEST(ArchiveRoundTrip, EveryFieldBitByBitForTwoStatesAndOneInput) {
+  const Archive archive = full_archive(2, 1);
+  expect_same(round_trip(archive), archive);
+}
+
+TEST(ArchiveRoundTrip, EveryFieldBitByBitForOneStateAndTwoInputs) {
+  const Archive archive = full_archive(1, 2);
+  expect_same(round_trip(archive), archive);
+}
+
+TEST(ArchiveRoundTrip, ThreeStatesWithoutInputs) {
+  const Archive archive = full_archive(3, 0);
+  expect_same(round_trip(archive), archive);
+}
+
+TEST(ArchiveRoundTrip, KeepsANoiseComponent) {
+  Archive archive = full_archive(2, 1);
+  GaussianMixture& mixture = archive.mixture->mixture;
+  mixture.noise.weight = 0.125;
+  mixture.noise.lower = -Eigen::VectorXd::LinSpaced(mixture.features(), 1.0, 2.0);
+  mixture.noise.upper = Eigen::VectorXd::LinSpaced(mixture.features(), 0.5, 3.0);
+  expect_same(round_trip(archive), archive);
+}
+
+TEST(ArchiveRoundTrip, ABankThatNoFilterCanRunIsRefusedAtLoad) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "a.h5";
+  for (const NoiseAdaptation odd : {NoiseAdaptation{not_a_number, 5.0}, {1.5, 5.0}, {0.98, 0.0}}) {
+    Archive archive = full_archive(2, 1);
+    archive.bank->noise_adaptation = odd;
+    write_archive(path, archive);
+    EXPECT_FALSE(verify_archive(path).problems.empty());
+    EXPECT_THROW(read_archive(path), DataError);
+    EXPECT_THROW(load_bank(path), DataError);
+  }
+}
+
+TEST(ArchiveRoundTrip, LargeArchivesAreMadeInTheFileSystem) {
+  const Archive archive = full_archive(2, 1);
+  const test::TemporaryFolder folder;
+  write_large_archive(folder.path() / "a.h5", archive);
+  EXPECT_EQ(verify_archive(folder.path() / "a.h5").problems, std::vector<std::string>());
+  expect_same(read_archive(folder.path() / "a.h5"), archive);
+}
+
+/// One run of the linear system with a name beyond ASCII, 300 samples.
+Recording streamed_recording() {
+  Recording recording;
+  recording.states = {{"wz", "rad/s"}};
+  recording.inputs = {{"left", "m/s"}, {"right", "m/s"}};
+  Trajectory run;
+  run.run = "fünf";
+  run.time_s = Eigen::VectorXd::LinSpaced(300, 0.0, 29.9);
+  run.state = run.time_s.array().sin().matrix().transpose();
+  run.input.resize(2, 300);
+  run.input.row(0) = (1.7 * run.time_s.array()).cos().matrix().transpose();
+  run.input.row(1) = (0.6 * run.time_s.array()).sin().matrix().transpose();
+  recording.runs = {run};
+  return recording;
+}
+
+TEST(ArchiveRoundTrip, WindowsWrittenPartByPartAreTheWholeArchive) {
+  const Recording recording = streamed_recording();
+  FitOptions options;
+  const WindowFits whole = fit_windows(recording, options);
+  Archive archive;
+  archive.recording = recording;
+  const test::TemporaryFolder folder;
+  write_archive(folder.path() / "parts.h5", archive, whole.count(), [&](const WindowSink& sink) {
+    WindowFits part = whole;
+    constexpr Index part_windows = 100;
+    for (Index first = 0; first < whole.count(); first += part_windows) {
+      const Index count = std::min(part_windows, whole.count() - first);
+      part.resize(count);
+      for (Index i = 0; i < count; ++i) {
+        part.windows[static_cast<std::size_t>(i)] = whole.windows[static_cast<std::size_t>(first + i)];
+        part.set(i, whole.at(first + i));
+      }
+      sink(part, first);
+    }
+    return whole;
+  });
+  archive.windows = whole;
+  write_archive(folder.path() / "whole.h5", archive);
+  EXPECT_EQ(verify_archive(folder.path() / "parts.h5").problems, std::vector<std::string>());
+  const WindowFits parts = read_archive(folder.path() / "parts.h5").windows.value();
+  expect_same(read_archive(folder.path() / "parts.h5"), read_archive(folder.path() / "whole.h5"));
+  EXPECT_EQ(parts.parameters, whole.parameters);
+  EXPECT_EQ(parts.count(), whole.count());
+}
+
+TEST(ArchiveRoundTrip, AnyStageMayBeAbsent) {
+  const Archive full = full_archive(2, 1);
+  Archive origin;
+  origin.provenance = full.provenance;
+  expect_same(round_trip(origin), origin);
+
+  Archive identified = origin;
+  identified.recording = full.recording;
+  identified.windows = full.windows;
+  identified.windows->prior_sd.resize(0);
+  expect_same(round_trip(identified), identified);
+
+  Archive bank_only = origin;
+  bank_only.bank = full.bank;
+  expect_same(round_trip(bank_only), bank_only);
+
+  Archive evaluated = bank_only;
+  evaluated.recording = full.recording;
+  evaluated.evaluations = {full.evaluations.front()};
+  evaluated.summary = full.summary;
+  expect_same(round_trip(evaluated), evaluated);
+
+  Archive summary_only = origin;
+  summary_only.summary = full.summary;
+  expect_same(round_trip(summary_only), summary_only);
+}
+
+TEST(ArchiveRoundTrip, AStoredBankGivesTheSameScores) {
+  Archive archive = full_archive(2, 1);
+  const Bank stored = *round_trip(archive).bank;
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::salvi2025})
+    for (const Trajectory& run : archive.recording->runs)
+      expect_same(evaluate_run(stored, run, {variant, true}), evaluate_run(*archive.bank, run, {variant, true}));
+}
+
+TEST(ArchiveRoundTrip, TransitionRowsKeepTheirBits) {
+  Archive archive;
+  archive.bank = full_archive(2, 1).bank;
+  std::mt19937_64 generator = make_generator(1, "transition rows");
+  boost::random::uniform_01<double> uniform;
+  for (int trial = 0; trial < 50; ++trial) {
+    Eigen::Matrix3d rows = Eigen::Matrix3d::NullaryExpr([&](Index, Index) { return uniform(generator); });
+    const Eigen::Vector3d sums = rows.rowwise().sum();
+    rows.array().colwise() /= sums.array();
+    archive.bank->transition = TransitionMatrix(rows);
+    ASSERT_TRUE(test::same_bits(round_trip(archive).bank->transition.matrix(), archive.bank->transition.matrix()));
+  }
+}
+
+TEST(ArchiveRoundTrip, TextsOfAnyLength) {
+  Archive archive;
+  archive.provenance.command_line = std::string(200000, 'x') + "ä";
+  archive.recording = Recording{{{"x", ""}}, {}, {}};
+  for (int i = 0; i < 300; ++i) {
+    Trajectory run;
+    run.run =
+        std::string(250, 'r') + std::to_string(1000 + i);  // 75 kB of names, above HDF5's 64 kB for small attributes
+    run.time_s.resize(0);
+    run.state.resize(1, 0);
+    run.input.resize(0, 0);
+    archive.recording->runs.push_back(run);
+  }
+  const Archive back = round_trip(archive);
+  EXPECT_EQ(back.provenance.command_line, archive.provenance.command_line);
+  ASSERT_EQ(back.recording->runs.size(), archive.recording->runs.size());
+  EXPECT_EQ(back.recording->runs.back().run, archive.recording->runs.back().run);
+}
+
+TEST(ArchiveRoundTrip, RunNamesThatHdf5CannotHoldAreRefused) {
+  const test::TemporaryFolder folder;
+  for (const std::string& name : {std::string("a/b"), std::string("."), std::string(), std::string("a\0b", 3)}) {
+    Archive archive = full_archive(2, 1);
+    archive.recording->runs[1].run = name;
+    EXPECT_THROW(write_archive(folder.path() / "a.h5", archive), DataError) << name;
+  }
+  Archive twice = full_archive(2, 1);
+  twice.recording->runs[1].run = twice.recording->runs[0].run;
+  EXPECT_THROW(write_archive(folder.path() / "a.h5", twice), DataError);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(ArchiveRoundTrip, SizesThatDisagreeAreRefusedBeforeAnythingIsWritten) {
+  const test::TemporaryFolder folder;
+  const auto refuses = [&](const char* what, auto change) {
+    Archive archive = full_archive(2, 1);
+    change(archive);
+    EXPECT_THROW(write_archive(folder.path() / "a.h5", archive), std::invalid_argument) << what;
+  };
+  refuses("information", [](Archive& a) { a.windows->information.conservativeResize(Eigen::NoChange, 5); });
+  refuses("labels", [](Archive& a) { a.mixture->labels.conservativeResize(4); });
+  refuses("Q", [](Archive& a) { a.bank->modes[1].Q.resize(1, 2); });
+  refuses("run of a window", [](Archive& a) { a.windows->windows[2].run = 3; });
+  refuses("windows without runs", [](Archive& a) { a.recording.reset(); });
+  refuses("run of an evaluation", [](Archive& a) { a.evaluations[1].runs.pop_back(); });
+  refuses("samples", [](Archive& a) { a.evaluations[1].runs[0].nis.conservativeResize(3); });
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace modebank

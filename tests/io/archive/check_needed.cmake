@@ -1,0 +1,11 @@
+# Holds a program to the shared libraries that it may need itself: cmake -DPROGRAM=... -DALLOWED=regex -P check_needed.cmake
+execute_process(COMMAND objdump -p ${PROGRAM} OUTPUT_VARIABLE header COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "NEEDED +[^\n]+" needed "${header}")
+if(NOT needed)
+  message(FATAL_ERROR "${PROGRAM} needs no shared library at all?")
+endif()
+foreach(line IN LISTS needed)
+  if(NOT line MATCHES "NEEDED +(${ALLOWED})[-.]")
+    message(FATAL_ERROR "${PROGRAM} must not need this library:\n${line}")
+  endif()
+endforeach()

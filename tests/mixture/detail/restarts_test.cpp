@@ -1,0 +1,127 @@
+// Short runs, crossing of restarts, and climbs that are given up.
+#include "mixture/detail/restarts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "mixture/detail/iterate.hpp"
+#include "mixture/select.hpp"
+#include "tests/mixture/mixture_test_support.hpp"
+
+namespace modebank::test {
+namespace {
+
+using Eigen::Index;
+
+/// Four clusters in a row, all distances the same.
+GaussianMixture four_in_a_row() {
+  GaussianMixture mixture;
+  mixture.weights = Eigen::VectorXd::Constant(4, 0.25);
+  mixture.means.resize(2, 4);
+  mixture.means << 0, 10, 20, 30, 0, 1, 0, 1;
+  mixture.covariances.assign(4, 0.5 * Eigen::Matrix2d::Identity());
+  return mixture;
+}
+
+/// The same with one cluster in two parts and two clusters in one.
+GaussianMixture with_error(Index divided, Index first, Index second) {
+  GaussianMixture mixture = four_in_a_row();
+  mixture.means.col(first) = 0.5 * (mixture.means.col(first) + mixture.means.col(second));
+  mixture.covariances[static_cast<std::size_t>(first)](0, 0) = 25.0;
+  mixture.means.col(second) = mixture.means.col(divided) + Eigen::Vector2d(0.5, 0.0);
+  mixture.means.col(divided).x() -= 0.5;
+  return mixture;
+}
+
+TEST(Cross, SameMixturesGiveThemselves) {
+  const GaussianMixture one = four_in_a_row(), result = cross(one, one);
+  ASSERT_EQ(result.components(), 4);
+  EXPECT_LT((result.weights - one.weights).norm(), 1e-14);
+  EXPECT_LT((result.means - one.means).norm(), 1e-12);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_LT((result.covariances[k] - one.covariances[k]).norm(), 1e-12);
+}
+
+/// What is wrong at one end of the row in one mixture and at the other end in the other is right in the child.
+TEST(Cross, TakesWhatIsRightInEither) {
+  const Eigen::MatrixXd points = draw(four_in_a_row(), 800, 3);
+  const GaussianMixture left = with_error(3, 0, 1), right = with_error(0, 2, 3);
+  const double truth = log_density(four_in_a_row(), points).sum();
+  ASSERT_LT(log_density(left, points).sum(), truth - 300.0);
+  ASSERT_LT(log_density(right, points).sum(), truth - 300.0);
+  EmOptions options;
+  const double child = fit_em(PointSet(points), cross(left, right), options).log_likelihood;
+  EXPECT_GT(child, truth - 1.0);
+}
+
+TEST(Restarts, ShortRunsAreWhatStartRunsSays) {
+  const Eigen::MatrixXd points = draw(four_in_a_row(), 400, 4);
+  for (const StartKind kind : {StartKind::kmeans_plus_plus, StartKind::random})
+    for (const int moves : {0, 5}) {
+      EmOptions options;
+      options.start = kind;
+      options.split_merge = moves;
+      const ScaledCloud cloud(PointSet(points), options);
+      options.start_runs = 1;
+      EXPECT_EQ(make_start(cloud, 3, 1, options, 1).iterations, 0);
+      options.start_runs = 5;
+      EXPECT_GT(make_start(cloud, 3, 1, options, 1).iterations, 0);
+    }
+}
+
+/// Points beyond the subsample's number: starts are still found, and the same whatever the order of calls.
+TEST(Restarts, ShortRunsOnASubsample) {
+  const Eigen::MatrixXd points = draw(four_in_a_row(), 6000, 5);
+  EmOptions options;
+  options.start = StartKind::kmeans_plus_plus;
+  options.split_merge = 0;
+  const EmResult fit = fit_em(points, 4, options, 1);
+  EXPECT_EQ(fit.agreeing_restarts, options.restarts);
+  EXPECT_GT(fit.log_likelihood, log_density(four_in_a_row(), points).sum());
+  EXPECT_EQ(fit.log_likelihood, fit_em(points, 4, options, 1).log_likelihood);
+}
+
+TEST(Restarts, ClimbsWithoutHopeAreGivenUp) {
+  const Eigen::MatrixXd points = draw(three_clusters(2.0), 600, 6);
+  const PointBlocks blocks(PointSet(points), FeatureScale::identity(points.rows()));
+  EmOptions options;
+  options.tolerance = 1e-10;
+  const EmResult all = iterate(blocks, three_clusters(2.0), options, Steps::extrapolated);
+  ASSERT_TRUE(all.converged);
+  const EmResult hopeless =
+      iterate(blocks, three_clusters(2.0), options, Steps::extrapolated, all.log_likelihood + 100.0);
+  EXPECT_FALSE(hopeless.converged);
+  EXPECT_LT(2 * hopeless.iterations, all.iterations);
+  const EmResult reached =
+      iterate(blocks, three_clusters(2.0), options, Steps::extrapolated, all.log_likelihood - 1e-6);
+  EXPECT_NEAR(reached.log_likelihood, all.log_likelihood, 1e-6) << "what can be reached is not given up";
+}
+
+TEST(Restarts, BadOptionsAreNamed) {
+  const Eigen::MatrixXd points = draw(four_in_a_row(), 50, 7);
+  const auto refused = [&](auto change) {
+    SelectionOptions options;
+    options.components = {2};
+    SampleDesign design;
+    change(options, design);
+    EXPECT_THROW(select(points, design, options, 1), std::invalid_argument);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  refused([&](SelectionOptions& options, SampleDesign&) { options.em.tolerance = nan; });
+  refused([&](SelectionOptions& options, SampleDesign&) { options.em.covariance_floor = 1e300 * 1e300; });
+  refused([&](SelectionOptions& options, SampleDesign&) { options.em.start_runs = 0; });
+  refused([&](SelectionOptions& options, SampleDesign&) { options.bootstrap = 1; });
+  // What is wrong with the call is said, not taken for a candidate that failed.
+  GaussianMixture other_features = three_clusters(2.0);
+  other_features.means.conservativeResize(1, Eigen::NoChange);
+  for (Eigen::MatrixXd& covariance : other_features.covariances) covariance = Eigen::MatrixXd::Identity(1, 1);
+  refused([&](SelectionOptions& options, SampleDesign&) {
+    options.components = {3};
+    options.start = other_features;
+  });
+  refused([&](SelectionOptions&, SampleDesign& design) { design.effective_samples = nan; });
+  refused([&](SelectionOptions&, SampleDesign& design) { design.effective_samples = -3.0; });
+}
+
+}  // namespace
+}  // namespace modebank::test

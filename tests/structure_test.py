@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+"""Which folder may include which: nothing includes upward, nobody includes another folder's detail/.
+
+Usage: structure_test.py SOURCE_FOLDER. Prints one line per offence; exit status 1 if there is any.
+"""
+import pathlib
+import re
+import sys
+
+# A folder and what its files may include besides themselves; everything under a folder that is not named belongs to it.
+IDENT = ["ident/base", "ident/data", "ident/model"]
+FIT = IDENT + ["ident/model/models", "ident/fit"]
+STEP = IDENT + ["filter/step"]
+LIBRARIES = FIT + ["ident/lag", "ident/check", "ident/simulate", "mixture", "filter/step", "filter/judge", "filter/learn"]
+IO = ["io/files", "io/hdf5", "io/archive/bank", "io/archive", "io/import", "io/simulation"]
+BELOW_APP = LIBRARIES + IO
+MAY_INCLUDE = {
+    "ident/base": [],
+    "ident/data": IDENT[:1],
+    "ident/model": IDENT[:2],
+    "ident/model/models": IDENT,
+    "ident/fit": FIT,
+    "ident/lag": FIT,
+    "ident/check": FIT + ["ident/lag"],
+    "ident/simulate": IDENT,
+    "mixture": IDENT,
+    "filter/step": IDENT,
+    "filter/judge": STEP,
+    "filter/learn": FIT + ["mixture", "filter/step", "filter/judge"],
+    "io/files": IDENT[:1],
+    "io/hdf5": IDENT[:1],
+    "io/archive/bank": STEP + ["io/files", "io/hdf5"],
+    "io/archive": LIBRARIES + ["io/files", "io/hdf5", "io/archive/bank"],
+    "io/import": FIT + ["ident/lag", "io/files"],
+    "io/simulation": IDENT + ["ident/simulate", "io/files"],
+    "app/chain": BELOW_APP,
+    "app/check": BELOW_APP,
+    "app/config": BELOW_APP + ["app/chain"],
+    "app/text": BELOW_APP + ["app/chain"],
+    "app/study": BELOW_APP + ["app/chain", "app/config"],
+    "app/report": BELOW_APP + ["app/chain", "app/config", "app/text", "app/study"],
+    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("chain", "check", "config", "text", "study", "report")],
+}
+# The way lanes of a processor's vector registers are used is the one detail that all kernels share.
+SHARED_DETAIL = "ident/base/detail"
+# Offences of old, to go.
+KNOWN = {
+    "filter/step/detail/vector/rows-inl.hpp -> mixture/detail/kernels/lanes-inl.hpp",
+}
+
+
+def folder_of(path):
+    """The named folder that a file belongs to: the longest one."""
+    return max((f for f in MAY_INCLUDE if path.startswith(f + "/")), key=len, default=None)
+
+
+def offence(source, header):
+    if header.startswith("modebank/"):
+        return None
+    home, target = folder_of(source), folder_of(header)
+    if target is None:
+        return None if header.startswith("tests/") else "is in no folder of the project"
+    if target != home and target not in MAY_INCLUDE[home]:
+        return f"{home} may not include {target}"
+    owner = header.split("/detail/")[0]
+    if "/detail/" in header and not header.startswith(SHARED_DETAIL) and not source.startswith(owner + "/"):
+        return f"{owner}/detail belongs to {owner}"
+    return None
+
+
+def main(root):
+    found = {}
+    for folder in sorted({f.split("/")[0] for f in MAY_INCLUDE}):
+        for source in sorted((root / folder).rglob("*.[hc]pp")):
+            name = source.relative_to(root).as_posix()
+            for header in re.findall(r'^\s*#\s*include "([^"]+)"', source.read_text(), re.MULTILINE):
+                if reason := offence(name, header):
+                    found[f"{name} -> {header}"] = reason
+    bad = [f"{line}: {reason}" for line, reason in found.items() if line not in KNOWN]
+    print("\n".join(bad))
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(pathlib.Path(sys.argv[1])))

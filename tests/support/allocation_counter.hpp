@@ -1,0 +1,47 @@
+#pragma once
+
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+
+// For one source file of a test program of its own, since it replaces these for all of the program's code, our
+// libraries' included: whatever takes memory, Eigen and operator new included, comes through here.
+namespace modebank::test {
+inline std::atomic<long> allocations = 0;
+}  // namespace modebank::test
+
+#ifdef __SANITIZE_ADDRESS__
+extern "C" void __sanitizer_malloc_hook(const volatile void* /*memory*/, std::size_t /*bytes*/) {
+  ++modebank::test::allocations;
+}
+extern "C" void __sanitizer_free_hook(const volatile void* /*memory*/) {}
+#else
+extern "C" {
+void* __libc_malloc(std::size_t bytes);
+void* __libc_calloc(std::size_t count, std::size_t bytes);
+void* __libc_realloc(void* memory, std::size_t bytes);
+void* __libc_memalign(std::size_t alignment, std::size_t bytes);
+
+void* malloc(std::size_t bytes) noexcept {
+  ++modebank::test::allocations;
+  return __libc_malloc(bytes);
+}
+void* calloc(std::size_t count, std::size_t bytes) noexcept {
+  ++modebank::test::allocations;
+  return __libc_calloc(count, bytes);
+}
+void* realloc(void* memory, std::size_t bytes) noexcept {
+  ++modebank::test::allocations;
+  return __libc_realloc(memory, bytes);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t bytes) noexcept {
+  ++modebank::test::allocations;
+  return __libc_memalign(alignment, bytes);
+}
+int posix_memalign(void** memory, std::size_t alignment, std::size_t bytes) noexcept {
+  ++modebank::test::allocations;
+  *memory = __libc_memalign(alignment, bytes);
+  return *memory ? 0 : ENOMEM;
+}
+}
+#endif
