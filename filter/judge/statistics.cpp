@@ -33,17 +33,17 @@ ResidualTests test_innovations(const Trajectory& run, const RunScores& scores, c
   return test_residuals(scores.z.rightCols(run.transitions()), run.input.leftCols(run.transitions()), options);
 }
 
+namespace {
+
+constexpr Eigen::Index most_lags = 20;
+
+}  // namespace
+
 double whiteness_p(const OutputSeries& z) {
   std::vector<double> p_values;
   for (const std::vector<double>& output : z) p_values.push_back(ljung_box_p(output));
   return fisher_p(p_values);
 }
-
-namespace {
-
-std::size_t lag_count(std::size_t samples) { return std::min<std::size_t>(20, samples / 5); }
-
-}  // namespace
 
 double kolmogorov_distance(std::vector<double> values) {
   if (values.empty()) return not_a_number;
@@ -58,19 +58,16 @@ double kolmogorov_distance(std::vector<double> values) {
 }
 
 double ljung_box_p(const std::vector<double>& series) {
-  const std::size_t lags = lag_count(series.size());
+  const Eigen::Index N = static_cast<Eigen::Index>(series.size()), lags = std::min<Eigen::Index>(most_lags, N / 5);
   if (lags < 1) return not_a_number;
-  const Eigen::Index N = static_cast<Eigen::Index>(series.size());
   const Eigen::Map<const Eigen::ArrayXd> z(series.data(), N);
   const Eigen::ArrayXd centred = z - z.mean();
   const double variance = centred.square().sum();
   if (!(variance > 0.0)) return not_a_number;
-  double Q = 0.0;
-  for (Eigen::Index k = 1; k <= static_cast<Eigen::Index>(lags); ++k) {
-    const double r_k = (centred.head(N - k) * centred.tail(N - k)).sum() / variance;
-    Q += r_k * r_k / static_cast<double>(N - k);
-  }
-  return chi_square_upper_tail(static_cast<double>(N) * static_cast<double>(N + 2) * Q, static_cast<double>(lags));
+  Eigen::VectorXd autocorrelation(lags + 1);
+  for (Eigen::Index k = 0; k <= lags; ++k)
+    autocorrelation(k) = (centred.head(N - k) * centred.tail(N - k)).sum() / variance;
+  return ljung_box_p(autocorrelation, N);
 }
 
 double fisher_p(const std::vector<double>& p_values) {

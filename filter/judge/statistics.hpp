@@ -32,7 +32,7 @@ double whiteness_p(const OutputSeries& z);
 /// Kolmogorov's distance sup |F_n(u) - u| of the sample from the uniform distribution on [0, 1]; NaN without values.
 double kolmogorov_distance(std::vector<double> values);
 
-/// Portmanteau test of Ljung & Box (1978), Biometrika 65(2), with min(20, N/5) lags: p value of "no autocorrelation".
+/// Ljung & Box's test with min(20, N/5) lags of the series.
 /// NaN when the series is too short for one lag or constant.
 double ljung_box_p(const std::vector<double>& series);
 

@@ -53,14 +53,6 @@ double bartlett_variance(const VectorXd& a, const VectorXd& b) {
   return P;
 }
 
-double ljung_box_p(const VectorXd& autocorrelation, Index N) {
-  const Index lags = std::min(autocorrelation.size() - 1, N / 5);
-  if (lags < 1 || !autocorrelation.allFinite()) return not_a_number;
-  double Q = 0.0;
-  for (Index k = 1; k <= lags; ++k) Q += autocorrelation(k) * autocorrelation(k) / static_cast<double>(N - k);
-  return chi_square_upper_tail(static_cast<double>(N) * static_cast<double>(N + 2) * Q, static_cast<double>(lags));
-}
-
 void check(const MatrixXd& residual, const MatrixXd& input, const ResidualTestOptions& options) {
   if (residual.rows() < 1 || residual.cols() != input.cols())
     throw std::invalid_argument("residual tests need a residual and as many samples of it as of the inputs");
@@ -96,6 +88,14 @@ double ResidualTests::cross_correlation_outside() const {
   const Eigen::ArrayXd band = cross_correlation_band.reshaped();
   const auto lags = cross_correlation.array();
   return share((lags.abs() > band.replicate(1, lags.cols())).count(), (!lags.isNaN()).count());
+}
+
+double ljung_box_p(const VectorXd& autocorrelation, Index N) {
+  const Index lags = std::min(autocorrelation.size() - 1, N / 5);
+  if (lags < 1 || !autocorrelation.allFinite()) return not_a_number;
+  double Q = 0.0;
+  for (Index k = 1; k <= lags; ++k) Q += autocorrelation(k) * autocorrelation(k) / static_cast<double>(N - k);
+  return chi_square_upper_tail(static_cast<double>(N) * static_cast<double>(N + 2) * Q, static_cast<double>(lags));
 }
 
 ResidualTests test_residuals(const MatrixXd& residual, const MatrixXd& input, const ResidualTestOptions& options) {

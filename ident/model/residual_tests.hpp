@@ -31,6 +31,11 @@ struct ResidualTests {
   double cross_correlation_outside() const;
 };
 
+/// Portmanteau test of Ljung & Box (1978), Biometrika 65(2): p value of "no autocorrelation" of N samples from their
+/// autocorrelation at lags 0, 1, ..., of which at most N / 5 count, each a degree of freedom. NaN without a lag to
+/// count or for a series that is constant.
+double ljung_box_p(const Eigen::VectorXd& autocorrelation, Index N);
+
 /// `residual` n x N, `input` m x N, column k of both of the same step; a residual that responds to input j with a delay
 /// of d steps that the model does not know shows at lag d. Correlations are about the mean with divisor N (Box &
 /// Jenkins 1976); samples that are not finite are left out of the sums. A constant series has NaN.
@@ -38,8 +43,8 @@ struct ResidualTests {
 /// Bands, z = Phi^-1((1 + level) / 2): z / sqrt(N) for autocorrelations of white residuals (near lag 0 those of a
 /// fitted model vary less: Box & Pierce 1970), and z sqrt(P / N) for cross-correlations of independent residuals and
 /// inputs, P = sum over k of rho_residual(k) rho_input(k) (Bartlett 1955; Soderstrom & Stoica 1989, section 11.2; Ljung
-/// 1999, section 16.6), here over |k| <= lags with the weights 1 - |k| / (lags + 1), which keep P positive. Ljung & Box
-/// (1978) with as many degrees of freedom as lags. Throws std::invalid_argument for sizes and options that do not fit.
+/// 1999, section 16.6), here over |k| <= lags with the weights 1 - |k| / (lags + 1), which keep P positive. Throws
+/// std::invalid_argument for sizes and options that do not fit.
 ResidualTests test_residuals(const Eigen::MatrixXd& residual, const Eigen::MatrixXd& input,
                              const ResidualTestOptions& options = {});
 

@@ -42,7 +42,7 @@ class Browser:
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)
 
-    def wait(self, script, *arguments, seconds=60, what=None):
+    def wait(self, script, *arguments, seconds=120, what=None):
         """Until the script's value is true; returns it."""
         end = time.monotonic() + seconds
         while True:
@@ -53,7 +53,7 @@ class Browser:
                 raise AssertionError(f"waited {seconds} s for: {what or script}")
             time.sleep(0.05)
 
-    def open(self, page, seconds=60):
+    def open(self, page, seconds=120):
         """Opens a file and waits until the page says it has drawn itself; returns the seconds that took."""
         self.messages()
         start = time.monotonic()
@@ -62,14 +62,15 @@ class Browser:
                   what=f"{page} to draw itself")
         return time.monotonic() - start
 
-    def draw_all(self, within="main"):
+    def draw_all(self, within="main", seconds=120):
         """Scrolls through the page, or one part of it, until every plot is drawn; plots draw when they come near the window. Returns how many."""
-        for _ in range(60):
+        end = time.monotonic() + seconds
+        while True:
             pending = self.run("""
                 const pending = [...document.querySelectorAll(arguments[0] + ' div.plot')].filter((p) => p.offsetParent && !p.dataset.failed && !p.querySelector('.main-svg'));
                 if (pending.length) pending[0].scrollIntoView({block: 'center'});
                 return pending.length;""", within)
-            if not pending:
+            if not pending or time.monotonic() > end:
                 break
             time.sleep(0.1)
         failed = self.run("return [...document.querySelectorAll('div.plot[data-failed]')].map((p) => p.getAttribute('aria-label'))")
