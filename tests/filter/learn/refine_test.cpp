@@ -1,90 +1,25 @@
-// Refinement: recovery on simulated truth, choice by cross-validation, screening, and noise that follows the run.
+// Refinement: recovery on simulated truth, choice by cross-validation, screening.
 #include "filter/learn/refine/refine.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <Eigen/Eigenvalues>
-#include <boost/random/normal_distribution.hpp>
-#include <cmath>
-#include <random>
 
-#include "filter/learn/from_mixture/bank_frame.hpp"
-#include "filter/learn/refine/averaging.hpp"
-#include "filter/learn/refine/folds.hpp"
 #include "filter/learn/switching/mode_screening.hpp"
-#include "tests/filter/learn/learn_test_support.hpp"
+#include "tests/filter/learn/refine_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
 namespace {
 
+using test::adaptive_imm;
 using test::near;
+using test::quick;
+using test::simulate;
+using test::start_bank;
 
-struct Truth {
-  Eigen::MatrixXd theta{{-0.2, -0.2, -0.6}, {0.3, 1.0, 0.6}};  // a and b of three modes, one per column
-  Eigen::Vector3d Q{0.0025, 0.01, 0.04};
-  Eigen::Matrix3d T{{0.96, 0.03, 0.01}, {0.02, 0.96, 0.02}, {0.02, 0.02, 0.96}};
-};
-
-/// x[k+1] = x + a x + b u + w in switching modes, measured exactly; `rough` scales the standard deviation of w.
-void simulate(const Truth& truth, Index runs, Index samples, double rough, Role role, std::mt19937_64& generator,
-              Recording& recording) {
-  boost::random::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  for (Index i = 0; i < runs; ++i) {
-    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, samples), u(1, samples);
-    Index mode = i % 3;
-    for (Index k = 0; k < samples; ++k) {
-      u(k) = normal(generator);
-      double draw = uniform(generator);
-      Index next = 0;
-      while (next < 2 && (draw -= truth.T(mode, next)) > 0.0) ++next;
-      mode = next;
-      if (k + 1 < samples)
-        x(k + 1) = x(k) + truth.theta(0, mode) * x(k) + truth.theta(1, mode) * u(k) +
-                   rough * std::sqrt(truth.Q(mode)) * normal(generator);
-    }
-    test::add_run(recording, x, u, role);
-  }
-}
-
-/// A bank of modes near the truth's.
-Bank start_bank(const Recording& recording, const Eigen::MatrixXd& theta) {
-  const LinearStructure structure = test::structure_of(recording);
-  Bank bank = bank_frame(recording, structure, Eigen::MatrixXd::Zero(1, 1));
-  for (Index j = 0; j < theta.cols(); ++j)
-    bank.modes.push_back(make_mode(structure, theta.col(j), Eigen::MatrixXd::Constant(1, 1, 0.02), {}, {}, 1.0));
-  set_mode_sequence(bank, TransitionMatrix::sticky(theta.cols(), 0.9));
-  return bank;
-}
-
-FilterOptions adaptive_imm() {
-  FilterOptions options;
-  options.noise = FilterNoise::adaptive;
-  return options;
-}
-
-RefineOptions quick() {
-  RefineOptions options;
-  options.restarts = 0;
-  options.folds = 1;
-  options.max_iterations = 100;
-  options.tolerance = 1e-8;
-  return options;
-}
-
-class Refine : public testing::Test {
- protected:
-  Truth truth;
-  std::mt19937_64 generator{17};
-  Recording recording = test::empty_recording(1, 1);
-  const Recording& learn_from(Index runs, Index samples) {
-    simulate(truth, runs, samples, 1.0, Role::train, generator, recording);
-    return recording;
-  }
-};
+using Refine = test::RefineTest;
 
 TEST_F(Refine, RecoversThetaNoiseAndTransitionsWithinThreeStandardErrors) {
   learn_from(6, 700);
@@ -201,80 +136,6 @@ TEST_F(Refine, AdaptiveNoiseIsWorthItWhereARunIsQuieter) {
   EXPECT_GT(gain / 399.0, 0.2);
 }
 
-TEST_F(Refine, FitsAreAveragedWhereRunsLeftOutGainByIt) {
-  learn_from(6, 60);
-  Eigen::MatrixXd many(2, 6);  // far more modes than so few samples tell apart: every start ends elsewhere
-  many << truth.theta, 1.5 * truth.theta;
-  RefineOptions options;
-  options.restarts = 5;
-  options.members = 4;
-  options.screen = false;
-  const WindowFits fits = test::windows_of(recording, 25, 1);
-  const Refinement refined = refine_bank(recording, fits, {start_bank(recording, many)}, options, adaptive_imm());
-  ASSERT_GT(refined.averaging.members, 1);
-  EXPECT_LE(refined.averaging.members, 4);
-  EXPECT_GT(refined.averaging.score, refined.averaging.score_before);
-  EXPECT_EQ(refined.bank.mode_count(), 6 * refined.averaging.members);
-  Index selected = 0;
-  for (const RefineCandidate& c : refined.candidates) selected += c.selected ? 1 : 0;
-  EXPECT_EQ(selected, refined.averaging.members);
-  double weights = 0.0;
-  for (const Mode& mode : refined.bank.modes) {
-    weights += mode.weight;
-    EXPECT_TRUE(mode.standard_error.allFinite());
-  }
-  EXPECT_NEAR(weights, 1.0, 1e-12);
-}
-
-TEST_F(Refine, OneFitIsKeptWhereAllStartsEndThere) {
-  learn_from(4, 400);
-  RefineOptions options;
-  options.restarts = 0;
-  options.members = 4;
-  const WindowFits fits = test::windows_of(recording, 25, 1);
-  Eigen::MatrixXd elsewhere = truth.theta;
-  elsewhere.row(1) += Eigen::RowVector3d(0.05, -0.05, 0.05);
-  const Bank first = start_bank(recording, truth.theta), second = start_bank(recording, elsewhere);
-  const Bank smaller = start_bank(recording, truth.theta.leftCols(2));
-  const Refinement refined = refine_bank(recording, fits, {first, second, smaller}, options, {});
-  EXPECT_EQ(refined.averaging.members, 1);
-  EXPECT_EQ(refined.bank.mode_count(), 3);
-}
-
-class UnitedBank : public Refine {
- protected:
-  Bank bank_of(double scale) {
-    Bank bank = start_bank(recording, scale * truth.theta);
-    for (Index j = 0; j < 3; ++j) bank.modes[static_cast<std::size_t>(j)].Q(0, 0) = truth.Q(j);
-    bank.transition = TransitionMatrix(truth.T);
-    return bank;
-  }
-};
-
-TEST_F(UnitedBank, WithoutSwitchingIsBayesianModelAveraging) {
-  learn_from(1, 80);
-  const Bank first = bank_of(1.0), second = bank_of(0.8);
-  const Trajectory& run = recording.runs.front();
-  const double a = log_likelihood(first, run, {}), b = log_likelihood(second, run, {});
-  EXPECT_NEAR(log_likelihood(unite({first, second}, 0.0), run, {}), b + std::log(0.5 * (1.0 + std::exp(a - b))), 1e-9);
-  EXPECT_NEAR(log_likelihood(unite({first, first, first}, 0.0), run, {}), a, 1e-9);
-}
-
-TEST_F(UnitedBank, SwitchingKeepsTheLongRunShares) {
-  learn_from(1, 20);
-  const Bank united = unite({bank_of(1.0), bank_of(0.8)}, 0.05);
-  ASSERT_EQ(united.mode_count(), 6);
-  const Eigen::MatrixXd& T = united.transition.matrix();
-  EXPECT_TRUE(near(T.rowwise().sum(), Eigen::VectorXd::Ones(6), 1e-15));
-  Eigen::RowVectorXd share = Eigen::RowVectorXd::Constant(3, 1.0 / 3.0);
-  for (int i = 0; i < 5000; ++i) share = (share * truth.T).eval();
-  Eigen::RowVectorXd both(6);
-  both << 0.5 * share, 0.5 * share;
-  EXPECT_TRUE(near(Eigen::MatrixXd(both * T), Eigen::MatrixXd(both), 1e-9));
-  EXPECT_NEAR(T.row(0).tail(3).sum(), 0.025, 1e-12);
-  EXPECT_THROW(unite({}, 0.1), std::invalid_argument);
-}
-
 TEST(RefineScreening, SecondMomentsGrowAsTheJumpSystemSays) {
   const LinearStructure scalar{1, 1, false};
   SwitchingRegression model{Eigen::MatrixXd{{-0.5, 0.2}, {0.0, 0.0}},
@@ -287,73 +148,6 @@ TEST(RefineScreening, SecondMomentsGrowAsTheJumpSystemSays) {
   model.transition = Eigen::Matrix2d{{0.9, 0.1}, {0.8, 0.2}};
   const Eigen::Matrix2d moments = (model.transition.transpose() * Eigen::Vector2d(0.25, 1.44).asDiagonal());
   EXPECT_NEAR(mean_square_growth(scalar, model), moments.eigenvalues().cwiseAbs().maxCoeff(), 1e-6);
-}
-
-TEST(NoiseScale, IsTheDiscountedMeanOfStandardisedSquares) {
-  Recording recording = test::empty_recording(1, 1);
-  Eigen::MatrixXd x(1, 8);
-  x << 0.0, 0.3, -0.2, 0.5, 0.6, 0.1, -0.3, 0.2;
-  test::add_run(recording, x, Eigen::MatrixXd::Zero(1, 8));
-  const LinearStructure structure = test::structure_of(recording);
-  Bank bank = bank_frame(recording, structure, Eigen::MatrixXd::Zero(1, 1));
-  const double Q = 0.09, f = 0.9, n0 = 3.0;
-  bank.modes.push_back(
-      make_mode(structure, Eigen::Vector2d(-0.5, 0.0), Eigen::MatrixXd::Constant(1, 1, Q), {}, {}, 1.0));
-  set_mode_sequence(bank, TransitionMatrix());
-  bank.noise_adaptation = {f, n0};
-  const RunEvaluation e = evaluate_run(bank, recording.runs[0], adaptive_imm());
-  double weight = n0, squares = n0;
-  for (Index k = 1; k < 8; ++k) {
-    EXPECT_NEAR(e.innovation_covariance(0, k), squares / weight * Q, 1e-14);
-    const double r = x(k) - 0.5 * x(k - 1);
-    weight = f * weight + (1.0 - f) * n0 + 1.0;
-    squares = f * squares + (1.0 - f) * n0 + r * r / Q;
-  }
-}
-
-TEST(NoiseScale, StaysWhereMeasurementNoiseExplainsEverything) {
-  Recording recording = test::empty_recording(1, 1);
-  test::add_run(recording, Eigen::MatrixXd::Random(1, 50), Eigen::MatrixXd::Zero(1, 50));
-  const LinearStructure structure = test::structure_of(recording);
-  Bank bank = bank_frame(recording, structure, Eigen::MatrixXd::Ones(1, 1));
-  bank.modes.push_back(
-      make_mode(structure, Eigen::Vector2d(0.0, 0.0), Eigen::MatrixXd::Constant(1, 1, 1e-12), {}, {}, 1.0));
-  set_mode_sequence(bank, TransitionMatrix());
-  const RunEvaluation plain = evaluate_run(bank, recording.runs[0], {});
-  const RunEvaluation e = evaluate_run(bank, recording.runs[0], adaptive_imm());
-  EXPECT_TRUE(near(e.innovation_covariance.rightCols(49), plain.innovation_covariance.rightCols(49), 1e-9));
-}
-
-TEST(ValidationSplits, LeaveEveryTrainingRunOutOnce) {
-  Recording recording = test::empty_recording(1, 1);
-  for (const Index samples : {30, 200, 60, 90, 40, 100, 20})
-    test::add_run(recording, Eigen::MatrixXd::Zero(1, samples), Eigen::MatrixXd::Zero(1, samples));
-  recording.runs.back().role = Role::test;
-  const std::vector<ValidationSplit> splits = validation_splits(recording, 4);
-  ASSERT_EQ(splits.size(), 4u);
-  std::vector<std::string> left_out;
-  for (const ValidationSplit& split : splits) {
-    EXPECT_EQ(split.training.runs.size() + split.left_out.runs.size(), 6u);
-    for (const Trajectory& run : split.left_out.runs) left_out.push_back(run.run);
-  }
-  EXPECT_THAT(left_out, testing::UnorderedElementsAre("run0", "run1", "run2", "run3", "run4", "run5"));
-}
-
-TEST(ValidationSplits, CutASingleRunIntoStretches) {
-  Recording recording = test::empty_recording(1, 1);
-  test::add_run(recording, Eigen::RowVectorXd::LinSpaced(103, 0.0, 102.0), Eigen::MatrixXd::Zero(1, 103));
-  const std::vector<ValidationSplit> splits = validation_splits(recording, 4);
-  ASSERT_EQ(splits.size(), 4u);
-  Index samples = 0;
-  double sum = 0.0;
-  for (const ValidationSplit& split : splits)
-    for (const Trajectory& run : split.left_out.runs) {
-      samples += run.samples();
-      sum += run.state.sum();
-    }
-  EXPECT_EQ(samples, 103);
-  EXPECT_EQ(sum, 102.0 * 103.0 / 2.0);
-  EXPECT_TRUE(validation_splits(recording, 1).empty());
 }
 
 }  // namespace

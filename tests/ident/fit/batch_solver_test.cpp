@@ -15,29 +15,11 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using test::hard_recording;
 using test::near;
 using test::RealVector;
 
 bool convex(Loss loss) { return loss == Loss::trivial || loss == Loss::huber || loss == Loss::softlone; }
-
-/// Regime changes, 5 % outliers, a stretch of standstill and samples that are missing.
-Recording hard_recording(const LinearStructure& structure, Index samples, bool missing) {
-  std::mt19937_64 generator(11);
-  std::vector<Trajectory> runs;
-  for (int i = 0; i < 3; ++i) {
-    VectorXd theta = VectorXd::LinSpaced(structure.parameters(), -0.4, 0.5);
-    theta(0) = -0.4;
-    runs.push_back(test::gaussian_run(structure, theta, 0.05, samples, generator));
-    Trajectory& run = runs.back();
-    run.run = std::to_string(i);
-    for (Index k = 0; k < samples; ++k)
-      if (generator() % 20 == 0) run.state(0, k) += generator() % 2 ? 1.5 : -0.7;
-    if (structure.inputs > 1)
-      run.input.middleCols(samples / 2, 40).colwise() = VectorXd::Constant(structure.inputs, 0.3);
-    if (missing) run.state(0, samples / 4) = run.input(0, samples / 3) = std::nan("");
-  }
-  return test::make_recording(runs);
-}
 
 WindowFits fit_by(WindowSolver solver, const Recording& recording, FitOptions options) {
   options.solver = solver;
@@ -223,93 +205,6 @@ INSTANTIATE_TEST_SUITE_P(Losses, Batch,
                            return std::string(name_of(std::get<0>(instance.param))) + "_" +
                                   std::string(name_of(std::get<1>(instance.param)));
                          });
-
-TEST(BatchSolverOption, SaysWhatItCannotDo) {
-  const Recording recording = hard_recording({2, 1, false}, 100, false);
-  FitOptions o;
-  o.solver = WindowSolver::batch;
-  EXPECT_THROW(fit_windows(recording, o), ConfigurationError);
-  o.solver = WindowSolver::automatic;
-  EXPECT_EQ(fit_windows(recording, o).audit.batch, 0);
-  o.solver = WindowSolver::batch;
-  o.model = "slip";
-  EXPECT_THROW(fit_windows(recording, o), ConfigurationError);
-}
-
-TEST(WindowSolverAuto, DependsOnTheNumberOfWindowsAlone) {
-  std::mt19937_64 generator(5);
-  FitOptions o;
-  const auto recording = [&](Index windows) {
-    return test::make_recording(
-        {test::gaussian_run(test::skid_structure, test::skid_theta, 0.05, windows + o.length, generator)});
-  };
-  const WindowFits few = fit_windows(recording(most_ceres_windows), o);
-  EXPECT_EQ(few.count(), most_ceres_windows);
-  EXPECT_EQ(few.audit.ceres, most_ceres_windows);
-  EXPECT_EQ(few.audit.batch, 0);
-  EXPECT_EQ(few.audit.checked, 0);
-  EXPECT_EQ(few.audit.ceres_method, "Ceres, then Newton's method to a relative gradient of 1e-10");
-  EXPECT_EQ(few.audit.batch_method, "");
-  const WindowFits many = fit_windows(recording(most_ceres_windows + 1), o);
-  EXPECT_EQ(many.audit.batch + many.audit.ceres, most_ceres_windows + 1);
-  EXPECT_GT(many.audit.batch, most_ceres_windows * 99 / 100);
-  EXPECT_EQ(many.audit.checked, 200);
-  EXPECT_EQ(many.audit.replaced, 0);
-}
-
-TEST(WindowSolverAuto, CountsSolutionsNotAttempts) {
-  std::mt19937_64 generator(5);
-  Trajectory run = test::gaussian_run(test::skid_structure, test::skid_theta, 0.05, 150, generator);
-  run.state.middleCols(0, 40).setConstant(std::nan(""));  // windows without a transition
-  for (const WindowSolver solver : {WindowSolver::ceres, WindowSolver::batch}) {
-    FitOptions o;
-    const WindowFits fits = fit_by(solver, test::make_recording({run}), o);
-    const Index failed = (fits.status.array() == static_cast<int>(FitStatus::failed)).count();
-    EXPECT_GT(failed, 0);
-    EXPECT_EQ(fits.audit.batch + fits.audit.ceres, fits.count() - failed);
-    EXPECT_EQ(fits.audit.batch > 0, solver == WindowSolver::batch);
-  }
-}
-
-TEST(StreamedWindows, AreTheSameAsCollectedOnes) {
-  const Recording recording = hard_recording(test::skid_structure, 200, true);
-  FitOptions o;
-  o.solver = WindowSolver::batch;
-  const WindowFits whole = fit_windows(recording, o);
-  Index seen = 0;
-  const WindowFits common = stream_windows(recording, o, [&](const WindowFits& chunk, Index first) {
-    EXPECT_EQ(first, seen);
-    EXPECT_TRUE(test::same_bits(chunk.parameters, whole.parameters.middleCols(first, chunk.count())));
-    seen += chunk.count();
-  });
-  EXPECT_EQ(seen, whole.count());
-  EXPECT_EQ(count_windows(recording, {}), whole.count());
-  EXPECT_EQ(common.audit.checked, whole.audit.checked);
-  EXPECT_TRUE(test::same_bits(common.prior_sd, whole.prior_sd));
-}
-
-TEST(WindowAudits, SampleEveryPartAndRejectAWorseSolution) {
-  EXPECT_EQ(audited_windows(50, 1).size(), 50U);
-  const std::vector<Index> sample = audited_windows(1000000, 7);
-  EXPECT_EQ(sample.size(), 1000U);
-  EXPECT_TRUE(std::is_sorted(sample.begin(), sample.end()));
-  EXPECT_NE(sample, audited_windows(1000000, 8));
-
-  const Recording recording = hard_recording(test::skid_structure, 100, false);
-  const WindowFits fits = fit_windows(recording, {});
-  const FitOptions options;
-  const LinearWindows context(recording, options, test::skid_structure, fits.global);
-  const ParameterPrior prior{fits.global.theta, fits.prior_sd};
-  LocalModel wrong = fits.at(0);
-  wrong.theta(0) += 1e-3;
-  WindowAudit audit;
-  EXPECT_FALSE(add_to_audit(audit_window(context, fits.windows[0], &prior, fits.at(0)), audit));
-  EXPECT_EQ(audit.replaced, 0);
-  EXPECT_TRUE(add_to_audit(audit_window(context, fits.windows[0], &prior, wrong), audit));
-  EXPECT_EQ(audit.replaced, 1);
-  EXPECT_GT(audit.cost_difference, WindowAudit::tolerance);
-  EXPECT_GT(audit.gradient, WindowAudit::gradient_tolerance);
-}
 
 }  // namespace
 }  // namespace modebank

@@ -121,4 +121,23 @@ struct ReferenceProblem {
   }
 };
 
+/// Regime changes, 5 % outliers, a stretch of standstill and samples that are missing.
+inline Recording hard_recording(const LinearStructure& structure, Index samples, bool missing) {
+  std::mt19937_64 generator(11);
+  std::vector<Trajectory> runs;
+  for (int i = 0; i < 3; ++i) {
+    Eigen::VectorXd theta = Eigen::VectorXd::LinSpaced(structure.parameters(), -0.4, 0.5);
+    theta(0) = -0.4;
+    runs.push_back(gaussian_run(structure, theta, 0.05, samples, generator));
+    Trajectory& run = runs.back();
+    run.run = std::to_string(i);
+    for (Index k = 0; k < samples; ++k)
+      if (generator() % 20 == 0) run.state(0, k) += generator() % 2 ? 1.5 : -0.7;
+    if (structure.inputs > 1)
+      run.input.middleCols(samples / 2, 40).colwise() = Eigen::VectorXd::Constant(structure.inputs, 0.3);
+    if (missing) run.state(0, samples / 4) = run.input(0, samples / 3) = std::nan("");
+  }
+  return make_recording(runs);
+}
+
 }  // namespace modebank::test

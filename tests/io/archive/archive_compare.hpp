@@ -1,0 +1,13 @@
+#pragma once
+
+#include "tests/io/archive/archive_fixture.hpp"
+
+namespace modebank::test {
+
+/// What the stages before a bank leave, field by field.
+void expect_same(const Recording& actual, const Recording& expected);
+void expect_same(const LagReport& actual, const LagReport& expected);
+void expect_same(const WindowFits& actual, const WindowFits& expected);
+void expect_same(const MixtureResult& actual, const MixtureResult& expected);
+
+}  // namespace modebank::test
