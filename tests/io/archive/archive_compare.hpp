@@ -8,6 +8,7 @@ namespace modebank::test {
 void expect_same(const Recording& actual, const Recording& expected);
 void expect_same(const LagReport& actual, const LagReport& expected);
 void expect_same(const WindowFits& actual, const WindowFits& expected);
+void expect_same(const ResidualTests& actual, const ResidualTests& expected);
 void expect_same(const MixtureResult& actual, const MixtureResult& expected);
 
 }  // namespace modebank::test

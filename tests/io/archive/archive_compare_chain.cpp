@@ -5,16 +5,6 @@
 namespace modebank::test {
 namespace {
 
-void expect_same(const ResidualTests& a, const ResidualTests& e) {
-  EXPECT_EQ(a.samples, e.samples);
-  EXPECT_EQ(a.level, e.level);
-  EXPECT_EQ(a.autocorrelation_band, e.autocorrelation_band);
-  EXPECT_TRUE(same_bits(a.autocorrelation, e.autocorrelation));
-  EXPECT_TRUE(same_bits(a.cross_correlation, e.cross_correlation));
-  EXPECT_TRUE(same_bits(a.cross_correlation_band, e.cross_correlation_band));
-  EXPECT_TRUE(same_bits(a.ljung_box_p, e.ljung_box_p));
-}
-
 void expect_same(const Candidate& a, const Candidate& e) {
   EXPECT_EQ(a.components, e.components);
   EXPECT_EQ(a.covariance, e.covariance);
@@ -34,6 +24,16 @@ void expect_same(const Candidate& a, const Candidate& e) {
 }
 
 }  // namespace
+
+void expect_same(const ResidualTests& a, const ResidualTests& e) {
+  EXPECT_EQ(a.samples, e.samples);
+  EXPECT_EQ(a.level, e.level);
+  EXPECT_EQ(a.autocorrelation_band, e.autocorrelation_band);
+  EXPECT_TRUE(same_bits(a.autocorrelation, e.autocorrelation));
+  EXPECT_TRUE(same_bits(a.cross_correlation, e.cross_correlation));
+  EXPECT_TRUE(same_bits(a.cross_correlation_band, e.cross_correlation_band));
+  EXPECT_TRUE(same_bits(a.ljung_box_p, e.ljung_box_p));
+}
 
 void expect_same(const Recording& actual, const Recording& expected) {
   const auto same_channels = [](const std::vector<Channel>& a, const std::vector<Channel>& e) {
