@@ -12,7 +12,7 @@ Option model_option() {
   std::vector<std::string> models{"linear", "varx"};
   for (const std::string& model : motion_model_names()) models.push_back(model);
   Option result = text("window.model", fmt::format("{}", fmt::join(models, " | ")),
-                       "A x + B u; with lags; or a motion model of ident/models", MODEBANK_FIELD(window.model));
+                       "A x + B u; with lags; or a motion model of ident/model/models", MODEBANK_FIELD(window.model));
   result.set = [set = result.set, models](Config& config, const std::string& value) {
     if (std::find(models.begin(), models.end(), value) == models.end())
       throw std::invalid_argument("is none of its words");

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The polynomial of filter/step/detail/normal_cdf-inl.hpp: (1 + 2 t) exp(t^2) erfc(t) in s = (t - k) / (t + k), t >= 0.
+"""The polynomial of filter/step/detail/vector/mixture-inl.hpp: (1 + 2 t) exp(t^2) erfc(t) in s = (t - k) / (t + k), t >= 0.
 
 Chebyshev interpolation after Shepherd & Laframboise 1981, "Chebyshev approximation of (1 + 2x) exp(x^2) erfc x in
 0 <= x < infinity", Mathematics of Computation 36(153), in 60 digits (mpmath); prints the coefficients of s^0, s^1, ...
