@@ -12,8 +12,8 @@
 
 #include "filter/step/detail/vector/kernels.hpp"
 #include "filter/step/equations/bounds.hpp"
+#include "ident/base/detail/exp-inl.hpp"
 #include "ident/base/detail/simd-inl.hpp"
-#include "mixture/detail/kernels/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
