@@ -45,16 +45,20 @@ void record(const FilterEstimate& estimate, Index k, RunEvaluation& e) {
   e.spread_share(k) = estimate.spread_share;
 }
 
-/// Filter alone: calls take(k, log density) for every sample it scores.
+/// Filter alone: calls take(first, log densities) for every stretch of samples that it scores; NaN where nothing was
+/// measured.
 template <class Take>
 void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions& options, Take take) {
   const std::unique_ptr<Stepper> stepper = make_stepper(bank, options);
-  RunSamples(bank, run, options.time_steps).for_each([&](const SampleFeed& feed, Index k, bool starts) {
-    if (starts) return stepper->start(feed.start());
-    stepper->advance(feed.inputs(), feed.steps());
-    const double log_density = stepper->update(run.state.col(k));
-    if (!std::isnan(log_density)) take(k, log_density);
-  });
+  Eigen::VectorXd log_density;
+  RunSamples(bank, run, options.time_steps)
+      .for_each_stretch([&](const SampleFeed& feed) { stepper->start(feed.start()); },
+                        [&](const Stretch& stretch) {
+                          for (Index i = 1; i < stretch.steps; ++i) stepper->skip(stretch.inputs.col(0));
+                          log_density.resize(stretch.measured.cols());
+                          stepper->follow(stretch.inputs, stretch.measured, log_density);
+                          take(stretch.first, log_density);
+                        });
 }
 
 }  // namespace
@@ -70,15 +74,21 @@ RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const Filter
 
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   check_run(bank, run);
-  double sum = 0.0;
-  score_samples(bank, run, options, [&](Index, double log_density) { sum += log_density; });
-  return sum;
+  double total = 0.0;
+  score_samples(bank, run, options, [&](Index, const Eigen::VectorXd& log_density) {
+    double sum = total;  // sample by sample, whatever the stretches
+    for (const double value : log_density) sum += std::isnan(value) ? 0.0 : value;
+    total = sum;
+  });
+  return total;
 }
 
 Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   check_run(bank, run);
   Eigen::VectorXd result = Eigen::VectorXd::Constant(run.samples(), not_a_number);
-  score_samples(bank, run, options, [&](Index k, double log_density) { result(k) = log_density; });
+  score_samples(bank, run, options, [&](Index first, const Eigen::VectorXd& log_density) {
+    result.segment(first, log_density.size()) = log_density;
+  });
   return result;
 }
 

@@ -12,10 +12,11 @@ struct FilterMemory;
 
 /// A bank's filter, whatever its sizes and variant: by the equations (equations/filter_step.hpp) or, where there are
 /// vector kernels for it, a mode per lane (detail/vector). The two agree to rounding. Call start, then for each sample
-/// advance and update. Allocates nothing after construction.
+/// advance and update, or follow. Allocates nothing after construction.
 class Stepper {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
+  using Columns = Eigen::Ref<const Eigen::MatrixXd>;
 
   virtual ~Stepper() = default;
   /// From the first measurement `y`; with lags the first whole z of measurements.
@@ -25,6 +26,14 @@ class Stepper {
   virtual void skip(const Vector& v) = 0;
   /// Takes `y` in and returns the log predictive density [nats] of its signals that are there; NaN without any.
   virtual double update(const Vector& y) = 0;
+  /// predict and update for a stretch of samples, each a step after the one before: log predictive densities of
+  /// `measurements` (n_y x samples) reached under `inputs` (acting inputs x samples).
+  virtual void follow(const Columns& inputs, const Columns& measurements, Eigen::Ref<Eigen::VectorXd> log_density) {
+    for (Eigen::Index k = 0; k < measurements.cols(); ++k) {
+      predict(inputs.col(k));
+      log_density(k) = update(measurements.col(k));
+    }
+  }
   /// From the sample before to the prediction of the next, `steps` model steps later.
   void advance(const Vector& v, Eigen::Index steps) {
     for (Eigen::Index i = 1; i < steps; ++i) skip(v);

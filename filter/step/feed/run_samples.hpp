@@ -20,17 +20,26 @@ inline double sample_time_s(const Trajectory& run, Eigen::Index k) {
   return run.time_s.size() > 0 ? run.time_s(k) : not_a_number;
 }
 
+/// Samples of a run that follow each other by one model step; the first may lie further from the one before.
+struct Stretch {
+  Eigen::Index first = 0;                      ///< sample of the run
+  Eigen::Index steps = 1;                      ///< model steps into the first sample
+  Eigen::Ref<const Eigen::MatrixXd> inputs;    ///< acting inputs x samples: acting on the step into each
+  Eigen::Ref<const Eigen::MatrixXd> measured;  ///< n_y x samples
+};
+
 /// The samples of a run as filters step on them.
 class RunSamples {
  public:
-  RunSamples(const Bank& bank, const Trajectory& run, TimeSteps time_steps) : run_(run), feed_(bank, time_steps) {}
+  RunSamples(const Bank& bank, const Trajectory& run, TimeSteps time_steps)
+      : run_(run), feed_(bank, time_steps), acting_(bank.structure.acting_inputs(), most_at_once) {}
 
   /// Calls visit(feed, k, starts) for every sample k from the first start on; `starts`: the filter begins (anew) here.
   template <class Visit>
   void for_each(Visit visit) {
     bool started = false;
     for (Eigen::Index k = 0; k < run_.samples(); ++k) {
-      feed_.push(sample_time_s(run_, k), run_.input.col(k), run_.state.col(k));
+      feed_.push(sample_time_s(run_, k), run_.input.col(k).data(), run_.state.col(k).data());
       started = started && feed_.steps() <= longest_gap_steps;
       const bool starts = !started && feed_.can_start();
       if (started || starts) visit(feed_, k, starts);
@@ -38,9 +47,33 @@ class RunSamples {
     }
   }
 
+  /// The same, many samples at a time: start(feed) where the filter begins (anew), follow(stretch) for all others.
+  template <class Start, class Follow>
+  void for_each_stretch(Start start, Follow follow) {
+    Eigen::Index first = 0, count = 0, steps = 1;
+    const auto flush = [&] {
+      if (count > 0) follow(Stretch{first, steps, acting_.leftCols(count), run_.state.middleCols(first, count)});
+      count = 0;
+    };
+    for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {
+      if (starts || feed.steps() != 1 || count == most_at_once) flush();
+      if (starts) return start(feed);
+      if (count == 0) {
+        first = k;
+        steps = feed.steps();
+      }
+      const double* v = feed.inputs().data();
+      double* to = acting_.data() + acting_.rows() * count++;
+      for (Eigen::Index i = 0; i < acting_.rows(); ++i) to[i] = v[i];
+    });
+    flush();
+  }
+
  private:
+  static constexpr Eigen::Index most_at_once = 128;
   const Trajectory& run_;
   SampleFeed feed_;
+  Eigen::MatrixXd acting_;  ///< of the stretch at work
 };
 
 /// One moment of a run at which a filter stood: a sample, or a step between two samples that lie further apart.

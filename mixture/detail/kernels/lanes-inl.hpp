@@ -7,7 +7,7 @@
 #define MODEBANK_EM_LANES_INL
 #endif
 
-#include "mixture/detail/kernels/exp-inl.hpp"
+#include "ident/base/detail/exp-inl.hpp"
 #include "mixture/detail/kernels/kernels.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -5,7 +5,6 @@
 #include <hwy/highway.h>
 // After highway.h:
 #include "filter/step/detail/vector/mixture-inl.hpp"
-#include "filter/step/detail/vector/predict-inl.hpp"
 #include "filter/step/detail/vector/update-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -13,7 +12,8 @@ namespace modebank::vector_imm::HWY_NAMESPACE {
 
 template <std::size_t N, std::size_t NY>
 Kernels kernels_of() {
-  return {predict<N>, expect<N, NY>, update<N, NY>, skip<N>, merge<N>, combine<N, NY>, transform<NY>};
+  return {prepare<N>, predict<N, NY>, expect<N, NY>,  update<N, NY>, follow<N, NY>,
+          skip<N>,    merge<N>,       combine<N, NY>, transform<NY>};
 }
 
 Kernels kernels_here(std::size_t n, std::size_t n_y) {

@@ -14,15 +14,17 @@ struct ModeRows {
   const double* transition = nullptr;                                   ///< a row per mode: from
   // The filter's state.
   double *mean = nullptr, *covariance = nullptr, *probability = nullptr;  ///< n, packed n, 1
-  double* center = nullptr;  ///< n numbers near the mean of all modes: what the mixing takes moments about
-  double* parts = nullptr;   ///< n + packed n: workspace
+  // Prepared from it for the next step's mixing.
+  double share = 0.0;        ///< 1 / modes
+  double* center = nullptr;  ///< n numbers, the mean of the means: what the mixing takes moments about
+  double* parts = nullptr;   ///< n + packed n: what mixtures are sums of
   // What a step leaves behind.
   double* predicted_probability = nullptr;                            ///< 1
   double *predicted_mean = nullptr, *predicted_covariance = nullptr;  ///< n, packed n
   double *expected = nullptr, *innovation_covariance = nullptr;       ///< n_y: C x; packed n_y: S
   double *L = nullptr, *D = nullptr, *D_inverse = nullptr;            ///< packed n_y; n_y: S = L D L'
   double* decorrelated = nullptr;                                     ///< n_y: L^-1 (y - C x)
-  double *distance = nullptr, *weight = nullptr;                      ///< 1: e' S^-1 e; unnormalised posterior
+  double *exponent = nullptr, *weight = nullptr;  ///< 1: -e' S^-1 e / (2 log 2); unnormalised posterior
 };
 
 /// C (n_y x n) and R (n_y x n_y), row-major, and how many of the n_y signals are there.
@@ -46,14 +48,25 @@ struct CombinedExpectation {
   double spread = 0.0;                    ///< sum_j c_j |C x_j - C x|^2
 };
 
+/// Samples of which nothing is missing, each one step after the one before.
+struct Stretch {
+  const double *inputs = nullptr, *measurements = nullptr;  ///< acting inputs and n_y numbers per sample
+  std::size_t samples = 0;
+  double* log_density = nullptr;  ///< a number per sample: the result
+};
+
 /// The steps of one pair of sizes.
 struct Kernels {
-  /// Mixing and prediction: predicted_*. `v`: inputs.
-  void (*predict)(const ModeRows&, const double* v, double noise_scale) = nullptr;
-  /// C x, S and its factor.
+  /// After mean, covariance and probability were set: everything that the next prediction reads beside them.
+  void (*prepare)(const ModeRows&) = nullptr;
+  /// Mixing, prediction and what the sensor will say: all from predicted_probability to D_inverse. `v`: inputs.
+  void (*predict)(const ModeRows&, const Sensor&, const double* v, double noise_scale) = nullptr;
+  /// C x, S and its factor anew, of another sensor.
   void (*expect)(const ModeRows&, const Sensor&) = nullptr;
   /// The state after y; with noise_scale > 0 also share and square.
   UpdateResult (*update)(const ModeRows&, const Sensor&, const double* y, double noise_scale) = nullptr;
+  /// predict and update through a stretch, at noise scale one.
+  void (*follow)(const ModeRows&, const Sensor&, const Stretch&) = nullptr;
   /// A prediction without a measurement is the state.
   void (*skip)(const ModeRows&) = nullptr;
   void (*merge)(const ModeRows&, CombinedMoments) = nullptr;

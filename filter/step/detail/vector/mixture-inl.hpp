@@ -127,11 +127,12 @@ void transform(const ModeRows& p, const double* y, double* pit) {
       const V likelihood = hn::Mul(root, exp(hn::Mul(splat(-0.5), hn::MulSub(z, z, nearest))));
       const V w = hn::IfThenElseZero(hn::Ge(prior, splat(impossible_probability)), hn::Mul(prior, likelihood));
       sum = hn::Add(sum, w);
-      store(w, p.parts + r);
+      store(w, p.exponent + r);
     }
     const V scale = splat(1.0 / sum_of(sum));
-    for (std::size_t r = 0; r < stride; r += hn::Lanes(D())) store(hn::Mul(load(p.parts + r), scale), p.parts + r);
-    weights = p.parts;
+    for (std::size_t r = 0; r < stride; r += hn::Lanes(D()))
+      store(hn::Mul(load(p.exponent + r), scale), p.exponent + r);
+    weights = p.exponent;
   }
 }
 

@@ -1,5 +1,5 @@
-// Vectors of doubles, a mode per lane, and rows of modes in them (kernels.hpp). Included once per instruction set
-// (Highway's foreach_target.h).
+// Vectors of doubles, a mode per lane, and rows of modes in them (kernels.hpp).
+// Included once per instruction set (Highway's foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_ROWS_INL
 #undef MODEBANK_VECTOR_IMM_ROWS_INL
@@ -12,8 +12,8 @@
 
 #include "filter/step/detail/vector/kernels.hpp"
 #include "filter/step/equations/bounds.hpp"
+#include "ident/base/detail/exp-inl.hpp"
 #include "ident/base/detail/simd-inl.hpp"
-#include "mixture/detail/kernels/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
@@ -21,8 +21,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 using batch::HWY_NAMESPACE::reciprocal;
 using batch::HWY_NAMESPACE::reciprocal_root;
 using em::HWY_NAMESPACE::Exp;
+using em::HWY_NAMESPACE::in_register;
+using em::HWY_NAMESPACE::ln_2;
+using em::HWY_NAMESPACE::log2_e;
 
-// At most the padding's width (kernels.hpp), so that rows are whole registers everywhere.
+// At most the padding's width (kernels.hpp), so that rows are whole registers
+// everywhere.
 using D = hn::CappedTag<double, 8>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
@@ -67,6 +71,37 @@ struct Moments {
   V x[N];
   V P[packed_size(N)];
 };
+
+/// A number per mode: in R registers, or, of however many modes (R = 0), in memory.
+template <std::size_t R>
+struct Row {
+  V registers[R];
+  HWY_INLINE explicit Row(double*) {}
+  HWY_INLINE V get(std::size_t b) const { return registers[b]; }
+  HWY_INLINE void set(std::size_t b, V value) { registers[b] = value; }
+};
+template <>
+struct Row<0> {
+  double* memory;
+  HWY_INLINE explicit Row(double* row) : memory(row) {}
+  HWY_INLINE V get(std::size_t b) const { return load(memory + b * hn::Lanes(D())); }
+  HWY_INLINE void set(std::size_t b, V value) { store(value, memory + b * hn::Lanes(D())); }
+};
+
+/// Calls visit(b, r) for every register of modes, the one of rows r .. r + lanes; R of them are written out.
+template <std::size_t R, class Visit>
+HWY_INLINE void for_each_register(const ModeRows& p, const Visit& visit) {
+  constexpr std::size_t lanes = hn::MaxLanes(D());
+  static_assert(R <= 2);
+  if constexpr (R > 0) {
+    visit(0, 0);
+    if constexpr (R > 1) visit(1, lanes);
+  } else {
+    for (std::size_t b = 0; b * lanes < p.stride; ++b) visit(b, b * lanes);
+  }
+}
+/// Of what it visits: a copy that is called would go through memory again.
+#define MODEBANK_INLINE_LAMBDA __attribute__((always_inline))
 
 /// P C' of a covariance.
 template <std::size_t N, std::size_t NY>

@@ -65,6 +65,7 @@ VectorImm::VectorImm(const Bank& bank, const FilterOptions& options)
   rows_.modes = count_of(K_);
   rows_.stride = (rows_.modes + row_multiple - 1) / row_multiple * row_multiple;
   rows_.inputs = count_of(bank.structure.acting_inputs());
+  rows_.share = 1.0 / static_cast<double>(K_);
   lay_out();
   fill(bank);
 }
@@ -102,7 +103,7 @@ void VectorImm::lay_out() {
   rows_.D = take(n_y_);
   rows_.D_inverse = take(n_y_);
   rows_.decorrelated = take(n_y_);
-  rows_.distance = take(1);
+  rows_.exponent = take(1);
   rows_.weight = take(1);
 }
 
@@ -133,20 +134,17 @@ void VectorImm::start(const Vector& y) {
                     [&](Index place, Index a, Index b) { rows_.covariance[at(place, j)] = first_.covariance(a, b); });
     rows_.probability[j] = initial_probability_(j);
   }
-  std::copy_n(start_.data(), n_, rows_.center);
+  kernels_.prepare(rows_);
   noise_scale_ = 1.0;
   noise_samples_ = adaptation_.prior_samples;
 }
 
 void VectorImm::skip(const Vector& v) {
-  kernels_.predict(rows_, v.data(), noise_scale_);
+  kernels_.predict(rows_, sensor_, v.data(), noise_scale_);
   kernels_.skip(rows_);
 }
 
-void VectorImm::predict(const Vector& v) {
-  kernels_.predict(rows_, v.data(), noise_scale_);
-  kernels_.expect(rows_, sensor_);
-}
+void VectorImm::predict(const Vector& v) { kernels_.predict(rows_, sensor_, v.data(), noise_scale_); }
 
 /// As PartialSensor: a missing signal is one that is always zero, of variance one, unrelated to anything.
 vector_imm::Sensor VectorImm::detach_missing(const Vector& y, Index missing) {
@@ -180,6 +178,23 @@ double VectorImm::update(const Vector& y) {
   if (adaptive_)
     move_noise_scale(adaptation_, result.share, result.square, sensor.signals, noise_scale_, noise_samples_);
   return result.log_density + half_log_two_pi * static_cast<double>(missing);
+}
+
+void VectorImm::follow(const Columns& inputs, const Columns& measurements, Eigen::Ref<Eigen::VectorXd> log_density) {
+  const Index samples = measurements.cols();
+  for (Index k = 0; k < samples;) {
+    Index end = k;  // of the whole samples from k on
+    while (!adaptive_ && end < samples && missing_entries(measurements.col(end)) == 0) ++end;
+    if (end > k) {
+      kernels_.follow(rows_, sensor_,
+                      {inputs.col(k).data(), measurements.col(k).data(), count_of(end - k), log_density.data() + k});
+      k = end;
+    } else {
+      predict(inputs.col(k));
+      log_density(k) = update(measurements.col(k));
+      ++k;
+    }
+  }
 }
 
 double VectorImm::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) {
@@ -220,7 +235,7 @@ void VectorImm::restore(const FilterMemory& memory) {
         n_, [&](Index place, Index a, Index b) { rows_.covariance[at(place, j)] = memory.covariances(b * n_ + a, j); });
     rows_.probability[j] = memory.mode_probability(j);
   }
-  Eigen::VectorXd::Map(rows_.center, n_) = memory.means * memory.mode_probability;
+  kernels_.prepare(rows_);
   noise_scale_ = memory.noise_scale;
   noise_samples_ = memory.noise_samples;
 }

@@ -22,6 +22,7 @@ class VectorImm final : public Stepper {
   void predict(const Vector& v) override;
   void skip(const Vector& v) override;
   double update(const Vector& y) override;
+  void follow(const Columns& inputs, const Columns& measurements, Eigen::Ref<Eigen::VectorXd> log_density) override;
 
   double combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) override;
   void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit) override;

@@ -1,0 +1,86 @@
+// What will be measured, a mode per lane. Included once per instruction set
+// (Highway's foreach_target.h).
+#if defined(MODEBANK_VECTOR_IMM_EXPECT_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MODEBANK_VECTOR_IMM_EXPECT_INL
+#undef MODEBANK_VECTOR_IMM_EXPECT_INL
+#else
+#define MODEBANK_VECTOR_IMM_EXPECT_INL
+#endif
+
+#include "filter/step/detail/vector/rows-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace modebank::vector_imm::HWY_NAMESPACE {
+
+/// What one register of modes predicts, and expects of the sensor: S = L D L'.
+template <std::size_t N, std::size_t NY>
+struct Prediction {
+  V prior;
+  Moments<N> m;
+  V y[NY], L[packed_size(NY)], inverse[NY];
+};
+
+/// C x, S and its factor of the modes of register r.
+template <std::size_t N, std::size_t NY>
+HWY_INLINE void expect(const ModeRows& p, const Sensor& sensor, std::size_t r, Prediction<N, NY>& q) {
+  const std::size_t stride = p.stride;
+  V PCt[N * NY], S[packed_size(NY)], pivot[NY];
+  times_sensor<N, NY>(q.m.P, sensor.C, PCt);
+  for (std::size_t i = 0; i < NY; ++i) {
+    q.y[i] = hn::Zero(D());
+    for (std::size_t a = 0; a < N; ++a) q.y[i] = hn::MulAdd(splat(sensor.C[i * N + a]), q.m.x[a], q.y[i]);
+    for (std::size_t k = 0; k <= i; ++k) {
+      V sum = splat(sensor.R[i * NY + k]);
+      for (std::size_t a = 0; a < N; ++a) sum = hn::MulAdd(splat(sensor.C[i * N + a]), PCt[a * NY + k], sum);
+      S[packed(i, k)] = sum;
+    }
+  }
+  for (std::size_t j = 0; j < NY; ++j) {
+    V d = S[packed(j, j)];
+    for (std::size_t k = 0; k < j; ++k) {
+      const V l = q.L[packed(j, k)];
+      d = hn::NegMulAdd(hn::Mul(l, l), pivot[k], d);
+    }
+    const V floor = hn::Max(hn::Mul(splat(relative_pivot_floor), hn::Abs(S[packed(j, j)])), splat(least_variance));
+    pivot[j] = hn::Max(d, floor);
+    q.inverse[j] = hn::Div(splat(1.0), pivot[j]);
+    q.L[packed(j, j)] = splat(1.0);
+    for (std::size_t i = j + 1; i < NY; ++i) {
+      V sum = S[packed(i, j)];
+      for (std::size_t k = 0; k < j; ++k)
+        sum = hn::NegMulAdd(hn::Mul(q.L[packed(i, k)], q.L[packed(j, k)]), pivot[k], sum);
+      q.L[packed(i, j)] = hn::Mul(sum, q.inverse[j]);
+    }
+  }
+  store_rows(q.y, stride, p.expected + r);
+  store_rows(S, stride, p.innovation_covariance + r);
+  store_rows(q.L, stride, p.L + r);
+  store_rows(pivot, stride, p.D + r);
+  store_rows(q.inverse, stride, p.D_inverse + r);
+}
+
+/// What predict and expect left in memory.
+template <std::size_t N, std::size_t NY>
+HWY_INLINE Prediction<N, NY> load_prediction(const ModeRows& p, std::size_t r) {
+  Prediction<N, NY> q;
+  q.prior = load(p.predicted_probability + r);
+  load_rows(p.predicted_mean + r, p.stride, q.m.x);
+  load_rows(p.predicted_covariance + r, p.stride, q.m.P);
+  load_rows(p.expected + r, p.stride, q.y);
+  load_rows(p.L + r, p.stride, q.L);
+  load_rows(p.D_inverse + r, p.stride, q.inverse);
+  return q;
+}
+
+template <std::size_t N, std::size_t NY>
+void expect(const ModeRows& p, const Sensor& sensor) {
+  for (std::size_t r = 0; r < p.stride; r += hn::Lanes(D())) {
+    Prediction<N, NY> q = load_prediction<N, NY>(p, r);
+    expect<N, NY>(p, sensor, r, q);
+  }
+}
+
+}  // namespace modebank::vector_imm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
