@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "ident/base/linalg.hpp"
 #include "mixture/straddling.hpp"
 
 namespace modebank {
@@ -32,15 +32,13 @@ constexpr double least_information = 0.05;
 void take_off_prior(const WindowFits& fits, Eigen::VectorXd& theta, Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd &sd = fits.prior_sd, &mean = fits.global.theta;
   const Eigen::VectorXd inverse = sd.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
-  const Eigen::ArrayXd known = (1.0 - eigen.eigenvalues().array()).max(least_information);
+  const auto [values, vectors] = symmetric_eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
+  const Eigen::ArrayXd known = (1.0 - values.array()).max(least_information);
   const Eigen::VectorXd measured =
-      eigen.eigenvectors() *
-      ((eigen.eigenvectors().transpose() * (theta - mean).cwiseQuotient(sd)).array() / known).matrix();
+      vectors * ((vectors.transpose() * (theta - mean).cwiseQuotient(sd)).array() / known).matrix();
   theta = mean + measured.cwiseProduct(sd);
-  const Eigen::VectorXd variance = eigen.eigenvalues().array().max(0.0) / known;
-  covariance = sd.asDiagonal() * eigen.eigenvectors() * variance.asDiagonal() * eigen.eigenvectors().transpose() *
-               sd.asDiagonal();
+  const Eigen::VectorXd variance = values.array().max(0.0) / known;
+  covariance = sd.asDiagonal() * vectors * variance.asDiagonal() * vectors.transpose() * sd.asDiagonal();
   covariance = (0.5 * (covariance + covariance.transpose())).eval();
 }
 

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
 #include <stdexcept>
 
+#include "ident/base/linalg.hpp"
 #include "mixture/detail/cloud.hpp"
 #include "mixture/detail/density.hpp"
 
@@ -131,9 +131,8 @@ bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType ty
   excess.diagonal().array() -= floor;
   // Positive definite after the floor is taken off: every eigenvalue is above it, and no decomposition is needed.
   if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(excess).info() == Eigen::Success) return false;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  covariance =
-      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(floor).asDiagonal() * eigen.eigenvectors().transpose();
+  const auto [values, vectors] = symmetric_eigen(covariance);
+  covariance = vectors * values.cwiseMax(floor).asDiagonal() * vectors.transpose();
   covariance = (0.5 * (covariance + covariance.transpose())).eval();
   return true;
 }
@@ -174,11 +173,11 @@ Eigen::MatrixXd sample(const GaussianMixture& mixture, Index count, std::mt19937
     throw std::invalid_argument(fmt::format("cannot sample {} points from weights that sum to {}", count, total));
   std::vector<Eigen::MatrixXd> factors;
   for (const Eigen::MatrixXd& covariance : mixture.covariances) {
-    const Eigen::LLT<Eigen::MatrixXd> cholesky(covariance);
-    if (cholesky.info() != Eigen::Success)
+    const Cholesky cholesky(covariance);
+    if (!cholesky.definite())
       throw std::invalid_argument(
           fmt::format("cannot sample: covariance of component {} is not positive definite", factors.size()));
-    factors.push_back(cholesky.matrixL());
+    factors.push_back(cholesky.L());
   }
   boost::random::uniform_01<double> uniform;
   boost::random::normal_distribution<double> normal;

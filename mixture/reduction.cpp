@@ -1,17 +1,14 @@
 #include "mixture/reduction.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cassert>
 #include <utility>
 
+#include "ident/base/linalg.hpp"
+
 namespace modebank {
 
 using Eigen::Index;
-
-double log_determinant(const Eigen::MatrixXd& covariance) {
-  return 2.0 * Eigen::LLT<Eigen::MatrixXd>(covariance).matrixLLT().diagonal().array().log().sum();
-}
 
 Component component_of(const GaussianMixture& mixture, Index k) {
   return {mixture.weights(k), mixture.means.col(k), mixture.covariances[static_cast<std::size_t>(k)]};

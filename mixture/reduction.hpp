@@ -6,9 +6,6 @@
 
 namespace modebank {
 
-/// log |covariance| of a positive definite matrix.
-double log_determinant(const Eigen::MatrixXd& covariance);
-
 /// One component of a mixture on its own.
 struct Component {
   double weight;

@@ -57,51 +57,61 @@ bool in_range(const Range& range, const std::vector<T>& values) {
   return std::all_of(values.begin(), values.end(), [&range](const T& value) { return in_range(range, value); });
 }
 
-/// `field` maps a Config to the value, so reading and writing go through one expression.
-template <class Field>
-Option option(std::string key, std::string range, std::string unit, std::string help, Field field) {
+/// A member of a Config, to be written and to be read. Plain functions, so that what follows is compiled once per type
+/// of member, not once per key.
+template <class T>
+struct Field {
+  T& (*in)(Config&);
+  const T& (*of)(const Config&);
+};
+template <class Access>
+auto field_of(Access access) {
+  using T = std::remove_reference_t<decltype(access(std::declval<Config&>()))>;
+  return Field<T>{access, access};
+}
+
+/// The Field of a Config's member.
+#define MODEBANK_FIELD(member) (field_of([](auto& config) -> auto& { return config.member; }))
+
+template <class T>
+Option option(std::string key, std::string range, std::string unit, std::string help, Field<T> field) {
   return {std::move(key),
           std::move(range),
           std::move(unit),
           std::move(help),
           [field](Config& config, const std::string& text) {
-            std::decay_t<decltype(field(config))> value = field(config);
+            T value = field.of(config);
             parse_value(text, value);
-            field(config) = value;
+            field.in(config) = value;
           },
-          [field](const Config& config) { return format_value(field(config)); },
+          [field](const Config& config) { return format_value(field.of(config)); },
           {}};
 }
 
-template <class Field>
-Option numeric(std::string key, const Range& range, std::string unit, std::string help, Field field) {
+template <class T>
+Option numeric(std::string key, const Range& range, std::string unit, std::string help, Field<T> field) {
   Option result = option(std::move(key), range.text, std::move(unit), std::move(help), field);
-  result.set = [set = result.set, range, field](Config& config, const std::string& text) {
-    Config candidate = config;
-    set(candidate, text);
-    if (!in_range(range, field(candidate))) throw std::invalid_argument("is out of range");
-    config = candidate;
+  result.set = [range, field](Config& config, const std::string& text) {
+    T value = field.of(config);
+    parse_value(text, value);
+    if (!in_range(range, value)) throw std::invalid_argument("is out of range");
+    field.in(config) = value;
   };
   return result;
 }
 
-template <class Field>
-Option words(std::string key, std::string help, Field field) {
-  using E = std::decay_t<decltype(field(std::declval<Config&>()))>;
+template <class E>
+Option words(std::string key, std::string help, Field<E> field) {
   return option(std::move(key), words_of<E>(), "", std::move(help), field);
 }
 
-template <class Field>
-Option flag(std::string key, std::string help, Field field) {
+inline Option flag(std::string key, std::string help, Field<bool> field) {
   return option(std::move(key), "true | false", "", std::move(help), field);
 }
 
-template <class Field>
-Option text(std::string key, std::string what, std::string help, Field field) {
+template <class T>
+Option text(std::string key, std::string what, std::string help, Field<T> field) {
   return option(std::move(key), std::move(what), "", std::move(help), field);
 }
-
-/// The member of a Config that an option reads and writes.
-#define MODEBANK_FIELD(expression) ([](auto& c) -> auto& { return c.expression; })
 
 }  // namespace modebank::app

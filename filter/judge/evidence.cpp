@@ -1,9 +1,9 @@
 #include "filter/judge/evidence.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "ident/base/distributions.hpp"
+#include "ident/base/linalg.hpp"
 
 namespace modebank {
 
@@ -90,7 +90,7 @@ class Collector {
     if (!nees_states_.empty()) {
       const Eigen::MatrixXd P = e.covariance.col(k).reshaped(all, all)(nees_states_, nees_states_);
       const Eigen::VectorXd judged = error(nees_states_);
-      sums.nees.back().push_back(judged.dot(P.ldlt().solve(judged)));
+      sums.nees.back().push_back(judged.dot(solve_semidefinite(P, judged)));
     }
     sums.squared_state_error += error.cwiseAbs2();
     ++sums.state_errors;

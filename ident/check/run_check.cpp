@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/lag/objective.hpp"
 #include "ident/model/transitions.hpp"
@@ -79,8 +80,7 @@ Index excitation_order(const MatrixXd& inputs, Index most) {
     MatrixXd delayed(d * m, N - d + 1);
     for (Index i = 0; i < d; ++i) delayed.middleRows(i * m, m) = scaled.middleCols(i, N - d + 1);
     const MatrixXd moment = delayed * delayed.transpose() / static_cast<double>(N - d + 1);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(moment, Eigen::EigenvaluesOnly);
-    if (eigen.eigenvalues()(0) < least_eigenvalue) break;
+    if (symmetric_eigenvalues(moment)(0) < least_eigenvalue) break;
     order = d;
   }
   return order;

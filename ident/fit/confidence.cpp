@@ -1,6 +1,5 @@
 #include "ident/fit/confidence.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <string>
 
 #include "ident/base/distributions.hpp"
+#include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -48,13 +48,13 @@ bool ConfidenceRegion::contains(const Eigen::VectorXd& theta) const {
   const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
   const Eigen::VectorXd error = (theta - center).cwiseQuotient(sd);
   const Eigen::MatrixXd correlation = sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
-  return error.dot(correlation.ldlt().solve(error)) <= limit;
+  return error.dot(solve_semidefinite(correlation, error)) <= limit;
 }
 
 Eigen::MatrixXd ConfidenceRegion::semi_axes() const {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  const Eigen::VectorXd lengths = (limit * eigen.eigenvalues().cwiseMax(0.0)).cwiseSqrt();
-  return (eigen.eigenvectors() * lengths.asDiagonal()).rowwise().reverse();
+  const SymmetricEigen axes = symmetric_eigen(covariance);
+  const Eigen::VectorXd lengths = (limit * axes.values.cwiseMax(0.0)).cwiseSqrt();
+  return (axes.vectors * lengths.asDiagonal()).rowwise().reverse();
 }
 
 ConfidenceRegion confidence_region(const LocalModel& fit, double level) {

@@ -1,9 +1,9 @@
 #include "ident/fit/covariance.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/constants.hpp"
 
@@ -56,10 +56,10 @@ Eigen::MatrixXd inverse_G(const CovarianceInput& in) {
   G.diagonal() = G.diagonal().cwiseMax(in.floor);
 
   const Eigen::VectorXd inverse_sd = G.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> correlation(inverse_sd.asDiagonal() * G * inverse_sd.asDiagonal());
-  if (correlation.info() != Eigen::Success || correlation.rcond() < least_correlation_rcond)
+  const Cholesky correlation(inverse_sd.asDiagonal() * G * inverse_sd.asDiagonal());
+  if (!correlation.definite() || correlation.rcond() < least_correlation_rcond)
     return inverse_sd.cwiseAbs2().asDiagonal();
-  return inverse_sd.asDiagonal() * correlation.solve(Eigen::MatrixXd::Identity(n, n)) * inverse_sd.asDiagonal();
+  return inverse_sd.asDiagonal() * correlation.inverse() * inverse_sd.asDiagonal();
 }
 
 /// (sum J_k' G_inverse J_k + P)^-1 in z.
@@ -72,10 +72,7 @@ Eigen::MatrixXd from_information(const WhitenedProblem& problem, const Eigen::Ma
     for (Index k = 0; k < problem.samples; ++k)
       information += sample_rows(problem, k).transpose() * G_inverse * sample_rows(problem, k);
   }
-  const Eigen::LLT<Eigen::MatrixXd> factor(information);
-  if (factor.info() != Eigen::Success)
-    return Eigen::MatrixXd::Constant(problem.unknowns(), problem.unknowns(), not_a_number);
-  return factor.solve(Eigen::MatrixXd::Identity(problem.unknowns(), problem.unknowns()));
+  return definite_inverse(information);
 }
 
 /// The influence of sample k had it been left out: (I - h_k)^-1 psi_k.
@@ -86,17 +83,17 @@ Eigen::VectorXd left_out_influence(const CovarianceInput& in, Index k, const Eig
   const Eigen::VectorXd psi = in.terms.weight(k) * in.terms.sample(k, n);
   const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(n, n) - slope * (J * H_inverse * J.transpose());
   if (n == 1) return psi / std::max(rest(0, 0), least_one_minus_leverage);
-  const Eigen::FullPivLU<Eigen::MatrixXd> factor(rest);
-  return factor.rcond() > least_one_minus_leverage ? Eigen::VectorXd(factor.solve(psi)) : psi;
+  const PivotedLu factor(rest);
+  return factor.rcond() > least_one_minus_leverage ? factor.solve(psi) : psi;
 }
 
 Eigen::MatrixXd sandwich(const CovarianceInput& in) {
   const Index z = in.problem.unknowns(), n = in.problem.states;
-  Eigen::LLT<Eigen::MatrixXd> factor(hessian(in.problem, in.terms));
-  const bool exact = factor.info() == Eigen::Success;
-  if (!exact) factor.compute(weighted_information(in.problem, in.terms));
-  if (factor.info() != Eigen::Success) return Eigen::MatrixXd::Constant(z, z, not_a_number);
-  const Eigen::MatrixXd H_inverse = factor.solve(Eigen::MatrixXd::Identity(z, z));
+  Cholesky factor(hessian(in.problem, in.terms));
+  const bool exact = factor.definite();
+  if (!exact) factor.factorise(weighted_information(in.problem, in.terms));
+  if (!factor.definite()) return Eigen::MatrixXd::Constant(z, z, not_a_number);
+  const Eigen::MatrixXd H_inverse = factor.inverse();
 
   Eigen::MatrixXd meat = prior_information(in.problem);
   for (Index k = 0; k < in.problem.samples; ++k) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/motion_fit.hpp"
 #include "ident/model/transitions.hpp"
@@ -40,8 +41,7 @@ std::pair<Transitions, Index> reduce(const Recording& recording, const LinearStr
       triangle = rows;
       return;
     }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows);
-    triangle = qr.matrixQR().topRows(q + n).triangularView<Eigen::Upper>();
+    triangle = qr_triangle(rows);
   });
   return {{triangle.leftCols(q), triangle.rightCols(n)}, count};
 }

@@ -3,12 +3,12 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "ident/base/linalg.hpp"
 #include "ident/fit/constants.hpp"
 #include "ident/fit/residuals.hpp"
 
@@ -84,9 +84,9 @@ bool stationary(const WhitenedProblem& problem, const RobustTerms& terms) {
 
 /// -H^-1 g; without rho'' where the second derivative is not positive definite. Empty where even that is not.
 Eigen::VectorXd newton_step(const WhitenedProblem& problem, const RobustTerms& terms, const Eigen::VectorXd& g) {
-  Eigen::LLT<Eigen::MatrixXd> factor(hessian(problem, terms));
-  if (factor.info() != Eigen::Success) factor.compute(weighted_information(problem, terms));
-  return factor.info() == Eigen::Success ? Eigen::VectorXd(-factor.solve(g)) : Eigen::VectorXd();
+  Cholesky factor(hessian(problem, terms));
+  if (!factor.definite()) factor.factorise(weighted_information(problem, terms));
+  return factor.definite() ? Eigen::VectorXd(-factor.solve(g)) : Eigen::VectorXd();
 }
 
 /// Newton steps, halved until the objective no longer grows, until z is stationary (true) or nothing is gained.

@@ -2,11 +2,11 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "ident/base/linalg.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/lag/objective.hpp"
 
@@ -33,15 +33,15 @@ RunScore score(const Trajectory& run, const GlobalModel& global, const LinearStr
   const LinearModel model = unpack(structure, global.theta);
   constexpr double least_variance = 1e-200;  // noise-free data: logarithms stay finite
   const Index n = structure.states;
-  const Eigen::LLT<MatrixXd> llt(global.residual_covariance + least_variance * MatrixXd::Identity(n, n));
-  const MatrixXd L = llt.matrixL();
+  const Cholesky noise(global.residual_covariance + least_variance * MatrixXd::Identity(n, n));
+  const MatrixXd L = noise.L();
   const double log_constant = -static_cast<double>(structure.states) * 0.5 * std::log(2.0 * std::numbers::pi) -
                               L.diagonal().array().log().sum();
   for (Index k = 0; k < run.transitions(); ++k) {
     if (run.time_s(k) < first_s || run.time_s(k + 1) > last_s) continue;
     const VectorXd error = run.state.col(k + 1) - model.next(run.state.col(k), run.input.col(k));
     if (!error.allFinite()) continue;
-    result.log_density += log_constant - 0.5 * llt.matrixL().solve(error).squaredNorm();
+    result.log_density += log_constant - 0.5 * noise.whiten(error).squaredNorm();
     result.square_sum += error.squaredNorm();
     ++result.transitions;
   }

@@ -1,6 +1,6 @@
 #include "ident/lag/delayed_regression.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "ident/base/linalg.hpp"
 
 namespace modebank {
 
@@ -15,11 +15,10 @@ MatrixXd centred(const MatrixXd& values, const VectorXd& weights) {
 MatrixXd regress_rows(const MatrixXd& X, const MatrixXd& Y, const VectorXd& weights) {
   constexpr double collinear = 1e-10;
   const MatrixXd XW = X * weights.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> gram(XW * X.transpose());
-  const VectorXd& eigenvalues = gram.eigenvalues();
-  const double floor = collinear * eigenvalues.maxCoeff();
-  const VectorXd inverse = (eigenvalues.array() > floor).select(eigenvalues.cwiseInverse(), 0.0);
-  return (Y * XW.transpose()) * gram.eigenvectors() * inverse.asDiagonal() * gram.eigenvectors().transpose();
+  const SymmetricEigen gram = symmetric_eigen(XW * X.transpose());
+  const double floor = collinear * gram.values.maxCoeff();
+  const VectorXd inverse = (gram.values.array() > floor).select(gram.values.cwiseInverse(), 0.0);
+  return (Y * XW.transpose()) * gram.vectors * inverse.asDiagonal() * gram.vectors.transpose();
 }
 
 }  // namespace modebank

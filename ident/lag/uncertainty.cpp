@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/trajectory.hpp"
 
@@ -45,7 +46,7 @@ RowVectorXd unexplained_part(const MatrixXd& inputs, const VectorXd& weights, co
   MatrixXd X(inputs.rows() + 1, inputs.cols());
   X << inputs, RowVectorXd::Ones(inputs.cols());
   const MatrixXd XW = X * weights.asDiagonal();
-  const VectorXd beta = Eigen::FullPivLU<MatrixXd>(XW * X.transpose()).solve(XW * row.transpose());
+  const VectorXd beta = PivotedLu(XW * X.transpose()).solve(VectorXd(XW * row.transpose()));
   return row - beta.transpose() * X;
 }
 
@@ -79,8 +80,8 @@ MatrixXd sandwich(const LagObjective::Fit& fit, const std::vector<MatrixXd>& slo
   const std::vector<StateTerms> terms = state_terms(fit, slopes);
   MatrixXd information = MatrixXd::Zero(q, q);
   for (const StateTerms& state : terms) information += state.J * fit.weights.asDiagonal() * state.J.transpose();
-  const Eigen::FullPivLU<MatrixXd> lu(information);
-  if (!lu.isInvertible()) return {};
+  const PivotedLu lu(information);
+  if (!lu.invertible()) return {};
   const MatrixXd inverse = lu.inverse();
   MatrixXd scores = MatrixXd::Zero(q, fit.samples);
   for (const StateTerms& state : terms) {

@@ -1,7 +1,5 @@
 #include "ident/model/transitions.hpp"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -9,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -80,20 +79,15 @@ double condition_of(const Eigen::VectorXd& sigma) {
 /// Householder's is much cheaper. Nothing where the rank is deficient.
 std::optional<Decomposition> decompose_full_rank(const Eigen::MatrixXd& scaled, const Eigen::VectorXd& scales,
                                                  double tolerance) {
-  using SmallSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 16, 16>;  // on the stack
   const Index q = scaled.cols();
   if (q == 0 || scaled.rows() < q) return std::nullopt;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
-  const Eigen::MatrixXd R = qr.matrixQR().topRows(q).triangularView<Eigen::Upper>();
-  const Eigen::VectorXd sigma = q <= SmallSquare::MaxRowsAtCompileTime
-                                    ? Eigen::VectorXd(Eigen::JacobiSVD<SmallSquare>(R).singularValues())
-                                    : Eigen::JacobiSVD<Eigen::MatrixXd>(R).singularValues();
+  ThinQr qr = thin_qr(scaled);
+  const Eigen::VectorXd sigma = singular_values(qr.R);
   if (!(sigma(q - 1) > tolerance * sigma(0))) return std::nullopt;
   Decomposition d;
   d.condition = condition_of(sigma);
-  d.U = qr.householderQ() * Eigen::MatrixXd::Identity(scaled.rows(), q);
-  d.basis = scales.cwiseInverse().asDiagonal();
-  R.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(d.basis);
+  d.U = std::move(qr.Q);
+  d.basis = divide_by_triangle(scales.cwiseInverse().asDiagonal(), qr.R);
   return d;
 }
 
@@ -102,14 +96,10 @@ Eigen::MatrixXd basis_of(const Eigen::VectorXd& scales, const Eigen::MatrixXd& V
   const Index q = V.rows(), rank = V.cols();
   const Eigen::MatrixXd S_inverse = sigma.cwiseInverse().asDiagonal();
   if (rank == q) return scales.cwiseInverse().asDiagonal() * V * S_inverse;
-  Eigen::MatrixXd basis(q, rank);
-  if (rank == 0) return basis;
+  if (rank == 0) return Eigen::MatrixXd(q, 0);
   // The row space is the span of W = D V; the pseudo-inverse of W' is Q R^-T, which stays in it.
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scales.asDiagonal() * V);
-  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(q, rank);
-  const Eigen::MatrixXd R = qr.matrixQR().topRows(rank).triangularView<Eigen::Upper>();
-  basis = Q * R.transpose().triangularView<Eigen::Lower>().solve(S_inverse);
-  return basis;
+  const ThinQr qr = thin_qr(scales.asDiagonal() * V);
+  return qr.Q * solve_transposed_triangle(qr.R, S_inverse);
 }
 
 }  // namespace
@@ -180,13 +170,13 @@ Decomposition decompose(const Eigen::MatrixXd& X, double tolerance) {
   const Eigen::VectorXd scales = column_scales(X);
   const Eigen::MatrixXd scaled = X * scales.cwiseInverse().asDiagonal();
   if (std::optional<Decomposition> full = decompose_full_rank(scaled, scales, tolerance)) return *std::move(full);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd& sigma = svd.singularValues();  // decreasing
+  const ThinSvd svd = thin_svd(scaled);
+  const Eigen::VectorXd& sigma = svd.sigma;
   Decomposition d;
   d.condition = X.rows() >= X.cols() ? condition_of(sigma) : std::numeric_limits<double>::infinity();
   const Index rank = sigma.size() > 0 ? (sigma.array() > tolerance * sigma(0)).count() : 0;
-  d.U = svd.matrixU().leftCols(rank);
-  d.basis = basis_of(scales, svd.matrixV().leftCols(rank), sigma.head(rank));
+  d.U = svd.U.leftCols(rank);
+  d.basis = basis_of(scales, svd.V.leftCols(rank), sigma.head(rank));
   return d;
 }
 

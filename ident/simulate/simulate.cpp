@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "ident/base/linalg.hpp"
 #include "ident/base/seed.hpp"
 #include "ident/simulate/input_law.hpp"
 #include "ident/simulate/simulation_parts.hpp"
@@ -73,8 +74,7 @@ Eigen::VectorXd stationary_distribution(const Eigen::MatrixXd& T) {
   Eigen::MatrixXd equations(K + 1, K);
   equations.topRows(K) = T.transpose() - Eigen::MatrixXd::Identity(K, K);
   equations.row(K).setOnes();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(equations, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd pi = svd.solve(Eigen::VectorXd::Unit(K + 1, K).eval()).cwiseMax(0.0);
+  const Eigen::VectorXd pi = solve_least_squares(equations, Eigen::VectorXd::Unit(K + 1, K)).cwiseMax(0.0);
   return pi / pi.sum();
 }
 

@@ -1,12 +1,12 @@
 #include "mixture/detail/iterate.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "ident/base/linalg.hpp"
 #include "mixture/detail/step.hpp"
 
 namespace modebank {
@@ -40,9 +40,9 @@ std::optional<Coordinates> coordinates_of(const GaussianMixture& mixture) {
   };
   for (Index k = 0; k < K; ++k) {
     const double weight = mixture.weights(k), root = std::sqrt(weight);
-    const Eigen::LLT<Eigen::MatrixXd> cholesky(mixture.covariances[static_cast<std::size_t>(k)]);
-    if (weight < least_weight || cholesky.info() != Eigen::Success) return {};
-    const Eigen::MatrixXd& L = cholesky.matrixLLT();
+    const Cholesky cholesky(mixture.covariances[static_cast<std::size_t>(k)]);
+    if (weight < least_weight || !cholesky.definite()) return {};
+    const Eigen::MatrixXd L = cholesky.L();
     put(std::log(weight), root);
     for (Index i = 0; i < F; ++i) put(mixture.means(i, k), root / L(i, i));
     for (Index i = 0; i < F; ++i) {

@@ -1,12 +1,12 @@
 #include "mixture/detail/split_merge.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
 
+#include "ident/base/linalg.hpp"
 #include "ident/base/seed.hpp"
 #include "mixture/detail/iterate.hpp"
 #include "mixture/detail/starts.hpp"
@@ -36,10 +36,10 @@ GaussianMixture pair_of(const GaussianMixture& mixture, Index k) {
 
 /// The moments of a Gaussian's halves on either side of a plane through its mean across its longest axis.
 GaussianMixture halves(const GaussianMixture& mixture, Index k) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(mixture.covariances[static_cast<std::size_t>(k)]);
+  const auto [values, vectors] = symmetric_eigen(mixture.covariances[static_cast<std::size_t>(k)]);
   const Index longest = mixture.features() - 1;
-  const Eigen::VectorXd offset = eigen.eigenvectors().col(longest) *
-                                 std::sqrt(2.0 / std::numbers::pi * std::max(0.0, eigen.eigenvalues()(longest)));
+  const Eigen::VectorXd offset =
+      vectors.col(longest) * std::sqrt(2.0 / std::numbers::pi * std::max(0.0, values(longest)));
   GaussianMixture pair = pair_of(mixture, k);
   pair.means.col(0) += offset;
   pair.means.col(1) -= offset;

@@ -1,13 +1,13 @@
 #include "app/report/page/mode_dynamics.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <numbers>
 
+#include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -35,8 +35,8 @@ Eigen::MatrixXd steady_gain(const Bank& bank, const LinearModel& model) {
   const Eigen::Index inputs = bank.structure.inputs;
   Eigen::MatrixXd held = Eigen::MatrixXd::Zero(model.A.rows(), inputs);
   for (Eigen::Index first = 0; first < model.B.cols(); first += inputs) held += model.B.middleCols(first, inputs);
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(-model.A);
-  if (!lu.isInvertible()) return Eigen::MatrixXd::Constant(bank.C.rows(), inputs, not_a_number);
+  const PivotedLu lu(-model.A);
+  if (!lu.invertible()) return Eigen::MatrixXd::Constant(bank.C.rows(), inputs, not_a_number);
   return bank.C * lu.solve(held);
 }
 

@@ -2,9 +2,9 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/linearise.hpp"
 #include "ident/fit/motion_fit.hpp"
@@ -45,7 +45,8 @@ Eigen::MatrixXd motion_covariance(const ModelResiduals& residuals, const MotionM
   const double W = mode.linear.effective_transitions;
   const double lost = static_cast<double>(p) / static_cast<double>(n);
   const Eigen::MatrixXd Q_inverse =
-      mode.linear.Q.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) * (std::max(W - lost, 1.0) / std::max(W, 1.0));
+      solve_semidefinite(mode.linear.Q, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n))) *
+      (std::max(W - lost, 1.0) / std::max(W, 1.0));
   Eigen::VectorXd r;
   RowMajorJacobian J;
   residuals.evaluate(mode.theta.data(), r, &J);
@@ -54,10 +55,10 @@ Eigen::MatrixXd motion_covariance(const ModelResiduals& residuals, const MotionM
     information += residuals.weight(k) * J.middleRows(k * n, n).transpose() * Q_inverse * J.middleRows(k * n, n);
   if (prior) information.diagonal() += prior->sd.array().square().inverse().matrix();
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * information * scale.asDiagonal());
-  if (factor.info() != Eigen::Success || factor.rcond() < excitation_tolerance * excitation_tolerance)
+  const Cholesky factor(scale.asDiagonal() * information * scale.asDiagonal());
+  if (!factor.definite() || factor.rcond() < excitation_tolerance * excitation_tolerance)
     return Eigen::MatrixXd::Constant(p, p, not_a_number);
-  return scale.asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(p, p)) * scale.asDiagonal();
+  return scale.asDiagonal() * factor.inverse() * scale.asDiagonal();
 }
 
 /// Alternates between theta and the residual variances until both stand still.

@@ -7,7 +7,7 @@
 #include <limits>
 #include <unsupported/Eigen/KroneckerProduct>
 
-#include "filter/learn/likelihood/definite_inverse.hpp"
+#include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "mixture/gaussian_mixture.hpp"
 
@@ -46,7 +46,7 @@ Eigen::MatrixXd regularised(const WeightedRegression& data, const Eigen::MatrixX
   const Eigen::MatrixXd information = Eigen::kroneckerProduct(Q_inverse, data.sums.G).eval() + P_inverse;
   const Eigen::MatrixXd data_pull = data.sums.H * Q_inverse;
   const Eigen::VectorXd pull = data_pull.reshaped() + P_inverse * (prior.mean - data.beta.reshaped());
-  return data.beta + information.ldlt().solve(pull).reshaped(data.beta.rows(), data.beta.cols());
+  return data.beta + solve_semidefinite(information, pull).reshaped(data.beta.rows(), data.beta.cols());
 }
 
 Eigen::MatrixXd process_noise(const WeightedRegression& data, const Eigen::MatrixXd& beta, const GlobalModel& global) {
@@ -64,10 +64,10 @@ Eigen::VectorXd standard_errors(const WeightedRegression& data, const Eigen::Mat
   Eigen::VectorXd not_determined = Eigen::VectorXd::Constant(p, not_a_number);
   if (!(information.diagonal().minCoeff() > 0.0) || !information.allFinite()) return not_determined;
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * information * scale.asDiagonal());
-  if (eigen.eigenvalues().minCoeff() < excitation_tolerance * excitation_tolerance) return not_determined;
-  const Eigen::MatrixXd root = scale.asDiagonal() * eigen.eigenvectors();
-  return (root.cwiseAbs2() * eigen.eigenvalues().cwiseInverse()).cwiseSqrt();
+  const auto [values, vectors] = symmetric_eigen(scale.asDiagonal() * information * scale.asDiagonal());
+  if (values.minCoeff() < excitation_tolerance * excitation_tolerance) return not_determined;
+  const Eigen::MatrixXd root = scale.asDiagonal() * vectors;
+  return (root.cwiseAbs2() * values.cwiseInverse()).cwiseSqrt();
 }
 
 ModeEstimate estimate(const WeightedRegression& data, const Eigen::MatrixXd& beta, const Eigen::MatrixXd& Q,

@@ -1,9 +1,10 @@
 #include "filter/learn/likelihood/coordinates.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "ident/base/linalg.hpp"
 
 namespace modebank {
 namespace {
@@ -62,7 +63,7 @@ const double* BankCoordinates::set_process_noise(const double* at, Bank& bank) c
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
     for (Index b = 0; b < n; ++b)
       for (Index a = b; a < n; ++a, ++at) M(a, b) = a == b ? bounded_exp(*at) : *at;
-    const Eigen::MatrixXd L0 = mode.Q.topLeftCorner(n, n).llt().matrixL();
+    const Eigen::MatrixXd L0 = Cholesky(mode.Q.topLeftCorner(n, n)).L();
     const Eigen::MatrixXd L = L0 * M;
     mode.Q.topLeftCorner(n, n).noalias() = L * L.transpose();
     if (free_.least_Q.size() > 0) mode.Q.diagonal().head(n) = mode.Q.diagonal().head(n).cwiseMax(free_.least_Q);

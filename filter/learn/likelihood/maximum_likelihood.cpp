@@ -4,13 +4,13 @@
 #include <ceres/gradient_problem_solver.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "filter/learn/likelihood/information.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
+#include "ident/base/linalg.hpp"
 
 namespace modebank {
 namespace {
@@ -104,11 +104,10 @@ std::optional<Metric> metric_of(const SampleGradients& gradients) {
   Eigen::MatrixXd information = gradients.information;
   information.diagonal().array() += least_curvature;
   if (!information.allFinite() || !gradients.sum.allFinite()) return std::nullopt;
-  const Eigen::LLT<Eigen::MatrixXd> factor(information);
-  if (factor.info() != Eigen::Success) return std::nullopt;
-  return Metric{step_share * information.diagonal().cwiseSqrt().cwiseInverse(),
-                factor.matrixU().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols())),
-                factor.matrixL().solve(gradients.sum)};
+  const Cholesky factor(information);
+  if (!factor.definite()) return std::nullopt;
+  return Metric{step_share * information.diagonal().cwiseSqrt().cwiseInverse(), factor.inverse_root(),
+                factor.whiten(gradients.sum)};
 }
 
 struct BfgsEnd {

@@ -1,6 +1,5 @@
 #include "filter/learn/likelihood/standard_errors.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "filter/learn/likelihood/information.hpp"
+#include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/stretch.hpp"
 
@@ -53,9 +53,9 @@ std::optional<Eigen::MatrixXd> observed_covariance(const LikelihoodTarget& targe
   // Coordinates differ in scale by orders of magnitude: the factorisation sees correlations.
   const Eigen::VectorXd unit =
       information.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> factor(unit.asDiagonal() * information * unit.asDiagonal());
-  if (factor.info() != Eigen::Success) return std::nullopt;
-  const Eigen::MatrixXd root = factor.matrixL().solve(unit.asDiagonal() * around.jacobian().transpose());
+  const Cholesky factor(unit.asDiagonal() * information * unit.asDiagonal());
+  if (!factor.definite()) return std::nullopt;
+  const Eigen::MatrixXd root = factor.whiten(Eigen::MatrixXd(unit.asDiagonal() * around.jacobian().transpose()));
   Eigen::MatrixXd covariance = root.transpose() * root;
   if (!covariance.allFinite() || !(covariance.diagonal().minCoeff() > 0.0)) return std::nullopt;
   return covariance;

@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
-#include "filter/learn/likelihood/definite_inverse.hpp"
 #include "filter/learn/likelihood/standard_errors.hpp"
+#include "ident/base/linalg.hpp"
 
 namespace modebank {
 namespace {

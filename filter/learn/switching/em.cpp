@@ -1,10 +1,9 @@
 #include "filter/learn/switching/em.hpp"
 
-#include <Eigen/Cholesky>
 #include <unsupported/Eigen/KroneckerProduct>
 #include <utility>
 
-#include "filter/learn/likelihood/definite_inverse.hpp"
+#include "ident/base/linalg.hpp"
 
 namespace modebank {
 namespace {
@@ -40,7 +39,7 @@ class ConditionalMaximiser {
       const Eigen::MatrixXd of_mode = at(j).H * Q_inverse;
       pull += of_mode.reshaped();
     }
-    return prior_.mean + information.ldlt().solve(pull);
+    return prior_.mean + solve_semidefinite(information, pull);
   }
 
   const LinearStructure& structure_;

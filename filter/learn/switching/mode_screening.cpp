@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "ident/base/distributions.hpp"
+#include "ident/base/linalg.hpp"
 
 namespace modebank {
 namespace {
@@ -22,8 +22,8 @@ constexpr double ridge = 1e-12;  // share of the regressors' power: keeps unexci
 double cost(const RegressionSums& sums) {
   Eigen::MatrixXd normal = sums.G;
   normal.diagonal().array() += ridge * std::max(sums.G.trace(), std::numeric_limits<double>::min());
-  const Eigen::MatrixXd Q = (sums.S - sums.H.transpose() * normal.ldlt().solve(sums.H)) / sums.weight;
-  const Eigen::VectorXd pivots = Q.ldlt().vectorD().cwiseMax(std::numeric_limits<double>::min());
+  const Eigen::MatrixXd Q = (sums.S - sums.H.transpose() * solve_semidefinite(normal, sums.H)) / sums.weight;
+  const Eigen::VectorXd pivots = semidefinite_pivots(Q).cwiseMax(std::numeric_limits<double>::min());
   return 0.5 * sums.weight * pivots.array().log().sum();
 }
 

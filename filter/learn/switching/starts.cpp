@@ -7,8 +7,8 @@
 
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/transition_learning.hpp"
-#include "filter/learn/likelihood/definite_inverse.hpp"
 #include "filter/learn/switching/em.hpp"
+#include "ident/base/linalg.hpp"
 #include "ident/base/seed.hpp"
 
 namespace modebank {

@@ -2,14 +2,13 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <unsupported/Eigen/KroneckerProduct>
 
 #include "filter/learn/from_mixture/bank_frame.hpp"
-#include "filter/learn/likelihood/definite_inverse.hpp"
+#include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "mixture/reduction.hpp"
 
@@ -21,8 +20,7 @@ Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eige
                               const Eigen::MatrixXd& Q) {
   const Eigen::MatrixXd r =
       transitions.data.increments - transitions.data.regressors * coefficients(transitions.structure, theta);
-  const Eigen::LLT<Eigen::MatrixXd> factor(Q);
-  const Eigen::MatrixXd whitened = factor.matrixL().solve(r.transpose());
+  const Eigen::MatrixXd whitened = Cholesky(Q).whiten(Eigen::MatrixXd(r.transpose()));
   const double constant = static_cast<double>(Q.rows()) * std::log(2.0 * std::numbers::pi) + log_determinant(Q);
   return (-0.5 * (whitened.colwise().squaredNorm().array() + constant)).transpose() * transitions.usable.array();
 }

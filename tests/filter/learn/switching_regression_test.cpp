@@ -12,9 +12,9 @@
 
 #include "filter/judge/evaluate.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
-#include "filter/learn/likelihood/definite_inverse.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/starts.hpp"
+#include "ident/base/linalg.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

@@ -1,0 +1,108 @@
+#include "ident/base/linalg.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+ThinSvd thin_svd(const MatrixXd& X) {
+  const Eigen::JacobiSVD<MatrixXd> svd(X, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  return {svd.matrixU(), svd.singularValues(), svd.matrixV()};
+}
+
+VectorXd solve_least_squares(const MatrixXd& A, const VectorXd& b) {
+  return Eigen::JacobiSVD<MatrixXd>(A, Eigen::ComputeThinU | Eigen::ComputeThinV).solve(b);
+}
+
+VectorXd singular_values(const MatrixXd& square) {
+  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 16, 16>;  // on the stack
+  constexpr int square_already = Eigen::NoQRPreconditioner;
+  if (square.rows() <= Small::MaxRowsAtCompileTime)
+    return Eigen::JacobiSVD<Small, square_already>(square).singularValues();
+  return Eigen::JacobiSVD<MatrixXd, square_already>(square).singularValues();
+}
+
+ThinQr thin_qr(const MatrixXd& X) {
+  const Eigen::HouseholderQR<MatrixXd> qr(X);
+  ThinQr result;
+  result.Q = qr.householderQ() * MatrixXd::Identity(X.rows(), X.cols());
+  result.R = qr.matrixQR().topRows(X.cols()).triangularView<Eigen::Upper>();
+  return result;
+}
+
+MatrixXd qr_triangle(const MatrixXd& X) {
+  return Eigen::HouseholderQR<MatrixXd>(X).matrixQR().topRows(X.cols()).triangularView<Eigen::Upper>();
+}
+
+MatrixXd divide_by_triangle(MatrixXd A, const MatrixXd& R) {
+  R.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(A);
+  return A;
+}
+
+MatrixXd solve_transposed_triangle(const MatrixXd& R, const MatrixXd& B) {
+  return R.transpose().triangularView<Eigen::Lower>().solve(B);
+}
+
+SymmetricEigen symmetric_eigen(const MatrixXd& M) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(M);
+  return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
+VectorXd symmetric_eigenvalues(const MatrixXd& M) {
+  return Eigen::SelfAdjointEigenSolver<MatrixXd>(M, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+void Cholesky::factorise(const MatrixXd& M) { factor_.compute(M); }
+
+double Cholesky::rcond() const { return factor_.rcond(); }
+
+MatrixXd Cholesky::L() const { return factor_.matrixL(); }
+
+MatrixXd Cholesky::inverse() const { return factor_.solve(MatrixXd::Identity(factor_.rows(), factor_.cols())); }
+
+MatrixXd Cholesky::inverse_root() const {
+  return factor_.matrixU().solve(MatrixXd::Identity(factor_.rows(), factor_.cols()));
+}
+
+VectorXd Cholesky::solve(const VectorXd& b) const { return factor_.solve(b); }
+
+VectorXd Cholesky::whiten(const VectorXd& b) const { return factor_.matrixL().solve(b); }
+
+MatrixXd Cholesky::whiten(const MatrixXd& B) const { return factor_.matrixL().solve(B); }
+
+MatrixXd definite_inverse(const MatrixXd& M) {
+  const Cholesky factor(M);
+  // The factorisation stops at the pivot that fails, and would solve with what it has.
+  return factor.definite() ? factor.inverse() : MatrixXd::Constant(M.rows(), M.cols(), not_a_number);
+}
+
+double log_determinant(const MatrixXd& M) {
+  return 2.0 * Eigen::LLT<MatrixXd>(M).matrixLLT().diagonal().array().log().sum();
+}
+
+VectorXd solve_semidefinite(const MatrixXd& M, const VectorXd& b) { return M.ldlt().solve(b); }
+
+MatrixXd solve_semidefinite(const MatrixXd& M, const MatrixXd& B) { return M.ldlt().solve(B); }
+
+VectorXd semidefinite_pivots(const MatrixXd& M) { return M.ldlt().vectorD(); }
+
+PivotedLu::PivotedLu(const MatrixXd& M) : factor_(M) {}
+
+bool PivotedLu::invertible() const { return factor_.isInvertible(); }
+
+double PivotedLu::rcond() const { return factor_.rcond(); }
+
+MatrixXd PivotedLu::inverse() const { return factor_.inverse(); }
+
+VectorXd PivotedLu::solve(const VectorXd& b) const { return factor_.solve(b); }
+
+MatrixXd PivotedLu::solve(const MatrixXd& B) const { return factor_.solve(B); }
+
+}  // namespace modebank
