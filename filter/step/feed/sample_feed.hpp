@@ -74,7 +74,7 @@ class SampleFeed {
 
 // Inline and in plain loops: a filter's step takes less time than calls, and Eigen's expressions of sizes that it does
 // not know.
-inline void SampleFeed::push(double time_s, const double* input, const double* measurement) {
+[[gnu::always_inline]] inline void SampleFeed::push(double time_s, const double* input, const double* measurement) {
   steps_ = samples_ == 0 ? 1 : steps_between(time_s_, time_s, dt_s_, time_steps_);
   if (steps_ > longest_gap_steps) clear();
   shift(recent_);

@@ -65,7 +65,7 @@ struct Kernels {
   void (*expect)(const ModeRows&, const Sensor&) = nullptr;
   /// The state after y; with noise_scale > 0 also share and square.
   UpdateResult (*update)(const ModeRows&, const Sensor&, const double* y, double noise_scale) = nullptr;
-  /// predict and update through a stretch, at noise scale one.
+  /// predict and update through a stretch, at noise scale one; of what steps leave behind, only the state is there.
   void (*follow)(const ModeRows&, const Sensor&, const Stretch&) = nullptr;
   /// A prediction without a measurement is the state.
   void (*skip)(const ModeRows&) = nullptr;

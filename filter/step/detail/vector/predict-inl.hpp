@@ -94,10 +94,7 @@ HWY_INLINE void predict_registers(const ModeRows& p, const Sensor& sensor, std::
     const std::size_t at = r + b * L;
     q[b].prior = sums[b][0];
     q[b].m = propagate<N>(p, at, v, scale, mixture<N>(p, at, sums[b]));
-    store(q[b].prior, p.predicted_probability + at);
-    store_rows(q[b].m.x, stride, p.predicted_mean + at);
-    store_rows(q[b].m.P, stride, p.predicted_covariance + at);
-    expect<N, NY>(p, sensor, at, q[b]);
+    expect<N, NY>(sensor, q[b]);
   }
 }
 
@@ -109,9 +106,12 @@ inline constexpr std::size_t most_together = N == 1   ? 4
 
 template <std::size_t N, std::size_t NY, std::size_t J = most_together<N>>
 HWY_INLINE void predict_from(const ModeRows& p, const Sensor& sensor, const double* v, V scale, std::size_t r) {
+  const std::size_t L = hn::Lanes(D());
   Prediction<N, NY> q[J];
-  for (; r + J * hn::Lanes(D()) <= p.stride; r += J * hn::Lanes(D()))
+  for (; r + J * L <= p.stride; r += J * L) {
     predict_registers<N, NY, J>(p, sensor, r, v, scale, q);
+    for (std::size_t b = 0; b < J; ++b) store_prediction(q[b], p, r + b * L);
+  }
   if constexpr (J > 1) predict_from<N, NY, J / 2>(p, sensor, v, scale, r);
 }
 

@@ -39,7 +39,7 @@ HWY_INLINE V correct(const ModeRows& p, const Sensor& sensor, const double* y, c
     largest = hn::Max(largest, exponent);
     exponents.set(b, exponent);
     weights.set(b, hn::IfThenElseZero(possible, hn::Mul(q.prior, c.root_determinant_inverse())));
-    store_rows(c.z, p.stride, p.decorrelated + r);
+    if constexpr (R == 0) store_rows(c.z, p.stride, p.decorrelated + r);
     const Moments<N> posterior = c.posterior(sensor);
     store_rows(posterior.x, p.stride, p.mean + r);
     store_rows(posterior.P, p.stride, p.covariance + r);
