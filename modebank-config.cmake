@@ -1,10 +1,13 @@
-# find_package(modebank [COMPONENTS filter archive judge]): the targets modebank::NAME, headers
+# find_package(modebank [COMPONENTS filter archive judge ident mixture learn]): the targets modebank::NAME, headers
 # <modebank/NAME/...>. Only what the named components link has to be installed; without names all of them are meant.
 #   filter   stepping a bank: Eigen's headers (for modebank/base/eigen.hpp) and, to link, libhwy
 #   judge    scoring banks on runs: nothing besides
 #   archive  loading a bank from an archive: HDF5 besides (C among the project's languages)
+#   ident    fitting windows: Ceres and TBB besides
+#   mixture  clustering: TBB and fmt besides
+#   learn    learning banks: Ceres, TBB and fmt besides
 include(CMakeFindDependencyMacro)
-set(modebank_components filter archive judge)
+set(modebank_components filter archive judge ident mixture learn)
 set(modebank_wanted ${modebank_FIND_COMPONENTS})
 if(NOT modebank_wanted)
   set(modebank_wanted ${modebank_components})
@@ -30,6 +33,15 @@ if(NOT TARGET PkgConfig::highway)
 endif()
 if("archive" IN_LIST modebank_wanted)
   find_dependency(HDF5 1.10 COMPONENTS C)
+endif()
+if("ident" IN_LIST modebank_wanted OR "learn" IN_LIST modebank_wanted)
+  find_dependency(Ceres 2.1)
+endif()
+if("mixture" IN_LIST modebank_wanted OR "learn" IN_LIST modebank_wanted)
+  find_dependency(fmt 9)
+endif()
+if("ident" IN_LIST modebank_wanted OR "mixture" IN_LIST modebank_wanted OR "learn" IN_LIST modebank_wanted)
+  find_dependency(TBB)
 endif()
 include(${CMAKE_CURRENT_LIST_DIR}/modebank-targets.cmake)
 foreach(component IN LISTS modebank_wanted)

@@ -5,36 +5,9 @@
 #include <memory>
 
 #include "mixture/gaussian_mixture.hpp"
+#include "modebank/mixture/options.hpp"
 
 namespace modebank {
-
-/// Where restarts begin: at the best of EmOptions::start_runs short runs from points drawn as centres, or from
-/// k-means++ (Arthur & Vassilvitskii 2007). With moves random starts lead to higher optima: on three clouds of robot
-/// data and one simulated, K = 1..12 and six seeds, by 10 to 600 nats in the mean.
-enum class StartKind { random, kmeans_plus_plus };
-
-template <>
-struct EnumNames<StartKind> {
-  static constexpr Names<2> values{"random", "kmeans++"};
-};
-
-/// Expectation-maximisation of a Gaussian mixture (Dempster, Laird & Rubin 1977), in the log domain.
-struct EmOptions {
-  CovarianceType covariance = CovarianceType::full;
-  StartKind start = StartKind::random;
-  int restarts = 5;  ///< independent, >= 1
-  /// Short runs that a start is the best of (emEM: Biernacki, Celeux & Govaert 2003), on a subsample of many points; 1:
-  /// single starts.
-  int start_runs = 2;
-  /// Split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000). 0: none, and restarts are
-  /// not crossed (restarts.hpp).
-  int split_merge = 5;
-  double tolerance = 1e-7;         ///< stop when the mean log-likelihood per unit weight gains less; negative: never
-  int max_iterations = 1000;       ///< M steps, >= 0
-  double covariance_floor = 1e-6;  ///< eigenvalues (variances) are kept above this share of the data's variance per
-                                   ///< feature (without far outliers: feature_scale.hpp), >= 1e-10
-  bool noise_component = false;    ///< adds a uniform component over the points' bounding box (see UniformNoise)
-};
 
 /// A fitted mixture and how the fit ended.
 struct EmResult {

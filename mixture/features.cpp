@@ -98,4 +98,9 @@ FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowCh
   return cloud;
 }
 
+FeatureCloud make_features(const WindowFits& fits, const std::vector<Channel>& states, const ClusterOptions& options) {
+  return make_features(fits, options.features, options.windows, states, options.straddling,
+                       options.error_aware ? WindowErrors::include : WindowErrors::ignore);
+}
+
 }  // namespace modebank

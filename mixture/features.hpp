@@ -6,31 +6,9 @@
 
 #include "ident/model/local_model.hpp"
 #include "mixture/point_set.hpp"
+#include "modebank/mixture/options.hpp"
 
 namespace modebank {
-
-enum class FeatureSet { parameters, parameters_and_noise };
-
-template <>
-struct EnumNames<FeatureSet> {
-  static constexpr Names<2> values{"parameters", "parameters+noise"};
-};
-enum class WindowChoice { automatic, full_rank, all };  ///< automatic: all with a prior, else full_rank
-
-template <>
-struct EnumNames<WindowChoice> {
-  static constexpr Names<3> values{"automatic", "full_rank", "all"};
-};
-
-/// What becomes of windows that straddle a switch of mode: they follow no single model and are a population of their
-/// own, which would claim a component. `leave_out` takes those out of the cloud whose residuals show it
-/// (straddling_windows); `keep` clusters them like the others.
-enum class StraddlingWindows { leave_out, keep };
-
-template <>
-struct EnumNames<StraddlingWindows> {
-  static constexpr Names<2> values{"leave_out", "keep"};
-};
 
 /// The cloud that is clustered: one point per clustered window.
 struct FeatureCloud {
@@ -55,5 +33,7 @@ enum class WindowErrors { ignore, include };
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
                            const std::vector<Channel>& states, StraddlingWindows straddling = StraddlingWindows::keep,
                            WindowErrors errors = WindowErrors::ignore);
+/// The same as the options say.
+FeatureCloud make_features(const WindowFits& fits, const std::vector<Channel>& states, const ClusterOptions& options);
 
 }  // namespace modebank

@@ -7,16 +7,9 @@
 #include <vector>
 
 #include "mixture/point_set.hpp"
-#include "modebank/base/names.hpp"
+#include "modebank/mixture/options.hpp"
 
 namespace modebank {
-
-enum class CovarianceType { full, diagonal };
-
-template <>
-struct EnumNames<CovarianceType> {
-  static constexpr Names<2> values{"full", "diagonal"};
-};
 
 /// The component for points that belong to no cluster: uniform over a box (Fraley & Raftery 1998, Comput. J. 41,
 /// section 3.3), of density 1 / volume inside it and 0 outside.

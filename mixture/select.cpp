@@ -37,6 +37,7 @@ struct Task {
   const SampleDesign& design;
   const SelectionOptions& options;
   std::uint64_t seed;
+  const GaussianMixture* start;  ///< may be null
   double total_weight;
   Index distinct_points;
 
@@ -84,11 +85,11 @@ FittedCandidate fit_candidate(const Task& task, const EmSweep& sweep, Index comp
   row.restarts = options.em.restarts;
   row.effective_samples = task.design.effective_samples > 0.0 ? task.design.effective_samples : task.total_weight;
   if (components > task.distinct_points) return {{}, unfitted(row, CandidateStatus::too_few_points)};
-  const bool given = options.start && options.start->components() == components;
+  const bool given = task.start && task.start->components() == components;
   EmResult fit;
   double cost = 0.0;
   try {
-    fit = sweep.fit(components, task.seed_of(components), given ? &*options.start : nullptr);
+    fit = sweep.fit(components, task.seed_of(components), given ? task.start : nullptr);
     cost = classification_cost(fit.mixture, task.points);
   } catch (const NotPositiveDefinite&) {
     return {{}, unfitted(row, CandidateStatus::failed)};
@@ -179,7 +180,7 @@ MixtureResult with_memberships(const FeatureCloud& cloud, Index windows, Selecti
 }  // namespace
 
 Selection select(const PointSet& points, const SampleDesign& design, const SelectionOptions& options,
-                 std::uint64_t seed) {
+                 std::uint64_t seed, const GaussianMixture* start) {
   const std::vector<Index> components = sorted_components(options);
   if (points.count() == 0) throw DataError("there are no points to be clustered");
   if (!design.runs.empty() && std::ssize(design.runs) != points.count())
@@ -193,7 +194,7 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
     throw std::invalid_argument(
         fmt::format("a bootstrap needs 2 resamples or more (0: none), given {}", options.bootstrap));
   const double weight = points.weights.size() > 0 ? points.weights.sum() : static_cast<double>(points.count());
-  const Task task{points, design, options, seed, weight, count_distinct(points, components.back())};
+  const Task task{points, design, options, seed, start, weight, count_distinct(points, components.back())};
   std::vector<FittedCandidate> fitted = fit_all(task, components);
   Selection result;
   for (const FittedCandidate& candidate : fitted) result.candidates.push_back(candidate.row);
@@ -208,10 +209,10 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
 }
 
 MixtureResult select_mixture(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options,
-                             std::uint64_t seed) {
+                             std::uint64_t seed, const GaussianMixture* start) {
   check_enough(fits, cloud, options);
   const SampleDesign design{effective_samples(cloud, fits.length, fits.step), cloud.runs};
-  return with_memberships(cloud, fits.count(), select(cloud.point_set(), design, options, seed));
+  return with_memberships(cloud, fits.count(), select(cloud.point_set(), design, options, seed, start));
 }
 
 MixtureResult merge_components(MixtureResult result, Index most) {

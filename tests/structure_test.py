@@ -41,18 +41,21 @@ MAY_INCLUDE = {
     "app/report": BELOW_APP + ["app/chain", "app/config", "app/text", "app/study"],
     "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("chain", "check", "config", "text", "study", "report")],
 }
+# Whose the installed headers <modebank/NAME/...> are.
+PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge",
+          "learn": "filter/learn", "archive": "io/archive/bank"}
 # The way lanes of a processor's vector registers are used is the one detail that all kernels share.
 SHARED_DETAIL = "ident/base/detail"
 
 
 def folder_of(path):
     """The named folder that a file belongs to: the longest one."""
+    if installed := re.match(r"(?:\w+/include/)?modebank/(\w+)/", path):
+        return PUBLIC[installed[1]]
     return max((f for f in MAY_INCLUDE if path.startswith(f + "/")), key=len, default=None)
 
 
 def offence(source, header):
-    if header.startswith("modebank/"):
-        return None
     home, target = folder_of(source), folder_of(header)
     if target is None:
         return None if header.startswith("tests/") else "is in no folder of the project"

@@ -127,7 +127,7 @@ void Chain::identify_windows(const WindowInputs& inputs) {
 }
 
 void Chain::cluster_windows(const MixtureInputs& inputs) {
-  const std::string& start = inputs.mixture.start_file;
+  const std::string& start = inputs.start_file;
   const auto compute = [&] {
     archive_.mixture = cluster(*archive_.recording, *archive_.windows, inputs, listener_);
     mixture_files_.clear();

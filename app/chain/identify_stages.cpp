@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "app/chain/section.hpp"
 #include "app/chain/stages.hpp"
@@ -36,15 +37,15 @@ WindowFits identify(const Recording& recording, const WindowInputs& inputs) {
 namespace {
 
 /// The mixture of another archive, which must be over the same features.
-GaussianMixture stored_start(const ClusterOptions& options, const std::vector<std::string>& features,
+GaussianMixture stored_start(const MixtureInputs& inputs, const std::vector<std::string>& features,
                              const Listener& listener) {
-  const std::string& file = options.start_file;
+  const std::string& file = inputs.start_file;
   Archive stored = read_archive(file);
   if (!stored.mixture) throw DataError(fmt::format("{} holds no mixture to start from", file));
   if (stored.mixture->feature_names != features)
     throw DataError(fmt::format("the mixture of {} to start from is over {}, this one over {}", file,
                                 fmt::join(stored.mixture->feature_names, ", "), fmt::join(features, ", ")));
-  const std::vector<Index>& sizes = options.selection.components;
+  const std::vector<Index>& sizes = inputs.mixture.selection.components;
   const Index components = stored.mixture->mixture.components();
   if (std::find(sizes.begin(), sizes.end(), components) == sizes.end())
     listener.warning(fmt::format("the mixture of {} to start from has {} components, which is not among the candidates",
@@ -57,13 +58,11 @@ GaussianMixture stored_start(const ClusterOptions& options, const std::vector<st
 MixtureResult cluster(const Recording& recording, const WindowFits& windows, const MixtureInputs& inputs,
                       const Listener& listener) {
   const Stopwatch watch;
-  const ClusterOptions& options = inputs.mixture;
-  const FeatureCloud cloud =
-      make_features(windows, options.features, options.windows, recording.states, options.straddling,
-                    options.error_aware ? WindowErrors::include : WindowErrors::ignore);
-  SelectionOptions selection = options.selection;
-  if (!options.start_file.empty()) selection.start = stored_start(options, cloud.names, listener);
-  MixtureResult result = select_mixture(windows, cloud, selection, inputs.seed);
+  const FeatureCloud cloud = make_features(windows, recording.states, inputs.mixture);
+  std::optional<GaussianMixture> start;
+  if (!inputs.start_file.empty()) start = stored_start(inputs, cloud.names, listener);
+  MixtureResult result =
+      select_mixture(windows, cloud, inputs.mixture.selection, inputs.seed, start ? &*start : nullptr);
   listener.progress(fmt::format("mixture: {} components from {} windows in {:.2f} s", result.mixture.components(),
                                 cloud.windows.size(), watch.seconds()));
   return result;

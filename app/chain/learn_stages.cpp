@@ -12,7 +12,7 @@ namespace modebank {
 
 GlobalModel linear_global(const Recording& recording, const WindowFits& windows, const FitOptions& window) {
   const auto motion = motion_model(window, recording.state_count(), recording.input_count());
-  return motion ? linearise(*motion, windows.global, operating_point(recording)) : windows.global;
+  return modebank::linear_global(recording, windows, motion.get());
 }
 
 Competitors learn_competitors(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
@@ -29,11 +29,9 @@ namespace {
 
 /// The bank, refined if the options say so.
 Refinement learn(const LearnedFrom& from, const BankInputs& inputs, const BankOptions& options) {
-  const Eigen::MatrixXd& R = from.baseline.R;
-  if (options.refine == Refine::em)
-    return learn_refined_bank(from.recording, from.windows, from.mixture, options, R, inputs.filter.value());
   const auto motion = motion_model(inputs.window, from.recording.state_count(), from.recording.input_count());
-  return {learn_bank(from.recording, from.windows, from.mixture, options, R, motion.get()), {}, {}, {}, {}};
+  return learn_as_asked(from.recording, from.windows, from.mixture, options, from.baseline.R, inputs.filter,
+                        motion.get());
 }
 
 /// What a limit on the number of modes cost: the same bank is learned without it.

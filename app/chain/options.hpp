@@ -9,18 +9,9 @@
 #include "ident/fit/options.hpp"
 #include "io/import/options.hpp"
 #include "mixture/select.hpp"
+#include "modebank/mixture/options.hpp"
 
 namespace modebank {
-
-/// Which cloud of windows is clustered, and how.
-struct ClusterOptions {
-  SelectionOptions selection;
-  FeatureSet features = FeatureSet::parameters_and_noise;
-  WindowChoice windows = WindowChoice::automatic;
-  StraddlingWindows straddling = StraddlingWindows::leave_out;
-  bool error_aware = false;
-  std::string start_file;  ///< archive whose mixture is a start; empty: selection.em.start alone
-};
 
 /// What is found out about a filter, beside how it steps.
 struct ScoringOptions {
@@ -34,6 +25,7 @@ struct ChainOptions {
   DataOptions data;
   FitOptions window;
   ClusterOptions mixture;
+  std::string mixture_start;  ///< archive whose mixture is a start; empty: mixture.selection.em.start alone
   BankOptions bank;
   FilterOptions filter;
   ScoringOptions scoring;

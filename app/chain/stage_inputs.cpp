@@ -18,10 +18,10 @@ BankInputs bank_inputs(const ChainOptions& options, const FitOptions& window) {
 ChainInputs chain_inputs(const ChainOptions& options) {
   FitOptions window = options.window;
   window.seed = options.seed;
-  const std::string& start = options.mixture.start_file;
+  const std::string& start = options.mixture_start;
   return {{options.data},
           {window},
-          {options.mixture, start.empty() ? "" : describe_file(start).sha256, options.seed},
+          {options.mixture, start, start.empty() ? "" : describe_file(start).sha256, options.seed},
           {window},
           bank_inputs(options, window),
           {window, options.filter.time_steps, options.scoring},

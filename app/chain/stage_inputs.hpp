@@ -20,7 +20,8 @@ struct WindowInputs {
 
 struct MixtureInputs {
   ClusterOptions mixture;
-  std::string start_sha256;  ///< of mixture.start_file's content; empty without one
+  std::string start_file;    ///< archive whose mixture is a start; empty without one
+  std::string start_sha256;  ///< of its content; empty without one
   std::uint64_t seed = 1;
 };
 
@@ -58,7 +59,7 @@ struct ChainInputs {
   BankScoreInputs bank_scores;
 };
 
-/// Parts the options into what each stage needs. Reads mixture.start_file, if there is one, for its hash: throws
+/// Parts the options into what each stage needs. Reads mixture_start, if there is one, for its hash: throws
 /// ConfigurationError when it cannot be read.
 ChainInputs chain_inputs(const ChainOptions& options);
 

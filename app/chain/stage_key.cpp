@@ -54,12 +54,6 @@ class KeyText {
     for (const T& value : values) put(value);
   }
   template <class T>
-  void put(const Eigen::DenseBase<T>& values) {
-    fields(values.rows(), values.cols());
-    for (Index column = 0; column < values.cols(); ++column)
-      for (Index row = 0; row < values.rows(); ++row) put(values(row, column));
-  }
-  template <class T>
   requires std::is_aggregate_v<T>
   void put(const T& value);
 };
@@ -71,10 +65,8 @@ MODEBANK_KEY_FIELDS(FitOptions, model, state_lags, input_lags, input_delay, whee
                     seed)
 MODEBANK_KEY_FIELDS(EmOptions, covariance, start, restarts, start_runs, split_merge, tolerance, max_iterations,
                     covariance_floor, noise_component)
-MODEBANK_KEY_FIELDS(UniformNoise, weight, lower, upper)
-MODEBANK_KEY_FIELDS(GaussianMixture, weights, means, covariances, type, noise)
-MODEBANK_KEY_FIELDS(SelectionOptions, components, criterion, heldout, em, start, bootstrap)
-MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, straddling, error_aware, start_file)
+MODEBANK_KEY_FIELDS(SelectionOptions, components, criterion, heldout, em, bootstrap)
+MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, straddling, error_aware)
 MODEBANK_KEY_FIELDS(RefineTuning, checkpoints, forgettings, noise_prior_samples, fewest_whole_runs, shortest_stretch,
                     Q_transitions, other_Q_transitions, Q_transitions_unvalidated, Q_transitions_with_R,
                     least_information, alternations, start_stay, modes_kept, duplicate_significance, growth_slack,
@@ -88,7 +80,7 @@ MODEBANK_KEY_FIELDS(ScoringOptions, horizon, smooth)
 
 MODEBANK_KEY_FIELDS(DataInputs, data)
 MODEBANK_KEY_FIELDS(WindowInputs, window)
-MODEBANK_KEY_FIELDS(MixtureInputs, mixture, start_sha256, seed)
+MODEBANK_KEY_FIELDS(MixtureInputs, mixture, start_file, start_sha256, seed)
 MODEBANK_KEY_FIELDS(CompetitorInputs, window)
 MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter)
 MODEBANK_KEY_FIELDS(CompetitorScoreInputs, window, time_steps, scoring)

@@ -43,7 +43,7 @@ constexpr Command commands[] = {
 };
 
 std::string option_help() {
-  const Config defaults = default_config();
+  const Config defaults{};
   std::string text, section;
   for (const Option& option : option_table()) {
     if (option.section() != section) text += fmt::format("\n[{}]\n", option.section());
@@ -58,7 +58,7 @@ std::string option_help() {
 
 /// README's table of keys, so that it is this table and no other.
 std::string option_markdown() {
-  const Config defaults = default_config();
+  const Config defaults{};
   std::string text = "| key | allowed | unit | default | meaning |\n|---|---|---|---|---|\n";
   for (const Option& option : option_table()) {
     const std::string value = option.get(defaults);

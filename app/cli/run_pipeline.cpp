@@ -57,7 +57,7 @@ void check_usage(const CommandLine& line, const Config& config) {
     throw ConfigurationError("archive.bank: only evaluate runs a stored bank");
   if (!config.archive.bank.empty() && !config.archive.input.empty())
     throw ConfigurationError("archive.bank and archive.input: give one of them");
-  for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture.start_file})
+  for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture_start})
     if (!file.empty() && !std::filesystem::exists(file))
       throw ConfigurationError(fmt::format("{}: no such file", file));
 }
@@ -71,7 +71,7 @@ void check_output(const CommandLine& line, const Config& config) {
       throw ConfigurationError(fmt::format("archive.output: {} is read by this run; name another file", file.string()));
   };
   require_other(line.files.front());
-  for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture.start_file})
+  for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture_start})
     if (!file.empty()) require_other(file);
   if (!config.archive.input.empty()) return;
   for (const std::filesystem::path& file : data_files(config.data)) require_other(file);

@@ -12,7 +12,7 @@ namespace {
 
 /// A key that the simulated system does not have would be ignored: say so.
 void check_keys_apply(const Config& config) {
-  const Config defaults = default_config();
+  const Config defaults{};
   for (const Option& option : option_table())
     if (option.only_for && *option.only_for != config.simulate.kind && option.get(config) != option.get(defaults))
       throw ConfigurationError(fmt::format("{} = {} belongs to simulate.system = {}, but the system is {}", option.key,

@@ -70,6 +70,7 @@ struct Config {
   DataOptions data;
   FitOptions window;
   ClusterOptions mixture;
+  std::string mixture_start;  ///< an archive as mixture.start; empty: none
   BankOptions bank;
   FilterOptions filter;
   ScoringOptions scoring;  ///< of the [filter] section what is not about how a filter steps
@@ -80,9 +81,6 @@ struct Config {
   SimulateConfig simulate;
   StudyConfig study;
 };
-
-/// Defaults that are not those of the library's own structs.
-Config default_config();
 
 /// What of it decides the numbers of a run.
 ChainOptions chain_options(const Config& config);

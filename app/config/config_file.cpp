@@ -117,7 +117,7 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
   std::ifstream stream(path);
   if (!stream || std::filesystem::is_directory(path))
     throw ConfigurationError(fmt::format("{}: cannot read this configuration file", path.string()));
-  Config config = default_config();
+  Config config;
   std::map<std::string, int> seen;
   for (const FileEntry& entry : parse_lines(stream, path.string())) {
     const std::string where = fmt::format("{}:{}", path.string(), entry.line);
@@ -146,7 +146,7 @@ namespace {
 /// The known keys of a resolved configuration whose name `wanted` takes.
 template <class Wanted>
 Config config_of(const std::string& resolved, Wanted wanted) {
-  Config config = default_config();
+  Config config;
   for (const auto& [key, value] : resolved_values(resolved))
     if (wanted(key) && find_option(key)) apply(config, "stored configuration", key, value, false);
   return config;

@@ -6,14 +6,8 @@
 
 namespace modebank::app {
 
-Config default_config() {
-  Config config;
-  for (Eigen::Index k = 1; k <= 12; ++k) config.mixture.selection.components.push_back(k);
-  return config;
-}
-
 ChainOptions chain_options(const Config& c) {
-  return {c.data, c.window, c.mixture, c.bank, c.filter, c.scoring, c.job.seed};
+  return {c.data, c.window, c.mixture, c.mixture_start, c.bank, c.filter, c.scoring, c.job.seed};
 }
 
 const std::vector<Option>& option_table() {

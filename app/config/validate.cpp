@@ -13,7 +13,7 @@ void require(bool condition, const std::string& message) {
 }
 
 void check_prior(const FitOptions& window, Index parameters) {
-  const Index sds = window.prior_sd.size();
+  const Index sds = std::ssize(window.prior_sd);
   require(sds <= 1 || sds == parameters,
           fmt::format("window.prior_sd has {} values: give one, or one per parameter ({}), or none", sds, parameters));
 }

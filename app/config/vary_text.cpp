@@ -32,7 +32,7 @@ const Option& variable_option(const std::string& key) {
 
 /// The value as a resolved configuration states it.
 std::string canonical(const Option& option, const std::string& value) {
-  Config scratch = default_config();
+  Config scratch;
   try {
     option.set(scratch, value);
   } catch (const std::invalid_argument& error) {

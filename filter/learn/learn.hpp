@@ -9,46 +9,9 @@
 #include "ident/data/trajectory.hpp"
 #include "ident/model/local_model.hpp"
 #include "mixture/select.hpp"
+#include "modebank/learn/options.hpp"
 
 namespace modebank {
-
-enum class ThetaSource { pooled, mean };
-enum class NoiseSource { per_mode, shared, fixed };
-enum class TransitionSource { labels, stay };
-enum class Refine { none, em };
-
-template <>
-struct EnumNames<ThetaSource> {
-  static constexpr Names<2> values{"pooled", "mean"};
-};
-
-template <>
-struct EnumNames<NoiseSource> {
-  static constexpr Names<3> values{"per-mode", "shared", "fixed"};
-};
-
-template <>
-struct EnumNames<TransitionSource> {
-  static constexpr Names<2> values{"labels", "stay"};
-};
-
-template <>
-struct EnumNames<Refine> {
-  static constexpr Names<2> values{"none", "em"};
-};
-
-struct BankOptions {
-  ThetaSource theta = ThetaSource::pooled;
-  NoiseSource noise = NoiseSource::per_mode;
-  TransitionSource transition = TransitionSource::labels;
-  double stay = 0.95;                          ///< diagonal of the transition matrix for TransitionSource::stay
-  double process_variance = 0.01;              ///< Q diagonal for NoiseSource::fixed [state unit^2]
-  std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; empty: the baseline's R
-  bool screen = true;                          ///< leave unstable and starved modes out
-  Index modes = 0;                             ///< at most so many: the closest components are merged; 0: no limit
-  Refine refine = Refine::none;                ///< em: refine_bank takes over from the mixture's bank
-  RefineOptions em;
-};
 
 /// One Kalman filter on the global model, Q and R by maximum likelihood, and how that ended.
 struct Baseline {
@@ -71,6 +34,12 @@ Bank learn_noise_only(const Recording& recording, const LinearStructure& structu
 /// when that one is screened too.
 Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                 const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion = nullptr);
+
+/// learn_refined_bank or learn_bank alone, as the options say; only the first needs `filter`. It knows no motion
+/// models: throws std::invalid_argument for both.
+Refinement learn_as_asked(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
+                          const BankOptions& options, const Eigen::MatrixXd& R,
+                          const std::optional<FilterOptions>& filter, const MotionModel* motion);
 
 /// learn_bank, then refine_bank from it and from what is left of the mixture when its closest components are merged
 /// (merge_components) down to three quarters of the modes, again and again until there is one: where more modes do not

@@ -6,6 +6,7 @@
 
 #include "ident/model/linear_model.hpp"
 #include "ident/model/motion_model.hpp"
+#include "modebank/filter/screened_mode.hpp"
 
 namespace modebank {
 
@@ -45,14 +46,6 @@ struct Mode {
 struct NoiseAdaptation {
   double forgetting = 0.98;  ///< per sample, in (0, 1]: 1 / (1 - forgetting) samples are remembered; 1: all of the run
   double prior_samples = 5;  ///< how many samples at scale one a run's start is worth, > 0
-};
-
-/// A mode that was left out of the bank, and why.
-struct ScreenedMode {
-  Eigen::Index component = 0;  ///< position in the mixture
-  double weight = 0.0;
-  double spectral_radius = 0.0;
-  std::string reason;
 };
 
 /// K modes, how they follow each other, and how the state is measured: y = C x + v, v ~ N(0, R).

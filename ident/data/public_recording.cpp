@@ -33,6 +33,17 @@ void check(const RecordedRun& run, Index states, Index inputs) {
           "times do not increase");
 }
 
+std::vector<Channel> channels(const std::vector<std::string>& names, Index count, const char* what,
+                              const char* prefix) {
+  if (!names.empty() && std::ssize(names) != count)
+    throw std::invalid_argument("there are " + std::to_string(names.size()) + " " + what + "_names for " +
+                                std::to_string(count) + " rows of " + what);
+  std::vector<Channel> result;
+  for (Index i = 0; i < count; ++i)
+    result.push_back({names.empty() ? prefix + std::to_string(i + 1) : names[static_cast<std::size_t>(i)], ""});
+  return result;
+}
+
 }  // namespace
 
 Trajectory to_trajectory(const RecordedRun& run, Index states, Index inputs) {
@@ -45,6 +56,16 @@ Trajectory to_trajectory(const RecordedRun& run, Index states, Index inputs) {
   trajectory.input = view(run.input);
   trajectory.weight = view(run.weight);
   return trajectory;
+}
+
+Recording to_recording(const RecordedRuns& given) {
+  if (given.runs.empty()) throw std::invalid_argument("there are no runs");
+  const Index states = given.runs.front().state.rows, inputs = given.runs.front().input.rows;
+  Recording recording;
+  recording.states = channels(given.state_names, states, "state", "x");
+  recording.inputs = channels(given.input_names, inputs, "input", "u");
+  for (const RecordedRun& run : given.runs) recording.runs.push_back(to_trajectory(run, states, inputs));
+  return recording;
 }
 
 }  // namespace modebank

@@ -9,4 +9,8 @@ namespace modebank {
 /// run when its sizes do not fit or its times do not increase.
 Trajectory to_trajectory(const RecordedRun& run, Index states, Index inputs);
 
+/// All runs, in their order. Throws as to_trajectory does, and for names that are not as many as the first run has
+/// signals.
+Recording to_recording(const RecordedRuns& runs);
+
 }  // namespace modebank

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,8 @@ void check_options(const FitOptions& options, Index parameters) {
   require(options.max_iterations >= 1, "max_iterations", std::to_string(options.max_iterations), "at least 1");
   if (options.scale == ScaleSource::fixed)
     require(options.sigma > 0.0 && std::isfinite(options.sigma), "sigma", std::to_string(options.sigma), "positive");
-  const Eigen::VectorXd& sd = options.prior_sd;
-  require(sd.size() <= 1 || sd.size() == parameters, "prior_sd", std::to_string(sd.size()) + " values",
+  const std::vector<double>& sd = options.prior_sd;
+  require(sd.size() <= 1 || std::ssize(sd) == parameters, "prior_sd", std::to_string(sd.size()) + " values",
           "one value, or one per parameter (" + std::to_string(parameters) + ")");
   for (const double value : sd)
     require(value > 0.0 && std::isfinite(value), "prior_sd", std::to_string(value), "positive");
@@ -121,11 +122,11 @@ class Fitting {
   /// Windows first .. first + count - 1 into the columns of `fits`.
   void fit(Index first, Index count, WindowFits& fits) {
     fits.resize(count);
-    std::vector<char> by_batch(static_cast<std::size_t>(count), 0);
+    fits.by_batch.assign(static_cast<std::size_t>(count), 0);
     const auto ranges = plan_.ranges(first, count, longest_range(batch_.get()));
     tbb::parallel_for(std::size_t{0}, ranges.size(),
-                      [&](std::size_t j) { fit_range(ranges[j], ranges[j].first - first, by_batch, fits); });
-    audit(first, count, by_batch, fits);
+                      [&](std::size_t j) { fit_range(ranges[j], ranges[j].first - first, fits); });
+    audit(first, count, fits);
     fits.audit = common_.audit;
   }
 
@@ -168,15 +169,15 @@ class Fitting {
     return all;
   }
 
-  void fit_range(const WindowPlan::Range& range, Index column, std::vector<char>& by_batch, WindowFits& fits) {
+  void fit_range(const WindowPlan::Range& range, Index column, WindowFits& fits) {
     const std::vector<batch::Verdict>* const verdict =
         batch_ ? &batch_->solve(range, columns_from(fits, column)) : nullptr;
     for (Index i = 0; i < range.count; ++i) {
       const Window window = plan_.window(range.first + i);
       const auto w = static_cast<std::size_t>(column + i);
       fits.windows[w] = window;
-      by_batch[w] = verdict && (*verdict)[static_cast<std::size_t>(i)] == batch::Verdict::solved ? 1 : 0;
-      if (by_batch[w]) continue;
+      fits.by_batch[w] = verdict && (*verdict)[static_cast<std::size_t>(i)] == batch::Verdict::solved ? 1 : 0;
+      if (fits.by_batch[w]) continue;
       const LocalModel fit = fitter_->fit(window, prior());
       if (fit.solved) ++by_ceres_;
       fits.set(column + i, fit);
@@ -184,21 +185,22 @@ class Fitting {
   }
 
   /// Counts who solved how many of these windows, and checks a sample of the batch solver's.
-  void audit(Index first, Index count, const std::vector<char>& by_batch, WindowFits& fits) {
-    common_.audit.batch += std::count(by_batch.begin(), by_batch.end(), 1);
+  void audit(Index first, Index count, WindowFits& fits) {
+    common_.audit.batch += std::count(fits.by_batch.begin(), fits.by_batch.end(), 1);
     const auto begin = std::lower_bound(audited_.begin(), audited_.end(), first),
                end = std::lower_bound(audited_.begin(), audited_.end(), first + count);
     std::vector<AuditedWindow> results(static_cast<std::size_t>(end - begin));
     tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
       const Index column = begin[static_cast<std::ptrdiff_t>(i)] - first;
       const auto w = static_cast<std::size_t>(column);
-      if (by_batch[w]) results[i] = audit_window(*linear_, fits.windows[w], prior(), fits.at(column));
+      if (fits.by_batch[w]) results[i] = audit_window(*linear_, fits.windows[w], prior(), fits.at(column));
     });
     for (std::size_t i = 0; i < results.size(); ++i) {
       if (!add_to_audit(results[i], common_.audit)) continue;
       const Index column = begin[static_cast<std::ptrdiff_t>(i)] - first;
       const LocalModel fit = fitter_->fit(fits.windows[static_cast<std::size_t>(column)], prior());
       --common_.audit.batch;
+      fits.by_batch[static_cast<std::size_t>(column)] = 0;
       if (fit.solved) ++by_ceres_;
       fits.set(column, fit);
     }
@@ -223,6 +225,14 @@ WindowFits collect(Fitting&& fitting) {
 
 }  // namespace
 
+FitOptions options_for(const MotionModel& model, const Recording& recording, FitOptions options) {
+  options.model = model.name();
+  if (is_linear(options)) throw std::invalid_argument("a motion model cannot be called " + options.model);
+  if (model.states() != recording.state_count() || model.inputs() != recording.input_count())
+    throw std::invalid_argument("the motion model " + options.model + " has other states or inputs than the runs");
+  return options;
+}
+
 void check_model(const FitOptions& options, Index states, Index inputs) {
   const bool lags = options.state_lags != 1 || options.input_lags != 1 || options.input_delay != 1;
   if (lags && options.model != "varx")
@@ -231,6 +241,12 @@ void check_model(const FitOptions& options, Index states, Index inputs) {
   if (options.model == "varx" && options.residual == ResidualKind::simulation)
     throw ConfigurationError("residual = simulation does not simulate model = varx");
   motion_model(options, states, inputs);
+}
+
+std::vector<std::string> model_names() {
+  std::vector<std::string> names{"linear", "varx"};
+  for (const std::string& name : motion_model_names()) names.push_back(name);
+  return names;
 }
 
 std::shared_ptr<const MotionModel> motion_model(const FitOptions& options, Index states, Index inputs) {

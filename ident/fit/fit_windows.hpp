@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "ident/data/trajectory.hpp"
 #include "ident/fit/options.hpp"
@@ -31,9 +33,16 @@ WindowFits stream_windows(const Recording& recording, const FitOptions& options,
 /// there. The global model is the one-step one for both kinds of residuals. Throws as fit_windows does.
 WindowFits fit_windows(const Recording& recording, const FitOptions& options, const MotionModel& model);
 
+/// The options with the name of a model that is handed over. Throws std::invalid_argument for the name of a linear one
+/// and for other states or inputs than the recording's.
+FitOptions options_for(const MotionModel& model, const Recording& recording, FitOptions options);
+
 /// Whether FitOptions name one model that fits n states and m inputs. Throws ConfigurationError for lags of a model
 /// that has none, residuals that the model does not have, an unknown model, and as make_motion_model does.
 void check_model(const FitOptions& options, Index states, Index inputs);
+
+/// Every model that options may name: linear, varx and the motion models.
+std::vector<std::string> model_names();
 
 /// The motion model that the options name; null for linear models.
 std::shared_ptr<const MotionModel> motion_model(const FitOptions& options, Index states, Index inputs);

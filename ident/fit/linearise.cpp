@@ -68,4 +68,8 @@ GlobalModel linearise(const MotionModel& model, const GlobalModel& global, const
   return linear;
 }
 
+GlobalModel linear_global(const Recording& recording, const WindowFits& windows, const MotionModel* motion) {
+  return motion ? linearise(*motion, windows.global, operating_point(recording)) : windows.global;
+}
+
 }  // namespace modebank

@@ -31,4 +31,7 @@ LinearisedMotion linearise(const MotionModel& model, const Eigen::VectorXd& thet
 /// The global model in linear terms, its covariance carried over by the derivative.
 GlobalModel linearise(const MotionModel& model, const GlobalModel& global, const OperatingPoint& at);
 
+/// The global model of windows in linear terms. `motion`: what they were fitted with; null for linear models.
+GlobalModel linear_global(const Recording& recording, const WindowFits& windows, const MotionModel* motion);
+
 }  // namespace modebank

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ident/fit/scale.hpp"
+#include "modebank/base/eigen.hpp"
 
 namespace modebank {
 
@@ -43,10 +44,10 @@ Eigen::VectorXd default_prior_sd(const Eigen::MatrixXd& all, const GlobalModel& 
 
 Eigen::VectorXd make_prior_sd(const FitOptions& options, const GlobalModel& global,
                               const std::function<Eigen::MatrixXd()>& unregularised) {
-  const Eigen::VectorXd& given = options.prior_sd;
+  const std::vector<double>& given = options.prior_sd;
   const Index p = global.theta.size();
-  if (given.size() == p) return given;
-  if (given.size() == 1) return Eigen::VectorXd::Constant(p, given(0));
+  if (std::ssize(given) == p) return view(given);
+  if (given.size() == 1) return Eigen::VectorXd::Constant(p, given.front());
   return default_prior_sd(unregularised(), global, options.length);
 }
 

@@ -7,38 +7,10 @@
 #include "ident/data/window.hpp"
 #include "ident/model/linear_model.hpp"
 #include "ident/model/motion_model.hpp"
-#include "modebank/base/names.hpp"
+#include "modebank/ident/options.hpp"
+#include "modebank/ident/window_audit.hpp"
 
 namespace modebank {
-
-/// How a window's fit ended. The values are those of /windows/status in the archive.
-enum class FitStatus : int { converged = 0, iteration_limit = 1, rank_deficient = 2, failed = 3 };
-
-/// Robust losses rho(s) of s = |r|^2 as Ceres defines them.
-enum class Loss { trivial, huber, cauchy, softlone, tukey, arctan };
-
-template <>
-struct EnumNames<Loss> {
-  static constexpr Names<6> values{"trivial", "huber", "cauchy", "softlone", "tukey", "arctan"};
-};
-
-/// What a model is compared with: each sample predicted from the measured one before (equation error), or the whole
-/// window simulated from its first sample, which then is estimated, too (output error: Ljung 1999, section 3.2). The
-/// first assumes process noise, the second measurement noise.
-enum class ResidualKind { one_step, simulation };
-
-template <>
-struct EnumNames<ResidualKind> {
-  static constexpr Names<2> values{"one-step", "simulation"};
-};
-
-/// Which covariance of theta is reported (method: Huber 1981 for `model`, HC3 for `sandwich`).
-enum class CovarianceKind { model, sandwich };
-
-template <>
-struct EnumNames<CovarianceKind> {
-  static constexpr Names<2> values{"model", "sandwich"};
-};
 
 /// The fit of one window: estimate, uncertainty and how it ended, always together.
 struct LocalModel {
@@ -63,24 +35,6 @@ struct GlobalModel {
   Eigen::MatrixXd residual_covariance;  ///< n x n, population (divided by N)
   Index transitions = 0;                ///< N
   Eigen::VectorXd noise_variance() const { return residual_covariance.diagonal(); }
-};
-
-/// Who solved the windows to what tolerance, and how a random sample of the batch solver's answers compares with those
-/// of Ceres alone, run on to tolerances of 1e-16: both judged by the objective and its gradient.
-struct WindowAudit {
-  /// Relative difference in cost, and gradient (scaled_gradient), above which an answer is no minimum.
-  static constexpr double tolerance = 1e-9, gradient_tolerance = 1e-8;
-  Index batch = 0;           ///< windows that the batch solver solved
-  Index ceres = 0;           ///< windows solved as `ceres_method` says; those of neither are unsolved
-  std::string batch_method;  ///< in words; empty without a batch solver
-  std::string ceres_method;
-  Index checked = 0;                  ///< windows of the batch solver solved again by Ceres alone
-  double cost_difference = 0.0;       ///< largest relative difference in cost
-  double gradient = 0.0;              ///< largest scaled gradient of the batch solver's answers
-  double ceres_gradient = 0.0;        ///< largest scaled gradient of Ceres'
-  double parameter_difference = 0.0;  ///< largest difference of a parameter in its standard errors: information only
-  Index replaced = 0;  ///< checked windows whose cost or gradient was above tolerance: solved anew by `ceres_method`
-  Index lower = 0;     ///< checked windows whose cost was below Ceres' by more (losses with several minima)
 };
 
 /// All windows' fits, one window per column (M columns), so a million windows are a handful of arrays.
@@ -108,6 +62,7 @@ struct WindowFits {
   Eigen::VectorXd prior_sd;         ///< p, the prior's standard deviations; empty without a prior
   GlobalModel global;
   WindowAudit audit;
+  std::vector<char> by_batch;  ///< M, 1 where the batch solver solved the window, else 0; not archived
 
   Index count() const { return static_cast<Index>(windows.size()); }
   Index parameter_count() const;

@@ -31,6 +31,18 @@ file(WRITE ${WORK}/run.ini "[data]\ninputs = pro_*.csv\nstates = imu_*.csv\nstat
 run(${WORK}/installed/bin/modebank simulate ${WORK}/linear.ini)
 run(${WORK}/installed/bin/modebank run ${WORK}/run.ini --data.root ${WORK}/runs --archive.output ${WORK}/bank.h5)
 
+# Each component alone asks for what it links and nothing else.
+foreach(without "filter|HDF5|Ceres|TBB|fmt" "judge|HDF5|Ceres|TBB|fmt" "archive|Ceres|TBB|fmt" "ident|HDF5|fmt" "mixture|HDF5|Ceres" "learn|HDF5")
+  string(REPLACE "|" ";" left_out "${without}")
+  list(POP_FRONT left_out component)
+  list(TRANSFORM left_out REPLACE "(.+)" "-DCMAKE_DISABLE_FIND_PACKAGE_\\1=ON")
+  set(alone ${WORK}/alone_${component})
+  file(WRITE ${alone}/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(alone LANGUAGES C CXX)\n"
+       "find_package(modebank 0.1 REQUIRED COMPONENTS ${component})\n"
+       "add_executable(alone ${SOURCE}/tests/examples/other_eigen.cpp)\ntarget_link_libraries(alone PRIVATE modebank::${component})\n")
+  run(${CMAKE_COMMAND} -S ${alone} -B ${alone}/build -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/installed ${left_out})
+endforeach()
+
 # Users compile as they like: plainly, for wider registers, without optimisation, under a sanitizer, and beside another
 # library of Eigen's that was compiled otherwise. (The flags of the other library come second.)
 set(variants "plain|-O2|-O2 -march=x86-64-v3" "wide|-O2 -march=x86-64-v3|-O2" "debug|-O0 -g -march=x86-64-v3|-O0"
@@ -51,7 +63,11 @@ foreach(variant IN LISTS variants)
   if(NOT output MATCHES "1000 ticks")
     message(FATAL_ERROR "robot_loop said: ${output}")
   endif()
+  run(${build}/identify)
+  message(STATUS "${name}: ${output}")
 endforeach()
 
 needs_only(${WORK}/plain/embedded_bank "hwy")
 needs_only(${WORK}/plain/robot_loop "hwy|hdf5_serial")
+# Ceres may be a static library, and then what it needs itself is asked for, too.
+needs_only(${WORK}/plain/identify "hwy|tbb|fmt|ceres|glog|gflags|cholmod|cxsparse|spqr|lapack|blas|f77blas")

@@ -16,6 +16,7 @@ using Eigen::Index;
 
 SelectionOptions up_to(Index most, Criterion criterion = Criterion::bic) {
   SelectionOptions options;
+  options.components.clear();
   for (Index k = 1; k <= most; ++k) options.components.push_back(k);
   options.criterion = criterion;
   options.heldout = HeldoutChoice::never;  // unless it is the criterion

@@ -15,6 +15,7 @@ using Eigen::Index;
 
 SelectionOptions from_one_to(Index most) {
   SelectionOptions options;
+  options.components.clear();
   for (Index k = 1; k <= most; ++k) options.components.push_back(k);
   return options;
 }
@@ -94,8 +95,8 @@ TEST(Selection, StartsFromAGivenMixture) {
   options.em.restarts = 1;
   options.em.split_merge = 0;
   options.em.max_iterations = 0;  // what comes out is the start
-  options.start = three_clusters(12.0);
-  const Selection result = select(points, {}, options, 1);
+  const GaussianMixture start = three_clusters(12.0);
+  const Selection result = select(points, {}, options, 1, &start);
   EXPECT_NEAR(result.candidates[2].log_likelihood, log_density(three_clusters(12.0), points).sum(), 1e-8);
 }
 

@@ -50,7 +50,7 @@ struct Stretches {
 
   WindowFits fits(Prior prior, double prior_sd = 0.0) const {
     FitOptions options;
-    if (prior_sd > 0.0) options.prior_sd = Eigen::VectorXd::Constant(1, prior_sd);
+    if (prior_sd > 0.0) options.prior_sd = {prior_sd};
     options.length = window_length;
     options.loss = Loss::trivial;
     options.prior = prior;

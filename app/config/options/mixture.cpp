@@ -17,10 +17,10 @@ Option start_option() {
     if (!kind && !text.ends_with(".h5"))
       throw std::invalid_argument("must be one of " + words_of<StartKind>() + ", or an archive (.h5)");
     config.mixture.selection.em.start = kind.value_or(StartKind::random);
-    config.mixture.start_file = kind ? "" : text;
+    config.mixture_start = kind ? "" : text;
   };
   result.get = [get = result.get](const Config& config) {
-    return config.mixture.start_file.empty() ? get(config) : config.mixture.start_file;
+    return config.mixture_start.empty() ? get(config) : config.mixture_start;
   };
   return result;
 }

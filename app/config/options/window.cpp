@@ -2,15 +2,14 @@
 
 #include "app/config/option_builders.hpp"
 #include "app/config/options/sections.hpp"
-#include "ident/model/motion_model.hpp"
+#include "ident/fit/fit_windows.hpp"
 
 namespace modebank::app {
 namespace {
 
 /// linear, varx and every motion model that is compiled in.
 Option model_option() {
-  std::vector<std::string> models{"linear", "varx"};
-  for (const std::string& model : motion_model_names()) models.push_back(model);
+  const std::vector<std::string> models = model_names();
   Option result = text("window.model", fmt::format("{}", fmt::join(models, " | ")),
                        "A x + B u; with lags; or a motion model of ident/model/models", MODEBANK_FIELD(window.model));
   result.set = [set = result.set, models](Config& config, const std::string& value) {

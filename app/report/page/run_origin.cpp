@@ -13,7 +13,7 @@ using nlohmann::json;
 
 /// Keys whose value is not the default, in the table's order: what makes this run different from any other.
 json changed_settings(const std::string& config) {
-  const Config defaults = default_config();
+  const Config defaults{};
   const std::map<std::string, std::string> values = resolved_values(config);
   json changed = json::array();
   for (const Option& option : option_table()) {

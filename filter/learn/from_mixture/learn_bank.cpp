@@ -218,4 +218,13 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   return refine_bank(recording, fits, starts, em, filter);
 }
 
+Refinement learn_as_asked(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
+                          const BankOptions& options, const Eigen::MatrixXd& R,
+                          const std::optional<FilterOptions>& filter, const MotionModel* motion) {
+  if (options.refine == Refine::em && motion)
+    throw std::invalid_argument("refine = em fits linear modes, not those of the motion model " + fits.model);
+  if (options.refine == Refine::em) return learn_refined_bank(recording, fits, mixture, options, R, filter.value());
+  return {learn_bank(recording, fits, mixture, options, R, motion), {}, {}, {}, {}};
+}
+
 }  // namespace modebank

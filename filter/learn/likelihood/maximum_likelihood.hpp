@@ -7,8 +7,8 @@
 #include "filter/learn/switching/switching_regression.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
-#include "modebank/base/names.hpp"
 #include "modebank/filter/options.hpp"
+#include "modebank/learn/results.hpp"
 
 namespace modebank {
 
@@ -26,16 +26,6 @@ struct LikelihoodTarget {
 struct AscentLimits {
   Index max_iterations = 100;
   double tolerance = 1e-6;  ///< nats per transition: converged when no more is to be gained
-};
-
-/// How a maximisation ended, which the archive says of the one with measurement noise (measurement_noise.hpp). none:
-/// there was none, or it did not pay. iteration_limit: that came before the maximum. stalled: no step raised the
-/// likelihood though its gradient promised more.
-enum class MeasuredFit { none, converged, iteration_limit, stalled };
-
-template <>
-struct EnumNames<MeasuredFit> {
-  static constexpr Names<4> values{"none", "converged", "iteration_limit", "stalled"};
 };
 
 struct LikelihoodMaximum {

@@ -1,57 +1,17 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
-#include <limits>
-#include <string>
 #include <vector>
 
 #include "filter/judge/evaluate.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
-#include "filter/learn/refine/tuning.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/model/local_model.hpp"
+#include "modebank/learn/options.hpp"
+#include "modebank/learn/results.hpp"
 
 namespace modebank {
-
-struct RefineOptions {
-  Index max_iterations = 100;     ///< of expectation-maximisation
-  double tolerance = 1e-6;        ///< nats per transition: stop when the objective gains less
-  Index restarts = 2;             ///< starts from random stretches of the runs besides the mixture's
-  Index members = 1;              ///< fits from different starts that are averaged at most (averaging.hpp)
-  Index folds = 6;                ///< parts of the cross-validation; 1: none, every start runs to convergence
-  bool measurement_noise = true;  ///< R by maximum likelihood of the filter on the training runs; false: the start's R
-  bool screen = true;             ///< take unstable, starved and duplicate modes out
-  bool one_theta = false;         ///< all modes have the same theta and differ in Q: the rival that knows one motion
-  std::uint64_t seed = 1;
-  RefineTuning tuning;
-};
-
-/// One row of the cross-validation inside the training runs.
-struct RefineCandidate {
-  std::string start;  ///< "mixture" or "stretches 1"
-  Index modes = 0;
-  double noise_transitions = 0.0;  ///< how many transitions the prior on Q is worth
-  Index iterations = 0;
-  double score = 0.0;     ///< mean log score of the runs left out, nats per sample; NaN without cross-validation
-  bool selected = false;  ///< several where fits are averaged
-};
-
-/// How the fit went on once R was known to be more than nothing.
-struct MeasurementStage {
-  Index iterations = 0;  ///< with measurement noise; 0: there is none, or they would not have paid
-  MeasuredFit end = MeasuredFit::none;
-  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out
-  double score = std::numeric_limits<double>::quiet_NaN();  ///< the same after them; NaN without cross-validation or R
-};
-
-/// What averaging several fits was worth.
-struct Averaging {
-  Index members = 1;  ///< fits in the bank; those of the candidates that are marked as selected
-  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out: one fit
-  double score = std::numeric_limits<double>::quiet_NaN();         ///< the same of `members` fits
-};
 
 struct Refinement {
   Bank bank;

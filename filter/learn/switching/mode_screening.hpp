@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "filter/learn/refine/tuning.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "filter/step/bank.hpp"
+#include "modebank/learn/tuning.hpp"
 
 namespace modebank {
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "filter/learn/from_mixture/training_transitions.hpp"
-#include "filter/learn/refine/tuning.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "ident/model/local_model.hpp"
+#include "modebank/learn/tuning.hpp"
 
 namespace modebank {
 

@@ -23,7 +23,7 @@ constexpr double rmse_tolerance = 2e-4;
 constexpr double tail_tolerance = 1e-3;  // printed to three decimals
 
 Config ice_config(bool odd_runs_train) {
-  Config config = default_config();
+  Config config;
   config.data.root = test::shared_data_dir().string();
   config.data.inputs = "borealtc/ICE/pro_*.csv";
   config.data.states = "borealtc/ICE/imu_*.csv";

@@ -246,7 +246,7 @@ TEST_F(StageKey, HoldsTheContentOfFiles) {
   const StageKeys a = keys(config, "a"), b = keys(config, "b");
   for (std::size_t stage = 0; stage < stage_count; ++stage) EXPECT_NE(a[stage], b[stage]);
   write_file(file("start.h5"), "one");
-  config.mixture.start_file = file("start.h5").string();
+  config.mixture_start = file("start.h5").string();
   const StageKeys one = keys(config, "a");
   write_file(file("start.h5"), "two");
   const StageKeys two = keys(config, "a");

@@ -74,9 +74,9 @@ TEST_F(ConfigFile, HashIgnoresWhatDecidesNoNumber) {
 }
 
 TEST_F(ConfigFile, EveryOptionReadsItsOwnDefaultBack) {
-  const Config defaults = default_config();
+  const Config defaults{};
   for (const Option& option : option_table()) {
-    Config config = default_config();
+    Config config;
     const std::string text = option.get(defaults);
     // An empty number would mean nothing; only texts, lists and optional numbers may be empty.
     EXPECT_NO_THROW(option.set(config, text)) << option.key << " = " << text;

@@ -17,7 +17,7 @@ namespace {
 using Texts = std::vector<std::string>;
 
 Config with(const std::vector<std::string>& vary) {
-  Config config = default_config();
+  Config config;
   config.study.vary = vary;
   return config;
 }

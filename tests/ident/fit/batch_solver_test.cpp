@@ -92,7 +92,7 @@ TEST_P(Batch, HasTheSameLocalModelsAsCeres) {
         o.covariance = kind;
         o.scale = scale;
         if (missing) o.step *= 3;
-        o.prior_sd = VectorXd::Constant(1, 0.8);
+        o.prior_sd = {0.8};
         const Recording recording = hard_recording(test::skid_structure, 130, missing);
         const WindowFits batch = fit_by(WindowSolver::batch, recording, o),
                          ceres = fit_by(WindowSolver::ceres, recording, o);

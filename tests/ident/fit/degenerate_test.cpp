@@ -88,7 +88,7 @@ TEST_P(Degenerate, HugeAndTinyUnitsDoNotMatter) {
 TEST_P(Degenerate, NumbersWithoutSquaresAreAStatus) {
   const Signals s = excited(0.05);
   FitOptions o = options();
-  o.prior_sd = VectorXd::Ones(1);
+  o.prior_sd = {1.0};
   fit_quietly(s.state * 1e300, s.input * 1e300, o);
   fit_quietly(s.state * 1e-300, s.input * 1e-300, o);
   MatrixXd spike = s.state;

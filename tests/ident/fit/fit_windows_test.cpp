@@ -59,7 +59,7 @@ TEST(FitWindows, AgreeWithFitWindow) {
   options.step = 7;
   options.scale = ScaleSource::fixed;
   options.sigma = 0.06;
-  options.prior_sd = VectorXd::Constant(1, 0.7);
+  options.prior_sd = {0.7};
   const WindowFits fits = fit_windows(recording, options);
   const ParameterPrior prior{fits.global.theta, VectorXd::Constant(3, 0.7)};
   const VectorXd floor = 1e-3 * fits.global.noise_variance().cwiseSqrt();

@@ -190,8 +190,8 @@ TEST(FitWindowsOptions, AreChecked) {
   rejects([](FitOptions& o) { o.step = 0; });
   rejects([](FitOptions& o) { o.loss_scale = -1; });
   rejects([](FitOptions& o) { o.scale = ScaleSource::fixed; });
-  rejects([](FitOptions& o) { o.prior_sd = VectorXd::Ones(2); });
-  rejects([](FitOptions& o) { o.prior_sd = VectorXd::Constant(1, -1.0); });
+  rejects([](FitOptions& o) { o.prior_sd = {1.0, 1.0}; });
+  rejects([](FitOptions& o) { o.prior_sd = {-1.0}; });
   rejects([](FitOptions& o) { o.max_iterations = 0; });
   FitOptions longer;
   longer.length = 60;

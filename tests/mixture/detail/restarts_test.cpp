@@ -115,10 +115,9 @@ TEST(Restarts, BadOptionsAreNamed) {
   GaussianMixture other_features = three_clusters(2.0);
   other_features.means.conservativeResize(1, Eigen::NoChange);
   for (Eigen::MatrixXd& covariance : other_features.covariances) covariance = Eigen::MatrixXd::Identity(1, 1);
-  refused([&](SelectionOptions& options, SampleDesign&) {
-    options.components = {3};
-    options.start = other_features;
-  });
+  SelectionOptions three;
+  three.components = {3};
+  EXPECT_THROW(select(points, {}, three, 1, &other_features), std::invalid_argument);
   refused([&](SelectionOptions&, SampleDesign& design) { design.effective_samples = nan; });
   refused([&](SelectionOptions&, SampleDesign& design) { design.effective_samples = -3.0; });
 }

@@ -17,4 +17,11 @@ struct RecordedRun {
   std::vector<double> weight;  ///< N or empty (all one): of the transition that ends in sample k, >= 0
 };
 
+/// All runs of one study object: the same n states and m inputs in each.
+struct RecordedRuns {
+  std::vector<RecordedRun> runs;         ///< at least one
+  std::vector<std::string> state_names;  ///< n; empty: "x1", "x2", ...
+  std::vector<std::string> input_names;  ///< m; empty: "u1", "u2", ...
+};
+
 }  // namespace modebank

@@ -1,26 +1,24 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
+#include <cstddef>
 
 namespace modebank {
 
 /// The numbers that decide what refinement learns, each with its reason. They are not keys: where an experiment set
 /// one it was made inside the training runs (README, "Refined modes").
 struct RefineTuning {
-  using Index = Eigen::Index;
-
   // The cross-validation inside the training runs.
   /// Iterations after which the runs left out are scored; the limit counts as one. Not before 10: the start has seen
   /// all training runs, and it takes the fit to the others a while to forget that. A first version without that rule
   /// did worse on ice.
-  std::array<Index, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
+  std::array<std::ptrdiff_t, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
   /// Memories of the noise scale that are tried: 20, 50 and 200 samples, and all of the run.
   std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
   /// Samples that a run's start at scale one is worth: from hardly any to those of most short runs.
   std::array<double, 4> noise_prior_samples{1.0, 2.0, 5.0, 20.0};
-  Index fewest_whole_runs = 3;  ///< fewer are cut into stretches: two folds would train on half of the data
-  Index shortest_stretch = 20;  ///< samples; shorter ones would mostly be starts
+  std::ptrdiff_t fewest_whole_runs = 3;  ///< fewer are cut into stretches: two folds would train on half of the data
+  std::ptrdiff_t shortest_stretch = 20;  ///< samples; shorter ones would mostly be starts
 
   // The prior.
   double Q_transitions = 4.0;                            ///< that the prior on Q is worth while starts are compared
@@ -39,7 +37,8 @@ struct RefineTuning {
   double duplicate_significance = 0.95;  ///< of the likelihood-ratio test that tells two modes apart
   /// Above 1, for mean-square growth that power iteration knows to no more digits: an integrator stays.
   double growth_slack = 1e-4;
-  Index iterations_after_screening = 10;  ///< as many as the first checkpoint: the others take over what is left
+  std::ptrdiff_t iterations_after_screening =
+      10;  ///< as many as the first checkpoint: the others take over what is left
 
   // Measurement noise and averaging.
   double least_R_share = 1e-9;  ///< of the global residual variance: the least R that refinement knows, as good as none

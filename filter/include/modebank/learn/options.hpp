@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "modebank/base/names.hpp"
+#include "modebank/filter/options.hpp"
+#include "modebank/ident/options.hpp"
+#include "modebank/learn/tuning.hpp"
+#include "modebank/mixture/options.hpp"
+
+namespace modebank {
+
+/// Where a mode's parameters come from: weighted least squares over its transitions, or its component's mean.
+enum class ThetaSource { pooled, mean };
+
+template <>
+struct EnumNames<ThetaSource> {
+  static constexpr Names<2> values{"pooled", "mean"};
+};
+
+/// Where the modes' process noise Q comes from: each mode's own residuals, all modes' together, or a given variance.
+enum class NoiseSource { per_mode, shared, fixed };
+
+template <>
+struct EnumNames<NoiseSource> {
+  static constexpr Names<3> values{"per-mode", "shared", "fixed"};
+};
+
+/// Where the transition matrix comes from: how labels of neighbouring windows follow each other, or BankOptions::stay.
+enum class TransitionSource { labels, stay };
+
+template <>
+struct EnumNames<TransitionSource> {
+  static constexpr Names<2> values{"labels", "stay"};
+};
+
+/// What follows the bank of the mixture: nothing, or expectation-maximisation of the switching model.
+enum class Refine { none, em };
+
+template <>
+struct EnumNames<Refine> {
+  static constexpr Names<2> values{"none", "em"};
+};
+
+/// How a bank is refined. Defaults are the recommended method.
+struct RefineOptions {
+  std::ptrdiff_t max_iterations = 100;  ///< of expectation-maximisation
+  double tolerance = 1e-6;              ///< nats per transition: stop when the objective gains less
+  std::ptrdiff_t restarts = 2;          ///< starts from random stretches of the runs besides the mixture's
+  std::ptrdiff_t members = 1;           ///< fits from different starts that become one bank at most, if the runs left
+                                        ///< out like it
+  std::ptrdiff_t folds = 6;             ///< parts of the cross-validation; 1: none, every start runs to convergence
+  bool measurement_noise = true;  ///< R by maximum likelihood of the filter on the training runs; false: the start's R
+  bool screen = true;             ///< take unstable, starved and duplicate modes out
+  bool one_theta = false;         ///< all modes have the same theta and differ in Q: the rival that knows one motion
+  std::uint64_t seed = 1;         ///< of the random starts
+  RefineTuning tuning;            ///< what has no key in configurations
+};
+
+/// How a mixture of windows becomes a bank. Defaults are the recommended method.
+struct BankOptions {
+  ThetaSource theta = ThetaSource::pooled;                 ///< of a mode's parameters
+  NoiseSource noise = NoiseSource::per_mode;               ///< of Q
+  TransitionSource transition = TransitionSource::labels;  ///< of the transition matrix
+  double stay = 0.95;                          ///< diagonal of the transition matrix for TransitionSource::stay
+  double process_variance = 0.01;              ///< Q diagonal for NoiseSource::fixed [state unit^2]
+  std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; empty: the baseline's R
+  bool screen = true;                          ///< leave unstable and starved modes out
+  std::ptrdiff_t modes = 0;                    ///< at most so many: the closest components are merged; 0: no limit
+  Refine refine = Refine::none;                ///< em: expectation-maximisation goes on from the mixture's bank
+  RefineOptions em;                            ///< how, then
+};
+
+/// All that decides what is learned from runs.
+struct LearnOptions {
+  FitOptions window;       ///< how windows are cut and fitted
+  ClusterOptions mixture;  ///< how they are clustered
+  BankOptions bank;        ///< how their mixture becomes a bank
+  FilterOptions filter;    ///< that will run the bank; variant kf asks for a single Kalman filter: the baseline
+  std::uint64_t seed = 1;  ///< the one seed: takes the place of those in `window` and `bank`
+};
+
+}  // namespace modebank

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+
+#include "modebank/base/names.hpp"
+
+namespace modebank {
+
+/// How a maximisation of the filter's likelihood with measurement noise ended. none: there was none, or it did not pay.
+/// iteration_limit: that came before the maximum. stalled: no step raised the likelihood though its gradient promised
+/// more.
+enum class MeasuredFit { none, converged, iteration_limit, stalled };
+
+template <>
+struct EnumNames<MeasuredFit> {
+  static constexpr Names<4> values{"none", "converged", "iteration_limit", "stalled"};
+};
+
+/// One row of the cross-validation inside the training runs.
+struct RefineCandidate {
+  std::string start;               ///< "mixture" or "stretches 1"
+  std::ptrdiff_t modes = 0;        ///< of the start
+  double noise_transitions = 0.0;  ///< how many transitions the prior on Q is worth
+  std::ptrdiff_t iterations = 0;   ///< of expectation-maximisation
+  double score = 0.0;     ///< mean log score of the runs left out, nats per sample; NaN without cross-validation
+  bool selected = false;  ///< several where fits are averaged
+};
+
+/// How the fit went on once R was known to be more than nothing.
+struct MeasurementStage {
+  std::ptrdiff_t iterations = 0;        ///< with measurement noise; 0: there is none, or they would not have paid
+  MeasuredFit end = MeasuredFit::none;  ///< how they ended
+  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out
+  double score = std::numeric_limits<double>::quiet_NaN();  ///< the same after them; NaN without cross-validation or R
+};
+
+/// What averaging several fits was worth.
+struct Averaging {
+  std::ptrdiff_t members = 1;  ///< fits in the bank; those of the candidates that are marked as selected
+  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out: one fit
+  double score = std::numeric_limits<double>::quiet_NaN();         ///< the same of `members` fits
+};
+
+}  // namespace modebank

@@ -1,0 +1,67 @@
+// The installed face of clustering: plain vectors outside, Eigen inside.
+#include "ident/base/door.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "mixture/outside.hpp"
+#include "mixture/select.hpp"
+#include "modebank/base/eigen.hpp"
+
+namespace modebank {
+
+mixture::Mixture outside(const GaussianMixture& given) {
+  mixture::Mixture result{to_vector(given.weights), to_matrix(given.means), {}, given.noise.weight, {}, {}};
+  for (const Eigen::MatrixXd& covariance : given.covariances) result.covariances.push_back(to_matrix(covariance));
+  result.noise_lower = to_vector(given.noise.lower);
+  result.noise_upper = to_vector(given.noise.upper);
+  return result;
+}
+
+GaussianMixture inside(const mixture::Mixture& given) {
+  GaussianMixture result;
+  check_filled(given.means, "means");
+  result.weights = view(given.weights);
+  result.means = view(given.means);
+  for (const Matrix& covariance : given.covariances) {
+    check_filled(covariance, "a covariance");
+    result.covariances.emplace_back(view(covariance));
+  }
+  result.noise = {given.noise_weight, view(given.noise_lower), view(given.noise_upper)};
+  check_sizes(result);
+  return result;
+}
+
+namespace mixture {
+
+namespace {
+
+Eigen::MatrixXd filled(const Matrix& matrix, const char* name) {
+  check_filled(matrix, name);
+  return view(matrix);
+}
+
+}  // namespace
+
+Clusters select(const Points& points, const SelectionOptions& options, std::uint64_t seed) {
+  return at_the_door([&] {
+    const Eigen::MatrixXd values = filled(points.values, "values"), errors = filled(points.errors, "errors");
+    const Eigen::VectorXd weights = view(points.weights);
+    const PointSet set(values, weights, errors);
+    const Selection found = modebank::select(set, {points.effective_samples, points.runs}, options, seed);
+    return Clusters{outside(found.mixture), found.candidates, to_matrix(modebank::responsibilities(found.mixture, set)),
+                    to_vector(found.standard_error.weights), to_matrix(found.standard_error.means)};
+  });
+}
+
+Matrix responsibilities(const Mixture& mixture, const Matrix& points) {
+  return at_the_door([&] { return to_matrix(modebank::responsibilities(inside(mixture), filled(points, "points"))); });
+}
+
+std::vector<double> log_density(const Mixture& mixture, const Matrix& points) {
+  return at_the_door([&] { return to_vector(modebank::log_density(inside(mixture), filled(points, "points"))); });
+}
+
+}  // namespace mixture
+
+}  // namespace modebank

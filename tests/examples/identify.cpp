@@ -1,0 +1,109 @@
+// From recorded runs to a filter, in one program: a robot on grip and on ice is made up, its windows are fitted and
+// clustered, a bank is learned from them and stepped over a run that nothing was learned from.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <modebank/filter/bank_filter.hpp>
+#include <modebank/ident/windows.hpp>
+#include <modebank/learn/learn.hpp>
+#include <modebank/mixture/mixture.hpp>
+#include <random>
+#include <vector>
+
+#include "other_eigen.hpp"
+
+namespace {
+
+// Yaw rate x[k+1] = x + a x + b (right - left) + noise: its a and b on grip and on ice.
+struct Ground {
+  double a, b;
+};
+constexpr Ground grounds[]{{-0.6, 0.5}, {-0.2, 0.1}};
+constexpr int samples = 400, samples_per_ground = 100;
+
+int ground_at(int k) { return k / samples_per_ground % 2; }
+
+modebank::RecordedRun drive(unsigned seed, bool held_out) {
+  std::mt19937 generator(seed);
+  const auto uniform = [&] { return static_cast<double>(generator()) / 4294967296.0 - 0.5; };
+  modebank::RecordedRun run;
+  run.name = "drive " + std::to_string(seed);
+  run.held_out = held_out;
+  run.state = modebank::Matrix(1, samples);
+  run.input = modebank::Matrix(2, samples);
+  for (int k = 0; k < samples; ++k) {
+    run.time_s.push_back(0.1 * k);
+    run.input(0, k) = 2.0 * uniform();
+    run.input(1, k) = 2.0 * uniform();
+    if (k + 1 == samples) break;
+    const Ground& ground = grounds[ground_at(k)];
+    const double noise = 0.02 * (uniform() + uniform() + uniform());
+    run.state(0, k + 1) =
+        run.state(0, k) + ground.a * run.state(0, k) + ground.b * (run.input(1, k) - run.input(0, k)) + noise;
+  }
+  return run;
+}
+
+// How far the nearest column (A, B_left, B_right) of theta is from a ground's truth.
+double distance(const modebank::Matrix& theta, const Ground& truth) {
+  double nearest = INFINITY;
+  for (std::ptrdiff_t k = 0; k < theta.cols; ++k)
+    nearest =
+        std::min(nearest, std::hypot(theta(0, k) - truth.a, std::hypot(theta(1, k) + truth.b, theta(2, k) - truth.b)));
+  return nearest;
+}
+
+}  // namespace
+
+int main() try {
+  const double before = other_eigen_sum();
+  modebank::RecordedRuns runs{{}, {"yaw_rate"}, {"left", "right"}};
+  for (unsigned seed = 1; seed <= 6; ++seed) runs.runs.push_back(drive(seed, seed == 6));
+
+  // Step by step: a local model of every window, and the clusters of these.
+  modebank::LearnOptions options;
+  options.window.length = 20;
+  const modebank::ident::Windows windows = modebank::ident::fit_windows(runs, options.window);
+  modebank::mixture::Points points{windows.theta, {}, {}, windows.run};
+  points.effective_samples = static_cast<double>(windows.run.size()) / static_cast<double>(options.window.length);
+  modebank::SelectionOptions few;
+  few.components = {1, 2, 3, 4};  // the windows that hold a change of ground may be one of their own
+  const modebank::mixture::Clusters clusters = modebank::mixture::select(points, few);
+  std::printf("%zu windows (%td by Ceres, %td by the batch solver), %zu clusters\n", windows.run.size(),
+              windows.audit.ceres, windows.audit.batch, clusters.mixture.weights.size());
+  for (std::ptrdiff_t k = 0; k < clusters.mixture.means.cols; ++k)
+    std::printf("cluster %td: %.2f of the windows about %s = %.3f\n", k, clusters.mixture.weights[k],
+                windows.parameter_names[0].c_str(), clusters.mixture.means(0, k));
+
+  // All at once: what `modebank run` learns.
+  options.mixture.selection.components = {1, 2, 3};
+  options.bank.refine = modebank::Refine::em;
+  const modebank::learn::Learned learned = modebank::learn::learn_bank(runs, options);
+  const modebank::learn::Uncertainty& known = learned.uncertainty;
+  for (std::ptrdiff_t k = 0; k < known.theta.cols; ++k)
+    std::printf("mode %td: %s = %.3f +- %.3f\n", k, known.parameter_names[0].c_str(), known.theta(0, k),
+                known.theta_standard_error(0, k));
+  std::printf("log-likelihood %.1f, one Kalman filter %.1f\n", learned.log_likelihood, learned.baseline_log_likelihood);
+
+  // At work: which ground is it?
+  int right = 0;
+  const int ice = std::abs(known.theta(0, 0) - grounds[1].a) < std::abs(known.theta(0, 1) - grounds[1].a) ? 0 : 1;
+  const modebank::RecordedRun& held_out = runs.runs.back();
+  modebank::filter::BankFilter filter(learned.bank);
+  for (int k = 0; k < samples; ++k) {
+    const auto& now = filter.step(held_out.time_s[k], &held_out.input.values[2 * k], &held_out.state.values[k]);
+    const bool on_ice = now.mode_probability[ice] > 0.5;
+    right += k > 0 && on_ice == (ground_at(k - 1) == 1) ? 1 : 0;
+  }
+  const double share = right / (samples - 1.0);
+  std::printf("ground told right in %.1f %% of the samples\n", 100.0 * share);
+
+  bool found = learned.bank.modes() == 2 && share > 0.9 && learned.log_likelihood > learned.baseline_log_likelihood &&
+               other_eigen_sum() == before;
+  for (const Ground& truth : grounds)
+    found = found && distance(clusters.mixture.means, truth) < 0.02 && distance(known.theta, truth) < 0.01;
+  return found ? 0 : 1;
+} catch (const std::exception& error) {
+  return std::fprintf(stderr, "identify: %s\n", error.what()), 1;
+}

@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+
+#include "modebank/base/error.hpp"
+#include "modebank/mixture/mixture.hpp"
+#include "tests/mixture/mixture_test_support.hpp"
+#include "tests/support/recorded_runs.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+
+TEST(MixtureDoor, GivesTheSameBits) {
+  const Eigen::MatrixXd points = test::draw(test::three_clusters(8.0), 300, 9);
+  const Eigen::MatrixXd errors = (0.05 * Eigen::Matrix2d::Identity()).reshaped().replicate(1, points.cols());
+  const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(points.cols(), 0.5, 1.5);
+  SampleDesign design{150.0, {}};
+  for (Index i = 0; i < points.cols(); ++i) design.runs.push_back(i % 6);
+  for (const bool noise : {false, true}) {
+    SelectionOptions options;
+    options.components = {2, 3, 4};
+    options.em.restarts = 2;
+    options.em.noise_component = noise;
+    options.bootstrap = 3;
+    const PointSet set(points, weights, errors);
+    const Selection inside = select(set, design, options, 7);
+    const mixture::Clusters outside = mixture::select(
+        {to_matrix(points), to_vector(weights), to_matrix(errors), design.runs, design.effective_samples}, options, 7);
+    EXPECT_TRUE(test::same_bits(outside.mixture.weights, to_vector(inside.mixture.weights)));
+    EXPECT_TRUE(test::same_bits(outside.mixture.means, to_matrix(inside.mixture.means)));
+    ASSERT_EQ(outside.mixture.covariances.size(), inside.mixture.covariances.size());
+    for (std::size_t k = 0; k < inside.mixture.covariances.size(); ++k)
+      EXPECT_TRUE(test::same_bits(outside.mixture.covariances[k], to_matrix(inside.mixture.covariances[k])));
+    EXPECT_EQ(outside.mixture.noise_weight, inside.mixture.noise.weight);
+    EXPECT_TRUE(test::same_bits(outside.mixture.noise_lower, to_vector(inside.mixture.noise.lower)));
+    EXPECT_TRUE(test::same_bits(outside.responsibilities, to_matrix(responsibilities(inside.mixture, set))));
+    EXPECT_TRUE(test::same_bits(outside.weights_standard_error, to_vector(inside.standard_error.weights)));
+    EXPECT_TRUE(test::same_bits(outside.means_standard_error, to_matrix(inside.standard_error.means)));
+    ASSERT_EQ(outside.candidates.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(outside.candidates[i].bic, inside.candidates[i].bic);
+    // There and back.
+    EXPECT_TRUE(test::same_bits(mixture::responsibilities(outside.mixture, to_matrix(points)),
+                                to_matrix(responsibilities(inside.mixture, points))));
+    EXPECT_TRUE(test::same_bits(mixture::log_density(outside.mixture, to_matrix(points)),
+                                to_vector(log_density(inside.mixture, points))));
+  }
+}
+
+TEST(MixtureDoor, BadArgumentsAreNamed) {
+  const Matrix points = to_matrix(test::draw(test::three_clusters(8.0), 20, 9));
+  const auto refusal = [&](mixture::Points given, const SelectionOptions& options) -> std::string {
+    try {
+      mixture::select(given, options);
+    } catch (const ConfigurationError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  mixture::Points bad{points, {}, {}, {}};
+  bad.values.rows = 3;
+  EXPECT_EQ(refusal(bad, {}), "values is 3 x 20 but holds 40 numbers");
+  EXPECT_EQ(refusal({points, {1.0}, {}, {}}, {}), "EM is given 20 points but 1 weights");
+  SelectionOptions none;
+  none.components.clear();
+  EXPECT_EQ(refusal({points, {}, {}, {}}, none), "selection needs candidate numbers of components, each at least 1");
+  SelectionOptions many;
+  many.components = {30};
+  EXPECT_THROW(mixture::select({points, {}, {}, {}}, many), DataError);
+  EXPECT_THROW(mixture::log_density({}, points), ConfigurationError);
+  mixture::Mixture indefinite{{1.0}, {{0.0}, {0.0}}, {{{1.0, 2.0}, {2.0, 1.0}}}, 0.0, {}, {}};
+  EXPECT_THROW(mixture::log_density(indefinite, points), ConfigurationError);
+}
+
+}  // namespace
+}  // namespace modebank
