@@ -1,6 +1,6 @@
 #include "mixture/straddling.hpp"
 
-#include <boost/math/distributions/fisher_f.hpp>
+#include "ident/base/distributions.hpp"
 
 namespace modebank {
 namespace {
@@ -22,7 +22,7 @@ std::vector<bool> straddling_windows(const WindowFits& fits) {
   const auto unknowns = static_cast<double>(fits.parameter_count()) / static_cast<double>(fits.structure.states);
   const double freedom = static_cast<double>(fits.length) - unknowns;  // per state
   if (freedom <= 0.0) return straddling;
-  const double threshold = boost::math::quantile(boost::math::fisher_f(freedom, freedom), significance);
+  const double threshold = fisher_quantile(significance, freedom, freedom);
   const Index offset = neighbour_offset(fits);
   for (Index i = offset; i + offset < fits.count(); ++i) {
     if (!same_run(fits, i - offset, i) || !same_run(fits, i, i + offset)) continue;

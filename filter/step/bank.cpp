@@ -1,6 +1,6 @@
 #include "filter/step/bank.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/math/distributions/beta.hpp>
+#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
@@ -40,6 +41,14 @@ double student_quantile(double probability, double degrees) {
 
 double beta_quantile(double probability, double a, double b) {
   return math::quantile(math::beta_distribution<>(a, b), probability);
+}
+
+double binomial_quantile(double probability, double trials, double success) {
+  return math::quantile(math::binomial(trials, success), probability);
+}
+
+double binomial_upper_quantile(double probability, double trials, double success) {
+  return math::quantile(math::complement(math::binomial(trials, success), probability));
 }
 
 double integrate(const std::function<double(double)>& function, double from, double to) {

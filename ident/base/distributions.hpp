@@ -21,6 +21,9 @@ double fisher_quantile(double probability, double numerator, double denominator)
 /// Quantile of Student's t; infinitely many degrees: the normal's.
 double student_quantile(double probability, double degrees);
 double beta_quantile(double probability, double a, double b);
+/// What a binomial count lies below with this probability, and above; rounded outwards to whole numbers.
+double binomial_quantile(double probability, double trials, double success);
+double binomial_upper_quantile(double probability, double trials, double success);
 
 /// Gauss-Kronrod integral (61 points, adaptive) of a smooth function over [from, to].
 double integrate(const std::function<double(double)>& function, double from, double to);

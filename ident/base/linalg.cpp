@@ -8,7 +8,6 @@
 
 namespace modebank {
 
-using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -22,11 +21,7 @@ VectorXd solve_least_squares(const MatrixXd& A, const VectorXd& b) {
 }
 
 VectorXd singular_values(const MatrixXd& square) {
-  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 16, 16>;  // on the stack
-  constexpr int square_already = Eigen::NoQRPreconditioner;
-  if (square.rows() <= Small::MaxRowsAtCompileTime)
-    return Eigen::JacobiSVD<Small, square_already>(square).singularValues();
-  return Eigen::JacobiSVD<MatrixXd, square_already>(square).singularValues();
+  return Eigen::JacobiSVD<MatrixXd, Eigen::NoQRPreconditioner>(square).singularValues();  // a QR is for other shapes
 }
 
 ThinQr thin_qr(const MatrixXd& X) {
@@ -58,6 +53,8 @@ SymmetricEigen symmetric_eigen(const MatrixXd& M) {
 VectorXd symmetric_eigenvalues(const MatrixXd& M) {
   return Eigen::SelfAdjointEigenSolver<MatrixXd>(M, Eigen::EigenvaluesOnly).eigenvalues();
 }
+
+Eigen::VectorXcd eigenvalues(const MatrixXd& square) { return square.eigenvalues(); }
 
 void Cholesky::factorise(const MatrixXd& M) { factor_.compute(M); }
 

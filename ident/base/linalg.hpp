@@ -41,6 +41,9 @@ struct SymmetricEigen {
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& M);
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& M);
 
+/// Of any square matrix, in no order.
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& square);
+
 /// Cholesky's factor of a symmetric positive definite matrix, M = L L'.
 class Cholesky {
  public:

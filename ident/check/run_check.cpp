@@ -1,6 +1,5 @@
 #include "ident/check/run_check.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,5 @@
 #include "ident/fit/confidence.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,6 +1,5 @@
 #include "ident/fit/covariance.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 
 #include "ident/base/linalg.hpp"

@@ -1,6 +1,5 @@
 #include "ident/fit/global_model.hpp"
 
-#include <Eigen/QR>
 #include <cmath>
 #include <utility>
 

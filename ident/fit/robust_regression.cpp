@@ -1,11 +1,11 @@
 #include "ident/fit/robust_regression.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
+#include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/covariance.hpp"
 #include "ident/fit/minimise.hpp"
@@ -57,7 +57,7 @@ ResponseFit fit_response(const Transitions& transitions, const Decomposition& de
   fit.scale = uncentred_scale(residuals);
   for (int i = 0; i < max_iterations && fit.scale > 0.0 && !fit.converged; ++i) {
     const RobustTerms terms = evaluate_at(problem, loss, residuals / fit.scale);
-    z -= fit.scale * weighted_information(problem, terms).llt().solve(gradient(problem, terms));
+    z -= fit.scale * Cholesky(weighted_information(problem, terms)).solve(gradient(problem, terms));
     const VectorXd before = std::exchange(residuals, problem.b - problem.J * z);
     const double scale_before = std::exchange(fit.scale, uncentred_scale(residuals));
     const double moved = (residuals - before).lpNorm<Eigen::Infinity>();

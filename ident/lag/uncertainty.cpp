@@ -1,6 +1,5 @@
 #include "ident/lag/uncertainty.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <vector>

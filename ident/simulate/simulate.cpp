@@ -1,6 +1,5 @@
 #include "ident/simulate/simulate.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <boost/random/discrete_distribution.hpp>
 #include <cmath>

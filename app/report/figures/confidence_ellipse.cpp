@@ -1,9 +1,11 @@
 #include "app/report/figures/confidence_ellipse.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+
+#include "ident/base/linalg.hpp"
 
 namespace modebank {
 
@@ -11,10 +13,10 @@ Eigen::Matrix2Xd confidence_ellipse(const Eigen::Vector2d& mean, const Eigen::Ma
                                     Eigen::Index points) {
   if (!(level > 0.0 && level < 1.0)) throw std::invalid_argument("confidence_ellipse: level must be in (0, 1)");
   if (points < 2) throw std::invalid_argument("confidence_ellipse: at least 2 points");
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance);
-  const Eigen::Vector2d axes = (-2.0 * std::log1p(-level) * solver.eigenvalues().array().max(0.0)).sqrt();
+  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  const Eigen::Vector2d axes = (-2.0 * std::log1p(-level) * eigen.values.array().max(0.0)).sqrt();
   // A rotation, so that the boundary runs counter-clockwise.
-  Eigen::Matrix2d rotation = solver.eigenvectors();
+  Eigen::Matrix2d rotation = eigen.vectors;
   if (rotation.determinant() < 0.0) rotation.col(1) *= -1.0;
   const Eigen::ArrayXd angle = Eigen::ArrayXd::LinSpaced(points, 0.0, 2.0 * std::numbers::pi);
   Eigen::Matrix2Xd circle(2, points);

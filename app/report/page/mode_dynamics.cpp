@@ -1,6 +1,5 @@
 #include "app/report/page/mode_dynamics.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -45,8 +44,8 @@ Eigen::MatrixXd steady_gain(const Bank& bank, const LinearModel& model) {
 ModeDynamics mode_dynamics(const Bank& bank, Eigen::Index mode) {
   const LinearModel& model = bank.modes.at(static_cast<std::size_t>(mode)).model;
   ModeDynamics dynamics;
-  const Eigen::VectorXcd eigenvalues = model.full_form().eigenvalues();
-  for (const std::complex<double>& lambda : eigenvalues)
+  const Eigen::VectorXcd lambdas = eigenvalues(model.full_form());
+  for (const std::complex<double>& lambda : lambdas)
     if (lambda.imag() >= 0.0) dynamics.decays.push_back(decay_of(lambda, bank.dt_s));
   std::stable_sort(dynamics.decays.begin(), dynamics.decays.end(),
                    [](const Decay& a, const Decay& b) { return slowness(a) > slowness(b); });

@@ -1,9 +1,10 @@
 #include "app/report/page/pit_histogram.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <stdexcept>
+
+#include "ident/base/distributions.hpp"
 
 namespace modebank {
 
@@ -20,10 +21,10 @@ PitHistogram pit_histogram(const std::vector<const RunEvaluation*>& evaluations,
     }
   if (histogram.samples == 0) return histogram;
   constexpr double outer_probability = 0.025;
-  const boost::math::binomial bin(static_cast<double>(histogram.samples), 1.0 / static_cast<double>(bins));
-  histogram.expected = boost::math::mean(bin);
-  histogram.band = {boost::math::quantile(bin, outer_probability),
-                    boost::math::quantile(boost::math::complement(bin, outer_probability))};
+  const double samples = static_cast<double>(histogram.samples), share = 1.0 / static_cast<double>(bins);
+  histogram.expected = samples * share;
+  histogram.band = {binomial_quantile(outer_probability, samples, share),
+                    binomial_upper_quantile(outer_probability, samples, share)};
   return histogram;
 }
 

@@ -2,7 +2,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <unsupported/Eigen/KroneckerProduct>
@@ -112,7 +111,7 @@ ModeEstimate assess_weighted_mode(const TrainingTransitions& transitions, const 
 double spectral_radius(const LinearModel& model) {
   if (!model.A.allFinite()) return std::numeric_limits<double>::infinity();
   const Eigen::MatrixXd full = Eigen::MatrixXd::Identity(model.A.rows(), model.A.cols()) + model.A;
-  return full.eigenvalues().cwiseAbs().maxCoeff();
+  return eigenvalues(full).cwiseAbs().maxCoeff();
 }
 
 std::string screening_reason(const LinearStructure& structure, const ModeEstimate& mode) {
