@@ -107,6 +107,37 @@ TEST(VectorImm, SaysWhatTheGeneralStepsSay) {
     }
 }
 
+/// Whatever kernels a stretch goes through, whether or not something is missing in it.
+TEST(VectorImm, AStretchIsItsSamples) {
+  for (const Index n : {1, 2, 3})
+    for (const Index K : {2, 5, 9, 16, 17, 25})
+      for (const FilterOptions& options : {FilterOptions{}, adaptive()})
+        for (const bool missing : {false, true}) {
+          SCOPED_TRACE(std::to_string(n) + " states, " + std::to_string(K) + " modes");
+          const Bank bank = many_modes(n, K);
+          Trajectory run = test::simulate_bank(bank, 100, 57);
+          run.state(0, 70) += 0.5;
+          if (missing) run.state.col(40).setConstant(std::nan(""));
+          VectorImm at_once(bank, options), one_by_one(bank, options);
+          for (VectorImm* filter : {&at_once, &one_by_one}) filter->start(run.state.col(0));
+          VectorXd log_density(run.transitions());
+          at_once.follow(run.input.leftCols(run.transitions()), run.state.rightCols(run.transitions()), log_density);
+          for (Index k = 0; k < run.transitions(); ++k) {
+            one_by_one.predict(run.input.col(k));
+            const double expected = one_by_one.update(run.state.col(k + 1));
+            ASSERT_EQ(std::isnan(log_density(k)), std::isnan(expected)) << "transition " << k;
+            if (!std::isnan(expected)) ASSERT_NEAR(log_density(k), expected, 1e-11 * std::max(1.0, std::abs(expected)));
+          }
+          EXPECT_TRUE(test::near(at_once.mode_probability(), one_by_one.mode_probability(), 1e-11));
+          VectorXd mean(n), expected_mean(n);
+          MatrixXd covariance(n, n), expected_covariance(n, n);
+          at_once.merge(mean, covariance);
+          one_by_one.merge(expected_mean, expected_covariance);
+          EXPECT_TRUE(test::near(mean, expected_mean, 1e-11));
+          EXPECT_TRUE(test::near(covariance, expected_covariance, 1e-11 * expected_covariance.norm()));
+        }
+}
+
 /// As many as fill one register of any width, one more and one less, and more than eight registers.
 TEST(VectorImm, AnyNumberOfModes) {
   for (const Index K : {2, 3, 4, 5, 7, 8, 9, 16, 17, 60}) {
