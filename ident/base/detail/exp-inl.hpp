@@ -1,4 +1,8 @@
 // Exponentials and logarithms of vectors. Included once per instruction set (Highway's foreach_target.h).
+//
+// Why not Highway's own (hn::Exp, 1.0.3): on a Zen 4 it takes 0.90 ns a value where this takes 0.41, or 0.30 four
+// vectors at a time (AVX-512; 1.35 against 0.92 and 0.71 with AVX2), and 16 to 18 ns from argument to result against
+// 13: EM takes one per point and component, and every step of a filter waits for one.
 #if defined(MODEBANK_EM_EXP_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_EM_EXP_INL
 #undef MODEBANK_EM_EXP_INL
