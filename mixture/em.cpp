@@ -35,19 +35,6 @@ void check(const EmOptions& options) {
                                             smallest_floor, options.covariance_floor, options.tolerance));
 }
 
-void check(const PointSet& set) {
-  if (set.features() < 1 || set.count() < 1)
-    throw std::invalid_argument(fmt::format("EM needs points, given {} x {}", set.features(), set.count()));
-  if (!(set.points.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= largest_coordinate))
-    throw std::invalid_argument(fmt::format("EM needs finite points of magnitude up to {}", largest_coordinate));
-  check_errors(set);
-  if (set.weights.size() == 0) return;
-  if (set.weights.size() != set.count())
-    throw std::invalid_argument(fmt::format("EM is given {} points but {} weights", set.count(), set.weights.size()));
-  if (!set.weights.allFinite() || set.weights.minCoeff() < 0.0 || !(set.weights.sum() > 0.0))
-    throw std::invalid_argument("EM needs finite, nonnegative weights that are not all zero");
-}
-
 void check(const GaussianMixture& start, Index features) {
   check_sizes(start);
   if (start.features() != features)
@@ -93,6 +80,19 @@ GaussianMixture usable_start(const GaussianMixture& start, const ScaledCloud& cl
 
 }  // namespace
 
+void check_points(const PointSet& set) {
+  if (set.features() < 1 || set.count() < 1)
+    throw std::invalid_argument(fmt::format("EM needs points, given {} x {}", set.features(), set.count()));
+  if (!(set.points.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= largest_coordinate))
+    throw std::invalid_argument(fmt::format("EM needs finite points of magnitude up to {}", largest_coordinate));
+  check_errors(set);
+  if (set.weights.size() == 0) return;
+  if (set.weights.size() != set.count())
+    throw std::invalid_argument(fmt::format("EM is given {} points but {} weights", set.count(), set.weights.size()));
+  if (!set.weights.allFinite() || set.weights.minCoeff() < 0.0 || !(set.weights.sum() > 0.0))
+    throw std::invalid_argument("EM needs finite, nonnegative weights that are not all zero");
+}
+
 struct EmSweep::Prepared {
   EmOptions options;
   ScaledCloud cloud;
@@ -102,7 +102,7 @@ struct EmSweep::Prepared {
 
 EmSweep::EmSweep(const PointSet& points, const EmOptions& options) {
   check(options);
-  check(points);
+  check_points(points);
   prepared_ = std::make_unique<Prepared>(points, options);
 }
 
@@ -132,7 +132,7 @@ EmResult fit_em(const PointSet& points, Index components, const EmOptions& optio
 EmResult fit_em(const PointSet& points, const GaussianMixture& start, const EmOptions& options) {
   check(options);
   check(start, points.features());
-  check(points);
+  check_points(points);
   const ScaledCloud cloud(points, options);
   EmResult result = iterate(cloud.points, usable_start(start, cloud, options), options);
   result.agreeing_restarts = 1;

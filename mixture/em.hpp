@@ -19,6 +19,10 @@ struct EmResult {
   bool floor_active = false;  ///< whether the covariance floor held any component in the last iteration
 };
 
+/// Throws std::invalid_argument for points, weights or error covariances that nothing can be fitted to: none, sizes
+/// that do not fit, values out of range.
+void check_points(const PointSet& points);
+
 /// Best of options.restarts runs, improved by split-and-merge moves (Ueda et al. 2000) and by crossing (restarts.hpp).
 /// Points finite, up to 1e150 in magnitude. Fitted in units of each feature's standard deviation, so invariant to its
 /// units; a constant feature keeps its unit and is held by the floor, as are coinciding points. The floored M step is

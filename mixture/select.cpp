@@ -183,6 +183,7 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
                  std::uint64_t seed, const GaussianMixture* start) {
   const std::vector<Index> components = sorted_components(options);
   if (points.count() == 0) throw DataError("there are no points to be clustered");
+  check_points(points);
   if (!design.runs.empty() && std::ssize(design.runs) != points.count())
     throw std::invalid_argument(
         fmt::format("selection is given {} points and the runs of {}", points.count(), design.runs.size()));
