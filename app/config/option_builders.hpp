@@ -64,14 +64,17 @@ struct Field {
   T& (*in)(Config&);
   const T& (*of)(const Config&);
 };
-template <class Access>
-auto field_of(Access access) {
-  using T = std::remove_reference_t<decltype(access(std::declval<Config&>()))>;
-  return Field<T>{access, access};
+template <class In, class Of>
+auto field_of(In in, Of of) {
+  using T = std::remove_reference_t<decltype(in(std::declval<Config&>()))>;
+  return Field<T>{in, of};
 }
 
 /// The Field of a Config's member.
-#define MODEBANK_FIELD(member) (field_of([](auto& config) -> auto& { return config.member; }))
+#define MODEBANK_FIELD(member)                                \
+  (field_of(                                                  \
+      [](Config & config) -> auto& { return config.member; }, \
+      [](const Config& config) -> auto& { return config.member; }))
 
 template <class T>
 Option option(std::string key, std::string range, std::string unit, std::string help, Field<T> field) {
