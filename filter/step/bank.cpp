@@ -1,6 +1,6 @@
 #include "filter/step/bank.hpp"
 
-#include <Eigen/Core>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>

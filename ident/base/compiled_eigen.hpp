@@ -30,6 +30,7 @@ using MatrixByVector =
 MODEBANK_EIGEN_TEMPLATE void gebp_kernel<double, double, Index, Out, Doubles::mr, Doubles::nr, false,
                                          false>::operator()(const Out&, const double*, const double*, Index, Index,
                                                             Index, double, Index, Index, Index, Index);
+// NOLINTBEGIN(bugprone-macro-parentheses): templates and types cannot stand in parentheses.
 #define MODEBANK_EIGEN_PACKING(Pack, Mapper, Order, Panel)                                                         \
   MODEBANK_EIGEN_TEMPLATE void Pack<Mapper, Order, Panel>::operator()(double*, const Mapper&, Index, Index, Index, \
                                                                       Index)
@@ -88,6 +89,8 @@ MODEBANK_EIGEN_SOLUTION(OnTheLeft, UnitUpper, RowMajor);
 MODEBANK_EIGEN_SOLUTION(OnTheRight, Upper, ColMajor);
 MODEBANK_EIGEN_SOLUTION(OnTheRight, Upper, RowMajor);
 #undef MODEBANK_EIGEN_SOLUTION
+
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace internal
 
