@@ -11,7 +11,8 @@ namespace modebank {
 namespace {
 
 /// The order of models in the rows of an archive.
-constexpr std::array<std::string_view, 4> model_order{"global", "bank", "baseline", "noise_only"};
+constexpr std::array<std::string_view, 6> model_order{"global",     "bank",       "baseline",
+                                                      "noise_only", "one_motion", "drifting"};
 
 template <class Row>
 const std::string& model_of(const Row& row) {
@@ -148,22 +149,26 @@ void Chain::cluster_windows(const MixtureInputs& inputs) {
 
 void Chain::learn_bank(const ChainInputs& inputs) {
   const Stopwatch watch;
-  const auto learn_both = [&] {
-    Competitors learned = learn_competitors(*archive_.recording, *archive_.windows, inputs.competitors, listener_);
+  const auto learn_all = [&] {
+    Competitors learned = learn_competitors(*archive_.recording, *archive_.windows,
+                                            archive_.mixture->mixture.components(), inputs.competitors, listener_);
     archive_.baseline = std::move(learned.baseline);
     archive_.noise_only = std::move(learned.noise_only);
+    archive_.one_motion = std::move(learned.one_motion);
   };
-  const auto copy_both = [&] {
+  const auto copy_all = [&] {
     Archive part;
     part.baseline = archive_.baseline;
     part.noise_only = archive_.noise_only;
+    part.one_motion = archive_.one_motion;
     return part;
   };
-  const auto take_both = [&](Archive&& part) {
+  const auto take_all = [&](Archive&& part) {
     archive_.baseline = std::move(part.baseline);
     archive_.noise_only = std::move(part.noise_only);
+    archive_.one_motion = std::move(part.one_motion);
   };
-  provide(Stage::competitors, {learn_both, copy_both, take_both});
+  provide(Stage::competitors, {learn_all, copy_all, take_all});
 
   const auto learn = [&] {
     LearnedBank learned = learn_modes({*archive_.recording, *archive_.windows, *archive_.mixture, *archive_.baseline},
@@ -193,10 +198,8 @@ void Chain::learn_bank(const ChainInputs& inputs) {
 }
 
 void Chain::score(const std::string& filter, const FilterOptions& options, const ScoringOptions& scoring) {
-  const std::optional<Bank>& bank = filter == "bank"       ? archive_.bank
-                                    : filter == "baseline" ? archive_.baseline
-                                                           : archive_.noise_only;
-  if (bank) put(score_filter(filter, *bank, *archive_.recording, options, scoring));
+  if (const Bank* bank = archive_.bank_of(filter))
+    put(score_filter(filter, *bank, *archive_.recording, options, scoring));
 }
 
 void Chain::put(FilterScores scores) {
@@ -228,14 +231,19 @@ void Chain::judge(const ChainInputs& inputs) {
   const CompetitorScoreInputs& competitors = inputs.competitor_scores;
   const auto score_competitors = [&] {
     put(test_global(*archive_.recording, *archive_.windows, competitors.window));
-    for (const char* filter : {"baseline", "noise_only"})
-      score(filter, competitor_filter(filter, competitors.time_steps), competitors.scoring);
+    for (const char* filter : competitor_names)
+      score(filter, competitor_filter(filter, competitors.filter), competitors.scoring);
   };
-  const auto copy_competitors = [&] { return scores_of({"global", "baseline", "noise_only"}, archive_); };
+  const auto copy_competitors = [&] {
+    std::vector<std::string> models(competitor_names.begin(), competitor_names.end());
+    models.emplace_back("global");
+    return scores_of(models, archive_);
+  };
   provide(Stage::competitor_scores, {score_competitors, copy_competitors, take});
 
   const auto score_bank = [&] { score("bank", inputs.bank_scores.filter, inputs.bank_scores.scoring); };
   provide(Stage::bank_scores, {score_bank, [&] { return scores_of({"bank"}, archive_); }, take});
+  archive_.finding = find_modes(archive_);
   listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
 }
 
@@ -249,11 +257,12 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   archive_.bank = std::move(stored.bank);
   archive_.baseline = std::move(stored.baseline);
   archive_.noise_only = std::move(stored.noise_only);
+  archive_.one_motion = std::move(stored.one_motion);
   archive_.unrefined = std::move(stored.unrefined);
   archive_.measured_fit = stored.measured_fit;
   score("bank", options.filter, options.scoring);
-  for (const char* filter : {"baseline", "noise_only"})
-    score(filter, competitor_filter(filter, options.filter.time_steps), options.scoring);
+  for (const char* filter : competitor_names) score(filter, competitor_filter(filter, options.filter), options.scoring);
+  archive_.finding = find_modes(archive_);
   listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
   describe(execution, {describe_file(banks)});
   return archive_;

@@ -39,14 +39,6 @@ ResidualTestSet test_runs(const std::string& model, std::size_t runs, Test test)
 
 }  // namespace
 
-FilterOptions competitor_filter(const std::string& name, TimeSteps time_steps) {
-  FilterOptions filter;
-  filter.variant = name == "baseline" ? FilterVariant::kf : FilterVariant::imm;
-  filter.parameter_noise = false;
-  filter.time_steps = time_steps;
-  return filter;
-}
-
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
                           const FilterOptions& filter, const ScoringOptions& scoring) {
   const std::vector<Trajectory>& runs = recording.runs;

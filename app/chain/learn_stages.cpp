@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/chain/stages.hpp"
@@ -15,14 +16,35 @@ GlobalModel linear_global(const Recording& recording, const WindowFits& windows,
   return modebank::linear_global(recording, windows, motion.get());
 }
 
-Competitors learn_competitors(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
-                              const Listener& listener) {
+namespace {
+
+constexpr Index fewest_levels = 8;  // noise levels that one_motion may have at least (method: section 6)
+
+Bank one_motion(const Recording& recording, const WindowFits& windows, const Bank& baseline, Index components,
+                const CompetitorInputs& inputs, const Listener& listener) {
+  const Stopwatch watch;
+  Bank bank = learn_one_motion(recording, windows, linear_global(recording, windows, inputs.window), baseline.R,
+                               std::max(fewest_levels, components), *inputs.one_motion, inputs.filter);
+  listener.progress(fmt::format("one_motion: {} noise levels in {:.2f} s", bank.mode_count(), watch.seconds()));
+  return bank;
+}
+
+}  // namespace
+
+Competitors learn_competitors(const Recording& recording, const WindowFits& windows, Index components,
+                              const CompetitorInputs& inputs, const Listener& listener) {
   Baseline baseline = learn_baseline(recording, linear_global(recording, windows, inputs.window), windows.structure);
   baseline.bank.model = windows.model;
   if (baseline.at_bound) listener.progress("baseline: R is at its lower bound: the data show no measurement noise");
   if (!baseline.converged) listener.warning("baseline: its noise did not reach a maximum of the likelihood");
-  Bank noise_only = learn_noise_only(recording, windows.structure, baseline.bank.R);
-  return {std::move(baseline.bank), std::move(noise_only)};
+  Competitors learned{std::move(baseline.bank), {}, {}};
+  learned.noise_only = learn_noise_only(recording, windows.structure, learned.baseline.R);
+  if (inputs.one_motion)
+    learned.one_motion = one_motion(recording, windows, learned.baseline, components, inputs, listener);
+  if (inputs.filter.noise == FilterNoise::adaptive)
+    for (Bank* bank : {&learned.baseline, &learned.noise_only})
+      bank->noise_adaptation = most_likely_adaptation(*bank, recording, inputs.filter, {});
+  return learned;
 }
 
 namespace {

@@ -13,7 +13,27 @@ BankInputs bank_inputs(const ChainOptions& options, const FitOptions& window) {
   return inputs;
 }
 
+/// one_motion is learned by refinement, whatever makes the bank; a single Kalman filter has no use for it.
+CompetitorInputs competitor_inputs(const ChainOptions& options, const FitOptions& window) {
+  CompetitorInputs inputs{window, {}, competitor_filter("one_motion", options.filter)};
+  if (options.filter.variant == FilterVariant::kf) return inputs;
+  BankOptions learned;
+  learned.measurement_variance = options.bank.measurement_variance;
+  learned.em = options.bank.em;
+  learned.em.seed = options.seed;
+  inputs.one_motion = learned;
+  return inputs;
+}
+
 }  // namespace
+
+FilterOptions competitor_filter(const std::string& name, const FilterOptions& of_bank) {
+  FilterOptions filter;
+  filter.variant = name == "baseline" ? FilterVariant::kf : FilterVariant::imm;
+  filter.time_steps = of_bank.time_steps;
+  filter.noise = of_bank.noise;
+  return filter;
+}
 
 ChainInputs chain_inputs(const ChainOptions& options) {
   FitOptions window = options.window;
@@ -22,9 +42,9 @@ ChainInputs chain_inputs(const ChainOptions& options) {
   return {{options.data},
           {window},
           {options.mixture, start, start.empty() ? "" : describe_file(start).sha256, options.seed},
-          {window},
+          competitor_inputs(options, window),
           bank_inputs(options, window),
-          {window, options.filter.time_steps, options.scoring},
+          {window, competitor_filter("one_motion", options.filter), options.scoring},
           {options.filter, options.scoring}};
 }
 

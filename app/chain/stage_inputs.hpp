@@ -25,9 +25,12 @@ struct MixtureInputs {
   std::uint64_t seed = 1;
 };
 
-/// The bank's competitors depend on the windows alone.
+/// The bank's competitors: all but one_motion depend on the windows alone, which has as many noise levels at most as
+/// the mixture has components.
 struct CompetitorInputs {
   FitOptions window;
+  std::optional<BankOptions> one_motion;  ///< how it is learned: as the bank; empty where there is none
+  FilterOptions filter;                   ///< that runs competitors, for the noise scale's memory
 };
 
 struct BankInputs {
@@ -39,7 +42,7 @@ struct BankInputs {
 
 struct CompetitorScoreInputs {
   FitOptions window;
-  TimeSteps time_steps = TimeSteps::repeat;
+  FilterOptions filter;
   ScoringOptions scoring;
 };
 
@@ -58,6 +61,9 @@ struct ChainInputs {
   CompetitorScoreInputs competitor_scores;
   BankScoreInputs bank_scores;
 };
+
+/// How a competitor steps: by its own kind of filter, with the bank's noise and time steps.
+FilterOptions competitor_filter(const std::string& name, const FilterOptions& of_bank);
 
 /// Parts the options into what each stage needs. Reads mixture_start, if there is one, for its hash: throws
 /// ConfigurationError when it cannot be read.

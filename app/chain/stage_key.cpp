@@ -81,9 +81,9 @@ MODEBANK_KEY_FIELDS(ScoringOptions, horizon, smooth)
 MODEBANK_KEY_FIELDS(DataInputs, data)
 MODEBANK_KEY_FIELDS(WindowInputs, window)
 MODEBANK_KEY_FIELDS(MixtureInputs, mixture, start_file, start_sha256, seed)
-MODEBANK_KEY_FIELDS(CompetitorInputs, window)
+MODEBANK_KEY_FIELDS(CompetitorInputs, window, one_motion, filter)
 MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter)
-MODEBANK_KEY_FIELDS(CompetitorScoreInputs, window, time_steps, scoring)
+MODEBANK_KEY_FIELDS(CompetitorScoreInputs, window, filter, scoring)
 MODEBANK_KEY_FIELDS(BankScoreInputs, filter, scoring)
 
 template <class T>
@@ -108,7 +108,7 @@ StageKeys stage_keys(const ChainInputs& inputs, const std::string& data_hash) {
   key(data) = key_of(data, inputs.data, data_hash);
   key(windows) = key_of(windows, inputs.windows, key(data));
   key(mixture) = key_of(mixture, inputs.mixture, key(windows));
-  key(competitors) = key_of(competitors, inputs.competitors, key(windows));
+  key(competitors) = key_of(competitors, inputs.competitors, key(mixture));
   key(bank) = key_of(bank, inputs.bank, key(mixture), key(competitors));
   key(competitor_scores) = key_of(competitor_scores, inputs.competitor_scores, key(competitors));
   key(bank_scores) = key_of(bank_scores, inputs.bank_scores, key(bank));

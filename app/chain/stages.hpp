@@ -30,11 +30,13 @@ MixtureResult cluster(const Recording& recording, const WindowFits& windows, con
 GlobalModel linear_global(const Recording& recording, const WindowFits& windows, const FitOptions& window);
 
 struct Competitors {
-  Bank baseline;    ///< one Kalman filter
-  Bank noise_only;  ///< switches noise alone
+  Bank baseline;                   ///< one Kalman filter
+  Bank noise_only;                 ///< switches noise alone
+  std::optional<Bank> one_motion;  ///< learned as the bank, with one theta
 };
-Competitors learn_competitors(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
-                              const Listener& listener);
+/// `components`: of the mixture.
+Competitors learn_competitors(const Recording& recording, const WindowFits& windows, Index components,
+                              const CompetitorInputs& inputs, const Listener& listener);
 
 /// What a bank is learned from.
 struct LearnedFrom {
@@ -59,12 +61,13 @@ struct FilterScores {
   std::vector<DiagnosticsRow> diagnostics;
 };
 
-/// How a competitor steps, baseline or noise_only: as it was learned, whatever filter the bank runs in.
-FilterOptions competitor_filter(const std::string& name, TimeSteps time_steps);
-
-/// `name`: bank, baseline or noise_only.
+/// `name`: bank, baseline, noise_only or one_motion.
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
                           const FilterOptions& filter, const ScoringOptions& scoring);
+
+/// Whether the judged runs of an archive ask for the modes of its bank, from what was scored, with its sentences; empty
+/// without a scored bank.
+std::optional<Finding> find_modes(const Archive& archive);
 
 /// Residual tests on all runs: of the global model's one-step residuals, and of a filter's scores z.
 ResidualTestSet test_global(const Recording& recording, const WindowFits& windows, const FitOptions& window);

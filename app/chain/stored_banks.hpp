@@ -11,7 +11,7 @@ namespace modebank {
 /// The banks of an archive, to be scored on other data.
 struct StoredBanks {
   Bank bank;
-  std::optional<Bank> baseline, noise_only, unrefined;
+  std::optional<Bank> baseline, noise_only, one_motion, unrefined;
   MeasuredFit measured_fit = MeasuredFit::none;
 };
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "app/chain/stages.hpp"
+#include "app/chain/stage_inputs.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/line_stream.hpp"
 #include "app/cli/track_input.hpp"
@@ -24,7 +24,7 @@ namespace {
 /// The competitors of the bank run as evaluate runs them.
 FilterOptions filter_options(const Config& config) {
   if (config.track.filter == TrackedFilter::bank) return config.filter;
-  return competitor_filter(std::string(name_of(config.track.filter)), config.filter.time_steps);
+  return competitor_filter(std::string(name_of(config.track.filter)), config.filter);
 }
 
 /// kf is the global model alone, whatever the bank.

@@ -14,7 +14,7 @@
 namespace modebank::app {
 
 /// Which filter of an archive `track` runs.
-enum class TrackedFilter { bank, baseline, noise_only };
+enum class TrackedFilter { bank, baseline, noise_only, one_motion };
 
 /// Of the lines that `track` reads and writes.
 enum class LineFormat { automatic, csv, ndjson };
@@ -92,7 +92,7 @@ void validate(const Config& config);
 
 template <>
 struct modebank::EnumNames<modebank::app::TrackedFilter> {
-  static constexpr Names<3> values{"bank", "baseline", "noise_only"};
+  static constexpr Names<4> values{"bank", "baseline", "noise_only", "one_motion"};
 };
 
 template <>

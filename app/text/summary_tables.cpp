@@ -19,6 +19,8 @@ std::string unit_suffix(const Archive& archive) {
   return unit.empty() ? "" : " [" + unit + "]";
 }
 
+std::string share(double value) { return fmt::format("{:.2f} %", 100 * value); }
+
 std::string tails(double above, double below) { return fmt::format("{:.2f} % {:>5.2f} %", 100 * above, 100 * below); }
 
 std::string estimate(double value, double standard_error) {
@@ -38,7 +40,9 @@ std::string scores_text(const Archive& archive, int width) {
                    {"samples", 8},
                    {"log score", 10},
                    {"rmse" + unit_suffix(archive), 14},
-                   {"pit tails +/-", 18},
+                   {"in 95 % band", 12},
+                   {"too far", 9},
+                   {"too close", 9},
                    {"NIS above/below", 18},
                    {"mean NIS", 8},
                    {"white p", 8}},
@@ -46,11 +50,13 @@ std::string scores_text(const Archive& archive, int width) {
   for (const SummaryRow& row : archive.summary)
     if (row.run == "*")
       table.add({row.filter, std::string(name_of(row.role)), std::to_string(row.samples),
-                 fixed_or_short(row.log_score, 4), fixed_or_short_list(row.rmse, 5),
-                 tails(row.tail_above, row.tail_below), tails(row.nis_above, row.nis_below),
+                 fixed_or_short(row.log_score, 4), fixed_or_short_list(row.rmse, 5), share(row.coverage_95),
+                 share(row.too_far), share(row.too_close), tails(row.nis_above, row.nis_below),
                  fixed_or_short(row.nis_mean, 3), fmt::format("{:.2g}", row.whiteness_p)});
   return table.text(width) +
-         "A true filter has 2.5 % in each pit tail; log score in nats per sample, higher is better.\n";
+         "A true filter has 95 % of the samples in its 95 % band, 2.5 % too far from its prediction and 2.5 % too "
+         "close\n"
+         "(z^2 beyond the outer quantiles of chi-square); log score in nats per sample, higher is better.\n";
 }
 
 namespace {
@@ -124,7 +130,8 @@ std::string mode_diagnostics_text(const Archive& archive, int width) {
                    {"expected", 8},
                    {"dwell", 8},
                    {"by T", 8},
-                   {"pit tails +/-", 20},
+                   {"in 95 % band", 12},
+                   {"too far/close", 18},
                    {"mean NIS", 8},
                    {"NEES", 8},
                    {"white p", 8},
@@ -134,8 +141,8 @@ std::string mode_diagnostics_text(const Archive& archive, int width) {
     if (row.filter != "bank" || row.role != role || row.mode < 0) continue;
     empty = false;
     table.add({std::to_string(row.mode), fmt::format("{:.3f}", row.usage), std::to_string(row.samples),
-               fixed_or_short(row.dwell, 1), fixed_or_short(row.dwell_model, 1), tails(row.tail_above, row.tail_below),
-               fixed_or_short(row.nis_mean, 3), fixed_or_short(row.nees_mean, 3),
+               fixed_or_short(row.dwell, 1), fixed_or_short(row.dwell_model, 1), share(row.coverage_95),
+               tails(row.too_far, row.too_close), fixed_or_short(row.nis_mean, 3), fixed_or_short(row.nees_mean, 3),
                fmt::format("{:.2g}", row.whiteness_p), std::string(name_of(row.verdict))});
   }
   return empty ? "" : fmt::format("\nmodes on {} runs\n{}", words_for(role), table.text(width));

@@ -98,16 +98,25 @@ bool has_modes(const Archive& archive, const DiagnosticsRow& row) {
   });
 }
 
+/// "50 %: 51.2 [49.0, 53.1]; 90 %: ..."
+std::string coverage_words(const DiagnosticsRow& row) {
+  const auto words = [](int level, double share, double lower, double upper) {
+    return fmt::format("{} %: {:.1f} [{:.1f}, {:.1f}]", level, 100 * share, 100 * lower, 100 * upper);
+  };
+  return fmt::format("{}, {}, {}, {}", words(50, row.coverage_50, row.coverage_50_lower, row.coverage_50_upper),
+                     words(90, row.coverage_90, row.coverage_90_lower, row.coverage_90_upper),
+                     words(95, row.coverage_95, row.coverage_95_lower, row.coverage_95_upper),
+                     words(99, row.coverage_99, row.coverage_99_lower, row.coverage_99_upper));
+}
+
 /// Whether each filter's stated uncertainty is true, with the numbers that say so, and what else stands out.
 std::string verdicts_text(const Archive& archive) {
   std::string text;
   const Role role = judged_role(archive);
   for (const DiagnosticsRow& row : archive.diagnostics) {
     if (row.mode >= 0 || row.role != role) continue;
-    text += fmt::format("{:<11} {:<14} tails {:.2f} % [{:.2f}, {:.2f}] above, {:.2f} % [{:.2f}, {:.2f}] below; ",
-                        row.filter, name_of(row.verdict), 100 * row.tail_above, 100 * row.tail_above_lower,
-                        100 * row.tail_above_upper, 100 * row.tail_below, 100 * row.tail_below_lower,
-                        100 * row.tail_below_upper);
+    text += fmt::format("{:<11} {:<14} in its bands: {}; ", row.filter, name_of(row.verdict), coverage_words(row));
+    text += fmt::format("too far {:.1f} %, too close {:.1f} %; ", 100 * row.too_far, 100 * row.too_close);
     text += fmt::format("mean NIS {} [{:.3f}, {:.3f}]", fixed_or_short(row.nis_mean, 3), row.nis_lower, row.nis_upper);
     if (has_modes(archive, row)) text += fmt::format("; mean entropy {}", fixed_or_short(row.entropy, 3));
     if (!std::isnan(row.nees_mean))
@@ -119,10 +128,10 @@ std::string verdicts_text(const Archive& archive) {
   }
   if (text.empty()) return "";
   return fmt::format(
-      "\nUncertainty on {} runs (calibrated: both tails between {:g} and {:g} %; brackets: 95 % intervals, for NIS "
-      "and\n"
-      "NEES where a true filter's mean lies; entropy of the mode probabilities: 0 one mode at a time, 1 all alike)\n{}",
-      words_for(role), 100 * least_tail, 100 * largest_tail, text);
+      "\nIs the stated uncertainty true, on {} runs? Percent of the samples inside the 50, 90, 95 and 99 % bands\n"
+      "(brackets: 95 % intervals; overconfident: too many outside the 95 % band; for NIS and NEES: where a true\n"
+      "filter's mean lies; entropy of the mode probabilities: 0 one mode at a time, 1 all alike)\n{}",
+      words_for(role), text);
 }
 
 /// Predictions several samples ahead, on held-out runs if there are any.
@@ -138,19 +147,7 @@ std::string horizon_text(const Archive& archive) {
   return text;
 }
 
-std::string gained(double nats) { return (nats >= 0.0 ? "+" : "") + fixed_or_short(nats, 3); }
-
-std::string gain_text(const Archive& archive) {
-  const std::optional<BankGain> gain = bank_gain(archive.summary);
-  if (!gain || !gain->over_baseline || !gain->over_noise_only) return "";
-  return fmt::format(
-      "\nOn {} runs the bank gains {} nats/sample over one Kalman filter (baseline) and {} over noise\n"
-      "switching alone (noise_only): {}.\n",
-      words_for(gain->role), gained(*gain->over_baseline), gained(*gain->over_noise_only),
-      !gain->held_out()          ? "nothing was held out, so neither is evidence"
-      : gain->speaks_for_modes() ? "that excess is its evidence for modes of motion"
-                                 : "no evidence for modes of motion beyond changing noise");
-}
+std::string finding_text(const Archive& archive) { return archive.finding ? "\n" + archive.finding->text + "\n" : ""; }
 
 }  // namespace
 
@@ -238,7 +235,7 @@ std::string summary_text(const Archive& archive, int width) {
   if (archive.bank) text += bank_text(*archive.bank) + merging_text(archive);
   text += residuals_text(archive);
   if (!archive.summary.empty())
-    text += "\n" + scores_text(archive, width) + verdicts_text(archive) + horizon_text(archive) + gain_text(archive);
+    text += "\n" + scores_text(archive, width) + verdicts_text(archive) + horizon_text(archive) + finding_text(archive);
   return wrapped(text, width);
 }
 

@@ -1,8 +1,9 @@
 #include "filter/judge/diagnostics.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <numeric>
 
 #include "filter/judge/evidence.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -15,24 +16,27 @@ using Eigen::Index;
 
 constexpr double negligible_R = 1e-6;  // of the innovations' variance
 
-double total_of(const SeriesByRun& series) {
-  return std::accumulate(series.begin(), series.end(), 0.0, [](double sum, const std::vector<double>& run) {
-    return std::accumulate(run.begin(), run.end(), sum);
-  });
+/// A fraction of hits with its interval.
+void set_fraction(const SeriesByRun& hits, double time, double& fraction, double& lower, double& upper) {
+  fraction = mean_of(hits);
+  const Interval interval = fraction_interval(hits, time);
+  lower = interval.lower;
+  upper = interval.upper;
 }
 
-/// Fractions of the signals in the tails, and their binomial intervals.
-void set_tails(const Evidence& evidence, DiagnosticsRow& row) {
-  double scores = 0.0;
-  for (const std::vector<double>& run : evidence.above) scores += static_cast<double>(run.size());
-  row.tail_above = mean_of(evidence.above);
-  row.tail_below = mean_of(evidence.below);
-  const Interval above = binomial_interval(total_of(evidence.above), scores),
-                 below = binomial_interval(total_of(evidence.below), scores);
-  row.tail_above_lower = above.lower;
-  row.tail_above_upper = above.upper;
-  row.tail_below_lower = below.lower;
-  row.tail_below_upper = below.upper;
+void set_coverage(const SeriesByRun& outside, double time, double& coverage, double& lower, double& upper) {
+  set_fraction(outside, time, coverage, upper, lower);
+  for (double* share : {&coverage, &lower, &upper}) *share = 1.0 - *share;
+}
+
+void set_fractions(const Evidence& e, DiagnosticsRow& row) {
+  const double time = sample_count(e.sizes) > 0.0 ? time_by_sizes(e.sizes) : 1.0;
+  set_coverage(e.outside[0], time, row.coverage_50, row.coverage_50_lower, row.coverage_50_upper);
+  set_coverage(e.outside[1], time, row.coverage_90, row.coverage_90_lower, row.coverage_90_upper);
+  set_coverage(e.outside[2], time, row.coverage_95, row.coverage_95_lower, row.coverage_95_upper);
+  set_coverage(e.outside[3], time, row.coverage_99, row.coverage_99_lower, row.coverage_99_upper);
+  set_fraction(e.far, time, row.too_far, row.too_far_lower, row.too_far_upper);
+  set_fraction(e.close, time, row.too_close, row.too_close_lower, row.too_close_upper);
 }
 
 /// The states whose measurement noise is more than next to nothing, so that their stated covariance after the
@@ -83,7 +87,7 @@ DiagnosticsRow make_row(const Collected& c, Index n_y, Index nees_states) {
   row.entropy = c.entropy / all;
   row.dwell = c.visits > 0.0 ? c.visited / c.visits : not_a_number;
   row.dwell_model = not_a_number;
-  set_tails(c.evidence, row);
+  set_fractions(c.evidence, row);
   set_distances(c, static_cast<double>(n_y), static_cast<double>(nees_states), row);
   row.state_rmse =
       (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
@@ -98,6 +102,7 @@ constexpr double unused = 1e-3;            // usage
 constexpr double flat_entropy = 0.95;      // of log K
 constexpr double dominating_spread = 0.5;  // share of trace S
 constexpr double coloured = 0.01;          // whiteness p
+constexpr double noticeable_colour = 0.1;  // autocorrelation: a hundredth of the variance could be predicted
 
 void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
 
@@ -110,23 +115,32 @@ std::string unused_modes(const std::vector<DiagnosticsRow>& modes) {
   return count == 0 ? "" : (count > 1 ? "modes" : "mode") + list + " unused";
 }
 
-/// What stands out of a filter's row, separated by "; ". `modes`: rows of the same filter's modes. `nees_states`: how
-/// many states the NEES is about.
-std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes, Eigen::Index nees_states) {
+std::string two_digits(double value) {
+  std::array<char, 16> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, 2).ptr;
+  return {text.data(), end};
+}
+
+/// What stands out of a filter's row, separated by "; ". `colour`: of its z. `modes`: rows of the same filter's modes.
+/// `nees_states`: how many states the NEES is about.
+std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes, Eigen::Index nees_states,
+                     const Autocorrelation& colour) {
   std::string flags;
   for (const DiagnosticsRow& mode : modes)
     if (mode.usage > takes_all) add_flag(flags, "one mode takes all (" + std::to_string(mode.mode) + ")");
   if (const std::string list = unused_modes(modes); !list.empty()) add_flag(flags, list);
   if (!modes.empty() && all.entropy > flat_entropy) add_flag(flags, "probabilities flat");
   if (all.spread_share > dominating_spread) add_flag(flags, "spread dominates S");
-  if (all.tail_above_lower > largest_tail && all.tail_below_lower > largest_tail) add_flag(flags, "heavy tails");
+  if (all.too_far_lower > largest_close && all.too_close_lower > largest_close) add_flag(flags, "heavy tails");
   if (all.nis_mean > all.nis_upper) add_flag(flags, "mean NIS above a true filter's");
   if (all.nis_mean < all.nis_lower) add_flag(flags, "mean NIS below a true filter's");
   if (all.nees_mean > all.nees_upper)
     add_flag(flags, "NEES above a true filter's: the state's covariance is too small");
   if (all.nees_mean < all.nees_lower)
     add_flag(flags, "NEES below a true filter's: the state's covariance is too large");
-  if (all.whiteness_p < coloured) add_flag(flags, "innovations not white");
+  if (all.whiteness_p < coloured && std::abs(colour.value) > noticeable_colour)
+    add_flag(flags, "innovations not white: autocorrelation " + two_digits(colour.value) + " at lag " +
+                        std::to_string(colour.lag) + " (more window.state_lags, or data.lag_s = auto, may explain it)");
   if (all.verdict == Verdict::undecided) add_flag(flags, "too few samples for a verdict");
   if (nees_states < all.state_rmse.size() && all.state_rmse.allFinite())
     add_flag(flags, nees_states == 0 ? "R is as good as zero, so the state is the measurement: no NEES"
@@ -147,19 +161,21 @@ std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank
   for (const Role role : {Role::train, Role::test}) {
     if (std::none_of(runs.begin(), runs.end(), [role](const Trajectory& run) { return run.role == role; })) continue;
     const std::vector<Index> nees_states = states_with_noise(bank, role, runs, evaluations);
+    Autocorrelation colour;
     const auto row_of = [&](Index mode) {
       const Collected collected = collect(bank, mode, role, chi_square_nis, nees_states, runs, evaluations, scores);
       DiagnosticsRow row = make_row(collected, bank.C.rows(), std::ssize(nees_states));
       row.filter = filter;
       row.role = role;
       row.mode = mode;
+      if (mode < 0) colour = largest_autocorrelation(collected.z);
       if (mode >= 0) row.dwell_model = 1.0 / (1.0 - bank.transition.matrix()(mode, mode));
       return row;
     };
     DiagnosticsRow all = row_of(-1);
     std::vector<DiagnosticsRow> modes;
     for (Index mode = 0; bank.mode_count() > 1 && mode < bank.mode_count(); ++mode) modes.push_back(row_of(mode));
-    all.flags = flags_of(all, modes, std::ssize(nees_states));
+    all.flags = flags_of(all, modes, std::ssize(nees_states), colour);
     rows.push_back(std::move(all));
     rows.insert(rows.end(), modes.begin(), modes.end());
   }

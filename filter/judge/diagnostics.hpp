@@ -14,9 +14,10 @@ namespace modebank {
 /// One row of /evaluation/diagnostics: a filter on the pooled runs of a role, or one of its modes there. A mode is
 /// judged on the samples where it was the most probable before the measurement, so that a true filter is calibrated
 /// there, too (the transform is uniform given whatever was known before: Rosenblatt 1952; Diebold, Gunther & Tay 1998).
-/// Intervals hold with 95 %: Clopper & Pearson's (1934) for fractions; chi-square's for mean NIS and NEES, their
-/// degrees of freedom divided by the series' autocorrelation time and, for several modes or a scale learned on the way,
-/// by its dispersion (verdict.hpp). They hold for a true filter: a learned one's error comes on top. NaN: not known.
+/// Intervals hold with 95 %: Clopper & Pearson's (1934) for fractions, of as many samples as there are independent
+/// ones; chi-square's for mean NIS and NEES, their degrees of freedom divided by the series' autocorrelation time and,
+/// for several modes or a scale learned on the way, by its dispersion (verdict.hpp). They hold for a true filter: a
+/// learned one's error comes on top. NaN: not known.
 struct DiagnosticsRow {
   std::string filter;
   Role role = Role::train;
@@ -26,8 +27,13 @@ struct DiagnosticsRow {
   double entropy = 0.0;      ///< mean entropy of the probabilities after it over log K; 0 for K = 1
   double dwell = 0.0;        ///< mean stay in a mode along viterbi_mode (without it: the most probable) [samples]
   double dwell_model = 0.0;  ///< 1 / (1 - T_jj), what the transition matrix says; NaN for the whole filter
-  double tail_above = 0.0, tail_above_lower = 0.0, tail_above_upper = 0.0;
-  double tail_below = 0.0, tail_below_lower = 0.0, tail_below_upper = 0.0;
+  // Share of the signals inside the central bands, with intervals that allow for autocorrelation.
+  double coverage_50 = 0.0, coverage_50_lower = 0.0, coverage_50_upper = 0.0;
+  double coverage_90 = 0.0, coverage_90_lower = 0.0, coverage_90_upper = 0.0;
+  double coverage_95 = 0.0, coverage_95_lower = 0.0, coverage_95_upper = 0.0;
+  double coverage_99 = 0.0, coverage_99_lower = 0.0, coverage_99_upper = 0.0;
+  double too_far = 0.0, too_far_lower = 0.0, too_far_upper = 0.0;        ///< z^2 above its 97.5 % quantile
+  double too_close = 0.0, too_close_lower = 0.0, too_close_upper = 0.0;  ///< z^2 below its 2.5 % quantile
   double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< time average, interval of it if the filter is true
   double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< of the state after the measurement, with truth;
   ///< NaN where R is next to nothing: the state is then the measurement, and its stated covariance R no judgement of it

@@ -1,5 +1,6 @@
 #include "filter/judge/evidence.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "ident/base/distributions.hpp"
@@ -31,8 +32,9 @@ class Collector {
 
   void add(const Trajectory& run, const RunEvaluation& e, const RunScores& scores) {
     Evidence& evidence = sums.evidence;
-    for (SeriesByRun* series : {&evidence.above, &evidence.below, &evidence.sizes, &evidence.nis, &sums.nees})
+    for (SeriesByRun* series : {&evidence.far, &evidence.close, &evidence.sizes, &evidence.nis, &sums.nees})
       series->emplace_back();
+    for (SeriesByRun& series : evidence.outside) series.emplace_back();
     OutputSeries z(static_cast<std::size_t>(e.pit.rows()));  // of a mode's own samples
     for (Index k = 0; k < e.log_density.size(); ++k) {
       if (std::isnan(e.log_density(k))) continue;
@@ -42,6 +44,7 @@ class Collector {
       if (run.truth.size() > 0) add_truth(run, e, k);
     }
     sums.whiteness.push_back(mode_ < 0 ? scores.whiteness_p : whiteness_p(z));
+    if (mode_ < 0) sums.z.insert(sums.z.end(), z.begin(), z.end());
     add_visits(e);
   }
 
@@ -49,6 +52,7 @@ class Collector {
   Index mode_;
   const std::vector<Index>& nees_states_;
   double lower_, upper_;
+  std::array<double, coverage_levels.size()> band_edges_ = coverage_band_edges();  ///< of |z|
 
   bool belongs(const RunEvaluation& e, Index k) const {
     Index likeliest = 0;
@@ -74,10 +78,12 @@ class Collector {
       if (std::isnan(e.pit(i, k))) continue;
       const double score = scores.z(i, k);
       ++signals;
-      sums.evidence.above.back().push_back(score * score > upper_ ? 1.0 : 0.0);
-      sums.evidence.below.back().push_back(score * score < lower_ ? 1.0 : 0.0);
+      for (std::size_t b = 0; b < band_edges_.size(); ++b)
+        sums.evidence.outside[b].back().push_back(std::abs(score) > band_edges_[b] ? 1.0 : 0.0);
+      sums.evidence.far.back().push_back(score * score > upper_ ? 1.0 : 0.0);
+      sums.evidence.close.back().push_back(score * score < lower_ ? 1.0 : 0.0);
       sums.evidence.sizes.back().push_back(std::abs(score));
-      if (mode_ >= 0) z[static_cast<std::size_t>(i)].push_back(score);
+      z[static_cast<std::size_t>(i)].push_back(score);
     }
     // Of fewer signals it has fewer degrees of freedom: scaled to the same mean.
     sums.evidence.nis.back().push_back(e.nis(k) * static_cast<double>(e.pit.rows()) / static_cast<double>(signals));

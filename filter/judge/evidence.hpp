@@ -17,6 +17,7 @@ struct Collected {
   double usage = 0.0, entropy = 0.0, spread = 0.0, visits = 0.0, visited = 0.0;
   Evidence evidence;
   SeriesByRun nees;
+  SeriesByRun z;  ///< of the whole filter: one series per run and measurement
   std::vector<double> whiteness;
   Eigen::VectorXd squared_state_error;
   Eigen::Index state_errors = 0;

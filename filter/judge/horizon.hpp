@@ -26,7 +26,7 @@ HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, con
 
 /// One row of /evaluation/horizon.
 struct HorizonRow {
-  std::string filter;  ///< bank, baseline or noise_only
+  std::string filter;  ///< bank or a competitor
   Role role = Role::train;
   std::string run;           ///< "*": pooled over the samples of all runs of the role
   Eigen::Index horizon = 1;  ///< samples ahead

@@ -1,11 +1,13 @@
 #include "filter/judge/scores.hpp"
 
+#include <array>
 #include <cmath>
 #include <locale>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 
+#include "filter/judge/verdict.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/not_a_number.hpp"
 
@@ -47,20 +49,26 @@ class ScoreSums {
     row.nis_mean = nis_ / N;
     row.nis_above = static_cast<double>(nis_above_) / N;
     row.nis_below = static_cast<double>(nis_below_) / N;
-    row.tail_above = static_cast<double>(tail_above_) / components;
-    row.tail_below = static_cast<double>(tail_below_) / components;
+    row.too_far = static_cast<double>(too_far_) / components;
+    row.too_close = static_cast<double>(too_close_) / components;
+    row.coverage_50 = static_cast<double>(inside_[0]) / components;
+    row.coverage_90 = static_cast<double>(inside_[1]) / components;
+    row.coverage_95 = static_cast<double>(inside_[2]) / components;
+    row.coverage_99 = static_cast<double>(inside_[3]) / components;
     row.pit_distance = kolmogorov_distance(pit_);
     row.whiteness_p = fisher_p(whiteness_);
     return row;
   }
 
  private:
-  Index samples_ = 0, nis_above_ = 0, nis_below_ = 0, tail_above_ = 0, tail_below_ = 0;
+  Index samples_ = 0, nis_above_ = 0, nis_below_ = 0, too_far_ = 0, too_close_ = 0;
   double log_density_ = 0.0, nis_ = 0.0;
   Eigen::ArrayXd squared_error_, errors_;
   std::vector<double> pit_, whiteness_;
   std::vector<ChiSquareRegion> nis_regions_;  ///< of one signal, two, ...
   ChiSquareRegion z_region_{1.0};
+  std::array<Index, coverage_levels.size()> inside_{};  ///< signals inside each central band
+  std::array<double, coverage_levels.size()> band_edges_ = coverage_band_edges();
 
   void add_sample(const RunEvaluation& run, Index k, const RunScores& scores) {
     ++samples_;
@@ -77,8 +85,9 @@ class ScoreSums {
     for (Index i = 0; i < run.pit.rows(); ++i) {
       if (!there(i)) continue;
       const double score = scores.z(i, k);
-      tail_above_ += score * score > z_region_.upper;
-      tail_below_ += score * score < z_region_.lower;
+      too_far_ += score * score > z_region_.upper;
+      too_close_ += score * score < z_region_.lower;
+      for (std::size_t b = 0; b < inside_.size(); ++b) inside_[b] += std::abs(score) <= band_edges_[b];
       pit_.push_back(run.pit(i, k));
     }
   }
@@ -193,7 +202,10 @@ std::optional<ScoreGoal> goal_of(const std::string& score, int states) {
   if (kind == "log_score" || kind == "whiteness_p") return ScoreGoal{Kind::higher};
   if (kind.rfind("rmse", 0) == 0 || kind == "pit_distance") return ScoreGoal{Kind::lower};
   if (kind == "nis_mean") return ScoreGoal{Kind::nominal, static_cast<double>(states)};
-  if (kind.rfind("tail_", 0) == 0 || kind.rfind("nis_", 0) == 0) return ScoreGoal{Kind::nominal, true_tail};
+  if (kind.rfind("too_", 0) == 0 || kind.rfind("nis_", 0) == 0) return ScoreGoal{Kind::nominal, true_tail};
+  for (std::size_t b = 0; b < coverage_levels.size(); ++b)
+    if (kind == "coverage_" + std::to_string(std::lround(100.0 * coverage_levels[b])))
+      return ScoreGoal{Kind::nominal, coverage_levels[b]};
   return {};
 }
 
@@ -205,17 +217,6 @@ const SummaryRow* pooled_row(const std::vector<SummaryRow>& summary, const std::
 
 Role judged_role(const std::vector<SummaryRow>& summary) {
   return pooled_row(summary, "bank", Role::test) ? Role::test : Role::train;
-}
-
-std::optional<BankGain> bank_gain(const std::vector<SummaryRow>& summary) {
-  BankGain gain{judged_role(summary), {}, {}};
-  const SummaryRow* bank = pooled_row(summary, "bank", gain.role);
-  if (!bank) return {};
-  if (const SummaryRow* baseline = pooled_row(summary, "baseline", gain.role))
-    gain.over_baseline = bank->log_score - baseline->log_score;
-  if (const SummaryRow* noise_only = pooled_row(summary, "noise_only", gain.role))
-    gain.over_noise_only = bank->log_score - noise_only->log_score;
-  return gain;
 }
 
 }  // namespace modebank

@@ -14,17 +14,18 @@ namespace modebank {
 
 /// One row of /evaluation/summary (method: section 6). Fractions are of the scored samples.
 struct SummaryRow {
-  std::string filter;  ///< bank, baseline or noise_only
+  std::string filter;  ///< bank or a competitor
   Role role = Role::train;
   std::string run;           ///< "*": pooled over the samples of all runs of the role
   Eigen::Index samples = 0;  ///< scored samples
   double log_score = 0.0;    ///< mean log predictive density [nats/sample], higher is better
   Eigen::VectorXd rmse;      ///< n_y, of the one-step prediction [state unit]
   double nis_mean = 0.0;
-  double nis_above = 0.0;   ///< NIS above the 97.5 % quantile of chi-square(n_y)
-  double nis_below = 0.0;   ///< NIS below the 2.5 % quantile
-  double tail_above = 0.0;  ///< z^2 above the 97.5 % quantile of chi-square(1), z = Phi^-1(pit)
-  double tail_below = 0.0;
+  double nis_above = 0.0;  ///< NIS above the 97.5 % quantile of chi-square(n_y)
+  double nis_below = 0.0;  ///< NIS below the 2.5 % quantile
+  double too_far = 0.0;    ///< z^2 above the 97.5 % quantile of chi-square(1), z = Phi^-1(pit)
+  double too_close = 0.0;  ///< z^2 below the 2.5 % quantile
+  double coverage_50 = 0.0, coverage_90 = 0.0, coverage_95 = 0.0, coverage_99 = 0.0;  ///< |z| inside the central band
   double pit_distance = 0.0;  ///< Kolmogorov distance of pit from uniform
   double whiteness_p = 0.0;   ///< Ljung & Box (1978) p of z, min(20, N/5) lags, pooled over runs by Fisher's method
 };
@@ -72,18 +73,5 @@ const SummaryRow* pooled_row(const std::vector<SummaryRow>& summary, const std::
 
 /// The runs that filters are judged on: those held out, or, where nothing was, those they learned from.
 Role judged_role(const std::vector<SummaryRow>& summary);
-
-/// What the bank gained over its competitors there, in mean log score [nats/sample]; empty where one was not scored.
-struct BankGain {
-  Role role = Role::train;
-  std::optional<double> over_baseline, over_noise_only;
-
-  bool held_out() const { return role == Role::test; }
-  bool predicts_better() const { return over_baseline && *over_baseline > 0.0; }
-  /// More than switching noise alone explains; evidence if the runs were held out.
-  bool speaks_for_modes() const { return over_noise_only && *over_noise_only > 0.0; }
-};
-/// Empty without a bank's scores.
-std::optional<BankGain> bank_gain(const std::vector<SummaryRow>& summary);
 
 }  // namespace modebank

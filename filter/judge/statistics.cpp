@@ -157,6 +157,24 @@ double mean_of(const SeriesByRun& series) {
   return count > 0.0 ? sum / count : not_a_number;
 }
 
+Autocorrelation largest_autocorrelation(const SeriesByRun& series) {
+  const double mean = mean_of(series);
+  const auto sum_at = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (const auto& x : series)
+      for (std::size_t k = lag; k < x.size(); ++k) sum += (x[k] - mean) * (x[k - lag] - mean);
+    return sum;
+  };
+  Autocorrelation largest;
+  const double variance = sum_at(0);
+  const auto lags = std::min<Eigen::Index>(most_lags, static_cast<Eigen::Index>(sample_count(series)) / 5);
+  for (Eigen::Index lag = 1; lag <= lags && variance > 0.0; ++lag)
+    if (const double value = sum_at(static_cast<std::size_t>(lag)) / variance;
+        std::abs(value) > std::abs(largest.value))
+      largest = {lag, value};
+  return largest;
+}
+
 double autocorrelation_time(const SeriesByRun& series) {
   return std::isnan(mean_of(series)) ? not_a_number : time_of(autocorrelations(series));
 }

@@ -48,6 +48,14 @@ double sample_count(const SeriesByRun& series);
 /// Mean over all values; NaN without any.
 double mean_of(const SeriesByRun& series);
 
+/// An autocorrelation and its lag.
+struct Autocorrelation {
+  Eigen::Index lag = 0;
+  double value = 0.0;
+};
+/// The largest in size of lags 1 to min(20, N / 5) over all series together; 0 at lag 0 where they are too short.
+Autocorrelation largest_autocorrelation(const SeriesByRun& series);
+
 /// Autocorrelation time: variance of the mean over that of as many independent terms, at least 1 (initial positive
 /// sequence of Geyer 1992, Statistical Science 7). NaN without values.
 double autocorrelation_time(const SeriesByRun& series);

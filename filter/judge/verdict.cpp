@@ -1,6 +1,7 @@
 #include "filter/judge/verdict.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ident/base/distributions.hpp"
@@ -10,21 +11,17 @@ namespace modebank {
 
 namespace {
 
-constexpr double beyond_either_end = 0.025;
 constexpr double nis_level = 0.99;     // of the interval whose outside is a verdict
 constexpr double nis_tolerance = 0.1;  // a tenth of the variance is a twentieth of the interval's width
+constexpr double outside_level = 0.99;
+constexpr double true_outside = 0.05, many_outside = 0.06, few_outside = 0.025;
 
-/// Of a tail's fraction, as many samples as there are independent ones.
-Interval tail_interval(const SeriesByRun& hits, double time_by_sizes) {
-  const double samples = sample_count(hits) / std::max(autocorrelation_time(hits), time_by_sizes);
-  return binomial_interval(mean_of(hits) * samples, samples);
+bool within(double value, double least, double largest) { return value >= least && value <= largest; }
+
+/// Whether an interval holds all of the band that counts as calibrated, and more: nothing is known.
+bool says_nothing(const Interval& interval, double least, double largest) {
+  return interval.lower < least && interval.upper > largest;
 }
-
-bool within_band(double fraction) { return fraction >= least_tail && fraction <= largest_tail; }
-
-/// Whether an interval of a tail's fraction holds all of the band that counts as calibrated, and more: nothing is
-/// known.
-bool says_nothing(const Interval& tail) { return !(tail.lower >= least_tail || tail.upper <= largest_tail); }
 
 /// What the mean NIS says: -1 underconfident, 1 overconfident, 0 nothing.
 int judge_nis(const Evidence& evidence) {
@@ -39,11 +36,26 @@ int judge_nis(const Evidence& evidence) {
 
 }  // namespace
 
-Interval binomial_interval(double count, double samples) {
+Interval binomial_interval(double count, double samples, double level) {
   if (!(samples > 0.0)) return {not_a_number, not_a_number};
-  const double misses = std::max(0.0, samples - count);
-  return {count > 0.0 ? beta_quantile(beyond_either_end, count, misses + 1.0) : 0.0,
-          misses > 0.0 ? beta_quantile(1.0 - beyond_either_end, count + 1.0, misses) : 1.0};
+  const double misses = std::max(0.0, samples - count), beyond = 0.5 * (1.0 - level);
+  return {count > 0.0 ? beta_quantile(beyond, count, misses + 1.0) : 0.0,
+          misses > 0.0 ? beta_quantile(1.0 - beyond, count + 1.0, misses) : 1.0};
+}
+
+double time_by_sizes(const SeriesByRun& sizes) {
+  return cautious_time(autocorrelation_time_of_tail(sizes), sample_count(sizes));
+}
+
+Interval fraction_interval(const SeriesByRun& hits, double time, double level) {
+  const double samples = sample_count(hits) / std::max(autocorrelation_time(hits), time);
+  return binomial_interval(mean_of(hits) * samples, samples, level);
+}
+
+std::array<double, coverage_levels.size()> coverage_band_edges() {
+  std::array<double, coverage_levels.size()> edges{};
+  for (std::size_t b = 0; b < edges.size(); ++b) edges[b] = normal_quantile(0.5 + 0.5 * coverage_levels[b]);
+  return edges;
 }
 
 double dispersion(const SeriesByRun& series, double degrees) {
@@ -63,15 +75,22 @@ Interval chi_square_mean_interval(const SeriesByRun& series, double inflation, d
 }
 
 Verdict verdict_of(const Evidence& evidence) {
-  if (sample_count(evidence.above) == 0.0) return Verdict::undecided;
-  const double time = cautious_time(autocorrelation_time_of_tail(evidence.sizes), sample_count(evidence.sizes));
-  const Interval above = tail_interval(evidence.above, time), below = tail_interval(evidence.below, time);
-  if (above.lower > largest_tail) return Verdict::overconfident;
-  if (above.upper < least_tail || below.lower > largest_tail) return Verdict::underconfident;
-  if (below.upper < least_tail) return Verdict::overconfident;
+  const SeriesByRun& misses = evidence.outside[deciding_level];
+  if (sample_count(misses) == 0.0) return Verdict::undecided;
+  const double outside = mean_of(misses), time = time_by_sizes(evidence.sizes);
+  const Interval sure = fraction_interval(misses, time, outside_level);
+  if (outside > many_outside && sure.lower > true_outside) return Verdict::overconfident;
+  const Interval close = fraction_interval(evidence.close, time);
+  if (outside < few_outside && sure.upper < true_outside) return Verdict::underconfident;
+  if (outside < true_outside && close.lower > largest_close) return Verdict::underconfident;
   if (const int nis = judge_nis(evidence); nis != 0) return nis > 0 ? Verdict::overconfident : Verdict::underconfident;
-  const bool inside = within_band(mean_of(evidence.above)) && within_band(mean_of(evidence.below));
-  return inside && !says_nothing(above) && !says_nothing(below) ? Verdict::calibrated : Verdict::undecided;
+  const bool inside =
+      within(outside, least_outside, largest_outside) && within(mean_of(evidence.close), least_close, largest_close);
+  const Interval likely = fraction_interval(misses, time);
+  return inside && !says_nothing(likely, least_outside, largest_outside) &&
+                 !says_nothing(close, least_close, largest_close)
+             ? Verdict::calibrated
+             : Verdict::undecided;
 }
 
 }  // namespace modebank

@@ -1,20 +1,24 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "filter/judge/statistics.hpp"
 #include "modebank/base/names.hpp"
 
 namespace modebank {
 
-/// Whether a filter's stated uncertainty is true, by its PIT tails: overconfident when more than 4 % of the samples lie
-/// above (or fewer than 1 % below) the quantiles that 2.5 % should lie beyond, underconfident the other way round, each
-/// with 95 % confidence. Too many above decides, whatever lies below: that is what hurts. Where the tails do not speak,
-/// the mean NIS does if every prediction is one Gaussian of known variance (a mixture's NIS is not chi-square, nor that
-/// of a filter that learns its noise on the way, so there it is only flagged): when it lies outside the 99 % interval
-/// of a true filter's mean and is off by more than a tenth. calibrated: both fractions lie within 1 to 4 %, and neither
-/// interval holds all of that band. undecided: all else, as with a few hundred samples.
+/// Whether a filter's stated uncertainty is true. overconfident: too many samples lie outside its 95 % band, more than
+/// 6 % and with 99 % confidence more than 5 %, however many lie close to its middle. underconfident: fewer than 2.5 %,
+/// and with 99 % confidence fewer than 5 %, lie outside; or fewer than 5 % do and with 95 % confidence more than 4 % lie
+/// so close to the middle as 2.5 % should (too_close). Where neither speaks, the mean NIS does if every prediction is
+/// one Gaussian of known variance (a mixture's NIS is not chi-square, nor that of a filter that learns its noise on the
+/// way, so there it is only flagged): when it lies outside the 99 % interval of a true filter's mean and is off by more
+/// than a tenth. calibrated: 2.5 to 7.5 % lie outside and 1 to 4 % too close, and neither interval holds all of its
+/// band. undecided: all else, as with a few hundred samples.
 ///
-/// Samples that follow each other closely count as fewer: of a tail's hits as few as their autocorrelation time says or
-/// that of all samples' sizes (hits are too few to show it in short runs), with a margin for its own error.
+/// Samples that follow each other closely count as fewer: of a band's misses as few as their autocorrelation time says
+/// or that of all samples' sizes (hits are too few to show it in short runs), with a margin for its own error.
 enum class Verdict { undecided, calibrated, overconfident, underconfident };
 
 template <>
@@ -22,16 +26,23 @@ struct EnumNames<Verdict> {
   static constexpr Names<4> values{"undecided", "calibrated", "overconfident", "underconfident"};
 };
 
-/// The band of tail fractions that counts as calibrated.
-inline constexpr double least_tail = 0.01, largest_tail = 0.04;
+/// The central bands whose coverage is counted, and which of them decides.
+inline constexpr std::array<double, 4> coverage_levels{0.50, 0.90, 0.95, 0.99};
+inline constexpr std::size_t deciding_level = 2;
+
+/// Of |z|: normal quantiles.
+std::array<double, coverage_levels.size()> coverage_band_edges();
+
+/// What counts as calibrated: fractions outside the deciding band, and fractions too close to the middle.
+inline constexpr double least_outside = 0.025, largest_outside = 0.075, least_close = 0.01, largest_close = 0.04;
 
 struct Interval {
   double lower, upper;
 };
 
-/// Limits of the probability behind `count` successes in `samples` independent trials, Clopper & Pearson (1934), 95 %.
+/// Limits of the probability behind `count` successes in `samples` independent trials, Clopper & Pearson (1934).
 /// Fractions of trials are allowed. NaN without samples.
-Interval binomial_interval(double count, double samples);
+Interval binomial_interval(double count, double samples, double level = 0.95);
 
 /// Variance of the terms over that of chi-square terms with the series' mean and `degrees` degrees of freedom each: 1
 /// for a true filter whose predictions are single Gaussians, more where rare terms are large, as with modes that are
@@ -45,12 +56,18 @@ Interval chi_square_mean_interval(const SeriesByRun& series, double inflation, d
 
 /// What a verdict rests on, over the scored signals of some samples.
 struct Evidence {
-  SeriesByRun above, below;     ///< 1 where a signal lies in that PIT tail, else 0
+  std::array<SeriesByRun, coverage_levels.size()> outside;  ///< 1 where a signal lies outside that band, else 0
+  SeriesByRun far, close;       ///< 1 where its z^2 lies above the 97.5 % or below the 2.5 % quantile of chi-square(1)
   SeriesByRun sizes;            ///< of the same signals: rises with the distance of the PIT from 1/2
   SeriesByRun nis;              ///< per sample
   double nis_degrees = 1.0;     ///< n_y
   bool chi_square_nis = false;  ///< whether a true filter's NIS is chi-square
 };
+
+/// The autocorrelation time that hits have by the sizes of all signals, with a margin.
+double time_by_sizes(const SeriesByRun& sizes);
+/// Of a fraction of hits, with as many samples as there are independent ones. `time`: of time_by_sizes.
+Interval fraction_interval(const SeriesByRun& hits, double time, double level = 0.95);
 
 Verdict verdict_of(const Evidence& evidence);
 

@@ -28,6 +28,24 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
 /// training runs.
 Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R);
 
+/// The same with another number of noise scales.
+Bank learn_noise_levels(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
+                        Eigen::Index levels);
+
+/// How the noise scale of a competitor moves in an adaptive filter: what makes the training runs most likely of the
+/// ways that a bank's cross-validation tries. A competitor has so few parameters that nothing need be left out for
+/// that.
+NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& recording, const FilterOptions& filter,
+                                       const RefineTuning& tuning);
+
+/// The competitor that knows one motion and is learned as the bank is: expectation-maximisation with one theta that all
+/// modes share, from `most_levels` noise scales and fewer down to one, chosen by its own cross-validation
+/// (refine_bank), averaged and with measurement noise as `options` say. `global`: of linear terms. `filter`: that will
+/// run it.
+Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global,
+                      const Eigen::MatrixXd& R, Eigen::Index most_levels, const BankOptions& options,
+                      const FilterOptions& filter);
+
 /// Turns clustered windows into a bank (method: section 4). `R` is used unless options.measurement_variance is set.
 /// `motion`: the model that the windows were fitted with, null for linear ones; its modes are linearised at their mean
 /// state and input. Where every component is screened the bank has one mode, of all of them merged; throws DataError

@@ -86,6 +86,14 @@ WindowFits write_archive(const std::filesystem::path& path, const Archive& archi
   return common;
 }
 
+const Bank* Archive::bank_of(const std::string& filter) const {
+  const auto of = [](const std::optional<Bank>& held) { return held ? &*held : nullptr; };
+  if (filter == "bank") return of(bank);
+  if (filter == "baseline") return of(baseline);
+  if (filter == "noise_only") return of(noise_only);
+  return filter == "one_motion" ? of(one_motion) : nullptr;
+}
+
 namespace {
 
 /// Without a list the first problem is thrown as DataError; with one all problems are listed, each with its place, and

@@ -9,6 +9,7 @@
 
 #include "filter/judge/diagnostics.hpp"
 #include "filter/judge/evaluate.hpp"
+#include "filter/judge/finding.hpp"
 #include "filter/judge/horizon.hpp"
 #include "filter/judge/scores.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
@@ -37,14 +38,14 @@ struct Provenance {
 
 /// One filter over all runs of the recording, in its order.
 struct FilterEvaluation {
-  std::string filter;  ///< bank, baseline or noise_only
+  std::string filter;  ///< bank or a competitor
   std::vector<RunEvaluation> runs;
   std::vector<RunScores> scores;  ///< of these, where they have just been made; archives do not hold them
 };
 
 /// Residual tests of one model over all runs of the recording, in its order.
 struct ResidualTestSet {
-  std::string model;  ///< global (its one-step residuals), or a filter: bank, baseline or noise_only (its scores z)
+  std::string model;  ///< global (its one-step residuals), or a filter: bank or a competitor (its scores z)
   std::vector<ResidualTests> runs;
 };
 
@@ -61,12 +62,17 @@ struct Archive {
   MeasuredFit measured_fit = MeasuredFit::none;
   std::optional<Bank> baseline;
   std::optional<Bank> noise_only;
+  std::optional<Bank> one_motion;
   std::vector<FilterEvaluation> evaluations;
   std::vector<SummaryRow> summary;
   std::vector<HorizonRow> horizons;  ///< with filter.horizon
   std::vector<DiagnosticsRow> diagnostics;
   std::vector<ResidualTestSet> residual_tests;
   std::vector<MergingCost> merging = {};  ///< with bank.modes, where components were merged
+  std::optional<Finding> finding = {};    ///< where a bank was scored
+
+  /// By the name of its filter; null where there is none.
+  const Bank* bank_of(const std::string& filter) const;
 };
 
 /// Throws ConfigurationError when `path` cannot become an archive: its folder is missing or not writable, or it is a

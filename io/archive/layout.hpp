@@ -148,6 +148,7 @@ void exchange_archive(Io& io, A& archive) {
   });
   exchange_part(io, "baseline", archive.baseline, {}, exchange_one);
   exchange_part(io, "noise_only", archive.noise_only, {}, exchange_one);
+  exchange_part(io, "one_motion", archive.one_motion, {}, exchange_one);
   io.optional_group("residual_tests", !archive.residual_tests.empty(), {},
                     [&](auto& member) { exchange_residual_tests(member, archive.residual_tests, recording); });
   io.optional_group("evaluation", !archive.evaluations.empty() || !archive.summary.empty(), {},

@@ -61,7 +61,9 @@ void exchange_summary(Io& io, S& summary, const Unit& states) {
                     column("log_score", &SummaryRow::log_score, "nat"),
                     column("rmse", &SummaryRow::rmse, joined(states)), column("nis_mean", &SummaryRow::nis_mean),
                     column("nis_above", &SummaryRow::nis_above), column("nis_below", &SummaryRow::nis_below),
-                    column("tail_above", &SummaryRow::tail_above), column("tail_below", &SummaryRow::tail_below),
+                    column("coverage_50", &SummaryRow::coverage_50), column("coverage_90", &SummaryRow::coverage_90),
+                    column("coverage_95", &SummaryRow::coverage_95), column("coverage_99", &SummaryRow::coverage_99),
+                    column("too_far", &SummaryRow::too_far), column("too_close", &SummaryRow::too_close),
                     column("pit_distance", &SummaryRow::pit_distance), column("whiteness_p", &SummaryRow::whiteness_p));
 }
 
@@ -80,14 +82,43 @@ void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
       "diagnostics", rows, column("filter", &Row::filter), column("role", &Row::role), column("mode", &Row::mode),
       column("samples", &Row::samples), column("usage", &Row::usage), column("entropy", &Row::entropy),
       column("dwell", &Row::dwell, "samples"), column("dwell_model", &Row::dwell_model, "samples"),
-      column("tail_above", &Row::tail_above), column("tail_above_lower", &Row::tail_above_lower),
-      column("tail_above_upper", &Row::tail_above_upper), column("tail_below", &Row::tail_below),
-      column("tail_below_lower", &Row::tail_below_lower), column("tail_below_upper", &Row::tail_below_upper),
+      column("coverage_50", &Row::coverage_50), column("coverage_50_lower", &Row::coverage_50_lower),
+      column("coverage_50_upper", &Row::coverage_50_upper), column("coverage_90", &Row::coverage_90),
+      column("coverage_90_lower", &Row::coverage_90_lower), column("coverage_90_upper", &Row::coverage_90_upper),
+      column("coverage_95", &Row::coverage_95), column("coverage_95_lower", &Row::coverage_95_lower),
+      column("coverage_95_upper", &Row::coverage_95_upper), column("coverage_99", &Row::coverage_99),
+      column("coverage_99_lower", &Row::coverage_99_lower), column("coverage_99_upper", &Row::coverage_99_upper),
+      column("too_far", &Row::too_far), column("too_far_lower", &Row::too_far_lower),
+      column("too_far_upper", &Row::too_far_upper), column("too_close", &Row::too_close),
+      column("too_close_lower", &Row::too_close_lower), column("too_close_upper", &Row::too_close_upper),
       column("nis_mean", &Row::nis_mean), column("nis_lower", &Row::nis_lower), column("nis_upper", &Row::nis_upper),
       column("nees_mean", &Row::nees_mean), column("nees_lower", &Row::nees_lower),
       column("nees_upper", &Row::nees_upper), column("state_rmse", &Row::state_rmse, joined(states)),
       column("whiteness_p", &Row::whiteness_p), column("spread_share", &Row::spread_share),
       column("verdict", &Row::verdict), column("flags", &Row::flags));
+}
+
+/// /evaluation/evidence: what was found, in words and in the numbers that decided.
+template <class Io, class F>
+void exchange_finding(Io& io, F& finding) {
+  io.attribute("answer", finding.answer);
+  io.attribute("role", finding.role);
+  io.attribute("runs", finding.runs);
+  io.attribute("modes", finding.modes);
+  io.attribute("modes_differ", finding.modes_differ);
+  io.attribute("best_competitor", finding.best_competitor);
+  io.attribute("gain", finding.gain);
+  io.attribute("standard_error", finding.standard_error);
+  io.attribute("better_description", finding.better_description);
+  io.attribute("text", finding.text);
+  io.optional_table("gains", finding.gains, column("competitor", &PairedGain::competitor),
+                    column("samples", &PairedGain::samples), column("gain", &PairedGain::gain, "nat"),
+                    column("standard_error", &PairedGain::standard_error, "nat"),
+                    column("degrees_of_freedom", &PairedGain::degrees_of_freedom),
+                    column("margin", &PairedGain::margin, "nat"), column("by_blocks", &PairedGain::by_blocks));
+  io.optional_table("better_means", finding.better_means, column("competitor", &BetterMean::competitor),
+                    column("horizon", &BetterMean::horizon, "samples"), column("state", &BetterMean::state),
+                    column("rmse_bank", &BetterMean::rmse_bank), column("rmse", &BetterMean::rmse));
 }
 
 template <class Io, class A>
@@ -109,6 +140,7 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
   exchange_summary(io, archive.summary, units.states());
   exchange_horizon(io, archive.horizons, units.states());
   exchange_diagnostics(io, archive.diagnostics, units.states());
+  exchange_part(io, "evidence", archive.finding, {}, [](auto& member, auto& part) { exchange_finding(member, part); });
 }
 
 template <class Io, class R>

@@ -207,6 +207,7 @@ TrialScores read_trial_scores(const std::filesystem::path& path) {
     TrialScores scores;
     scores.modes = static_cast<std::int64_t>(weights.elements());
     scores.pooled = pooled_scores(summary, states);
+    evaluation.optional_group("evidence", true, {}, [&](auto& member) { member.attribute("answer", scores.evidence); });
     GroupReader attributes(open_root(file), nullptr);
     attributes.attribute("modebank_version", scores.modebank_version);
     attributes.attribute("config_hash", scores.config_hash);

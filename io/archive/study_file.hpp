@@ -48,6 +48,7 @@ StudyFile read_study_file(const std::filesystem::path& path, const std::string& 
 struct TrialScores {
   std::string modebank_version, config_hash, data_hash;
   std::int64_t modes = 0;                              ///< of the bank
+  std::string evidence;                                ///< the finding's answer; empty where nothing was found out
   std::vector<std::pair<std::string, double>> pooled;  ///< <filter>_<role>_<score>, ..._rmse_<state>: the summary's "*"
 };
 

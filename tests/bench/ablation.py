@@ -197,7 +197,7 @@ def cells(folds, name):
     text = [f"{mean:.3f} / {sum(map(rmse, scores)) / len(scores):.4f}"]
     for s in scores:
         text.append(f"{s['log_score']:.3f} / {rmse(s):.4f}")
-        text.append(f"{100 * s['tail_above']:.1f}, {100 * s['tail_below']:.1f}")
+        text.append(f"{100 * s['too_far']:.1f}, {100 * s['too_close']:.1f}")
     return " | ".join(text)
 
 

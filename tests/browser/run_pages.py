@@ -35,14 +35,14 @@ class RunPages(PageTest):
         rows = pooled(archive)
         shown = session.browser.run("return [...document.querySelectorAll('#verdict .numbers .big span')].map((s) => JSON.parse(s.dataset.value))")
         bank = rows["bank", "test"]
-        self.assertEqual(shown, [bank["log_score"], float(bank["rmse"].ravel()[0]), bank["tail_above"], bank["tail_below"]])
-        names = {"bank": "bank", "baseline": "baseline", "noise only": "noise_only"}
+        self.assertEqual(shown, [bank["log_score"], float(bank["rmse"].ravel()[0]), bank["coverage_95"], bank["too_far"]])
+        names = {"bank": "bank", "baseline": "baseline", "noise only": "noise_only", "one motion": "one_motion"}
         table = self.table("Scores, all runs together")
         self.assertEqual(len(table), len(rows))
         for line in table:
             row = rows[names[line["Filter"][0]], "test" if line["Runs"][0] == "held out" else "train"]
             for heading, key in (("Samples", "samples"), ("Log score [nats]", "log_score"), ("NIS above", "nis_above"), ("NIS below", "nis_below"),
-                                 ("PIT above", "tail_above"), ("PIT below", "tail_below"), ("mean NIS", "nis_mean")):
+                                 ("in 95 %", "coverage_95"), ("too far", "too_far"), ("too close", "too_close"), ("mean NIS", "nis_mean")):
                 self.same(line[heading][1], row[key])
 
     def check_bank(self, archive):

@@ -65,9 +65,10 @@ std::string Figure::script() const {
   constexpr int most_colours = 40;
   const Palette colours = palette(most_colours);
   return comment("Drawn by gnuplot 5 or later: gnuplot " + name_ + ".gp") + "figure = " + quoted(name_) + "\n" +
-         array_text("palette", colours.modes) + "bank_colour = " + quoted(colours.bank) +
-         "\nbaseline_colour = " + quoted(colours.baseline) + "\noutlier_colour = " + quoted(colours.outlier) + "\n" +
-         settings_ + "load 'style.gp'\n" + std::string(script_);
+         array_text("palette", colours.modes) + "bank_colour = " + quoted(colours.filters.at("bank")) +
+         "\nbaseline_colour = " + quoted(colours.filters.at("baseline")) +
+         "\noutlier_colour = " + quoted(colours.outlier) + "\n" + settings_ + "load 'style.gp'\n" +
+         std::string(script_);
 }
 
 }  // namespace modebank::app::report

@@ -29,9 +29,7 @@ Palette palette(int modes) {
     const std::string& colour = base[k % base.size()];
     colours.modes.push_back(round == 0 ? colour : mixed(colour, round == 1 ? 0 : 255, 0.45));
   }
-  colours.bank = file.at("filters").at("bank");
-  colours.baseline = file.at("filters").at("baseline");
-  colours.noise_only = file.at("filters").at("noise_only");
+  colours.filters = file.at("filters");
   colours.outlier = file.at("outlier");
   return colours;
 }

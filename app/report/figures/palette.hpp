@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,8 @@ namespace modebank::app::report {
 /// Colours "#rrggbb" of web/palette.json, which pages and figures share.
 struct Palette {
   std::vector<std::string> modes;  ///< of mode 0, 1, ...; from where they come again they are darker, then lighter
-  std::string bank, baseline, noise_only, outlier;
+  std::string outlier;
+  std::map<std::string, std::string> filters;  ///< by their names in archives
 };
 
 /// For `modes` modes, by the rule of modeColour in web/plots.js.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -13,15 +14,14 @@ namespace modebank::app::report {
 namespace {
 
 constexpr Index bins_of_figure = 20;
-constexpr std::array<const char*, 3> drawn_filters{"baseline", "noise_only", "bank"};
+constexpr std::array<const char*, 5> drawn_filters{"baseline", "noise_only", "one_motion", "drifting", "bank"};
 
-std::string colour_of(const std::string& filter) {
-  const Palette colours = palette(0);
-  return filter == "baseline" ? colours.baseline : filter == "noise_only" ? colours.noise_only : colours.bank;
-}
+std::string colour_of(const std::string& filter) { return palette(0).filters.at(filter); }
 
-std::string title_of(const Archive& archive, const std::string& filter) {
-  return filter == "baseline" ? "baseline" : filter == "noise_only" ? "noise only" : bank_title(archive);
+std::string title_of(const Archive& archive, std::string filter) {
+  if (filter == "bank") return bank_title(archive);
+  std::replace(filter.begin(), filter.end(), '_', ' ');
+  return filter;
 }
 
 PitHistogram judged_histogram(const Archive& archive, const FilterEvaluation& evaluation) {

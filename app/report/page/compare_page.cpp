@@ -44,8 +44,9 @@ struct ComparedScore {
 constexpr ComparedScore compared_scores[] = {
     {"log score [nats/sample]", "log_score", [](const SummaryRow& row) { return row.log_score; }},
     {"RMSE (all states)", "rmse", [](const SummaryRow& row) { return row.rmse.norm(); }},
-    {"PIT tail above", "tail_above", [](const SummaryRow& row) { return row.tail_above; }, true},
-    {"PIT tail below", "tail_below", [](const SummaryRow& row) { return row.tail_below; }, true},
+    {"In the 95 % band", "coverage_95", [](const SummaryRow& row) { return row.coverage_95; }, true},
+    {"Too far", "too_far", [](const SummaryRow& row) { return row.too_far; }, true},
+    {"Too close", "too_close", [](const SummaryRow& row) { return row.too_close; }, true},
     {"PIT distance", "pit_distance", [](const SummaryRow& row) { return row.pit_distance; }},
 };
 
@@ -66,7 +67,7 @@ json score_row(const ComparedScore& score, const SummaryRow& first, const Summar
 json scores_of(const Pair& runs) {
   json rows = json::array();
   for (const Role role : {Role::test, Role::train})
-    for (const char* filter : {"bank", "baseline", "noise_only"}) {
+    for (const char* filter : {"bank", "baseline", "noise_only", "one_motion", "drifting"}) {
       const SummaryRow* first = pooled_row(runs[0].archive, filter, role);
       const SummaryRow* second = pooled_row(runs[1].archive, filter, role);
       if (!first || !second) continue;

@@ -56,8 +56,8 @@ void add_diagnosis(json& row, const DiagnosticsRow& diagnosis) {
   row["samples"] = count(diagnosis.samples);
   row["dwell"] = number(diagnosis.dwell);
   row["dwell_model"] = number(diagnosis.dwell_model);
-  row["tail_above"] = percent(diagnosis.tail_above);
-  row["tail_below"] = percent(diagnosis.tail_below);
+  row["too_far"] = percent(diagnosis.too_far);
+  row["too_close"] = percent(diagnosis.too_close);
   row["verdict"] = name_of(diagnosis.verdict);
 }
 

@@ -14,13 +14,6 @@ using nlohmann::json;
 /// What counts as an outlier: a true filter has one sample in a thousand so far out.
 constexpr double outlier_level = 0.999;
 
-const Bank* bank_of(const Archive& archive, const std::string& filter) {
-  const std::optional<Bank>& bank = filter == "bank"       ? archive.bank
-                                    : filter == "baseline" ? archive.baseline
-                                                           : archive.noise_only;
-  return bank ? &*bank : nullptr;
-}
-
 json rows_of(PageArrays& arrays, const Eigen::MatrixXd& rows, Index finest, Bucket kind = Bucket::extremes) {
   json list = json::array();
   for (Index i = 0; i < rows.rows(); ++i) list.push_back(series(arrays, rows.row(i).transpose(), finest, kind));
@@ -74,7 +67,7 @@ json run_signals(const Archive& archive, std::size_t i, PageArrays& arrays, cons
                 {"filters", json::object()}};
   if (run.truth.size() > 0) entry["truth"] = rows_of(arrays, run.truth, detail.finest);
   for (const FilterEvaluation& evaluation : archive.evaluations) {
-    const Bank* bank = bank_of(archive, evaluation.filter);
+    const Bank* bank = archive.bank_of(evaluation.filter);
     if (!bank || i >= evaluation.runs.size()) continue;
     const Index finest = evaluation.filter == "bank" ? detail.finest : std::max(detail.finest, detail.finest_others);
     entry["filters"][evaluation.filter] = filter_signals(arrays, *bank, evaluation.runs[i], run, finest);

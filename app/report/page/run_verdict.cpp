@@ -20,8 +20,8 @@ const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filte
 json decisive(const Archive& archive, Role role, const std::string& name, const std::string& unit,
               const std::string& better, json (*of)(const SummaryRow&)) {
   json values = json::object();
-  for (const char* filter : {"bank", "baseline", "noise_only"})
-    if (const SummaryRow* row = pooled_row(archive, filter, role)) values[filter] = of(*row);
+  for (const SummaryRow& row : archive.summary)
+    if (row.run == "*" && row.role == role) values[row.filter] = of(row);
   return {{"name", name}, {"unit", unit}, {"better", better}, {"values", values}};
 }
 
@@ -39,29 +39,17 @@ std::string calibration_words(const DiagnosticsRow& row) {
   return "whether its stated uncertainty is true is undecided";
 }
 
-/// The finding in one sentence, from the archive's own verdict.
+/// What was found, as the archive says it, and whether the bank's uncertainty is true. Good: evidence, and calibrated.
 json sentence(const Archive& archive) {
-  const std::optional<BankGain> gain = bank_gain(archive.summary);
-  if (!gain) return {{"text", "No bank was scored, so there is nothing to judge yet."}, {"good", nullptr}};
-  std::string text = fmt::format("On {} runs the bank of {} modes", words_for(gain->role),
-                                 archive.bank ? archive.bank->mode_count() : 0);
-  bool good = gain->held_out();
-  if (gain->over_baseline) {
-    text += fmt::format(" predicts {} than one Kalman filter ({:+.3f} nats per sample)",
-                        gain->predicts_better() ? "better" : "no better", *gain->over_baseline);
-    good = good && gain->predicts_better();
-  }
-  if (gain->over_noise_only) {
-    text += fmt::format(", {} evidence for modes of motion beyond changing noise ({:+.3f})",
-                        gain->speaks_for_modes() ? "with" : "without", *gain->over_noise_only);
-    good = good && gain->speaks_for_modes();
-  }
-  if (const DiagnosticsRow* row = diagnosis(archive, "bank", gain->role)) {
-    text += fmt::format("; {}", calibration_words(*row));
+  if (!archive.finding) return {{"text", "No bank was scored, so there is nothing to judge yet."}, {"good", nullptr}};
+  const Finding& finding = *archive.finding;
+  std::string text = finding.text;
+  bool good = finding.answer == Answer::evidence;
+  if (const DiagnosticsRow* row = diagnosis(archive, "bank", finding.role)) {
+    text += fmt::format(" Of the bank: {}.", calibration_words(*row));
     good = good && row->verdict == Verdict::calibrated;
   }
-  text += gain->held_out() ? "." : ". Nothing was held out, so none of this is evidence.";
-  return {{"text", text}, {"good", good}};
+  return {{"text", text}, {"good", good}, {"answer", name_of(finding.answer)}};
 }
 
 }  // namespace
@@ -75,10 +63,10 @@ nlohmann::json verdict_section(const Archive& archive) {
                [](const SummaryRow& row) { return number(row.log_score); }),
       decisive(archive, role, "One-step RMSE", archive.recording ? common_unit(archive.recording->states) : "",
                "lower is better", [](const SummaryRow& row) { return number_list(row.rmse); }),
-      decisive(archive, role, "PIT tail above", "", "2.5 % is true",
-               [](const SummaryRow& row) { return percent(row.tail_above); }),
-      decisive(archive, role, "PIT tail below", "", "2.5 % is true",
-               [](const SummaryRow& row) { return percent(row.tail_below); }),
+      decisive(archive, role, "In the 95 % band", "", "95 % is true",
+               [](const SummaryRow& row) { return percent(row.coverage_95); }),
+      decisive(archive, role, "Too far", "", "2.5 % is true",
+               [](const SummaryRow& row) { return percent(row.too_far); }),
   };
   return section;
 }

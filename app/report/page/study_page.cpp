@@ -25,7 +25,7 @@ const NamedColumn& varied_column(const StudyFile& file, const std::string& key) 
 bool shown_at_first(const std::string& score) {
   for (const char* part : {"_test_log_score", "_test_rmse"})
     if (score.find(part) != std::string::npos) return true;
-  return score == "modes" || score == "bank_test_tail_above" || score == "bank_test_tail_below";
+  return score == "modes" || score == "bank_test_coverage_95" || score == "bank_test_too_far";
 }
 
 json goal_json(const std::string& score, int states) {
@@ -48,8 +48,8 @@ json columns_of(const StudyTable& table) {
   json columns = json::array();
   for (const std::string& key : table.varied_keys)
     columns.push_back({{"name", key}, {"kind", "varied"}, {"shown", true}});
-  for (const char* name : {"status", "repeat"})
-    columns.push_back({{"name", name}, {"kind", "about"}, {"text", true}, {"shown", std::string(name) == "status"}});
+  for (const char* name : {"status", "evidence", "repeat"})
+    columns.push_back({{"name", name}, {"kind", "about"}, {"text", true}, {"shown", std::string(name) != "repeat"}});
   for (const std::string& score : table.score_names)
     columns.push_back({{"name", score},
                        {"kind", score == "modes" ? "cost" : "score"},
@@ -70,6 +70,7 @@ json cells_of(const StudyFile& file, const StudyTable& table, std::size_t i) {
       cells.push_back(row.varied[k]);
   }
   cells.push_back(name_of(row.status));
+  cells.push_back(row.evidence);
   cells.push_back(row.repeat);
   for (const double score : row.scores) cells.push_back(number(score));
   return cells;
@@ -127,9 +128,7 @@ json best_of(const StudyTable& table, const Answers& answers) {
     std::string text = fmt::format("The best {} ({} is better), {}, comes from {}", best.score, best.goal.text(),
                                    number_text(best.value), setting);
     if (best.repeats > 1) text += fmt::format(" (mean of {} repeats)", best.repeats);
-    for (std::size_t s = 0; s < table.score_names.size(); ++s)
-      if (table.score_names[s] == "noise_only" + best.score.substr(std::string("bank").size()))
-        text += fmt::format("; noise switching alone reaches {} there", number_text(row.scores[s]));
+    if (!row.evidence.empty()) text += fmt::format("; on modes of motion it answers: {}", row.evidence);
     return {{"text", text + "."}, {"row", best.row}};
   }
   return {{"text", "No run has finished with a score, so there is nothing to judge yet."}, {"row", nullptr}};

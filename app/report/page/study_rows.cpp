@@ -40,6 +40,7 @@ StudyTable study_table_of(const StudyFile& file) {
   const auto& keys = values<std::string>(column(file, "key"));
   const auto& statuses = values<std::string>(column(file, "status"));
   const auto& messages = values<std::string>(column(file, "message"));
+  const auto& evidence = values<std::string>(column(file, "evidence"));
   const auto& repeats = values<std::int64_t>(column(file, "repeat"));
   const auto& seeds = values<std::uint64_t>(column(file, "seed"));
   table.rows.resize(keys.size());
@@ -49,6 +50,7 @@ StudyTable study_table_of(const StudyFile& file) {
     row.repeat = repeats[i];
     row.seed = seeds[i];
     row.message = messages[i];
+    row.evidence = evidence[i];
     const auto status = parse_name<TrialStatus>(statuses[i]);
     if (!status) throw DataError(fmt::format("run {} has the unknown status {}", i, statuses[i]));
     row.status = *status;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -17,7 +18,8 @@ std::vector<std::string> shown_scores(const StudyTable& table, const std::string
   const std::string prefix = headline.substr(0, headline.rfind("log_score"));
   std::vector<std::string> shown{headline};
   for (const std::string& name : table.score_names)
-    if (name.rfind(prefix + "rmse", 0) == 0 || name.rfind(prefix + "tail_", 0) == 0) shown.push_back(name);
+    if (name.rfind(prefix + "rmse", 0) == 0 || name == prefix + "coverage_95" || name.rfind(prefix + "too_", 0) == 0)
+      shown.push_back(name);
   return shown;
 }
 
@@ -105,6 +107,17 @@ std::string short_setting(const StudyTable& table, std::size_t row) {
   return setting_text(shortened, 0);
 }
 
+/// How many trials answered what on modes of motion.
+std::string evidence_text(const StudyTable& table) {
+  std::map<std::string, int> answers;
+  for (const TrialRow& row : table.rows)
+    if (!row.evidence.empty()) ++answers[row.evidence];
+  std::string text;
+  for (const auto& [answer, count] : answers)
+    text += fmt::format("{}{} in {} trials", text.empty() ? "" : ", ", answer, count);
+  return text.empty() ? "" : fmt::format("Modes of motion: {}\n", text);
+}
+
 std::string best_text(const StudyTable& table, const Answers& answers) {
   const std::string prefix = answers.headline.substr(0, answers.headline.rfind("log_score"));
   std::string text = fmt::format("\nBest per score (over repeats: by their mean)\n{:<28} {:<14} {:>10}  {:<12}  {}\n",
@@ -113,7 +126,7 @@ std::string best_text(const StudyTable& table, const Answers& answers) {
     if (best.score.rfind(prefix, 0) == 0)
       text += fmt::format("{:<28} {:<14} {:>10.5g}  {:<12}  {}\n", best.score, best.goal.text(), best.value,
                           table.rows[best.row].key.substr(0, 12), short_setting(table, best.row));
-  return text;
+  return text + evidence_text(table);
 }
 
 std::string pareto_text(const StudyTable& table, const Answers& answers) {

@@ -104,6 +104,7 @@ StudyTable collect_table(const TrialStore& store, const StudyPlan& plan, const s
     values.assign(table.score_names.size(), none);
     if (!scores[i]) continue;
     values[0] = static_cast<double>(scores[i]->modes);
+    table.rows[i].evidence = scores[i]->evidence;
     for (const auto& [name, value] : scores[i]->pooled) values[places[name]] = value;
   }
   return table;
@@ -124,6 +125,7 @@ std::vector<NamedColumn> table_columns(const StudyTable& table) {
   columns.push_back(
       column_of<std::string>("status", rows, [](const TrialRow& row) { return std::string(name_of(row.status)); }));
   columns.push_back(column_of<std::string>("message", rows, [](const TrialRow& row) { return row.message; }));
+  columns.push_back(column_of<std::string>("evidence", rows, [](const TrialRow& row) { return row.evidence; }));
   columns.push_back(column_of<std::string>("key", rows, [](const TrialRow& row) { return row.key; }));
   for (std::size_t s = 0; s < table.score_names.size(); ++s)
     columns.push_back(

@@ -19,6 +19,7 @@ struct TrialRow {
   std::uint64_t seed = 0;  ///< its job.seed
   TrialStatus status = TrialStatus::planned;
   std::string message;         ///< why it failed or was dropped
+  std::string evidence;        ///< what its archive answers on modes of motion
   std::vector<double> scores;  ///< one per score name; NaN: it has none
 };
 

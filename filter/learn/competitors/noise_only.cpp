@@ -14,7 +14,7 @@
 namespace modebank {
 namespace {
 
-constexpr Index scales = 8;  // method: section 6, as all constants here
+constexpr Index noise_only_levels = 8;  // method: section 6, as all constants here
 constexpr double lowest_quantile = 0.30;
 constexpr double highest_quantile = 0.997;
 constexpr std::array<double, 4> stays{0.7, 0.8, 0.9, 0.95};
@@ -28,20 +28,22 @@ double quantile(const std::vector<double>& sorted, double p) {
 }
 
 /// Variances spaced geometrically between the squared quantiles of |r|, kept positive where most residuals are zero.
-Eigen::VectorXd noise_scales(const Eigen::VectorXd& r) {
+Eigen::VectorXd noise_scales(const Eigen::VectorXd& r, Index levels) {
   std::vector<double> sizes(r.size());
   Eigen::VectorXd::Map(sizes.data(), r.size()) = r.cwiseAbs();
   std::sort(sizes.begin(), sizes.end());
   const double low = quantile(sizes, lowest_quantile), high = quantile(sizes, highest_quantile);
-  const double floor = rounding_share * positive_variance(r.squaredNorm() / static_cast<double>(r.size()));
+  const double mean_square = r.squaredNorm() / static_cast<double>(r.size());
+  const double floor = rounding_share * positive_variance(mean_square);
+  if (levels == 1) return Eigen::VectorXd::Constant(1, std::max(mean_square, floor));
   const double log_low = std::log(std::max(low * low, floor)), log_high = std::log(std::max(high * high, floor));
-  return Eigen::VectorXd::LinSpaced(scales, log_low, log_high).array().exp();
+  return Eigen::VectorXd::LinSpaced(levels, log_low, log_high).array().exp();
 }
 
-/// 8 x n, one column per state: row j makes mode j's diagonal Q.
-Eigen::MatrixXd noise_scales_per_state(const Eigen::MatrixXd& residuals) {
-  Eigen::MatrixXd variances(scales, residuals.cols());
-  for (Index i = 0; i < residuals.cols(); ++i) variances.col(i) = noise_scales(residuals.col(i));
+/// levels x n, one column per state: row j makes mode j's diagonal Q.
+Eigen::MatrixXd noise_scales_per_state(const Eigen::MatrixXd& residuals, Index levels) {
+  Eigen::MatrixXd variances(levels, residuals.cols());
+  for (Index i = 0; i < residuals.cols(); ++i) variances.col(i) = noise_scales(residuals.col(i), levels);
   return variances;
 }
 
@@ -50,7 +52,7 @@ void choose_stay(Bank& bank, const Recording& recording) {
   Bank candidate = bank;
   double best = -std::numeric_limits<double>::infinity();
   for (const double stay : stays) {
-    set_mode_sequence(candidate, TransitionMatrix::sticky(scales, stay));
+    set_mode_sequence(candidate, TransitionMatrix::sticky(bank.mode_count(), stay));
     const double likelihood = training_log_likelihood(candidate, recording, FilterOptions{});
     if (stay != stays.front() && !(likelihood > best)) continue;
     best = likelihood;
@@ -60,20 +62,25 @@ void choose_stay(Bank& bank, const Recording& recording) {
 
 }  // namespace
 
-Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R) {
+Bank learn_noise_levels(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
+                        Index levels) {
   Bank bank = bank_frame(recording, structure, R);
   const Transitions transitions = unweighted(stack_training(recording, structure));
   if (transitions.count() == 0) throw DataError("no training run has a transition to learn from");
   const RobustRegression fit = huber_regression(transitions);
   const Eigen::MatrixXd variances =
-      noise_scales_per_state(transitions.increments - transitions.regressors * fit.coefficients);
+      noise_scales_per_state(transitions.increments - transitions.regressors * fit.coefficients, levels);
   const Index p = structure.parameters();
-  for (Index j = 0; j < scales; ++j)
+  for (Index j = 0; j < levels; ++j)
     bank.modes.push_back(make_mode(structure, fit.coefficients.reshaped(), variances.row(j).asDiagonal(),
                                    Eigen::MatrixXd::Zero(p, p), fit.standard_error.reshaped(),
-                                   1.0 / static_cast<double>(scales)));
+                                   1.0 / static_cast<double>(levels)));
   choose_stay(bank, recording);
   return bank;
+}
+
+Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R) {
+  return learn_noise_levels(recording, structure, R, noise_only_levels);
 }
 
 }  // namespace modebank

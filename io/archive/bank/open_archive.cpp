@@ -137,6 +137,10 @@ void check_schema(const hdf5::Handle& root) {
   if (major > major_version(schema_version))
     throw DataError("the archive's schema " + version + " is newer than " + schema_version +
                     ", which this version of modebank reads");
+  if (major < major_version(schema_version))
+    throw DataError(
+        "the archive's schema " + version + " is older than " + schema_version +
+        ": scores had other names then (tail_above, tail_below) and fewer competitors; run its /config again");
 }
 
 void check_hash(const fs::path& path) {

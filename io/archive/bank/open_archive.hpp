@@ -11,7 +11,7 @@
 
 namespace modebank {
 
-inline constexpr const char *archive_format = "modebank", *schema_version = "1.0";
+inline constexpr const char *archive_format = "modebank", *schema_version = "2.0";
 
 /// The HDF5 user block in front of an archive's content: the lowercase hex SHA-256 of all bytes after the block in
 /// bytes 0-63, zeros in the rest.

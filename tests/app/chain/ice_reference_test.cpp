@@ -90,7 +90,7 @@ TEST_P(IceReference, CountsGlobalModelAndBaseline) {
   const Baseline baseline = learn_baseline(*archive.recording, global, archive.windows->structure);
   EXPECT_TRUE(baseline.at_bound) << "smooth gyro data show no measurement noise";
   const auto rows_of = [&](const std::string& name, const Bank& bank) {
-    const FilterOptions filter = competitor_filter(name, options.filter.time_steps);
+    const FilterOptions filter = competitor_filter(name, options.filter);
     return score_filter(name, bank, *archive.recording, filter, options.scoring).summary;
   };
   const std::vector<SummaryRow> summary = rows_of("baseline", baseline.bank);
@@ -101,8 +101,8 @@ TEST_P(IceReference, CountsGlobalModelAndBaseline) {
   EXPECT_NEAR(train.rmse(0), fold.train_rmse, rmse_tolerance);
   EXPECT_NEAR(test.rmse(0), fold.test_rmse, rmse_tolerance);
   if (!fold.odd_runs_train) {
-    EXPECT_NEAR(test.tail_above, 0.009, tail_tolerance);
-    EXPECT_NEAR(test.tail_below, 0.030, tail_tolerance);
+    EXPECT_NEAR(test.too_far, 0.009, tail_tolerance);
+    EXPECT_NEAR(test.too_close, 0.030, tail_tolerance);
   }
   const Bank noise_only = learn_noise_only(*archive.recording, archive.windows->structure, baseline.bank.R);
   EXPECT_NEAR(pooled(rows_of("noise_only", noise_only), "noise_only", Role::test).log_score, fold.noise_only_log_score,

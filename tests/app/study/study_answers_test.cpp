@@ -29,7 +29,7 @@ TrialRow trial(std::vector<std::string> varied, std::vector<double> scores, std:
 /// Two keys, two values each, two repeats: log score = 10 K + (full ? 1 : 0) + repeat / 10, K modes.
 StudyTable grid() {
   StudyTable table{
-      {"mixture.components", "mixture.covariance"}, {"modes", "bank_test_log_score", "bank_test_tail_above"}, {}};
+      {"mixture.components", "mixture.covariance"}, {"modes", "bank_test_log_score", "bank_test_too_far"}, {}};
   for (const int components : {2, 3})
     for (const std::string covariance : {"full", "diagonal"})
       for (const int repeat : {0, 1}) {
@@ -55,7 +55,7 @@ TEST(StudyAnswers, MainEffectsAreMeansOverTheOtherKeys) {
   EXPECT_NEAR(two.mean, (21.0 + 21.1 + 20.0 + 20.1) / 4, 1e-12);
   EXPECT_NEAR(two.sd, std::sqrt(4 * (0.25 + 0.0025) / 3), 1e-12);  // +-0.5 +-0.05 about the mean
   EXPECT_NEAR(effect(answers, "mixture.covariance", "full", answers.headline).mean, 26.05, 1e-12);
-  EXPECT_NEAR(effect(answers, "mixture.components", "3", "bank_test_tail_above").mean, 0.03, 1e-12);
+  EXPECT_NEAR(effect(answers, "mixture.components", "3", "bank_test_too_far").mean, 0.03, 1e-12);
 }
 
 /// In a full grid the shares of the keys and what repeats leave add up to one.
@@ -90,10 +90,10 @@ TEST(StudyAnswers, GoalsFollowFromTheScoresNames) {
   EXPECT_EQ(goal_of("baseline_test_pit_distance", 1)->kind, Kind::lower);
   EXPECT_EQ(goal_of("bank_test_nis_mean", 3)->nominal, 3.0);
   EXPECT_EQ(goal_of("bank_test_nis_below", 3)->nominal, 0.025);
-  EXPECT_EQ(goal_of("noise_only_test_tail_above", 1)->nominal, 0.025);
+  EXPECT_EQ(goal_of("noise_only_test_too_far", 1)->nominal, 0.025);
   EXPECT_FALSE(goal_of("bank_test_samples", 1));
   EXPECT_FALSE(goal_of("modes", 1));
-  const ScoreGoal tail = *goal_of("bank_test_tail_above", 1);
+  const ScoreGoal tail = *goal_of("bank_test_too_far", 1);
   EXPECT_LT(tail.loss(0.02), tail.loss(0.04));
   EXPECT_LT(tail.loss(0.03), tail.loss(0.0));
 }

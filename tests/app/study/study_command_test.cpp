@@ -72,7 +72,7 @@ TEST_F(StudyCommands, LeavesATableOfWhatEachRunWouldSay) {
     const std::string name = row.filter + "_" + std::string(name_of(row.role)) + "_";
     EXPECT_EQ(numbers(name + "log_score")[3], row.log_score);
     EXPECT_EQ(numbers(name + "rmse_wz")[3], row.rmse(0));
-    EXPECT_EQ(numbers(name + "tail_above")[3], row.tail_above);
+    EXPECT_EQ(numbers(name + "too_far")[3], row.too_far);
   }
   EXPECT_TRUE(verify_archive(file("s/study.h5")).ok());
   EXPECT_EQ(count(text("s/study.csv"), "\n"), 7u);

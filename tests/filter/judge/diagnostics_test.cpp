@@ -141,7 +141,7 @@ TEST(Diagnostics, ASwitchingBankIsCalibratedModeByMode) {
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(rows[i].mode, static_cast<Index>(i) - 1);
     EXPECT_EQ(rows[i].verdict, Verdict::calibrated) << "mode " << rows[i].mode;
-    EXPECT_TRUE(inside(0.025, rows[i].tail_above_lower, rows[i].tail_above_upper)) << "mode " << rows[i].mode;
+    EXPECT_TRUE(inside(0.025, rows[i].too_far_lower, rows[i].too_far_upper)) << "mode " << rows[i].mode;
     if (i == 0) continue;
     usage += rows[i].usage;
     samples += rows[i].samples;

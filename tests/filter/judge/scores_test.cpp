@@ -75,8 +75,12 @@ double binomial_bound(double probability, double count) {
 
 void expect_calibrated(const SummaryRow& row, double components) {
   const double N = static_cast<double>(row.samples);
-  EXPECT_NEAR(row.tail_above, 0.025, binomial_bound(0.025, N * components));
-  EXPECT_NEAR(row.tail_below, 0.025, binomial_bound(0.025, N * components));
+  EXPECT_NEAR(row.too_far, 0.025, binomial_bound(0.025, N * components));
+  EXPECT_NEAR(row.too_close, 0.025, binomial_bound(0.025, N * components));
+  EXPECT_NEAR(row.coverage_50, 0.50, binomial_bound(0.50, N * components));
+  EXPECT_NEAR(row.coverage_90, 0.90, binomial_bound(0.10, N * components));
+  EXPECT_NEAR(row.coverage_95, 0.95, binomial_bound(0.05, N * components));
+  EXPECT_NEAR(row.coverage_99, 0.99, binomial_bound(0.01, N * components));
   EXPECT_LT(row.pit_distance, 1.95 / std::sqrt(N * components));  // Kolmogorov's 0.1 % critical value
   EXPECT_GT(row.whiteness_p, 1e-3);
 }
@@ -110,11 +114,11 @@ TEST(Summary, AWrongProcessNoiseShows) {
     wrong.modes[0].Q *= factor;
     const SummaryRow row = score(wrong, truth, 20000, 13);
     const double bound = binomial_bound(0.025, static_cast<double>(row.samples));
-    EXPECT_GT(std::abs(row.tail_above - 0.025), bound) << factor;
+    EXPECT_GT(std::abs(row.too_far - 0.025), bound) << factor;
     EXPECT_GT(std::abs(row.nis_above - 0.025), bound) << factor;
-    EXPECT_GT(std::abs(row.tail_below - 0.025), bound) << factor;
+    EXPECT_GT(std::abs(row.too_close - 0.025), bound) << factor;
     EXPECT_GT(row.pit_distance, 1.95 / std::sqrt(static_cast<double>(row.samples))) << factor;
-    EXPECT_EQ(row.tail_above > 0.025, factor < 1.0);
+    EXPECT_EQ(row.too_far > 0.025, factor < 1.0);
     EXPECT_LT(row.log_score, best) << factor;
   }
 }
@@ -163,7 +167,7 @@ TEST(Summary, CountsScoredSamplesAndPoolsOverThem) {
   EXPECT_DOUBLE_EQ(rows[2].nis_mean, 14.0 / 3.0);
   EXPECT_DOUBLE_EQ(rows[2].nis_above, 1.0 / 3.0);  // 9 > 5.02
   EXPECT_DOUBLE_EQ(rows[2].nis_below, 0.0);
-  EXPECT_DOUBLE_EQ(rows[2].tail_below, 1.0);  // pit = 0.5 gives z = 0
+  EXPECT_DOUBLE_EQ(rows[2].too_close, 1.0);  // pit = 0.5 gives z = 0
   EXPECT_DOUBLE_EQ(rows[2].pit_distance, 0.5);
   EXPECT_TRUE(std::isnan(rows[2].whiteness_p));
 }
@@ -177,8 +181,8 @@ TEST(Summary, ARunWithoutScoresIsNaN) {
   for (const SummaryRow& row : rows) {
     EXPECT_EQ(row.samples, 0);
     EXPECT_TRUE(std::isnan(row.log_score) && std::isnan(row.rmse(0)) && std::isnan(row.nis_mean));
-    EXPECT_TRUE(std::isnan(row.nis_above) && std::isnan(row.nis_below) && std::isnan(row.tail_above));
-    EXPECT_TRUE(std::isnan(row.tail_below) && std::isnan(row.pit_distance) && std::isnan(row.whiteness_p));
+    EXPECT_TRUE(std::isnan(row.nis_above) && std::isnan(row.nis_below) && std::isnan(row.too_far));
+    EXPECT_TRUE(std::isnan(row.too_close) && std::isnan(row.pit_distance) && std::isnan(row.whiteness_p));
   }
   EXPECT_THROW(summarize("bank", {Trajectory{}}, {}, {}), std::invalid_argument);
 }

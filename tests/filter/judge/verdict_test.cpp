@@ -111,11 +111,15 @@ std::vector<double> related_scores(int samples, double rho, bool sizes_alone, st
 Evidence evidence_of(const std::vector<double>& scores, double scale, bool with_nis) {
   const double upper = chi_square_quantile(0.975, 1.0), lower = chi_square_quantile(0.025, 1.0);
   Evidence evidence;
-  for (SeriesByRun* series : {&evidence.above, &evidence.below, &evidence.sizes, &evidence.nis}) series->emplace_back();
+  for (SeriesByRun* series : {&evidence.far, &evidence.close, &evidence.sizes, &evidence.nis}) series->emplace_back();
+  for (SeriesByRun& series : evidence.outside) series.emplace_back();
+  const auto edges = coverage_band_edges();
   for (const double score : scores) {
     const double square = score * score * scale * scale;
-    evidence.above[0].push_back(square > upper ? 1.0 : 0.0);
-    evidence.below[0].push_back(square < lower ? 1.0 : 0.0);
+    for (std::size_t b = 0; b < edges.size(); ++b)
+      evidence.outside[b][0].push_back(square > edges[b] * edges[b] ? 1.0 : 0.0);
+    evidence.far[0].push_back(square > upper ? 1.0 : 0.0);
+    evidence.close[0].push_back(square < lower ? 1.0 : 0.0);
     evidence.sizes[0].push_back(square);
     evidence.nis[0].push_back(square);
   }
@@ -156,6 +160,42 @@ TEST(Verdict, AWrongFilterIsNotCalledCalibrated) {
       for (const double scale : {0.75, 1.3})
         EXPECT_LE(verdicts_of_related(samples, rho, false, scale, false)[Verdict::calibrated], 5)
             << samples << " samples, " << rho << ", scale " << scale;
+}
+
+/// A mixture of quiet and rough samples: too many are close to the middle, and over 6.3 % lie outside the 95 % band.
+/// The first is harmless, the second is what users are hurt by.
+TEST(Verdict, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
+  boost::random::normal_distribution<double> normal;
+  std::mt19937_64 generator(5);
+  std::vector<double> scores;
+  for (int k = 0; k < 3000; ++k) scores.push_back((k % 4 == 0 ? 0.3 : 1.2) * normal(generator));
+  const Evidence evidence = evidence_of(scores, 1.0, false);
+  EXPECT_GT(mean_of(evidence.outside[deciding_level]), 0.063);
+  EXPECT_GT(mean_of(evidence.close), 0.03);
+  EXPECT_EQ(verdict_of(evidence), Verdict::overconfident);
+}
+
+/// Inside the central bands of a true filter lie as many as they say.
+TEST(Verdict, BandsOfAStandardNormalHoldTheirShare) {
+  const auto edges = coverage_band_edges();
+  EXPECT_NEAR(edges[0], 0.6744897501960817, 1e-12);
+  EXPECT_NEAR(edges[2], 1.959963984540054, 1e-12);
+  std::mt19937_64 generator(6);
+  const Evidence evidence = evidence_of(related_scores(200000, 0.0, false, generator), 1.0, false);
+  for (std::size_t b = 0; b < edges.size(); ++b)
+    EXPECT_NEAR(mean_of(evidence.outside[b]), 1.0 - coverage_levels[b], 4e-3) << b;
+}
+
+/// Of an autoregression it is the coefficient, at lag one.
+TEST(Verdict, TheLargestAutocorrelationOfAnAutoregressionIsItsCoefficient) {
+  for (const double rho : {-0.6, 0.3, 0.8}) {
+    std::mt19937_64 generator(8);
+    const Autocorrelation found = largest_autocorrelation({related_scores(100000, rho, false, generator)});
+    EXPECT_EQ(found.lag, 1) << rho;
+    EXPECT_NEAR(found.value, rho, 0.02);
+  }
+  EXPECT_EQ(largest_autocorrelation({{1.0, 2.0}}).lag, 0);
+  EXPECT_EQ(largest_autocorrelation({}).lag, 0);
 }
 
 TEST(Verdict, TimeOfATailIsItsHits) {

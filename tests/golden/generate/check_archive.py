@@ -71,14 +71,14 @@ def check_user_block(path):
 def check_root(file):
     expect("user block size", file.userblock_size, 512)
     expect("format", file.attrs["format"], b"modebank")
-    expect("schema_version", file.attrs["schema_version"], b"1.0")
+    expect("schema_version", file.attrs["schema_version"], b"2.0")
     expect("modebank_version", file.attrs["modebank_version"], b"0.1.0")
     expect("created", file.attrs["created"], b"2026-08-01T12:00:00Z")
     expect("command_line", file.attrs["command_line"], b'modebank run "a b.ini" --window.length 5')
     expect("config_hash", file.attrs["config_hash"], b"c" * 64)
     expect("data_hash", file.attrs["data_hash"], b"d" * 64)
     expect("root members", sorted(file), sorted(
-        ["config", "provenance", "data", "lag", "windows", "mixture", "bank", "baseline", "noise_only", "evaluation",
+        ["config", "provenance", "data", "lag", "windows", "mixture", "bank", "baseline", "noise_only", "one_motion", "evaluation",
          "residual_tests"]))
     check_strings(file["config"], "config")
     expect("config", file["config"][()].decode(), "[window]\nlength = 5  # fünf\n")
@@ -235,7 +235,7 @@ def check_bank(group, modes, uncertain):
 
 
 def check_evaluation(file):
-    for name, modes in (("bank", K), ("baseline", 1), ("noise_only", K)):
+    for name, modes in (("bank", K), ("baseline", 1), ("noise_only", K), ("one_motion", K)):
         for run, N in RUNS.items():
             group = file["evaluation"][name][run]
             expect_array(group["prediction"], (N, n), "<f8", STATE_UNITS)
@@ -260,18 +260,31 @@ def check_evaluation(file):
     table = file["evaluation/summary"]
     expect("summary columns", table.dtype.names,
            ("filter", "role", "run", "samples", "log_score", "rmse", "nis_mean", "nis_above", "nis_below",
-            "tail_above", "tail_below", "pit_distance", "whiteness_p"))
-    expect("summary rmse", table["rmse"], np.array([[80.0 + 1.0 / 3.0, 81.0 + 1.0 / 3.0]] * 6))
-    expect("summary filter", table["filter"], np.repeat([b"bank", b"baseline", b"noise_only"], 2))
-    expect("summary role", table["role"], np.array([b"train", b"test"] * 3))
-    expect("summary run", table["run"], np.array([b"run 2", b"*"] * 3))
+            "coverage_50", "coverage_90", "coverage_95", "coverage_99", "too_far", "too_close", "pit_distance", "whiteness_p"))
+    expect("summary rmse", table["rmse"], np.array([[80.0 + 1.0 / 3.0, 81.0 + 1.0 / 3.0]] * 8))
+    expect("summary filter", table["filter"], np.repeat([b"bank", b"baseline", b"noise_only", b"one_motion"], 2))
+    expect("summary role", table["role"], np.array([b"train", b"test"] * 4))
+    expect("summary run", table["run"], np.array([b"run 2", b"*"] * 4))
     expect("horizon columns", file["evaluation/horizon"].dtype.names,
            ("filter", "role", "run", "horizon", "samples", "log_score", "rmse"))
     diagnostics = file["evaluation/diagnostics"]
-    expect("diagnostics verdict", diagnostics["verdict"], np.array([b"overconfident"] * 3))
-    expect("diagnostics flags", diagnostics["flags"], np.array([b"probabilities flat; heavy tails"] * 3))
-    expect("diagnostics tail_above_upper", diagnostics["tail_above_upper"], np.array([0.06] * 3))
+    expect("diagnostics verdict", diagnostics["verdict"], np.array([b"overconfident"] * 4))
+    expect("diagnostics flags", diagnostics["flags"], np.array([b"probabilities flat; heavy tails"] * 4))
+    expect("diagnostics too_far_upper", diagnostics["too_far_upper"], np.array([0.06] * 4))
     expect("summary units", dict(zip(table.dtype.names, table.attrs["units"]))["rmse"], b"rad/s, m/s")
+
+
+def check_evidence(group):
+    expect("answer", group.attrs["answer"], b"no evidence")
+    expect("best_competitor", group.attrs["best_competitor"], b"one_motion")
+    expect("gain", group.attrs["gain"], -0.125)
+    expect("standard_error", group.attrs["standard_error"], 0.0625)
+    expect("runs", group.attrs["runs"], 6)
+    expect("text", group.attrs["text"], b"6 held-out runs show no evidence for modes of motion.")
+    gains = group["gains"]
+    expect("gains", gains["competitor"], np.array([b"baseline", b"one_motion"]))
+    expect("margin", gains["margin"], np.array([0.5, 0.125]))
+    expect("better means", group["better_means"]["rmse"], np.array([0.25]))
 
 
 def check_residual_tests(file):
@@ -302,7 +315,9 @@ def main():
         check_bank(file["bank"], K, True)
         check_bank(file["baseline"], 1, False)
         check_bank(file["noise_only"], K, False)
+        check_bank(file["one_motion"], K, False)
         check_evaluation(file)
+        check_evidence(file["evaluation/evidence"])
         check_residual_tests(file)
     for problem in problems:
         print(problem)

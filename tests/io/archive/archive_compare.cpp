@@ -16,12 +16,45 @@ void expect_same(const SummaryRow& a, const SummaryRow& e) {
   EXPECT_EQ(a.samples, e.samples);
   EXPECT_TRUE(same_bits(a.rmse, e.rmse));
   const auto reals = [](const SummaryRow& r) {
-    Eigen::VectorXd values(8);
-    values << r.log_score, r.nis_mean, r.nis_above, r.nis_below, r.tail_above, r.tail_below, r.pit_distance,
-        r.whiteness_p;
+    Eigen::VectorXd values(12);
+    values << r.log_score, r.nis_mean, r.nis_above, r.nis_below, r.too_far, r.too_close, r.pit_distance, r.whiteness_p,
+        r.coverage_50, r.coverage_90, r.coverage_95, r.coverage_99;
     return values;
   };
   EXPECT_TRUE(same_bits(reals(a), reals(e)));
+}
+
+void expect_same(const PairedGain& actual, const PairedGain& expected) {
+  EXPECT_EQ(actual.competitor, expected.competitor);
+  EXPECT_EQ(actual.samples, expected.samples);
+  EXPECT_EQ(actual.gain, expected.gain);
+  EXPECT_EQ(actual.standard_error, expected.standard_error);
+  EXPECT_EQ(actual.degrees_of_freedom, expected.degrees_of_freedom);
+  EXPECT_EQ(actual.margin, expected.margin);
+  EXPECT_EQ(actual.by_blocks, expected.by_blocks);
+}
+
+void expect_same(const Finding& actual, const Finding& expected) {
+  EXPECT_EQ(actual.answer, expected.answer);
+  EXPECT_EQ(actual.role, expected.role);
+  EXPECT_EQ(actual.runs, expected.runs);
+  EXPECT_EQ(actual.modes, expected.modes);
+  EXPECT_EQ(actual.modes_differ, expected.modes_differ);
+  EXPECT_EQ(actual.best_competitor, expected.best_competitor);
+  EXPECT_EQ(actual.gain, expected.gain);
+  EXPECT_EQ(actual.standard_error, expected.standard_error);
+  EXPECT_EQ(actual.better_description, expected.better_description);
+  EXPECT_EQ(actual.text, expected.text);
+  ASSERT_EQ(actual.gains.size(), expected.gains.size());
+  for (std::size_t i = 0; i < actual.gains.size(); ++i) expect_same(actual.gains[i], expected.gains[i]);
+  ASSERT_EQ(actual.better_means.size(), expected.better_means.size());
+  for (std::size_t i = 0; i < actual.better_means.size(); ++i) {
+    EXPECT_EQ(actual.better_means[i].competitor, expected.better_means[i].competitor);
+    EXPECT_EQ(actual.better_means[i].horizon, expected.better_means[i].horizon);
+    EXPECT_EQ(actual.better_means[i].state, expected.better_means[i].state);
+    EXPECT_EQ(actual.better_means[i].rmse_bank, expected.better_means[i].rmse_bank);
+    EXPECT_EQ(actual.better_means[i].rmse, expected.better_means[i].rmse);
+  }
 }
 
 void expect_same(const HorizonRow& actual, const HorizonRow& expected) {
@@ -39,13 +72,36 @@ void expect_same(const DiagnosticsRow& actual, const DiagnosticsRow& expected) {
   EXPECT_EQ(actual.role, expected.role);
   EXPECT_EQ(actual.mode, expected.mode);
   EXPECT_EQ(actual.samples, expected.samples);
-  for (const auto member :
-       {&DiagnosticsRow::usage, &DiagnosticsRow::entropy, &DiagnosticsRow::dwell, &DiagnosticsRow::dwell_model,
-        &DiagnosticsRow::tail_above, &DiagnosticsRow::tail_above_lower, &DiagnosticsRow::tail_above_upper,
-        &DiagnosticsRow::tail_below, &DiagnosticsRow::tail_below_lower, &DiagnosticsRow::tail_below_upper,
-        &DiagnosticsRow::nis_mean, &DiagnosticsRow::nis_lower, &DiagnosticsRow::nis_upper, &DiagnosticsRow::nees_mean,
-        &DiagnosticsRow::nees_lower, &DiagnosticsRow::nees_upper, &DiagnosticsRow::whiteness_p,
-        &DiagnosticsRow::spread_share})
+  for (const auto member : {&DiagnosticsRow::usage,
+                            &DiagnosticsRow::entropy,
+                            &DiagnosticsRow::dwell,
+                            &DiagnosticsRow::dwell_model,
+                            &DiagnosticsRow::coverage_50,
+                            &DiagnosticsRow::coverage_50_lower,
+                            &DiagnosticsRow::coverage_50_upper,
+                            &DiagnosticsRow::coverage_90,
+                            &DiagnosticsRow::coverage_90_lower,
+                            &DiagnosticsRow::coverage_90_upper,
+                            &DiagnosticsRow::coverage_95,
+                            &DiagnosticsRow::coverage_95_lower,
+                            &DiagnosticsRow::coverage_95_upper,
+                            &DiagnosticsRow::coverage_99,
+                            &DiagnosticsRow::coverage_99_lower,
+                            &DiagnosticsRow::coverage_99_upper,
+                            &DiagnosticsRow::too_far,
+                            &DiagnosticsRow::too_far_lower,
+                            &DiagnosticsRow::too_far_upper,
+                            &DiagnosticsRow::too_close,
+                            &DiagnosticsRow::too_close_lower,
+                            &DiagnosticsRow::too_close_upper,
+                            &DiagnosticsRow::nis_mean,
+                            &DiagnosticsRow::nis_lower,
+                            &DiagnosticsRow::nis_upper,
+                            &DiagnosticsRow::nees_mean,
+                            &DiagnosticsRow::nees_lower,
+                            &DiagnosticsRow::nees_upper,
+                            &DiagnosticsRow::whiteness_p,
+                            &DiagnosticsRow::spread_share})
     EXPECT_EQ(actual.*member, expected.*member);
   EXPECT_TRUE(same_bits(actual.state_rmse, expected.state_rmse));
   EXPECT_EQ(actual.verdict, expected.verdict);
@@ -164,6 +220,8 @@ void expect_same(const Archive& actual, const Archive& expected) {
   for (std::size_t i = 0; i < actual.merging.size(); ++i) expect_same(actual.merging[i], expected.merging[i]);
   expect_same_part(actual.baseline, expected.baseline, "baseline");
   expect_same_part(actual.noise_only, expected.noise_only, "noise_only");
+  expect_same_part(actual.one_motion, expected.one_motion, "one_motion");
+  expect_same_part(actual.finding, expected.finding, "finding");
   ASSERT_EQ(actual.evaluations.size(), expected.evaluations.size());
   for (std::size_t f = 0; f < actual.evaluations.size(); ++f) {
     EXPECT_EQ(actual.evaluations[f].filter, expected.evaluations[f].filter);

@@ -82,19 +82,21 @@ TEST_F(ArchiveDamage, WhatIsNotAnArchiveIsNamed) {
   EXPECT_THROW(verify_archive(folder.path() / "none.h5"), ConfigurationError);
 }
 
-TEST_F(ArchiveDamage, ForeignHdf5AndNewerSchemasAreNamed) {
+TEST_F(ArchiveDamage, ForeignHdf5AndOtherSchemasAreNamed) {
   test::write_foreign_hdf5(path, 0);
   expect_unreadable("HDF5 file of another program");
   test::write_foreign_hdf5(path, 512);
   expect_unreadable("not a modebank archive");
   write_archive(path, test::full_archive(2, 1));
-  test::patch_text_attribute(path, "/", "schema_version", "1.7");
+  test::patch_text_attribute(path, "/", "schema_version", "2.7");
   EXPECT_NO_THROW(read_archive(path));
-  test::patch_text_attribute(path, "/", "schema_version", "2.0");
-  expect_unreadable("schema 2.0 is newer than 1.0");
+  test::patch_text_attribute(path, "/", "schema_version", "3.0");
+  expect_unreadable("schema 3.0 is newer than 2.0");
+  test::patch_text_attribute(path, "/", "schema_version", "1.0");
+  expect_unreadable("schema 1.0 is older than 2.0: scores had other names then");
   test::patch_text_attribute(path, "/", "schema_version", "two");
   expect_unreadable("is not a version");
-  test::patch_text_attribute(path, "/", "schema_version", "1.0");
+  test::patch_text_attribute(path, "/", "schema_version", "2.0");
   test::patch_text_attribute(path, "/", "format", "othertool");
   expect_unreadable("not a modebank archive");
 }

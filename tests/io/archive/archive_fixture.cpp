@@ -183,7 +183,8 @@ ResidualTests make_residual_tests(Index n, Index m, Index run) {
 }
 
 SummaryRow make_row(const std::string& filter, Role role, const std::string& run, Index n) {
-  return {filter, role, run, 123, 2.5, pattern(n, 1, 80.0), 0.9, 0.02, 0.03, 0.01, 0.04, 0.1, not_a_number};
+  return {filter, role, run,  123,   2.5, pattern(n, 1, 80.0), 0.9, 0.02, 0.03, 0.01, 0.04,
+          0.51,   0.91, 0.96, 0.995, 0.1, not_a_number};
 }
 
 DiagnosticsRow make_diagnostics(const std::string& filter, Index n) {
@@ -195,6 +196,18 @@ DiagnosticsRow make_diagnostics(const std::string& filter, Index n) {
           0.5,
           12.5,
           20.0,
+          0.51,
+          0.47,
+          0.55,
+          0.91,
+          0.88,
+          0.93,
+          0.96,
+          0.94,
+          0.97,
+          0.995,
+          0.98,
+          1.0,
           0.03,
           0.01,
           0.06,
@@ -224,6 +237,28 @@ Eigen::MatrixXd pattern(Index rows, Index cols, double base) {
   return result;
 }
 
+namespace {
+
+Finding make_finding() {
+  Finding finding;
+  finding.answer = Answer::no_evidence;
+  finding.role = Role::test;
+  finding.runs = 6;
+  finding.modes = 3;
+  finding.modes_differ = true;
+  finding.gains = {{"baseline", 700, 1.25, 0.25, 5.0, 0.5, false},
+                   {"one_motion", 699, -0.125, 0.0625, 11.0, 0.125, true}};
+  finding.best_competitor = "one_motion";
+  finding.gain = -0.125;
+  finding.standard_error = 0.0625;
+  finding.better_description = "noise_only";
+  finding.better_means = {{"noise_only", 10, "wz", 0.5, 0.25}};
+  finding.text = "6 held-out runs show no evidence for modes of motion.";
+  return finding;
+}
+
+}  // namespace
+
 Archive full_archive(Index n, Index m) {
   Archive archive;
   archive.provenance = {
@@ -247,7 +282,9 @@ Archive full_archive(Index n, Index m) {
   archive.measured_fit = MeasuredFit::iteration_limit;
   archive.baseline = make_bank(structure, 1, false);
   archive.noise_only = make_bank(structure, modes, false);
-  for (const char* filter : {"bank", "baseline", "noise_only"}) {
+  archive.one_motion = make_bank(structure, modes, false);
+  archive.finding = make_finding();
+  for (const char* filter : {"bank", "baseline", "noise_only", "one_motion"}) {
     FilterEvaluation evaluation{filter, {}, {}};
     const Index count = evaluation.filter == "baseline" ? 1 : modes;
     for (const Trajectory& run : archive.recording->runs)

@@ -3,13 +3,27 @@ export const filterNames = {
   bank: 'Bank',
   baseline: 'Baseline (one Kalman filter)',
   noise_only: 'Noise only',
+  one_motion: 'One motion, changing noise',
+  drifting: 'One drifting motion',
   global: 'Global model',
 };
 export const shortNames = {
   bank: 'bank',
   baseline: 'baseline',
   noise_only: 'noise only',
+  one_motion: 'one motion',
+  drifting: 'drifting',
   global: 'global model'
+};
+// The scores that count samples on either side of what a true filter has, by kind.
+export const sidesOf = {
+  z: {above: 'too_far', below: 'too_close'},
+  nis: {above: 'nis_above', below: 'nis_below'}
+};
+export const kindNames = [['z', 'distance z'], ['nis', 'NIS']];
+export const sideNames = {
+  above: 'too far',
+  below: 'too close'
 };
 export const roleNames = {
   test: 'held-out runs',

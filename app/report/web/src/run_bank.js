@@ -10,8 +10,8 @@ function modeColumns(bank) {
   const list = (key, names) => names.map((name, i) => ({name, of: (row) => row[key] && row[key][i]}));
   const seen = [
     {name: 'Usage', of: (row) => row.usage},
-    {name: 'PIT above', of: (row) => row.tail_above},
-    {name: 'PIT below', of: (row) => row.tail_below},
+    {name: 'too far', of: (row) => row.too_far},
+    {name: 'too close', of: (row) => row.too_close},
     {name: 'Verdict', text: true, of: (row) => row.verdict},
   ];
   return [
@@ -164,7 +164,7 @@ export function drawBank(bank) {
   if (!bank) return section('bank', 'The bank', note('This archive holds no bank: no modes were learned.'));
   const rows = bank.modes.map((row) => ({...row, name: String(row.mode), colour: modeColour(row.mode)}));
   if (bank.baseline) rows.push({...bank.baseline, name: 'baseline', colour: filterColour('baseline')});
-  const caption = `Modes (± one standard error; usage and PIT tails on ${roleNames[bank.role]})`;
+  const caption = `Modes (± one standard error; usage and samples too far and too close on ${roleNames[bank.role]})`;
   return section(
       'bank', 'The bank', bankFacts(bank), table(modeColumns(bank), rows, {caption, sortable: true}),
       screenedTable(bank.screened), switching(bank));

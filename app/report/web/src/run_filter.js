@@ -1,7 +1,7 @@
 // What the filter said of every sample, and whether to believe it.
 import {choice, choiceIfAny, controls, h, note} from './elements.js';
 import {autocorrelationLayout, autocorrelationTrace, outsideBars, outsideLayout, pitBars} from './filter_drawings.js';
-import {filterNames, roleNames, roleOf, shortNames} from './filters.js';
+import {filterNames, kindNames, roleNames, roleOf, shortNames, sideNames, sidesOf} from './filters.js';
 import {section} from './page.js';
 import {dashedLine, figure, filterColour, greyBand, palette} from './plots.js';
 import {drawScores} from './run_scores.js';
@@ -104,14 +104,15 @@ function autocorrelations(filter, states) {
 
 // The paper's figure 5: how many samples lie outside the interval, above and below, training and held out.
 function outside(filter) {
-  const measures = [['tail', 'PIT'], ['nis', 'NIS']], pooled = filter.scores.filter((row) => row.run === '*');
+  const pooled = filter.scores.filter((row) => row.run === '*');
   const roles = present(pooled, 'role'), filters = present(pooled, 'filter');
-  let [[key]] = measures;
+  let [[key]] = kindNames;
   const bars = (side, role) => {
     const rows = filters.map((name) => pooled.find((row) => row.filter === name && row.role === role)).filter(Boolean);
     return {
-      ...outsideBars(rows.map((row) => row[`${key}_${side}`]), rows.map(() => `${side}, ${roleNames[role]}`)),
-      name: `${side}, ${roleOf(role)}`,
+      ...outsideBars(
+          rows.map((row) => row[sidesOf[key][side]]), rows.map(() => `${sideNames[side]}, ${roleNames[role]}`)),
+      name: `${sideNames[side]}, ${roleOf(role)}`,
       x: rows.map((row) => shortNames[row.filter]),
       marker: {
         color: palette.modes[side === 'above' ? 3 : 5],
@@ -120,20 +121,21 @@ function outside(filter) {
       },
     };
   };
-  const label = 'Shares of samples outside the 95 % interval, above and below, for each filter; the table of scores ' +
+  const label =
+      'Shares of samples too far from the prediction and too close to it, for each filter; the table of scores ' +
       'holds the same numbers';
   const look = {height: 380, margin: {l: 64, r: 12, t: 76, b: 40}, showlegend: true, legend: legendAbove};
   const plot = figure(
       label, () => ({
                traces: ['above', 'below'].flatMap((side) => roles.map((role) => bars(side, role))),
-               layout: outsideLayout(filter.tail, 'samples outside [%]', look),
+               layout: outsideLayout(filter.tail, 'samples too close | too far [%]', look),
              }),
       'Dashed: a true filter’s 2.5 % on each side.');
-  const pick = choice('By', measures.map(([, name]) => name), 0, (i) => {
-    [key] = measures[i];
+  const pick = choice('By', kindNames.map(([, name]) => name), 0, (i) => {
+    [key] = kindNames[i];
     plot.redraw();
   });
-  return [h('h3', {}, 'Samples outside the interval'), controls(pick), plot];
+  return [h('h3', {}, 'Samples too far and too close'), controls(pick), plot];
 }
 
 // The time plot of the filter that is chosen.

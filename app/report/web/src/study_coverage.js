@@ -1,5 +1,6 @@
 // The paper's figure 5: samples outside the interval, above and below, training and held out, over the values of a key.
 import {choice, controls, h} from './elements.js';
+import {kindNames, sidesOf} from './filters.js';
 import {section} from './page.js';
 import {dashedLine, figure, ink, palette, plain} from './plots.js';
 import {isNumber, mean} from './statistics.js';
@@ -16,6 +17,7 @@ function groupsOf(axis, rows) {
   return [
     ['baseline', 'baseline', rows],
     ['noise only', 'noise_only', rows],
+    ['one motion', 'one_motion', rows],
     ...axis.levels.map((level) => [String(level), 'bank', ofLevel(level)]),
   ];
 }
@@ -28,7 +30,7 @@ function averageOf(study, rows, score) {
 }
 
 function coverageBars(study, groups, measure, [side, sign], [role, name, colour]) {
-  const y = groups.map(([, filter, rows]) => averageOf(study, rows, `${filter}_${role}_${measure}_${side}`));
+  const y = groups.map(([, filter, rows]) => averageOf(study, rows, `${filter}_${role}_${sidesOf[measure][side]}`));
   const said = (v, i) => `${plain(groups[i][0])}, ${name}, ${side}: ${v === null ? '–' : v.toPrecision(4)} %`;
   return {
     type: 'bar',
@@ -68,8 +70,8 @@ function coverageDrawing(study, axis, [measure, measureName], rows) {
 export function drawCoverage(context) {
   const {study, shown} = context;
   const scores = namesOf(study, 'score'), keys = namesOf(study, 'varied');
-  const known = ([key]) => ['test', 'train'].some((role) => scores.includes(`bank_${role}_${key}_above`));
-  const measures = [['nis', 'NIS'], ['tail', 'PIT']].filter(known);
+  const known = ([key]) => ['test', 'train'].some((role) => scores.includes(`bank_${role}_${sidesOf[key].above}`));
+  const measures = kindNames.filter(known);
   if (!measures.length || !keys.length) {
     section('coverage', title, h('p', {}, 'The study has no such scores.'));
     return;

@@ -1,0 +1,103 @@
+#include "app/chain/finding_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <vector>
+
+#include "app/chain/judged_runs.hpp"
+
+namespace modebank {
+namespace {
+
+std::string counted(Eigen::Index count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+std::string where(const Finding& finding) {
+  return fmt::format("{} {} run{}", finding.runs, words_for(finding.role), finding.runs == 1 ? "" : "s");
+}
+
+/// " The bank of 5 modes gains +0.134 +- 0.040 nats per sample over one_motion (...), its best competitor."
+std::string least_gain_words(const Finding& finding) {
+  if (finding.best_competitor.empty()) return "";
+  const std::string error =
+      std::isfinite(finding.standard_error) ? fmt::format(" +- {:.3f}", finding.standard_error) : " (of unknown error)";
+  return fmt::format(" The bank of {} gains {:+.3f}{} nats per sample over {} ({}), its best competitor.",
+                     counted(finding.modes, "mode"), finding.gain, error, finding.best_competitor,
+                     description_of(finding.best_competitor));
+}
+
+std::string instead_words(const Finding& finding) {
+  if (finding.better_description.empty()) return "";
+  return fmt::format(" {} as well by {} ({}).",
+                     finding.answer == Answer::cannot_tell ? "They may be described" : "They are described",
+                     description_of(finding.better_description), finding.better_description);
+}
+
+std::string why_not_told(const Finding& finding) {
+  if (!finding.held_out()) return "nothing was held out";
+  if (finding.gains.empty()) return "no competitor was scored";
+  for (const PairedGain& gain : finding.gains)
+    if (!std::isfinite(gain.margin)) return "there are too few samples to know the error of a gain";
+  return "the gain does not exceed what chance makes of so few runs";
+}
+
+std::string coarse_words(const Finding& finding) {
+  std::vector<std::string> reasons;
+  for (const Resolution& state : finding.coarse)
+    reasons.push_back(
+        state.repeated > 0.1
+            ? fmt::format("{:.0f} % of the samples of {} repeat the one before", 100 * state.repeated, state.state)
+            : fmt::format("{} comes in steps of {:.3g}, predictions are uncertain by {:.3g}", state.state,
+                          state.quantum, state.innovation_sd));
+  return fmt::format(
+      "Whether {} show modes of motion is not judged by log score: {}, so that a density says more about the "
+      "measurement than about the motion.",
+      where(finding), fmt::join(reasons, "; "));
+}
+
+std::string answer_words(const Finding& finding) {
+  switch (finding.answer) {
+    case Answer::one_mode:
+      return "The bank has one mode, so modes of motion are not in question." + instead_words(finding);
+    case Answer::not_comparable:
+      return coarse_words(finding);
+    case Answer::cannot_tell:
+      return fmt::format("Whether {} show modes of motion cannot be told: {}.", where(finding), why_not_told(finding)) +
+             least_gain_words(finding) + instead_words(finding);
+    case Answer::no_evidence:
+      return fmt::format(
+                 "{}{} show no evidence for modes of motion.",
+                 finding.modes_differ ? "" : "The modes do not differ in their parameters beyond their errors: ",
+                 where(finding)) +
+             least_gain_words(finding) + instead_words(finding);
+    case Answer::evidence:
+      return fmt::format(
+                 "{} show evidence for modes of motion: several linear models describe them better than one does (a "
+                 "motion that is nonlinear would show so, too).",
+                 where(finding)) +
+             least_gain_words(finding);
+  }
+  return "";
+}
+
+std::string mean_words(const BetterMean& mean) {
+  const std::string ahead = mean.horizon == 1 ? "one step" : fmt::format("{} samples", mean.horizon);
+  return fmt::format("{} ahead{} (RMSE {:.4g}, the bank {:.4g}; {})", ahead,
+                     mean.state.empty() ? "" : " in " + mean.state, mean.rmse, mean.rmse_bank, mean.competitor);
+}
+
+std::string better_means_words(const Finding& finding) {
+  if (finding.better_means.empty()) return "";
+  std::vector<std::string> means;
+  for (const BetterMean& mean : finding.better_means) means.push_back(mean_words(mean));
+  return fmt::format(" A competitor predicts the mean better {}.", fmt::join(means, ", "));
+}
+
+}  // namespace
+
+std::string finding_text(const Finding& finding) { return answer_words(finding) + better_means_words(finding); }
+
+}  // namespace modebank

@@ -1,0 +1,153 @@
+#include "filter/judge/finding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include "ident/base/distributions.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr double coarse_share = 0.25;     // of the innovation's standard deviation: densities then peak between quanta
+constexpr double repeated_share = 0.1;    // measured noise hardly ever repeats to the last digit
+constexpr double noticeable_rmse = 1e-3;  // relative: what a table of three digits shows
+
+Index scored_runs(const Densities& densities) {
+  return std::count_if(densities.of_runs.begin(), densities.of_runs.end(),
+                       [](const Eigen::VectorXd& run) { return (!run.array().isNaN()).any(); });
+}
+
+const Densities* named(const std::vector<Densities>& all, const std::string& filter) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Densities& d) { return d.filter == filter; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+/// The competitor of highest score is the one that the bank gains least over.
+void set_best_competitor(Finding& finding) {
+  finding.gain = finding.standard_error = not_a_number;
+  for (const PairedGain& gain : finding.gains) {
+    if (std::isnan(gain.gain) || finding.gain <= gain.gain) continue;
+    finding.best_competitor = gain.competitor;
+    finding.gain = gain.gain;
+    finding.standard_error = gain.standard_error;
+  }
+}
+
+/// The simplest competitor whose loss against the best one lies within its own margin.
+std::string simplest_as_good(const std::vector<Densities>& competitors, const std::string& best) {
+  const Densities* leader = named(competitors, best);
+  for (const char* name : competitor_names) {
+    const Densities* candidate = named(competitors, name);
+    if (!leader || !candidate) continue;
+    if (name == best || !paired_gain(name, leader->of_runs, candidate->of_runs).exceeds()) return name;
+  }
+  return best;
+}
+
+/// Whether the bank is beyond doubt better than the best competitor.
+bool beats_the_best(const Finding& finding) {
+  return std::any_of(finding.gains.begin(), finding.gains.end(), [&](const PairedGain& gain) {
+    return gain.competitor == finding.best_competitor && gain.exceeds();
+  });
+}
+
+bool is_coarse(const Resolution& state) {
+  return state.repeated > repeated_share || state.quantum > coarse_share * state.innovation_sd;
+}
+
+Answer answer_of(const Finding& finding) {
+  if (finding.modes < 2) return Answer::one_mode;
+  if (!finding.coarse.empty()) return Answer::not_comparable;
+  if (finding.gains.empty() || !finding.held_out()) return Answer::cannot_tell;
+  const auto any = [&](auto holds) { return std::any_of(finding.gains.begin(), finding.gains.end(), holds); };
+  if (any([](const PairedGain& gain) { return !std::isfinite(gain.margin); })) return Answer::cannot_tell;
+  if (!finding.modes_differ || any([](const PairedGain& gain) { return gain.gain <= 0.0; })) return Answer::no_evidence;
+  if (any([](const PairedGain& gain) { return !gain.exceeds(); })) return Answer::cannot_tell;
+  return Answer::evidence;
+}
+
+/// At each horizon and state the competitor of least RMSE, where that is less than the bank's.
+class BestMeans {
+ public:
+  void add(const std::string& filter, Index horizon, const Eigen::VectorXd& rmse) {
+    if (filter == "bank") bank_[horizon] = rmse;
+    for (Index i = 0; i < rmse.size() && filter != "bank"; ++i) {
+      BetterMean& least = least_[{horizon, i}];
+      if (least.competitor.empty() || rmse(i) < least.rmse) least = {filter, horizon, "", 0.0, rmse(i)};
+    }
+  }
+  std::vector<BetterMean> better(const std::vector<Resolution>& states) const {
+    std::vector<BetterMean> result;
+    for (const auto& [where, least] : least_) {
+      const auto bank = bank_.find(where.first);
+      if (bank == bank_.end() || !(least.rmse < (1.0 - noticeable_rmse) * bank->second(where.second))) continue;
+      result.push_back(least);
+      result.back().rmse_bank = bank->second(where.second);
+      if (states.size() > 1) result.back().state = states[static_cast<std::size_t>(where.second)].state;
+    }
+    return result;
+  }
+
+ private:
+  std::map<Index, Eigen::VectorXd> bank_;
+  std::map<std::pair<Index, Index>, BetterMean> least_;
+};
+
+std::vector<BetterMean> better_means(const FindingInputs& in) {
+  BestMeans means;
+  for (const SummaryRow& row : in.summary)
+    if (row.run == "*" && row.role == in.role) means.add(row.filter, 1, row.rmse);
+  for (const HorizonRow& row : in.horizons)
+    if (row.run == "*" && row.role == in.role && row.horizon > 1) means.add(row.filter, row.horizon, row.rmse);
+  return means.better(in.states);
+}
+
+}  // namespace
+
+const char* description_of(const std::string& competitor) {
+  if (competitor == "baseline") return "one linear model with constant noise";
+  if (competitor == "noise_only" || competitor == "one_motion") return "one motion with changing noise";
+  if (competitor == "drifting") return "one motion whose parameters drift";
+  return "";
+}
+
+bool modes_differ(const Bank& bank) {
+  const Index K = bank.mode_count();
+  const auto comparisons = static_cast<double>(K * (K - 1) / 2 * bank.structure.parameters());
+  if (K < 2) return false;
+  const double far = normal_quantile(1.0 - 0.025 / comparisons);
+  for (Index a = 0; a < K; ++a)
+    for (Index b = 0; b < a; ++b) {
+      const Eigen::ArrayXd variance = bank.modes[static_cast<std::size_t>(a)].standard_error.array().square() +
+                                      bank.modes[static_cast<std::size_t>(b)].standard_error.array().square();
+      const Eigen::ArrayXd difference = (bank.theta(a) - bank.theta(b)).array();
+      if ((difference.square() > far * far * variance).any()) return true;
+    }
+  return false;
+}
+
+Finding judge_modes(const FindingInputs& in) {
+  Finding finding;
+  finding.role = in.role;
+  finding.runs = scored_runs(in.bank_densities);
+  finding.modes = in.bank.mode_count();
+  finding.modes_differ = modes_differ(in.bank);
+  std::copy_if(in.states.begin(), in.states.end(), std::back_inserter(finding.coarse), is_coarse);
+  for (const Densities& competitor : in.competitors)
+    finding.gains.push_back(paired_gain(competitor.filter, in.bank_densities.of_runs, competitor.of_runs));
+  set_best_competitor(finding);
+  finding.answer = answer_of(finding);
+  if (finding.answer != Answer::not_comparable && !beats_the_best(finding))
+    finding.better_description = simplest_as_good(in.competitors, finding.best_competitor);
+  if (finding.modes > 1) finding.better_means = better_means(in);
+  return finding;
+}
+
+}  // namespace modebank

@@ -1,0 +1,91 @@
+#include "filter/judge/paired_gain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "filter/judge/statistics.hpp"
+#include "ident/base/distributions.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr std::size_t fewest_runs = 5;
+constexpr double fewest_blocks = 8.0;
+constexpr double times_per_block = 2.0;
+constexpr double upper_probability = 0.975;
+
+/// Differences of the samples that both have, run by run; runs without any are left out.
+SeriesByRun differences(const std::vector<Eigen::VectorXd>& better, const std::vector<Eigen::VectorXd>& other) {
+  SeriesByRun result;
+  for (std::size_t r = 0; r < better.size(); ++r) {
+    if (better[r].size() != other.at(r).size()) throw std::invalid_argument("log densities of runs of two lengths");
+    std::vector<double> run;
+    for (Index k = 0; k < better[r].size(); ++k)
+      if (const double d = better[r](k) - other[r](k); !std::isnan(d)) run.push_back(d);
+    if (!run.empty()) result.push_back(std::move(run));
+  }
+  return result;
+}
+
+double sum_of(const std::vector<double>& values, std::size_t first, std::size_t count) {
+  double sum = 0.0;
+  for (std::size_t k = first; k < first + count; ++k) sum += values[k];
+  return sum;
+}
+
+struct MeanError {
+  double standard_error = not_a_number, degrees_of_freedom = 0.0;
+};
+
+MeanError error_by_runs(const SeriesByRun& d, double mean, double samples) {
+  double squares = 0.0;
+  for (const auto& run : d) {
+    const double excess = sum_of(run, 0, run.size()) - mean * static_cast<double>(run.size());
+    squares += excess * excess;
+  }
+  const auto G = static_cast<double>(d.size());
+  return {std::sqrt(G / (G - 1.0) * squares) / samples, G - 1.0};
+}
+
+MeanError error_by_blocks(const SeriesByRun& d, double mean, double samples) {
+  const double time = cautious_time(autocorrelation_time(d), samples);
+  const auto length = static_cast<std::size_t>(std::ceil(times_per_block * time));
+  double side_by_side = 0.0, squares = 0.0, count = 0.0;
+  for (const auto& run : d) {
+    side_by_side += static_cast<double>(run.size() / length);
+    for (std::size_t first = 0; first + length <= run.size(); ++first) {
+      const double excess = sum_of(run, first, length) - mean * static_cast<double>(length);
+      squares += excess * excess;
+      ++count;
+    }
+  }
+  if (side_by_side < fewest_blocks) return {};
+  const double B = side_by_side, b = static_cast<double>(length);
+  return {std::sqrt(B / (B - 1.0) * squares / count / (b * samples)), B - 1.0};
+}
+
+}  // namespace
+
+PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::VectorXd>& better,
+                       const std::vector<Eigen::VectorXd>& other) {
+  const SeriesByRun d = differences(better, other);
+  PairedGain result{competitor, static_cast<Index>(sample_count(d)), mean_of(d)};
+  result.by_blocks = d.size() < fewest_runs;
+  result.standard_error = result.margin = not_a_number;
+  if (!std::isfinite(result.gain)) return result;
+  const double samples = sample_count(d);
+  const MeanError error =
+      result.by_blocks ? error_by_blocks(d, result.gain, samples) : error_by_runs(d, result.gain, samples);
+  result.standard_error = error.standard_error;
+  result.degrees_of_freedom = error.degrees_of_freedom;
+  if (error.degrees_of_freedom > 0.0)
+    result.margin = student_quantile(upper_probability, error.degrees_of_freedom) * error.standard_error;
+  return result;
+}
+
+}  // namespace modebank

@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "filter/learn/learn.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+
+/// All that refinement wants to know of windows, in terms of the linear model.
+WindowFits linear_frame(const WindowFits& fits, const GlobalModel& global) {
+  WindowFits frame;
+  frame.structure = fits.structure;
+  frame.length = fits.length;
+  frame.step = fits.step;
+  frame.global = global;
+  if (fits.model_parameters.empty()) frame.prior_sd = fits.prior_sd;  // a motion model's prior is of other parameters
+  return frame;
+}
+
+/// Banks of `most` noise scales, and of three quarters as many again and again.
+std::vector<Bank> level_starts(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
+                               Index most, double kept) {
+  std::vector<Bank> starts;
+  for (Index levels = most; levels >= 1; levels = static_cast<Index>(kept * static_cast<double>(levels)))
+    starts.push_back(learn_noise_levels(recording, structure, R, levels));
+  return starts;
+}
+
+}  // namespace
+
+Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global,
+                      const Eigen::MatrixXd& R, Index most_levels, const BankOptions& options,
+                      const FilterOptions& filter) {
+  RefineOptions em = options.em;
+  em.one_theta = true;
+  em.restarts = 0;  // stretches of the runs differ in theta, which there is one of
+  em.measurement_noise = em.measurement_noise && !options.measurement_variance;
+  const std::vector<Bank> starts =
+      level_starts(recording, fits.structure,
+                   options.measurement_variance
+                       ? Eigen::MatrixXd(*options.measurement_variance * Eigen::MatrixXd::Identity(R.rows(), R.cols()))
+                       : R,
+                   most_levels, em.tuning.modes_kept);
+  return refine_bank(recording, linear_frame(fits, global), starts, em, filter).bank;
+}
+
+NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& recording, const FilterOptions& filter,
+                                       const RefineTuning& tuning) {
+  Bank candidate = bank;
+  std::vector<std::pair<double, NoiseAdaptation>> tried;
+  for (const double forgetting : tuning.forgettings)
+    for (const double prior : tuning.noise_prior_samples) {
+      candidate.noise_adaptation = {forgetting, prior};
+      tried.emplace_back(training_log_likelihood(candidate, recording, filter), candidate.noise_adaptation);
+    }
+  return std::max_element(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first < b.first; })
+      ->second;
+}
+
+}  // namespace modebank

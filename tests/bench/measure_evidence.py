@@ -1,0 +1,259 @@
+#!/usr/bin/env python3
+"""How often modes of motion are claimed: where there are none, and where there are some (make evidence).
+
+  measure_evidence.py build/modebank [--seeds 100] [--first 0] [--jobs N] [--only NAME,NAME]
+
+Every system is simulated here, by numpy, as twelve runs of 400 samples with inputs redrawn or held; six train and six
+are held out, as `modebank run` divides them by default, and the program runs with nothing but [data] configured. Counted is
+the answer of /evaluation/evidence. Of systems with modes those count that the filter with the true parameters, written here,
+finds: its gain over each competitor exceeds twice that competitor's margin. Prints a Markdown table.
+"""
+import argparse
+import concurrent.futures
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+RUNS, SAMPLES, DT_S = 12, 400, 0.1
+A, B, SD = -0.3, np.array([-0.2, 0.2]), 0.02
+
+
+def inputs(g, run):
+    u = np.zeros((SAMPLES, 2))
+    k = 0
+    while k < SAMPLES:
+        held = 1 if run % 2 else int(g.integers(3, 25))
+        u[k:k + held] = g.uniform(-0.5, 0.5, 2)
+        k += held
+    return u
+
+
+def one_state(g, noise=None, a=None, b=None, drive=lambda v: v):
+    """Runs of x[k+1] = x[k] + a x[k] + drive(b u[k]) + w[k]; noise(run) and a, b per sample where given."""
+    runs = []
+    for run in range(RUNS):
+        u, x = inputs(g, run), np.zeros(SAMPLES)
+        w = noise(run) if noise else SD * g.standard_normal(SAMPLES)
+        a_k, b_k = (a(run) if a else np.full(SAMPLES, A)), (b(run) if b else np.tile(B, (SAMPLES, 1)))
+        for k in range(SAMPLES - 1):
+            x[k + 1] = x[k] + a_k[k] * x[k] + drive(b_k[k] @ u[k]) + w[k]
+        runs.append((u, x[:, None]))
+    return runs
+
+
+def sticky(g, count, stay_samples):
+    z = np.zeros(SAMPLES, int)
+    k, mode = 0, int(g.integers(count))
+    while k < SAMPLES:
+        stay = max(1, int(g.exponential(stay_samples)))
+        z[k:k + stay] = mode
+        mode = int(g.choice([m for m in range(count) if m != mode])) if count > 1 else 0
+        k += stay
+    return z
+
+
+def student(g):
+    return one_state(g, lambda run: SD * g.standard_t(4, SAMPLES) / math.sqrt(2.0))
+
+
+def two_noises(g):
+    return one_state(g, lambda run: SD * np.array([0.4, 1.6])[sticky(g, 2, 80)] * g.standard_normal(SAMPLES))
+
+
+def noise_by_run(g):
+    sizes = SD * np.exp(0.5 * g.standard_normal(RUNS))
+    return one_state(g, lambda run: sizes[run] * g.standard_normal(SAMPLES))
+
+
+def coloured(g):
+    def noise(run):
+        w = SD * g.standard_normal(SAMPLES)
+        for k in range(1, SAMPLES):
+            w[k] += 0.6 * w[k - 1]
+        return w
+    return one_state(g, noise)
+
+
+def drift(g):
+    phase = g.uniform(0, 2 * np.pi, (RUNS, 3))
+    time = [2 * np.pi * np.arange(SAMPLES) / g.uniform(300, 900) for _ in range(RUNS)]
+    return one_state(g, a=lambda r: -0.3 + 0.15 * np.sin(time[r] + phase[r, 0]),
+                     b=lambda r: B + 0.12 * np.sin(time[r][:, None] + phase[r, 1:]))
+
+
+def lag_too_few(g):
+    runs = []
+    for run in range(RUNS):
+        u, x = inputs(g, run), np.zeros(SAMPLES)
+        for k in range(1, SAMPLES - 1):
+            x[k + 1] = 1.1 * x[k] - 0.4 * x[k - 1] + B @ u[k] + SD * g.standard_normal()
+        runs.append((u, x[:, None]))
+    return runs
+
+
+def quantised(g):
+    quantum = SD * g.uniform(1 / 3, 1.0)
+    return [(u, quantum * np.round(x / quantum)) for u, x in one_state(g)]
+
+
+def no_input(g):
+    return one_state(g, b=lambda run: np.zeros((SAMPLES, 2)))
+
+
+def constant(g):
+    return [(inputs(g, run), np.full((SAMPLES, 1), 0.25)) for run in range(RUNS)]
+
+
+def saturating(g):
+    return one_state(g, drive=lambda v: 0.1 * math.tanh(v / 0.05))
+
+
+NOTHING = {"one linear motion": one_state, "Student's t, 4 degrees": student, "two noise levels that switch": two_noises,
+           "noise that differs by run": noise_by_run, "coloured noise": coloured, "drifting coefficients": drift,
+           "one lag too few": lag_too_few, "output quantised": quantised, "no input effect": no_input,
+           "constant state": constant}
+NAMED = {"one saturating motion (tanh)": saturating}
+
+
+class Switching:
+    """A system of 2 to 4 modes and its filter with the true parameters: an IMM, exact for R = 0."""
+
+    def __init__(self, g):
+        self.K, self.n, self.dwell = int(g.integers(2, 5)), int(g.integers(1, 3)), float(g.uniform(50, 400))
+        n = self.n
+        self.A = [np.diag(g.uniform(-0.6, -0.1, n)) + (0.08 * g.standard_normal((n, n)) * (1 - np.eye(n))) for _ in range(self.K)]
+        self.B = [0.2 * g.standard_normal((n, 2)) for _ in range(self.K)]
+        self.sd = SD * np.exp(0.3 * g.standard_normal(self.K))
+        self.R = SD ** 2 / 4 if g.integers(2) else 0.0
+        self.runs = [self.simulate(g, run) for run in range(RUNS)]
+
+    def simulate(self, g, run):
+        u, z, x = inputs(g, run), sticky(g, self.K, self.dwell), np.zeros((SAMPLES, self.n))
+        for k in range(SAMPLES - 1):
+            m = z[k]
+            x[k + 1] = x[k] + self.A[m] @ x[k] + self.B[m] @ u[k] + self.sd[m] * g.standard_normal(self.n)
+        return u, x + math.sqrt(self.R) * g.standard_normal(x.shape)
+
+    def log_density(self, u, y):
+        K, n = self.K, self.n
+        T = np.full((K, K), 1 / self.dwell / max(1, K - 1))
+        np.fill_diagonal(T, 1 - 1 / self.dwell)
+        R = max(self.R, 1e-12) * np.eye(n)
+        mu, means, covs = np.full(K, 1 / K), [y[0].copy() for _ in range(K)], [R.copy() for _ in range(K)]
+        out = np.full(len(y), np.nan)
+        for k in range(1, len(y)):
+            c = T.T @ mu
+            mixed = T * mu[:, None] / c
+            start = [sum(mixed[i, j] * means[i] for i in range(K)) for j in range(K)]
+            spread = [sum(mixed[i, j] * (covs[i] + np.outer(means[i] - start[j], means[i] - start[j])) for i in range(K)) for j in range(K)]
+            logs = np.zeros(K)
+            for j in range(K):
+                F = np.eye(n) + self.A[j]
+                x, P = F @ start[j] + self.B[j] @ u[k - 1], F @ spread[j] @ F.T + self.sd[j] ** 2 * np.eye(n)
+                S, e = P + R, y[k] - x
+                gain = np.linalg.solve(S, P).T
+                logs[j] = -0.5 * (e @ np.linalg.solve(S, e) + np.linalg.slogdet(2 * np.pi * S)[1])
+                means[j], covs[j] = x + gain @ e, P - gain @ P
+            top = logs.max()
+            weights = c * np.exp(logs - top)
+            out[k] = top + math.log(weights.sum())
+            mu = weights / weights.sum()
+        return out
+
+
+def run_program(program, runs, folder, extra=()):
+    n = runs[0][1].shape[1]
+    for i, (u, y) in enumerate(runs):
+        names = [f"y{j}" for j in range(n)] + ["u0", "u1"]
+        np.savetxt(folder / f"run_{i:02d}.csv", np.c_[DT_S * np.arange(SAMPLES), y, u], "%.9g", ",", header="time," + ",".join(names), comments="")
+    states = ", ".join(f"y{j}" for j in range(n))
+    (folder / "system.ini").write_text(f"[data]\ninputs = run_*.csv\nstate = {states}\ninput = u0, u1\ntime = time\n")
+    done = subprocess.run([program, "run", folder / "system.ini", "--archive.output", folder / "out.h5", "--job.threads", "1", *extra],
+                          capture_output=True, text=True)
+    return done
+
+
+def margins(folder):
+    with h5py.File(folder / "out.h5") as file:
+        evidence = file["evaluation/evidence"]
+        gains = {row["competitor"].decode(): (row["gain"], row["margin"]) for row in evidence["gains"]}
+        densities = {name: [file[f"evaluation/{name}/{run}/log_density"][:] for run in file["data"] if file[f"data/{run}"].attrs["role"] == b"test"]
+                     for name in [*gains, "bank"]}
+        return evidence.attrs["answer"].decode(), evidence.attrs["text"].decode(), gains, densities
+
+
+def truth_passes(system, gains, densities):
+    """Twice the threshold: the truth's own paired gains and margins, clustered by run as the program does."""
+    from scipy.stats import t
+    held_out = [system.log_density(*system.runs[i]) for i in range(1, RUNS, 2)]
+    for name in gains:
+        d = [a - b for a, b in zip(held_out, densities[name])]
+        keep = [x[~np.isnan(x)] for x in d]
+        N, G = sum(map(len, keep)), len(keep)
+        m = sum(x.sum() for x in keep) / N
+        error = math.sqrt(G / (G - 1) * sum((x.sum() - m * len(x)) ** 2 for x in keep)) / N
+        if not m > 2 * t.ppf(0.975, G - 1) * error:
+            return False
+    return True
+
+
+def trial(program, name, seed):
+    with tempfile.TemporaryDirectory() as path:
+        folder = pathlib.Path(path)
+        system = None
+        g = np.random.default_rng([seed, sum(map(ord, name))])
+        if name == "modes":
+            system = Switching(g)
+            runs = system.runs
+        else:
+            runs = {**NOTHING, **NAMED}[name](g)
+        done = run_program(program, runs, folder)
+        if done.returncode != 0:
+            return name, "refused" if done.returncode in (1, 2) else "crash", done.stderr.strip().splitlines()[-1:], None
+        answer, text, gains, densities = margins(folder)
+        return name, answer, text, truth_passes(system, gains, densities) if system else None
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("--seeds", type=int, default=100)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--only", default="")
+    options = parser.parse_args()
+    wanted = options.only.split(",") if options.only else [*NOTHING, *NAMED, "modes"]
+    seeds = range(options.first, options.first + options.seeds)
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        results = list(pool.map(lambda job: trial(options.program, *job), [(name, seed) for name in wanted for seed in seeds]))
+    answers = ["evidence", "cannot tell", "no evidence", "one mode", "not comparable", "refused", "crash"]
+    print("| system | " + " | ".join(answers) + " |\n|---|" + "---|" * len(answers))
+    claimed = 0
+    for name in [name for name in wanted if name != "modes"]:
+        counts = [sum(r[0] == name and r[1] == answer for r in results) for answer in answers]
+        print(f"| {name} | " + " | ".join(map(str, counts)) + " |")
+        claimed += counts[0] if name in NOTHING else 0
+    nothing = [name for name in wanted if name in NOTHING]
+    if nothing:
+        print(f"\nevidence is claimed in {claimed} of {len(nothing) * options.seeds} systems without modes")
+    found = [r for r in results if r[0] == "modes" and r[3]]
+    if "modes" in wanted:
+        print(f"systems with modes that the true filter finds at twice the threshold: {len(found)} of {options.seeds}; "
+              f"of these the learned bank passes in {sum(r[1] == 'evidence' for r in found)}")
+        for r in found:
+            if r[1] != "evidence":
+                print(f"  {r[1]}: {r[2]}")
+    for r in results:
+        if r[1] == "crash" or (r[1] == "evidence" and r[0] in NOTHING):
+            print(f"  {r[0]}: {r[2]}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

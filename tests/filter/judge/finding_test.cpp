@@ -1,0 +1,168 @@
+// What is said about modes of motion, from scores whose answer is known.
+#include "filter/judge/finding.hpp"
+
+#include <gtest/gtest.h>
+
+#include <boost/random/normal_distribution.hpp>
+#include <random>
+
+#include "tests/filter/filter_test_support.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::VectorXd;
+
+/// Scores of a filter over six held-out runs, `gain` above white noise that all filters share.
+Densities scores_of(const std::string& filter, double gain, double own_noise = 0.01) {
+  std::mt19937_64 common(7), own(std::hash<std::string>()(filter));
+  boost::random::normal_distribution<double> normal;
+  Densities densities{filter, {}};
+  for (int r = 0; r < 6; ++r) {
+    VectorXd run(200);
+    for (double& value : run) value = normal(common) + gain + own_noise * normal(own);
+    densities.of_runs.push_back(run);
+  }
+  return densities;
+}
+
+struct Case {
+  Bank bank = with_errors(test::example_bank(1, 2, 2), 1e-3);
+  Role role = Role::test;
+  double bank_gain = 0.3;
+  std::vector<Densities> competitors{scores_of("baseline", 0.0), scores_of("noise_only", 0.1),
+                                     scores_of("one_motion", 0.1), scores_of("drifting", 0.05)};
+  std::vector<SummaryRow> summary;
+  std::vector<HorizonRow> horizons;
+  std::vector<Resolution> states{{"wz", 0.0, 0.0, 0.01}};
+
+  static Bank with_errors(Bank bank, double error) {
+    for (Mode& mode : bank.modes) mode.standard_error = VectorXd::Constant(bank.structure.parameters(), error);
+    return bank;
+  }
+  Finding judged() const {
+    const Densities of_bank = scores_of("bank", bank_gain);
+    return judge_modes({bank, role, of_bank, competitors, summary, horizons, states});
+  }
+};
+
+TEST(Finding, EvidenceIsAGainOverEveryCompetitor) {
+  Case all_beaten;
+  const Finding finding = all_beaten.judged();
+  EXPECT_EQ(finding.answer, Answer::evidence);
+  EXPECT_EQ(finding.runs, 6);
+  EXPECT_EQ(finding.gains.size(), 4U);
+  EXPECT_NEAR(finding.gain, 0.2, 0.01);
+  EXPECT_LT(finding.standard_error, 0.01);
+  EXPECT_TRUE(finding.better_description.empty());
+  for (std::size_t i = 0; i < all_beaten.competitors.size(); ++i) {
+    Case one_as_good = all_beaten;
+    for (VectorXd& run : one_as_good.competitors[i].of_runs) run.array() += 0.4;
+    const Finding other = one_as_good.judged();
+    EXPECT_EQ(other.answer, Answer::no_evidence) << i;
+    EXPECT_EQ(other.best_competitor, one_as_good.competitors[i].filter);
+    EXPECT_EQ(other.better_description, one_as_good.competitors[i].filter);
+  }
+}
+
+TEST(Finding, AGainWithinItsErrorTellsNothing) {
+  Case noisy;
+  noisy.bank_gain = 0.11;
+  for (Densities& competitor : noisy.competitors) competitor = scores_of(competitor.filter, 0.1, 3.0);
+  const Finding finding = noisy.judged();
+  EXPECT_NE(finding.answer, Answer::evidence);
+  Case few;
+  for (Densities& competitor : few.competitors)
+    for (VectorXd& run : competitor.of_runs) run.tail(198).setConstant(std::nan(""));
+  for (Densities& competitor : few.competitors) competitor.of_runs.resize(6);
+  EXPECT_EQ(few.judged().answer, Answer::evidence);  // two samples in each of six runs still tell runs apart
+  for (Densities& competitor : few.competitors)
+    for (std::size_t r = 1; r < 6; ++r) competitor.of_runs[r].setConstant(std::nan(""));
+  EXPECT_EQ(few.judged().answer, Answer::cannot_tell);
+}
+
+TEST(Finding, OfSeveralThatAreAsGoodTheSimplestDescribesTheRuns) {
+  Case equal;
+  equal.bank_gain = 0.1;
+  equal.competitors = {scores_of("baseline", 0.1), scores_of("noise_only", 0.1001), scores_of("drifting", 0.1002)};
+  EXPECT_EQ(equal.judged().better_description, "baseline");
+}
+
+TEST(Finding, WithoutHeldOutRunsOrCompetitorsNothingIsClaimed) {
+  Case training;
+  training.role = Role::train;
+  EXPECT_EQ(training.judged().answer, Answer::cannot_tell);
+  Case alone;
+  alone.competitors.clear();
+  EXPECT_EQ(alone.judged().answer, Answer::cannot_tell);
+  EXPECT_TRUE(std::isnan(alone.judged().gain));
+}
+
+TEST(Finding, OneModeIsNotAskedFor) {
+  Case one;
+  one.bank = Case::with_errors(test::single_mode(test::example_bank(1, 2, 2), 0), 1e-3);
+  EXPECT_EQ(one.judged().answer, Answer::one_mode);
+}
+
+TEST(Finding, ModesOfTheSameParametersAreNoModesOfMotion) {
+  Case same;
+  same.bank.modes[1].model = same.bank.modes[0].model;
+  EXPECT_FALSE(modes_differ(same.bank));
+  EXPECT_EQ(same.judged().answer, Answer::no_evidence);
+  Case vague;  // parameters 0.1 apart at most
+  vague.bank = Case::with_errors(vague.bank, 0.1);
+  EXPECT_FALSE(modes_differ(vague.bank));
+  EXPECT_TRUE(modes_differ(Case().bank));
+}
+
+// With one parameter and two modes the limit is the normal quantile 1.96 of the difference over its standard error.
+TEST(Finding, TheLimitForOneComparisonIsTheNormalQuantile) {
+  Bank bank = test::example_bank(1, 0, 2);
+  bank.structure = {1, 0, false};
+  for (Mode& mode : bank.modes) {
+    mode.model.B.resize(1, 0);
+    mode.model.c.setZero();
+    mode.standard_error = VectorXd::Constant(1, 3.0);
+  }
+  bank.modes[0].model.A(0, 0) = 0.0;
+  bank.modes[1].model.A(0, 0) = 1.95 * std::sqrt(18.0);
+  EXPECT_FALSE(modes_differ(bank));
+  bank.modes[1].model.A(0, 0) = 1.97 * std::sqrt(18.0);
+  EXPECT_TRUE(modes_differ(bank));
+}
+
+TEST(Finding, CoarseOrRepeatedMeasurementsAreNotJudgedByDensities) {
+  for (const Resolution& coarse : {Resolution{"wz", 0.003, 0.0, 0.01}, Resolution{"wz", 0.0, 0.2, 0.01}}) {
+    Case quantised;
+    quantised.states = {coarse};
+    const Finding finding = quantised.judged();
+    EXPECT_EQ(finding.answer, Answer::not_comparable);
+    EXPECT_EQ(finding.coarse.size(), 1U);
+  }
+  Case fine;
+  fine.states = {{"wz", 0.002, 0.05, 0.01}};
+  EXPECT_EQ(fine.judged().answer, Answer::evidence);
+}
+
+TEST(Finding, ACompetitorThatPredictsTheMeanBetterIsNamed) {
+  Case worse;
+  for (const auto& [filter, rmse] : {std::pair{"bank", 0.02}, {"baseline", 0.03}, {"noise_only", 0.019}}) {
+    SummaryRow row;
+    row.filter = filter;
+    row.role = Role::test;
+    row.run = "*";
+    row.rmse = VectorXd::Constant(1, rmse);
+    worse.summary.push_back(row);
+    worse.horizons.push_back({filter, Role::test, "*", 10, 100, 0.0, VectorXd::Constant(1, 2.0 * rmse * rmse)});
+  }
+  const std::vector<BetterMean> better = worse.judged().better_means;
+  ASSERT_EQ(better.size(), 2U);
+  EXPECT_EQ(better[0].competitor, "noise_only");
+  EXPECT_EQ(better[0].horizon, 1);
+  EXPECT_EQ(better[0].rmse_bank, 0.02);
+  EXPECT_EQ(better[1].horizon, 10);
+  EXPECT_TRUE(better[1].state.empty());
+}
+
+}  // namespace
+}  // namespace modebank
