@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo test benchmarks bench uncertainty recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
+.PHONY: all api build demo test benchmarks bench uncertainty recovery evidence check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
 
 all: build
 
@@ -51,6 +51,10 @@ uncertainty: benchmarks
 # How often the true number of modes is found, as the README's table has it.
 recovery: benchmarks
 	build/measure_recovery
+
+# How often modes of motion are claimed where there are none, and found where there are some; hours on two cores.
+evidence: build
+	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_evidence.py build/modebank
 
 # Everything CI runs beside `make test`.
 check: format lint shellcheck api tidy-changed seeds sanitize

@@ -4,7 +4,7 @@
 usage: ablation.py MODEBANK CONFIG [--sets ICE,FLOORING] [--cache FILE.json] [--jobs 2] [--only TEXT] [--key value ...]
 
 Runs CONFIG as it is and with one feature at a time taken back, changed or added, each with either half of the runs
-training, and prints a Markdown table per data set: held-out log score [nats/sample], one-step RMSE and PIT tails of
+training, and prints a Markdown table per data set: held-out log score [nats/sample], one-step RMSE and shares of samples too far and too close of
 each fold. `--sets A,B`: CONFIG's data paths hold A; the table is made for A, then with B in its place. `--only`: rows
 whose name holds TEXT, beside the first. Other options go to the program (a data root is taken from MODEBANK_DATA).
 
