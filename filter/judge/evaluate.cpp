@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "filter/judge/drifting.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/feed/run_samples.hpp"
 #include "filter/step/stepper.hpp"
@@ -53,7 +54,7 @@ void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions&
   Eigen::VectorXd log_density;
   RunSamples(bank, run, options.time_steps)
       .for_each_stretch([&](const SampleFeed& feed) { stepper->start(feed.start()); },
-                        [&](const Stretch& stretch) {
+                        [&](const SampleStretch& stretch) {
                           for (Index i = 1; i < stretch.steps; ++i) stepper->skip(stretch.inputs.col(0));
                           log_density.resize(stretch.measured.cols());
                           stepper->follow(stretch.inputs, stretch.measured, log_density);
@@ -61,15 +62,27 @@ void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions&
                         });
 }
 
-}  // namespace
-
-RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
-  check_run(bank, run);
-  BankFilter filter(bank, options);
+/// `bank`: one of the sizes of what the filter says.
+template <class Filter>
+RunEvaluation evaluate_samples(const Bank& bank, Filter filter, const Trajectory& run) {
   RunEvaluation evaluation = sized_evaluation(bank, run.samples());
   for (Index k = 0; k < run.samples(); ++k)
     record(filter.step(sample_time_s(run, k), run.input.col(k), run.state.col(k)), k, evaluation);
   return evaluation;
+}
+
+}  // namespace
+
+RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  check_run(bank, run);
+  return evaluate_samples(bank, BankFilter(bank, options), run);
+}
+
+RunEvaluation evaluate_run(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps) {
+  validate(model);
+  const Bank bank = fixed_bank(model);
+  check_run(bank, run);
+  return evaluate_samples(bank, DriftingFilter(model, time_steps), run);
 }
 
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/feed/run_samples.hpp"
@@ -99,16 +100,21 @@ struct HorizonSums {
 
 }  // namespace
 
-HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options,
-                                    std::vector<Index> horizons) {
-  check_run(bank, run);
+HorizonEvaluation empty_horizons(std::vector<Index> horizons, Index n_y, Index samples) {
   std::sort(horizons.begin(), horizons.end());
   horizons.erase(std::unique(horizons.begin(), horizons.end()), horizons.end());
   if (!horizons.empty() && horizons.front() < 1) throw std::invalid_argument("horizons must be at least 1");
   HorizonEvaluation out;
-  out.error.assign(horizons.size(), Eigen::MatrixXd::Constant(bank.C.rows(), run.samples(), not_a_number));
-  out.log_density.setConstant(std::ssize(horizons), run.samples(), not_a_number);
+  out.error.assign(horizons.size(), Eigen::MatrixXd::Constant(n_y, samples, not_a_number));
+  out.log_density.setConstant(std::ssize(horizons), samples, not_a_number);
   out.horizons = std::move(horizons);
+  return out;
+}
+
+HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options,
+                                    std::vector<Index> horizons) {
+  check_run(bank, run);
+  HorizonEvaluation out = empty_horizons(std::move(horizons), bank.C.rows(), run.samples());
   with_sizes(bank.structure.dimension(), bank.C.rows(),
              [&]<int N, int NY>() { look_ahead<N, NY>(bank, run, options, out); });
   return out;

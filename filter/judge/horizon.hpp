@@ -19,6 +19,10 @@ struct HorizonEvaluation {
   Eigen::MatrixXd log_density;         ///< horizons x N: log predictive density of the measurement [nats]
 };
 
+/// One of a run of n_y signals in which nothing is predicted yet; `horizons` in ascending order, each once. Throws
+/// std::invalid_argument when one is below 1.
+HorizonEvaluation empty_horizons(std::vector<Eigen::Index> horizons, Eigen::Index n_y, Eigen::Index samples);
+
 /// `horizons`: each at least 1. At 1 it is what evaluate_run says. Same conditions as evaluate_run; costs as many steps
 /// per sample as the longest horizon has.
 HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options,

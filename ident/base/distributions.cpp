@@ -39,6 +39,8 @@ double student_quantile(double probability, double degrees) {
   return std::isinf(degrees) ? normal_quantile(probability) : math::quantile(math::students_t(degrees), probability);
 }
 
+double student_probability(double value, double degrees) { return math::cdf(math::students_t(degrees), value); }
+
 double beta_quantile(double probability, double a, double b) {
   return math::quantile(math::beta_distribution<>(a, b), probability);
 }

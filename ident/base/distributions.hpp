@@ -20,6 +20,8 @@ double chi_square_upper_tail(double value, double degrees);
 double fisher_quantile(double probability, double numerator, double denominator);
 /// Quantile of Student's t; infinitely many degrees: the normal's.
 double student_quantile(double probability, double degrees);
+/// P(X <= value) of Student's t.
+double student_probability(double value, double degrees);
 double beta_quantile(double probability, double a, double b);
 /// What a binomial count lies below with this probability, and above; rounded outwards to whole numbers.
 double binomial_quantile(double probability, double trials, double success);

@@ -21,7 +21,7 @@ inline double sample_time_s(const Trajectory& run, Eigen::Index k) {
 }
 
 /// Samples of a run that follow each other by one model step; the first may lie further from the one before.
-struct Stretch {
+struct SampleStretch {
   Eigen::Index first = 0;                      ///< sample of the run
   Eigen::Index steps = 1;                      ///< model steps into the first sample
   Eigen::Ref<const Eigen::MatrixXd> inputs;    ///< acting inputs x samples: acting on the step into each
@@ -52,7 +52,7 @@ class RunSamples {
   void for_each_stretch(Start start, Follow follow) {
     Eigen::Index first = 0, count = 0, steps = 1;
     const auto flush = [&] {
-      if (count > 0) follow(Stretch{first, steps, acting_.leftCols(count), run_.state.middleCols(first, count)});
+      if (count > 0) follow(SampleStretch{first, steps, acting_.leftCols(count), run_.state.middleCols(first, count)});
       count = 0;
     };
     for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {

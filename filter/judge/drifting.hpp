@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/horizon.hpp"
+#include "filter/step/drifting.hpp"
+#include "filter/step/student_noise.hpp"
+#include "ident/data/trajectory.hpp"
+
+namespace modebank {
+
+/// What DriftingFilter says of every sample of a run, under the conventions and conditions of evaluate_run of a bank.
+RunEvaluation evaluate_run(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps);
+
+/// Predictions some samples ahead (DriftingForecast), before the factor of their horizon has widened them.
+struct DriftingForecasts {
+  HorizonEvaluation predictions;  ///< its log densities are those of factor 1
+  /// Per horizon n x N: errors of variance one and uncorrelated, L^-1 error with L L' = cov(error).
+  std::vector<Eigen::MatrixXd> whitened;
+};
+DriftingForecasts forecast(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps,
+                           std::vector<Eigen::Index> horizons);
+
+/// By how much the log density of whitened errors changes when their variance is multiplied by `factor`.
+double widening_gain(const StudentNoise& noise, const Eigen::Ref<const Eigen::VectorXd>& whitened, double factor);
+
+/// The same conventions as those of banks. Log densities: Student's, times the model's factor of the horizon; outputs
+/// whose errors are correlated are decorrelated in their order first.
+HorizonEvaluation evaluate_horizons(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps,
+                                    std::vector<Eigen::Index> horizons);
+
+}  // namespace modebank

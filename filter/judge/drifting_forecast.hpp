@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "filter/step/drifting.hpp"
+
+namespace modebank {
+
+/// Predicts from where a drifting model's filter stands, with known inputs and nothing measured any more.
+///
+/// Coefficients: those of the origin, theta0 + leak^j (theta - theta0) in step j. Where they are unstable they are
+/// contracted before the second step: A_i (of x[k-i+1], in full form) becomes A_i / rho^i with rho > 1 the largest
+/// modulus of a root of the polynomial, which divides every root by rho. theta0 is contracted likewise, so that leaking
+/// towards it does not undo that. The first step is the filter's own.
+///
+/// Variance, to first order in the errors of coefficients and samples: with e the error of a sample, d that of theta,
+///   e[j] = h[j]' d[j] + phi[j]' (e[j-1], e[j-2], ...) + noise of variance v,  d[j] = leak d[j-1] + w,  cov(w) = q v I,
+/// phi the coefficients of the lagged samples; joint covariance of d and the lagged e, v as at the origin.
+class DriftingForecast {
+ public:
+  explicit DriftingForecast(const DriftingModel& model);
+
+  /// `origin`: the filter's coefficients and samples after a sample, v its running variances.
+  void start(const DriftingMemory& origin, const Eigen::VectorXd& v);
+  void step(const Eigen::Ref<const Eigen::VectorXd>& inputs);
+
+  const Eigen::VectorXd& prediction() const { return prediction_; }  ///< n
+  const Eigen::MatrixXd& covariance() const { return covariance_; }  ///< n x n, of its error
+
+ private:
+  const DriftingModel& model_;
+  Eigen::VectorXd inverse_scale_;
+  Eigen::MatrixXd theta0_, stable_theta0_;  ///< r x n, scaled
+  const DriftingMemory* origin_ = nullptr;
+  Eigen::VectorXd v_, z_, h_, prediction_;
+  Eigen::MatrixXd towards_, deviation_, theta_;         ///< r x n: what is leaked to, and the difference from it
+  double of_origin_ = 1.0, of_drift_ = 0.0;             ///< cov(d) / v = of_origin P + of_drift I
+  Eigen::MatrixXd Z_, next_Z_;                          ///< covariance of the lagged errors
+  std::vector<Eigen::MatrixXd> cross_, next_cross_;     ///< per output r x dimension: of d with the lagged errors
+  Eigen::MatrixXd covariance_, with_lagged_, through_;  ///< n x n, n x dimension, n x dimension
+  Eigen::MatrixXd of_lagged_;                           ///< n x dimension, phi
+  int steps_ = 0;
+
+  void leak();
+  void predict_mean(const Eigen::Ref<const Eigen::VectorXd>& inputs);
+  void propagate_errors();
+  void push();
+  void bound();
+};
+
+/// Coefficients of scaled regressors (r x n) with every root of their polynomial inside or on the unit circle.
+Eigen::MatrixXd contracted(const LinearStructure& structure, const Eigen::VectorXd& scale, Eigen::MatrixXd theta);
+
+}  // namespace modebank

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "filter/step/drifting.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/model/local_model.hpp"
+
+namespace modebank {
+
+/// What the settings of a drifting model are chosen from (method: section 6). Values in the order of preference among
+/// equals; q, p0 and floor ascend, leak descends.
+struct DriftingGrid {
+  std::vector<double> q{0.0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
+  std::vector<double> p0{0.0, 1e-2, 1e-1, 1.0, 10.0};
+  std::vector<double> leak{1.0, 0.97, 0.9};
+  std::vector<double> lam{0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.92, 0.96};
+  std::vector<double> nu{0.0, 3.0, 5.0, 8.0, 15.0};
+  std::vector<double> floor{1e-6, 1e-5, 1e-4, 1e-3};  ///< of the training residuals' variance
+
+  /// q, p0, leak, lam, nu, floor: the last runs fastest.
+  std::array<Eigen::Index, 6> sizes() const {
+    return {std::ssize(q), std::ssize(p0), std::ssize(leak), std::ssize(lam), std::ssize(nu), std::ssize(floor)};
+  }
+  /// The positions of a point of the grid.
+  std::array<Eigen::Index, 6> point(Eigen::Index index) const;
+};
+
+/// The log score of the training runs at every point of the grid [nats/sample].
+struct DriftingScores {
+  Eigen::VectorXd log_score;
+  Eigen::Index samples = 0;  ///< scored, each counting the same whatever its weight
+  /// The point of the highest score, the first of equals.
+  Eigen::Index best() const;
+};
+
+/// `start`: a model whose theta0, scale and v0 are those of the training runs; its other settings do not matter.
+/// One recursion of the coefficients per (q, p0, leak), from which all running variances follow, from which all
+/// densities follow. Throws std::invalid_argument for an empty grid, and DataError when nothing can be scored.
+DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& recording, TimeSteps time_steps,
+                                   const DriftingGrid& grid);
+
+/// The competitor `drifting`. `global`: least squares of this structure on the training runs. Its settings are the best
+/// of the grid by the training runs' log score, one sample ahead; then for each of `horizons` from 2 on the factor of
+/// its variance is the one of 2^(-4), 2^(-3.75), ..., 2^8 that makes the training runs' errors most likely. Samples
+/// count the same whatever their weights.
+DriftingModel learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
+                             TimeSteps time_steps, const std::vector<Eigen::Index>& horizons,
+                             const DriftingGrid& grid = {});
+
+}  // namespace modebank

@@ -1,0 +1,140 @@
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "filter/learn/competitors/drifting.hpp"
+#include "filter/learn/competitors/drifting_lanes.hpp"
+#include "filter/step/feed/run_samples.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+namespace {
+
+/// A training run as the recursion steps through it.
+struct GridRun {
+  const Trajectory& trajectory;
+  RunInstants instants;
+};
+
+std::vector<GridRun> training_instants(const DriftingModel& model, const Recording& recording, TimeSteps time_steps) {
+  const Bank bank = fixed_bank(model);
+  std::vector<GridRun> runs;
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != Role::train) continue;
+    check_run(bank, run);
+    runs.push_back({run, RunInstants(bank, run, time_steps)});
+  }
+  return runs;
+}
+
+/// What every running variance and density needs of one (q, p0, leak): of each scored signal e^2 / (1 + h'Ph) over v0,
+/// output by output, and where a running variance starts anew.
+struct DriftTrace {
+  std::vector<std::vector<double>> ratio;       ///< per output
+  std::vector<std::vector<std::size_t>> start;  ///< per output: positions in `ratio`
+  double log_variance = 0.0;                    ///< sum of log (v0 (1 + h'Ph)) over all scored signals
+  Index samples = 0;
+
+  explicit DriftTrace(std::size_t outputs) : ratio(outputs), start(outputs) {}
+
+  void begin() {
+    for (std::size_t i = 0; i < ratio.size(); ++i) start[i].push_back(ratio[i].size());
+  }
+
+  void add(const DriftingRecursion& recursion, const Eigen::VectorXd& v0) {
+    bool scored = false;
+    for (Index i = 0; i < v0.size(); ++i) {
+      const double e = recursion.innovation()(i), growth = recursion.growth(i);
+      if (std::isnan(e)) continue;
+      ratio[static_cast<std::size_t>(i)].push_back(e * e / growth / v0(i));
+      log_variance += std::log(v0(i)) + std::log(growth);
+      scored = true;
+    }
+    samples += scored ? 1 : 0;
+  }
+};
+
+DriftTrace trace_drift(const DriftingModel& model, const DriftRates& rates, const std::vector<GridRun>& runs) {
+  DriftTrace trace(static_cast<std::size_t>(model.v0.size()));
+  DriftingRecursion recursion(model.structure, model.theta0, model.scale, rates);
+  for (const GridRun& run : runs)
+    for (Index t = 0; t < run.instants.count(); ++t) {
+      const Instant& instant = run.instants.instants[static_cast<std::size_t>(t)];
+      if (instant.starts) {
+        recursion.start(instant.start);
+        trace.begin();
+        continue;
+      }
+      recursion.predict(run.instants.inputs.col(t));
+      if (instant.sample < 0) {
+        recursion.skip();
+      } else {
+        recursion.update(run.trajectory.state.col(instant.sample));
+        trace.add(recursion, model.v0);
+      }
+    }
+  return trace;
+}
+
+/// Sums of log densities of all (lam, nu, floor).
+void score_trace(const DriftTrace& trace, const DriftingGrid& grid, Eigen::Ref<Eigen::VectorXd> sums) {
+  DriftingLanes lanes(grid);
+  for (std::size_t i = 0; i < trace.ratio.size(); ++i)
+    for (std::size_t s = 0; s < trace.start[i].size(); ++s) {
+      const std::size_t from = trace.start[i][s];
+      const std::size_t to = s + 1 < trace.start[i].size() ? trace.start[i][s + 1] : trace.ratio[i].size();
+      lanes.follow(trace.ratio[i].data() + from, to - from);
+    }
+  lanes.write(sums);
+  sums.array() -= 0.5 * trace.log_variance;
+}
+
+}  // namespace
+
+std::array<Index, 6> DriftingGrid::point(Index index) const {
+  const std::array<Index, 6> size = sizes();
+  std::array<Index, 6> at{};
+  for (std::size_t i = size.size(); i-- > 0; index /= size[i]) at[i] = index % size[i];
+  return at;
+}
+
+Index DriftingScores::best() const {
+  Index best = 0;
+  for (Index i = 1; i < log_score.size(); ++i)
+    if (log_score(i) > log_score(best)) best = i;
+  return best;
+}
+
+DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& recording, TimeSteps time_steps,
+                                   const DriftingGrid& grid) {
+  const std::array<Index, 6> size = grid.sizes();
+  for (const Index values : size)
+    if (values == 0) throw std::invalid_argument("a setting of the drifting model has no value to choose from");
+  const std::vector<GridRun> runs = training_instants(start, recording, time_steps);
+  const Index drifts = size[0] * size[1] * size[2], rest = size[3] * size[4] * size[5];
+  DriftingScores scores{Eigen::VectorXd(drifts * rest), 0};
+  std::vector<Index> samples(static_cast<std::size_t>(drifts), 0);
+  tbb::parallel_for(Index{0}, drifts, [&](Index d) {
+    const std::array<Index, 6> at = grid.point(d * rest);
+    const DriftRates rates{grid.q[static_cast<std::size_t>(at[0])], grid.p0[static_cast<std::size_t>(at[1])],
+                           grid.leak[static_cast<std::size_t>(at[2])]};
+    if (rates.q == 0.0 && rates.p0 == 0.0 && at[2] > 0) return;  // there is nothing to leak: as the first leak
+    const DriftTrace trace = trace_drift(start, rates, runs);
+    score_trace(trace, grid, scores.log_score.segment(d * rest, rest));
+    samples[static_cast<std::size_t>(d)] = trace.samples;
+  });
+  for (Index d = 0; d < drifts; ++d) {
+    if (samples[static_cast<std::size_t>(d)] > 0 || d == 0) continue;
+    const Index first = d - grid.point(d * rest)[2];
+    scores.log_score.segment(d * rest, rest) = scores.log_score.segment(first * rest, rest);
+  }
+  scores.samples = samples.front();
+  if (scores.samples == 0) throw DataError("no training run has a sample to score a drifting model on");
+  scores.log_score /= static_cast<double>(scores.samples);
+  return scores;
+}
+
+}  // namespace modebank

@@ -1,0 +1,35 @@
+#include "filter/step/student_noise.hpp"
+
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "ident/base/distributions.hpp"
+
+namespace modebank {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+double student_log_constant(double degrees) {
+  if (degrees == 0.0) return -0.5 * std::log(2.0 * pi);
+  return std::lgamma(0.5 * (degrees + 1.0)) - std::lgamma(0.5 * degrees) - 0.5 * std::log(pi * (degrees - 2.0));
+}
+
+}  // namespace
+
+StudentNoise::StudentNoise(double degrees) : degrees_(degrees), log_constant_(0.0) {
+  if (degrees != 0.0 && !(degrees > 2.0 && std::isfinite(degrees)))
+    throw std::invalid_argument(
+        "Student's t needs more than 2 degrees of freedom for a variance, or 0 for the normal: " +
+        std::to_string(degrees));
+  log_constant_ = student_log_constant(degrees);
+}
+
+double StudentNoise::probability(double value) const {
+  if (gaussian()) return 0.5 * std::erfc(-value / std::numbers::sqrt2);
+  return student_probability(value * std::sqrt(degrees_ / (degrees_ - 2.0)), degrees_);
+}
+
+}  // namespace modebank

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cmath>
+
+namespace modebank {
+
+/// Student's t of `degrees` degrees of freedom, scaled to variance one (its scale squared is (degrees - 2) / degrees),
+/// or the normal distribution where `degrees` is 0.
+class StudentNoise {
+ public:
+  /// Throws std::invalid_argument unless degrees are 0 or above 2: else there is no variance.
+  explicit StudentNoise(double degrees);
+
+  double degrees() const { return degrees_; }
+  bool gaussian() const { return degrees_ == 0.0; }
+  /// What the log density of a value has beside its dependence on the value [nats].
+  double log_constant() const { return log_constant_; }
+  /// Log density of a value by its square [nats].
+  double log_density(double square) const {
+    return gaussian() ? log_constant_ - 0.5 * square
+                      : log_constant_ - 0.5 * (degrees_ + 1.0) * std::log1p(square / (degrees_ - 2.0));
+  }
+  /// P(X <= value).
+  double probability(double value) const;
+
+ private:
+  double degrees_, log_constant_;
+};
+
+}  // namespace modebank

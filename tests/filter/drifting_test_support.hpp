@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/student_t_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+#include "filter/step/drifting.hpp"
+#include "filter/step/drifting_recursion.hpp"
+#include "ident/data/trajectory.hpp"
+
+namespace modebank::test {
+
+using Eigen::Index;
+
+/// A stable drifting model of n states with `lags` samples of states and inputs, m inputs and an intercept.
+inline DriftingModel example_drifting(Index n, Index m, Index lags) {
+  DriftingModel model;
+  model.structure = {n, m, true, lags, lags, 1};
+  const Index r = model.structure.regressors();
+  Eigen::MatrixXd theta = Eigen::MatrixXd::Zero(r, n);
+  for (Index i = 0; i < n; ++i) {
+    theta(i, i) = -0.5;
+    if (lags > 1) theta(n + i, i) = 0.2;
+    if (n > 1) theta((i + 1) % n, i) = 0.1;
+    for (Index j = 0; j < m; ++j) theta(n * lags + j, i) = 0.4 - 0.1 * static_cast<double>(i + j);
+    theta(r - 1, i) = 0.05;
+  }
+  model.theta0 = theta.reshaped();
+  model.scale = Eigen::VectorXd::LinSpaced(r, 0.2, 1.0);
+  model.rates = {1e-3, 0.1, 0.97};
+  model.v0 = Eigen::VectorXd::LinSpaced(n, 0.01, 0.02);
+  model.variance_floor = 1e-3 * model.v0;
+  model.lam = 0.9;
+  model.nu = 5.0;
+  return model;
+}
+
+/// Noise of variance one as the model has it.
+inline double draw_noise(double nu, std::mt19937_64& generator) {
+  if (nu == 0.0) return boost::random::normal_distribution<double>()(generator);
+  return boost::random::student_t_distribution<double>(nu)(generator) * std::sqrt((nu - 2.0) / nu);
+}
+
+/// A run of the model with its variance held at v0: starts at zero, coefficients drawn as cov(theta[first]) says.
+inline Trajectory simulate_drifting(const DriftingModel& model, Index samples, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  boost::random::normal_distribution<double> normal;
+  boost::random::uniform_01<double> uniform;
+  const LinearStructure& s = model.structure;
+  Trajectory run;
+  run.run = "simulated";
+  run.time_s = Eigen::VectorXd::LinSpaced(samples, 0.0, static_cast<double>(samples - 1));
+  run.state = Eigen::MatrixXd::Zero(s.states, samples);
+  run.input.resize(s.inputs, samples);
+  for (double& u : run.input.reshaped()) u = 2.0 * uniform(generator) - 1.0;
+  const Eigen::MatrixXd theta0 = scaled_coefficients(s, model.theta0, model.scale);
+  Eigen::MatrixXd theta = theta0;
+  const auto wander = [&](double variance) {
+    for (Index i = 0; i < s.states; ++i)
+      for (double& value : theta.col(i)) value += std::sqrt(variance * model.v0(i)) * normal(generator);
+  };
+  Eigen::VectorXd h(s.regressors());
+  for (Index k = s.first_transition() + 1; k < samples; ++k) {
+    if (k == s.first_transition() + 1) {
+      wander(model.rates.p0);
+    } else {
+      theta = theta0 + model.rates.leak * (theta - theta0);
+      wander(model.rates.q);
+    }
+    Eigen::VectorXd z(s.dimension()), v(s.acting_inputs());
+    for (Index i = 0; i < s.state_lags; ++i) z.segment(i * s.states, s.states) = run.state.col(k - 1 - i);
+    for (Index i = 0; i < s.input_lags; ++i) v.segment(i * s.inputs, s.inputs) = run.input.col(k - s.input_delay - i);
+    fill_regressor(s, z, v, h);
+    run.state.col(k) = run.state.col(k - 1) + theta.transpose() * h.cwiseQuotient(model.scale);
+    for (Index i = 0; i < s.states; ++i) run.state(i, k) += std::sqrt(model.v0(i)) * draw_noise(model.nu, generator);
+  }
+  return run;
+}
+
+}  // namespace modebank::test

@@ -1,0 +1,311 @@
+// The drifting model, stepped: closed forms, what is missing, starts.
+#include "filter/step/drifting.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <functional>
+#include <stdexcept>
+#include <vector>
+
+#include "filter/judge/drifting.hpp"
+#include "filter/judge/statistics.hpp"
+#include "filter/step/student_noise.hpp"
+#include "ident/base/distributions.hpp"
+#include "tests/filter/drifting_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using test::example_drifting;
+using test::near;
+using test::simulate_drifting;
+
+constexpr double drift_digits = 1e-10;  // two double-precision routes over a few hundred samples
+
+TEST(StudentNoise, DensityIsTheSlopeOfTheProbabilityAndHasVarianceOne) {
+  for (const double nu : {0.0, 2.5, 3.0, 8.0, 15.0}) {
+    const StudentNoise noise(nu);
+    for (const double x : {-4.0, -0.3, 0.0, 1.0, 7.0}) {
+      const double h = 1e-4, slope = (noise.probability(x + h) - noise.probability(x - h)) / (2 * h);
+      EXPECT_NEAR(std::exp(noise.log_density(x * x)), slope, 1e-7) << nu << " at " << x;
+    }
+    if (nu == 2.5) continue;  // its variance has tails too long to integrate
+    const double variance =
+        integrate([&](double x) { return 2.0 * x * x * std::exp(noise.log_density(x * x)); }, 0.0, 2e4);
+    EXPECT_NEAR(variance, 1.0, nu == 3.0 ? 1e-3 : 1e-6) << nu;
+  }
+  for (const double nu : {-1.0, 1.0, 2.0, double{INFINITY}, std::nan("")})
+    EXPECT_THROW(StudentNoise{nu}, std::invalid_argument);
+}
+
+TEST(Drifting, FixedCoefficientsAndVarianceAreOneKalmanFilter) {
+  for (const Index n : {1, 2})
+    for (const Index lags : {1, 3}) {
+      DriftingModel model = example_drifting(n, 2, lags);
+      model.rates = {0.0, 0.0, 1.0};
+      model.lam = 1.0;
+      model.nu = 0.0;
+      const Trajectory run = simulate_drifting(model, 200, 3);
+      const RunEvaluation drifting = evaluate_run(model, run, TimeSteps::repeat);
+      const RunEvaluation bank = evaluate_run(fixed_bank(model), run, {FilterVariant::kf});
+      EXPECT_TRUE(near(drifting.prediction, bank.prediction, drift_digits));
+      EXPECT_TRUE(near(drifting.innovation, bank.innovation, drift_digits));
+      EXPECT_TRUE(near(drifting.innovation_covariance, bank.innovation_covariance, drift_digits));
+      EXPECT_TRUE(near(drifting.state, bank.state, drift_digits));
+      EXPECT_TRUE(near(drifting.log_density, bank.log_density, 1e3 * drift_digits));
+      EXPECT_TRUE(near(drifting.pit, bank.pit, 1e3 * drift_digits));
+      EXPECT_TRUE(near(drifting.nis, bank.nis, 1e3 * drift_digits));
+      EXPECT_TRUE(near(drifting.mode_probability, bank.mode_probability, 0.0));
+      EXPECT_TRUE(near(drifting.spread_share, bank.spread_share, drift_digits));
+    }
+}
+
+/// q = 0: theta is the regularised least squares of all samples so far, whatever the noise variances.
+TEST(Drifting, ConstantCoefficientsAreBatchLeastSquares) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    DriftingModel model = example_drifting(2, 1, 2);
+    const Trajectory run = simulate_drifting(model, 40 + static_cast<Index>(seed), seed);
+    model.rates = {0.0, seed % 2 == 0 ? 0.5 : 1e4, 1.0};
+    DriftingFilter filter(model, TimeSteps::repeat);
+    for (Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
+    const Index r = model.structure.regressors(), first = model.structure.first_transition();
+    Eigen::MatrixXd G = Eigen::MatrixXd::Identity(r, r) / model.rates.p0;
+    Eigen::MatrixXd b = scaled_coefficients(model.structure, model.theta0, model.scale) / model.rates.p0;
+    Eigen::VectorXd h(r);
+    for (Index k = first; k < run.transitions(); ++k) {
+      h << run.state.col(k), run.state.col(k - 1), run.input.col(k), run.input.col(k - 1), 1.0;
+      h = h.cwiseQuotient(model.scale).eval();
+      G += h * h.transpose();
+      b += h * (run.state.col(k + 1) - run.state.col(k)).transpose();
+    }
+    const DriftingMemory memory = filter.snapshot().coefficients;
+    EXPECT_TRUE(near(memory.theta, G.ldlt().solve(b), 1e-7)) << seed;
+    const Eigen::MatrixXd P = memory.P[0].selfadjointView<Eigen::Lower>();
+    EXPECT_TRUE(near(P, G.inverse(), 1e-7)) << seed;
+  }
+}
+
+/// The run with samples and signals missing, a short gap and a long one.
+Trajectory holed(Trajectory run) {
+  run.state.col(0).setConstant(std::nan(""));
+  run.state.middleCols(20, 3).setConstant(std::nan(""));
+  run.state(0, 30) = std::nan("");
+  run.state.row(0).segment(40, 5).setConstant(std::nan(""));
+  run.state(run.state.rows() - 1, 43) = std::nan("");
+  run.time_s.tail(run.samples() - 60).array() += 3.0;
+  run.time_s.tail(run.samples() - 90).array() += 60.0;
+  return run;
+}
+
+TEST(Drifting, ScoresTheSamplesThatABankScores) {
+  for (const Index n : {1, 2})
+    for (const Index lags : {1, 3})
+      for (const TimeSteps time_steps : {TimeSteps::repeat, TimeSteps::single}) {
+        DriftingModel model = example_drifting(n, 1, lags);
+        model.dt_s = 1.0;
+        const Trajectory run = holed(simulate_drifting(model, 140, 5));
+        const RunEvaluation drifting = evaluate_run(model, run, time_steps);
+        const RunEvaluation bank = evaluate_run(fixed_bank(model), run, {FilterVariant::kf, false, time_steps});
+        const auto nan = [](const Eigen::MatrixXd& x) { return Eigen::MatrixXd(x.array().isNaN().cast<double>()); };
+        EXPECT_EQ(nan(drifting.log_density), nan(bank.log_density));
+        EXPECT_EQ(nan(drifting.innovation), nan(bank.innovation));
+        EXPECT_EQ(nan(drifting.pit), nan(bank.pit));
+        EXPECT_EQ(nan(drifting.prediction), nan(bank.prediction));
+        EXPECT_EQ(nan(drifting.state), nan(bank.state));
+        EXPECT_EQ(nan(drifting.nis), nan(bank.nis));
+        const HorizonEvaluation ahead = evaluate_horizons(model, run, time_steps, {5, 1, 2}),
+                                of_bank = evaluate_horizons(fixed_bank(model), run,
+                                                            {FilterVariant::kf, false, time_steps}, {5, 1, 2});
+        EXPECT_EQ(ahead.horizons, of_bank.horizons);
+        EXPECT_EQ(nan(ahead.log_density), nan(of_bank.log_density));
+        for (std::size_t h = 0; h < 3; ++h) EXPECT_EQ(nan(ahead.error[h]), nan(of_bank.error[h]));
+      }
+}
+
+/// One output's recursion as it is printed, on regressors that are given; NaN: missing.
+struct Printed {
+  Eigen::VectorXd log_density, prediction;
+};
+Printed printed(const DriftingModel& m, Index output, const Eigen::MatrixXd& h, const Eigen::VectorXd& increments) {
+  const Eigen::VectorXd theta0 = scaled_coefficients(m.structure, m.theta0, m.scale).col(output);
+  Eigen::VectorXd theta = theta0;
+  Eigen::MatrixXd P = m.rates.p0 * Eigen::MatrixXd::Identity(h.rows(), h.rows());
+  double v = m.v0(output);
+  Printed out{Eigen::VectorXd(h.cols()), Eigen::VectorXd(h.cols())};
+  for (Index k = 0; k < h.cols(); ++k) {
+    if (k > 0) {
+      theta = theta0 + m.rates.leak * (theta - theta0);
+      P = m.rates.leak * m.rates.leak * P + m.rates.q * Eigen::MatrixXd::Identity(h.rows(), h.rows());
+    }
+    const double growth = 1.0 + h.col(k).dot(P * h.col(k)), e = increments(k) - theta.dot(h.col(k));
+    out.prediction(k) = theta.dot(h.col(k));
+    const StudentNoise noise(m.nu);
+    out.log_density(k) = noise.log_density(e * e / (v * growth)) - 0.5 * std::log(v * growth);
+    if (std::isnan(e)) continue;
+    theta += P * h.col(k) * (e / growth);
+    P -= P * h.col(k) * h.col(k).transpose() * P / growth;
+    v = std::max(m.lam * v + (1.0 - m.lam) * e * e / growth, m.variance_floor(output));
+  }
+  return out;
+}
+
+/// Outputs share P only as long as that makes no difference.
+TEST(Drifting, EveryOutputLearnsFromItsOwnSamples) {
+  for (const double nu : {0.0, 5.0}) {
+    DriftingModel model = example_drifting(3, 1, 1);
+    model.nu = nu;
+    Trajectory run = simulate_drifting(model, 80, 11);
+    run.state(1, 20) = run.state(1, 21) = run.state(2, 21) = run.state(0, 50) = std::nan("");
+    run.state.col(60).setConstant(std::nan(""));
+    const RunEvaluation result = evaluate_run(model, run, TimeSteps::repeat);
+    Eigen::MatrixXd h(model.structure.regressors(), run.transitions());
+    for (Index k = 0; k < run.transitions(); ++k) {
+      h.col(k) << result.state.col(k), run.input.col(k), 1.0;
+      h.col(k) = h.col(k).cwiseQuotient(model.scale).eval();
+    }
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(run.transitions());
+    for (Index i = 0; i < 3; ++i) {
+      const Eigen::VectorXd before = result.state.row(i).head(run.transitions());
+      const Printed expected = printed(model, i, h, run.state.row(i).tail(run.transitions()).transpose() - before);
+      EXPECT_TRUE(near(result.prediction.row(i).tail(run.transitions()).transpose(), before + expected.prediction,
+                       drift_digits));
+      sum += expected.log_density.unaryExpr([](double x) { return std::isnan(x) ? 0.0 : x; });
+    }
+    sum(59) = std::nan("");
+    EXPECT_TRUE(near(result.log_density.tail(run.transitions()), sum, drift_digits));
+  }
+}
+
+TEST(Drifting, WhereNothingIsMeasuredThePredictionStandsIn) {
+  const DriftingModel model = example_drifting(2, 1, 2);
+  Trajectory run = simulate_drifting(model, 30, 6);
+  run.state.middleCols(10, 2).setConstant(std::nan(""));
+  const RunEvaluation e = evaluate_run(model, run, TimeSteps::repeat);
+  EXPECT_TRUE(near(e.state.middleCols(10, 2), e.prediction.middleCols(10, 2), 0.0));
+  EXPECT_TRUE(near(e.state.col(12).head(2), run.state.col(12), 0.0));
+  EXPECT_TRUE(near(e.state.col(12).tail(2), e.prediction.col(11).head(2), 0.0));
+  EXPECT_EQ(e.covariance.rightCols(28).cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_TRUE(std::isfinite(e.log_density(12)));
+}
+
+/// Kolmogorov's distance of N pit values from uniform, times the root of N: of a true filter above 1.95 once in a
+/// thousand times.
+double scaled_distance(const DriftingModel& filter, const DriftingModel& truth, std::uint64_t seed) {
+  const RunEvaluation e = evaluate_run(filter, simulate_drifting(truth, 3000, seed), TimeSteps::repeat);
+  std::vector<double> pit;
+  for (const double value : e.pit.reshaped())
+    if (!std::isnan(value)) pit.push_back(value);
+  return kolmogorov_distance(pit) * std::sqrt(static_cast<double>(pit.size()));
+}
+
+TEST(Drifting, PitIsUniformWhereTheModelIsTrue) {
+  DriftingModel walking = example_drifting(1, 2, 2);
+  walking.lam = 1.0;  // the variance stays v0
+  walking.nu = 0.0;   // with another noise the filter of wandering coefficients is approximate
+  walking.rates = {0.05, 0.5, 0.95};
+  DriftingModel heavy = example_drifting(2, 1, 1);
+  heavy.lam = 1.0;
+  heavy.nu = 3.0;
+  heavy.rates = {0.0, 0.0, 1.0};
+  DriftingModel blind = walking;  // believes in constant coefficients: the test must be able to tell
+  blind.rates.q = 0.0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    EXPECT_LT(scaled_distance(walking, walking, seed), 1.95) << seed;
+    EXPECT_LT(scaled_distance(heavy, heavy, seed), 1.95) << seed;
+    EXPECT_GT(scaled_distance(blind, walking, seed), 3.0) << seed;
+  }
+}
+
+TEST(DriftingFilter, GoesOnFromASnapshotAndStartsAnew) {
+  DriftingModel model = example_drifting(2, 1, 2);
+  model.dt_s = 1.0;
+  const Trajectory run = holed(simulate_drifting(model, 140, 8));
+  const RunEvaluation whole = evaluate_run(model, run, TimeSteps::repeat);
+  DriftingFilter first(model, TimeSteps::repeat), second(model, TimeSteps::repeat);
+  const auto step = [&](DriftingFilter& filter, Index k) {
+    return filter.step(run.time_s(k), run.input.col(k), run.state.col(k)).log_density;
+  };
+  for (Index k = 0; k < 47; ++k) step(first, k);
+  second.restore(first.snapshot());
+  EXPECT_TRUE(second.started());
+  for (Index k = 47; k < run.samples(); ++k) {
+    const double log_density = step(second, k);
+    EXPECT_TRUE(std::isnan(log_density) ? std::isnan(whole.log_density(k)) : log_density == whole.log_density(k));
+  }
+  second.restart();
+  EXPECT_FALSE(second.started());
+  for (Index k = 0; k < 20; ++k) {
+    const double log_density = step(second, k);
+    EXPECT_TRUE(std::isnan(log_density) ? std::isnan(whole.log_density(k)) : log_density == whole.log_density(k));
+  }
+}
+
+TEST(DriftingFilter, RefusesWhatIsNone) {
+  const DriftingModel good = example_drifting(2, 1, 2);
+  EXPECT_NO_THROW(DriftingFilter(good, TimeSteps::repeat));
+  const std::vector<std::function<void(DriftingModel&)>> spoil = {
+      [](DriftingModel& m) { m.theta0(0) = std::nan(""); },
+      [](DriftingModel& m) { m.theta0.conservativeResize(3); },
+      [](DriftingModel& m) { m.scale(1) = 0.0; },
+      [](DriftingModel& m) { m.v0(0) = 0.0; },
+      [](DriftingModel& m) { m.variance_floor(1) = -1.0; },
+      [](DriftingModel& m) { m.rates.q = -1.0; },
+      [](DriftingModel& m) { m.rates.p0 = INFINITY; },
+      [](DriftingModel& m) { m.rates.leak = 1.1; },
+      [](DriftingModel& m) { m.lam = std::nan(""); },
+      [](DriftingModel& m) { m.nu = 2.0; },
+      [](DriftingModel& m) {
+        m.horizon_factor = {{1, 2.0}};
+      },
+      [](DriftingModel& m) {
+        m.horizon_factor = {{5, 0.0}};
+      },
+  };
+  for (std::size_t i = 0; i < spoil.size(); ++i) {
+    DriftingModel bad = good;
+    spoil[i](bad);
+    EXPECT_THROW(DriftingFilter(bad, TimeSteps::repeat), std::invalid_argument) << i;
+  }
+  DriftingFilter filter(good, TimeSteps::repeat);
+  EXPECT_THROW(filter.restore(DriftingFilter(example_drifting(2, 1, 1), TimeSteps::repeat).snapshot()),
+               std::invalid_argument);
+  DriftingSnapshot odd = filter.snapshot();
+  odd.coefficients.theta(0, 0) = std::nan("");
+  EXPECT_THROW(filter.restore(odd), std::invalid_argument);
+}
+
+/// Whatever comes in, numbers come out.
+TEST(DriftingFilter, StaysFiniteOnWildSamples) {
+  for (const double huge : {1e8, 1e25}) {
+    DriftingModel model = example_drifting(1, 1, 2);
+    model.theta0.setConstant(1.0);  // unstable
+    Trajectory run = simulate_drifting(example_drifting(1, 1, 2), 300, 4);
+    run.state.col(50).setConstant(huge);
+    run.state.middleCols(100, 120).setConstant(std::nan(""));
+    const RunEvaluation e = evaluate_run(model, run, TimeSteps::repeat);
+    EXPECT_TRUE(e.state.rightCols(298).allFinite());
+    for (Index k = 2; k < 300; ++k) ASSERT_TRUE(std::isfinite(e.log_density(k)) || (k >= 100 && k < 220)) << k;
+    const HorizonEvaluation ahead = evaluate_horizons(model, run, TimeSteps::repeat, {40});
+    for (Index k = 41; k < 300; ++k) ASSERT_TRUE(std::isfinite(ahead.log_density(0, k)) || (k >= 100 && k < 220)) << k;
+  }
+}
+
+TEST(DriftingFilter, StaysFiniteWhereSamplesAreOfEverySize) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    DriftingModel model = example_drifting(2, 1, 2);
+    model.rates = {seed % 2 == 0 ? 0.0 : 0.1, 1e4, 1.0};
+    Trajectory run = simulate_drifting(example_drifting(2, 1, 2), 200, seed);
+    std::mt19937_64 generator(seed);
+    for (double& value : run.state.reshaped())
+      value *= std::pow(10.0, 29.0 * boost::random::uniform_01<double>()(generator));
+    const RunEvaluation e = evaluate_run(model, run, TimeSteps::repeat);
+    EXPECT_TRUE(e.state.rightCols(198).allFinite());
+    EXPECT_TRUE(e.log_density.tail(198).allFinite());
+    EXPECT_TRUE(e.innovation_covariance.rightCols(198).allFinite());
+  }
+}
+
+}  // namespace
+}  // namespace modebank
