@@ -155,18 +155,21 @@ void Chain::learn_bank(const ChainInputs& inputs) {
     archive_.baseline = std::move(learned.baseline);
     archive_.noise_only = std::move(learned.noise_only);
     archive_.one_motion = std::move(learned.one_motion);
+    archive_.drifting = std::move(learned.drifting);
   };
   const auto copy_all = [&] {
     Archive part;
     part.baseline = archive_.baseline;
     part.noise_only = archive_.noise_only;
     part.one_motion = archive_.one_motion;
+    part.drifting = archive_.drifting;
     return part;
   };
   const auto take_all = [&](Archive&& part) {
     archive_.baseline = std::move(part.baseline);
     archive_.noise_only = std::move(part.noise_only);
     archive_.one_motion = std::move(part.one_motion);
+    archive_.drifting = std::move(part.drifting);
   };
   provide(Stage::competitors, {learn_all, copy_all, take_all});
 
@@ -198,7 +201,9 @@ void Chain::learn_bank(const ChainInputs& inputs) {
 }
 
 void Chain::score(const std::string& filter, const FilterOptions& options, const ScoringOptions& scoring) {
-  if (const Bank* bank = archive_.bank_of(filter))
+  if (filter == "drifting" && archive_.drifting)
+    put(score_drifting(*archive_.drifting, *archive_.recording, options.time_steps, scoring));
+  else if (const std::optional<Bank> bank = archive_.bank_of(filter))
     put(score_filter(filter, *bank, *archive_.recording, options, scoring));
 }
 
@@ -258,6 +263,7 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   archive_.baseline = std::move(stored.baseline);
   archive_.noise_only = std::move(stored.noise_only);
   archive_.one_motion = std::move(stored.one_motion);
+  archive_.drifting = std::move(stored.drifting);
   archive_.unrefined = std::move(stored.unrefined);
   archive_.measured_fit = stored.measured_fit;
   score("bank", options.filter, options.scoring);

@@ -2,6 +2,7 @@
 
 #include "app/chain/stages.hpp"
 #include "filter/judge/diagnostics.hpp"
+#include "filter/judge/drifting.hpp"
 #include "filter/judge/evaluate.hpp"
 #include "filter/judge/horizon.hpp"
 #include "filter/judge/scores.hpp"
@@ -39,18 +40,44 @@ ResidualTestSet test_runs(const std::string& model, std::size_t runs, Test test)
 
 }  // namespace
 
+namespace {
+
+/// `bank` and `filter`: what made the evaluations.
+FilterScores scores_of(FilterEvaluation said, const Bank& bank, const FilterOptions& filter,
+                       const std::vector<Trajectory>& runs, const std::vector<HorizonEvaluation>& ahead) {
+  FilterScores scores;
+  said.scores = score_runs(said.runs);
+  scores.summary = summarize(said.filter, runs, said.runs, said.scores);
+  scores.diagnostics = diagnose(said.filter, bank, filter, runs, said.runs, said.scores);
+  if (!ahead.empty()) scores.horizons = summarize_horizons(said.filter, runs, ahead);
+  scores.evaluation = std::move(said);
+  return scores;
+}
+
+bool looks_ahead(const ScoringOptions& scoring) { return scoring.horizon != std::vector<Index>{1}; }
+
+}  // namespace
+
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
                           const FilterOptions& filter, const ScoringOptions& scoring) {
   const std::vector<Trajectory>& runs = recording.runs;
-  FilterScores scores;
-  scores.evaluation = {name, evaluate_runs(bank, runs, filter, scoring.smooth), {}};
-  const FilterEvaluation& said = scores.evaluation;
-  scores.evaluation.scores = score_runs(said.runs);
-  scores.summary = summarize(name, runs, said.runs, said.scores);
-  scores.diagnostics = diagnose(name, bank, filter, runs, said.runs, said.scores);
-  if (scoring.horizon != std::vector<Index>{1})
-    scores.horizons = summarize_horizons(name, runs, look_ahead(bank, runs, filter, scoring.horizon));
-  return scores;
+  std::vector<HorizonEvaluation> ahead;
+  if (looks_ahead(scoring)) ahead = look_ahead(bank, runs, filter, scoring.horizon);
+  return scores_of({name, evaluate_runs(bank, runs, filter, scoring.smooth), {}}, bank, filter, runs, ahead);
+}
+
+FilterScores score_drifting(const DriftingModel& model, const Recording& recording, TimeSteps time_steps,
+                            const ScoringOptions& scoring) {
+  const std::vector<Trajectory>& runs = recording.runs;
+  std::vector<RunEvaluation> said(runs.size());
+  std::vector<HorizonEvaluation> ahead(looks_ahead(scoring) ? runs.size() : 0);
+  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
+    said[i] = evaluate_run(model, runs[i], time_steps);
+    if (!ahead.empty()) ahead[i] = evaluate_horizons(model, runs[i], time_steps, scoring.horizon);
+  });
+  FilterOptions filter;
+  filter.noise = FilterNoise::adaptive;  // its variance is learned on the way, so its NIS is not chi-square
+  return scores_of({"drifting", std::move(said), {}}, fixed_bank(model), filter, runs, ahead);
 }
 
 ResidualTestSet test_global(const Recording& recording, const WindowFits& windows, const FitOptions& window) {

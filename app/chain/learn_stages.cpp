@@ -5,6 +5,7 @@
 
 #include "app/chain/stages.hpp"
 #include "filter/judge/scores.hpp"
+#include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/learn.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/linearise.hpp"
@@ -29,6 +30,16 @@ Bank one_motion(const Recording& recording, const WindowFits& windows, const Ban
   return bank;
 }
 
+DriftingModel drifting(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
+                       const Listener& listener) {
+  const Stopwatch watch;
+  DriftingModel model = learn_drifting(recording, linear_global(recording, windows, inputs.window), windows.structure,
+                                       inputs.filter.time_steps, inputs.horizon);
+  listener.progress(fmt::format("drifting: q {:g}, p0 {:g}, leak {:g}, lam {:g}, nu {:g} in {:.2f} s", model.rates.q,
+                                model.rates.p0, model.rates.leak, model.lam, model.nu, watch.seconds()));
+  return model;
+}
+
 }  // namespace
 
 Competitors learn_competitors(const Recording& recording, const WindowFits& windows, Index components,
@@ -37,7 +48,8 @@ Competitors learn_competitors(const Recording& recording, const WindowFits& wind
   baseline.bank.model = windows.model;
   if (baseline.at_bound) listener.progress("baseline: R is at its lower bound: the data show no measurement noise");
   if (!baseline.converged) listener.warning("baseline: its noise did not reach a maximum of the likelihood");
-  Competitors learned{std::move(baseline.bank), {}, {}};
+  Competitors learned{std::move(baseline.bank), {}, {}, {}};
+  learned.drifting = drifting(recording, windows, inputs, listener);
   learned.noise_only = learn_noise_only(recording, windows.structure, learned.baseline.R);
   if (inputs.one_motion)
     learned.one_motion = one_motion(recording, windows, learned.baseline, components, inputs, listener);

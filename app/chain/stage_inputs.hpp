@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/chain/options.hpp"
 
@@ -31,6 +32,7 @@ struct CompetitorInputs {
   FitOptions window;
   std::optional<BankOptions> one_motion;  ///< how it is learned: as the bank; empty where there is none
   FilterOptions filter;                   ///< that runs competitors, for the noise scale's memory
+  std::vector<Index> horizon;             ///< that drifting is to widen its predictions for
 };
 
 struct BankInputs {

@@ -33,6 +33,7 @@ struct Competitors {
   Bank baseline;                   ///< one Kalman filter
   Bank noise_only;                 ///< switches noise alone
   std::optional<Bank> one_motion;  ///< learned as the bank, with one theta
+  DriftingModel drifting;          ///< one linear model whose coefficients wander
 };
 /// `components`: of the mixture.
 Competitors learn_competitors(const Recording& recording, const WindowFits& windows, Index components,
@@ -64,6 +65,10 @@ struct FilterScores {
 /// `name`: bank, baseline, noise_only or one_motion.
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
                           const FilterOptions& filter, const ScoringOptions& scoring);
+
+/// The same of the drifting competitor.
+FilterScores score_drifting(const DriftingModel& model, const Recording& recording, TimeSteps time_steps,
+                            const ScoringOptions& scoring);
 
 /// Whether the judged runs of an archive ask for the modes of its bank, from what was scored, with its sentences; empty
 /// without a scored bank.

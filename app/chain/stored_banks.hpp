@@ -12,6 +12,7 @@ namespace modebank {
 struct StoredBanks {
   Bank bank;
   std::optional<Bank> baseline, noise_only, one_motion, unrefined;
+  std::optional<DriftingModel> drifting;
   MeasuredFit measured_fit = MeasuredFit::none;
 };
 

@@ -5,48 +5,33 @@
 #include <optional>
 #include <stdexcept>
 
-#include "app/chain/stage_inputs.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/line_stream.hpp"
+#include "app/cli/live_filter.hpp"
 #include "app/cli/track_input.hpp"
 #include "app/cli/track_output.hpp"
 #include "app/config/config_file.hpp"
 #include "filter/step/alarm.hpp"
-#include "filter/step/bank_filter.hpp"
 #include "io/archive/bank/load_bank.hpp"
-#include "io/archive/filter_checkpoint.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
 
-/// The competitors of the bank run as evaluate runs them.
-FilterOptions filter_options(const Config& config) {
-  if (config.track.filter == TrackedFilter::bank) return config.filter;
-  return competitor_filter(std::string(name_of(config.track.filter)), config.filter);
-}
-
-/// kf is the global model alone, whatever the bank.
-std::string tracked_bank(const Config& config) {
-  const bool single = config.track.filter == TrackedFilter::bank && config.filter.variant == FilterVariant::kf;
-  return std::string(name_of(single ? TrackedFilter::baseline : config.track.filter));
-}
-
 /// A live filter between standard input and standard output.
 class Tracker {
  public:
   Tracker(const std::string& archive, const Config& config)
       : config_(config),
-        bank_(load_bank(archive, tracked_bank(config))),
-        filter_(bank_, filter_options(config)),
+        opened_(open_filter(archive, config)),
         judge_(bank_, config.track.level, config.track.alarm),
         reader_({config.data.time, config.data.input, config.data.state}, config.track.format) {
     if (std::ssize(config.data.state) != bank_.C.rows() || std::ssize(config.data.input) != bank_.structure.inputs)
       throw ConfigurationError(fmt::format(
           "data.state and data.input name {} and {} columns, the bank of {} has {} states and {} inputs",
           config.data.state.size(), config.data.input.size(), archive, bank_.C.rows(), bank_.structure.inputs));
-    const FilterOptions options = filter_options(config);
+    const FilterOptions& options = opened_.options;
     identity_ = fmt::format("{} {} {} {} {} {}", archive_digest(archive), name_of(config.track.filter),
                             name_of(options.variant), name_of(options.noise), options.parameter_noise,
                             name_of(options.time_steps));
@@ -54,9 +39,9 @@ class Tracker {
       if (const std::string obstacle = write_obstacle(config.track.checkpoint); !obstacle.empty())
         throw ConfigurationError(
             fmt::format("track.checkpoint: cannot write {}: {}", config.track.checkpoint, obstacle));
-    if (!config.track.resume.empty()) {
-      resume(config.track.resume);
-    }
+    if (config.track.resume.empty()) return;
+    if (const double time_s = filter_.resume(config.track.resume, identity_); !std::isnan(time_s))
+      last_time_s_ = time_s;
   }
 
   void run() {
@@ -79,33 +64,19 @@ class Tracker {
 
  private:
   const Config& config_;
-  Bank bank_;
-  BankFilter filter_;
+  OpenedFilter opened_;
+  const Bank& bank_ = opened_.bank;
+  LiveFilter& filter_ = *opened_.filter;
   LiveJudge judge_;
   SampleReader reader_;
   std::optional<EstimateWriter> writer_;
   std::string identity_;
   std::optional<double> last_time_s_;
-  /// What was known before the last sample, if that came after so long a gap that the filter started anew.
-  struct BeforeLeap {
-    double time_s;
-    FilterSnapshot filter;
-  };
-  std::optional<BeforeLeap> before_leap_;
+  /// When the last sample came after so long a gap that the filter started anew: the time before, which the filter
+  /// remembers.
+  std::optional<double> before_leap_s_;
   std::size_t line_number_ = 0, samples_ = 0;
   fmt::memory_buffer out_;
-
-  void resume(const std::string& file) {
-    const FilterSnapshot snapshot = load_checkpoint(file, identity_);
-    try {
-      filter_.restore(snapshot);
-    } catch (const std::invalid_argument& error) {
-      throw DataError(fmt::format("{}: {}", file, error.what()));
-    }
-    if (snapshot.samples.samples == 0) return;
-    if (!std::isfinite(snapshot.samples.time_s)) throw DataError(file + ": the last sample has no time");
-    last_time_s_ = snapshot.samples.time_s;
-  }
 
   bool flush() {
     const bool read = write_out({out_.data(), out_.size()});
@@ -113,7 +84,7 @@ class Tracker {
     return read;
   }
 
-  void save() const { save_checkpoint(config_.track.checkpoint, identity_, filter_.snapshot()); }
+  void save() const { filter_.save(config_.track.checkpoint, identity_); }
 
   void complain(const std::string& reason) const {
     fmt::print(stderr, "modebank: line {}: {}; skipped\n", line_number_, reason);
@@ -131,19 +102,19 @@ class Tracker {
   }
 
   bool is_gap(double from_s, double to_s) const {
-    return SampleFeed::steps_between(from_s, to_s, bank_.dt_s, filter_options(config_).time_steps) > longest_gap_steps;
+    return SampleFeed::steps_between(from_s, to_s, bank_.dt_s, opened_.options.time_steps) > longest_gap_steps;
   }
 
   /// A sample far ahead whose successor follows the one before it had a wrong time: what was known before it is taken
   /// up again. Else a clock that goes back by more than a filter remembers is another clock.
   bool comes_in_time(double time_s) {
     if (!last_time_s_ || time_s > *last_time_s_) return true;
-    if (before_leap_ && time_s > before_leap_->time_s && !is_gap(before_leap_->time_s, time_s)) {
+    if (before_leap_s_ && time_s > *before_leap_s_ && !is_gap(*before_leap_s_, time_s)) {
       fmt::print(
           stderr,
           "modebank: line {}: time goes back from {} s to {} s, which follows {} s: the filter goes on from there\n",
-          line_number_, *last_time_s_, time_s, before_leap_->time_s);
-      filter_.restore(before_leap_->filter);
+          line_number_, *last_time_s_, time_s, *before_leap_s_);
+      filter_.go_back();
       last_time_s_ = before_leap_->time_s;
       return true;
     }
@@ -159,9 +130,11 @@ class Tracker {
 
   void step(const LiveSample& sample) {
     const bool was_started = filter_.started();
-    before_leap_.reset();
-    if (was_started && is_gap(*last_time_s_, sample.time_s))
-      before_leap_ = BeforeLeap{*last_time_s_, filter_.snapshot()};
+    before_leap_s_.reset();
+    if (was_started && is_gap(*last_time_s_, sample.time_s)) {
+      before_leap_s_ = last_time_s_;
+      filter_.remember();
+    }
     const FilterEstimate& estimate = filter_.step(sample.time_s, sample.input, sample.measurement);
     if (was_started && estimate.steps == 0)
       fmt::print(stderr, "modebank: line {}: {} s without a sample: the filter starts anew\n", line_number_,

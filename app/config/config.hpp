@@ -14,7 +14,7 @@
 namespace modebank::app {
 
 /// Which filter of an archive `track` runs.
-enum class TrackedFilter { bank, baseline, noise_only, one_motion };
+enum class TrackedFilter { bank, baseline, noise_only, one_motion, drifting };
 
 /// Of the lines that `track` reads and writes.
 enum class LineFormat { automatic, csv, ndjson };
@@ -92,7 +92,7 @@ void validate(const Config& config);
 
 template <>
 struct modebank::EnumNames<modebank::app::TrackedFilter> {
-  static constexpr Names<4> values{"bank", "baseline", "noise_only", "one_motion"};
+  static constexpr Names<5> values{"bank", "baseline", "noise_only", "one_motion", "drifting"};
 };
 
 template <>

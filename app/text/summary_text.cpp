@@ -115,8 +115,8 @@ std::string verdicts_text(const Archive& archive) {
   const Role role = judged_role(archive);
   for (const DiagnosticsRow& row : archive.diagnostics) {
     if (row.mode >= 0 || row.role != role) continue;
-    text += fmt::format("{:<11} {:<14} in its bands: {}; ", row.filter, name_of(row.verdict), coverage_words(row));
-    text += fmt::format("too far {:.1f} %, too close {:.1f} %; ", 100 * row.too_far, 100 * row.too_close);
+    text += fmt::format("{:<11} {:<14} in its bands: {}\n", row.filter, name_of(row.verdict), coverage_words(row));
+    text += fmt::format("{:>11} too far {:.1f} %, too close {:.1f} %; ", "", 100 * row.too_far, 100 * row.too_close);
     text += fmt::format("mean NIS {} [{:.3f}, {:.3f}]", fixed_or_short(row.nis_mean, 3), row.nis_lower, row.nis_upper);
     if (has_modes(archive, row)) text += fmt::format("; mean entropy {}", fixed_or_short(row.entropy, 3));
     if (!std::isnan(row.nees_mean))

@@ -86,12 +86,13 @@ WindowFits write_archive(const std::filesystem::path& path, const Archive& archi
   return common;
 }
 
-const Bank* Archive::bank_of(const std::string& filter) const {
-  const auto of = [](const std::optional<Bank>& held) { return held ? &*held : nullptr; };
-  if (filter == "bank") return of(bank);
-  if (filter == "baseline") return of(baseline);
-  if (filter == "noise_only") return of(noise_only);
-  return filter == "one_motion" ? of(one_motion) : nullptr;
+std::optional<Bank> Archive::bank_of(const std::string& filter) const {
+  if (filter == "bank") return bank;
+  if (filter == "baseline") return baseline;
+  if (filter == "noise_only") return noise_only;
+  if (filter == "one_motion") return one_motion;
+  if (filter == "drifting" && drifting) return fixed_bank(*drifting);
+  return {};
 }
 
 namespace {

@@ -14,6 +14,7 @@
 #include "filter/judge/scores.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/step/bank.hpp"
+#include "filter/step/drifting.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/lag/report.hpp"
@@ -63,6 +64,7 @@ struct Archive {
   std::optional<Bank> baseline;
   std::optional<Bank> noise_only;
   std::optional<Bank> one_motion;
+  std::optional<DriftingModel> drifting;
   std::vector<FilterEvaluation> evaluations;
   std::vector<SummaryRow> summary;
   std::vector<HorizonRow> horizons;  ///< with filter.horizon
@@ -71,8 +73,8 @@ struct Archive {
   std::vector<MergingCost> merging = {};  ///< with bank.modes, where components were merged
   std::optional<Finding> finding = {};    ///< where a bank was scored
 
-  /// By the name of its filter; null where there is none.
-  const Bank* bank_of(const std::string& filter) const;
+  /// By the name of its filter, where there is one; of drifting its fixed_bank, whose states and measurements are its.
+  std::optional<Bank> bank_of(const std::string& filter) const;
 };
 
 /// Throws ConfigurationError when `path` cannot become an archive: its folder is missing or not writable, or it is a

@@ -4,6 +4,7 @@
 
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/layout_bank.hpp"
+#include "io/archive/bank/layout_drifting.hpp"
 #include "io/archive/layout_data.hpp"
 #include "io/archive/layout_evaluation.hpp"
 #include "io/archive/stored.hpp"
@@ -149,6 +150,8 @@ void exchange_archive(Io& io, A& archive) {
   exchange_part(io, "baseline", archive.baseline, {}, exchange_one);
   exchange_part(io, "noise_only", archive.noise_only, {}, exchange_one);
   exchange_part(io, "one_motion", archive.one_motion, {}, exchange_one);
+  exchange_part(io, "drifting", archive.drifting, {},
+                [&](auto& member, auto& part) { exchange_drifting(member, part, units); });
   io.optional_group("residual_tests", !archive.residual_tests.empty(), {},
                     [&](auto& member) { exchange_residual_tests(member, archive.residual_tests, recording); });
   io.optional_group("evaluation", !archive.evaluations.empty() || !archive.summary.empty(), {},

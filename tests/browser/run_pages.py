@@ -36,7 +36,7 @@ class RunPages(PageTest):
         shown = session.browser.run("return [...document.querySelectorAll('#verdict .numbers .big span')].map((s) => JSON.parse(s.dataset.value))")
         bank = rows["bank", "test"]
         self.assertEqual(shown, [bank["log_score"], float(bank["rmse"].ravel()[0]), bank["coverage_95"], bank["too_far"]])
-        names = {"bank": "bank", "baseline": "baseline", "noise only": "noise_only", "one motion": "one_motion"}
+        names = {"bank": "bank", "baseline": "baseline", "noise only": "noise_only", "one motion": "one_motion", "drifting": "drifting"}
         table = self.table("Scores, all runs together")
         self.assertEqual(len(table), len(rows))
         for line in table:

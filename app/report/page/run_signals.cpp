@@ -67,7 +67,7 @@ json run_signals(const Archive& archive, std::size_t i, PageArrays& arrays, cons
                 {"filters", json::object()}};
   if (run.truth.size() > 0) entry["truth"] = rows_of(arrays, run.truth, detail.finest);
   for (const FilterEvaluation& evaluation : archive.evaluations) {
-    const Bank* bank = archive.bank_of(evaluation.filter);
+    const std::optional<Bank> bank = archive.bank_of(evaluation.filter);
     if (!bank || i >= evaluation.runs.size()) continue;
     const Index finest = evaluation.filter == "bank" ? detail.finest : std::max(detail.finest, detail.finest_others);
     entry["filters"][evaluation.filter] = filter_signals(arrays, *bank, evaluation.runs[i], run, finest);

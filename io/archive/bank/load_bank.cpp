@@ -2,8 +2,9 @@
 
 #include <fstream>
 #include <optional>
+#include <stdexcept>
 
-#include "io/archive/bank/layout_bank.hpp"
+#include "io/archive/bank/layout_drifting.hpp"
 #include "io/archive/bank/open_archive.hpp"
 #include "io/hdf5/group_reader.hpp"
 #include "modebank/base/error.hpp"
@@ -36,6 +37,22 @@ Bank load_bank(const std::filesystem::path& path, const std::string& which) {
     if (!bank) throw DataError("holds no " + which);
   });
   return *bank;
+}
+
+DriftingModel load_drifting(const std::filesystem::path& path) {
+  std::optional<DriftingModel> model;
+  read_root(path, [&](GroupReader& root) {
+    layout::exchange_part(root, "drifting", model, {}, [](GroupReader& member, DriftingModel& part) {
+      layout::exchange_drifting(member, part, Units(Recording()));
+    });
+    if (!model) throw DataError("holds no drifting");
+  });
+  try {
+    validate(*model);
+  } catch (const std::invalid_argument& error) {
+    throw DataError(path.string() + ": drifting: " + error.what());
+  }
+  return *model;
 }
 
 std::string load_configuration(const std::filesystem::path& path) {

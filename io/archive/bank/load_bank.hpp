@@ -4,12 +4,16 @@
 #include <string>
 
 #include "filter/step/bank.hpp"
+#include "filter/step/drifting.hpp"
 
 namespace modebank {
 
-/// One bank of an archive: "bank", "baseline" or "noise_only". Nothing else of the file is decoded. Throws as
-/// read_archive does, and DataError when the archive holds no such bank.
+/// One bank of an archive: "bank" or the competitor "baseline", "noise_only" or "one_motion". Nothing else of the file
+/// is decoded. Throws as read_archive does, and DataError when the archive holds no such bank.
 Bank load_bank(const std::filesystem::path& path, const std::string& which = "bank");
+
+/// Its drifting competitor. Throws as load_bank does.
+DriftingModel load_drifting(const std::filesystem::path& path);
 
 /// The resolved configuration an archive was made with.
 std::string load_configuration(const std::filesystem::path& path);

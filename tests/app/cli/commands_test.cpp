@@ -17,7 +17,7 @@ class Commands : public CliTest {};
 TEST_F(Commands, RunWritesACompleteArchiveAndASummary) {
   const ProgramResult result = run();
   ASSERT_EQ(result.status, 0) << result.err;
-  for (const char* part : {"windows", "mixture", "baseline", "noise_only", "one_motion", "modes of motion"})
+  for (const char* part : {"windows", "mixture", "baseline", "noise_only", "one_motion", "drifting", "modes of motion"})
     EXPECT_NE(result.out.find(part), std::string::npos) << part;
   EXPECT_EQ(left_behind(), std::vector<std::string>{"out.h5"});
   EXPECT_EQ(modebank({"verify", archive()}).status, 0);
@@ -28,7 +28,7 @@ TEST_F(Commands, ResidualTestsAreInTheArchiveAndInTheSummary) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("residuals global"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("% of input correlations (train / test)"), std::string::npos) << result.out;
-  for (const char* model : {"global", "bank", "baseline", "noise_only", "one_motion"})
+  for (const char* model : {"global", "bank", "baseline", "noise_only", "one_motion", "drifting"})
     for (const char* name : {"00", "01"}) {
       const std::string group = std::string("/residual_tests/") + model + "/" + name;
       EXPECT_EQ(inspect(archive(), group + "/autocorrelation").at("shape"), nlohmann::json({26, 1})) << group;

@@ -78,7 +78,7 @@ def check_root(file):
     expect("config_hash", file.attrs["config_hash"], b"c" * 64)
     expect("data_hash", file.attrs["data_hash"], b"d" * 64)
     expect("root members", sorted(file), sorted(
-        ["config", "provenance", "data", "lag", "windows", "mixture", "bank", "baseline", "noise_only", "one_motion", "evaluation",
+        ["config", "provenance", "data", "lag", "windows", "mixture", "bank", "baseline", "noise_only", "one_motion", "drifting", "evaluation",
          "residual_tests"]))
     check_strings(file["config"], "config")
     expect("config", file["config"][()].decode(), "[window]\nlength = 5  # fünf\n")

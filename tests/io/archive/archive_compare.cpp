@@ -34,6 +34,25 @@ void expect_same(const PairedGain& actual, const PairedGain& expected) {
   EXPECT_EQ(actual.by_blocks, expected.by_blocks);
 }
 
+void expect_same(const DriftingModel& actual, const DriftingModel& expected) {
+  EXPECT_EQ(actual.structure.states, expected.structure.states);
+  EXPECT_EQ(actual.structure.parameters(), expected.structure.parameters());
+  EXPECT_EQ(actual.state_names, expected.state_names);
+  EXPECT_EQ(actual.input_names, expected.input_names);
+  EXPECT_EQ(actual.dt_s, expected.dt_s);
+  EXPECT_TRUE(same_bits(actual.theta0, expected.theta0));
+  EXPECT_TRUE(same_bits(actual.scale, expected.scale));
+  EXPECT_EQ(actual.rates, expected.rates);
+  EXPECT_EQ(actual.lam, expected.lam);
+  EXPECT_EQ(actual.nu, expected.nu);
+  EXPECT_TRUE(same_bits(actual.v0, expected.v0));
+  EXPECT_TRUE(same_bits(actual.variance_floor, expected.variance_floor));
+  EXPECT_EQ(actual.horizon_factor, expected.horizon_factor);
+  EXPECT_EQ(actual.tuning.log_score, expected.tuning.log_score);
+  EXPECT_EQ(actual.tuning.samples, expected.tuning.samples);
+  EXPECT_EQ(actual.tuning.at_grid_end, expected.tuning.at_grid_end);
+}
+
 void expect_same(const Finding& actual, const Finding& expected) {
   EXPECT_EQ(actual.answer, expected.answer);
   EXPECT_EQ(actual.role, expected.role);
@@ -221,6 +240,7 @@ void expect_same(const Archive& actual, const Archive& expected) {
   expect_same_part(actual.baseline, expected.baseline, "baseline");
   expect_same_part(actual.noise_only, expected.noise_only, "noise_only");
   expect_same_part(actual.one_motion, expected.one_motion, "one_motion");
+  expect_same_part(actual.drifting, expected.drifting, "drifting");
   expect_same_part(actual.finding, expected.finding, "finding");
   ASSERT_EQ(actual.evaluations.size(), expected.evaluations.size());
   for (std::size_t f = 0; f < actual.evaluations.size(); ++f) {

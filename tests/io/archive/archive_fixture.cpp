@@ -239,6 +239,24 @@ Eigen::MatrixXd pattern(Index rows, Index cols, double base) {
 
 namespace {
 
+DriftingModel make_drifting(const LinearStructure& structure) {
+  DriftingModel model;
+  model.structure = structure;
+  model.state_names = {"wz"};
+  model.input_names = {"u"};
+  model.dt_s = 0.125;
+  model.theta0 = pattern(structure.parameters(), 1, 95.0);
+  model.scale = pattern(structure.regressors(), 1, 96.0);
+  model.rates = {1e-3, 10.0, 0.97};
+  model.lam = 0.75;
+  model.nu = 5.0;
+  model.v0 = pattern(structure.states, 1, 97.0);
+  model.variance_floor = pattern(structure.states, 1, 98.0);
+  model.horizon_factor = {{5, 1.25}, {10, 2.5}};
+  model.tuning = {2.75, 321, {"p0"}};
+  return model;
+}
+
 Finding make_finding() {
   Finding finding;
   finding.answer = Answer::no_evidence;
@@ -283,6 +301,7 @@ Archive full_archive(Index n, Index m) {
   archive.baseline = make_bank(structure, 1, false);
   archive.noise_only = make_bank(structure, modes, false);
   archive.one_motion = make_bank(structure, modes, false);
+  archive.drifting = make_drifting(structure);
   archive.finding = make_finding();
   for (const char* filter : {"bank", "baseline", "noise_only", "one_motion"}) {
     FilterEvaluation evaluation{filter, {}, {}};

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "app/config/config.hpp"
+#include "filter/step/bank_filter.hpp"
+
+namespace modebank::app {
+
+/// One of an archive's filters at work, a bank's or the drifting model's.
+class LiveFilter {
+ public:
+  virtual ~LiveFilter() = default;
+  virtual const FilterEstimate& step(double time_s, const Eigen::VectorXd& input,
+                                     const Eigen::VectorXd& measurement) = 0;
+  virtual bool started() const = 0;
+  virtual void restart() = 0;
+  /// Remembers what it knows now, and goes back to it.
+  virtual void remember() = 0;
+  virtual void go_back() = 0;
+  /// What it knows as a file. Throws as save_checkpoint and load_checkpoint do. `resume` returns the time of the last
+  /// sample; NaN without samples.
+  virtual void save(const std::string& file, const std::string& identity) const = 0;
+  virtual double resume(const std::string& file, const std::string& identity) = 0;
+};
+
+/// The filter that the configuration asks for. `bank`: whose sizes and period it has.
+struct OpenedFilter {
+  Bank bank;
+  FilterOptions options;
+  std::unique_ptr<LiveFilter> filter;
+};
+/// Throws as load_bank does.
+OpenedFilter open_filter(const std::string& archive, const Config& config);
+
+}  // namespace modebank::app

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "filter/step/drifting.hpp"
+#include "io/archive/bank/layout_bank.hpp"
+
+/// The layout of the drifting competitor; see io/archive/layout.hpp. p parameters, r regressors, n_y outputs, H
+/// horizons.
+namespace modebank::layout {
+
+/// The factors of a drifting model by their horizons, as two arrays.
+struct StoredFactors {
+  Eigen::VectorXd horizon, factor;
+};
+
+inline StoredFactors store_factors(const std::vector<std::pair<Eigen::Index, double>>& factors) {
+  StoredFactors stored{Eigen::VectorXd(factors.size()), Eigen::VectorXd(factors.size())};
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    stored.horizon(static_cast<Eigen::Index>(i)) = static_cast<double>(factors[i].first);
+    stored.factor(static_cast<Eigen::Index>(i)) = factors[i].second;
+  }
+  return stored;
+}
+
+inline std::vector<std::pair<Eigen::Index, double>> restore_factors(const StoredFactors& stored) {
+  std::vector<std::pair<Eigen::Index, double>> factors;
+  for (Eigen::Index i = 0; i < std::min(stored.horizon.size(), stored.factor.size()); ++i)
+    factors.emplace_back(static_cast<Eigen::Index>(stored.horizon(i)), stored.factor(i));
+  return factors;
+}
+
+template <class Io, class M>
+void exchange_drifting(Io& io, M& model, const Units& units) {
+  io.attribute_texts("state_names", model.state_names);
+  io.attribute_texts("input_names", model.input_names);
+  io.attribute("dt_s", model.dt_s);
+  io.attribute("states", model.structure.states);
+  std::string name = "varx";
+  exchange_structure(io, model.structure, name);
+  io.attribute("q", model.rates.q);
+  io.attribute("p0", model.rates.p0);
+  io.attribute("leak", model.rates.leak);
+  io.attribute("lam", model.lam);
+  io.attribute("nu", model.nu);
+  io.attribute("training_log_score", model.tuning.log_score);
+  io.attribute("training_samples", model.tuning.samples);
+  io.attribute_texts("at_grid_end", model.tuning.at_grid_end);
+  io.field("parameters", model.theta0, {"p"}, parameter_units(model.structure, units.states(), units.inputs()));
+  io.field("regressor_scale", model.scale, {"r"});
+  io.field("initial_variance", model.v0, {"n_y"}, squared(units.states()));
+  io.field("variance_floor", model.variance_floor, {"n_y"}, squared(units.states()));
+  io.through(model.horizon_factor, store_factors, restore_factors, [&](auto& stored) {
+    io.optional_field("horizon", stored.horizon, {"H"}, {"samples"});
+    io.optional_field("horizon_factor", stored.factor, {"H"});
+  });
+}
+
+}  // namespace modebank::layout
