@@ -118,7 +118,8 @@ void DriftingRecursion::update(const Vector& measured) {
     }
     if (!learns) continue;
     Eigen::MatrixXd& P = memory_.P[static_cast<std::size_t>(g)];
-    P.selfadjointView<Eigen::Lower>().rankUpdate(Ph_.col(g), -1.0 / growth_(g));
+    for (Index j = 0; j < P.cols(); ++j)
+      P.col(j).tail(P.rows() - j) -= Ph_(j, g) / growth_(g) * Ph_.col(g).tail(P.rows() - j);
     make_usable(P);
   }
   push(sample_);

@@ -81,4 +81,16 @@ inline Trajectory simulate_drifting(const DriftingModel& model, Index samples, s
   return run;
 }
 
+/// The run with samples and signals missing, a short gap and a long one.
+inline Trajectory holed(Trajectory run) {
+  run.state.col(0).setConstant(std::nan(""));
+  run.state.middleCols(20, 3).setConstant(std::nan(""));
+  run.state(0, 30) = std::nan("");
+  run.state.row(0).segment(40, 5).setConstant(std::nan(""));
+  run.state(run.state.rows() - 1, 43) = std::nan("");
+  run.time_s.tail(run.samples() - 60).array() += 3.0;
+  run.time_s.tail(run.samples() - 90).array() += 60.0;
+  return run;
+}
+
 }  // namespace modebank::test
