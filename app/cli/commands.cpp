@@ -6,6 +6,7 @@
 #include <boost/algorithm/string.hpp>
 
 #include "app/chain/build_info.hpp"
+#include "app/cli/help_text.hpp"
 #include "app/config/option_table.hpp"
 #include "app/study/answers/verify_study.hpp"
 #include "ident/base/nearest_name.hpp"
@@ -42,35 +43,6 @@ constexpr Command commands[] = {
      run_verify},
 };
 
-std::string option_help() {
-  const Config defaults{};
-  std::string text, section;
-  for (const Option& option : option_table()) {
-    if (option.section() != section) text += fmt::format("\n[{}]\n", option.section());
-    section = option.section();
-    const std::string value = option.get(defaults);
-    text +=
-        fmt::format("  --{} {}{}\n      {} (default: {})\n", option.key, option.range,
-                    option.unit.empty() ? "" : " [" + option.unit + "]", option.help, value.empty() ? "empty" : value);
-  }
-  return text;
-}
-
-/// README's table of keys, so that it is this table and no other.
-std::string option_markdown() {
-  const Config defaults{};
-  std::string text = "| key | allowed | unit | default | meaning |\n|---|---|---|---|---|\n";
-  for (const Option& option : option_table()) {
-    const std::string value = option.get(defaults);
-    std::string range = option.range, help = option.help;
-    boost::replace_all(range, "|", "\\|");
-    boost::replace_all(help, "|", "\\|");
-    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", option.key, range, option.unit,
-                        value.empty() ? "" : "`" + value + "`", help);
-  }
-  return text;
-}
-
 }  // namespace
 
 std::string help_text() {
@@ -82,7 +54,7 @@ std::string help_text() {
       "(verify).\n"
       "Every configuration key is an option too, and wins over the file. Exit status: 0 done; 2 usage, configuration "
       "or "
-      "path; 1 content or run failure.\n";
+      "path; 1 content or run failure. `modebank help TERM` says what a word of the summary or a key means.\n";
   return text + option_help();
 }
 
@@ -92,7 +64,8 @@ int run_command(const CommandLine& line) {
     return 0;
   }
   if (line.help || line.command == "help") {
-    fmt::print("{}", line.markdown ? option_markdown() : help_text());
+    for (const std::string& name : line.files) fmt::print("{}", meaning_of(name));
+    if (line.files.empty()) fmt::print("{}", line.markdown ? option_markdown() : help_text());
     return 0;
   }
   for (const Command& command : commands)

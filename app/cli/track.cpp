@@ -115,7 +115,7 @@ class Tracker {
           "modebank: line {}: time goes back from {} s to {} s, which follows {} s: the filter goes on from there\n",
           line_number_, *last_time_s_, time_s, *before_leap_s_);
       filter_.go_back();
-      last_time_s_ = before_leap_->time_s;
+      last_time_s_ = *before_leap_s_;
       return true;
     }
     if (*last_time_s_ - time_s > static_cast<double>(longest_gap_steps) * bank_.dt_s) {

@@ -12,6 +12,7 @@ std::string_view run_js();      ///< what draws the page of a run
 std::string_view study_js();    ///< that of a study
 std::string_view compare_js();  ///< that of two runs
 std::string_view palette_json();
+std::string_view terms_json();  ///< every term's one definition, of pages and of help
 
 // Gnuplot scripts of the figures for papers, see gnuplot.hpp.
 std::string_view figure_style();

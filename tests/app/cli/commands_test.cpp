@@ -187,6 +187,17 @@ TEST_F(Commands, HelpNamesEveryCommandAndOption) {
     EXPECT_NE(result.out.find(part), std::string::npos) << part;
 }
 
+/// The one definition of a term, by any of its names; a key by its own.
+TEST_F(Commands, HelpSaysWhatATermOrAKeyMeans) {
+  const std::string definition = modebank({"help", "NIS"}).out;
+  EXPECT_NE(definition.find("Normalised innovation squared"), std::string::npos) << definition;
+  EXPECT_EQ(modebank({"help", "mean nis"}).out, definition);
+  EXPECT_NE(modebank({"help", "window.length"}).out.find("--window.length"), std::string::npos);
+  const auto unknown = modebank({"help", "wight"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("neither a term nor a key"), std::string::npos) << unknown.err;
+}
+
 TEST_F(Commands, ReadmeHoldsTheTableOfKeysAsHelpPrintsIt) {
   const ProgramResult result = modebank({"help", "--markdown"});
   ASSERT_EQ(result.status, 0);

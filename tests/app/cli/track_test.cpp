@@ -89,6 +89,26 @@ TEST_F(Track, AKalmanFilterIsTheGlobalModel) {
   }
 }
 
+/// Competitors say live what evaluate has them say, whatever kind of filter they are.
+TEST_F(Track, CompetitorsSayWhatEvaluateSays) {
+  const Archive stored = read_archive(archive());
+  const std::vector<std::string> samples = lines("run_01.csv");
+  for (const FilterEvaluation& evaluation : stored.evaluations) {
+    PipedProgram program(command({"--track.filter", evaluation.filter, "--track.format", "csv"}));
+    program.write(samples[0] + "\n");
+    const std::vector<std::string> header = header_of(program.read_line().value());
+    const auto at = static_cast<std::size_t>(std::find(header.begin(), header.end(), "log_density") - header.begin());
+    for (std::size_t k = 1; k < 30; ++k) {
+      program.write(samples[k] + "\n");
+      const double said = numbers(program.read_line().value()).at(at);
+      const double expected = evaluation.runs[1].log_density(static_cast<Eigen::Index>(k - 1));
+      EXPECT_EQ(std::isnan(said), std::isnan(expected)) << evaluation.filter << ", sample " << k;
+      if (!std::isnan(expected)) EXPECT_EQ(said, expected) << evaluation.filter << ", sample " << k;
+    }
+  }
+  EXPECT_EQ(modebank({"track", archive(), "--track.filter", "drifting", "--track.checkpoint", "c.json"}).status, 2);
+}
+
 TEST_F(Track, AnswersMalformedLinesOnStderrAndKeepsItsState) {
   const std::vector<std::string> samples = lines("run_01.csv");
   const auto answers = [&](bool disturbed) {

@@ -1,6 +1,7 @@
 // Tables with headings that sort.
 import {h, swatch, value} from './elements.js';
 import {sortedRows} from './ordering.js';
+import {meaningOf} from './terms.js';
 
 // Cell of a row: columns are {name, text: true for words, prose: true for sentences, of: row => cell, swatch: row =>
 // colour}.
@@ -13,7 +14,9 @@ export function cellOf(column, row) {
 }
 
 export const headingOf = (column, attributes, ...content) =>
-    h('th', {scope: 'col', class: column.text || column.prose ? 'text' : null, ...attributes}, content);
+    h('th',
+      {scope: 'col', class: column.text || column.prose ? 'text' : null, title: meaningOf(column.name), ...attributes},
+      content);
 
 // A heading's button; `order` is {column, down}: what the table is sorted by.
 export const sortButton = (onclick, ...content) => h('button', {type: 'button', onclick}, content);

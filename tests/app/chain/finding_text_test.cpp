@@ -1,0 +1,74 @@
+// The sentences of findings: each says what its answer means, and no more.
+#include "app/chain/finding_text.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+namespace modebank {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+Finding finding_of(Answer answer) {
+  Finding finding;
+  finding.answer = answer;
+  finding.role = Role::test;
+  finding.runs = 6;
+  finding.modes = 3;
+  finding.modes_differ = true;
+  finding.best_competitor = "one_motion";
+  finding.gain = 0.1344;
+  finding.standard_error = 0.0402;
+  finding.gains = {{"one_motion", 700, 0.1344, 0.0402, 5.0, 0.1034, false}};
+  return finding;
+}
+
+TEST(FindingText, EvidenceNamesGainErrorAndTheOtherExplanation) {
+  EXPECT_THAT(finding_text(finding_of(Answer::evidence)),
+              AllOf(HasSubstr("6 held-out runs show evidence for modes of motion"), HasSubstr("nonlinear"),
+                    HasSubstr("The bank of 3 modes gains +0.134 +- 0.040 nats per sample over one_motion (one motion "
+                              "with changing noise), its best competitor.")));
+}
+
+TEST(FindingText, NoEvidenceNamesWhatDescribesTheRunsInstead) {
+  Finding finding = finding_of(Answer::no_evidence);
+  finding.better_description = "drifting";
+  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("no evidence for modes of motion"),
+                                           HasSubstr("by one motion whose parameters drift (drifting)")));
+  finding.modes_differ = false;
+  EXPECT_THAT(finding_text(finding), HasSubstr("The modes do not differ in their parameters beyond their errors"));
+}
+
+TEST(FindingText, WhatCannotBeToldSaysWhy) {
+  Finding finding = finding_of(Answer::cannot_tell);
+  EXPECT_THAT(finding_text(finding), HasSubstr("cannot be told: the gain does not exceed what chance makes"));
+  finding.gains.front().margin = finding.standard_error = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("too few samples"), HasSubstr("of unknown error")));
+  finding.role = Role::train;
+  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("6 training runs"), HasSubstr("nothing was held out")));
+}
+
+TEST(FindingText, OneModeAndCoarseMeasurementsClaimNothing) {
+  Finding one = finding_of(Answer::one_mode);
+  one.modes = 1;
+  EXPECT_THAT(finding_text(one), AllOf(HasSubstr("one mode"), Not(HasSubstr("evidence"))));
+  Finding coarse = finding_of(Answer::not_comparable);
+  coarse.coarse = {{"wz", 0.2, 0.0, 0.12}, {"v", 0.0, 0.78, 0.1}};
+  EXPECT_THAT(finding_text(coarse),
+              AllOf(HasSubstr("wz comes in steps of 0.2, predictions are uncertain by 0.12"),
+                    HasSubstr("78 % of the samples of v repeat the one before"), Not(HasSubstr("evidence"))));
+}
+
+TEST(FindingText, ABetterMeanIsTold) {
+  Finding finding = finding_of(Answer::evidence);
+  finding.better_means = {{"noise_only", 1, "", 0.0145, 0.0141}, {"drifting", 10, "wz", 0.0504, 0.0237}};
+  EXPECT_THAT(finding_text(finding),
+              AllOf(HasSubstr("predicts the mean better one step ahead (RMSE 0.0141, the bank 0.0145; noise_only)"),
+                    HasSubstr("10 samples ahead in wz (RMSE 0.0237, the bank 0.0504; drifting)")));
+}
+
+}  // namespace
+}  // namespace modebank
