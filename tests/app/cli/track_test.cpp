@@ -103,7 +103,9 @@ TEST_F(Track, CompetitorsSayWhatEvaluateSays) {
       const double said = numbers(program.read_line().value()).at(at);
       const double expected = evaluation.runs[1].log_density(static_cast<Eigen::Index>(k - 1));
       EXPECT_EQ(std::isnan(said), std::isnan(expected)) << evaluation.filter << ", sample " << k;
-      if (!std::isnan(expected)) EXPECT_EQ(said, expected) << evaluation.filter << ", sample " << k;
+      if (!std::isnan(expected)) {
+        EXPECT_EQ(said, expected) << evaluation.filter << ", sample " << k;
+      }
     }
   }
   EXPECT_EQ(modebank({"track", archive(), "--track.filter", "drifting", "--track.checkpoint", "c.json"}).status, 2);
