@@ -46,9 +46,11 @@ std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& i
 
 void tell_of(const Refinement& refined, const Listener& listener) {
   for (const RefineCandidate& c : refined.candidates)
-    listener.progress(
-        fmt::format("refine: {:<12} {:>3} modes, Q prior {}: {:.4f} nats/sample left out, after {} iterations{}",
-                    c.start, c.modes, c.noise_transitions, c.score, c.iterations, c.selected ? " (chosen)" : ""));
+    listener.progress(fmt::format(
+        "refine: {:<12} {:>3} modes, Q prior {}: {:.4f} nats/sample left out, {:.4f} +- {:.4f} below the best, after "
+        "{} iterations{}",
+        c.start, c.modes, c.noise_transitions, c.score, c.loss, c.loss_standard_error, c.iterations,
+        c.selected ? " (chosen)" : ""));
   const MeasurementStage& measured = refined.measurement;
   if (!std::isnan(measured.score))
     listener.progress(fmt::format("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
@@ -64,6 +66,8 @@ void tell_of(const Refinement& refined, const Listener& listener) {
 LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const Listener& listener) {
   if (inputs.one_model) return {from.baseline, {}, MeasuredFit::none, {}};
   Refinement refined = learn(from, inputs, inputs.bank);
+  if (inputs.bank.refine == Refine::none)
+    listener.progress(fmt::format("bank: the mixture's own modes of model {}, not refined", from.windows.model));
   tell_of(refined, listener);
   LearnedBank learned{std::move(refined.bank), {}, refined.measurement.end, {}};
   if (inputs.bank.refine == Refine::em) learned.unrefined = std::move(refined.start);
