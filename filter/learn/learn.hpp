@@ -18,7 +18,7 @@ struct Baseline {
   Bank bank;                    ///< K = 1
   double log_likelihood = 0.0;  ///< of the training runs, from each run's second sample
   bool converged = false;
-  bool at_bound = false;  ///< R stopped at its lower bound 1e-10 var(y): the data show no measurement noise
+  bool at_bound = false;  ///< R stopped where it adds 1e-8 to the residual variance: the data show no measurement noise
 };
 
 /// theta fixed at the global least squares; Q (full) and R (diagonal) maximise the exact Gaussian likelihood.
