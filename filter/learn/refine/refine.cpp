@@ -74,7 +74,8 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   const Bank exact = bank_of_fit(in, fit, validation.adaptation(chosen.banks));
   const MeasuredBank measured = fit_with_measurement_noise(in, validation, prior, exact);
 
-  Refinement result{with_errors(in, fit, measured.prior, measured.R_estimated, measured.bank), banks.front(),
+  const FilterOptions maximised = measured.stage.iterations > 0 ? learning_filter(filter) : exact_filter(filter);
+  Refinement result{with_errors(in, fit, measured.prior, measured.R_estimated, maximised, measured.bank), banks.front(),
                     validation.table(), fit.objective, measured.stage};
   if (options.members == 1 || measured.R_estimated || measured.stage.iterations > 0) return result;
   AveragedBank averaged = average_fits(in, validation, result.bank);
