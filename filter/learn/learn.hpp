@@ -35,8 +35,12 @@ Bank learn_noise_only(const Recording& recording, const LinearStructure& structu
 Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                 const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion = nullptr);
 
-/// learn_refined_bank or learn_bank alone, as the options say; only the first needs `filter`. It knows no motion
-/// models: throws std::invalid_argument for both.
+/// Refine::automatic as em or none (Refine says when), other values as they are. `linear`: not a motion model's
+/// windows.
+Refine refinement_asked(const BankOptions& options, bool linear);
+
+/// learn_refined_bank or learn_bank alone, as refinement_asked says; only the first needs `filter`. It knows no motion
+/// models: throws std::invalid_argument where it is asked for with one.
 Refinement learn_as_asked(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                           const BankOptions& options, const Eigen::MatrixXd& R,
                           const std::optional<FilterOptions>& filter, const MotionModel* motion);
