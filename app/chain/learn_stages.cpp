@@ -6,6 +6,7 @@
 #include "app/chain/stages.hpp"
 #include "filter/judge/scores.hpp"
 #include "filter/learn/competitors/drifting.hpp"
+#include "filter/learn/from_mixture/passing_windows.hpp"
 #include "filter/learn/learn.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/linearise.hpp"
@@ -80,9 +81,11 @@ std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& i
 
 void tell_of(const Refinement& refined, const Listener& listener) {
   for (const RefineCandidate& c : refined.candidates)
-    listener.progress(
-        fmt::format("refine: {:<12} {:>3} modes, Q prior {}: {:.4f} nats/sample left out, after {} iterations{}",
-                    c.start, c.modes, c.noise_transitions, c.score, c.iterations, c.selected ? " (chosen)" : ""));
+    listener.progress(fmt::format(
+        "refine: {:<12} {:>3} modes, Q prior {}: {:.4f} nats/sample left out, {:.4f} +- {:.4f} below the best, after "
+        "{} iterations{}",
+        c.start, c.modes, c.noise_transitions, c.score, c.loss, c.loss_standard_error, c.iterations,
+        c.selected ? " (chosen)" : ""));
   const MeasurementStage& measured = refined.measurement;
   if (!std::isnan(measured.score))
     listener.progress(fmt::format("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
@@ -93,11 +96,29 @@ void tell_of(const Refinement& refined, const Listener& listener) {
                                   averaged.score_before, averaged.score));
 }
 
+/// Modes that a mixture makes of windows between two others. Refinement takes them apart.
+void warn_of_passing_modes(const LearnedFrom& from, const Bank& bank, const Listener& listener) {
+  constexpr double most = 0.75;  // of a true mode's windows about half seem to pass where labels flicker
+  const Eigen::VectorXd shares = passing_shares(from.windows, from.mixture);
+  for (Index k = 0; k < shares.size(); ++k) {
+    const bool screened = std::any_of(bank.screened.begin(), bank.screened.end(),
+                                      [&](const ScreenedMode& mode) { return mode.component == k; });
+    if (shares(k) > most && !screened)
+      listener.warning(
+          fmt::format("bank: component {} is no mode of motion of its own: {:.0f} % of its windows seem to "
+                      "straddle a switch between others (bank.refine = em takes such modes apart)",
+                      k, 100.0 * shares(k)));
+  }
+}
+
 }  // namespace
 
 LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const Listener& listener) {
   if (inputs.one_model) return {from.baseline, {}, MeasuredFit::none, {}};
   Refinement refined = learn(from, inputs, inputs.bank);
+  if (inputs.bank.refine == Refine::none)
+    listener.progress(fmt::format("bank: the mixture's own modes of model {}, not refined", from.windows.model));
+  if (inputs.bank.refine == Refine::none) warn_of_passing_modes(from, refined.bank, listener);
   tell_of(refined, listener);
   LearnedBank learned{std::move(refined.bank), {}, refined.measurement.end, {}};
   if (inputs.bank.refine == Refine::em) learned.unrefined = std::move(refined.start);

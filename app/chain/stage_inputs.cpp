@@ -1,5 +1,7 @@
 #include "app/chain/stage_inputs.hpp"
 
+#include "filter/learn/learn.hpp"
+#include "ident/fit/fit_windows.hpp"
 #include "io/import/import.hpp"
 
 namespace modebank {
@@ -8,7 +10,8 @@ namespace {
 BankInputs bank_inputs(const ChainOptions& options, const FitOptions& window) {
   BankInputs inputs{window, options.bank, options.filter.variant == FilterVariant::kf, {}};
   inputs.bank.em.seed = options.seed;
-  const bool runs_the_filter = options.bank.refine == Refine::em || options.bank.modes > 0;
+  inputs.bank.refine = refinement_asked(options.bank, is_linear(window));  // one key for what is the same
+  const bool runs_the_filter = inputs.bank.refine == Refine::em || options.bank.modes > 0;
   if (runs_the_filter && !inputs.one_model) inputs.filter = options.filter;
   return inputs;
 }

@@ -67,10 +67,11 @@ MODEBANK_KEY_FIELDS(EmOptions, covariance, start, restarts, start_runs, split_me
                     covariance_floor, noise_component)
 MODEBANK_KEY_FIELDS(SelectionOptions, components, criterion, heldout, em, bootstrap)
 MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, straddling, error_aware)
-MODEBANK_KEY_FIELDS(RefineTuning, checkpoints, forgettings, noise_prior_samples, fewest_whole_runs, shortest_stretch,
-                    Q_transitions, other_Q_transitions, Q_transitions_unvalidated, Q_transitions_with_R,
-                    least_information, alternations, start_stay, modes_kept, duplicate_significance, growth_slack,
-                    iterations_after_screening, least_R_share, R_start_share, least_gain)
+MODEBANK_KEY_FIELDS(RefineTuning, checkpoints, falls, forgettings, noise_prior_samples, fewest_whole_runs,
+                    shortest_stretch, most_loss, Q_transitions, other_Q_transitions, Q_transitions_unvalidated,
+                    Q_transitions_with_R, least_information, alternations, start_stay, modes_kept,
+                    duplicate_significance, growth_slack, iterations_after_screening, least_R_share, R_start_share,
+                    least_gain)
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, members, folds, measurement_noise, screen,
                     one_theta, seed, tuning)
 MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, modes,

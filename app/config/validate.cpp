@@ -32,7 +32,7 @@ void validate(const Config& config) {
   check_prior(config.window, parameter_count(config.window, states, inputs));
   require(config.window.scale != ScaleSource::fixed || config.window.sigma > 0.0,
           "window.scale = fixed needs window.sigma, the residual standard deviation, above 0");
-  require(config.bank.refine == Refine::none || is_linear(config.window),
+  require(config.bank.refine != Refine::em || is_linear(config.window),
           fmt::format("bank.refine = em needs window.model = linear or varx, not {}: it fits linear modes",
                       config.window.model));
 }

@@ -18,7 +18,7 @@ struct Baseline {
   Bank bank;                    ///< K = 1
   double log_likelihood = 0.0;  ///< of the training runs, from each run's second sample
   bool converged = false;
-  bool at_bound = false;  ///< R stopped at its lower bound 1e-10 var(y): the data show no measurement noise
+  bool at_bound = false;  ///< R stopped where it adds 1e-8 to the residual variance: the data show no measurement noise
 };
 
 /// theta fixed at the global least squares; Q (full) and R (diagonal) maximise the exact Gaussian likelihood.
@@ -53,8 +53,12 @@ Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const 
 Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                 const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion = nullptr);
 
-/// learn_refined_bank or learn_bank alone, as the options say; only the first needs `filter`. It knows no motion
-/// models: throws std::invalid_argument for both.
+/// Refine::automatic as em or none (Refine says when), other values as they are. `linear`: not a motion model's
+/// windows.
+Refine refinement_asked(const BankOptions& options, bool linear);
+
+/// learn_refined_bank or learn_bank alone, as refinement_asked says; only the first needs `filter`. It knows no motion
+/// models: throws std::invalid_argument where it is asked for with one.
 Refinement learn_as_asked(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                           const BankOptions& options, const Eigen::MatrixXd& R,
                           const std::optional<FilterOptions>& filter, const MotionModel* motion);

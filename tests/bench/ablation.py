@@ -30,7 +30,7 @@ FEATURES = [
     ("all of it", {}),
     ("noise as learned (gaussian), refined for it", {"filter.noise": "gaussian"}),
     ("the same bank, noise as learned", {"bank:filter.noise": "gaussian"}),
-    ("one fit (bank.members = 1)", {"bank.members": "1"}),
+    ("for prediction: fits averaged (bank.members = 6)", {"bank.members": "6"}),
     ("without refinement", {"bank.refine": "none"}),
     ("without refinement, noise as learned", {"bank.refine": "none", "filter.noise": "gaussian"}),
     ("without cross-validation (bank.folds = 1)", {"bank.folds": "1"}),

@@ -46,7 +46,7 @@ def demo_data(modebank):
 
 
 def demo(modebank, data, name, *options, command="run"):
-    return modebank.run(name, modebank.source / "configs/demo.ini", "--data.root", data, "--mixture.restarts", "2", *options, command=command)
+    return modebank.run(name, modebank.source / "configs/demo.ini", "--data.root", data, "--mixture.restarts", "2", "--bank.refine", "none", *options, command=command)
 
 
 def ice(modebank):
@@ -71,7 +71,7 @@ def hostile(modebank):
                 state += -0.4 * state - 0.2 * left + 0.2 * right + 0.01 * generator.uniform(-0.5, 0.5)
     config = folder / "hostile.ini"
     config.write_text(f"[data]\ninputs = log.csv\nstate = {HOSTILE_STATE}\ninput = {HOSTILE_INPUT}, right\nrun = trial\n"
-                      f"state_unit = {HOSTILE_UNIT}\n[mixture]\ncomponents = 1..2\n", encoding="utf-8")
+                      f"state_unit = {HOSTILE_UNIT}\n[mixture]\ncomponents = 1..2\n[bank]\nrefine = none\n", encoding="utf-8")
     return modebank.run("hostile", config, "--data.root", folder)
 
 

@@ -19,14 +19,17 @@ std::vector<Option> bank_options() {
       numeric("bank.modes", between(0, 1000), "",
               "at most so many modes: the closest components are merged by moments; 0: no limit",
               MODEBANK_FIELD(bank.modes)),
-      words("bank.refine", "em: expectation-maximisation of the switching model from the mixture's start",
+      words("bank.refine",
+            "em: expectation-maximisation of the switching model from the mixture's start; auto: that, but none for a "
+            "motion model and where bank.theta, bank.noise or bank.transition is not the default, which em would undo",
             MODEBANK_FIELD(bank.refine)),
       numeric("bank.restarts", between(0, 1000), "",
               "starts of em from random stretches of runs, besides the mixture's", MODEBANK_FIELD(bank.em.restarts)),
-      numeric("bank.members", between(1, 100), "",
-              "refined fits from different starts that become one bank at most, if the runs left out like it; their "
-              "modes add up",
-              MODEBANK_FIELD(bank.em.members)),
+      numeric(
+          "bank.members", between(1, 100), "",
+          "for prediction: the best refined fits from up to so many starts become one bank, if the runs left out like "
+          "it; their modes stand side by side (55 of 12 on ice), so that no mode means a kind of motion any more",
+          MODEBANK_FIELD(bank.em.members)),
       numeric(
           "bank.folds", between(1, 1000), "",
           "parts of the training runs that em leaves out in turn to choose start, number of modes and of iterations; "

@@ -1,5 +1,4 @@
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -15,27 +14,24 @@
 namespace modebank {
 namespace {
 
-constexpr double smallest_r_share = 1e-10;  // of var(y) (method: section 5)
-constexpr double bound_tolerance = 1e-7;    // nats per sample that R at its bound may cost
-constexpr double least_gain = 1e-9;         // nats per sample: a better start has to be better than rounding
+constexpr double smallest_r_share = 1e-8;  // of the residual variance: what R at its bound adds to a prediction
+constexpr double bound_tolerance = 1e-7;   // nats per sample that R at its bound may cost
+constexpr double least_gain = 1e-9;        // nats per sample: a better start has to be better than rounding
 constexpr AscentLimits limits{200, 1e-12};
 constexpr std::array<std::pair<double, double>, 2> noise_starts{{{1.0, 0.1}, {0.01, 0.5}}};  // shares of Q, R
 
-/// Lower bound of R's diagonal: its share of each output's population variance over the training samples.
-Eigen::VectorXd measurement_bound(const Recording& training) {
-  const Index n = training.state_count();
+/// Lower bound of R's diagonal. An output's noise enters the innovations of every state, by the measurement itself and
+/// by each lag in the prediction with its squared coefficient: the share of the residual variance is that of all of it.
+/// A share of var(y) would not do: of clean data of many lags it is more than the residuals have.
+Eigen::VectorXd measurement_bound(const LinearStructure& structure, const Eigen::VectorXd& theta,
+                                  const Eigen::VectorXd& residual_variance) {
+  const Index n = structure.states;
+  const Eigen::MatrixXd F = unpack(structure, theta).full_form().topRows(n);
+  Eigen::MatrixXd gain = Eigen::MatrixXd::Identity(n, n);
+  for (Index lag = 0; lag < structure.state_lags; ++lag) gain += F.middleCols(lag * n, n).cwiseAbs2();
   Eigen::VectorXd bound(n);
-  for (Index i = 0; i < n; ++i) {
-    double count = 0.0, mean = 0.0, scatter = 0.0;  // Welford's recursion
-    for (const Trajectory& run : training.runs)
-      for (const double y : run.state.row(i)) {
-        if (!std::isfinite(y)) continue;
-        const double delta = y - mean;
-        mean += delta / ++count;
-        scatter += delta * (y - mean);
-      }
-    bound(i) = count > 0.0 ? smallest_r_share * scatter / count : 0.0;
-  }
+  for (Index i = 0; i < n; ++i)
+    bound(i) = smallest_r_share * (residual_variance.array() / gain.col(i).array()).minCoeff();
   return bound;
 }
 
@@ -108,9 +104,9 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
                                  global.covariance.diagonal().cwiseSqrt(), 1.0));
   set_mode_sequence(bank, TransitionMatrix());
 
-  const NoiseSearch search{{training, {FilterVariant::kf}, std::nullopt},
-                           global.noise_variance().unaryExpr(&positive_variance),
-                           measurement_bound(training)};
+  const Eigen::VectorXd scale = global.noise_variance().unaryExpr(&positive_variance);
+  const NoiseSearch search{
+      {training, {FilterVariant::kf}, std::nullopt}, scale, measurement_bound(structure, global.theta, scale)};
   std::vector<Index> outputs(static_cast<std::size_t>(n));
   std::iota(outputs.begin(), outputs.end(), Index{0});
   HeldNoise noise = hold_at_bounds(search, best_of_starts(search, bank, outputs), outputs);

@@ -218,12 +218,20 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   return refine_bank(recording, fits, starts, em, filter);
 }
 
+Refine refinement_asked(const BankOptions& options, bool linear) {
+  if (options.refine != Refine::automatic) return options.refine;
+  const bool kept = options.theta != ThetaSource::pooled || options.noise != NoiseSource::per_mode ||
+                    options.transition != TransitionSource::labels;
+  return linear && !kept ? Refine::em : Refine::none;
+}
+
 Refinement learn_as_asked(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                           const BankOptions& options, const Eigen::MatrixXd& R,
                           const std::optional<FilterOptions>& filter, const MotionModel* motion) {
-  if (options.refine == Refine::em && motion)
+  const bool refined = refinement_asked(options, motion == nullptr) == Refine::em;
+  if (refined && motion)
     throw std::invalid_argument("refine = em fits linear modes, not those of the motion model " + fits.model);
-  if (options.refine == Refine::em) return learn_refined_bank(recording, fits, mixture, options, R, filter.value());
+  if (refined) return learn_refined_bank(recording, fits, mixture, options, R, filter.value());
   return {learn_bank(recording, fits, mixture, options, R, motion), {}, {}, {}, {}};
 }
 

@@ -37,10 +37,10 @@ Index fewest_as_good(const Eigen::VectorXd& scores, double least_gain) {
   return scores(fewest) > scores(0) ? fewest + 1 : 1;
 }
 
-Bank member_bank(const RefineInput& in, const ScoredFit& scored, Index iterations, const NoiseAdaptation& adaptation) {
+Bank member_bank(const RefineInput& in, const ScoredFit& scored, const NoiseAdaptation& adaptation) {
   const SwitchingPrior prior = in.prior(scored.start.noise_transitions);
-  const TrainingFit fit = fit_training_runs(in, scored.start, prior, iterations);
-  return with_errors(in, fit, prior, false, bank_of_fit(in, fit, adaptation));
+  const TrainingFit fit = fit_training_runs(in, scored.start, prior, scored.iterations);
+  return with_errors(in, fit, prior, false, exact_filter(in.filter), bank_of_fit(in, fit, adaptation));
 }
 
 /// The modes that the members lost, said of which; what the mixture's bank had lost stands there once.
@@ -102,7 +102,7 @@ Bank unite(const std::vector<Bank>& members, double switching) {
   return bank;
 }
 
-AveragedBank average_fits(const RefineInput& in, const CrossValidation& validation, const Bank& first) {
+AveragedBank average_fits(const RefineInput& in, const CrossValidation& validation, const Bank& one_fit) {
   if (!validation.possible()) return {};
   const std::vector<ScoredFit> fits = validation.best_of_starts();
   const auto most = std::min(static_cast<std::size_t>(in.options.members), fits.size());
@@ -116,11 +116,9 @@ AveragedBank average_fits(const RefineInput& in, const CrossValidation& validati
   AveragedBank result{{count, scores(0), scores(count - 1)}, std::nullopt, {}};
   if (count == 1) return result;
 
-  const std::vector<RefineCandidate> table = validation.table();
   std::vector<Bank> members(static_cast<std::size_t>(count));
-  members[0] = first;
-  tbb::parallel_for(std::size_t{1}, members.size(), [&](std::size_t i) {
-    members[i] = member_bank(in, fits[i], table[fits[i].row].iterations, first.noise_adaptation);
+  tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t i) {
+    members[i] = fits[i].row == validation.chosen().row ? one_fit : member_bank(in, fits[i], one_fit.noise_adaptation);
   });
   for (std::size_t i = 0; i < members.size(); ++i) result.rows.push_back(fits[i].row);
   result.bank = unite(members, switching);

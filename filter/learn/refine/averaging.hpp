@@ -28,8 +28,8 @@ struct AveragedBank {
 /// one of them the bank becomes the union of the best 2..options.members starts' fits, if the runs left out, scored by
 /// the fits that did not see them, gain more than least_gain by it; of numbers that are equal up to that the least. The
 /// members switch once in a run of mean length. For a state that is measured exactly; each fit is screened, and has its
-/// standard errors, on its own. `first`: the best start's fit as a bank, the first member. The union has a noise
-/// adaptation of its own.
-AveragedBank average_fits(const RefineInput& in, const CrossValidation& validation, const Bank& first);
+/// standard errors, on its own. `one_fit`: the chosen fit as a bank, a member where it is among the best. The union has
+/// a noise adaptation of its own.
+AveragedBank average_fits(const RefineInput& in, const CrossValidation& validation, const Bank& one_fit);
 
 }  // namespace modebank

@@ -1,18 +1,23 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "filter/learn/refine/folds.hpp"
+#include "filter/learn/refine/model_choice.hpp"
 #include "filter/learn/refine/refine.hpp"
+#include "filter/learn/refine/split_fits.hpp"
 #include "filter/learn/refine/training_fit.hpp"
 #include "filter/step/bank.hpp"
 
 namespace modebank {
 
-/// One start's fit, how it scored, and what it was on each split.
+/// One start's fit after the number of iterations that scored best, how it scored, and what it was on each split.
 struct ScoredFit {
   RefineStart start;
   std::size_t row = 0;  ///< in the table
+  Index iterations = 0;
+  LeftOutScores scores;
   std::vector<Bank> banks;
 };
 
@@ -22,19 +27,18 @@ class CrossValidation {
  public:
   explicit CrossValidation(const RefineInput& in);
 
-  /// Tries all and remembers the best of these and earlier ones; adds a row for each to the table. Without anything to
-  /// leave out the first one is the best, run to convergence.
+  /// Tries all, adds a row for each to the table and chooses among these and earlier ones: the fewest modes that are as
+  /// good as the best (fewest_modes_as_good). Without anything to leave out the first one is chosen, run to
+  /// convergence.
   void consider(const std::vector<RefineStart>& candidates);
 
   /// Whether there is anything to leave out.
   bool possible() const { return !splits_.empty(); }
-  const std::vector<ValidationSplit>& splits() const { return splits_; }
-  const RefineStart& best() const { return best_; }
-  const std::vector<Bank>& best_banks() const { return best_banks_; }  ///< the best fit on every split
-  Index iterations() const { return table_[selected_].iterations; }
+  const std::vector<SplitData>& splits() const { return splits_; }
+  const ScoredFit& chosen() const { return fits_[chosen_]; }
   std::vector<RefineCandidate> table() const;
 
-  /// The best fit from every start, the best first: it is best()'s.
+  /// The best fit from every start, the best first.
   std::vector<ScoredFit> best_of_starts() const;
 
   /// Mean log score of the runs left out, nats per sample; `banks`: one per split. Minus infinity where there is none.
@@ -47,16 +51,14 @@ class CrossValidation {
  private:
   /// Log-likelihood of each run left out.
   Eigen::VectorXd run_scores(const std::vector<Bank>& banks) const;
-  void add(const RefineStart& candidate, const std::vector<std::vector<Bank>>& by_split);
+  double mean_score(const LeftOutScores& scores) const;
+  ScoredFit best_iterations(const RefineStart& start) const;
 
   RefineInput in_;
-  std::vector<ValidationSplit> splits_;
-  Index samples_ = 0;
-  std::vector<RefineCandidate> table_;
-  std::size_t selected_ = 0;
-  RefineStart best_;
-  std::vector<Bank> best_banks_;
-  std::vector<ScoredFit> fits_of_rows_;
+  std::vector<SplitData> splits_;
+  Eigen::VectorXd samples_;  ///< of each run left out
+  std::vector<ScoredFit> fits_;
+  std::size_t chosen_ = 0;
 };
 
 }  // namespace modebank

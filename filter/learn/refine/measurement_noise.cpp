@@ -41,11 +41,12 @@ std::pair<double, double> scores_left_out(const LikelihoodTarget& target, const 
                                           const CrossValidation& validation, const MeasuredBank& measured,
                                           double Q_factor) {
   std::vector<Bank> banks;
-  for (const Bank& of_split : validation.best_banks())
+  for (const Bank& of_split : validation.chosen().banks)
     banks.push_back(with_noise_of(of_split, measured.bank.R, Q_factor, measured.bank.noise_adaptation));
   const double before = validation.score(banks);
   tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
-    const LikelihoodTarget of_split{validation.splits()[s].training, target.filter, target.prior, target.one_theta};
+    const LikelihoodTarget of_split{validation.splits()[s].runs.training, target.filter, target.prior,
+                                    target.one_theta};
     banks[s] = maximise_everything(of_split, in, banks[s]).bank;
   });
   return {before, validation.score(banks)};

@@ -26,7 +26,8 @@ std::vector<RefineStart> all_starts(const RefineInput& in, const std::vector<Ban
   std::vector<RefineStart> starts;
   for (const Bank& bank : banks) starts.push_back({"mixture", switching_model(bank), Q_transitions});
   const SwitchingPrior prior = in.prior(Q_transitions);
-  for (Index i = 0; i < in.options.restarts; ++i)
+  // Every start of one mode ends in the same maximum.
+  for (Index i = 0; i < in.options.restarts && banks.front().mode_count() > 1; ++i)
     starts.push_back({fmt::format("stretches {}", i + 1),
                       start_from_stretches(in.transitions, prior, banks.front().mode_count(), in.fits.length,
                                            in.options.seed, i, in.options.tuning),
@@ -50,7 +51,7 @@ CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& b
   const RefineTuning& tuning = in.options.tuning;
   validation.consider(
       all_starts(in, banks, validation.possible() ? tuning.Q_transitions : tuning.Q_transitions_unvalidated));
-  if (validation.possible()) validation.consider(other_priors(validation.best(), tuning));
+  if (validation.possible()) validation.consider(other_priors(validation.chosen().start, tuning));
   return validation;
 }
 
@@ -67,17 +68,21 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   const RefineInput in{recording, fits, frame, transitions, options, filter};
 
   const CrossValidation validation = cross_validate(in, banks);
-  const SwitchingPrior prior = in.prior(validation.best().noise_transitions);
-  const TrainingFit fit = fit_training_runs(in, validation.best(), prior, validation.iterations());
-  const Bank exact = bank_of_fit(in, fit, validation.adaptation(validation.best_banks()));
+  const ScoredFit& chosen = validation.chosen();
+  const SwitchingPrior prior = in.prior(chosen.start.noise_transitions);
+  const TrainingFit fit = fit_training_runs(in, chosen.start, prior, chosen.iterations);
+  const Bank exact = bank_of_fit(in, fit, validation.adaptation(chosen.banks));
   const MeasuredBank measured = fit_with_measurement_noise(in, validation, prior, exact);
 
-  Refinement result{with_errors(in, fit, measured.prior, measured.R_estimated, measured.bank), banks.front(),
+  const FilterOptions maximised = measured.stage.iterations > 0 ? learning_filter(filter) : exact_filter(filter);
+  Refinement result{with_errors(in, fit, measured.prior, measured.R_estimated, maximised, measured.bank), banks.front(),
                     validation.table(), fit.objective, measured.stage};
   if (options.members == 1 || measured.R_estimated || measured.stage.iterations > 0) return result;
   AveragedBank averaged = average_fits(in, validation, result.bank);
   result.averaging = averaged.averaging;
-  if (averaged.bank) result.bank = std::move(*averaged.bank);
+  if (!averaged.bank) return result;
+  result.bank = std::move(*averaged.bank);
+  for (RefineCandidate& row : result.candidates) row.selected = false;
   for (const std::size_t row : averaged.rows) result.candidates[row].selected = true;
   return result;
 }

@@ -24,8 +24,10 @@ struct Refinement {
 
 /// Expectation-maximisation of the switching model (switching_regression.hpp) from banks of mixtures. Which start, how
 /// many iterations and, for an adaptive filter, how the noise scale moves is decided by the score
-/// of training runs that were left out, each in the filter that will run the bank; test runs never enter. The last fit
-/// uses all training runs; unstable, starved and duplicate modes are then screened and listed, and the rest refined on.
+/// of training runs that were left out, each in the filter that will run the bank; test runs never enter. Of starts
+/// that these runs do not tell from the best the one with the fewest modes is chosen (fewest_modes_as_good). The last
+/// fit uses all training runs; unstable, starved and duplicate modes are then screened and listed, and the rest refined
+/// on.
 ///
 /// The prior: theta normal about the global model with the windows' prior_sd, or worth one transition where there is
 /// none (unit information: Kass & Wasserman 1995); Q as if 1, 4 or 16 more transitions of the global residual

@@ -48,12 +48,11 @@ Bank bank_of_fit(const RefineInput& in, const TrainingFit& fit, const NoiseAdapt
 }
 
 Bank with_errors(const RefineInput& in, const TrainingFit& fit, const SwitchingPrior& prior, bool estimated_R,
-                 const Bank& bank) {
+                 const FilterOptions& filter, const Bank& bank) {
   const SwitchingSums complete = sum_transitions(in.transitions, fit.posterior, prior);
   const FreeParameters free = all_parameters(bank, complete, prior, in.options.one_theta, estimated_R,
                                              least_measurement_noise(in.fits, in.options.tuning));
-  return with_standard_errors({in.recording, learning_filter(in.filter), prior, in.options.one_theta}, free, complete,
-                              bank);
+  return with_standard_errors({in.recording, filter, prior, in.options.one_theta}, free, complete, bank);
 }
 
 Eigen::VectorXd least_measurement_noise(const WindowFits& fits, const RefineTuning& tuning) {
@@ -65,6 +64,12 @@ FilterOptions learning_filter(const FilterOptions& filter) {
   learning.variant = FilterVariant::imm;
   learning.parameter_noise = false;
   return learning;
+}
+
+FilterOptions exact_filter(const FilterOptions& filter) {
+  FilterOptions exact = learning_filter(filter);
+  exact.noise = FilterNoise::gaussian;
+  return exact;
 }
 
 }  // namespace modebank

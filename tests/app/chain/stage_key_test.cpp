@@ -90,7 +90,7 @@ class StageKey : public ::testing::Test {
 };
 
 const std::vector<KeyValues> bases{
-    {{"bank.modes", "2"}},
+    {{"bank.modes", "2"}, {"bank.refine", "none"}},
     {{"bank.modes", "2"}, {"bank.refine", "em"}},
     {{"bank.refine", "em"}, {"bank.members", "2"}, {"filter.noise", "adaptive"}},
     {{"window.model", "varx"}, {"bank.modes", "2"}},
@@ -230,12 +230,18 @@ TEST_F(StageKey, ChangesWhereverAnotherValueOfAKeyChangesTheStage) {
 
 /// The stages that the merging scores of a study once came from: the defect that made these keys.
 TEST_F(StageKey, OfABankWhoseModesAreMergedHoldsTheFilter) {
-  const auto key = [&](const KeyValues& keys) {
+  const auto key = [&](KeyValues keys) {
+    keys.emplace_back("bank.refine", "none");
     return stage_keys(chain_inputs(chain_options(configured(keys))), "data")[index_of(Stage::bank)];
   };
   EXPECT_NE(key({{"bank.modes", "2"}, {"filter.variant", "imm"}}),
             key({{"bank.modes", "2"}, {"filter.variant", "mmae"}}));
   EXPECT_EQ(key({{"filter.variant", "imm"}}), key({{"filter.variant", "mmae"}})) << "is shared where no filter is run";
+  const auto automatic = [&](const char* model) {
+    return chain_inputs(chain_options(configured({{"window.model", model}}))).bank.bank.refine;
+  };
+  EXPECT_EQ(automatic("linear"), Refine::em);
+  EXPECT_EQ(automatic("icr"), Refine::none) << "shares its bank with what says none";
 }
 
 TEST_F(StageKey, HoldsTheContentOfFiles) {

@@ -83,7 +83,7 @@ TEST_F(Show, DrawsModeProbabilitiesOfHeldOutRunsAtTheWidthOfTheTerminal) {
 
 /// At every place the marks of all modes add up to one, as probabilities do.
 TEST_F(Show, SparklineIsTheArchivesProbabilities) {
-  ASSERT_EQ(run({"--mixture.components", "2"}).status, 0);
+  ASSERT_EQ(run({"--mixture.components", "2", "--bank.refine", "none"}).status, 0);
   Archive archived = read_archive(archive());
   ASSERT_EQ(archived.bank->mode_count(), 2);
   auto& probability = archived.evaluations.at(0).runs.at(1).mode_probability;

@@ -3,7 +3,10 @@
 #include <tbb/global_control.h>
 
 #include <Eigen/LU>
+#include <array>
+#include <boost/random/normal_distribution.hpp>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "modebank/base/error.hpp"
@@ -152,14 +155,37 @@ TEST(Baseline, WithoutMeasurementNoiseStopsAtTheBound) {
   const Baseline fit = learn(recording, global);
   EXPECT_TRUE(fit.converged);
   EXPECT_TRUE(fit.at_bound);
-  double count = 0.0, sum = 0.0, squares = 0.0;
-  for (const Trajectory& run : recording.runs) {
-    count += static_cast<double>(run.samples());
-    sum += run.state.sum();
-    squares += run.state.squaredNorm();
+  // An error of y counts in the innovation of its own sample and, times 1 - 0.5, in that of the next one.
+  EXPECT_NEAR(fit.bank.R(0, 0), 1e-8 * global.residual_covariance(0, 0) / (1.0 + 0.25), 1e-20);
+}
+
+/// Clean data of six lags, poles at 0.95: the residuals' variance is 1e-11 of the data's, and the coefficients' squares
+/// sum to some 600. R must be able to become nothing beside them.
+TEST(Baseline, TheBoundOfRCostsNothingInDataOfManyLags) {
+  const LinearStructure structure{1, 1, false, 6};
+  Recording recording = test::empty_recording(1, 1);
+  std::mt19937_64 generator(5);
+  boost::random::normal_distribution<double> normal;
+  for (int run = 0; run < 3; ++run) {
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, 400), u(1, 400);
+    for (Index k = 0; k < 400; ++k) u(k) = normal(generator);
+    const std::array<double, 6> binomial{6, -15, 20, -15, 6, -1};
+    for (Index k = 6; k < 400; ++k) {
+      x(k) = 0.2 * u(k - 1) + 0.1 * normal(generator);
+      for (Index lag = 1; lag <= 6; ++lag)
+        x(k) += binomial[static_cast<std::size_t>(lag - 1)] * std::pow(0.95, lag) * x(k - lag);
+    }
+    test::add_run(recording, x, u);
   }
-  const double variance = squares / count - (sum / count) * (sum / count);
-  EXPECT_NEAR(fit.bank.R(0, 0), 1e-10 * variance, 1e-20);
+  const GlobalModel global = fit_global(recording, structure);
+  const Baseline fit = learn_baseline(recording, global, structure);
+  EXPECT_TRUE(fit.converged);
+  Bank without = fit.bank;
+  without.R *= 1e-3;
+  without.modes[0].Q(0, 0) = global.residual_covariance(0, 0);
+  double expected = 0.0;
+  for (const Trajectory& run : recording.runs) expected += log_likelihood(without, run, {FilterVariant::kf, false});
+  EXPECT_GT(fit.log_likelihood, expected - 1e-4 * static_cast<double>(recording.transitions(Role::train)));
 }
 
 TEST(Baseline, RecoversTwoStates) {

@@ -119,6 +119,22 @@ TEST(LearnBank, MeanTakesTheComponentsMeansAndNoiseAboutThem) {
   }
 }
 
+/// By default linear modes are refined, and what refinement could not keep as asked for is not.
+TEST(LearnBank, RefinementIsTheDefaultOfWhatItDoesNotUndo) {
+  BankOptions options;
+  EXPECT_EQ(refinement_asked(options, true), Refine::em);
+  EXPECT_EQ(refinement_asked(options, false), Refine::none);
+  options.refine = Refine::em;
+  EXPECT_EQ(refinement_asked(options, false), Refine::em);
+  options.refine = Refine::none;
+  EXPECT_EQ(refinement_asked(options, true), Refine::none);
+  BankOptions mean, fixed, stay;
+  mean.theta = ThetaSource::mean;
+  fixed.noise = NoiseSource::fixed;
+  stay.transition = TransitionSource::stay;
+  for (const BankOptions& kept : {mean, fixed, stay}) EXPECT_EQ(refinement_asked(kept, true), Refine::none);
+}
+
 TEST(LearnBank, NoiseMayBeSharedOrFixed) {
   const Case data({-0.2, -0.8});
   const Bank own = data.learn();

@@ -36,12 +36,15 @@ struct EnumNames<TransitionSource> {
   static constexpr Names<2> values{"labels", "stay"};
 };
 
-/// What follows the bank of the mixture: nothing, or expectation-maximisation of the switching model.
-enum class Refine { none, em };
+/// What follows the bank of the mixture: nothing, or expectation-maximisation of the switching model. automatic: that,
+/// but nothing where it cannot be or would undo what was asked for: the modes of a motion model, and a theta, Q or T
+/// that are to be the mixture's or given ones (ThetaSource::mean, NoiseSource::shared or fixed,
+/// TransitionSource::stay).
+enum class Refine { automatic, none, em };
 
 template <>
 struct EnumNames<Refine> {
-  static constexpr Names<2> values{"none", "em"};
+  static constexpr Names<3> values{"auto", "none", "em"};
 };
 
 /// How a bank is refined. Defaults are the recommended method.
@@ -69,7 +72,7 @@ struct BankOptions {
   std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; empty: the baseline's R
   bool screen = true;                          ///< leave unstable and starved modes out
   std::ptrdiff_t modes = 0;                    ///< at most so many: the closest components are merged; 0: no limit
-  Refine refine = Refine::none;                ///< em: expectation-maximisation goes on from the mixture's bank
+  Refine refine = Refine::automatic;           ///< whether expectation-maximisation goes on from the mixture's bank
   RefineOptions em;                            ///< how, then
 };
 

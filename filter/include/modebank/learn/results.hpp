@@ -24,8 +24,12 @@ struct RefineCandidate {
   std::ptrdiff_t modes = 0;        ///< of the start
   double noise_transitions = 0.0;  ///< how many transitions the prior on Q is worth
   std::ptrdiff_t iterations = 0;   ///< of expectation-maximisation
-  double score = 0.0;     ///< mean log score of the runs left out, nats per sample; NaN without cross-validation
-  bool selected = false;  ///< several where fits are averaged
+  double score =
+      std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out, nats per sample; NaN without
+  double loss = std::numeric_limits<double>::quiet_NaN();  ///< against the best row on the same runs, nats per sample
+  double loss_standard_error =
+      std::numeric_limits<double>::quiet_NaN();  ///< of it, clustered by run (by stretch where fewer than three)
+  bool selected = false;                         ///< several where fits are averaged
 };
 
 /// How the fit went on once R was known to be more than nothing.

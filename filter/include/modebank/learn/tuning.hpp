@@ -13,12 +13,19 @@ struct RefineTuning {
   /// all training runs, and it takes the fit to the others a while to forget that. A first version without that rule
   /// did worse on ice.
   std::array<std::ptrdiff_t, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
+  /// Checkpoints in a row that score least_gain below a start's best, after which it goes on no further: on ICE,
+  /// FLOORING and DRIVE no start (of 13, 13 and 10; training runs) got better again after two, some did after one.
+  int falls = 2;
   /// Memories of the noise scale that are tried: 20, 50 and 200 samples, and all of the run.
   std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
   /// Samples that a run's start at scale one is worth: from hardly any to those of most short runs.
   std::array<double, 4> noise_prior_samples{1.0, 2.0, 5.0, 20.0};
   std::ptrdiff_t fewest_whole_runs = 3;  ///< fewer are cut into stretches: two folds would train on half of the data
   std::ptrdiff_t shortest_stretch = 20;  ///< samples; shorter ones would mostly be starts
+
+  /// Nats per sample that a bank with fewer modes may lose to the best, beside being within one standard error of it:
+  /// few runs know their differences badly, and a fifth of what modes are typically worth should not go unseen.
+  double most_loss = 0.02;
 
   // The prior.
   double Q_transitions = 4.0;                            ///< that the prior on Q is worth while starts are compared

@@ -1,0 +1,45 @@
+#include "filter/learn/refine/model_choice.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace modebank {
+namespace {
+
+double total(const LeftOutScores& candidate) {
+  const double sum = candidate.log_likelihood.sum();
+  return std::isnan(sum) ? -std::numeric_limits<double>::infinity() : sum;
+}
+
+}  // namespace
+
+PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& worse, const Eigen::VectorXd& samples) {
+  const Eigen::VectorXd difference = better - worse;
+  if (!difference.allFinite()) return {std::numeric_limits<double>::infinity(), 0.0};
+  const double N = samples.sum(), mean = difference.sum() / N;
+  const auto runs = static_cast<double>(difference.size());
+  if (runs < 2.0) return {mean, 0.0};
+  return {mean, std::sqrt(runs / (runs - 1.0) * (difference - mean * samples).squaredNorm()) / N};
+}
+
+std::size_t best_candidate(const std::vector<LeftOutScores>& candidates) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < candidates.size(); ++i)
+    if (total(candidates[i]) > total(candidates[best])) best = i;
+  return best;
+}
+
+std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples,
+                                 double most_loss) {
+  const std::size_t best = best_candidate(candidates);
+  std::size_t chosen = best;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const PairedLoss loss = paired_loss(candidates[best].log_likelihood, candidates[i].log_likelihood, samples);
+    if (!(loss.mean <= loss.standard_error && loss.mean <= most_loss)) continue;
+    const Eigen::Index fewer = candidates[chosen].modes - candidates[i].modes;
+    if (fewer > 0 || (fewer == 0 && total(candidates[i]) > total(candidates[chosen]))) chosen = i;
+  }
+  return chosen;
+}
+
+}  // namespace modebank

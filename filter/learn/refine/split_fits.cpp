@@ -1,0 +1,52 @@
+#include "filter/learn/refine/split_fits.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "filter/learn/switching/starts.hpp"
+#include "ident/fit/global_model.hpp"
+
+namespace modebank {
+
+std::vector<SplitData> split_data(const RefineInput& in) {
+  std::vector<SplitData> splits;
+  for (ValidationSplit& split : validation_splits(in.recording, in.options.folds, in.options.tuning)) {
+    TrainingTransitions transitions = gather_training_transitions(split.training, in.frame.structure);
+    GlobalModel global = fit_global(split.training, in.frame.structure);
+    splits.push_back({std::move(split), std::move(transitions), std::move(global)});
+  }
+  return splits;
+}
+
+SplitFits::SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, const RefineStart& start)
+    : frame_(in.frame), fits_(splits.size()) {
+  for (const SplitData& split : splits)
+    priors_.push_back(
+        switching_prior(split.transitions, split.global, in.fits.prior_sd, start.noise_transitions, in.options.tuning));
+  tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t s) {
+    fits_[s] = std::make_unique<ExpectationMaximisation>(splits[s].transitions, priors_[s], em_options(in.options),
+                                                         start.model);
+  });
+}
+
+void SplitFits::advance_to(Index iterations) {
+  tbb::parallel_for(std::size_t{0}, fits_.size(), [&](std::size_t s) {
+    for (Index i = done_; i < iterations && !fits_[s]->converged(); ++i) fits_[s]->step();
+  });
+  done_ = iterations;
+}
+
+bool SplitFits::converged() const {
+  return std::all_of(fits_.begin(), fits_.end(), [](const auto& fit) { return fit->converged(); });
+}
+
+std::vector<Bank> SplitFits::banks() const {
+  std::vector<Bank> banks;
+  for (const auto& fit : fits_) banks.push_back(with_modes(frame_, fit->model()));
+  return banks;
+}
+
+}  // namespace modebank

@@ -1,0 +1,66 @@
+// The choice of a bank by the runs left out: paired losses, their errors, and the fewest modes.
+#include "filter/learn/refine/model_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace modebank {
+namespace {
+
+const Eigen::VectorXd hundreds = Eigen::Vector4d(100.0, 100.0, 100.0, 100.0);
+
+/// A candidate whose runs score so many nats below 200 each.
+LeftOutScores below(Eigen::Index modes, const Eigen::Vector4d& losses) {
+  return {modes, Eigen::VectorXd::Constant(4, 200.0) - losses};
+}
+
+// m = 10 / 400, deviations from 100 m: -1.5, 0.5, 1.5, -0.5; sqrt(4 / 3 * 5) / 400.
+TEST(ModelChoice, PairedLossIsClusteredByRun) {
+  const PairedLoss loss =
+      paired_loss(below(3, {0, 0, 0, 0}).log_likelihood, below(2, {1, 3, 4, 2}).log_likelihood, hundreds);
+  EXPECT_NEAR(loss.mean, 0.025, 1e-15);
+  EXPECT_NEAR(loss.standard_error, std::sqrt(20.0 / 3.0) / 400.0, 1e-15);
+}
+
+/// A loss that is the same in every sample is known exactly, however long the runs are.
+TEST(ModelChoice, RunsOfDifferentLengthDoNotBlurALossPerSample) {
+  const Eigen::VectorXd lengths = Eigen::Vector3d(50.0, 100.0, 400.0);
+  const PairedLoss loss = paired_loss(Eigen::VectorXd::Zero(3), -0.01 * lengths, lengths);
+  EXPECT_NEAR(loss.mean, 0.01, 1e-15);
+  EXPECT_NEAR(loss.standard_error, 0.0, 1e-15);
+}
+
+TEST(ModelChoice, ACandidateWithoutAScoreLosesInfinitely) {
+  Eigen::VectorXd broken = Eigen::VectorXd::Zero(4);
+  broken(2) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isinf(paired_loss(Eigen::VectorXd::Zero(4), broken, hundreds).mean));
+  EXPECT_EQ(fewest_modes_as_good({{1, broken}, below(2, {0, 0, 0, 0})}, hundreds, 0.02), 1u);
+}
+
+TEST(ModelChoice, FewestModesWithinOneStandardError) {
+  // Three modes lose 0.005 +- 0.015, two lose 0.01 +- 0.002, one loses 0.5.
+  const std::vector<LeftOutScores> candidates{below(4, {0, 0, 0, 0}), below(3, {4, -2, 2, -2}),
+                                              below(2, {1, 1.5, 0.5, 1}), below(1, {50, 50, 50, 50})};
+  EXPECT_EQ(best_candidate(candidates), 0u);
+  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, 0.02), 1u);
+}
+
+/// Few runs know differences badly: a standard error alone would excuse any loss.
+TEST(ModelChoice, ALossAboveTheLimitIsNotExcusedByItsError) {
+  // One mode loses 0.025 +- 0.095.
+  const std::vector<LeftOutScores> candidates{below(2, {0, 0, 0, 0}), below(1, {30, -10, 0, -10})};
+  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, 0.02), 0u);
+  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, 0.03), 1u);
+}
+
+TEST(ModelChoice, OfAsManyModesTheBestThatQualifies) {
+  const std::vector<LeftOutScores> candidates{below(3, {0, 0, 0, 0}), below(2, {4, -2, 2, -2}),
+                                              below(2, {3, -2, 1, -1})};
+  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, 0.02), 2u);
+  EXPECT_EQ(fewest_modes_as_good({candidates[0], candidates[0]}, hundreds, 0.02), 0u);
+}
+
+}  // namespace
+}  // namespace modebank
