@@ -28,7 +28,7 @@ std::vector<Option> bank_options() {
       numeric(
           "bank.members", between(1, 100), "",
           "for prediction: the best refined fits from up to so many starts become one bank, if the runs left out like "
-          "it; their modes stand side by side (55 of 12 on ice), so that no mode means a kind of motion any more",
+          "it; their modes stand side by side (58, not 12, on ice), so that no mode means a kind of motion any more",
           MODEBANK_FIELD(bank.em.members)),
       numeric(
           "bank.folds", between(1, 1000), "",
