@@ -104,7 +104,7 @@ std::vector<std::string> divisions_of(const Span& span, const std::string& text)
     throw std::invalid_argument(
         fmt::format("has {{{}}}: the number of values must be whole, 2 to {}", text, most_values));
   std::vector<std::string> values;
-  for (double i = 0; i < count; ++i) {
+  for (int i = 0; i < static_cast<int>(count); ++i) {
     const double share = i / (count - 1);
     const double value = span.kind == "log" ? span.low * std::pow(span.high / span.low, share)
                                             : span.low + (span.high - span.low) * share;

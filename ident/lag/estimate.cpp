@@ -43,7 +43,11 @@ double grid(Index i, Index count, double range) {
 /// 0, then doubling from half a period up to the largest.
 std::vector<double> time_constants(const Search& search, double period_s) {
   std::vector<double> values{0.0};
-  for (double tau = 0.5 * period_s; tau <= search.time_constant_s; tau *= 2.0) values.push_back(tau);
+  double tau = 0.5 * period_s;
+  while (tau <= search.time_constant_s) {
+    values.push_back(tau);
+    tau *= 2.0;
+  }
   return values;
 }
 

@@ -23,10 +23,12 @@ VectorXd averaging_times(const VectorXd& time_s, double first_s, double last_s, 
   const double longest = gap_periods * std::max(median_period_s(time_s), period_s);
   std::vector<double> times;
   Index j = 0;
-  for (double t = first_s + 0.5 * period_s; t <= last_s - 0.49 * period_s; t += period_s) {
+  double t = first_s + 0.5 * period_s;
+  while (t <= last_s - 0.49 * period_s) {
     while (j + 1 < time_s.size() && time_s(j + 1) <= t) ++j;
     const bool in_gap = j + 1 < time_s.size() && time_s(j + 1) - time_s(j) > longest;
     if (!in_gap) times.push_back(t);
+    t += period_s;
   }
   return Eigen::Map<const VectorXd>(times.data(), static_cast<Index>(times.size()));
 }

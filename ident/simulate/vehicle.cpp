@@ -4,6 +4,7 @@
 #include <boost/numeric/odeint/algebra/array_algebra.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
 #include <cmath>
+#include <cstdint>
 
 namespace modebank {
 
@@ -80,10 +81,10 @@ Eigen::Vector2d tyre_force(const Eigen::Vector2d& patch_velocity, double wheel_s
 void Vehicle::advance(VehicleState& state, const WheelCommand& command, double duration_s, double step_s) const {
   if (!(duration_s > 0.0)) return;
   const VehicleParameters& p = parameters_;
-  const double steps = std::ceil(duration_s / step_s);
-  const double h = duration_s / steps;
+  const auto steps = static_cast<std::int64_t>(std::ceil(duration_s / step_s));
+  const double h = duration_s / static_cast<double>(steps);
   boost::numeric::odeint::runge_kutta4<VehicleValues> stepper;
-  for (double i = 0.0; i < steps; ++i) {
+  for (std::int64_t i = 0; i < steps; ++i) {
     const Kinds kinds = kinds_under(p, ground_, state);
     const auto derivative = [&](const VehicleValues& v, VehicleValues& rate, double /*time*/) {
       const TyreSum tyres = sum_tyres(p, ground_, kinds, v);

@@ -66,6 +66,7 @@ TrialGroups shard_of(const TrialGroups& groups, std::int64_t index, std::int64_t
   }
   std::size_t trials = 0, position = 0;
   for (const auto& group : groups) trials += group.size();
+  if (trials == 0) return share;
   for (const auto& group : groups) {
     share.emplace_back();
     for (const std::size_t row : group)

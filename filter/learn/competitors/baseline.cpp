@@ -72,7 +72,7 @@ struct HeldNoise {
 };
 
 /// Holds every output's R at its bound where that costs no likelihood.
-HeldNoise hold_at_bounds(const NoiseSearch& search, LikelihoodMaximum best, std::vector<Index> outputs) {
+HeldNoise hold_at_bounds(const NoiseSearch& search, LikelihoodMaximum best, const std::vector<Index>& outputs) {
   HeldNoise result{std::move(best), outputs};
   for (const Index i : outputs) {
     std::vector<Index> rest = result.free;
