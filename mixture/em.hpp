@@ -15,7 +15,9 @@ struct EmResult {
   double log_likelihood = 0.0;  ///< weighted sum over points, of `mixture`
   int iterations = 0;           ///< of the kept restart
   bool converged = false;
-  int agreeing_restarts = 0;  ///< restarts within 1e-4 nats per point of the best log-likelihood, itself included
+  /// Restarts that came within 1e-4 nats per point of the best log-likelihood by themselves, before they were crossed
+  /// with the best one; 0: only crossing found it.
+  int agreeing_restarts = 0;
   bool floor_active = false;  ///< whether the covariance floor held any component in the last iteration
 };
 
