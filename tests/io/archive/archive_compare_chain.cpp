@@ -16,6 +16,7 @@ void expect_same(const Candidate& a, const Candidate& e) {
   EXPECT_EQ(a.bic_naive, e.bic_naive);
   EXPECT_EQ(a.restarts, e.restarts);
   EXPECT_EQ(a.floor_active, e.floor_active);
+  EXPECT_EQ(a.failed, e.failed);
   EXPECT_EQ(a.status, e.status);
   const auto reals = [](const Candidate& c) {
     return Eigen::Matrix<double, 6, 1>(c.log_likelihood, c.effective_samples, c.bic, c.aic, c.icl, c.heldout);
