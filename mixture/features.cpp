@@ -108,7 +108,10 @@ class CloudBuilder {
     const Index p = fits_.parameter_count();
     covariance_ = Eigen::Map<const Eigen::MatrixXd>(fits_.covariance.col(window).data(), p, p);
     if (!covariance_.allFinite() || !theta_.allFinite()) return false;
-    if (fits_.prior_sd.size() > 0) take_off_prior(fits_, theta_, covariance_);
+    if (fits_.prior_sd.size() > 0) {
+      if (!prior_comes_off(fits_, window)) return false;
+      take_off_prior(fits_, window, theta_, covariance_);
+    }
     error_.topLeftCorner(p, p) = covariance_;
     error_.diagonal().tail(noises_).setConstant(log_variance_error(fits_, window));
     return true;

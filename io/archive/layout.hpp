@@ -72,6 +72,7 @@ void exchange_windows(Io& io, W& fits, const std::vector<Trajectory>& runs, cons
   io.optional_field("r_squared", fits.r_squared, {"M", "n"});
   io.optional_field("aic", fits.aic, {"M"}, {"nat"});
   io.optional_field("transitions", fits.transitions, {"M"});
+  io.optional_field("weighed_information", fits.weighed_information, {"M", "n"});
   io.optional_derived_field(
       "standard_error", [&] { return fits.standard_errors(); }, {"M", "p"}, parameters);
   io.optional_derived_field("t_value", [&] { return fits.t_values(); }, {"M", "p"});

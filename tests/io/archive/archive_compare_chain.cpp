@@ -99,6 +99,7 @@ void expect_same(const WindowFits& actual, const WindowFits& expected) {
   EXPECT_EQ(actual.status, expected.status);
   EXPECT_TRUE(same_bits(actual.r_squared, expected.r_squared));
   EXPECT_TRUE(same_bits(actual.aic, expected.aic));
+  EXPECT_TRUE(same_bits(actual.weighed_information, expected.weighed_information));
   EXPECT_EQ(actual.transitions, expected.transitions);
   EXPECT_TRUE(same_bits(actual.prior_sd, expected.prior_sd));
   EXPECT_TRUE(same_bits(actual.global.theta, expected.global.theta));

@@ -77,6 +77,7 @@ WindowFits make_windows_fits(const LinearStructure& structure) {
   fits.r_squared(0, 1) = not_a_number;
   fits.aic = pattern(count, 1, 13.0);
   fits.transitions = Eigen::VectorXi::Constant(count, length);
+  fits.weighed_information = pattern(fits.structure.states, count, 14.0);
   fits.prior_sd = pattern(p, 1, 8.0);
   fits.global = {pattern(p, 1, 9.0), pattern(p, p, 10.0), pattern(n, n, 11.0), 35};
   return fits;
