@@ -154,7 +154,7 @@ MixtureErrors bootstrap_runs(const PointSet& points, const std::vector<Index>& r
   tbb::parallel_for(0, replicates, [&](int b) {
     std::mt19937_64 generator = make_generator(seed, "bootstrap", static_cast<std::uint64_t>(b));
     const Eigen::VectorXd weights = resampled_weights(points, runs, generator);
-    const PointSet resampled(points.points, weights, points.covariances);
+    const PointSet resampled(points.points, weights, points.covariances, points.typical_error);
     const GaussianMixture fit = EmSweep(resampled, once).fit(K, 0, &mixture).mixture;
     const std::vector<Index> match = best_assignment(chosen * responsibilities(fit, sample.set()).transpose());
     // Less than one point's worth is no component any more.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -63,13 +62,14 @@ double badness(const Candidate& candidate, Criterion criterion) {
 
 Index best_candidate(const std::vector<Candidate>& candidates, Criterion criterion) {
   Index best = -1;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const double value = badness(candidates[i], criterion);
-    if (!std::isfinite(value) || value >= least) continue;
-    least = value;
-    best = static_cast<Index>(i);
-  }
+  const auto better = [&](const Candidate& a, const Candidate& b) {
+    if (a.floor_active != b.floor_active) return b.floor_active;
+    return badness(a, criterion) < badness(b, criterion);
+  };
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (std::isfinite(badness(candidates[i], criterion)) &&
+        (best < 0 || better(candidates[i], candidates[static_cast<std::size_t>(best)])))
+      best = static_cast<Index>(i);
   return best;
 }
 
@@ -101,6 +101,11 @@ std::vector<std::string> selection_warnings(const std::vector<Candidate>& candid
     warnings.push_back(
         fmt::format("{} of {} restarts reached the best optimum of {} components: more of them may find a better one",
                     selected->agreeing_restarts, selected->restarts, components));
+  if (selected->floor_active)
+    warnings.push_back(fmt::format(
+        "a component is as narrow as covariance_floor allows, as in all candidates: {} is what this constant "
+        "makes of the windows",
+        components));
   if (!selected->converged)
     warnings.push_back(fmt::format("EM of {} components did not converge in max_iterations", components));
   if (candidates.size() < 2) return warnings;

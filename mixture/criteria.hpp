@@ -22,7 +22,8 @@ void fill_criteria(Candidate& candidate, double total_weight, double cost);
 double badness(const Candidate& candidate, Criterion criterion);
 
 /// Position of the best row by the criterion: the first on a tie, rows that are not finite left out; -1 if none is
-/// left.
+/// left. A row that rests on the covariance floor has a likelihood that the floor chose: it comes after all that do
+/// not.
 Eigen::Index best_candidate(const std::vector<Candidate>& candidates, Criterion criterion);
 
 /// What the table says against trusting the selected row: restarts that disagree, the range's edge, other criteria that

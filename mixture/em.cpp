@@ -86,6 +86,10 @@ void check_points(const PointSet& set) {
   if (!(set.points.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= largest_coordinate))
     throw std::invalid_argument(fmt::format("EM needs finite points of magnitude up to {}", largest_coordinate));
   check_errors(set);
+  if (set.typical_error.size() > 0 && !(set.typical_error.size() == set.features() && set.typical_error.allFinite() &&
+                                        set.typical_error.minCoeff() >= 0.0))
+    throw std::invalid_argument(
+        fmt::format("EM of {} features needs as many typical errors, finite and nonnegative, or none", set.features()));
   if (set.weights.size() == 0) return;
   if (set.weights.size() != set.count())
     throw std::invalid_argument(fmt::format("EM is given {} points but {} weights", set.count(), set.weights.size()));

@@ -15,7 +15,9 @@ struct EmResult {
   double log_likelihood = 0.0;  ///< weighted sum over points, of `mixture`
   int iterations = 0;           ///< of the kept restart
   bool converged = false;
-  int agreeing_restarts = 0;  ///< restarts within 1e-4 nats per point of the best log-likelihood, itself included
+  /// Restarts that came within 1e-4 nats per point of the best log-likelihood by themselves, before they were crossed
+  /// with the best one; 0: only crossing found it.
+  int agreeing_restarts = 0;
   bool floor_active = false;  ///< whether the covariance floor held any component in the last iteration
 };
 
@@ -24,13 +26,14 @@ struct EmResult {
 void check_points(const PointSet& points);
 
 /// Best of options.restarts runs, improved by split-and-merge moves (Ueda et al. 2000) and by crossing (restarts.hpp).
-/// Points finite, up to 1e150 in magnitude. Fitted in units of each feature's standard deviation, so invariant to its
-/// units; a constant feature keeps its unit and is held by the floor, as are coinciding points. The floored M step is
-/// the exact constrained maximiser, so the likelihood never falls; squared extrapolation (Varadhan & Roland 2008)
-/// shortens the way. A component that explains less than 1e-14 of the weight keeps its mean and covariance. Points with
-/// error covariances are deconvolved: the components describe the points without their errors (Bovy, Hogg & Roweis
-/// 2011, Ann. Appl. Stat. 5, eq. 16); zero errors change nothing. Throws std::invalid_argument for K < 1, K > N, bad
-/// options, weights, points or error covariances. Bitwise the same for any number of threads.
+/// Points finite, up to 1e150 in magnitude. Fitted in units of each feature's typical error or else
+/// standard deviation, so invariant to its units; a constant feature keeps its unit and is held by the floor, as are
+/// coinciding points. The floored M step is the exact constrained maximiser, so the likelihood never falls; squared
+/// extrapolation (Varadhan & Roland 2008) shortens the way. A component that explains less than 1e-14 of the weight
+/// keeps its mean and covariance. Points with error covariances are deconvolved: the components describe the points
+/// without their errors (Bovy, Hogg & Roweis 2011, Ann. Appl. Stat. 5, eq. 16); zero errors change nothing. Throws
+/// std::invalid_argument for K < 1, K > N, bad options, weights, points or error covariances. Bitwise the same for any
+/// number of threads.
 EmResult fit_em(const PointSet& points, Eigen::Index components, const EmOptions& options, std::uint64_t seed);
 /// fit_em for several numbers of components over the same points, which are prepared once and must outlive this. fit()
 /// may be called from several threads; what it returns depends on its own arguments alone.

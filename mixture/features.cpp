@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
-#include "ident/base/linalg.hpp"
 #include "mixture/straddling.hpp"
+#include "mixture/window_error.hpp"
 
 namespace modebank {
 
@@ -15,92 +16,149 @@ using Eigen::Index;
 
 namespace {
 
-bool wanted(const WindowFits& fits, WindowChoice choice, Index window) {
-  if (fits.status(window) == static_cast<int>(FitStatus::failed)) return false;
-  const bool full_rank_only =
-      choice == WindowChoice::full_rank || (choice == WindowChoice::automatic && fits.prior_sd.size() == 0);
-  return !full_rank_only || fits.rank(window) == fits.parameter_count();
+bool failed(const WindowFits& fits, Index window) { return fits.status(window) == static_cast<int>(FitStatus::failed); }
+
+bool full_rank(const WindowFits& fits, Index window) { return fits.rank(window) == fits.parameter_count(); }
+
+/// Whether there are windows of full rank worth two independent ones per feature: fewer determine no component.
+bool enough_of_full_rank(const WindowFits& fits, Index features) {
+  Index count = 0;
+  for (Index window = 0; window < fits.count(); ++window)
+    if (!failed(fits, window) && full_rank(fits, window)) ++count;
+  return count * fits.step >= 2 * features * fits.length;
 }
 
-/// Data with less than this share in what is known of a direction are treated as if they had it, so that a direction of
-/// which a window says nothing gets an error of 20 prior variances rather than an infinite one.
-constexpr double least_information = 0.05;
-
-/// What the window's data alone say of theta: the posterior without the prior (mean the global model, standard
-/// deviations prior_sd), as estimate and covariance. In units of the prior a posterior variance c along an eigenvector
-/// is a measurement of variance c / (1 - c), and the posterior's offset from the prior is 1 - c of the measured one.
-void take_off_prior(const WindowFits& fits, Eigen::VectorXd& theta, Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd &sd = fits.prior_sd, &mean = fits.global.theta;
-  const Eigen::VectorXd inverse = sd.cwiseInverse();
-  const auto [values, vectors] = symmetric_eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
-  const Eigen::ArrayXd known = (1.0 - values.array()).max(least_information);
-  const Eigen::VectorXd measured =
-      vectors * ((vectors.transpose() * (theta - mean).cwiseQuotient(sd)).array() / known).matrix();
-  theta = mean + measured.cwiseProduct(sd);
-  const Eigen::VectorXd variance = values.array().max(0.0) / known;
-  covariance = sd.asDiagonal() * vectors * variance.asDiagonal() * vectors.transpose() * sd.asDiagonal();
-  covariance = (0.5 * (covariance + covariance.transpose())).eval();
+/// The choice that automatic stands for.
+WindowChoice resolved(const WindowFits& fits, WindowChoice choice, WindowErrors errors, Index features) {
+  if (choice != WindowChoice::automatic) return choice;
+  if (errors == WindowErrors::include) return WindowChoice::all;
+  const bool others_have_theta = fits.prior_sd.size() > 0;
+  return !others_have_theta || enough_of_full_rank(fits, features) ? WindowChoice::full_rank : WindowChoice::all;
 }
 
-/// Of the logarithm of a noise variance estimated from what L transitions leave over after `rank` / n parameters.
-double log_variance_error(const WindowFits& fits, Index window) {
-  const double transitions = static_cast<double>(fits.transitions.size() > 0 ? fits.transitions(window) : fits.length);
-  const double unknowns = static_cast<double>(fits.rank(window)) / static_cast<double>(fits.structure.states);
-  return 2.0 / std::max(transitions - unknowns, 1.0);
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Median standard deviation of the clustered windows' errors; 0 where it is not known.
+Eigen::VectorXd typical_error(const WindowFits& fits, const std::vector<Index>& windows, Index features) {
+  const Index p = fits.parameter_count();
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(features);
+  if (fits.covariance.cols() != fits.count()) return result;
+  for (Index f = 0; f < features; ++f) {
+    std::vector<double> deviations;
+    for (const Index window : windows) {
+      const double variance = f < p ? fits.covariance(f * (p + 1), window) : log_variance_error(fits, window);
+      if (std::isfinite(variance) && variance > 0.0) deviations.push_back(std::sqrt(variance));
+    }
+    result(f) = median_of(std::move(deviations));
+  }
+  return result;
+}
+
+/// Clouds window by window, as the options ask for them.
+class CloudBuilder {
+ public:
+  CloudBuilder(const WindowFits& fits, FeatureSet features, const std::vector<Channel>& states, WindowErrors errors)
+      : fits_(fits), with_errors_(errors == WindowErrors::include) {
+    const Index p = fits.parameter_count(), n = fits.structure.states;
+    if (static_cast<Index>(states.size()) != n)
+      throw std::invalid_argument(fmt::format("features of {} states are given {} state names", n, states.size()));
+    noises_ = features == FeatureSet::parameters_and_noise ? n : 0;
+    cloud_.names = fits.parameter_names();
+    for (Index i = 0; i < noises_; ++i)
+      cloud_.names.push_back("log_noise_variance_" + states[static_cast<std::size_t>(i)].name);
+    const Index F = p + noises_;
+    cloud_.points.resize(F, fits.count());
+    cloud_.covariances.resize(F * F, with_errors_ ? fits.count() : 0);
+    point_.resize(F);
+    error_ = Eigen::MatrixXd::Zero(F, F);
+  }
+
+  Index features() const { return point_.size(); }
+
+  /// Leaves out a window whose point or error is not finite.
+  void add(Index window) {
+    const Index p = fits_.parameter_count();
+    theta_ = fits_.parameters.col(window);
+    if (with_errors_ && !describe_error(window)) return;
+    point_.head(p) = theta_;
+    if (noises_ > 0) point_.tail(noises_) = fits_.noise_variance.col(window).array().log();
+    if (!point_.allFinite()) return;
+    const auto position = static_cast<Index>(cloud_.windows.size());
+    cloud_.points.col(position) = point_;
+    if (with_errors_) cloud_.covariances.col(position) = error_.reshaped();
+    cloud_.windows.push_back(window);
+    cloud_.runs.push_back(fits_.windows[static_cast<std::size_t>(window)].run);
+  }
+
+  FeatureCloud take() {
+    const auto count = static_cast<Index>(cloud_.windows.size());
+    cloud_.points.conservativeResize(Eigen::NoChange, count);
+    if (with_errors_) cloud_.covariances.conservativeResize(Eigen::NoChange, count);
+    cloud_.typical_error = typical_error(fits_, cloud_.windows, features());
+    return std::move(cloud_);
+  }
+
+ private:
+  bool describe_error(Index window) {
+    const Index p = fits_.parameter_count();
+    covariance_ = Eigen::Map<const Eigen::MatrixXd>(fits_.covariance.col(window).data(), p, p);
+    if (!covariance_.allFinite() || !theta_.allFinite()) return false;
+    if (fits_.prior_sd.size() > 0) {
+      if (!prior_comes_off(fits_, window)) return false;
+      take_off_prior(fits_, window, theta_, covariance_);
+    }
+    error_.topLeftCorner(p, p) = covariance_;
+    error_.diagonal().tail(noises_).setConstant(log_variance_error(fits_, window));
+    return true;
+  }
+
+  const WindowFits& fits_;
+  bool with_errors_;
+  Index noises_ = 0;
+  FeatureCloud cloud_;
+  Eigen::VectorXd point_, theta_;
+  Eigen::MatrixXd error_, covariance_;
+};
+
+std::vector<bool> left_out(const WindowFits& fits, StraddlingWindows straddling) {
+  return straddling != StraddlingWindows::keep ? straddling_windows(fits)
+                                               : std::vector<bool>(static_cast<std::size_t>(fits.count()), false);
 }
 
 }  // namespace
 
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
                            const std::vector<Channel>& states, StraddlingWindows straddling, WindowErrors errors) {
-  const Index p = fits.parameter_count(), n = fits.structure.states;
-  const bool with_noise = features == FeatureSet::parameters_and_noise;
-  const bool with_errors = errors == WindowErrors::include;
-  if (static_cast<Index>(states.size()) != n)
-    throw std::invalid_argument(fmt::format("features of {} states are given {} state names", n, states.size()));
-  FeatureCloud cloud;
-  cloud.names = fits.parameter_names();
-  if (with_noise)
-    for (const Channel& state : states) cloud.names.push_back("log_noise_variance_" + state.name);
-  const Index F = p + (with_noise ? n : 0);
-  Eigen::MatrixXd points(F, fits.count()), covariances(F * F, with_errors ? fits.count() : 0);
-  Eigen::VectorXd point(F), theta(p);
-  Eigen::MatrixXd error = Eigen::MatrixXd::Zero(F, F), covariance(p, p);
-  const std::vector<bool> left_out = straddling != StraddlingWindows::keep
-                                         ? straddling_windows(fits)
-                                         : std::vector<bool>(static_cast<std::size_t>(fits.count()), false);
-  for (Index window = 0; window < fits.count(); ++window) {
-    if (!wanted(fits, choice, window) || left_out[static_cast<std::size_t>(window)]) continue;
-    theta = fits.parameters.col(window);
-    if (with_errors) {
-      covariance = Eigen::Map<const Eigen::MatrixXd>(fits.covariance.col(window).data(), p, p);
-      if (!covariance.allFinite() || !theta.allFinite()) continue;
-      if (fits.prior_sd.size() > 0) take_off_prior(fits, theta, covariance);
-      error.topLeftCorner(p, p) = covariance;
-      if (with_noise) error.diagonal().tail(n).setConstant(log_variance_error(fits, window));
-    }
-    point.head(p) = theta;
-    if (with_noise) point.tail(n) = fits.noise_variance.col(window).array().log();
-    if (!point.allFinite()) continue;
-    const Index position = static_cast<Index>(cloud.windows.size());
-    points.col(position) = point;
-    if (with_errors) covariances.col(position) = error.reshaped();
-    cloud.windows.push_back(window);
-    cloud.runs.push_back(fits.windows[window].run);
-  }
-  const Index count = static_cast<Index>(cloud.windows.size());
-  points.conservativeResize(F, count);
-  cloud.points = std::move(points);
-  if (with_errors) {
-    covariances.conservativeResize(F * F, count);
-    cloud.covariances = std::move(covariances);
-  }
-  return cloud;
+  CloudBuilder builder(fits, features, states, errors);
+  const bool all = resolved(fits, choice, errors, builder.features()) == WindowChoice::all;
+  const std::vector<bool> out = left_out(fits, straddling);
+  for (Index window = 0; window < fits.count(); ++window)
+    if (!failed(fits, window) && !out[static_cast<std::size_t>(window)] && (all || full_rank(fits, window)))
+      builder.add(window);
+  return builder.take();
 }
 
 FeatureCloud make_features(const WindowFits& fits, const std::vector<Channel>& states, const ClusterOptions& options) {
   return make_features(fits, options.features, options.windows, states, options.straddling,
                        options.error_aware ? WindowErrors::include : WindowErrors::ignore);
+}
+
+FeatureCloud assigned_features(const WindowFits& fits, const std::vector<Channel>& states,
+                               const ClusterOptions& options) {
+  CloudBuilder builder(fits, options.features, states, WindowErrors::include);
+  const WindowErrors errors = options.error_aware ? WindowErrors::include : WindowErrors::ignore;
+  if (fits.prior_sd.size() == 0 || resolved(fits, options.windows, errors, builder.features()) == WindowChoice::all)
+    return builder.take();
+  const std::vector<bool> out = left_out(fits, options.straddling);
+  for (Index window = 0; window < fits.count(); ++window)
+    if (!failed(fits, window) && !out[static_cast<std::size_t>(window)] && !full_rank(fits, window))
+      builder.add(window);
+  return builder.take();
 }
 
 }  // namespace modebank

@@ -15,10 +15,11 @@ struct FeatureCloud {
   std::vector<std::string> names;     ///< F: parameter names, then "log_noise_variance_<state>" when noise is included
   Eigen::MatrixXd points;             ///< F x N, physical units
   Eigen::MatrixXd covariances;        ///< F*F x N, of the points' errors; empty unless asked for
+  Eigen::VectorXd typical_error;      ///< F, median standard deviation of the windows' errors; 0: unknown
   std::vector<Eigen::Index> windows;  ///< N, which window each point is
   std::vector<Eigen::Index> runs;     ///< N, run of that window
 
-  PointSet point_set() const { return PointSet(points, detail::no_weights, covariances); }
+  PointSet point_set() const { return PointSet(points, detail::no_weights, covariances, typical_error); }
 };
 
 /// Whether the cloud carries the windows' own covariances (error-aware clustering).
@@ -35,5 +36,11 @@ FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowCh
                            WindowErrors errors = WindowErrors::ignore);
 /// The same as the options say.
 FeatureCloud make_features(const WindowFits& fits, const std::vector<Channel>& states, const ClusterOptions& options);
+
+/// The windows that are not clustered because their data do not determine all parameters, but belong to a component as
+/// far as data say: with their errors, which are large in the other directions. Empty without a prior (their theta is
+/// then no estimate) and where all windows are clustered. Of these the mixture says how probable each component is.
+FeatureCloud assigned_features(const WindowFits& fits, const std::vector<Channel>& states,
+                               const ClusterOptions& options);
 
 }  // namespace modebank

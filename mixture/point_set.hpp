@@ -15,14 +15,21 @@ struct PointSet {
   const Eigen::MatrixXd& points;       ///< F x N
   const Eigen::VectorXd& weights;      ///< N, nonnegative; empty: all one
   const Eigen::MatrixXd& covariances;  ///< F*F x N, each column the covariance of that point's error; empty: no errors
+  /// F, standard deviation of a typical point's error, which is the unit of that feature in the fit; 0 or empty:
+  /// unknown
+  const Eigen::VectorXd& typical_error;
 
   PointSet(const Eigen::MatrixXd& points_, const Eigen::VectorXd& weights_ = detail::no_weights,
-           const Eigen::MatrixXd& covariances_ = detail::no_covariances)
-      : points(points_), weights(weights_), covariances(covariances_) {}
+           const Eigen::MatrixXd& covariances_ = detail::no_covariances,
+           const Eigen::VectorXd& typical_error_ = detail::no_weights)
+      : points(points_), weights(weights_), covariances(covariances_), typical_error(typical_error_) {}
   PointSet(Eigen::MatrixXd&&, const Eigen::VectorXd& = detail::no_weights,
-           const Eigen::MatrixXd& = detail::no_covariances) = delete;
-  PointSet(const Eigen::MatrixXd&, Eigen::VectorXd&&, const Eigen::MatrixXd& = detail::no_covariances) = delete;
-  PointSet(const Eigen::MatrixXd&, const Eigen::VectorXd&, Eigen::MatrixXd&&) = delete;
+           const Eigen::MatrixXd& = detail::no_covariances, const Eigen::VectorXd& = detail::no_weights) = delete;
+  PointSet(const Eigen::MatrixXd&, Eigen::VectorXd&&, const Eigen::MatrixXd& = detail::no_covariances,
+           const Eigen::VectorXd& = detail::no_weights) = delete;
+  PointSet(const Eigen::MatrixXd&, const Eigen::VectorXd&, Eigen::MatrixXd&&,
+           const Eigen::VectorXd& = detail::no_weights) = delete;
+  PointSet(const Eigen::MatrixXd&, const Eigen::VectorXd&, const Eigen::MatrixXd&, Eigen::VectorXd&&) = delete;
 
   Eigen::Index features() const { return points.rows(); }
   Eigen::Index count() const { return points.cols(); }

@@ -68,9 +68,10 @@ std::vector<Index> sorted_components(const SelectionOptions& options) {
   return components;
 }
 
-Candidate unfitted(Candidate row, CandidateStatus status) {
+Candidate unfitted(Candidate row, CandidateStatus status, std::string reason) {
   constexpr double worst = std::numeric_limits<double>::infinity();
   row.status = status;
+  row.failed = std::move(reason);
   row.log_likelihood = -worst;
   row.bic = row.aic = row.icl = row.bic_naive = worst;
   return row;
@@ -84,15 +85,18 @@ FittedCandidate fit_candidate(const Task& task, const EmSweep& sweep, Index comp
   row.heldout = not_a_number;
   row.restarts = options.em.restarts;
   row.effective_samples = task.design.effective_samples > 0.0 ? task.design.effective_samples : task.total_weight;
-  if (components > task.distinct_points) return {{}, unfitted(row, CandidateStatus::too_few_points)};
+  if (components > task.distinct_points)
+    return {{},
+            unfitted(row, CandidateStatus::too_few_points,
+                     fmt::format("{} distinct points are fewer than its components", task.distinct_points))};
   const bool given = task.start && task.start->components() == components;
   EmResult fit;
   double cost = 0.0;
   try {
     fit = sweep.fit(components, task.seed_of(components), given ? task.start : nullptr);
     cost = classification_cost(fit.mixture, task.points);
-  } catch (const NotPositiveDefinite&) {
-    return {{}, unfitted(row, CandidateStatus::failed)};
+  } catch (const NotPositiveDefinite& error) {
+    return {{}, unfitted(row, CandidateStatus::failed, error.what())};
   }
   row.log_likelihood = fit.log_likelihood;
   row.parameters = fit.mixture.parameter_count();
@@ -101,7 +105,8 @@ FittedCandidate fit_candidate(const Task& task, const EmSweep& sweep, Index comp
   row.agreeing_restarts = fit.agreeing_restarts;
   row.floor_active = fit.floor_active;
   fill_criteria(row, task.total_weight, cost);
-  if (!std::isfinite(row.icl)) return {{}, unfitted(row, CandidateStatus::failed)};
+  if (!std::isfinite(row.icl))
+    return {{}, unfitted(row, CandidateStatus::failed, "its likelihood is not a finite number")};
   return {std::move(fit.mixture), row};
 }
 
@@ -122,6 +127,15 @@ bool wants_heldout(const Task& task) {
          (task.options.heldout == HeldoutChoice::automatic && task.points.count() <= affordable_heldout);
 }
 
+void score_heldout(const Task& task, Candidate& row) {
+  try {
+    row.heldout =
+        heldout_score(task.points, task.design.runs, row.components, task.options.em, task.seed_of(row.components));
+  } catch (const NotPositiveDefinite& error) {
+    row.failed = std::string("on runs left out: ") + error.what();
+  }
+}
+
 std::vector<FittedCandidate> fit_all(const Task& task, const std::vector<Index>& components) {
   const EmSweep sweep(task.points, task.options.em);
   std::vector<FittedCandidate> fitted(components.size());
@@ -130,10 +144,8 @@ std::vector<FittedCandidate> fit_all(const Task& task, const std::vector<Index>&
   });
   if (wants_heldout(task))
     for_each_from_the_largest(std::ssize(components), [&](Index i) {
-      Candidate& row = fitted[static_cast<std::size_t>(i)].row;
-      if (row.status == CandidateStatus::fitted)
-        row.heldout =
-            heldout_score(task.points, task.design.runs, row.components, task.options.em, task.seed_of(row.components));
+      if (fitted[static_cast<std::size_t>(i)].row.status == CandidateStatus::fitted)
+        score_heldout(task, fitted[static_cast<std::size_t>(i)].row);
     });
   return fitted;
 }
@@ -165,15 +177,19 @@ void check_enough(const WindowFits& fits, const FeatureCloud& cloud, const Selec
       *fewest, points, fits.count(), fewer));
 }
 
-MixtureResult with_memberships(const FeatureCloud& cloud, Index windows, Selection selection) {
+MixtureResult with_memberships(const FeatureCloud& cloud, const FeatureCloud& assigned, Index windows,
+                               Selection selection) {
   MixtureResult result;
+  result.clustered = std::ssize(cloud.windows);
   result.mixture = std::move(selection.mixture);
   result.feature_names = cloud.names;
   result.candidates = std::move(selection.candidates);
   result.weights_standard_error = std::move(selection.standard_error.weights);
   result.means_standard_error = std::move(selection.standard_error.means);
-  result.labels = most_probable(result.mixture, cloud, windows);
-  result.responsibilities = WindowResponsibilities(result.mixture, cloud, windows);
+  result.labels = Eigen::VectorXi::Constant(windows, -1);
+  label_windows(result.mixture, cloud, result.labels);
+  if (!assigned.windows.empty()) label_windows(result.mixture, assigned, result.labels);
+  result.responsibilities = WindowResponsibilities(result.mixture, cloud, assigned, windows);
   return result;
 }
 
@@ -210,10 +226,10 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
 }
 
 MixtureResult select_mixture(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options,
-                             std::uint64_t seed, const GaussianMixture* start) {
+                             std::uint64_t seed, const GaussianMixture* start, const FeatureCloud& assigned) {
   check_enough(fits, cloud, options);
   const SampleDesign design{effective_samples(cloud, fits.length, fits.step), cloud.runs};
-  return with_memberships(cloud, fits.count(), select(cloud.point_set(), design, options, seed, start));
+  return with_memberships(cloud, assigned, fits.count(), select(cloud.point_set(), design, options, seed, start));
 }
 
 MixtureResult merge_components(MixtureResult result, Index most) {

@@ -46,7 +46,8 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
 struct MixtureResult {
   GaussianMixture mixture;                 ///< physical units
   std::vector<std::string> feature_names;  ///< F
-  Eigen::VectorXi labels;                  ///< M, -1: not clustered, or noise
+  Eigen::VectorXi labels;                  ///< M, -1: neither clustered nor assigned, or noise
+  Eigen::Index clustered = 0;              ///< windows that the mixture is fitted to; 0: not known (older archives)
   WindowResponsibilities responsibilities;
   std::vector<Candidate> candidates;
   Eigen::VectorXd weights_standard_error;  ///< K; empty without a bootstrap
@@ -56,9 +57,11 @@ struct MixtureResult {
 /// Overlapping windows share samples: N_eff = min(N, sum over runs with a clustered window of max(1, M_run step / L)).
 double effective_samples(const FeatureCloud& cloud, Eigen::Index length, Eigen::Index step);
 
-/// select() for the cloud of windows.
+/// select() for the cloud of windows. Those of `assigned` (assigned_features) take no part, but get responsibilities
+/// and labels from what was found.
 MixtureResult select_mixture(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options,
-                             std::uint64_t seed, const GaussianMixture* start = nullptr);
+                             std::uint64_t seed, const GaussianMixture* start = nullptr,
+                             const FeatureCloud& assigned = {});
 
 /// Merges the closest components until at most `most` are left: by moments, the pair of least merge_loss first
 /// (reduction.hpp). Responsibilities add up, labels follow the merges; the table of candidates stays. Throws

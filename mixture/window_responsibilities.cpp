@@ -9,12 +9,38 @@ namespace modebank {
 
 using Eigen::Index;
 
-WindowResponsibilities::WindowResponsibilities(GaussianMixture mixture, FeatureCloud cloud, Index windows)
-    : windows_(windows) {
+namespace {
+
+void check_order(const FeatureCloud& cloud, Index windows) {
   const bool increasing = std::is_sorted(cloud.windows.begin(), cloud.windows.end(), std::less_equal<>());
   if (!increasing || (!cloud.windows.empty() && (cloud.windows.front() < 0 || cloud.windows.back() >= windows)))
     throw std::invalid_argument("the windows of a cloud must be in increasing order, each once");
-  source_ = std::make_shared<const Source>(Source{std::move(mixture), std::move(cloud)});
+}
+
+/// Those of the cloud's windows that are first to first + count - 1, each into its column of `result`.
+void fill_block(const GaussianMixture& mixture, const FeatureCloud& cloud, Index first, Index count,
+                Eigen::MatrixXd& result) {
+  const auto begin = std::lower_bound(cloud.windows.begin(), cloud.windows.end(), first);
+  const auto end = std::lower_bound(begin, cloud.windows.end(), first + count);
+  const Index from = begin - cloud.windows.begin(), points = end - begin;
+  if (points == 0) return;
+  const Eigen::MatrixXd part = cloud.points.middleCols(from, points);
+  Eigen::MatrixXd errors;
+  if (cloud.covariances.size() > 0) errors = cloud.covariances.middleCols(from, points);
+  const PointSet set(part, detail::no_weights, errors);
+  visit_responsibilities(mixture, set, [&](Index at, const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+    for (Index i = 0; i < columns.cols(); ++i) result.col(*(begin + at + i) - first) = columns.col(i);
+  });
+}
+
+}  // namespace
+
+WindowResponsibilities::WindowResponsibilities(GaussianMixture mixture, FeatureCloud clustered, FeatureCloud assigned,
+                                               Index windows)
+    : windows_(windows) {
+  check_order(clustered, windows);
+  check_order(assigned, windows);
+  source_ = std::make_shared<const Source>(Source{std::move(mixture), {std::move(clustered), std::move(assigned)}});
 }
 
 Index WindowResponsibilities::components() const { return sums_.size() > 0 ? sums_.rows() : fitted(); }
@@ -36,33 +62,20 @@ WindowResponsibilities WindowResponsibilities::merged(Index into, Index absorbed
 Eigen::MatrixXd WindowResponsibilities::fitted_block(Index first, Index count) const {
   if (first < 0 || count < 0 || first + count > windows_) throw std::invalid_argument("there are no such windows");
   if (!source_) return stored_.middleCols(first, count);
-  const FeatureCloud& cloud = source_->cloud;
-  const auto begin = std::lower_bound(cloud.windows.begin(), cloud.windows.end(), first);
-  const auto end = std::lower_bound(begin, cloud.windows.end(), first + count);
-  const Index from = begin - cloud.windows.begin(), points = end - begin;
   Eigen::MatrixXd result = Eigen::MatrixXd::Constant(fitted(), count, not_a_number);
-  if (points == 0) return result;
-  const Eigen::MatrixXd part = cloud.points.middleCols(from, points);
-  Eigen::MatrixXd errors;
-  if (cloud.covariances.size() > 0) errors = cloud.covariances.middleCols(from, points);
-  const PointSet set(part, detail::no_weights, errors);
-  visit_responsibilities(source_->mixture, set, [&](Index at, const Eigen::Ref<const Eigen::MatrixXd>& columns) {
-    for (Index i = 0; i < columns.cols(); ++i) result.col(*(begin + at + i) - first) = columns.col(i);
-  });
+  for (const FeatureCloud& cloud : source_->clouds) fill_block(source_->mixture, cloud, first, count, result);
   return result;
 }
 
-Eigen::VectorXi most_probable(const GaussianMixture& mixture, const FeatureCloud& cloud, Index windows) {
-  Eigen::VectorXi labels = Eigen::VectorXi::Constant(windows, -1);
+void label_windows(const GaussianMixture& mixture, const FeatureCloud& cloud, Eigen::VectorXi& labels) {
   visit_responsibilities(mixture, cloud.point_set(), [&](Index first, const Eigen::Ref<const Eigen::MatrixXd>& block) {
     for (Index i = 0; i < block.cols(); ++i) {
       int component = 0;
       const double largest = block.col(i).maxCoeff(&component);
       const bool noise = mixture.noise.present() && 1.0 - block.col(i).sum() > largest;
-      if (!noise) labels(cloud.windows[static_cast<std::size_t>(first + i)]) = component;
+      labels(cloud.windows[static_cast<std::size_t>(first + i)]) = noise ? -1 : component;
     }
   });
-  return labels;
 }
 
 }  // namespace modebank

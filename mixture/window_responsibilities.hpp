@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 
 #include "mixture/features.hpp"
@@ -8,16 +9,17 @@
 
 namespace modebank {
 
-/// Posterior component probabilities of all windows, K x M, NaN where a window was not clustered. Either stored (as
+/// Posterior component probabilities of all windows, K x M, NaN where a window is neither clustered nor
+/// assigned. Either stored (as
 /// read from an archive) or worked out anew, block by block, whenever they are looked at, so that they take no memory
 /// of K x M; both give the same bits.
 class WindowResponsibilities {
  public:
   WindowResponsibilities() = default;
   WindowResponsibilities(Eigen::MatrixXd stored) : stored_(std::move(stored)), windows_(stored_.cols()) {}
-  /// Of the cloud's windows, which must be in increasing order, among `windows`. Throws std::invalid_argument
-  /// otherwise.
-  WindowResponsibilities(GaussianMixture mixture, FeatureCloud cloud, Eigen::Index windows);
+  /// Of the windows of two clouds, those that were clustered and those that are assigned afterwards; each must be in
+  /// increasing order, among `windows`. Throws std::invalid_argument otherwise.
+  WindowResponsibilities(GaussianMixture mixture, FeatureCloud clustered, FeatureCloud assigned, Eigen::Index windows);
 
   Eigen::Index components() const;
   Eigen::Index windows() const { return windows_; }
@@ -30,7 +32,7 @@ class WindowResponsibilities {
  private:
   struct Source {
     GaussianMixture mixture;
-    FeatureCloud cloud;
+    std::array<FeatureCloud, 2> clouds;
   };
   Eigen::MatrixXd stored_;
   std::shared_ptr<const Source> source_;
@@ -41,7 +43,8 @@ class WindowResponsibilities {
   Eigen::MatrixXd fitted_block(Eigen::Index first, Eigen::Index count) const;
 };
 
-/// The most probable component of every window, M; -1: not clustered, or more probably noise than any component.
-Eigen::VectorXi most_probable(const GaussianMixture& mixture, const FeatureCloud& cloud, Eigen::Index windows);
+/// Writes the most probable component of every window of the cloud into `labels` (M); -1: more probably noise than any
+/// component.
+void label_windows(const GaussianMixture& mixture, const FeatureCloud& cloud, Eigen::VectorXi& labels);
 
 }  // namespace modebank

@@ -62,7 +62,8 @@ MixtureResult cluster(const Recording& recording, const WindowFits& windows, con
   std::optional<GaussianMixture> start;
   if (!inputs.start_file.empty()) start = stored_start(inputs, cloud.names, listener);
   MixtureResult result =
-      select_mixture(windows, cloud, inputs.mixture.selection, inputs.seed, start ? &*start : nullptr);
+      select_mixture(windows, cloud, inputs.mixture.selection, inputs.seed, start ? &*start : nullptr,
+                     assigned_features(windows, recording.states, inputs.mixture));
   listener.progress(fmt::format("mixture: {} components from {} windows in {:.2f} s", result.mixture.components(),
                                 cloud.windows.size(), watch.seconds()));
   return result;

@@ -32,6 +32,10 @@ void validate(const Config& config) {
   check_prior(config.window, parameter_count(config.window, states, inputs));
   require(config.window.scale != ScaleSource::fixed || config.window.sigma > 0.0,
           "window.scale = fixed needs window.sigma, the residual standard deviation, above 0");
+  require(
+      !config.mixture.error_aware || config.window.covariance != CovarianceKind::sandwich,
+      "mixture.error_aware = true needs window.covariance = model: a sandwich covariance does not say how much of a "
+      "window's theta is the prior's, so that cannot be taken off");
   require(config.bank.refine != Refine::em || is_linear(config.window),
           fmt::format("bank.refine = em needs window.model = linear or varx, not {}: it fits linear modes",
                       config.window.model));

@@ -97,7 +97,7 @@ std::string candidates_text(const MixtureResult& mixture, int width) {
   for (const Candidate& c : mixture.candidates) {
     const std::string count = std::to_string(c.components), shape(name_of(c.covariance));
     if (c.status != CandidateStatus::fitted) {
-      table.add({count, shape}, fmt::format(" {}", name_of(c.status)));
+      table.add({count, shape}, fmt::format(" {}{}{}", name_of(c.status), c.failed.empty() ? "" : ": ", c.failed));
       continue;
     }
     table.add({count, shape, fmt::format("{:.3f}", c.log_likelihood), std::to_string(c.parameters),
@@ -105,7 +105,7 @@ std::string candidates_text(const MixtureResult& mixture, int width) {
                fmt::format("{:.3f}", c.icl), fmt::format("{:.3f}", c.bic_naive), fixed_or_short(c.heldout, 4),
                std::to_string(c.iterations), c.converged ? "yes" : "no",
                fmt::format("{}/{}", c.agreeing_restarts, c.restarts)},
-              c.selected ? "  <- selected" : "");
+              fmt::format("{}{}", c.selected ? "  <- selected" : "", c.floor_active ? "  rests on the floor" : ""));
   }
   return table.text(width) + component_errors_text(mixture, width);
 }

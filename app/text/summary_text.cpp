@@ -16,8 +16,8 @@
 namespace modebank::app {
 namespace {
 
-/// Those labelled -1 as noise among them.
-Index clustered_windows(const MixtureResult& result) {
+/// Windows with memberships, whether they were clustered or assigned; those labelled -1 as noise among them.
+Index member_windows(const MixtureResult& result) {
   if (!result.mixture.noise.present()) return (result.labels.array() >= 0).count();
   constexpr Index at_once = 16384;
   Index count = 0;
@@ -34,11 +34,13 @@ std::string mixture_text(const MixtureResult& result) {
   std::string text = fmt::format("mixture   {} components over {}", result.mixture.components(),
                                  fmt::join(result.feature_names, ", "));
   if (chosen == candidates.end()) return text + "\n";
-  text += fmt::format("; BIC {:.1f} with N_eff {:.0f} of {} windows", chosen->bic, chosen->effective_samples,
-                      clustered_windows(result));
+  const Index members = member_windows(result), clustered = result.clustered > 0 ? result.clustered : members;
+  text +=
+      fmt::format("; BIC {:.1f} with N_eff {:.0f} of {} windows", chosen->bic, chosen->effective_samples, clustered);
+  if (clustered < members) text += fmt::format("; {} others, not of full rank, assigned to them", members - clustered);
   if (result.mixture.noise.present())
     text += fmt::format("; noise component {:.1f} %, label -1 for {} windows", 100 * result.mixture.noise.weight,
-                        clustered_windows(result) - (result.labels.array() >= 0).count());
+                        members - (result.labels.array() >= 0).count());
   if (candidates.size() > 1)
     text += fmt::format("; chosen from {}..{}", candidates.front().components, candidates.back().components);
   text += fmt::format("; {} of {} restarts agree\n", chosen->agreeing_restarts, chosen->restarts);

@@ -34,15 +34,24 @@ Eigen::ArrayXd determined_by_data(const WhitenedProblem& problem) {
   return f;
 }
 
+/// The diagonals of psi' (influence_slope), L x n.
+Eigen::ArrayXXd slopes(const CovarianceInput& in) {
+  const auto r = in.terms.samples(in.problem.states);
+  return (r.square().colwise() * (2.0 * in.terms.curvature.array())).colwise() + in.terms.weight.array();
+}
+
+Eigen::VectorXd weights_of_samples(const WhitenedProblem& problem) {
+  return problem.weight.size() > 0 ? problem.weight : Eigen::VectorXd::Ones(problem.samples);
+}
+
 /// G^-1 of the header; zero (no information) where the mean slope of psi is not positive.
 Eigen::MatrixXd inverse_G(const CovarianceInput& in) {
   const Index L = in.problem.samples, n = in.problem.states;
   const auto r = in.terms.samples(n);
   const Eigen::MatrixXd psi = r.colwise() * in.terms.weight.array();
   const Eigen::MatrixXd psi_square = psi.transpose().lazyProduct(psi);
-  const Eigen::ArrayXXd d =  // influence_slope's diagonals
-      (r.square().colwise() * (2.0 * in.terms.curvature.array())).colwise() + in.terms.weight.array();
-  const Eigen::VectorXd w = in.problem.weight.size() > 0 ? in.problem.weight : Eigen::VectorXd::Ones(L);
+  const Eigen::ArrayXXd d = slopes(in);
+  const Eigen::VectorXd w = weights_of_samples(in.problem);
   const Eigen::VectorXd slope = d.matrix().transpose().lazyProduct(w),
                         slope_square = d.square().matrix().transpose().lazyProduct(w);
   if (!(slope.minCoeff() > 0.0)) return Eigen::MatrixXd::Zero(n, n);
@@ -117,6 +126,16 @@ Eigen::MatrixXd theta_covariance(const CovarianceInput& in, CovarianceKind kind)
   if (in.problem.unknowns() < in.problem.basis.rows()) return undefined(in.problem);
   const Eigen::MatrixXd covariance = in.problem.basis * z_covariance(in, kind) * in.problem.basis.transpose();
   return 0.5 * (covariance + covariance.transpose());
+}
+
+Eigen::VectorXd weighed_information(const CovarianceInput& in, CovarianceKind kind) {
+  const Index n = in.problem.states;
+  const Eigen::VectorXd w = weights_of_samples(in.problem);
+  const Eigen::ArrayXd slope = slopes(in).matrix().transpose() * w / static_cast<double>(in.problem.samples);
+  if (in.problem.samples <= in.regressors) return slope.max(0.0);
+  if (kind == CovarianceKind::sandwich) return Eigen::VectorXd::Constant(n, not_a_number);
+  const Eigen::ArrayXd stated = inverse_G(in).diagonal();
+  return (stated > 0.0).select(slope / stated, 1.0).matrix();
 }
 
 }  // namespace modebank

@@ -35,4 +35,9 @@ struct CovarianceInput {
 /// (non-convex losses) its reweighted form without rho'' is used.
 Eigen::MatrixXd theta_covariance(const CovarianceInput& input, CovarianceKind kind);
 
+/// n: the data's information as the estimate weighed it against the prior, the second derivative sum J_k' psi'_k J_k
+/// (with the mean of psi' for all samples), in units of that in the `model` covariance: mean psi'_i / (G^-1)_ii. Exact
+/// for a trivial loss. NaN for `sandwich`, which states no information.
+Eigen::VectorXd weighed_information(const CovarianceInput& input, CovarianceKind kind);
+
 }  // namespace modebank

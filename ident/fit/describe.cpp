@@ -105,7 +105,9 @@ LocalModel describe_fit(const SolvedWindow& s, const Eigen::VectorXd& theta) {
   fit.theta = theta;
   const Eigen::VectorXd relative_floor = (s.scale.floor.array() / s.scale.sigma.array()).square();
   const auto regressors = static_cast<Index>(std::ceil(s.unknowns_per_state));
-  fit.covariance = theta_covariance({s.problem, s.terms, regressors, relative_floor}, s.covariance).topLeftCorner(p, p);
+  const CovarianceInput input{s.problem, s.terms, regressors, relative_floor};
+  fit.covariance = theta_covariance(input, s.covariance).topLeftCorner(p, p);
+  if (s.prior) fit.weighed_information = weighed_information(input, s.covariance);
   fit.noise_variance = noise_variance(s);
   if (!fit.theta.allFinite() || !fit.noise_variance.allFinite()) return failed_fit(p, s.problem.states);  // overflow
   fit.information = information(fit.covariance, s.prior);

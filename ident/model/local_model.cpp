@@ -29,6 +29,7 @@ void WindowFits::resize(Index windows_count) {
   r_squared.resize(structure.states, windows_count);
   aic.resize(windows_count);
   transitions.resize(windows_count);
+  weighed_information.resize(structure.states, windows_count);
 }
 
 void WindowFits::set(Index i, const LocalModel& fit) {
@@ -46,6 +47,10 @@ void WindowFits::set(Index i, const LocalModel& fit) {
     r_squared.col(i).setConstant(not_a_number);
   aic(i) = fit.aic;
   transitions(i) = static_cast<int>(fit.transitions);
+  if (fit.weighed_information.size() > 0)
+    weighed_information.col(i) = fit.weighed_information;
+  else
+    weighed_information.col(i).setConstant(not_a_number);
 }
 
 LocalModel WindowFits::at(Index i) const {
@@ -62,6 +67,7 @@ LocalModel WindowFits::at(Index i) const {
   if (r_squared.cols() > 0) fit.r_squared = r_squared.col(i);
   fit.aic = aic.size() > 0 ? aic(i) : not_a_number;
   fit.transitions = transitions.size() > 0 ? transitions(i) : length;
+  if (weighed_information.cols() > 0) fit.weighed_information = weighed_information.col(i);
   return fit;
 }
 

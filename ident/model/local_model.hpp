@@ -25,7 +25,10 @@ struct LocalModel {
   Eigen::VectorXd r_squared;  ///< n, see ident/fit/describe.hpp; empty: not computed
   double aic = 0.0;           ///< nat, see ident/fit/describe.hpp
   Index transitions = 0;      ///< L, those that entered the fit: finite and of positive weight
-  bool solved = false;        ///< the search reached its tolerance (a deficient rank hides iteration_limit in `status`)
+  /// n, information of the data as theta was weighed with it against the prior (the loss's curvature over sigma^2) in
+  /// units of that in `covariance`: what takes the prior off again. NaN without a prior and of a sandwich covariance.
+  Eigen::VectorXd weighed_information;
+  bool solved = false;  ///< the search reached its tolerance (a deficient rank hides iteration_limit in `status`)
 };
 
 /// The global model: plain least squares over all training transitions.
@@ -47,19 +50,20 @@ struct WindowFits {
   Index length = 0;  ///< transitions per window
   Index step = 1;    ///< transitions between window starts
   Loss loss = Loss::huber;
-  std::vector<Window> windows;      ///< M
-  Eigen::MatrixXd parameters;       ///< p x M
-  Eigen::MatrixXd covariance;       ///< p*p x M, each column a p x p matrix
-  Eigen::MatrixXd noise_variance;   ///< n x M
-  Eigen::VectorXd condition;        ///< M
-  Eigen::VectorXi rank;             ///< M
-  Eigen::MatrixXd information;      ///< p x M
-  Eigen::VectorXd inlier_fraction;  ///< M
-  Eigen::VectorXi status;           ///< M, FitStatus
-  Eigen::MatrixXd r_squared;        ///< n x M
-  Eigen::VectorXd aic;              ///< M
-  Eigen::VectorXi transitions;      ///< M
-  Eigen::VectorXd prior_sd;         ///< p, the prior's standard deviations; empty without a prior
+  std::vector<Window> windows;          ///< M
+  Eigen::MatrixXd parameters;           ///< p x M
+  Eigen::MatrixXd covariance;           ///< p*p x M, each column a p x p matrix
+  Eigen::MatrixXd noise_variance;       ///< n x M
+  Eigen::VectorXd condition;            ///< M
+  Eigen::VectorXi rank;                 ///< M
+  Eigen::MatrixXd information;          ///< p x M
+  Eigen::VectorXd inlier_fraction;      ///< M
+  Eigen::VectorXi status;               ///< M, FitStatus
+  Eigen::MatrixXd r_squared;            ///< n x M
+  Eigen::VectorXd aic;                  ///< M
+  Eigen::VectorXi transitions;          ///< M
+  Eigen::MatrixXd weighed_information;  ///< n x M, see LocalModel; empty: not known (older archives)
+  Eigen::VectorXd prior_sd;             ///< p, the prior's standard deviations; empty without a prior
   GlobalModel global;
   WindowAudit audit;
   std::vector<char> by_batch;  ///< M, 1 where the batch solver solved the window, else 0; not archived

@@ -73,6 +73,7 @@ void exchange_windows(Io& io, W& fits, const std::vector<Trajectory>& runs, cons
   io.optional_field("r_squared", fits.r_squared, {"M", "n"});
   io.optional_field("aic", fits.aic, {"M"}, {"nat"});
   io.optional_field("transitions", fits.transitions, {"M"});
+  io.optional_field("weighed_information", fits.weighed_information, {"M", "n"});
   io.optional_derived_field(
       "standard_error", [&] { return fits.standard_errors(); }, {"M", "p"}, parameters);
   io.optional_derived_field("t_value", [&] { return fits.t_values(); }, {"M", "p"});
@@ -94,7 +95,7 @@ void exchange_candidates(Io& io, C& candidates) {
            column("converged", &Candidate::converged), column("agreeing_restarts", &Candidate::agreeing_restarts),
            column("selected", &Candidate::selected), later_column("bic_naive", &Candidate::bic_naive),
            later_column("restarts", &Candidate::restarts), later_column("floor_active", &Candidate::floor_active),
-           later_column("status", &Candidate::status));
+           later_column("status", &Candidate::status), later_column("failed", &Candidate::failed));
 }
 
 /// `parameters`: units of theta, the first features; the others are logarithms, without unit.
@@ -115,6 +116,7 @@ void exchange_mixture(Io& io, X& result, const Unit& parameters) {
       });
   io.optional_field("weights_standard_error", result.weights_standard_error, {"K"});
   io.optional_field("means_standard_error", result.means_standard_error, {"K", "F"}, features);
+  io.optional_attribute("clustered_windows", result.clustered);
   io.optional_attribute("noise_weight", result.mixture.noise.weight);
   io.optional_field("noise_lower", result.mixture.noise.lower, {"F"}, features);
   io.optional_field("noise_upper", result.mixture.noise.upper, {"F"}, features);

@@ -2,6 +2,7 @@
 
 #if defined(__x86_64__) && defined(__GNUC__)
 
+#include <cpuid.h>
 #include <immintrin.h>
 
 namespace modebank::sha256 {
@@ -36,11 +37,18 @@ namespace {
   cdgh = _mm_add_epi32(cdgh, cdgh_before);
 }
 
+/// Asked of the processor, because not every compiler knows the feature by name.
+bool has_sha_instructions() {
+  unsigned a = 0, b = 0, c = 0, d = 0;
+  constexpr unsigned extended_features = 7, sha_bit = 1U << 29;
+  return __get_cpuid_count(extended_features, 0, &a, &b, &c, &d) != 0 && (b & sha_bit) != 0;
+}
+
 }  // namespace
 
 [[gnu::target("sha,sse4.1")]] bool compress_by_instructions(Sha256::State& H, const unsigned char* blocks,
                                                             std::size_t count) {
-  static const bool there = __builtin_cpu_supports("sha") && __builtin_cpu_supports("sse4.1");
+  static const bool there = has_sha_instructions() && __builtin_cpu_supports("sse4.1");
   if (!there) return false;
   // The instructions want the words in the order f e b a and h g d c, lowest first.
   auto* state = reinterpret_cast<__m128i*>(H.data());

@@ -43,13 +43,14 @@ struct PointPart {
   Eigen::MatrixXd points;
   Eigen::VectorXd weights;
   Eigen::MatrixXd covariances;
+  Eigen::VectorXd typical_error;
 
   PointPart(const PointSet& all, const std::vector<Eigen::Index>& positions)
-      : points(all.points(Eigen::all, positions)) {
+      : points(all.points(Eigen::all, positions)), typical_error(all.typical_error) {
     if (all.weights.size() > 0) weights = all.weights(positions);
     if (all.has_errors()) covariances = all.covariances(Eigen::all, positions);
   }
-  PointSet set() const { return PointSet(points, weights, covariances); }
+  PointSet set() const { return PointSet(points, weights, covariances, typical_error); }
 };
 
 using BlockColumn = Eigen::Array<double, block_size, 1>;

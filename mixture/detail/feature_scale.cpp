@@ -124,17 +124,22 @@ Bulk bulk_of(const PointSet& set, Index feature) {
   return {quantile(0.5), (quantile(0.975) - quantile(0.025)) / 3.92};
 }
 
+/// The variances of a component that holds all points lie between the floor and the feature's variance: these must not
+/// differ by more than double precision can hold.
+double smallest_unit(double sd, double floor) {
+  constexpr double most_ratio = 1e13;
+  return sd / std::sqrt(most_ratio * floor);
+}
+
 /// A few points so far out that they are what the standard deviation measures would leave all others within the floor
-/// of each other; then the bulk sets the unit. The variances of a component that holds both lie between the floor and
-/// the feature's variance: they must not differ by more than double precision can hold.
+/// of each other; then the bulk sets the unit.
 void resist_outliers(const PointSet& set, Index feature, double floor, FeatureScale& scale) {
-  constexpr double dominated = 20.0, most_ratio = 1e13;
-  const double smallest_share = 1.0 / std::sqrt(most_ratio * floor);
+  constexpr double dominated = 20.0;
   const Bulk bulk = bulk_of(set, feature);
   const double sd = scale.scale(feature);
   if (!(bulk.deviation > rounding_share * std::abs(bulk.median)) || bulk.deviation * dominated > sd) return;
   scale.center(feature) = bulk.median;
-  scale.scale(feature) = std::max(bulk.deviation, smallest_share * sd);
+  scale.scale(feature) = std::max(bulk.deviation, smallest_unit(sd, floor));
   scale.inverse(feature) = 1.0 / scale.scale(feature);
 }
 
@@ -174,6 +179,9 @@ FeatureScale FeatureScale::of(const PointSet& set, double floor) {
     if (!constant) result.scale(f) = deviation(f);
     result.inverse(f) = constant ? 0.0 : 1.0 / result.scale(f);
     if (!constant && farthest(f) > far_out * deviation(f)) resist_outliers(set, f, floor, result);
+    const double error = set.typical_error.size() > 0 ? set.typical_error(f) : 0.0;
+    if (error > 0.0) result.scale(f) = constant ? error : std::max(error, smallest_unit(deviation(f), floor));
+    if (error > 0.0 && !constant) result.inverse(f) = 1.0 / result.scale(f);
   }
   return result;
 }

@@ -6,13 +6,13 @@
 
 namespace modebank {
 
-/// Affine map between physical units and the units mixtures are fitted in: zero mean, unit standard deviation. A
-/// feature whose standard deviation a few outliers make more than 20 times that of the bulk (from the quantiles at 2.5
-/// and 97.5
+/// Affine map between physical units and the units mixtures are fitted in: zero mean, and as the unit of a feature the
+/// typical error of its points where that is known, else their standard deviation. Without a known error, a feature
+/// whose standard deviation a few outliers make more than 20 times that of the bulk (from the quantiles at 2.5 and 97.5
 /// %) has zero median and the bulk's unit instead, as far as double precision allows.
 struct FeatureScale {
   Eigen::VectorXd center;   ///< F, weighted mean [feature unit]
-  Eigen::VectorXd scale;    ///< F, weighted population standard deviation [feature unit]; 1 for a constant feature
+  Eigen::VectorXd scale;    ///< F [feature unit]; 1 for a constant feature of unknown error
   Eigen::VectorXd inverse;  ///< F, 1 / scale; 0 for a constant feature, whose scaled values are exactly zero
 
   /// A feature is constant when its spread is lost in rounding (1e-13 of its magnitude) or below 1e-150, where a

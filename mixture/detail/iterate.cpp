@@ -56,28 +56,37 @@ std::optional<Coordinates> coordinates_of(const GaussianMixture& mixture) {
   return result;
 }
 
+/// Logarithms and coordinates (in units of a point's error) beyond these are no mixture of the points.
+constexpr double largest_logarithm = 300.0, largest_coordinate = 1e8;
+
 /// Back; `pattern` tells type and noise component. Nothing where an entry is no usable number.
 std::optional<GaussianMixture> mixture_of(const Eigen::VectorXd& values, const GaussianMixture& pattern,
                                           const EmOptions& options) {
-  constexpr double largest = 300.0;  // logarithms and scaled coordinates beyond this are no mixture of the points
-  if (!(values.array().abs().maxCoeff() < largest)) return {};
+  if (!(values.array().abs().maxCoeff() < largest_coordinate)) return {};
+  bool usable = true;
+  const auto exponential = [&](double logarithm) {
+    usable = usable && std::abs(logarithm) < largest_logarithm;
+    return std::exp(logarithm);
+  };
   const Index K = pattern.components(), F = pattern.features();
   const bool diagonal = pattern.type == CovarianceType::diagonal;
   GaussianMixture result = pattern;
   Eigen::MatrixXd L = Eigen::MatrixXd::Zero(F, F);
   Index at = 0;
   for (Index k = 0; k < K; ++k) {
-    result.weights(k) = std::exp(values(at++));
+    result.weights(k) = exponential(values(at++));
     for (Index i = 0; i < F; ++i) result.means(i, k) = values(at++);
     for (Index i = 0; i < F; ++i) {
-      L(i, i) = std::exp(values(at++));
+      L(i, i) = exponential(values(at++));
       for (Index j = 0; j < (diagonal ? 0 : i); ++j) L(i, j) = values(at++);
     }
+    if (!usable) return {};
     Eigen::MatrixXd& covariance = result.covariances[static_cast<std::size_t>(k)];
     covariance.noalias() = L * L.transpose();
     raise_to_floor(covariance, options.covariance_floor, options.covariance);
   }
-  const double noise = pattern.noise.present() ? std::exp(values(at)) : 0.0;
+  const double noise = pattern.noise.present() ? exponential(values(at)) : 0.0;
+  if (!usable) return {};
   const double total = result.weights.sum() + noise;
   result.weights /= total;
   if (pattern.noise.present()) result.noise.weight = noise / total;

@@ -81,6 +81,7 @@ EmResult best_of_restarts(const PointBlocks& points, const std::function<Start(i
     tbb::parallel_for(0, options.restarts, [&](int i) { action(static_cast<std::size_t>(i)); });
   };
   for_each([&](std::size_t i) { results[i] = climb(points, start_of(static_cast<int>(i)), coarse, seed); });
+  std::vector<EmResult> alone = results;  // what restarts agree on is what each found for itself
   std::size_t best = best_of(results);
   if (options.split_merge > 0 && results[best].mixture.components() > 1) {
     for_each([&](std::size_t i) {
@@ -98,14 +99,17 @@ EmResult best_of_restarts(const PointBlocks& points, const std::function<Start(i
     follow(points, options, -std::numeric_limits<double>::infinity(), results[best]);
     const double wanted = results[best].log_likelihood - reach;
     for_each([&](std::size_t i) {
+      if (crossing[i]) follow(points, options, wanted, alone[i]);
       if (i != best) follow(points, options, wanted, results[i]);
     });
     best = best_of(results);
   }
-  EmResult result = std::move(results[best]);
-  result.agreeing_restarts = 1;
+  const double agreed = results[best].log_likelihood - reach;
+  int agreeing = 0;
   for (std::size_t i = 0; i < results.size(); ++i)
-    if (i != best && results[i].log_likelihood >= result.log_likelihood - reach) ++result.agreeing_restarts;
+    if ((crossing[i] ? alone[i] : results[i]).log_likelihood >= agreed) ++agreeing;
+  EmResult result = std::move(results[best]);
+  result.agreeing_restarts = agreeing;
   return result;
 }
 

@@ -21,7 +21,8 @@ GaussianMixture cross(const GaussianMixture& a, const GaussianMixture& b);
 ///    and takes the other's place where it ends higher: a generation of genetic EM (Pernkopf & Bouchaffra 2005, IEEE
 ///    Trans. Pattern Anal. Mach. Intell. 27, 1344-1348).
 /// 3. The best is followed to the tolerance. Of the others only those that may still reach it are, as far as it takes
-///    to tell (see `iterate`).
+///    to tell (see `iterate`); so are restarts whose place a crossing took: agreement is counted among what each
+///    restart found by itself, because whatever is crossed with the best resembles it.
 /// Restarts run in parallel; what they are compared with is settled between the steps, so that the result does not
 /// depend on threads.
 EmResult best_of_restarts(const PointBlocks& points, const std::function<Start(int)>& start_of,

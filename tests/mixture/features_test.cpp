@@ -40,11 +40,54 @@ TEST(Features, AllLeavesOutOnlyFailedAndNonFiniteWindows) {
   EXPECT_EQ(cloud.windows, (std::vector<Index>{0, 1, 4}));
 }
 
-TEST(Features, AutomaticDependsOnThePrior) {
+/// Three windows of full rank: worth two independent ones for each of three features where every second sample begins
+/// one of length one, not where every sample does.
+TEST(Features, AutomaticTakesAllWindowsOnlyWhereTooFewHaveFullRank) {
   WindowFits fits = five_windows();
-  EXPECT_EQ(make_features(fits, FeatureSet::parameters, WindowChoice::automatic, states).windows.size(), 2u);
+  const auto automatic = [&] {
+    return make_features(fits, FeatureSet::parameters, WindowChoice::automatic, states).windows;
+  };
+  fits.length = 1;
+  fits.step = 1;
+  EXPECT_EQ(automatic(), (std::vector<Index>{0, 4})) << "without a prior the others have no theta";
   fits.prior_sd = Eigen::Vector3d::Ones();
-  EXPECT_EQ(make_features(fits, FeatureSet::parameters, WindowChoice::automatic, states).windows.size(), 3u);
+  EXPECT_EQ(automatic(), (std::vector<Index>{0, 1, 4}));
+  fits.step = 2;
+  EXPECT_EQ(automatic(), (std::vector<Index>{0, 4}));
+}
+
+TEST(Features, TheOthersAreAssignedWithTheirErrors) {
+  WindowFits fits = five_windows();
+  fits.length = 1;
+  fits.step = 2;
+  fits.global.theta = Eigen::Vector3d::Zero();
+  fits.transitions = Eigen::VectorXi::Constant(5, 25);
+  fits.covariance = Eigen::MatrixXd(0.2 * Eigen::Matrix3d::Identity()).reshaped(9, 1).replicate(1, 5);
+  ClusterOptions options;
+  options.straddling = StraddlingWindows::keep;
+  EXPECT_TRUE(assigned_features(fits, states, options).windows.empty()) << "no prior, no theta";
+  fits.prior_sd = Eigen::Vector3d::Ones();
+  fits.step = 3;  // four features
+  EXPECT_EQ(make_features(fits, states, options).windows, (std::vector<Index>{0, 4}));
+  const FeatureCloud others = assigned_features(fits, states, options);
+  ASSERT_EQ(others.windows, (std::vector<Index>{1}));
+  EXPECT_NEAR(others.covariances(0, 0), 0.2 / 0.8, 1e-14);
+  EXPECT_NEAR(others.covariances(15, 0), 2.0 / (25.0 - 1.0), 1e-14);
+  options.windows = WindowChoice::all;
+  EXPECT_TRUE(assigned_features(fits, states, options).windows.empty()) << "all are clustered";
+}
+
+TEST(Features, TypicalErrorsAreTheMedians) {
+  WindowFits fits = five_windows();
+  fits.transitions = Eigen::VectorXi::Constant(5, 35);
+  fits.covariance = Eigen::MatrixXd::Zero(9, 5);
+  fits.covariance.row(0) << 0.04, 0.09, 100.0, 100.0, 0.25;
+  const FeatureCloud cloud =
+      make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::all, states, StraddlingWindows::keep);
+  ASSERT_EQ(cloud.windows.size(), 3u);
+  EXPECT_NEAR(cloud.typical_error(0), 0.3, 1e-15);
+  EXPECT_EQ(cloud.typical_error(1), 0.0) << "not known";
+  EXPECT_NEAR(cloud.typical_error(3), std::sqrt(2.0 / 32.0), 1e-15);
 }
 
 TEST(Features, NoiseIsTheLogOfTheVariance) {

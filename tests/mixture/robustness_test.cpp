@@ -211,5 +211,25 @@ TEST(RobustnessErrors, CallersMistakesThrow) {
   EXPECT_THROW(fit_em(points, unweighted, 2, wrong, 1), std::invalid_argument);
 }
 
+/// The floor is a share of each feature's own error variance, whatever else the points do.
+TEST(Robustness, TheFloorIsRelativeToThePointsErrors) {
+  EmOptions options;
+  options.covariance_floor = 1e-4;
+  const Eigen::VectorXd error = Eigen::Vector2d(0.5, 4.0);
+  const Eigen::Matrix2d floored = (1e-4 * error.array().square()).matrix().asDiagonal();
+  const Eigen::MatrixXd spot = Eigen::Vector2d(3.0, 4.0).replicate(1, 30);
+  const PointSet set(spot, detail::no_weights, detail::no_covariances, error);
+  EXPECT_TRUE(near(fit_em(set, 1, options, 1).mixture.covariances[0], floored, 1e-15));
+  Eigen::MatrixXd two(2, 60);
+  two << spot, (spot.array() + 2.0).matrix();
+  const EmResult fit = fit_em(PointSet(two, detail::no_weights, detail::no_covariances, error), 2, options, 1);
+  EXPECT_TRUE(fit.floor_active);
+  for (const Eigen::MatrixXd& covariance : fit.mixture.covariances) EXPECT_TRUE(near(covariance, floored, 1e-12));
+  EXPECT_NEAR(fit.log_likelihood, log_density(fit.mixture, two).sum(), 1e-6);
+  const Eigen::VectorXd wrong = Eigen::Vector2d(0.5, -1.0);
+  EXPECT_THROW(fit_em(PointSet(two, detail::no_weights, detail::no_covariances, wrong), 2, options, 1),
+               std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace modebank::test

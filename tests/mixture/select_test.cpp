@@ -122,6 +122,43 @@ TEST(Select, MembershipsCoverClusteredWindowsOnly) {
   }
 }
 
+/// Windows that took no part get the posterior probabilities of N(mean, covariance + error), worked out here.
+TEST(Select, AssignedWindowsGetTheComponentsThatSuitThem) {
+  FeatureCloud cloud = cloud_of(draw(three_clusters(6.0), 300, 3), 3);
+  for (Index i = 0; i < 300; ++i) cloud.windows[static_cast<std::size_t>(i)] = i + 2;
+  FeatureCloud assigned;
+  assigned.points = (Eigen::MatrixXd(2, 2) << 6.0, 0.0, 50.0, 1.0).finished();
+  assigned.covariances = Eigen::MatrixXd::Zero(4, 2);
+  assigned.covariances(3, 0) = 1e4;  // nothing is known of this feature
+  assigned.windows = {0, 302};
+  assigned.runs = {0, 2};
+  WindowFits fits = fits_of(cloud, 25, 1);
+  fits.windows.resize(303, {2, 0});
+  const MixtureResult result = select_mixture(fits, cloud, up_to(3), 1, nullptr, assigned);
+  const MixtureResult without = select_mixture(fits, cloud, up_to(3), 1);
+  EXPECT_EQ(result.clustered, 300);
+  EXPECT_EQ(result.mixture.means, without.mixture.means) << "they take no part";
+  EXPECT_EQ(without.labels(0), -1);
+  const Eigen::MatrixXd all = result.responsibilities.all();
+  EXPECT_TRUE(all.col(1).array().isNaN().all()) << "neither clustered nor assigned";
+  EXPECT_EQ(all.middleCols(2, 300), without.responsibilities.all().middleCols(2, 300));
+  for (const Index i : {Index{0}, Index{1}}) {
+    Eigen::VectorXd expected(result.mixture.components());
+    for (Index k = 0; k < expected.size(); ++k) {
+      const Eigen::Matrix2d S = result.mixture.covariances[static_cast<std::size_t>(k)] +
+                                Eigen::Matrix2d(assigned.covariances.col(i).reshaped(2, 2));
+      const Eigen::Vector2d d = assigned.points.col(i) - result.mixture.means.col(k);
+      expected(k) = result.mixture.weights(k) * std::exp(-0.5 * d.dot(S.inverse() * d)) / std::sqrt(S.determinant());
+    }
+    expected /= expected.sum();
+    const Index window = assigned.windows[static_cast<std::size_t>(i)];
+    EXPECT_TRUE(near(all.col(window), expected, 1e-12));
+    Index most_likely = -1;
+    expected.maxCoeff(&most_likely);
+    EXPECT_EQ(result.labels(window), most_likely);
+  }
+}
+
 TEST(Select, OtherCandidatesDoNotChangeARow) {
   const FeatureCloud cloud = cloud_of(draw(three_clusters(1.0), 300, 4), 3);
   SelectionOptions alone;

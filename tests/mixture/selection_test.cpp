@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "mixture/criteria.hpp"
 #include "modebank/base/error.hpp"
@@ -100,6 +101,20 @@ TEST(Selection, StartsFromAGivenMixture) {
   EXPECT_NEAR(result.candidates[2].log_likelihood, log_density(three_clusters(12.0), points).sum(), 1e-8);
 }
 
+/// A candidate that throws (here its start is singular beyond what doubles can hold) is a row that says so.
+TEST(Selection, ACandidateThatFailsIsARow) {
+  const Eigen::MatrixXd points = draw(three_clusters(12.0), 300, 5);
+  GaussianMixture start = three_clusters(12.0);
+  start.covariances[1].setConstant(1e308);
+  const std::vector<Candidate> rows = select(points, {}, from_one_to(4), 1, &start).candidates;
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[2].status, CandidateStatus::failed);
+  EXPECT_NE(rows[2].failed.find("not positive definite"), std::string::npos) << rows[2].failed;
+  EXPECT_EQ(rows[2].bic, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(chosen(rows), 4);
+  for (const std::size_t i : {0u, 1u, 3u}) EXPECT_EQ(rows[i].failed, "");
+}
+
 TEST(SelectionWarnings, NameWhatSpeaksAgainstTheChoice) {
   std::vector<Candidate> rows(3);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -119,6 +134,42 @@ TEST(SelectionWarnings, NameWhatSpeaksAgainstTheChoice) {
   EXPECT_NE(warnings[0].find("2 of 5 restarts"), std::string::npos);
   EXPECT_NE(warnings[1].find("did not converge"), std::string::npos);
   EXPECT_NE(warnings[2].find("bic 2, icl 2, aic 3, heldout 2"), std::string::npos);
+}
+
+/// What rests on the floor has the likelihood that the floor chose: it is chosen only where all do, and not silently.
+TEST(SelectionWarnings, TheFloorIsNamedWhereNothingElseIsLeft) {
+  std::vector<Candidate> rows(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    rows[i].components = static_cast<Index>(i) + 1;
+    rows[i].converged = true;
+    rows[i].bic = -static_cast<double>(i);
+    rows[i].floor_active = i > 0;
+  }
+  EXPECT_EQ(best_candidate(rows, Criterion::bic), 0);
+  rows[0].floor_active = true;
+  EXPECT_EQ(best_candidate(rows, Criterion::bic), 2);
+  rows[2].selected = true;
+  bool named = false;
+  for (const std::string& text : selection_warnings(rows))
+    named = named || text.find("covariance_floor") != std::string::npos;
+  EXPECT_TRUE(named);
+}
+
+/// Twenty windows on one spot, as those of one stretch of standstill: worth a component by BIC, whatever the floor.
+TEST(Selection, AClusterWithoutExtentIsNotChosen) {
+  Eigen::MatrixXd points(2, 220);
+  points.leftCols(200) = draw(three_clusters(0.0), 200, 6);
+  points.rightCols(20).colwise() = Eigen::Vector2d(1.0, -1.0);
+  const Eigen::VectorXd error = Eigen::Vector2d(0.5, 0.25);
+  for (const double floor : {1e-8, 1e-6, 1e-4}) {
+    SelectionOptions options = from_one_to(4);
+    options.em.covariance_floor = floor;
+    const PointSet set(points, detail::no_weights, detail::no_covariances, error);
+    const std::vector<Candidate> rows = select(set, {}, options, 1).candidates;
+    EXPECT_TRUE(rows[1].floor_active);
+    EXPECT_LT(rows[1].bic, rows[0].bic);
+    EXPECT_EQ(chosen(rows), 1);
+  }
 }
 
 TEST(SelectionWarnings, TheEdgeOfTheRange) {

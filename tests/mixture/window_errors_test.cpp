@@ -4,6 +4,7 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "mixture/select.hpp"
+#include "mixture/window_error.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -108,9 +109,62 @@ TEST(WindowErrors, ThePriorIsTakenOffAgain) {
     left += ((a.points.col(i) - b.points.col(i)).array() / sd).square().sum();
   }
   EXPECT_GT(pull, 10.0);
-  // Not nothing: the posterior weighs data by a robust scale, its covariance states the residuals' variance, and from
-  // 25 transitions these differ by some 35 %.
-  EXPECT_LT(left, 0.15 * pull);
+  EXPECT_LT(left, 1e-16 * pull);
+}
+
+/// Robust losses weigh samples one by one, as the prior's pull makes their residuals; the mean weight is known.
+TEST(WindowErrors, ThePriorIsTakenOffOfRobustFits) {
+  const Stretches stretches(100);
+  FitOptions options;
+  options.length = window_length;
+  options.prior = Prior::none;
+  const WindowFits free = fit_windows(stretches.recording, options);
+  options.prior = Prior::global;
+  options.prior_sd = {0.1};
+  const WindowFits held = fit_windows(stretches.recording, options);
+  WindowFits alike = held;  // as if data were weighed as they are stated
+  alike.weighed_information.setOnes();
+  const FeatureCloud a = cloud_with(free, WindowErrors::include), b = cloud_with(held, WindowErrors::include),
+                     c = cloud_with(alike, WindowErrors::include);
+  double pull = 0.0, left = 0.0, left_alike = 0.0;
+  for (Index i = 0; i < a.points.cols(); ++i) {
+    if (held.information.col(i).minCoeff() < 0.3) continue;
+    const Eigen::ArrayXd sd = a.covariances.col(i).reshaped(3, 3).diagonal().array().sqrt();
+    const auto distance = [&](const auto& theta) { return ((a.points.col(i) - theta).array() / sd).square().sum(); };
+    pull += distance(held.parameters.col(i));
+    left += distance(b.points.col(i));
+    left_alike += distance(c.points.col(i));
+  }
+  EXPECT_GT(pull, 10.0);
+  EXPECT_LT(left, 0.06 * pull);
+  EXPECT_LT(left, 0.5 * left_alike);
+}
+
+/// Closed form in two states of one parameter each: information d_i of the data, weighed s_i times as much, pulls what
+/// the data say, y_i, to s d / (1 + s d) y_i about the prior's mean.
+TEST(WindowErrors, ThePriorIsTakenOffStateByState) {
+  WindowFits fits;
+  fits.structure = LinearStructure{2, 0, false};
+  fits.prior_sd = Eigen::Vector4d(0.5, 1.0, 2.0, 4.0);
+  fits.global.theta = Eigen::Vector4d(0.1, 0.2, 0.3, 0.4);
+  fits.weighed_information = (Eigen::MatrixXd(2, 1) << 0.6, 1.7).finished();
+  const Eigen::Array4d information(0.2, 3.0, 40.0, 1.0), said(1.0, -2.0, 3.0, 0.5);
+  const Eigen::Array4d weighed = information * Eigen::Array4d(0.6, 0.6, 1.7, 1.7), sd = fits.prior_sd.array();
+  Eigen::VectorXd theta = fits.global.theta.array() + sd * said * weighed / (1.0 + weighed);
+  Eigen::MatrixXd covariance = (sd.square() / (1.0 + information)).matrix().asDiagonal();
+  take_off_prior(fits, 0, theta, covariance);
+  EXPECT_TRUE(near(theta, Eigen::VectorXd((fits.global.theta.array() + sd * said).matrix()), 1e-12));
+  EXPECT_TRUE(near(covariance, Eigen::MatrixXd((sd.square() / information).matrix().asDiagonal()), 1e-12));
+}
+
+TEST(WindowErrors, OfASandwichNothingIsTakenOff) {
+  const Stretches stretches(20);
+  FitOptions options;
+  options.length = window_length;
+  options.covariance = CovarianceKind::sandwich;
+  const WindowFits fits = fit_windows(stretches.recording, options);
+  EXPECT_FALSE(prior_comes_off(fits, 0));
+  EXPECT_TRUE(cloud_with(fits, WindowErrors::include).windows.empty());
 }
 
 TEST(WindowErrors, LogVarianceAndUnknownCovariances) {

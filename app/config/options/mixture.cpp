@@ -34,7 +34,10 @@ std::vector<Option> mixture_options() {
       words("mixture.covariance", "shape of the components", MODEBANK_FIELD(mixture.selection.em.covariance)),
       words("mixture.criterion", "chooses the number of components", MODEBANK_FIELD(mixture.selection.criterion)),
       words("mixture.features", "what is clustered", MODEBANK_FIELD(mixture.features)),
-      words("mixture.windows", "which windows are clustered; automatic: all with a prior, else full_rank",
+      words("mixture.windows",
+            "which windows are clustered; automatic: full_rank, if there are enough (others are assigned afterwards); "
+            "all with "
+            "error_aware",
             MODEBANK_FIELD(mixture.windows)),
       words("mixture.straddling", "windows that straddle a switch of mode", MODEBANK_FIELD(mixture.straddling)),
       start_option(),
@@ -56,7 +59,8 @@ std::vector<Option> mixture_options() {
               MODEBANK_FIELD(mixture.selection.em.tolerance)),
       numeric("mixture.max_iterations", between(1, 1e6), "", "limit of each EM run",
               MODEBANK_FIELD(mixture.selection.em.max_iterations)),
-      numeric("mixture.covariance_floor", between(0, 1), "feature variance", "smallest variance of a component",
+      numeric("mixture.covariance_floor", between(0, 1), "window error variance",
+              "smallest variance of a component; one that rests on it is chosen only if all do",
               MODEBANK_FIELD(mixture.selection.em.covariance_floor)),
       flag("mixture.error_aware",
            "the windows' own covariances enter the fit, so that components describe windows without their errors",

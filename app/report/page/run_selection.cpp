@@ -13,6 +13,7 @@ json candidate_row(const Candidate& c) {
   json row = {{"components", c.components},
               {"covariance", name_of(c.covariance)},
               {"status", name_of(c.status)},
+              {"failed", c.failed},
               {"selected", c.selected}};
   if (c.status != CandidateStatus::fitted) return row;
   row["log_likelihood"] = number(c.log_likelihood, fmt::format("{:.3f}", c.log_likelihood));
@@ -26,6 +27,7 @@ json candidate_row(const Candidate& c) {
   row["converged"] = c.converged ? "yes" : "no";
   row["agreeing"] = {{"t", fmt::format("{} of {}", c.agreeing_restarts, c.restarts)}, {"v", c.agreeing_restarts}};
   row["restarts"] = c.restarts;
+  row["floor_active"] = c.floor_active;
   return row;
 }
 

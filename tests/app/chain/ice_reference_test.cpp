@@ -115,6 +115,7 @@ TEST_P(IceReference, TwelveComponentsReachTheLevel) {
   Config config = ice_config(fold.odd_runs_train);
   config.mixture.selection.components = {12};
   config.bank.refine = Refine::none;  // the reference pools, it does not refine
+  config.mixture.windows = WindowChoice::all;  // as the reference analysis
   constexpr int seeds = 10;
   double log_score = 0.0, rmse = 0.0;
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -131,6 +132,35 @@ TEST_P(IceReference, TwelveComponentsReachTheLevel) {
   RecordProperty("rmse", std::to_string(rmse));
   EXPECT_GE(log_score, fold.bank_log_score_at_least);
   EXPECT_LE(rmse, fold.bank_rmse_at_most);
+}
+
+/// K is the data's, not a constant's: the same for covariance floors over four decades and for five seeds.
+TEST_P(IceReference, TheNumberOfComponentsDoesNotDependOnTheFloorOrTheSeed) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  for (const bool varx : {false, true}) {
+    Config config = ice_config(GetParam().odd_runs_train);
+    if (varx) {
+      config.window.model = "varx";
+      config.window.state_lags = 3;
+    }
+    StageSource computed;
+    const Listener silent;
+    Chain chain(computed, silent);
+    const Archive& archive = chain.run(chain_options(config), Stage::windows, {});
+    const WindowFits& fits = *archive.windows;
+    const FeatureCloud cloud = make_features(fits, archive.recording->states, config.mixture);
+    SelectionOptions options = config.mixture.selection;
+    options.components = {1, 2, 3, 4, 5, 6, 7, 8};
+    options.heldout = HeldoutChoice::never;
+    for (const double floor : {1e-8, 1e-6, 1e-4})
+      for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        options.em.covariance_floor = floor;
+        const MixtureResult result = select_mixture(fits, cloud, options, seed);
+        const Index components = result.mixture.components();
+        EXPECT_EQ(components, GetParam().odd_runs_train ? 1 : 2) << floor << ", seed " << seed;
+        EXPECT_FALSE(result.candidates[static_cast<std::size_t>(components - 1)].floor_active);
+      }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(BothFolds, IceReference, ::testing::Values(even, odd),

@@ -94,6 +94,10 @@ TEST_F(BadInput, LineThatIsNoKey) {
 TEST_F(BadInput, ValueWithACommentSign) {
   expect(run({"--data.inputs", "a#b_*.csv"}), 2, {"data.inputs", "#", "comment"});
 }
+TEST_F(BadInput, ErrorsOfASandwichCovariance) {
+  expect(run({"--mixture.error_aware", "true", "--window.covariance", "sandwich"}), 2,
+         {"mixture.error_aware", "window.covariance = model"});
+}
 TEST_F(BadInput, MoreComponentsThanWindows) { expect(run({"--mixture.components", "500..501"}), 1, {"500", "55"}); }
 TEST_F(BadInput, OutputFolderMissing) { expect(run({"--archive.output", file("none/out.h5").string()}), 2, {"none"}); }
 TEST_F(BadInput, OutputFolderNotWritable) { expect(run({"--archive.output", "/proc/out.h5"}), 2, {"/proc"}); }

@@ -168,8 +168,9 @@ def check_mixture(file):
     expect("candidates columns", table.dtype.names,
            ("components", "covariance", "log_likelihood", "parameters", "effective_samples", "bic", "aic", "icl",
             "heldout", "iterations", "converged", "agreeing_restarts", "selected", "bic_naive", "restarts",
-            "floor_active", "status"))
+            "floor_active", "status", "failed"))
     expect("status", table["status"], np.array([b"fitted", b"failed"]))
+    expect("failed", table["failed"], np.array([b"", b"its covariance is singular"]))
     expect("converged dtype", table.dtype["converged"].str, "|i1")
     expect("selected", table["selected"], np.array([0, 1]))
     expect("covariance", table["covariance"], np.array([b"full", b"diagonal"]))

@@ -2,6 +2,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "ident/fit/audit.hpp"
@@ -122,6 +123,13 @@ TEST_P(Batch, HasTheSameLocalModelsAsCeres) {
             const double largest = std::max(1.0, ceres.information.col(i).cwiseAbs().maxCoeff());
             EXPECT_TRUE(near(batch.information.col(i) / largest, ceres.information.col(i) / largest, 1e-6))
                 << "window " << i;
+            if (convex(o.loss) && ceres.status(i) == 0) {
+              const double weighed = ceres.weighed_information(0, i);
+              if (std::isnan(weighed))  // of a sandwich covariance
+                EXPECT_TRUE(std::isnan(batch.weighed_information(0, i))) << "window " << i;
+              else
+                EXPECT_NEAR(batch.weighed_information(0, i), weighed, 1e-6 * weighed) << "window " << i;
+            }
           }
           EXPECT_NEAR(batch.noise_variance(0, i), ceres.noise_variance(0, i), 1e-6 * ceres.noise_variance(0, i));
           EXPECT_DOUBLE_EQ(batch.inlier_fraction(i), ceres.inlier_fraction(i));

@@ -16,6 +16,7 @@ void expect_same(const Candidate& a, const Candidate& e) {
   EXPECT_EQ(a.bic_naive, e.bic_naive);
   EXPECT_EQ(a.restarts, e.restarts);
   EXPECT_EQ(a.floor_active, e.floor_active);
+  EXPECT_EQ(a.failed, e.failed);
   EXPECT_EQ(a.status, e.status);
   const auto reals = [](const Candidate& c) {
     return Eigen::Matrix<double, 6, 1>(c.log_likelihood, c.effective_samples, c.bic, c.aic, c.icl, c.heldout);
@@ -98,6 +99,7 @@ void expect_same(const WindowFits& actual, const WindowFits& expected) {
   EXPECT_EQ(actual.status, expected.status);
   EXPECT_TRUE(same_bits(actual.r_squared, expected.r_squared));
   EXPECT_TRUE(same_bits(actual.aic, expected.aic));
+  EXPECT_TRUE(same_bits(actual.weighed_information, expected.weighed_information));
   EXPECT_EQ(actual.transitions, expected.transitions);
   EXPECT_TRUE(same_bits(actual.prior_sd, expected.prior_sd));
   EXPECT_TRUE(same_bits(actual.global.theta, expected.global.theta));

@@ -77,6 +77,7 @@ WindowFits make_windows_fits(const LinearStructure& structure) {
   fits.r_squared(0, 1) = not_a_number;
   fits.aic = pattern(count, 1, 13.0);
   fits.transitions = Eigen::VectorXi::Constant(count, length);
+  fits.weighed_information = pattern(fits.structure.states, count, 14.0);
   fits.prior_sd = pattern(p, 1, 8.0);
   fits.global = {pattern(p, 1, 9.0), pattern(p, p, 10.0), pattern(n, n, 11.0), 35};
   return fits;
@@ -98,9 +99,9 @@ MixtureResult make_mixture(const WindowFits& fits) {
   responsibilities.leftCols(3) = pattern(modes, 3, 40.0);
   result.responsibilities = responsibilities;
   result.candidates.push_back({2, CovarianceType::full, -10.25, 13, 7.5, 1.0 / 3.0, 2.0 / 3.0, 4.0 / 3.0, not_a_number,
-                               17, false, 1, false, 0.5, 5, true, CandidateStatus::fitted});
+                               17, false, 1, false, 0.5, 5, true, CandidateStatus::fitted, ""});
   result.candidates.push_back({3, CovarianceType::diagonal, -9.5, 20, 7.5, 0.1, 0.2, 0.3, -1.5, 40, true, 4, true, 0.6,
-                               5, false, CandidateStatus::failed});
+                               5, false, CandidateStatus::failed, "its covariance is singular"});
   result.weights_standard_error = Eigen::Vector3d(0.05, 0.04, 0.03);
   result.means_standard_error = pattern(features, modes, 50.0);
   return result;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "mixture/detail/iterate.hpp"
+#include "mixture/detail/starts.hpp"
 #include "mixture/select.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 
@@ -79,6 +80,39 @@ TEST(Restarts, ShortRunsOnASubsample) {
   EXPECT_EQ(fit.agreeing_restarts, options.restarts);
   EXPECT_GT(fit.log_likelihood, log_density(four_in_a_row(), points).sum());
   EXPECT_EQ(fit.log_likelihood, fit_em(points, 4, options, 1).log_likelihood);
+}
+
+/// What restarts agree on is what each finds by itself: as many as do so when every one of them is the only one.
+/// Crossed with the best one they nearly all would.
+TEST(Restarts, AgreementIsCountedBeforeCrossing) {
+  GaussianMixture truth;
+  constexpr Index clusters = 9;
+  truth.weights = Eigen::VectorXd::Constant(clusters, 1.0 / clusters);
+  truth.means.resize(2, clusters);
+  for (Index k = 0; k < clusters; ++k)
+    truth.means.col(k) << 4.0 * static_cast<double>(k % 3), 4.0 * static_cast<double>(k / 3);
+  truth.covariances.assign(clusters, Eigen::Matrix2d::Identity());
+  int disagreeing = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Eigen::MatrixXd points = draw(truth, 300, seed);
+    EmOptions options;
+    options.restarts = 6;
+    options.split_merge = 1;
+    const ScaledCloud cloud(PointSet(points), options);
+    const auto start_of = [&](int i) { return make_start(cloud, clusters + 2, i, options, seed); };
+    const EmResult all = best_of_restarts(cloud.points, start_of, options, seed);
+    EmOptions one = options;
+    one.restarts = 1;
+    int agreeing = 0;
+    for (int i = 0; i < options.restarts; ++i) {
+      const EmResult alone = best_of_restarts(
+          cloud.points, [&](int) { return start_of(i); }, one, seed);
+      agreeing += alone.log_likelihood >= all.log_likelihood - 1e-4 * 300.0 ? 1 : 0;
+    }
+    EXPECT_EQ(all.agreeing_restarts, agreeing) << seed;
+    disagreeing += options.restarts - agreeing;
+  }
+  EXPECT_GT(disagreeing, 4) << "the comparison shows nothing";
 }
 
 TEST(Restarts, ClimbsWithoutHopeAreGivenUp) {

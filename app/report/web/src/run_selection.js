@@ -70,6 +70,8 @@ function panels(candidates) {
 
 const number = (name, key) => ({name, of: (row) => row[key]});
 const word = (name, key) => ({name, text: true, of: (row) => row[key]});
+const statusText = (row) =>
+  [row.selected ? 'chosen' : row.status, row.failed, row.floor_active && 'rests on the floor'].filter(Boolean).join(', ');
 const columns = [
   number('K', 'components'),
   word('Shape', 'covariance'),
@@ -84,7 +86,7 @@ const columns = [
   number('Iterations', 'iterations'),
   word('Converged', 'converged'),
   number('Restarts agree', 'agreeing'),
-  {name: 'Status', text: true, of: (row) => (row.selected ? 'chosen' : row.status)},
+  {name: 'Status', text: true, of: statusText},
 ];
 
 export function drawSelection(selection) {

@@ -136,6 +136,7 @@ HWY_NOINLINE void write(const Settings& settings, const Fit<Q>& fit, Index first
   scatter(fit.condition, count, from(out.condition, first), 1);
   scatter(fit.inlier_fraction, count, from(out.inlier_fraction, first), 1);
   scatter(fit.r_squared, count, from(out.r_squared, first), 1);
+  scatter(fit.weighed_information, count, from(out.weighed_information, first), 1);
   write_criterion(settings, fit, count, from(out.aic, first));
   for (int j = 0; j < Q; ++j) scatter(fit.information[j], count, from(out.information, first * Q + j), Q);
 }

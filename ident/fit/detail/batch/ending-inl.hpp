@@ -56,9 +56,10 @@ HWY_INLINE V data_parameters(const Settings& settings, const Surroundings<Q>& ar
   return f;
 }
 
-/// As ident/fit/covariance.hpp states it, with Huber's correction K.
+/// As ident/fit/covariance.hpp states it, with Huber's correction K; `weighed` is its weighed_information.
 template <int Q>
-HWY_NOINLINE Symmetric<Q> model_covariance(const Settings& settings, const Start<Q>& start, const Ending& e, V f) {
+HWY_NOINLINE Symmetric<Q> model_covariance(const Settings& settings, const Start<Q>& start, const Ending& e, V f,
+                                           V& weighed) {
   const V freedom = hn::Sub(start.count, f);
   const V mean_slope = hn::Div(e.slope, start.count), square = hn::Mul(mean_slope, mean_slope);
   const V slope_variance = hn::Max(hn::Sub(hn::Div(e.slope_square, start.count), square), zero());
@@ -71,6 +72,8 @@ HWY_NOINLINE Symmetric<Q> model_covariance(const Settings& settings, const Start
     return result;
   }
   const V precision = hn::IfThenElseZero(hn::Gt(e.slope, zero()), hn::Div(splat(1.0), variance));
+  const V ratio = hn::Div(hn::Mul(mean_slope, variance), hn::Mul(start.sigma, start.sigma));
+  weighed = hn::IfThenElse(hn::Gt(e.slope, zero()), ratio, splat(1.0));
   Symmetric<Q> information;
   for (int i = 0; i < at(Q, 0); ++i) information.a[i] = hn::Mul(precision, start.gram.a[i]);
   for (int j = 0; j < Q; ++j) {

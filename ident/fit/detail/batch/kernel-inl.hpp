@@ -21,7 +21,7 @@ template <int Q>
 struct Fit {
   Search<Q> search;
   Symmetric<Q> covariance;
-  V noise_variance, condition, rank, inlier_fraction, r_squared;
+  V noise_variance, condition, rank, inlier_fraction, r_squared, weighed_information;
   V samples, sigma, deviance, data_parameters, price;  // what Akaike's criterion is made from
   V information[Q];
   M clear, enough, reached, deficient;
@@ -47,11 +47,12 @@ HWY_INLINE void describe(const Settings& settings, const View& view, const LossT
                          const Surroundings<Q>& around, Fit<Q>& fit) {
   const Ending e = residual_sums(view, loss, fit.search.theta);
   const V f = data_parameters(settings, around);
+  fit.weighed_information = splat(std::numeric_limits<double>::quiet_NaN());
   if (settings.covariance == CovarianceKind::sandwich) {
     const AnyLoss any_loss(settings.loss, hn::Mul(splat(settings.loss_scale), start.sigma));
     fit.covariance = sandwich_covariance(view, any_loss, around, start.sigma, fit.search.theta);
   } else {
-    fit.covariance = model_covariance(settings, start, e, f);
+    fit.covariance = model_covariance(settings, start, e, f, fit.weighed_information);
   }
   const V divisor = hn::Mul(hn::Sub(start.count, start.rank), splat(settings.consistency));
   fit.noise_variance = hn::Max(hn::Div(e.weighted_square, divisor), splat(settings.floor * settings.floor));

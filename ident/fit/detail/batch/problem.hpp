@@ -60,14 +60,15 @@ enum class Verdict : std::uint8_t { solved, ill_conditioned, rank_deficient, too
 /// Where results go: one column per window of the chunk, laid out as in WindowFits. Null: not wanted.
 struct Output {
   Verdict* verdict = nullptr;
-  double* theta = nullptr;            ///< p
-  double* covariance = nullptr;       ///< p x p
-  double* noise_variance = nullptr;   ///< 1
-  double* condition = nullptr;        ///< 1
-  double* information = nullptr;      ///< p
-  double* inlier_fraction = nullptr;  ///< 1
-  double* r_squared = nullptr;        ///< 1
-  double* aic = nullptr;              ///< 1
+  double* theta = nullptr;                ///< p
+  double* covariance = nullptr;           ///< p x p
+  double* noise_variance = nullptr;       ///< 1
+  double* condition = nullptr;            ///< 1
+  double* information = nullptr;          ///< p
+  double* inlier_fraction = nullptr;      ///< 1
+  double* r_squared = nullptr;            ///< 1
+  double* aic = nullptr;                  ///< 1
+  double* weighed_information = nullptr;  ///< 1
   int* transitions = nullptr;
   int* rank = nullptr;
   int* status = nullptr;

@@ -59,6 +59,7 @@ batch::Output columns_from(WindowFits& fits, Index i) {
           .inlier_fraction = fits.inlier_fraction.data() + i,
           .r_squared = fits.r_squared.col(i).data(),
           .aic = fits.aic.data() + i,
+          .weighed_information = fits.weighed_information.col(i).data(),
           .transitions = fits.transitions.data() + i,
           .rank = fits.rank.data() + i,
           .status = fits.status.data() + i};

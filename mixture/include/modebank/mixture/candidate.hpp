@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <string>
 
 #include "modebank/mixture/options.hpp"
 
@@ -30,12 +31,13 @@ struct Candidate {
   double heldout = 0.0;       ///< mean log density per point of runs left out; NaN unless asked for
   int iterations = 0;         ///< of the kept restart
   bool converged = false;     ///< within the limit of iterations
-  int agreeing_restarts = 0;  ///< restarts that ended at the best likelihood
+  int agreeing_restarts = 0;  ///< restarts that reached the best likelihood by themselves, before they were crossed
   bool selected = false;      ///< whether it is the chosen one
   double bic_naive = std::numeric_limits<double>::quiet_NaN();  ///< BIC as if the points were independent
   int restarts = 0;                                             ///< independent starts
   bool floor_active = false;  ///< whether the covariance floor holds any component: a cluster without extent
   CandidateStatus status = CandidateStatus::fitted;  ///< whether it could be fitted
+  std::string failed;  ///< why it could not be fitted, or has no held-out score; empty: nothing failed
 };
 
 }  // namespace modebank

@@ -18,6 +18,7 @@ struct Points {
   std::vector<std::ptrdiff_t> runs;  ///< N, the run each is from: what is left out and resampled together; may be empty
   double effective_samples = 0.0;    ///< independent samples they are worth; 0: all are independent. Windows that
                                      ///< overlap share samples: N step / length
+  std::vector<double> typical_error = {};  ///< F, standard deviation of a typical point's error; empty or 0: unknown
 };
 
 /// Weighted sum of K Gaussians over F features, in the points' units, and of a uniform component where there is one.

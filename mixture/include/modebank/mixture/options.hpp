@@ -36,11 +36,12 @@ struct EmOptions {
   /// Split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000). 0: none, and restarts are
   /// not crossed.
   int split_merge = 5;
-  double tolerance = 1e-7;         ///< stop when the mean log-likelihood per unit weight gains less; negative: never
-  int max_iterations = 1000;       ///< M steps, >= 0
-  double covariance_floor = 1e-6;  ///< eigenvalues (variances) are kept above this share of the data's variance per
-                                   ///< feature (without far outliers), >= 1e-10
-  bool noise_component = false;    ///< adds a uniform component over the points' bounding box
+  double tolerance = 1e-7;    ///< stop when the mean log-likelihood per unit weight gains less; negative: never
+  int max_iterations = 1000;  ///< M steps, >= 0
+  /// Components are kept wider than this share of the variance of a point's error (the median window's), per feature;
+  /// where errors are not known, of the data's variance (without far outliers). >= 1e-10
+  double covariance_floor = 1e-6;
+  bool noise_component = false;  ///< adds a uniform component over the points' bounding box
 };
 
 /// What chooses the number of components: information criteria, or the log density of runs left out. bic_naive is BIC
@@ -79,7 +80,9 @@ struct EnumNames<FeatureSet> {
   static constexpr Names<2> values{"parameters", "parameters+noise"};
 };
 
-/// Which windows are clustered. automatic: all with a prior, else those of full rank.
+/// Which windows are clustered. automatic: those whose data determine all parameters; all where that is less than two
+/// windows' worth of data per feature (and a prior gives the others a theta), and with error_aware. Others are assigned
+/// to the components afterwards, as far as their data tell (with a prior).
 enum class WindowChoice { automatic, full_rank, all };
 
 template <>
