@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -19,6 +20,8 @@ std::string where(const Finding& finding) {
   return fmt::format("{} {} run{}", finding.runs, words_for(finding.role), finding.runs == 1 ? "" : "s");
 }
 
+std::string shows(const Finding& finding) { return where(finding) + (finding.runs == 1 ? " shows" : " show"); }
+
 /// " The bank of 5 modes gains +0.134 +- 0.040 nats per sample over one_motion (...), its best competitor."
 std::string least_gain_words(const Finding& finding) {
   if (finding.best_competitor.empty()) return "";
@@ -29,11 +32,15 @@ std::string least_gain_words(const Finding& finding) {
                      description_of(finding.best_competitor));
 }
 
+/// What describes the runs instead, better or as well.
 std::string instead_words(const Finding& finding) {
   if (finding.better_description.empty()) return "";
-  return fmt::format(" {} as well by {} ({}).",
-                     finding.answer == Answer::cannot_tell ? "They may be described" : "They are described",
-                     description_of(finding.better_description), finding.better_description);
+  const bool better = std::any_of(finding.gains.begin(), finding.gains.end(), [&](const PairedGain& gain) {
+    return gain.competitor == finding.better_description && gain.falls_short();
+  });
+  return fmt::format(
+      " These runs {} {} by {} ({}).", finding.answer == Answer::cannot_tell ? "may be described" : "are described",
+      better ? "better" : "as well", description_of(finding.better_description), finding.better_description);
 }
 
 std::string why_not_told(const Finding& finding) {
@@ -53,9 +60,9 @@ std::string coarse_words(const Finding& finding) {
             : fmt::format("{} comes in steps of {:.3g}, predictions are uncertain by {:.3g}", state.state,
                           state.quantum, state.innovation_sd));
   return fmt::format(
-      "Whether {} show modes of motion is not judged by log score: {}, so that a density says more about the "
+      "Whether {} modes of motion is not judged by log score: {}, so that a density says more about the "
       "measurement than about the motion.",
-      where(finding), fmt::join(reasons, "; "));
+      shows(finding), fmt::join(reasons, "; "));
 }
 
 std::string answer_words(const Finding& finding) {
@@ -65,19 +72,19 @@ std::string answer_words(const Finding& finding) {
     case Answer::not_comparable:
       return coarse_words(finding);
     case Answer::cannot_tell:
-      return fmt::format("Whether {} show modes of motion cannot be told: {}.", where(finding), why_not_told(finding)) +
+      return fmt::format("Whether {} modes of motion cannot be told: {}.", shows(finding), why_not_told(finding)) +
              least_gain_words(finding) + instead_words(finding);
     case Answer::no_evidence:
       return fmt::format(
-                 "{}{} show no evidence for modes of motion.",
+                 "{}{} no evidence for modes of motion.",
                  finding.modes_differ ? "" : "The modes do not differ in their parameters beyond their errors: ",
-                 where(finding)) +
+                 shows(finding)) +
              least_gain_words(finding) + instead_words(finding);
     case Answer::evidence:
       return fmt::format(
-                 "{} show evidence for modes of motion: several linear models describe them better than one does (a "
+                 "{} evidence for modes of motion: several linear models describe them better than one does (a "
                  "motion that is nonlinear would show so, too).",
-                 where(finding)) +
+                 shows(finding)) +
              least_gain_words(finding);
   }
   return "";

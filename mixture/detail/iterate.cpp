@@ -137,26 +137,26 @@ EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptio
   EmResult result;
   result.log_likelihood = -std::numeric_limits<double>::infinity();
   Extrapolation extrapolation;
-  GaussianMixture trial = std::move(start), plain;
-  bool extrapolated = false;
+  GaussianMixture trial = std::move(start);
+  std::optional<GaussianMixture> plain;  // what EM itself made, where `trial` is extrapolated
   while (true) {
     const bool last = result.iterations == options.max_iterations;
     const MixtureMoments moments = last ? measure(points, trial) : expect(points, trial);
     const double gain = moments.log_likelihood - result.log_likelihood;
-    if (extrapolated && !(gain >= 0.0)) {
-      trial = std::move(plain);
-      extrapolated = false;
+    if (plain && !(gain >= 0.0)) {
+      trial = std::move(*plain);
+      plain.reset();
       extrapolation.shorten();
       continue;
     }
     result.log_likelihood = moments.log_likelihood;
     // Only what EM itself gains says how near its end is.
-    result.converged = !extrapolated && gain < least_gain;
+    result.converged = !plain && gain < least_gain;
     if (result.converged || last) break;
     if (steps == Steps::extrapolated) result.mixture = trial;
     result.floor_active = maximise(moments, options.covariance_floor, trial);
     ++result.iterations;
-    extrapolated = false;
+    plain.reset();
     if (steps == Steps::plain) continue;
     const auto next = extrapolation.next(coordinates_of(result.mixture), coordinates_of(trial));
     // One geometric series would gain at most half of gain * steps; several together more than the fastest of them
@@ -167,7 +167,6 @@ EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptio
     std::optional<GaussianMixture> mixture = next ? mixture_of(*next, trial, options) : std::nullopt;
     if (!mixture) continue;
     plain = std::exchange(trial, std::move(*mixture));
-    extrapolated = true;
   }
   result.mixture = std::move(trial);
   return result;

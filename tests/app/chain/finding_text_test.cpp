@@ -36,8 +36,9 @@ TEST(FindingText, EvidenceNamesGainErrorAndTheOtherExplanation) {
 TEST(FindingText, NoEvidenceNamesWhatDescribesTheRunsInstead) {
   Finding finding = finding_of(Answer::no_evidence);
   finding.better_description = "drifting";
-  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("no evidence for modes of motion"),
-                                           HasSubstr("by one motion whose parameters drift (drifting)")));
+  EXPECT_THAT(finding_text(finding),
+              AllOf(HasSubstr("no evidence for modes of motion"),
+                    HasSubstr("These runs are described as well by one motion whose parameters drift (drifting).")));
   finding.modes_differ = false;
   EXPECT_THAT(finding_text(finding), HasSubstr("The modes do not differ in their parameters beyond their errors"));
 }
