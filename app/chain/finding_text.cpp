@@ -55,7 +55,7 @@ std::string coarse_words(const Finding& finding) {
   std::vector<std::string> reasons;
   for (const Resolution& state : finding.coarse)
     reasons.push_back(
-        state.repeated > 0.1
+        state.repeated > repeated_share
             ? fmt::format("{:.0f} % of the samples of {} repeat the one before", 100 * state.repeated, state.state)
             : fmt::format("{} comes in steps of {:.3g}, predictions are uncertain by {:.3g}", state.state,
                           state.quantum, state.innovation_sd));

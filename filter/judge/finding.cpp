@@ -16,7 +16,6 @@ namespace {
 using Eigen::Index;
 
 constexpr double coarse_share = 0.25;     // of the innovation's standard deviation: densities then peak between quanta
-constexpr double repeated_share = 0.1;    // measured noise hardly ever repeats to the last digit
 constexpr double noticeable_rmse = 1e-3;  // relative: what a table of three digits shows
 
 Index scored_runs(const Densities& densities) {

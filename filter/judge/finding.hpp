@@ -43,6 +43,10 @@ struct Resolution {
   double innovation_sd = 0.0;  ///< median standard deviation of the bank's predictions [state unit]
 };
 
+/// Share of repeated samples beyond which densities are not compared: measured noise hardly ever repeats to the last
+/// digit.
+inline constexpr double repeated_share = 0.1;
+
 /// A competitor that predicts the mean better than the bank, in root mean square over the judged runs.
 struct BetterMean {
   std::string competitor;

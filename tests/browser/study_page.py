@@ -43,7 +43,7 @@ class StudyPage(PageTest):
         stored = self.stored()
         rows = self.rows()
         self.assertEqual(len(rows), len(stored))
-        scores = [name for name in stored.dtype.names if name.startswith(("bank_", "baseline_", "noise_only_")) or name == "modes"]
+        scores = [name for name in stored.dtype.names if name.startswith(("bank_", "baseline_", "noise_only_", "one_motion_", "drifting_")) or name == "modes"]
         self.assertGreater(len(scores), 20)
         for line, row in zip(rows, stored):
             self.assertEqual(line["status"][0], row["status"].decode())
@@ -111,9 +111,9 @@ class StudyPage(PageTest):
         stored = self.stored()
         shown = session.browser.run("return Object.fromEntries(document.querySelector('#coverage div.plot').data.map((t) => [t.meta, t.y]))")
         for role in ("train", "test"):
-            for side, sign in (("above", 1), ("below", -1)):
-                wanted = [stored[f"{name}_{role}_nis_{side}"].mean() for name in ("baseline", "noise_only")]
-                wanted += [stored[f"bank_{role}_nis_{side}"][stored["mixture.components"] == k].mean() for k in (1, 2, 3)]
+            for side, score, sign in (("above", "too_far", 1), ("below", "too_close", -1)):
+                wanted = [stored[f"{name}_{role}_{score}"].mean() for name in ("baseline", "noise_only", "one_motion", "drifting")]
+                wanted += [stored[f"bank_{role}_{score}"][stored["mixture.components"] == k].mean() for k in (1, 2, 3)]
                 for value, mean in zip(shown[f"{role} {side}"], wanted):
                     self.assertAlmostEqual(value, sign * 100 * mean, places=9)
 

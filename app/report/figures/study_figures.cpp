@@ -41,8 +41,10 @@ FigureSet study_figures(const StudyTable& table) {
   struct Bar {
     std::string title, filter, value;
   };
-  std::vector<Bar> bars{
-      {"baseline", "baseline", ""}, {"noise only", "noise_only", ""}, {"one motion", "one_motion", ""}};
+  std::vector<Bar> bars{{"baseline", "baseline", ""},
+                        {"noise only", "noise_only", ""},
+                        {"one motion", "one_motion", ""},
+                        {"drifting", "drifting", ""}};
   for (const std::string& count : counts) bars.push_back({"K = " + count, "bank", count});
   Figure figure("coverage", assets::figure_coverage());
   std::vector<std::string> titles;

@@ -11,13 +11,14 @@ const true_share = 2.5;  // per cent on either side, as a true filter has
 const sides = [['above', 1], ['below', -1]];
 const roles = [['train', 'training', palette.modes[0]], ['test', 'held out', palette.modes[1]]];
 
-// [name, filter, its runs]: baseline and noise only over all runs, the bank by level of a key.
+// [name, filter, its runs]: competitors over all runs, the bank by level of a key.
 function groupsOf(axis, rows) {
   const ofLevel = (level) => rows.filter((row) => axis.of(row) === level);
   return [
     ['baseline', 'baseline', rows],
     ['noise only', 'noise_only', rows],
     ['one motion', 'one_motion', rows],
+    ['drifting', 'drifting', rows],
     ...axis.levels.map((level) => [String(level), 'bank', ofLevel(level)]),
   ];
 }
