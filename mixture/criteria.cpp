@@ -75,18 +75,20 @@ Index best_candidate(const std::vector<Candidate>& candidates, Criterion criteri
 
 namespace {
 
+/// Differences of held-out scores by less than this many standard errors are chance: of up to twelve candidates the
+/// best is compared.
+constexpr double standard_errors = 2.0;
+
 std::string disagreement(const std::vector<Candidate>& candidates, const Candidate& selected) {
-  std::string choices;
-  bool differ = false;
-  // Naive BIC is in the table to be compared with, not to be heard.
-  for (const Criterion criterion : {Criterion::bic, Criterion::icl, Criterion::aic, Criterion::heldout}) {
-    const Index best = best_candidate(candidates, criterion);
-    if (best < 0) continue;
-    const Index components = candidates[static_cast<std::size_t>(best)].components;
-    choices += fmt::format("{}{} {}", choices.empty() ? "" : ", ", name_of(criterion), components);
-    differ = differ || components != selected.components;
-  }
-  return differ ? "the criteria choose different numbers of components: " + choices : "";
+  const Index best = best_candidate(candidates, Criterion::heldout);
+  if (best < 0) return "";
+  const Candidate& other = candidates[static_cast<std::size_t>(best)];
+  const double gain = other.heldout - selected.heldout;
+  if (!(gain > standard_errors * other.heldout_error)) return "";
+  return fmt::format(
+      "windows of runs left out are likelier under {} components than under {}: by {:.3g} +- {:.2g} nats "
+      "per window",
+      other.components, selected.components, gain, other.heldout_error);
 }
 
 }  // namespace

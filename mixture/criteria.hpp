@@ -26,8 +26,10 @@ double badness(const Candidate& candidate, Criterion criterion);
 /// not.
 Eigen::Index best_candidate(const std::vector<Candidate>& candidates, Criterion criterion);
 
-/// What the table says against trusting the selected row: restarts that disagree, the range's edge, other criteria that
-/// would choose otherwise, fits that did not converge. One sentence each.
+/// What the table says against trusting the selected row: restarts that disagree, the covariance floor, the range's
+/// edge, runs left out that are described better by another number by more than two standard errors, fits that did not
+/// converge. One sentence each. (That criteria differ says nothing: AIC asks for more components than BIC nearly
+/// always.)
 std::vector<std::string> selection_warnings(const std::vector<Candidate>& candidates);
 
 }  // namespace modebank

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <vector>
 
@@ -53,14 +54,22 @@ Index heldout_groups(const std::vector<Index>& runs) {
   return std::min(most_groups, static_cast<Index>(distinct(runs).size()));
 }
 
-double heldout_score(const PointSet& points, const std::vector<Index>& runs, Index components, EmOptions options,
-                     std::uint64_t seed) {
+double difference_error(const HeldoutScore& a, const HeldoutScore& b) {
+  const auto groups = static_cast<double>(a.sums.size());
+  if (a.sums.size() < 2 || b.sums.size() != a.sums.size()) return not_a_number;
+  const Eigen::ArrayXd difference = a.sums - b.sums, weight = a.weights;
+  const double mean = difference.sum() / weight.sum();
+  return std::sqrt(groups / (groups - 1.0) * (difference - mean * weight).square().sum()) / weight.sum();
+}
+
+HeldoutScore heldout_score(const PointSet& points, const std::vector<Index>& runs, Index components, EmOptions options,
+                           std::uint64_t seed) {
   const std::vector<std::vector<Index>> groups = points_of_groups(runs);
   const Index count = std::ssize(groups);
-  if (count < 2) return not_a_number;
+  if (count < 2) return {};
   options.restarts = std::min(options.restarts, 2);
   options.split_merge = 0;
-  Eigen::VectorXd sums = Eigen::VectorXd::Constant(count, not_a_number), weights = sums;
+  HeldoutScore score{Eigen::VectorXd::Constant(count, not_a_number), Eigen::VectorXd::Constant(count, not_a_number)};
   tbb::parallel_for(Index(0), count, [&](Index g) {
     const std::vector<Index>& group = groups[static_cast<std::size_t>(g)];
     const std::vector<Index> rest = rest_of(group, points.count());
@@ -72,10 +81,10 @@ double heldout_score(const PointSet& points, const std::vector<Index>& runs, Ind
     const Eigen::VectorXd density = log_density(fit.mixture, left_out.set());
     const Eigen::VectorXd weight =
         left_out.weights.size() > 0 ? left_out.weights : Eigen::VectorXd::Ones(density.size());
-    sums(g) = weight.dot(density);
-    weights(g) = weight.sum();
+    score.sums(g) = weight.dot(density);
+    score.weights(g) = weight.sum();
   });
-  return sums.sum() / weights.sum();
+  return score;
 }
 
 }  // namespace modebank

@@ -29,6 +29,7 @@ constexpr Index affordable_heldout = 20000;  // points
 struct FittedCandidate {
   GaussianMixture mixture;
   Candidate row;
+  HeldoutScore heldout = {};
 };
 
 /// What all candidates share.
@@ -127,10 +128,12 @@ bool wants_heldout(const Task& task) {
          (task.options.heldout == HeldoutChoice::automatic && task.points.count() <= affordable_heldout);
 }
 
-void score_heldout(const Task& task, Candidate& row) {
+void score_heldout(const Task& task, FittedCandidate& candidate) {
+  Candidate& row = candidate.row;
   try {
-    row.heldout =
+    candidate.heldout =
         heldout_score(task.points, task.design.runs, row.components, task.options.em, task.seed_of(row.components));
+    row.heldout = candidate.heldout.mean();
   } catch (const NotPositiveDefinite& error) {
     row.failed = std::string("on runs left out: ") + error.what();
   }
@@ -145,7 +148,7 @@ std::vector<FittedCandidate> fit_all(const Task& task, const std::vector<Index>&
   if (wants_heldout(task))
     for_each_from_the_largest(std::ssize(components), [&](Index i) {
       if (fitted[static_cast<std::size_t>(i)].row.status == CandidateStatus::fitted)
-        score_heldout(task, fitted[static_cast<std::size_t>(i)].row);
+        score_heldout(task, fitted[static_cast<std::size_t>(i)]);
     });
   return fitted;
 }
@@ -218,6 +221,9 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
   const Index best = best_candidate(result.candidates, options.criterion);
   if (best < 0) report_no_choice(task, result.candidates);
   result.candidates[static_cast<std::size_t>(best)].selected = true;
+  for (std::size_t i = 0; i < fitted.size(); ++i)
+    result.candidates[i].heldout_error =
+        difference_error(fitted[i].heldout, fitted[static_cast<std::size_t>(best)].heldout);
   result.mixture = std::move(fitted[static_cast<std::size_t>(best)].mixture);
   if (options.bootstrap > 0)
     result.standard_error = bootstrap_runs(points, design.runs, result.mixture, options.em, options.bootstrap,

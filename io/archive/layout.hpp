@@ -94,7 +94,8 @@ void exchange_candidates(Io& io, C& candidates) {
            column("converged", &Candidate::converged), column("agreeing_restarts", &Candidate::agreeing_restarts),
            column("selected", &Candidate::selected), later_column("bic_naive", &Candidate::bic_naive),
            later_column("restarts", &Candidate::restarts), later_column("floor_active", &Candidate::floor_active),
-           later_column("status", &Candidate::status), later_column("failed", &Candidate::failed));
+           later_column("status", &Candidate::status), later_column("heldout_error", &Candidate::heldout_error),
+           later_column("failed", &Candidate::failed));
 }
 
 /// `parameters`: units of theta, the first features; the others are logarithms, without unit.

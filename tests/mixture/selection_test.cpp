@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "mixture/criteria.hpp"
+#include "mixture/heldout.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -101,6 +102,15 @@ TEST(Selection, StartsFromAGivenMixture) {
   EXPECT_NEAR(result.candidates[2].log_likelihood, log_density(three_clusters(12.0), points).sum(), 1e-8);
 }
 
+/// Three groups by hand: differences 1, 2 and 9 of weights 1, 1 and 2 about their mean of 3 per unit weight.
+TEST(Selection, HeldOutDifferencesHaveAnErrorOverGroups) {
+  const HeldoutScore a{Eigen::Vector3d(5.0, 5.0, 9.0), Eigen::Vector3d(1.0, 1.0, 2.0)};
+  const HeldoutScore b{Eigen::Vector3d(4.0, 3.0, 0.0), a.weights};
+  EXPECT_NEAR(difference_error(a, b), std::sqrt(1.5 * (4.0 + 1.0 + 9.0)) / 4.0, 1e-15);
+  EXPECT_EQ(difference_error(a, a), 0.0);
+  EXPECT_TRUE(std::isnan(difference_error(a, {})));
+}
+
 /// A candidate that throws (here its start is singular beyond what doubles can hold) is a row that says so.
 TEST(Selection, ACandidateThatFailsIsARow) {
   const Eigen::MatrixXd points = draw(three_clusters(12.0), 300, 5);
@@ -128,12 +138,16 @@ TEST(SelectionWarnings, NameWhatSpeaksAgainstTheChoice) {
   EXPECT_TRUE(selection_warnings(rows).empty());
   rows[1].agreeing_restarts = 2;
   rows[1].converged = false;
-  rows[2].aic = 0.0;
+  rows[2].aic = 0.0;  // says nothing
+  rows[2].heldout = 1.5;
+  rows[2].heldout_error = 0.3;
+  EXPECT_EQ(selection_warnings(rows).size(), 2u) << "half a nat is less than twice its error";
+  rows[2].heldout_error = 0.2;
   const std::vector<std::string> warnings = selection_warnings(rows);
   ASSERT_EQ(warnings.size(), 3u);
   EXPECT_NE(warnings[0].find("2 of 5 restarts"), std::string::npos);
   EXPECT_NE(warnings[1].find("did not converge"), std::string::npos);
-  EXPECT_NE(warnings[2].find("bic 2, icl 2, aic 3, heldout 2"), std::string::npos);
+  EXPECT_NE(warnings[2].find("likelier under 3 components than under 2: by 0.5 +- 0.2"), std::string::npos);
 }
 
 /// What rests on the floor has the likelihood that the floor chose: it is chosen only where all do, and not silently.

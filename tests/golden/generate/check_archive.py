@@ -168,7 +168,7 @@ def check_mixture(file):
     expect("candidates columns", table.dtype.names,
            ("components", "covariance", "log_likelihood", "parameters", "effective_samples", "bic", "aic", "icl",
             "heldout", "iterations", "converged", "agreeing_restarts", "selected", "bic_naive", "restarts",
-            "floor_active", "status", "failed"))
+            "floor_active", "status", "heldout_error", "failed"))
     expect("status", table["status"], np.array([b"fitted", b"failed"]))
     expect("failed", table["failed"], np.array([b"", b"its covariance is singular"]))
     expect("converged dtype", table.dtype["converged"].str, "|i1")

@@ -19,7 +19,8 @@ void expect_same(const Candidate& a, const Candidate& e) {
   EXPECT_EQ(a.failed, e.failed);
   EXPECT_EQ(a.status, e.status);
   const auto reals = [](const Candidate& c) {
-    return Eigen::Matrix<double, 6, 1>(c.log_likelihood, c.effective_samples, c.bic, c.aic, c.icl, c.heldout);
+    return Eigen::Matrix<double, 7, 1>(c.log_likelihood, c.effective_samples, c.bic, c.aic, c.icl, c.heldout,
+                                       c.heldout_error);
   };
   EXPECT_TRUE(same_bits(reals(a), reals(e)));
 }

@@ -37,6 +37,8 @@ struct Candidate {
   int restarts = 0;                                             ///< independent starts
   bool floor_active = false;  ///< whether the covariance floor holds any component: a cluster without extent
   CandidateStatus status = CandidateStatus::fitted;  ///< whether it could be fitted
+  /// Standard error of the difference of `heldout` from the selected candidate's; NaN where there is none.
+  double heldout_error = std::numeric_limits<double>::quiet_NaN();
   std::string failed;  ///< why it could not be fitted, or has no held-out score; empty: nothing failed
 };
 
