@@ -254,4 +254,8 @@ MixtureResult merge_components(MixtureResult result, Index most) {
   return result;
 }
 
+std::ptrdiff_t most_components(const SelectionOptions& options) {
+  return options.components.empty() ? 0 : *std::max_element(options.components.begin(), options.components.end());
+}
+
 }  // namespace modebank

@@ -34,6 +34,9 @@ struct Selection {
   MixtureErrors standard_error;
 };
 
+/// Of the numbers of components that are tried.
+std::ptrdiff_t most_components(const SelectionOptions& options);
+
 /// Fits every candidate (in parallel over candidates and restarts, seeds split by both) and keeps the best by the
 /// criterion (the smaller on a tie). The table is sorted by components, each once. `start`: where the first restart of
 /// the candidate of its size begins, in physical units; may be null. Throws DataError when every candidate asks for

@@ -3,6 +3,7 @@
 #include "filter/learn/learn.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "io/import/import.hpp"
+#include "mixture/select.hpp"
 
 namespace modebank {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 BankInputs bank_inputs(const ChainOptions& options, const FitOptions& window) {
   BankInputs inputs{window, options.bank, options.filter.variant == FilterVariant::kf, {}};
   inputs.bank.em.seed = options.seed;
+  inputs.bank.em.most_modes = most_components(options.mixture.selection);
   inputs.bank.refine = refinement_asked(options.bank, is_linear(window));  // one key for what is the same
   const bool runs_the_filter = inputs.bank.refine == Refine::em || options.bank.modes > 0;
   if (runs_the_filter && !inputs.one_model) inputs.filter = options.filter;

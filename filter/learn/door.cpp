@@ -10,6 +10,7 @@
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/linearise.hpp"
 #include "mixture/outside.hpp"
+#include "mixture/select.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/learn/learn.hpp"
 
@@ -84,6 +85,7 @@ Learned learn_from(const Recording& recording, const LearnOptions& options, cons
 
 LearnOptions with_one_seed(LearnOptions options) {
   options.window.seed = options.bank.em.seed = options.seed;
+  options.bank.em.most_modes = most_components(options.mixture.selection);
   return options;
 }
 

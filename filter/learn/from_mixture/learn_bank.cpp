@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -213,7 +214,10 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   }
   RefineOptions em = options.em;
   em.screen = options.screen;
-  if (options.modes > 0) em.members = 1;  // several fits would have more modes than that
+  if (options.modes > 0) {
+    em.members = 1;  // several fits would have more modes than that
+    em.most_modes = std::min(em.most_modes, options.modes);
+  }
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   return refine_bank(recording, fits, starts, em, filter);
 }

@@ -21,17 +21,28 @@ Bank frame_of(const Bank& start, const WindowFits& fits, const RefineOptions& op
   return frame;
 }
 
+/// How many modes the stretches start with: more than the mixture's bank has, if so many are to be tried, and as many.
+std::vector<Index> stretch_modes(const RefineOptions& options, Index of_mixture) {
+  std::vector<Index> counts;
+  const double kept = options.tuning.modes_kept;
+  for (Index modes = options.most_modes; modes > of_mixture;
+       modes = static_cast<Index>(kept * static_cast<double>(modes)))
+    counts.push_back(modes);
+  if (of_mixture > 1) counts.push_back(of_mixture);  // every start of one mode ends in the same maximum
+  return counts;
+}
+
 /// The mixture's banks and random stretches of the runs.
 std::vector<RefineStart> all_starts(const RefineInput& in, const std::vector<Bank>& banks, double Q_transitions) {
   std::vector<RefineStart> starts;
   for (const Bank& bank : banks) starts.push_back({"mixture", switching_model(bank), Q_transitions});
   const SwitchingPrior prior = in.prior(Q_transitions);
-  // Every start of one mode ends in the same maximum.
-  for (Index i = 0; i < in.options.restarts && banks.front().mode_count() > 1; ++i)
-    starts.push_back({fmt::format("stretches {}", i + 1),
-                      start_from_stretches(in.transitions, prior, banks.front().mode_count(), in.fits.length,
-                                           in.options.seed, i, in.options.tuning),
-                      Q_transitions});
+  for (const Index modes : stretch_modes(in.options, banks.front().mode_count()))
+    for (Index i = 0; i < in.options.restarts; ++i)
+      starts.push_back(
+          {fmt::format("stretches {}", i + 1),
+           start_from_stretches(in.transitions, prior, modes, in.fits.length, in.options.seed, i, in.options.tuning),
+           Q_transitions});
   return starts;
 }
 

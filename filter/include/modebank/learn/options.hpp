@@ -51,7 +51,10 @@ struct EnumNames<Refine> {
 struct RefineOptions {
   std::ptrdiff_t max_iterations = 100;  ///< of expectation-maximisation
   double tolerance = 1e-6;              ///< nats per transition: stop when the objective gains less
-  std::ptrdiff_t restarts = 2;          ///< starts from random stretches of the runs besides the mixture's
+  std::ptrdiff_t restarts = 2;          ///< starts from random stretches of the runs besides the mixture's, for each
+                                        ///< number of modes tried
+  std::ptrdiff_t most_modes = 0;        ///< stretches start with so many modes, three quarters, ... down to the
+                                        ///< mixture's number, which is a start and no finding; 0: with that one alone
   std::ptrdiff_t members = 1;           ///< fits from different starts that become one bank at most, if the runs left
                                         ///< out like it
   std::ptrdiff_t folds = 6;             ///< parts of the cross-validation; 1: none, every start runs to convergence
