@@ -223,6 +223,17 @@ void Chain::put(ResidualTestSet tests) {
   put_rows(model, {std::move(tests)}, archive_.residual_tests);
 }
 
+/// A run may have fewer than the one before.
+void Chain::forget_competitors() {
+  for (const char* filter : competitor_names) {
+    put_rows<FilterEvaluation>(filter, {}, archive_.evaluations);
+    put_rows<SummaryRow>(filter, {}, archive_.summary);
+    put_rows<HorizonRow>(filter, {}, archive_.horizons);
+    put_rows<DiagnosticsRow>(filter, {}, archive_.diagnostics);
+    put_rows<ResidualTestSet>(filter, {}, archive_.residual_tests);
+  }
+}
+
 void Chain::judge(const ChainInputs& inputs) {
   const Stopwatch watch;
   const auto take = [&](Archive&& part) {
@@ -233,8 +244,13 @@ void Chain::judge(const ChainInputs& inputs) {
     }
     for (ResidualTestSet& tests : part.residual_tests) put(std::move(tests));
   };
+  const auto take_competitors = [&](Archive&& part) {
+    forget_competitors();
+    take(std::move(part));
+  };
   const CompetitorScoreInputs& competitors = inputs.competitor_scores;
   const auto score_competitors = [&] {
+    forget_competitors();
     put(test_global(*archive_.recording, *archive_.windows, competitors.window));
     for (const char* filter : competitor_names)
       score(filter, competitor_filter(filter, competitors.filter), competitors.scoring);
@@ -244,7 +260,7 @@ void Chain::judge(const ChainInputs& inputs) {
     models.emplace_back("global");
     return scores_of(models, archive_);
   };
-  provide(Stage::competitor_scores, {score_competitors, copy_competitors, take});
+  provide(Stage::competitor_scores, {score_competitors, copy_competitors, take_competitors});
 
   const auto score_bank = [&] { score("bank", inputs.bank_scores.filter, inputs.bank_scores.scoring); };
   provide(Stage::bank_scores, {score_bank, [&] { return scores_of({"bank"}, archive_); }, take});

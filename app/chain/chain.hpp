@@ -74,6 +74,7 @@ class Chain {
   void judge(const ChainInputs& inputs);
   void score(const std::string& filter, const FilterOptions& options, const ScoringOptions& scoring);
   void put(FilterScores scores);
+  void forget_competitors();
   void put(ResidualTestSet tests);
   void describe(const Execution& execution, const std::vector<InputFile>& more_files);
 

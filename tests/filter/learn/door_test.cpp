@@ -32,6 +32,7 @@ struct Expected {
 
 Expected by_hand(const Recording& recording, LearnOptions options) {
   options.window.seed = options.bank.em.seed = options.seed;
+  options.bank.em.most_modes = most_components(options.mixture.selection);
   const WindowFits fits = fit_windows(recording, options.window);
   const ClusterOptions& cluster = options.mixture;
   const FeatureCloud cloud =
