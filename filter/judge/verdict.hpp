@@ -10,12 +10,12 @@ namespace modebank {
 
 /// Whether a filter's stated uncertainty is true. overconfident: too many samples lie outside its 95 % band, more than
 /// 6 % and with 99 % confidence more than 5 %, however many lie close to its middle. underconfident: fewer than 2.5 %,
-/// and with 99 % confidence fewer than 5 %, lie outside; or fewer than 5 % do and with 95 % confidence more than 4 % lie
-/// so close to the middle as 2.5 % should (too_close). Where neither speaks, the mean NIS does if every prediction is
-/// one Gaussian of known variance (a mixture's NIS is not chi-square, nor that of a filter that learns its noise on the
-/// way, so there it is only flagged): when it lies outside the 99 % interval of a true filter's mean and is off by more
-/// than a tenth. calibrated: 2.5 to 7.5 % lie outside and 1 to 4 % too close, and neither interval holds all of its
-/// band. undecided: all else, as with a few hundred samples.
+/// and with 99 % confidence fewer than 5 %, lie outside; or fewer than 5 % do and with 95 % confidence more than 4 %
+/// lie so close to the middle as 2.5 % should (too_close). Where neither speaks, the mean NIS does if every prediction
+/// is one Gaussian of known variance (a mixture's NIS is not chi-square, nor that of a filter that learns its noise on
+/// the way, so there it is only flagged): when it lies outside the 99 % interval of a true filter's mean and is off by
+/// more than a tenth. calibrated: 2.5 to 7.5 % lie outside and 1 to 4 % too close, and neither interval holds all of
+/// its band. undecided: all else, as with a few hundred samples.
 ///
 /// Samples that follow each other closely count as fewer: of a band's misses as few as their autocorrelation time says
 /// or that of all samples' sizes (hits are too few to show it in short runs), with a margin for its own error.

@@ -114,7 +114,7 @@ TEST_P(IceReference, TwelveComponentsReachTheLevel) {
   const Fold& fold = GetParam();
   Config config = ice_config(fold.odd_runs_train);
   config.mixture.selection.components = {12};
-  config.bank.refine = Refine::none;  // the reference pools, it does not refine
+  config.bank.refine = Refine::none;           // the reference pools, it does not refine
   config.mixture.windows = WindowChoice::all;  // as the reference analysis
   constexpr int seeds = 10;
   double log_score = 0.0, rmse = 0.0;

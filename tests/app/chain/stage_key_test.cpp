@@ -169,6 +169,7 @@ const std::map<std::string, std::string> without_effect{
     {"mixture.straddling", "every choice treats all windows alike (cause not looked into)"},
     {"bank.screen", "no mode is left out"},
     {"bank.members", "the number of members changed no bank (cause not looked into)"},
+    {"bank.tolerance", "two iterations are the limit"},
     {"filter.time_steps", "samples are equally far apart"},
 };
 

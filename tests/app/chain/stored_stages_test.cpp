@@ -26,8 +26,8 @@ std::string numbers_of(const std::string& archive, const std::string& path) {
 
 std::string all_stages(const std::string& archive) {
   std::string text;
-  for (const char* stage : {"/data", "/windows", "/mixture", "/bank", "/baseline", "/noise_only", "/one_motion", "/drifting",
-                            "/evaluation", "/evaluation/evidence", "/residual_tests"})
+  for (const char* stage : {"/data", "/windows", "/mixture", "/bank", "/baseline", "/noise_only", "/one_motion",
+                            "/drifting", "/evaluation", "/evaluation/evidence", "/residual_tests"})
     text += numbers_of(archive, stage);
   return text;
 }

@@ -70,8 +70,9 @@ function panels(candidates) {
 
 const number = (name, key) => ({name, of: (row) => row[key]});
 const word = (name, key) => ({name, text: true, of: (row) => row[key]});
-const statusText = (row) =>
-  [row.selected ? 'chosen' : row.status, row.failed, row.floor_active && 'rests on the floor'].filter(Boolean).join(', ');
+const statusText = (row) => [row.selected ? 'chosen' : row.status, row.failed, row.floor_active && 'rests on the floor']
+                                .filter(Boolean)
+                                .join(', ');
 const columns = [
   number('K', 'components'),
   word('Shape', 'covariance'),
