@@ -51,7 +51,8 @@ std::string why_not_told(const Finding& finding) {
   return "the gain does not exceed what chance makes of so few runs";
 }
 
-std::string coarse_words(const Finding& finding) {
+/// "78 % of the samples of y repeat the one before; ..."
+std::string coarse_reasons(const Finding& finding) {
   std::vector<std::string> reasons;
   for (const Resolution& state : finding.coarse)
     reasons.push_back(
@@ -59,16 +60,26 @@ std::string coarse_words(const Finding& finding) {
             ? fmt::format("{:.0f} % of the samples of {} repeat the one before", 100 * state.repeated, state.state)
             : fmt::format("{} comes in steps of {:.3g}, predictions are uncertain by {:.3g}", state.state,
                           state.quantum, state.innovation_sd));
+  return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+std::string coarse_words(const Finding& finding) {
   return fmt::format(
       "Whether {} modes of motion is not judged by log score: {}, so that a density says more about the "
       "measurement than about the motion.",
-      shows(finding), fmt::join(reasons, "; "));
+      shows(finding), coarse_reasons(finding));
+}
+
+std::string one_mode_words(const Finding& finding) {
+  std::string text = "The bank has one mode, so modes of motion are not in question.";
+  if (finding.coarse.empty()) return text + instead_words(finding);
+  return text + fmt::format(" Its log scores say little: {}.", coarse_reasons(finding));
 }
 
 std::string answer_words(const Finding& finding) {
   switch (finding.answer) {
     case Answer::one_mode:
-      return "The bank has one mode, so modes of motion are not in question." + instead_words(finding);
+      return one_mode_words(finding);
     case Answer::not_comparable:
       return coarse_words(finding);
     case Answer::cannot_tell:

@@ -56,6 +56,8 @@ TEST(FindingText, OneModeAndCoarseMeasurementsClaimNothing) {
   Finding one = finding_of(Answer::one_mode);
   one.modes = 1;
   EXPECT_THAT(finding_text(one), AllOf(HasSubstr("one mode"), Not(HasSubstr("evidence"))));
+  one.coarse = {{"y", 0.0, 1.0, 0.0}};
+  EXPECT_THAT(finding_text(one), HasSubstr("Its log scores say little: 100 % of the samples of y repeat"));
   Finding coarse = finding_of(Answer::not_comparable);
   coarse.coarse = {{"wz", 0.2, 0.0, 0.12}, {"v", 0.0, 0.78, 0.1}};
   EXPECT_THAT(finding_text(coarse),
