@@ -119,7 +119,8 @@ const char* description_of(const std::string& competitor) {
 
 bool modes_differ(const Bank& bank) {
   const Index K = bank.mode_count();
-  const auto comparisons = static_cast<double>(K * (K - 1) / 2 * bank.structure.parameters());
+  const Index pairs = K * (K - 1) / 2;
+  const auto comparisons = static_cast<double>(pairs * bank.structure.parameters());
   if (K < 2) return false;
   const double far = normal_quantile(1.0 - 0.025 / comparisons);
   for (Index a = 0; a < K; ++a)

@@ -57,7 +57,8 @@ MeanError error_by_blocks(const SeriesByRun& d, double mean, double samples) {
   const auto length = static_cast<std::size_t>(std::ceil(times_per_block * time));
   double side_by_side = 0.0, squares = 0.0, count = 0.0;
   for (const auto& run : d) {
-    side_by_side += static_cast<double>(run.size() / length);
+    const std::size_t whole_blocks = run.size() / length;
+    side_by_side += static_cast<double>(whole_blocks);
     for (std::size_t first = 0; first + length <= run.size(); ++first) {
       const double excess = sum_of(run, first, length) - mean * static_cast<double>(length);
       squares += excess * excess;
