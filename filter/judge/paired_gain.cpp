@@ -42,14 +42,14 @@ struct MeanError {
   double standard_error = not_a_number, degrees_of_freedom = 0.0;
 };
 
-MeanError error_by_runs(const SeriesByRun& d, double mean, double samples) {
-  double squares = 0.0;
-  for (const auto& run : d) {
-    const double excess = sum_of(run, 0, run.size()) - mean * static_cast<double>(run.size());
-    squares += excess * excess;
+MeanError error_by_runs(const SeriesByRun& d) {
+  Eigen::VectorXd sums(std::ssize(d)), samples(std::ssize(d));
+  for (Index r = 0; r < sums.size(); ++r) {
+    const std::vector<double>& run = d[static_cast<std::size_t>(r)];
+    sums(r) = sum_of(run, 0, run.size());
+    samples(r) = static_cast<double>(run.size());
   }
-  const auto G = static_cast<double>(d.size());
-  return {std::sqrt(G / (G - 1.0) * squares) / samples, G - 1.0};
+  return {clustered_error(sums, samples), static_cast<double>(sums.size()) - 1.0};
 }
 
 MeanError error_by_blocks(const SeriesByRun& d, double mean, double samples) {
@@ -72,6 +72,13 @@ MeanError error_by_blocks(const SeriesByRun& d, double mean, double samples) {
 
 }  // namespace
 
+double clustered_error(const Eigen::VectorXd& sums, const Eigen::VectorXd& samples) {
+  const auto G = static_cast<double>(sums.size());
+  if (G < 2.0) return 0.0;
+  const double N = samples.sum(), mean = sums.sum() / N;
+  return std::sqrt(G / (G - 1.0) * (sums - mean * samples).squaredNorm()) / N;
+}
+
 PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::VectorXd>& better,
                        const std::vector<Eigen::VectorXd>& other) {
   const SeriesByRun d = differences(better, other);
@@ -80,8 +87,7 @@ PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::V
   result.standard_error = result.margin = not_a_number;
   if (!std::isfinite(result.gain)) return result;
   const double samples = sample_count(d);
-  const MeanError error =
-      result.by_blocks ? error_by_blocks(d, result.gain, samples) : error_by_runs(d, result.gain, samples);
+  const MeanError error = result.by_blocks ? error_by_blocks(d, result.gain, samples) : error_by_runs(d);
   result.standard_error = error.standard_error;
   result.degrees_of_freedom = error.degrees_of_freedom;
   if (error.degrees_of_freedom > 0.0)

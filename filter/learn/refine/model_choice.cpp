@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "filter/judge/paired_gain.hpp"
+
 namespace modebank {
 namespace {
 
@@ -16,10 +18,7 @@ double total(const LeftOutScores& candidate) {
 PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& worse, const Eigen::VectorXd& samples) {
   const Eigen::VectorXd difference = better - worse;
   if (!difference.allFinite()) return {std::numeric_limits<double>::infinity(), 0.0};
-  const double N = samples.sum(), mean = difference.sum() / N;
-  const auto runs = static_cast<double>(difference.size());
-  if (runs < 2.0) return {mean, 0.0};
-  return {mean, std::sqrt(runs / (runs - 1.0) * (difference - mean * samples).squaredNorm()) / N};
+  return {difference.sum() / samples.sum(), clustered_error(difference, samples)};
 }
 
 std::size_t best_candidate(const std::vector<LeftOutScores>& candidates) {
