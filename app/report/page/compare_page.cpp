@@ -66,8 +66,10 @@ json score_row(const ComparedScore& score, const SummaryRow& first, const Summar
 
 json scores_of(const Pair& runs) {
   json rows = json::array();
+  std::vector<std::string> filters{"bank"};
+  filters.insert(filters.end(), competitor_names.begin(), competitor_names.end());
   for (const Role role : {Role::test, Role::train})
-    for (const char* filter : {"bank", "baseline", "noise_only", "one_motion", "drifting"}) {
+    for (const std::string& filter : filters) {
       const SummaryRow* first = pooled_row(runs[0].archive, filter, role);
       const SummaryRow* second = pooled_row(runs[1].archive, filter, role);
       if (!first || !second) continue;
