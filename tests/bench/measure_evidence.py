@@ -13,32 +13,23 @@ import concurrent.futures
 import math
 import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 
 import h5py
 import numpy as np
 
-RUNS, SAMPLES, DT_S = 12, 400, 0.1
-A, B, SD = -0.3, np.array([-0.2, 0.2]), 0.02
+from switching_system import SD, Switching, inputs, run_program, sticky
 
-
-def inputs(g, run):
-    u = np.zeros((SAMPLES, 2))
-    k = 0
-    while k < SAMPLES:
-        held = 1 if run % 2 else int(g.integers(3, 25))
-        u[k:k + held] = g.uniform(-0.5, 0.5, 2)
-        k += held
-    return u
+RUNS, SAMPLES = 12, 400
+A, B = -0.3, np.array([-0.2, 0.2])
 
 
 def one_state(g, noise=None, a=None, b=None, drive=lambda v: v):
     """Runs of x[k+1] = x[k] + a x[k] + drive(b u[k]) + w[k]; noise(run) and a, b per sample where given."""
     runs = []
     for run in range(RUNS):
-        u, x = inputs(g, run), np.zeros(SAMPLES)
+        u, x = inputs(g, run, SAMPLES), np.zeros(SAMPLES)
         w = noise(run) if noise else SD * g.standard_normal(SAMPLES)
         a_k, b_k = (a(run) if a else np.full(SAMPLES, A)), (b(run) if b else np.tile(B, (SAMPLES, 1)))
         for k in range(SAMPLES - 1):
@@ -47,23 +38,12 @@ def one_state(g, noise=None, a=None, b=None, drive=lambda v: v):
     return runs
 
 
-def sticky(g, count, stay_samples):
-    z = np.zeros(SAMPLES, int)
-    k, mode = 0, int(g.integers(count))
-    while k < SAMPLES:
-        stay = max(1, int(g.exponential(stay_samples)))
-        z[k:k + stay] = mode
-        mode = int(g.choice([m for m in range(count) if m != mode])) if count > 1 else 0
-        k += stay
-    return z
-
-
 def student(g):
     return one_state(g, lambda run: SD * g.standard_t(4, SAMPLES) / math.sqrt(2.0))
 
 
 def two_noises(g):
-    return one_state(g, lambda run: SD * np.array([0.4, 1.6])[sticky(g, 2, 80)] * g.standard_normal(SAMPLES))
+    return one_state(g, lambda run: SD * np.array([0.4, 1.6])[sticky(g, 2, 80, SAMPLES)] * g.standard_normal(SAMPLES))
 
 
 def noise_by_run(g):
@@ -90,7 +70,7 @@ def drift(g):
 def lag_too_few(g):
     runs = []
     for run in range(RUNS):
-        u, x = inputs(g, run), np.zeros(SAMPLES)
+        u, x = inputs(g, run, SAMPLES), np.zeros(SAMPLES)
         for k in range(1, SAMPLES - 1):
             x[k + 1] = 1.1 * x[k] - 0.4 * x[k - 1] + B @ u[k] + SD * g.standard_normal()
         runs.append((u, x[:, None]))
@@ -107,7 +87,7 @@ def no_input(g):
 
 
 def constant(g):
-    return [(inputs(g, run), np.full((SAMPLES, 1), 0.25)) for run in range(RUNS)]
+    return [(inputs(g, run, SAMPLES), np.full((SAMPLES, 1), 0.25)) for run in range(RUNS)]
 
 
 def saturating(g):
@@ -121,64 +101,6 @@ NOTHING = {"one linear motion": one_state, "Student's t, 4 degrees": student, "t
 NAMED = {"one saturating motion (tanh)": saturating}
 
 
-class Switching:
-    """A system of 2 to 4 modes and its filter with the true parameters: an IMM, exact for R = 0."""
-
-    def __init__(self, g):
-        self.K, self.n, self.dwell = int(g.integers(2, 5)), int(g.integers(1, 3)), float(g.uniform(50, 400))
-        n = self.n
-        self.A = [np.diag(g.uniform(-0.6, -0.1, n)) + (0.08 * g.standard_normal((n, n)) * (1 - np.eye(n))) for _ in range(self.K)]
-        self.B = [0.2 * g.standard_normal((n, 2)) for _ in range(self.K)]
-        self.sd = SD * np.exp(0.3 * g.standard_normal(self.K))
-        self.R = SD ** 2 / 4 if g.integers(2) else 0.0
-        self.runs = [self.simulate(g, run) for run in range(RUNS)]
-
-    def simulate(self, g, run):
-        u, z, x = inputs(g, run), sticky(g, self.K, self.dwell), np.zeros((SAMPLES, self.n))
-        for k in range(SAMPLES - 1):
-            m = z[k]
-            x[k + 1] = x[k] + self.A[m] @ x[k] + self.B[m] @ u[k] + self.sd[m] * g.standard_normal(self.n)
-        return u, x + math.sqrt(self.R) * g.standard_normal(x.shape)
-
-    def log_density(self, u, y):
-        K, n = self.K, self.n
-        T = np.full((K, K), 1 / self.dwell / max(1, K - 1))
-        np.fill_diagonal(T, 1 - 1 / self.dwell)
-        R = max(self.R, 1e-12) * np.eye(n)
-        mu, means, covs = np.full(K, 1 / K), [y[0].copy() for _ in range(K)], [R.copy() for _ in range(K)]
-        out = np.full(len(y), np.nan)
-        for k in range(1, len(y)):
-            c = T.T @ mu
-            mixed = T * mu[:, None] / c
-            start = [sum(mixed[i, j] * means[i] for i in range(K)) for j in range(K)]
-            spread = [sum(mixed[i, j] * (covs[i] + np.outer(means[i] - start[j], means[i] - start[j])) for i in range(K)) for j in range(K)]
-            logs = np.zeros(K)
-            for j in range(K):
-                F = np.eye(n) + self.A[j]
-                x, P = F @ start[j] + self.B[j] @ u[k - 1], F @ spread[j] @ F.T + self.sd[j] ** 2 * np.eye(n)
-                S, e = P + R, y[k] - x
-                gain = np.linalg.solve(S, P).T
-                logs[j] = -0.5 * (e @ np.linalg.solve(S, e) + np.linalg.slogdet(2 * np.pi * S)[1])
-                means[j], covs[j] = x + gain @ e, P - gain @ P
-            top = logs.max()
-            weights = c * np.exp(logs - top)
-            out[k] = top + math.log(weights.sum())
-            mu = weights / weights.sum()
-        return out
-
-
-def run_program(program, runs, folder, extra=()):
-    n = runs[0][1].shape[1]
-    for i, (u, y) in enumerate(runs):
-        names = [f"y{j}" for j in range(n)] + ["u0", "u1"]
-        np.savetxt(folder / f"run_{i:02d}.csv", np.c_[DT_S * np.arange(SAMPLES), y, u], "%.9g", ",", header="time," + ",".join(names), comments="")
-    states = ", ".join(f"y{j}" for j in range(n))
-    (folder / "system.ini").write_text(f"[data]\ninputs = run_*.csv\nstate = {states}\ninput = u0, u1\ntime = time\n")
-    done = subprocess.run([program, "run", folder / "system.ini", "--archive.output", folder / "out.h5", "--job.threads", "1", *extra],
-                          capture_output=True, text=True)
-    return done
-
-
 def margins(folder):
     with h5py.File(folder / "out.h5") as file:
         evidence = file["evaluation/evidence"]
@@ -188,9 +110,9 @@ def margins(folder):
         return evidence.attrs["answer"].decode(), evidence.attrs["text"].decode(), quantile, densities
 
 
-def truth_passes(system, quantile, densities):
+def truth_passes(system, runs, quantile, densities):
     """Twice the threshold: the truth's own paired gains and margins, clustered by run as the program does; `quantile`: Student's."""
-    held_out = [system.log_density(*system.runs[i]) for i in range(1, RUNS, 2)]
+    held_out = [system.log_density(*runs[i]) for i in range(1, RUNS, 2)]
     for name in quantile:
         d = [a - b for a, b in zip(held_out, densities[name])]
         keep = [x[~np.isnan(x)] for x in d]
@@ -208,15 +130,15 @@ def trial(program, name, seed):
         system = None
         g = np.random.default_rng([seed, sum(map(ord, name))])
         if name == "modes":
-            system = Switching(g)
-            runs = system.runs
+            system = Switching.drawn(g)
+            runs = [system.simulate(g, run, SAMPLES) for run in range(RUNS)]
         else:
             runs = {**NOTHING, **NAMED}[name](g)
         done = run_program(program, runs, folder)
         if done.returncode != 0:
             return name, "refused" if done.returncode in (1, 2) else "crash", done.stderr.strip().splitlines()[-1:], None
         answer, text, quantile, densities = margins(folder)
-        return name, answer, text, truth_passes(system, quantile, densities) if system else None
+        return name, answer, text, truth_passes(system, runs, quantile, densities) if system else None
 
 
 def main():
