@@ -2,56 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include "app/chain/model_rows.hpp"
 #include "app/chain/stored_banks.hpp"
 #include "io/import/import.hpp"
 
 namespace modebank {
-namespace {
-
-/// The order of models in the rows of an archive.
-constexpr std::array<std::string_view, 6> model_order{"global",     "bank",       "baseline",
-                                                      "noise_only", "one_motion", "drifting"};
-
-template <class Row>
-const std::string& model_of(const Row& row) {
-  if constexpr (std::is_same_v<Row, ResidualTestSet>)
-    return row.model;
-  else
-    return row.filter;
-}
-
-/// Replaces the rows of a model.
-template <class Row>
-void put_rows(const std::string& model, std::vector<Row> rows, std::vector<Row>& all) {
-  std::erase_if(all, [&](const Row& row) { return model_of(row) == model; });
-  all.insert(all.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
-  const auto rank = [](const Row& row) { return std::find(model_order.begin(), model_order.end(), model_of(row)); };
-  std::stable_sort(all.begin(), all.end(), [&](const Row& a, const Row& b) { return rank(a) < rank(b); });
-}
-
-template <class Row>
-std::vector<Row> rows_of(const std::vector<std::string>& models, const std::vector<Row>& all) {
-  std::vector<Row> rows;
-  for (const Row& row : all)
-    if (std::find(models.begin(), models.end(), model_of(row)) != models.end()) rows.push_back(row);
-  return rows;
-}
-
-/// Everything that was found out about these models.
-Archive scores_of(const std::vector<std::string>& models, const Archive& archive) {
-  Archive part;
-  part.recording = archive.recording;
-  part.evaluations = rows_of(models, archive.evaluations);
-  part.summary = rows_of(models, archive.summary);
-  part.horizons = rows_of(models, archive.horizons);
-  part.diagnostics = rows_of(models, archive.diagnostics);
-  part.residual_tests = rows_of(models, archive.residual_tests);
-  return part;
-}
-
-}  // namespace
 
 void Chain::provide(Stage stage, const StagePart& part) {
   std::string& held = held_[index_of(stage)];
@@ -149,30 +104,7 @@ void Chain::cluster_windows(const MixtureInputs& inputs) {
 
 void Chain::learn_bank(const ChainInputs& inputs) {
   const Stopwatch watch;
-  const auto learn_all = [&] {
-    Competitors learned = learn_competitors(*archive_.recording, *archive_.windows,
-                                            archive_.mixture->mixture.components(), inputs.competitors, listener_);
-    archive_.baseline = std::move(learned.baseline);
-    archive_.noise_only = std::move(learned.noise_only);
-    archive_.one_motion = std::move(learned.one_motion);
-    archive_.drifting = std::move(learned.drifting);
-  };
-  const auto copy_all = [&] {
-    Archive part;
-    part.baseline = archive_.baseline;
-    part.noise_only = archive_.noise_only;
-    part.one_motion = archive_.one_motion;
-    part.drifting = archive_.drifting;
-    return part;
-  };
-  const auto take_all = [&](Archive&& part) {
-    archive_.baseline = std::move(part.baseline);
-    archive_.noise_only = std::move(part.noise_only);
-    archive_.one_motion = std::move(part.one_motion);
-    archive_.drifting = std::move(part.drifting);
-  };
-  provide(Stage::competitors, {learn_all, copy_all, take_all});
-
+  learn_competitor_banks(inputs.competitors);
   const auto learn = [&] {
     LearnedBank learned = learn_modes({*archive_.recording, *archive_.windows, *archive_.mixture, *archive_.baseline},
                                       inputs.bank, listener_);
@@ -223,47 +155,21 @@ void Chain::put(ResidualTestSet tests) {
   put_rows(model, {std::move(tests)}, archive_.residual_tests);
 }
 
-/// A run may have fewer than the one before.
-void Chain::forget_competitors() {
-  for (const char* filter : competitor_names) {
-    put_rows<FilterEvaluation>(filter, {}, archive_.evaluations);
-    put_rows<SummaryRow>(filter, {}, archive_.summary);
-    put_rows<HorizonRow>(filter, {}, archive_.horizons);
-    put_rows<DiagnosticsRow>(filter, {}, archive_.diagnostics);
-    put_rows<ResidualTestSet>(filter, {}, archive_.residual_tests);
+void Chain::put_scores(Archive&& part) {
+  for (FilterEvaluation& evaluation : part.evaluations) {
+    const std::string filter = evaluation.filter;
+    put({std::move(evaluation), rows_of({filter}, part.summary), rows_of({filter}, part.horizons),
+         rows_of({filter}, part.diagnostics)});
   }
+  for (ResidualTestSet& tests : part.residual_tests) put(std::move(tests));
 }
 
 void Chain::judge(const ChainInputs& inputs) {
   const Stopwatch watch;
-  const auto take = [&](Archive&& part) {
-    for (FilterEvaluation& evaluation : part.evaluations) {
-      const std::string filter = evaluation.filter;
-      put({std::move(evaluation), rows_of({filter}, part.summary), rows_of({filter}, part.horizons),
-           rows_of({filter}, part.diagnostics)});
-    }
-    for (ResidualTestSet& tests : part.residual_tests) put(std::move(tests));
-  };
-  const auto take_competitors = [&](Archive&& part) {
-    forget_competitors();
-    take(std::move(part));
-  };
-  const CompetitorScoreInputs& competitors = inputs.competitor_scores;
-  const auto score_competitors = [&] {
-    forget_competitors();
-    put(test_global(*archive_.recording, *archive_.windows, competitors.window));
-    for (const char* filter : competitor_names)
-      score(filter, competitor_filter(filter, competitors.filter), competitors.scoring);
-  };
-  const auto copy_competitors = [&] {
-    std::vector<std::string> models(competitor_names.begin(), competitor_names.end());
-    models.emplace_back("global");
-    return scores_of(models, archive_);
-  };
-  provide(Stage::competitor_scores, {score_competitors, copy_competitors, take_competitors});
-
+  score_competitors(inputs.competitor_scores);
   const auto score_bank = [&] { score("bank", inputs.bank_scores.filter, inputs.bank_scores.scoring); };
-  provide(Stage::bank_scores, {score_bank, [&] { return scores_of({"bank"}, archive_); }, take});
+  const auto copy = [&] { return scores_of({"bank"}, archive_); };
+  provide(Stage::bank_scores, {score_bank, copy, [&](Archive&& part) { put_scores(std::move(part)); }});
   archive_.finding = find_modes(archive_);
   listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
 }

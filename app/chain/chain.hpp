@@ -70,11 +70,14 @@ class Chain {
   void import(const DataInputs& inputs);
   void identify_windows(const WindowInputs& inputs);
   void cluster_windows(const MixtureInputs& inputs);
+  void learn_competitor_banks(const CompetitorInputs& inputs);
   void learn_bank(const ChainInputs& inputs);
   void judge(const ChainInputs& inputs);
   void score(const std::string& filter, const FilterOptions& options, const ScoringOptions& scoring);
   void put(FilterScores scores);
+  void put_scores(Archive&& part);
   void forget_competitors();
+  void score_competitors(const CompetitorScoreInputs& inputs);
   void put(ResidualTestSet tests);
   void describe(const Execution& execution, const std::vector<InputFile>& more_files);
 

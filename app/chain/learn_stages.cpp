@@ -87,6 +87,10 @@ void tell_of(const Refinement& refined, const Listener& listener) {
         c.start, c.modes, c.noise_transitions, c.score, c.loss, c.loss_standard_error, c.iterations,
         c.selected ? " (chosen)" : ""));
   const MeasurementStage& measured = refined.measurement;
+  if (measured.failed_starts > 0)
+    listener.warning(fmt::format("refine: {} of {} searches for R failed{}", measured.failed_starts, measured.starts,
+                                 measured.failed_starts < measured.starts ? "; the best of the others counts"
+                                                                          : ", so R is not known to be none"));
   if (!std::isnan(measured.score))
     listener.progress(fmt::format("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
                                   measured.iterations, measured.score_before, measured.score));

@@ -29,8 +29,7 @@ void set_coverage(const SeriesByRun& outside, double time, double& coverage, dou
   for (double* share : {&coverage, &lower, &upper}) *share = 1.0 - *share;
 }
 
-void set_fractions(const Evidence& e, DiagnosticsRow& row) {
-  const double time = sample_count(e.sizes) > 0.0 ? time_by_sizes(e.sizes) : 1.0;
+void set_fractions(const Evidence& e, double time, DiagnosticsRow& row) {
   set_coverage(e.outside[0], time, row.coverage_50, row.coverage_50_lower, row.coverage_50_upper);
   set_coverage(e.outside[1], time, row.coverage_90, row.coverage_90_lower, row.coverage_90_upper);
   set_coverage(e.outside[2], time, row.coverage_95, row.coverage_95_lower, row.coverage_95_upper);
@@ -61,24 +60,19 @@ std::vector<Index> states_with_noise(const Bank& bank, Role role, const std::vec
   return states;
 }
 
-/// Of a mean of squared distances whose terms have that many degrees of freedom; `chi_square`: that is their law.
-Interval distance_interval(const SeriesByRun& series, bool chi_square, double degrees) {
-  const double excess = chi_square ? 1.0 : dispersion(series, degrees);
-  return chi_square_mean_interval(series, excess * autocorrelation_time(series), degrees);
-}
-
-void set_distances(const Collected& c, double n_y, double nees_states, DiagnosticsRow& row) {
-  row.nis_mean = mean_of(c.evidence.nis);
-  const Interval nis = distance_interval(c.evidence.nis, c.evidence.chi_square_nis, n_y);
+void set_distances(const Collected& c, double nees_states, DiagnosticsRow& row) {
+  const Evidence& e = c.evidence;
+  row.nis_mean = mean_distance(e.nis, e.nis_degrees);
+  const Interval nis = mean_distance_interval(e.nis, e.nis_degrees, e.chi_square_nis);
   row.nis_lower = nis.lower;
   row.nis_upper = nis.upper;
-  const Interval nees = distance_interval(c.nees, c.evidence.chi_square_nis, nees_states);
-  row.nees_mean = mean_of(c.nees);
+  row.nees_mean = mean_distance(c.nees, nees_states);
+  const Interval nees = mean_distance_interval(c.nees, nees_states, e.chi_square_nis);
   row.nees_lower = nees.lower;
   row.nees_upper = nees.upper;
 }
 
-DiagnosticsRow make_row(const Collected& c, Index n_y, Index nees_states) {
+DiagnosticsRow make_row(const Collected& c, Index nees_states) {
   DiagnosticsRow row;
   const double N = c.samples > 0 ? static_cast<double>(c.samples) : not_a_number;
   const double all = c.entropy_samples > 0 ? static_cast<double>(c.entropy_samples) : not_a_number;
@@ -87,13 +81,14 @@ DiagnosticsRow make_row(const Collected& c, Index n_y, Index nees_states) {
   row.entropy = c.entropy / all;
   row.dwell = c.visits > 0.0 ? c.visited / c.visits : not_a_number;
   row.dwell_model = not_a_number;
-  set_fractions(c.evidence, row);
-  set_distances(c, static_cast<double>(n_y), static_cast<double>(nees_states), row);
+  const double time = time_by_sizes(c.evidence.sizes);
+  set_fractions(c.evidence, time, row);
+  set_distances(c, static_cast<double>(nees_states), row);
   row.state_rmse =
       (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
   row.whiteness_p = fisher_p(c.whiteness);
   row.spread_share = c.spread / N;
-  row.verdict = verdict_of(c.evidence);
+  row.verdict = verdict_of(c.evidence, time);
   return row;
 }
 
@@ -164,7 +159,7 @@ std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank
     Autocorrelation colour;
     const auto row_of = [&](Index mode) {
       const Collected collected = collect(bank, mode, role, chi_square_nis, nees_states, runs, evaluations, scores);
-      DiagnosticsRow row = make_row(collected, bank.C.rows(), std::ssize(nees_states));
+      DiagnosticsRow row = make_row(collected, std::ssize(nees_states));
       row.filter = filter;
       row.role = role;
       row.mode = mode;

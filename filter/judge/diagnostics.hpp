@@ -15,8 +15,7 @@ namespace modebank {
 /// judged on the samples where it was the most probable before the measurement, so that a true filter is calibrated
 /// there, too (the transform is uniform given whatever was known before: Rosenblatt 1952; Diebold, Gunther & Tay 1998).
 /// Intervals hold with 95 %: Clopper & Pearson's (1934) for fractions, of as many samples as there are independent
-/// ones; chi-square's for mean NIS and NEES, their degrees of freedom divided by the series' autocorrelation time and,
-/// for several modes or a scale learned on the way, by its dispersion (verdict.hpp). They hold for a true filter: a
+/// ones by verdict.hpp; chi-square's for mean NIS and NEES (squared_distances.hpp). They hold for a true filter: a
 /// learned one's error comes on top. NaN: not known.
 struct DiagnosticsRow {
   std::string filter;
@@ -34,7 +33,7 @@ struct DiagnosticsRow {
   double coverage_99 = 0.0, coverage_99_lower = 0.0, coverage_99_upper = 0.0;
   double too_far = 0.0, too_far_lower = 0.0, too_far_upper = 0.0;        ///< z^2 above its 97.5 % quantile
   double too_close = 0.0, too_close_lower = 0.0, too_close_upper = 0.0;  ///< z^2 below its 2.5 % quantile
-  double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< time average, interval of it if the filter is true
+  double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< mean_distance, interval of it if the filter is true
   double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< of the state after the measurement, with truth;
   ///< NaN where R is next to nothing: the state is then the measurement, and its stated covariance R no judgement of it
   Eigen::VectorXd state_rmse;  ///< n_y, state minus truth; NaN without truth

@@ -32,8 +32,8 @@ class Collector {
 
   void add(const Trajectory& run, const RunEvaluation& e, const RunScores& scores) {
     Evidence& evidence = sums.evidence;
-    for (SeriesByRun* series : {&evidence.far, &evidence.close, &evidence.sizes, &evidence.nis, &sums.nees})
-      series->emplace_back();
+    for (SeriesByRun* series : {&evidence.far, &evidence.close, &evidence.sizes}) series->emplace_back();
+    for (SquaredDistances* distances : {&evidence.nis, &sums.nees}) distances->begin_run();
     for (SeriesByRun& series : evidence.outside) series.emplace_back();
     OutputSeries z(static_cast<std::size_t>(e.pit.rows()));  // of a mode's own samples
     for (Index k = 0; k < e.log_density.size(); ++k) {
@@ -73,11 +73,9 @@ class Collector {
   void add_scores(const RunEvaluation& e, Index k, const RunScores& scores, OutputSeries& z) {
     ++sums.samples;
     if (e.spread_share.size() > 0) sums.spread += e.spread_share(k);
-    Index signals = 0;
     for (Index i = 0; i < e.pit.rows(); ++i) {
       if (std::isnan(e.pit(i, k))) continue;
       const double score = scores.z(i, k);
-      ++signals;
       for (std::size_t b = 0; b < band_edges_.size(); ++b)
         sums.evidence.outside[b].back().push_back(std::abs(score) > band_edges_[b] ? 1.0 : 0.0);
       sums.evidence.far.back().push_back(score * score > upper_ ? 1.0 : 0.0);
@@ -85,8 +83,7 @@ class Collector {
       sums.evidence.sizes.back().push_back(std::abs(score));
       z[static_cast<std::size_t>(i)].push_back(score);
     }
-    // Of fewer signals it has fewer degrees of freedom: scaled to the same mean.
-    sums.evidence.nis.back().push_back(e.nis(k) * static_cast<double>(e.pit.rows()) / static_cast<double>(signals));
+    sums.evidence.nis.add(e.nis(k), scored_signals(e, k));
   }
 
   void add_truth(const Trajectory& run, const RunEvaluation& e, Index k) {
@@ -96,7 +93,7 @@ class Collector {
     if (!nees_states_.empty()) {
       const Eigen::MatrixXd P = e.covariance.col(k).reshaped(all, all)(nees_states_, nees_states_);
       const Eigen::VectorXd judged = error(nees_states_);
-      sums.nees.back().push_back(judged.dot(solve_semidefinite(P, judged)));
+      sums.nees.add(judged.dot(solve_semidefinite(P, judged)), judged.size());
     }
     sums.squared_state_error += error.cwiseAbs2();
     ++sums.state_errors;

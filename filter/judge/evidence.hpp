@@ -16,7 +16,7 @@ struct Collected {
   Eigen::Index samples = 0, entropy_samples = 0;
   double usage = 0.0, entropy = 0.0, spread = 0.0, visits = 0.0, visited = 0.0;
   Evidence evidence;
-  SeriesByRun nees;
+  SquaredDistances nees;
   SeriesByRun z;  ///< of the whole filter: one series per run and measurement
   std::vector<double> whiteness;
   Eigen::VectorXd squared_state_error;

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "filter/judge/squared_distances.hpp"
 #include "filter/judge/verdict.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -34,6 +35,7 @@ class ScoreSums {
   }
 
   void add(const RunEvaluation& run, const RunScores& scores) {
+    nis_.begin_run();
     for (Index k = 0; k < run.log_density.size(); ++k)
       if (!std::isnan(run.log_density(k))) add_sample(run, k, scores);
     whiteness_.push_back(scores.whiteness_p);
@@ -46,7 +48,7 @@ class ScoreSums {
     const double components = pit_.empty() ? not_a_number : static_cast<double>(pit_.size());
     row.log_score = log_density_ / N;
     row.rmse = (squared_error_ / errors_).sqrt();
-    row.nis_mean = nis_ / N;
+    row.nis_mean = mean_distance(nis_, static_cast<double>(errors_.size()));
     row.nis_above = static_cast<double>(nis_above_) / N;
     row.nis_below = static_cast<double>(nis_below_) / N;
     row.too_far = static_cast<double>(too_far_) / components;
@@ -62,7 +64,8 @@ class ScoreSums {
 
  private:
   Index samples_ = 0, nis_above_ = 0, nis_below_ = 0, too_far_ = 0, too_close_ = 0;
-  double log_density_ = 0.0, nis_ = 0.0;
+  double log_density_ = 0.0;
+  SquaredDistances nis_;
   Eigen::ArrayXd squared_error_, errors_;
   std::vector<double> pit_, whiteness_;
   std::vector<ChiSquareRegion> nis_regions_;  ///< of one signal, two, ...
@@ -76,9 +79,10 @@ class ScoreSums {
     const auto there = (!run.pit.col(k).array().isNaN()).eval();
     squared_error_ += there.select(run.innovation.col(k).array().square(), 0.0);
     errors_ += there.cast<double>();
-    nis_ += run.nis(k);
-    if (there.any()) {
-      const ChiSquareRegion& nis_region = nis_regions_[static_cast<std::size_t>(there.count() - 1)];
+    const Index signals = scored_signals(run, k);
+    nis_.add(run.nis(k), signals);
+    if (signals > 0) {
+      const ChiSquareRegion& nis_region = nis_regions_[static_cast<std::size_t>(signals - 1)];
       nis_above_ += run.nis(k) > nis_region.upper;
       nis_below_ += run.nis(k) < nis_region.lower;
     }

@@ -20,11 +20,11 @@ struct SummaryRow {
   Eigen::Index samples = 0;  ///< scored samples
   double log_score = 0.0;    ///< mean log predictive density [nats/sample], higher is better
   Eigen::VectorXd rmse;      ///< n_y, of the one-step prediction [state unit]
-  double nis_mean = 0.0;
-  double nis_above = 0.0;  ///< NIS above the 97.5 % quantile of chi-square(n_y)
-  double nis_below = 0.0;  ///< NIS below the 2.5 % quantile
-  double too_far = 0.0;    ///< z^2 above the 97.5 % quantile of chi-square(1), z = Phi^-1(pit)
-  double too_close = 0.0;  ///< z^2 below the 2.5 % quantile
+  double nis_mean = 0.0;     ///< sum of NIS over the number of scored signals, times n_y: n_y in a true filter
+  double nis_above = 0.0;    ///< NIS above the 97.5 % quantile of chi-square of the sample's signals
+  double nis_below = 0.0;    ///< NIS below the 2.5 % quantile
+  double too_far = 0.0;      ///< z^2 above the 97.5 % quantile of chi-square(1), z = Phi^-1(pit)
+  double too_close = 0.0;    ///< z^2 below the 2.5 % quantile
   double coverage_50 = 0.0, coverage_90 = 0.0, coverage_95 = 0.0, coverage_99 = 0.0;  ///< |z| inside the central band
   double pit_distance = 0.0;  ///< Kolmogorov distance of pit from uniform
   double whiteness_p = 0.0;   ///< Ljung & Box (1978) p of z, min(20, N/5) lags, pooled over runs by Fisher's method

@@ -149,12 +149,16 @@ double sample_count(const SeriesByRun& series) {
   return count;
 }
 
-double mean_of(const SeriesByRun& series) {
+double sum_of(const SeriesByRun& series) {
   double sum = 0.0;
   for (const auto& x : series)
     for (const double value : x) sum += value;
+  return sum;
+}
+
+double mean_of(const SeriesByRun& series) {
   const double count = sample_count(series);
-  return count > 0.0 ? sum / count : not_a_number;
+  return count > 0.0 ? sum_of(series) / count : not_a_number;
 }
 
 Autocorrelation largest_autocorrelation(const SeriesByRun& series) {

@@ -44,6 +44,7 @@ double fisher_p(const std::vector<double>& p_values);
 using SeriesByRun = std::vector<std::vector<double>>;
 
 double sample_count(const SeriesByRun& series);
+double sum_of(const SeriesByRun& series);
 
 /// Mean over all values; NaN without any.
 double mean_of(const SeriesByRun& series);

@@ -26,9 +26,8 @@ bool says_nothing(const Interval& interval, double least, double largest) {
 /// What the mean NIS says: -1 underconfident, 1 overconfident, 0 nothing.
 int judge_nis(const Evidence& evidence) {
   if (!evidence.chi_square_nis) return 0;
-  const double mean = mean_of(evidence.nis), degrees = evidence.nis_degrees;
-  const double time = cautious_time(autocorrelation_time(evidence.nis), sample_count(evidence.nis));
-  const Interval expected = chi_square_mean_interval(evidence.nis, time, degrees, nis_level);
+  const double degrees = evidence.nis_degrees, mean = mean_distance(evidence.nis, degrees);
+  const Interval expected = mean_distance_interval(evidence.nis, degrees, true, nis_level);
   if (mean > expected.upper && mean > (1.0 + nis_tolerance) * degrees) return 1;
   if (mean < expected.lower && mean < (1.0 - nis_tolerance) * degrees) return -1;
   return 0;
@@ -58,26 +57,10 @@ std::array<double, coverage_levels.size()> coverage_band_edges() {
   return edges;
 }
 
-double dispersion(const SeriesByRun& series, double degrees) {
-  const double mean = mean_of(series), count = sample_count(series);
-  double squares = 0.0;
-  for (const auto& x : series)
-    for (const double value : x) squares += (value - mean) * (value - mean);
-  return squares > 0.0 ? squares / count * degrees / (2.0 * mean * mean) : 1.0;
-}
-
-Interval chi_square_mean_interval(const SeriesByRun& series, double inflation, double degrees, double level) {
-  const double count = sample_count(series);
-  if (count == 0.0) return {not_a_number, not_a_number};
-  const double total = std::max(1.0, count * degrees / inflation), outside = 0.5 * (1.0 - level);
-  return {degrees * chi_square_quantile(outside, total) / total,
-          degrees * chi_square_quantile(1.0 - outside, total) / total};
-}
-
-Verdict verdict_of(const Evidence& evidence) {
+Verdict verdict_of(const Evidence& evidence, double time) {
   const SeriesByRun& misses = evidence.outside[deciding_level];
   if (sample_count(misses) == 0.0) return Verdict::undecided;
-  const double outside = mean_of(misses), time = time_by_sizes(evidence.sizes);
+  const double outside = mean_of(misses);
   const Interval sure = fraction_interval(misses, time, outside_level);
   if (outside > many_outside && sure.lower > true_outside) return Verdict::overconfident;
   const Interval close = fraction_interval(evidence.close, time);

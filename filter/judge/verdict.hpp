@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 
+#include "filter/judge/squared_distances.hpp"
 #include "filter/judge/statistics.hpp"
 #include "modebank/base/names.hpp"
 
@@ -36,39 +37,26 @@ std::array<double, coverage_levels.size()> coverage_band_edges();
 /// What counts as calibrated: fractions outside the deciding band, and fractions too close to the middle.
 inline constexpr double least_outside = 0.025, largest_outside = 0.075, least_close = 0.01, largest_close = 0.04;
 
-struct Interval {
-  double lower, upper;
-};
-
 /// Limits of the probability behind `count` successes in `samples` independent trials, Clopper & Pearson (1934).
 /// Fractions of trials are allowed. NaN without samples.
 Interval binomial_interval(double count, double samples, double level = 0.95);
-
-/// Variance of the terms over that of chi-square terms with the series' mean and `degrees` degrees of freedom each: 1
-/// for a true filter whose predictions are single Gaussians, more where rare terms are large, as with modes that are
-/// seldom and far. A factor on the terms leaves it. 1 without values or variance.
-double dispersion(const SeriesByRun& series, double degrees);
-
-/// Where the mean of a series whose terms have `degrees` degrees of freedom lies with probability `level`: a chi-square
-/// law with the degrees of the sum divided by `inflation`, which is the series' autocorrelation time, times its
-/// dispersion where the terms are not chi-square (matching of moments: Satterthwaite 1946, Biometrics Bulletin 2).
-Interval chi_square_mean_interval(const SeriesByRun& series, double inflation, double degrees, double level = 0.95);
 
 /// What a verdict rests on, over the scored signals of some samples.
 struct Evidence {
   std::array<SeriesByRun, coverage_levels.size()> outside;  ///< 1 where a signal lies outside that band, else 0
   SeriesByRun far, close;       ///< 1 where its z^2 lies above the 97.5 % or below the 2.5 % quantile of chi-square(1)
   SeriesByRun sizes;            ///< of the same signals: rises with the distance of the PIT from 1/2
-  SeriesByRun nis;              ///< per sample
+  SquaredDistances nis;         ///< per sample
   double nis_degrees = 1.0;     ///< n_y
   bool chi_square_nis = false;  ///< whether a true filter's NIS is chi-square
 };
 
-/// The autocorrelation time that hits have by the sizes of all signals, with a margin.
+/// The autocorrelation time that hits have by the sizes of all signals, with a margin. NaN without signals.
 double time_by_sizes(const SeriesByRun& sizes);
 /// Of a fraction of hits, with as many samples as there are independent ones. `time`: of time_by_sizes.
 Interval fraction_interval(const SeriesByRun& hits, double time, double level = 0.95);
 
-Verdict verdict_of(const Evidence& evidence);
+/// `time`: of time_by_sizes.
+Verdict verdict_of(const Evidence& evidence, double time);
 
 }  // namespace modebank

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "filter/step/equations/predicted_mixture.hpp"
+#include "filter/step/filter_shell.hpp"
 #include "filter/step/stepper.hpp"
-#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
@@ -18,21 +18,6 @@ namespace {
 const Bank& validated(const Bank& bank) {
   validate(bank);
   return bank;
-}
-
-FilterEstimate empty_estimate(const Bank& bank) {
-  const Index n = bank.structure.dimension(), n_y = bank.C.rows(), K = bank.mode_count();
-  FilterEstimate e;
-  e.prediction.setConstant(n, not_a_number);
-  e.innovation.setConstant(n_y, not_a_number);
-  e.innovation_covariance.setConstant(n_y, n_y, not_a_number);
-  e.state.setConstant(n, not_a_number);
-  e.covariance.setConstant(n, n, not_a_number);
-  e.pit.setConstant(n_y, not_a_number);
-  e.mode_probability_predicted.setZero(K);
-  e.mode_probability.setZero(K);
-  e.nis = e.log_density = e.spread_share = not_a_number;
-  return e;
 }
 
 /// Throws std::invalid_argument unless the memory is one of a filter of n states and K modes.
@@ -50,33 +35,15 @@ void check_memory(const FilterMemory& memory, Index n, Index K) {
 
 }  // namespace
 
-struct BankFilter::Parts {
-  FilterEstimate estimate;
-  bool started = false;
-  SampleFeed feed;
+struct BankFilter::Parts : FilterShell {
   std::unique_ptr<Stepper> stepper;
   Eigen::MatrixXd C;
-  Eigen::VectorXd initial_probability;
   CombinedInnovation combined;
 
   Parts(const Bank& bank, const FilterOptions& options)
-      : estimate(empty_estimate(bank)),
-        feed(bank, options.time_steps),
-        stepper(make_stepper(bank, options)),
-        C(bank.C),
-        initial_probability(bank.initial_probability),
-        combined(C.rows()) {}
-
-  void wait() {
-    clear_prediction();
-    estimate.state.setConstant(not_a_number);
-    estimate.covariance.setConstant(not_a_number);
-    estimate.mode_probability_predicted = initial_probability;
-    estimate.mode_probability = initial_probability;
-  }
+      : FilterShell(bank, options.time_steps), stepper(make_stepper(bank, options)), C(bank.C), combined(C.rows()) {}
 
   void start() {
-    clear_prediction();
     stepper->start(feed.start());
     estimate.mode_probability_predicted = stepper->mode_probability();
     record_posterior();
@@ -107,20 +74,6 @@ struct BankFilter::Parts {
     stepper->merge(estimate.state, estimate.covariance);
     estimate.mode_probability = stepper->mode_probability();
   }
-
-  /// Nothing was said of this sample before it came.
-  void clear_prediction() {
-    estimate.prediction.setConstant(not_a_number);
-    estimate.innovation_covariance.setConstant(not_a_number);
-    estimate.spread_share = not_a_number;
-    estimate.steps = 0;
-    clear_scores();
-  }
-  void clear_scores() {
-    estimate.innovation.setConstant(not_a_number);
-    estimate.pit.setConstant(not_a_number);
-    estimate.nis = estimate.log_density = not_a_number;
-  }
 };
 
 BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
@@ -131,27 +84,13 @@ BankFilter::BankFilter(BankFilter&&) noexcept = default;
 BankFilter& BankFilter::operator=(BankFilter&&) noexcept = default;
 
 const FilterEstimate& BankFilter::step(double time_s, const Vector& input, const Vector& measurement) {
-  Parts& p = *parts_;
-  p.feed.push(time_s, input, measurement);
-  if (p.started && p.feed.steps() > longest_gap_steps) p.started = false;
-  if (p.started) {
-    p.step(measurement);
-  } else if (p.feed.can_start()) {
-    p.start();
-    p.started = true;
-  } else {
-    p.wait();
-  }
-  return p.estimate;
+  return take_sample(*parts_, time_s, input, measurement);
 }
 
 const FilterEstimate& BankFilter::estimate() const { return parts_->estimate; }
 bool BankFilter::started() const { return parts_->started; }
 
-void BankFilter::restart() {
-  parts_->started = false;
-  parts_->feed.clear();
-}
+void BankFilter::restart() { parts_->restart(); }
 
 FilterSnapshot BankFilter::snapshot() const {
   FilterSnapshot snapshot;

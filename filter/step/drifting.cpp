@@ -5,9 +5,8 @@
 #include <stdexcept>
 
 #include "filter/step/equations/bounds.hpp"
-#include "filter/step/feed/sample_feed.hpp"
+#include "filter/step/filter_shell.hpp"
 #include "filter/step/student_noise.hpp"
-#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
@@ -71,20 +70,6 @@ const DriftingModel& validated_drifting(const DriftingModel& model) {
   return model;
 }
 
-FilterEstimate empty_drifting_estimate(const LinearStructure& s) {
-  const Index n = s.dimension(), n_y = s.states;
-  FilterEstimate e;
-  e.prediction.setConstant(n, not_a_number);
-  e.innovation.setConstant(n_y, not_a_number);
-  e.innovation_covariance.setConstant(n_y, n_y, not_a_number);
-  e.state.setConstant(n, not_a_number);
-  e.covariance.setConstant(n, n, not_a_number);
-  e.pit.setConstant(n_y, not_a_number);
-  e.mode_probability_predicted = e.mode_probability = Eigen::VectorXd::Ones(1);
-  e.nis = e.log_density = e.spread_share = not_a_number;
-  return e;
-}
-
 bool same_sizes(const DriftingMemory& a, const DriftingMemory& b) {
   const auto shape = [](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
     return x.rows() == y.rows() && x.cols() == y.cols();
@@ -108,31 +93,20 @@ void check_snapshot(const DriftingSnapshot& snapshot, const DriftingMemory& own)
 
 }  // namespace
 
-struct DriftingFilter::Parts {
+struct DriftingFilter::Parts : FilterShell {
   DriftingModel model;
   StudentNoise noise;
-  SampleFeed feed;
   DriftingRecursion recursion;
   Eigen::VectorXd v;
-  FilterEstimate estimate;
-  bool started = false;
 
   Parts(const DriftingModel& m, TimeSteps time_steps)
-      : model(m),
+      : FilterShell(fixed_bank(m), time_steps),
+        model(m),
         noise(m.nu),
-        feed(fixed_bank(m), time_steps),
         recursion(m.structure, m.theta0, m.scale, m.rates),
-        v(m.v0),
-        estimate(empty_drifting_estimate(m.structure)) {}
-
-  void wait() {
-    clear_prediction();
-    estimate.state.setConstant(not_a_number);
-    estimate.covariance.setConstant(not_a_number);
-  }
+        v(m.v0) {}
 
   void start() {
-    clear_prediction();
     recursion.start(feed.start());
     v = model.v0;
     record_posterior();
@@ -180,19 +154,6 @@ struct DriftingFilter::Parts {
     estimate.state = recursion.memory().z;
     estimate.covariance.setZero();
   }
-
-  void clear_prediction() {
-    estimate.prediction.setConstant(not_a_number);
-    estimate.innovation_covariance.setConstant(not_a_number);
-    estimate.spread_share = not_a_number;
-    estimate.steps = 0;
-    clear_scores();
-  }
-  void clear_scores() {
-    estimate.innovation.setConstant(not_a_number);
-    estimate.pit.setConstant(not_a_number);
-    estimate.nis = estimate.log_density = not_a_number;
-  }
 };
 
 DriftingFilter::DriftingFilter(const DriftingModel& model, TimeSteps time_steps)
@@ -203,27 +164,13 @@ DriftingFilter::DriftingFilter(DriftingFilter&&) noexcept = default;
 DriftingFilter& DriftingFilter::operator=(DriftingFilter&&) noexcept = default;
 
 const FilterEstimate& DriftingFilter::step(double time_s, const Vector& input, const Vector& measurement) {
-  Parts& p = *parts_;
-  p.feed.push(time_s, input, measurement);
-  if (p.started && p.feed.steps() > longest_gap_steps) p.started = false;
-  if (p.started) {
-    p.step(measurement);
-  } else if (p.feed.can_start()) {
-    p.start();
-    p.started = true;
-  } else {
-    p.wait();
-  }
-  return p.estimate;
+  return take_sample(*parts_, time_s, input, measurement);
 }
 
 const FilterEstimate& DriftingFilter::estimate() const { return parts_->estimate; }
 bool DriftingFilter::started() const { return parts_->started; }
 
-void DriftingFilter::restart() {
-  parts_->started = false;
-  parts_->feed.clear();
-}
+void DriftingFilter::restart() { parts_->restart(); }
 
 DriftingSnapshot DriftingFilter::snapshot() const {
   return {parts_->recursion.memory(), parts_->v, parts_->started, parts_->feed.memory()};

@@ -31,6 +31,10 @@ double chi_square_upper_tail(double value, double degrees) {
   return math::cdf(math::complement(math::chi_squared(degrees), value));
 }
 
+double chi_square_upper_quantile(double tail, double degrees) {
+  return math::quantile(math::complement(math::chi_squared(degrees), tail));
+}
+
 double fisher_quantile(double probability, double numerator, double denominator) {
   return math::quantile(math::fisher_f(numerator, denominator), probability);
 }

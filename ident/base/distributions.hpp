@@ -13,8 +13,9 @@ double normal_score(double pit);
 
 double chi_square_quantile(double probability, double degrees);
 double chi_square_density(double value, double degrees);
-/// P(X > value).
+/// P(X > value), and the value of such a tail.
 double chi_square_upper_tail(double value, double degrees);
+double chi_square_upper_quantile(double tail, double degrees);
 
 /// Quantile of Fisher's F.
 double fisher_quantile(double probability, double numerator, double denominator);

@@ -4,8 +4,6 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
-#include "ident/base/not_a_number.hpp"
-
 namespace modebank {
 
 using Eigen::MatrixXd;
@@ -74,10 +72,11 @@ VectorXd Cholesky::whiten(const VectorXd& b) const { return factor_.matrixL().so
 
 MatrixXd Cholesky::whiten(const MatrixXd& B) const { return factor_.matrixL().solve(B); }
 
-MatrixXd definite_inverse(const MatrixXd& M) {
+std::optional<MatrixXd> definite_inverse(const MatrixXd& M) {
   const Cholesky factor(M);
   // The factorisation stops at the pivot that fails, and would solve with what it has.
-  return factor.definite() ? factor.inverse() : MatrixXd::Constant(M.rows(), M.cols(), not_a_number);
+  if (!factor.definite()) return std::nullopt;
+  return factor.inverse();
 }
 
 double log_determinant(const MatrixXd& M) {

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <optional>
 
 /// Decompositions of dense matrices by Eigen, compiled once: a name for what each computes, and for a compiler one of
 /// Eigen's heaviest parts less in every file that needs one. Matrices must be finite.
@@ -69,8 +70,8 @@ class Cholesky {
   Eigen::LLT<Eigen::MatrixXd> factor_;
 };
 
-/// Inverse of a symmetric positive definite matrix, by Cholesky's factor; all NaN where it is not definite.
-Eigen::MatrixXd definite_inverse(const Eigen::MatrixXd& M);
+/// Inverse of a symmetric positive definite matrix, by Cholesky's factor; empty where it is not definite.
+std::optional<Eigen::MatrixXd> definite_inverse(const Eigen::MatrixXd& M);
 /// Logarithm of the determinant of a symmetric positive definite matrix.
 double log_determinant(const Eigen::MatrixXd& M);
 

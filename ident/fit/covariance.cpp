@@ -70,7 +70,7 @@ Eigen::MatrixXd inverse_G(const CovarianceInput& in) {
   return inverse_sd.asDiagonal() * correlation.inverse() * inverse_sd.asDiagonal();
 }
 
-/// (sum J_k' G_inverse J_k + P)^-1 in z.
+/// (sum J_k' G_inverse J_k + P)^-1 in z; NaN where that is not definite.
 Eigen::MatrixXd from_information(const WhitenedProblem& problem, const Eigen::MatrixXd& G_inverse) {
   Eigen::MatrixXd information = prior_information(problem);
   if (problem.states == 1) {
@@ -80,7 +80,8 @@ Eigen::MatrixXd from_information(const WhitenedProblem& problem, const Eigen::Ma
     for (Index k = 0; k < problem.samples; ++k)
       information += sample_rows(problem, k).transpose() * G_inverse * sample_rows(problem, k);
   }
-  return definite_inverse(information);
+  return definite_inverse(information)
+      .value_or(Eigen::MatrixXd::Constant(information.rows(), information.cols(), not_a_number));
 }
 
 /// The influence of sample k had it been left out: (I - h_k)^-1 psi_k.

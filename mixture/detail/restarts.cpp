@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "ident/base/not_a_number.hpp"
 #include "mixture/detail/iterate.hpp"
 #include "mixture/detail/split_merge.hpp"
 #include "mixture/reduction.hpp"
@@ -22,10 +23,11 @@ constexpr double agreement_per_point = 1e-4;
 constexpr double coarse_tolerance = 1e-5;
 
 std::size_t best_of(const std::vector<EmResult>& results) {
-  return static_cast<std::size_t>(
-      std::max_element(results.begin(), results.end(),
-                       [](const EmResult& a, const EmResult& b) { return a.log_likelihood < b.log_likelihood; }) -
-      results.begin());
+  return static_cast<std::size_t>(std::max_element(results.begin(), results.end(),
+                                                   [](const EmResult& a, const EmResult& b) {
+                                                     return is_below(a.log_likelihood, b.log_likelihood);
+                                                   }) -
+                                  results.begin());
 }
 
 EmOptions with_iterations_left(const EmOptions& options, int spent) {

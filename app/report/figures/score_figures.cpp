@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "app/chain/judged_runs.hpp"
@@ -9,12 +8,19 @@
 #include "app/report/figures/run_figures.hpp"
 #include "app/report/page/assets.hpp"
 #include "app/report/page/pit_histogram.hpp"
+#include "filter/judge/finding.hpp"
 
 namespace modebank::app::report {
 namespace {
 
 constexpr Index bins_of_figure = 20;
-constexpr std::array<const char*, 5> drawn_filters{"baseline", "noise_only", "one_motion", "drifting", "bank"};
+
+/// The competitors, and over them the bank.
+std::vector<std::string> drawn_filters() {
+  std::vector<std::string> filters(competitor_names.begin(), competitor_names.end());
+  filters.emplace_back("bank");
+  return filters;
+}
 
 std::string colour_of(const std::string& filter) { return palette(0).filters.at(filter); }
 
@@ -34,7 +40,7 @@ PitHistogram judged_histogram(const Archive& archive, const FilterEvaluation& ev
 Figure pit(const Archive& archive) {
   Figure figure("pit", assets::figure_pit());
   std::vector<std::string> titles, colours;
-  for (const char* filter : drawn_filters) {
+  for (const std::string& filter : drawn_filters()) {
     const FilterEvaluation* evaluation = evaluation_of(archive, filter);
     if (!evaluation) continue;
     const PitHistogram histogram = judged_histogram(archive, *evaluation);
@@ -59,7 +65,7 @@ Figure coverage(const Archive& archive) {
   Figure figure("coverage", assets::figure_coverage());
   std::vector<std::string> titles;
   Eigen::MatrixXd rows(0, 5);
-  for (const char* filter : drawn_filters) {
+  for (const std::string& filter : drawn_filters()) {
     const SummaryRow* train = pooled_row(archive, filter, Role::train);
     const SummaryRow* test = pooled_row(archive, filter, Role::test);
     if (!train && !test) continue;

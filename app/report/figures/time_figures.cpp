@@ -10,6 +10,7 @@
 #include "app/report/page/assets.hpp"
 #include "app/report/page/prediction_band.hpp"
 #include "app/report/page/unit_text.hpp"
+#include "filter/judge/squared_distances.hpp"
 #include "ident/base/distributions.hpp"
 #include "modebank/base/error.hpp"
 
@@ -98,8 +99,8 @@ Figure nis(const DrawnRun& drawn) {
   const auto degrees = static_cast<double>(drawn.archive.bank->C.rows());
   Eigen::MatrixXd rows(2, drawn.run.samples());
   rows.row(0).setConstant(std::numeric_limits<double>::quiet_NaN());
-  if (drawn.baseline) rows.row(0) = drawn.baseline->nis;
-  rows.row(1) = drawn.bank.nis;
+  if (drawn.baseline) rows.row(0) = nis_of_all_signals(*drawn.baseline);
+  rows.row(1) = nis_of_all_signals(drawn.bank);
   set_time(drawn, figure);
   figure.set("lower_bound", chi_square_quantile((1 - band_level) / 2, degrees));
   figure.set("upper_bound", chi_square_quantile((1 + band_level) / 2, degrees));

@@ -4,6 +4,7 @@
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/series.hpp"
 #include "app/report/page/unit_text.hpp"
+#include "filter/judge/squared_distances.hpp"
 #include "ident/base/distributions.hpp"
 
 namespace modebank::app::report {
@@ -41,7 +42,7 @@ json filter_signals(PageArrays& arrays, const Bank& bank, const RunEvaluation& e
   json signals = {{"prediction", rows_of(arrays, band.center, finest)},
                   {"half_width", rows_of(arrays, band.half_width, finest)},
                   {"innovation", rows_of(arrays, evaluation.innovation, finest)},
-                  {"nis", series(arrays, evaluation.nis, finest)},
+                  {"nis", series(arrays, nis_of_all_signals(evaluation), finest)},
                   {"outliers", outliers_of(arrays, evaluation, run)},
                   {"lower", rows_of(arrays, band.center - band.half_width, finest, Bucket::lowest)},
                   {"upper", rows_of(arrays, band.center + band.half_width, finest, Bucket::highest)}};

@@ -9,6 +9,7 @@
 #include "filter/learn/from_mixture/training_transitions.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
+#include "ident/base/not_a_number.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -53,7 +54,8 @@ struct NoiseSearch {
   }
 };
 
-/// The likelihood can have one maximum with the noise in Q and another with it in R: the best of several starts.
+/// The likelihood can have one maximum with the noise in Q and another with it in R: the best of several starts, of
+/// which one whose likelihood is no number is below all.
 LikelihoodMaximum best_of_starts(const NoiseSearch& search, Bank bank, const std::vector<Index>& outputs) {
   std::optional<LikelihoodMaximum> best;
   for (const auto& [q_share, r_share] : noise_starts) {
@@ -61,7 +63,7 @@ LikelihoodMaximum best_of_starts(const NoiseSearch& search, Bank bank, const std
     bank.modes.front().Q.topLeftCorner(n, n) = (q_share * search.scale).asDiagonal();
     bank.R = (search.bound + r_share * search.scale).asDiagonal();
     LikelihoodMaximum end = search.maximise(bank, outputs);
-    if (!best || end.value > best->value + least_gain * search.samples()) best = std::move(end);
+    if (!best || is_below(best->value + least_gain * search.samples(), end.value)) best = std::move(end);
   }
   return std::move(*best);
 }

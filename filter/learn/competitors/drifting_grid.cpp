@@ -8,6 +8,7 @@
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/competitors/drifting_lanes.hpp"
 #include "filter/step/feed/run_samples.hpp"
+#include "ident/base/not_a_number.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -104,7 +105,7 @@ std::array<Index, 6> DriftingGrid::point(Index index) const {
 Index DriftingScores::best() const {
   Index best = 0;
   for (Index i = 1; i < log_score.size(); ++i)
-    if (log_score(i) > log_score(best)) best = i;
+    if (is_below(log_score(best), log_score(i))) best = i;
   return best;
 }
 

@@ -8,6 +8,7 @@
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
+#include "ident/base/not_a_number.hpp"
 #include "ident/fit/robust_regression.hpp"
 #include "modebank/base/error.hpp"
 
@@ -50,11 +51,11 @@ Eigen::MatrixXd noise_scales_per_state(const Eigen::MatrixXd& residuals, Index l
 /// Gives the bank the `stay` that makes the training runs most likely, the smallest of equals.
 void choose_stay(Bank& bank, const Recording& recording) {
   Bank candidate = bank;
-  double best = -std::numeric_limits<double>::infinity();
+  double best = not_a_number;
   for (const double stay : stays) {
     set_mode_sequence(candidate, TransitionMatrix::sticky(bank.mode_count(), stay));
     const double likelihood = training_log_likelihood(candidate, recording, FilterOptions{});
-    if (stay != stays.front() && !(likelihood > best)) continue;
+    if (stay != stays.front() && !is_below(best, likelihood)) continue;
     best = likelihood;
     bank = candidate;
   }

@@ -4,6 +4,7 @@
 
 #include "filter/learn/learn.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 namespace {
@@ -57,7 +58,8 @@ NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& record
       candidate.noise_adaptation = {forgetting, prior};
       tried.emplace_back(training_log_likelihood(candidate, recording, filter), candidate.noise_adaptation);
     }
-  return std::max_element(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first < b.first; })
+  return std::max_element(tried.begin(), tried.end(),
+                          [](const auto& a, const auto& b) { return is_below(a.first, b.first); })
       ->second;
 }
 

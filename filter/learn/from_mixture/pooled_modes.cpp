@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <unsupported/Eigen/KroneckerProduct>
 
 #include "ident/base/linalg.hpp"
@@ -40,12 +41,17 @@ Eigen::MatrixXd prior_information(Index parameters, const ParameterPrior* prior)
   return prior->sd.array().square().inverse().matrix().asDiagonal();
 }
 
-Eigen::MatrixXd regularised(const WeightedRegression& data, const Eigen::MatrixXd& Q, const ParameterPrior& prior) {
-  const Eigen::MatrixXd Q_inverse = definite_inverse(Q), P_inverse = prior_information(data.beta.size(), &prior);
-  const Eigen::MatrixXd information = Eigen::kroneckerProduct(Q_inverse, data.sums.G).eval() + P_inverse;
-  const Eigen::MatrixXd data_pull = data.sums.H * Q_inverse;
+/// Empty where Q is not definite.
+std::optional<Eigen::MatrixXd> regularised(const WeightedRegression& data, const Eigen::MatrixXd& Q,
+                                           const ParameterPrior& prior) {
+  const std::optional<Eigen::MatrixXd> Q_inverse = definite_inverse(Q);
+  if (!Q_inverse) return std::nullopt;
+  const Eigen::MatrixXd P_inverse = prior_information(data.beta.size(), &prior);
+  const Eigen::MatrixXd information = Eigen::kroneckerProduct(*Q_inverse, data.sums.G).eval() + P_inverse;
+  const Eigen::MatrixXd data_pull = data.sums.H * *Q_inverse;
   const Eigen::VectorXd pull = data_pull.reshaped() + P_inverse * (prior.mean - data.beta.reshaped());
-  return data.beta + solve_semidefinite(information, pull).reshaped(data.beta.rows(), data.beta.cols());
+  return Eigen::MatrixXd(data.beta +
+                         solve_semidefinite(information, pull).reshaped(data.beta.rows(), data.beta.cols()));
 }
 
 Eigen::MatrixXd process_noise(const WeightedRegression& data, const Eigen::MatrixXd& beta, const GlobalModel& global) {
@@ -58,9 +64,12 @@ Eigen::VectorXd standard_errors(const WeightedRegression& data, const Eigen::Mat
   const Eigen::MatrixXd Q_unbiased = Q * (data.sums.weight / std::max(data.sums.weight - q, 1.0));
   const Index p = Q.rows() * data.sums.G.rows();
   Eigen::MatrixXd information = prior_information(p, prior);
-  if (data.sums.weight >= smallest_weight)
-    information += Eigen::kroneckerProduct(definite_inverse(Q_unbiased), data.sums.G).eval();
-  Eigen::VectorXd not_determined = Eigen::VectorXd::Constant(p, not_a_number);
+  const Eigen::VectorXd not_determined = Eigen::VectorXd::Constant(p, not_a_number);
+  if (data.sums.weight >= smallest_weight) {
+    const std::optional<Eigen::MatrixXd> Q_inverse = definite_inverse(Q_unbiased);
+    if (!Q_inverse) return not_determined;
+    information += Eigen::kroneckerProduct(*Q_inverse, data.sums.G).eval();
+  }
   if (!(information.diagonal().minCoeff() > 0.0) || !information.allFinite()) return not_determined;
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
   const auto [values, vectors] = symmetric_eigen(scale.asDiagonal() * information * scale.asDiagonal());
@@ -90,7 +99,9 @@ ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eig
   Eigen::MatrixXd Q = process_noise(data, beta, global);
   bool converged = prior == nullptr;
   for (int i = 0; i < max_alternations && !converged; ++i) {
-    beta = regularised(data, Q, *prior);
+    const std::optional<Eigen::MatrixXd> next = regularised(data, Q, *prior);
+    if (!next) break;  // not converged
+    beta = *next;
     const Eigen::MatrixXd previous = Q;
     Q = process_noise(data, beta, global);
     converged = (Q - previous).norm() <= alternation_tolerance * previous.norm();

@@ -28,7 +28,7 @@ struct ModeEstimate {
   Eigen::MatrixXd Q;      ///< n x n, weighted scatter about theta / sum of weights; floored (process_noise_floor)
   Eigen::VectorXd standard_error;      ///< p, of theta; NaN when neither data nor prior determine theta
   double effective_transitions = 0.0;  ///< sum of weights
-  bool converged = true;               ///< whether theta and Q stopped changing within the bounded iterations
+  bool converged = true;  ///< whether theta and Q stopped changing within the bounded iterations, Q definite
 };
 
 /// Maximises, alternating between theta and Q until both stand still,

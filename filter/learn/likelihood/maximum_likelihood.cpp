@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "filter/learn/likelihood/information.hpp"
@@ -131,9 +132,18 @@ BfgsEnd bfgs(const Neighbourhood& nearby, const Metric& metric, double origin_va
   return {metric.by_standard_errors * at, std::max<Index>(std::ssize(summary.iterations) - 1, 1)};
 }
 
+bool is_finite(const Bank& bank) {
+  return bank.R.allFinite() && bank.transition.matrix().allFinite() &&
+         std::all_of(bank.modes.begin(), bank.modes.end(), [](const Mode& mode) {
+           return mode.Q.allFinite() && mode.model.A.allFinite() && mode.model.B.allFinite() &&
+                  mode.model.c.allFinite();
+         });
+}
+
 }  // namespace
 
 double LikelihoodTarget::value(const Bank& bank) const {
+  if (!is_finite(bank)) return -std::numeric_limits<double>::infinity();
   const double likelihood = weighted_training_log_likelihood(bank, recording, filter);
   return prior ? likelihood + log_prior(*prior, one_theta, switching_model(bank)) : likelihood;
 }
@@ -144,6 +154,7 @@ LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const Free
   const double small_gain = std::min(remaining_gain, limits.tolerance * transitions);
   Eigen::VectorXd steps;
   LikelihoodMaximum best{start, target.value(start)};
+  if (!std::isfinite(best.value)) return best;
   while (true) {
     const std::optional<Metric> metric = metric_of(Neighbourhood(target, free, best.bank, steps).gradients());
     if (!metric) return best;
@@ -151,6 +162,7 @@ LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const Free
       best.end = MeasuredFit::converged;
     else if (best.iterations >= limits.max_iterations)
       best.end = MeasuredFit::iteration_limit;
+    best.rose = best.rose || best.end == MeasuredFit::converged;
     if (best.end != MeasuredFit::stalled) return best;
     steps = metric->steps;
     const Neighbourhood nearby(target, free, best.bank, steps);
@@ -161,6 +173,7 @@ LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const Free
     if (!(value > best.value)) return best;
     best.bank = std::move(next);
     best.value = value;
+    best.rose = true;
   }
 }
 

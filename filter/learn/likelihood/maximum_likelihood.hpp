@@ -20,6 +20,7 @@ struct LikelihoodTarget {
   std::optional<SwitchingPrior> prior;  ///< empty: the likelihood alone
   bool one_theta = false;               ///< the prior on theta counts once
 
+  /// Minus infinity of a bank that is not all numbers, which no filter can run.
   double value(const Bank& bank) const;
 };
 
@@ -33,6 +34,7 @@ struct LikelihoodMaximum {
   double value = 0.0;  ///< of the target there; never below the start's
   Index iterations = 0;
   MeasuredFit end = MeasuredFit::stalled;
+  bool rose = false;  ///< converged at the start, or somewhere better
 };
 
 /// The target's maximum near `start` by BFGS (ceres::GradientProblemSolver) over BankCoordinates in units of the

@@ -104,8 +104,10 @@ FreeParameters all_parameters(const Bank& bank, const SwitchingSums& complete, c
   FreeParameters free;
   free.theta_unit.resize(bank.structure.parameters(), one_theta ? 1 : bank.mode_count());
   for (Index j = 0; j < free.theta_unit.cols(); ++j)
-    free.theta_unit.col(j) =
-        covariances[static_cast<std::size_t>(j)].diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt();
+    free.theta_unit.col(j) = covariances[static_cast<std::size_t>(j)].diagonal().unaryExpr([](double variance) {
+      if (std::isnan(variance)) return 1.0;  // nothing is known of it
+      return std::sqrt(std::max(variance, std::numeric_limits<double>::min()));
+    });
   if (estimate_R) free.R.resize(static_cast<std::size_t>(bank.R.rows()));
   std::iota(free.R.begin(), free.R.end(), Index{0});
   free.least_R = least_R;

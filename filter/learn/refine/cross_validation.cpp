@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "ident/base/not_a_number.hpp"
+
 namespace modebank {
 namespace {
 
@@ -15,7 +17,7 @@ namespace {
 /// runs than these do from each other. scores: of each way, one per run; samples: of each run.
 std::size_t soonest_of_the_good(const std::vector<NoiseAdaptation>& ways, const std::vector<Eigen::VectorXd>& scores,
                                 const Eigen::VectorXd& samples) {
-  const auto lower = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return a.sum() < b.sum(); };
+  const auto lower = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return is_below(a.sum(), b.sum()); };
   const std::size_t best = std::max_element(scores.begin(), scores.end(), lower) - scores.begin();
   std::size_t chosen = best;
   for (std::size_t w = 0; w < ways.size(); ++w) {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "filter/learn/likelihood/standard_errors.hpp"
@@ -15,14 +14,6 @@ namespace {
 
 // The search for R alone: its end is where the fit of everything begins.
 constexpr AscentLimits search_limits{30, 1e-7};
-
-/// What measurement noise did to a fit: its R, and one factor on every Q.
-Bank with_noise_of(Bank bank, const Eigen::MatrixXd& R, double Q_factor, const NoiseAdaptation& adaptation) {
-  for (Mode& mode : bank.modes) mode.Q *= Q_factor;
-  bank.R = R;
-  bank.noise_adaptation = adaptation;
-  return bank;
-}
 
 /// Theta, Q, T and (where it is to be estimated) R of a bank together, from there to the maximum on these runs.
 LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const RefineInput& in, const Bank& bank) {
@@ -35,45 +26,86 @@ LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const Refi
   return maximise_likelihood(target, free, bank, {in.options.max_iterations, in.options.tolerance});
 }
 
-/// Mean log scores of the runs left out before and after the fit goes on: from the fits to the others, with the R of
-/// all training runs. A fit to all of them would have seen what is left out.
-std::pair<double, double> scores_left_out(const LikelihoodTarget& target, const RefineInput& in,
-                                          const CrossValidation& validation, const MeasuredBank& measured,
-                                          double Q_factor) {
-  std::vector<Bank> banks;
-  for (const Bank& of_split : validation.chosen().banks)
-    banks.push_back(with_noise_of(of_split, measured.bank.R, Q_factor, measured.bank.noise_adaptation));
-  const double before = validation.score(banks);
-  tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
-    const LikelihoodTarget of_split{validation.splits()[s].runs.training, target.filter, target.prior,
-                                    target.one_theta};
-    banks[s] = maximise_everything(of_split, in, banks[s]).bank;
-  });
-  return {before, validation.score(banks)};
-}
+/// The fits to the splits' training runs as measurement noise enters them. Nothing of a fit has seen the runs it is
+/// scored on: not theta and T, nor R or the prior.
+class MeasuredSplits {
+ public:
+  MeasuredSplits(const RefineInput& in, const CrossValidation& validation, const NoiseAdaptation& adaptation)
+      : in_(in), validation_(validation), banks_(validation.chosen().banks) {
+    for (Bank& bank : banks_) bank.noise_adaptation = adaptation;
+  }
 
-}  // namespace
+  /// Mean log score of the runs left out.
+  double score() const { return validation_.score(banks_); }
 
-std::optional<Bank> estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
-                                               const RefineTuning& tuning) {
+  /// R of each split; a split may ask for none.
+  void estimate_R() {
+    for_each([&](const SplitData& split, Bank& bank) {
+      MeasurementNoise noise =
+          estimate_measurement_noise({split.runs.training, in_.filter, std::nullopt}, bank, in_.options.tuning);
+      if (noise.bank) bank = std::move(*noise.bank);
+    });
+  }
+
+  void maximise() {
+    for_each([&](const SplitData& split, Bank& bank) {
+      const SwitchingPrior exact = prior_of_split(in_, split, validation_.chosen().start.noise_transitions);
+      const LikelihoodTarget target{split.runs.training, learning_filter(in_.filter),
+                                    prior_with_states_unknown(exact, bank, in_.options.tuning), in_.options.one_theta};
+      bank = maximise_everything(target, in_, bank).bank;
+    });
+  }
+
+ private:
+  template <class Change>
+  void for_each(Change change) {
+    tbb::parallel_for(std::size_t{0}, banks_.size(),
+                      [&](std::size_t s) { change(validation_.splits()[s], banks_[s]); });
+  }
+
+  const RefineInput& in_;
+  const CrossValidation& validation_;
+  std::vector<Bank> banks_;
+};
+
+/// The target's maximum over R and one factor on Q, from R = `share` of the mean Q.
+LikelihoodMaximum maximise_from_share(const LikelihoodTarget& target, Bank bank, double share) {
   const Index n_y = bank.R.rows();
   Eigen::VectorXd mean_Q = Eigen::VectorXd::Zero(n_y);
   for (const Mode& mode : bank.modes) mean_Q += mode.weight * mode.Q.diagonal().head(n_y);
+  bank.R = (share * mean_Q).asDiagonal();
   // White measurement noise of variance r enters a residual of exact states about twice.
-  const Bank start = with_noise_of(bank, (tuning.R_start_share * mean_Q).asDiagonal(), 1.0 - 2.0 * tuning.R_start_share,
-                                   bank.noise_adaptation);
-  const double before = target.value(bank);
-  if (!(target.value(start) > before)) return std::nullopt;
+  for (Mode& mode : bank.modes) mode.Q *= 1.0 - 2.0 * share;
   FreeParameters free;
   free.Q_by_one_factor = true;
   free.R.resize(static_cast<std::size_t>(n_y));
   std::iota(free.R.begin(), free.R.end(), Index{0});
   free.least_R = Eigen::VectorXd::Zero(n_y);
   free.transition = false;
-  LikelihoodMaximum maximum = maximise_likelihood(target, free, start, search_limits);
+  return maximise_likelihood(target, free, bank, search_limits);
+}
+
+}  // namespace
+
+MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
+                                            const RefineTuning& tuning) {
+  std::vector<LikelihoodMaximum> ends(tuning.R_start_shares.size());
+  tbb::parallel_for(std::size_t{0}, ends.size(),
+                    [&](std::size_t i) { ends[i] = maximise_from_share(target, bank, tuning.R_start_shares[i]); });
+  MeasurementNoise result;
+  result.starts = std::ssize(ends);
   const double transitions = static_cast<double>(target.recording.transitions(Role::train));
-  if (!(maximum.value > before + tuning.least_gain * transitions)) return std::nullopt;
-  return std::move(maximum.bank);
+  LikelihoodMaximum* best = nullptr;
+  for (LikelihoodMaximum& end : ends) {
+    if (!std::isfinite(end.value) || !end.rose) {
+      ++result.failed_starts;
+      continue;
+    }
+    // Ends that differ by less than they are searched to are one.
+    if (!best || end.value > best->value + search_limits.tolerance * transitions) best = &end;
+  }
+  if (best && best->value > target.value(bank) + tuning.least_gain * transitions) result.bank = std::move(best->bank);
+  return result;
 }
 
 SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank& start, const RefineTuning& tuning) {
@@ -81,9 +113,13 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
   prior.noise_transitions = tuning.Q_transitions_with_R;
   const Index n = start.structure.states;
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
-  for (const Mode& mode : start.modes) information += definite_inverse(mode.Q.topLeftCorner(n, n));
-  const Eigen::MatrixXd mean = static_cast<double>(start.mode_count()) * definite_inverse(information);
-  if (mean.allFinite()) prior.noise = mean;
+  for (const Mode& mode : start.modes) {
+    const std::optional<Eigen::MatrixXd> inverse = definite_inverse(mode.Q.topLeftCorner(n, n));
+    if (!inverse) return prior;
+    information += *inverse;
+  }
+  if (const std::optional<Eigen::MatrixXd> inverse = definite_inverse(information))
+    prior.noise = static_cast<double>(start.mode_count()) * *inverse;
   return prior;
 }
 
@@ -91,10 +127,20 @@ MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValida
                                         const SwitchingPrior& prior, const Bank& bank) {
   const RefineTuning& tuning = in.options.tuning;
   MeasuredBank result{bank, {}, prior};
+  MeasurementStage& stage = result.stage;
+  std::optional<MeasuredSplits> splits;
+  if (validation.possible()) splits.emplace(in, validation, bank.noise_adaptation);
   if (in.options.measurement_noise) {
-    std::optional<Bank> with_R = estimate_measurement_noise({in.recording, in.filter, std::nullopt}, bank, tuning);
-    if (!with_R) return result;
-    result.bank = std::move(*with_R);
+    MeasurementNoise noise = estimate_measurement_noise({in.recording, in.filter, std::nullopt}, bank, tuning);
+    stage.starts = noise.starts;
+    stage.failed_starts = noise.failed_starts;
+    if (!noise.bank) return result;
+    if (splits) {
+      const double without_R = splits->score();
+      splits->estimate_R();
+      if (splits->score() < without_R - tuning.least_gain) return result;
+    }
+    result.bank = std::move(*noise.bank);
     result.R_estimated = true;
   } else if (!(bank.R.diagonal().array() > least_measurement_noise(in.fits, tuning).array()).any()) {
     return result;
@@ -102,15 +148,17 @@ MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValida
   result.prior = prior_with_states_unknown(prior, result.bank, tuning);
   const LikelihoodTarget target{in.recording, learning_filter(in.filter), result.prior, in.options.one_theta};
   LikelihoodMaximum maximum = maximise_everything(target, in, result.bank);
-  result.stage = {maximum.iterations, maximum.end};
-  if (validation.possible()) {
-    const double Q_factor = result.bank.modes.front().Q(0, 0) / bank.modes.front().Q(0, 0);
-    std::tie(result.stage.score_before, result.stage.score) = scores_left_out(target, in, validation, result, Q_factor);
-    if (result.stage.score < result.stage.score_before - tuning.least_gain) {
-      result.stage = {0, MeasuredFit::none, result.stage.score_before, result.stage.score_before};
+  if (splits) {
+    stage.score_before = splits->score();
+    splits->maximise();
+    stage.score = splits->score();
+    if (stage.score < stage.score_before - tuning.least_gain) {
+      stage.score = stage.score_before;
       return result;
     }
   }
+  stage.iterations = maximum.iterations;
+  stage.end = maximum.end;
   result.bank = std::move(maximum.bank);
   return result;
 }

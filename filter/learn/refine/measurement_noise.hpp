@@ -9,12 +9,19 @@
 
 namespace modebank {
 
+/// What a search for R found.
+struct MeasurementNoise {
+  std::optional<Bank> bank;  ///< with R, and less Q; empty: the data ask for none, or every start failed
+  Index starts = 0;
+  Index failed_starts = 0;  ///< where the likelihood is no number, or no step from there raised it
+};
+
 /// The bank with R (diagonal) by maximum likelihood: the target is maximised over R and one factor on every Q (which
-/// held the measurement noise before), theta and T as they are. Empty where the search's start is no better than the
-/// bank or its end by no more than least_gain nats per sample: the data ask for no R. The IMM's likelihood is itself
-/// approximate for R > 0.
-std::optional<Bank> estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
-                                               const RefineTuning& tuning);
+/// held the measurement noise before), theta and T as they are, from several shares of Q; the best end counts. No bank
+/// where that is no more than least_gain nats per sample better than the bank without R: the data ask for none. The
+/// IMM's likelihood is itself approximate for R > 0.
+MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
+                                            const RefineTuning& tuning);
 
 /// The prior once the states count as unknown: that of the fit with states measured exactly, but Q as if one more
 /// transition of the modes' own harmonic mean covariance in `start` was seen. The global residual covariance, which
@@ -30,10 +37,10 @@ struct MeasuredBank {
   bool R_estimated = false;
 };
 
-/// Where R is more than nothing (by estimate_measurement_noise in the filter that will run the bank, or as given), the
-/// fit goes on with the states unknown, theta, Q, R and T together, to the maximum of the filter's likelihood; that is
-/// kept if it pays on the runs left out, each scored by a fit that went on
-/// from the fit to the others.
+/// Where R is more than nothing (by estimate_measurement_noise in the filter that will run the bank, unless it costs
+/// the runs left out more than least_gain, or as given), the fit goes on with the states unknown, theta, Q, R and T
+/// together, to the maximum of the filter's likelihood; that is kept if it pays on the runs left out, each scored by a
+/// fit that has not seen it: its R, its prior and all else are those of the other runs.
 MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation,
                                         const SwitchingPrior& prior, const Bank& bank);
 

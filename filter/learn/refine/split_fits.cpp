@@ -21,11 +21,13 @@ std::vector<SplitData> split_data(const RefineInput& in) {
   return splits;
 }
 
+SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, double noise_transitions) {
+  return switching_prior(split.transitions, split.global, in.fits.prior_sd, noise_transitions, in.options.tuning);
+}
+
 SplitFits::SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, const RefineStart& start)
     : frame_(in.frame), fits_(splits.size()) {
-  for (const SplitData& split : splits)
-    priors_.push_back(
-        switching_prior(split.transitions, split.global, in.fits.prior_sd, start.noise_transitions, in.options.tuning));
+  for (const SplitData& split : splits) priors_.push_back(prior_of_split(in, split, start.noise_transitions));
   tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t s) {
     fits_[s] = std::make_unique<ExpectationMaximisation>(splits[s].transitions, priors_[s], em_options(in.options),
                                                          start.model);

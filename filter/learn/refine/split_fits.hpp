@@ -20,6 +20,8 @@ struct SplitData {
 };
 
 std::vector<SplitData> split_data(const RefineInput& in);
+/// Of the split's training runs.
+SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, double noise_transitions);
 
 /// The fits from one start, one on every split with the prior of that split, iteration by iteration. Keeps references.
 class SplitFits {

@@ -1,5 +1,6 @@
 #include "filter/learn/switching/em.hpp"
 
+#include <optional>
 #include <unsupported/Eigen/KroneckerProduct>
 #include <utility>
 
@@ -15,8 +16,13 @@ class ConditionalMaximiser {
                        SwitchingRegression& model)
       : structure_(structure), sums_(sums), prior_(prior), model_(model) {}
 
-  void set_theta(Index j) { model_.theta.col(j) = best_theta(j, j + 1); }
-  void set_one_theta() { model_.theta.colwise() = best_theta(0, model_.modes()); }
+  // Where a Q has no inverse, theta stays: the objective is then minus infinity, and nothing chooses such a fit.
+  void set_theta(Index j) {
+    if (const auto best = best_theta(j, j + 1)) model_.theta.col(j) = *best;
+  }
+  void set_one_theta() {
+    if (const auto best = best_theta(0, model_.modes())) model_.theta.colwise() = *best;
+  }
 
   void set_noise(Index j) {
     const RegressionSums& of_mode = at(j);
@@ -29,14 +35,15 @@ class ConditionalMaximiser {
   Eigen::MatrixXd& noise(Index j) { return model_.Q[static_cast<std::size_t>(j)]; }
   const RegressionSums& at(Index j) const { return sums_.modes[static_cast<std::size_t>(j)]; }
 
-  /// Of the modes first to end - 1 together, and the prior.
-  Eigen::VectorXd best_theta(Index first, Index end) {
+  /// Of the modes first to end - 1 together, and the prior; empty where one's Q is not definite.
+  std::optional<Eigen::VectorXd> best_theta(Index first, Index end) {
     Eigen::MatrixXd information = prior_.information;
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(prior_.mean.size());
     for (Index j = first; j < end; ++j) {
-      const Eigen::MatrixXd Q_inverse = definite_inverse(noise(j));
-      information += Eigen::kroneckerProduct(Q_inverse, at(j).G).eval();
-      const Eigen::MatrixXd of_mode = at(j).H * Q_inverse;
+      const std::optional<Eigen::MatrixXd> Q_inverse = definite_inverse(noise(j));
+      if (!Q_inverse) return std::nullopt;
+      information += Eigen::kroneckerProduct(*Q_inverse, at(j).G).eval();
+      const Eigen::MatrixXd of_mode = at(j).H * *Q_inverse;
       pull += of_mode.reshaped();
     }
     return prior_.mean + solve_semidefinite(information, pull);
@@ -84,7 +91,7 @@ void ExpectationMaximisation::step() {
   posterior_ = smooth_modes(transitions_, model_);
   const double gain = posterior_.log_likelihood + log_prior(prior_, options_.one_theta, model_) - objective_.back();
   // The first step leaves the start's own optimum for the prior's and may lose.
-  converged_ = objective_.size() > 1 && gain < options_.tolerance * static_cast<double>(transitions_.count());
+  converged_ = objective_.size() > 1 && !(gain >= options_.tolerance * static_cast<double>(transitions_.count()));
 }
 
 }  // namespace modebank

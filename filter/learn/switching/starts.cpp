@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <unsupported/Eigen/KroneckerProduct>
 
@@ -10,6 +11,7 @@
 #include "filter/learn/switching/em.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/seed.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
@@ -19,8 +21,12 @@ Eigen::MatrixXd unit_information(const TrainingTransitions& transitions, const E
                                  double least_information) {
   const Eigen::MatrixXd& X = transitions.data.regressors;
   const Eigen::MatrixXd G = X.transpose() * transitions.usable.asDiagonal() * X / transitions.usable.sum();
-  const Eigen::MatrixXd Q_inverse = definite_inverse(Q);
-  Eigen::MatrixXd information = Eigen::kroneckerProduct(Q_inverse, G);
+  const std::optional<Eigen::MatrixXd> Q_inverse = definite_inverse(Q);
+  if (!Q_inverse)
+    throw DataError(
+        "the states' residuals of the training runs depend on each other exactly: one state follows from "
+        "others, and should be left out");
+  Eigen::MatrixXd information = Eigen::kroneckerProduct(*Q_inverse, G);
   information.diagonal().array() += least_information * information.diagonal().maxCoeff();
   return information;
 }

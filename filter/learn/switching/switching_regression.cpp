@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <unsupported/Eigen/KroneckerProduct>
+#include <utility>
 
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "ident/base/linalg.hpp"
@@ -141,9 +143,14 @@ SwitchingSums sum_transitions(const TrainingTransitions& transitions, const Mode
 std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, const SwitchingPrior& prior,
                                                    const SwitchingRegression& model) {
   std::vector<Eigen::MatrixXd> covariances;
-  for (std::size_t j = 0; j < sums.modes.size(); ++j)
-    covariances.push_back(definite_inverse(
-        Eigen::kroneckerProduct(definite_inverse(model.Q[j]), sums.modes[j].G).eval() + prior.information));
+  for (std::size_t j = 0; j < sums.modes.size(); ++j) {
+    covariances.push_back(Eigen::MatrixXd::Constant(prior.mean.size(), prior.mean.size(), not_a_number));
+    const std::optional<Eigen::MatrixXd> Q_inverse = definite_inverse(model.Q[j]);
+    if (!Q_inverse) continue;
+    if (auto inverse =
+            definite_inverse(Eigen::kroneckerProduct(*Q_inverse, sums.modes[j].G).eval() + prior.information))
+      covariances.back() = std::move(*inverse);
+  }
   return covariances;
 }
 
@@ -154,8 +161,11 @@ double log_prior(const SwitchingPrior& prior, bool one_theta, const SwitchingReg
     const Eigen::VectorXd difference = model.theta.col(j) - prior.mean;
     sum -= 0.5 * difference.dot(prior.information * difference);
   }
-  for (const Eigen::MatrixXd& Q : model.Q)
-    sum -= 0.5 * prior.noise_transitions * (log_determinant(Q) + (definite_inverse(Q) * prior.noise).trace());
+  for (const Eigen::MatrixXd& Q : model.Q) {
+    const std::optional<Eigen::MatrixXd> inverse = definite_inverse(Q);
+    if (!inverse) return -std::numeric_limits<double>::infinity();
+    sum -= 0.5 * prior.noise_transitions * (log_determinant(Q) + (*inverse * prior.noise).trace());
+  }
   if (prior.counts > 0.0)
     sum += prior.counts * (model.transition.array().log().sum() + model.initial.array().log().sum());
   return sum;

@@ -62,10 +62,11 @@ SwitchingSums sum_transitions(const TrainingTransitions& transitions, const Mode
                               const SwitchingPrior& prior);
 
 /// Covariance of each mode's theta, (Q^-1 (x) sum g phi phi' + prior information)^-1, given the smoothed modes.
+/// NaN of a mode whose Q or information is not definite: nothing is known of its errors.
 std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, const SwitchingPrior& prior,
                                                    const SwitchingRegression& model);
 
-/// Log density of the prior at `model`, up to a constant.
+/// Log density of the prior at `model`, up to a constant; minus infinity where a Q is not definite.
 double log_prior(const SwitchingPrior& prior, bool one_theta, const SwitchingRegression& model);
 
 }  // namespace modebank

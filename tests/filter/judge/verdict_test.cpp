@@ -111,7 +111,8 @@ std::vector<double> related_scores(int samples, double rho, bool sizes_alone, st
 Evidence evidence_of(const std::vector<double>& scores, double scale, bool with_nis) {
   const double upper = chi_square_quantile(0.975, 1.0), lower = chi_square_quantile(0.025, 1.0);
   Evidence evidence;
-  for (SeriesByRun* series : {&evidence.far, &evidence.close, &evidence.sizes, &evidence.nis}) series->emplace_back();
+  for (SeriesByRun* series : {&evidence.far, &evidence.close, &evidence.sizes}) series->emplace_back();
+  evidence.nis.begin_run();
   for (SeriesByRun& series : evidence.outside) series.emplace_back();
   const auto edges = coverage_band_edges();
   for (const double score : scores) {
@@ -121,18 +122,20 @@ Evidence evidence_of(const std::vector<double>& scores, double scale, bool with_
     evidence.far[0].push_back(square > upper ? 1.0 : 0.0);
     evidence.close[0].push_back(square < lower ? 1.0 : 0.0);
     evidence.sizes[0].push_back(square);
-    evidence.nis[0].push_back(square);
+    evidence.nis.add(square, 1);
   }
   evidence.chi_square_nis = with_nis;
   return evidence;
 }
+
+Verdict verdict_on(const Evidence& evidence) { return verdict_of(evidence, time_by_sizes(evidence.sizes)); }
 
 /// Percentages of 100 series.
 std::map<Verdict, int> verdicts_of_related(int samples, double rho, bool sizes_alone, double scale, bool with_nis) {
   std::mt19937_64 generator(17);
   std::map<Verdict, int> counts;
   for (int i = 0; i < 100; ++i)
-    ++counts[verdict_of(evidence_of(related_scores(samples, rho, sizes_alone, generator), scale, with_nis))];
+    ++counts[verdict_on(evidence_of(related_scores(samples, rho, sizes_alone, generator), scale, with_nis))];
   return counts;
 }
 
@@ -172,7 +175,7 @@ TEST(Verdict, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
   const Evidence evidence = evidence_of(scores, 1.0, false);
   EXPECT_GT(mean_of(evidence.outside[deciding_level]), 0.063);
   EXPECT_GT(mean_of(evidence.close), 0.03);
-  EXPECT_EQ(verdict_of(evidence), Verdict::overconfident);
+  EXPECT_EQ(verdict_on(evidence), Verdict::overconfident);
 }
 
 /// Inside the central bands of a true filter lie as many as they say.
@@ -213,26 +216,6 @@ TEST(Verdict, TimeOfATailIsItsHits) {
   EXPECT_NEAR(cautious_time(4.0, 3400.0), 4.3, 1e-12);  // Madras & Sokal: 2 (2 M + 1) / N with M = 2 time
 }
 
-/// Chi-square's own, and a mixture's in closed form: variances 1 and 9 with equal chances, mean 5, variance 98.
-TEST(Verdict, DispersionIsThatOfTheLaw) {
-  std::mt19937_64 generator(5);
-  boost::random::normal_distribution<double> normal;
-  std::vector<double> single, mixture;
-  for (int k = 0; k < 200000; ++k) {
-    const double square = std::pow(normal(generator), 2);
-    single.push_back(3.0 * square);
-    mixture.push_back((k % 2 == 0 ? 1.0 : 9.0) * square);
-  }
-  EXPECT_NEAR(dispersion({single}, 1.0), 1.0, 0.03);
-  EXPECT_NEAR(dispersion({mixture}, 1.0), (0.5 * (3.0 + 3.0 * 81.0) - 25.0) / 50.0, 0.06);
-  EXPECT_EQ(dispersion({{}}, 1.0), 1.0);
-  EXPECT_EQ(dispersion({{0.0, 0.0}}, 1.0), 1.0);
-}
-
-Interval mean_interval(const SeriesByRun& series) {
-  return chi_square_mean_interval(series, autocorrelation_time(series), 1.0);
-}
-
 TEST(Verdict, IntervalsAreTheBooks) {
   // Clopper & Pearson (1934), table for 95 %: 3 of 10; 0 of 10; 10 of 10.
   EXPECT_NEAR(binomial_interval(3, 10).lower, 0.0667, 5e-5);
@@ -241,19 +224,6 @@ TEST(Verdict, IntervalsAreTheBooks) {
   EXPECT_NEAR(binomial_interval(0, 10).upper, 0.3085, 5e-5);
   EXPECT_NEAR(binomial_interval(10, 10).lower, 0.6915, 5e-5);
   EXPECT_TRUE(std::isnan(binomial_interval(0, 0).lower));
-  // White: chi-square's own quantiles, 74.22 and 129.56 at 100 degrees of freedom.
-  const Interval white = chi_square_mean_interval({std::vector<double>(100, 1.0)}, 1.0, 1.0);
-  EXPECT_NEAR(white.lower, 0.7422, 5e-5);
-  EXPECT_NEAR(white.upper, 1.2956, 5e-5);
-  // Every value twice: as wide as for half as many.
-  std::mt19937_64 generator(1);
-  std::vector<double> once, twice;
-  for (int i = 0; i < 4000; ++i) {
-    once.push_back(static_cast<double>(generator() >> 11));
-    twice.insert(twice.end(), {once.back(), once.back()});
-  }
-  const Interval a = mean_interval({once}), b = mean_interval({twice});
-  EXPECT_NEAR((b.upper - b.lower) / (a.upper - a.lower), 1.0, 0.1);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ TEST_F(Averaging, FitsAreAveragedWhereRunsLeftOutGainByIt) {
   options.restarts = 5;
   options.members = 4;
   options.screen = false;
+  options.measurement_noise = false;  // so many modes on so few samples also gain by an R, and then there is one fit
   const WindowFits fits = test::windows_of(recording, 25, 1);
   const Refinement refined = refine_bank(recording, fits, {start_bank(recording, many)}, options, adaptive_imm());
   ASSERT_GT(refined.averaging.members, 1);

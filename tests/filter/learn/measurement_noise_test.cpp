@@ -3,12 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <random>
 
 #include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/switching/switching_regression.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 
 namespace modebank {
@@ -119,7 +123,7 @@ Bank one_mode(const Recording& recording, double Q) {
 }
 
 std::optional<Bank> with_R(const Recording& recording, const Bank& bank) {
-  return estimate_measurement_noise({recording, {}, std::nullopt}, bank, {});
+  return estimate_measurement_noise({recording, {}, std::nullopt}, bank, {}).bank;
 }
 
 /// The share of Q that was R is found whatever it is.
@@ -136,6 +140,66 @@ TEST(EstimateMeasurementNoise, SplitsQAndR) {
 TEST(EstimateMeasurementNoise, IsNoneWhereTheDataShowNone) {
   const Recording recording = one_mode_with(0.0);
   EXPECT_FALSE(with_R(recording, one_mode(recording, Q_true)));
+}
+
+/// Starts of which some fail: R infinite, and Q with it.
+MeasurementNoise searched_from(const std::array<double, 4>& shares) {
+  const Recording recording = one_mode_with(0.02);
+  RefineTuning tuning;
+  tuning.R_start_shares = shares;
+  return estimate_measurement_noise({recording, {}, std::nullopt}, one_mode(recording, Q_true + 0.04), tuning);
+}
+
+TEST(EstimateMeasurementNoise, AStartThatFailsIsCountedAndTheOthersDecide) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const MeasurementNoise none_failed = searched_from({0.05, 0.005, 0.2, 0.45});
+  const MeasurementNoise some_failed = searched_from({infinite, 0.05, std::nan(""), 0.2});
+  const MeasurementNoise all_failed = searched_from({infinite, infinite, infinite, infinite});
+  EXPECT_EQ(none_failed.failed_starts, 0);
+  EXPECT_EQ(some_failed.starts, 4);
+  EXPECT_EQ(some_failed.failed_starts, 2);
+  ASSERT_TRUE(none_failed.bank && some_failed.bank);
+  EXPECT_NEAR(some_failed.bank->R(0, 0), 0.02, 0.007);
+  EXPECT_NEAR(some_failed.bank->R(0, 0), none_failed.bank->R(0, 0), 1e-4);
+  EXPECT_EQ(all_failed.failed_starts, 4);
+  EXPECT_FALSE(all_failed.bank);
+}
+
+/// Nothing of a fit has seen the runs it is scored on, its R neither: here the last run is measured ten times as badly.
+TEST(RefineMeasured, ScoresAreOfFitsThatLeaveTheRunOut) {
+  SystemTruth truth;
+  truth.theta.col(1) = truth.theta.col(0);
+  truth.Q.setConstant(Q_true);
+  truth.R = 0.02;
+  Recording recording = measured_runs(truth, 3, 500, 31);
+  truth.R = 0.2;
+  recording.runs.push_back(measured_runs(truth, 1, 500, 32).runs.front());
+  recording.runs.back().run = "worse";
+  const WindowFits fits = test::windows_of(recording, 25, 1);
+  const Bank frame = bank_of(recording, truth.theta.leftCols(1), Eigen::VectorXd::Constant(1, 0.1), 1e-9);
+  const TrainingTransitions transitions = gather_training_transitions(recording, frame.structure);
+  RefineOptions options;
+  options.folds = 4;
+  const FilterOptions filter;
+  const RefineInput in{recording, fits, frame, transitions, options, filter};
+  CrossValidation validation(in);
+  const RefineStart start{"mixture", switching_model(frame), 4.0};
+  validation.consider({start});
+  const MeasurementStage stage =
+      fit_with_measurement_noise(in, validation, in.prior(4.0), validation.chosen().banks.front()).stage;
+  double expected = 0.0, samples = 0.0;
+  std::vector<double> R;
+  for (std::size_t s = 0; s < validation.splits().size(); ++s) {
+    const ValidationSplit& split = validation.splits()[s].runs;
+    const Bank bank = with_R(split.training, validation.chosen().banks[s]).value();
+    R.push_back(bank.R(0, 0));
+    for (const Trajectory& run : split.left_out.runs) {
+      expected += log_likelihood(bank, run, filter);
+      samples += static_cast<double>(run.transitions());
+    }
+  }
+  EXPECT_LT(*std::min_element(R.begin(), R.end()), 0.5 * *std::max_element(R.begin(), R.end()));
+  EXPECT_NEAR(stage.score_before, expected / samples, 1e-12);
 }
 
 }  // namespace

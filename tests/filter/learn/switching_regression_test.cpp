@@ -165,12 +165,33 @@ TEST(SwitchingRegression, ImpossibleModesDoNotScaleTheOthersAway) {
   EXPECT_TRUE(near(posterior.first, Eigen::Vector2d(1.0, 0.0), 1e-15));
 }
 
-TEST(DefiniteInverse, IsNotFiniteWhereThereIsNone) {
-  EXPECT_TRUE(near(definite_inverse(Eigen::MatrixXd{{2.0, 1.0}, {1.0, 2.0}}),
+TEST(DefiniteInverse, IsEmptyWhereThereIsNone) {
+  EXPECT_TRUE(near(definite_inverse(Eigen::MatrixXd{{2.0, 1.0}, {1.0, 2.0}}).value(),
                    Eigen::MatrixXd{{2.0 / 3.0, -1.0 / 3.0}, {-1.0 / 3.0, 2.0 / 3.0}}, 1e-15));
   for (const Eigen::MatrixXd& matrix :
        {Eigen::MatrixXd{{1.0, 2.0}, {2.0, 1.0}}, Eigen::MatrixXd{{1.0, 1.0}, {1.0, 1.0}}})
-    EXPECT_TRUE(definite_inverse(matrix).array().isNaN().all());
+    EXPECT_FALSE(definite_inverse(matrix));
+}
+
+/// A covariance without an inverse has no density and tells no errors; theta then stays where it was.
+TEST(SwitchingRegression, ACovarianceThatIsNotDefiniteIsSaidToBe) {
+  const Recording recording = noisy_runs(2, {100, 80});
+  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+  const GlobalModel global = fit_global(recording, t.structure);
+  const SwitchingPrior prior = switching_prior(t, global, {}, 1.0, {});
+  SwitchingRegression model;
+  model.theta = global.theta;
+  model.Q = {global.residual_covariance};
+  model.transition = Eigen::MatrixXd::Ones(1, 1);
+  model.initial = Eigen::VectorXd::Ones(1);
+  const SwitchingSums sums = sum_transitions(t, smooth_modes(t, model), prior);
+  EXPECT_TRUE(std::isfinite(log_prior(prior, false, model)));
+  EXPECT_TRUE(parameter_covariances(sums, prior, model).front().allFinite());
+  model.Q.front() *= -1.0;
+  EXPECT_EQ(log_prior(prior, false, model), -std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(parameter_covariances(sums, prior, model).front().array().isNaN().all());
+  model.theta.setConstant(0.25);
+  EXPECT_EQ(maximise(t.structure, sums, prior, {.alternations = 1}, model).theta, model.theta);
 }
 
 TEST(SwitchingRegression, OneModeWithoutPriorIsTheGlobalModel) {

@@ -11,6 +11,9 @@ namespace modebank::test {
 /// third has no finite binary expansion, so a lost bit shows.
 Archive full_archive(Index states, Index inputs);
 
+/// Its part on evaluation, with every field filled, for the runs and the bank that the archive holds.
+void add_evaluation(Archive& archive);
+
 /// rows x cols of base + 100 col + row + 1/3.
 Eigen::MatrixXd pattern(Index rows, Index cols, double base);
 

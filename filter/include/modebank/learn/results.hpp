@@ -32,8 +32,10 @@ struct RefineCandidate {
   bool selected = false;                         ///< several where fits are averaged
 };
 
-/// How the fit went on once R was known to be more than nothing.
+/// How the search for R went, and the fit once R was known to be more than nothing.
 struct MeasurementStage {
+  std::ptrdiff_t starts = 0;            ///< of the search for R; 0: R was given
+  std::ptrdiff_t failed_starts = 0;     ///< of these, from which there was no way up; the best of the others counts
   std::ptrdiff_t iterations = 0;        ///< with measurement noise; 0: there is none, or they would not have paid
   MeasuredFit end = MeasuredFit::none;  ///< how they ended
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out

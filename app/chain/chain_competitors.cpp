@@ -1,0 +1,62 @@
+// The chain's stages that are about the competitors.
+#include "app/chain/chain.hpp"
+#include "app/chain/model_rows.hpp"
+
+namespace modebank {
+
+void Chain::learn_competitor_banks(const CompetitorInputs& inputs) {
+  const auto learn_all = [&] {
+    Competitors learned = learn_competitors(*archive_.recording, *archive_.windows,
+                                            archive_.mixture->mixture.components(), inputs, listener_);
+    archive_.baseline = std::move(learned.baseline);
+    archive_.noise_only = std::move(learned.noise_only);
+    archive_.one_motion = std::move(learned.one_motion);
+    archive_.drifting = std::move(learned.drifting);
+  };
+  const auto copy_all = [&] {
+    Archive part;
+    part.baseline = archive_.baseline;
+    part.noise_only = archive_.noise_only;
+    part.one_motion = archive_.one_motion;
+    part.drifting = archive_.drifting;
+    return part;
+  };
+  const auto take_all = [&](Archive&& part) {
+    archive_.baseline = std::move(part.baseline);
+    archive_.noise_only = std::move(part.noise_only);
+    archive_.one_motion = std::move(part.one_motion);
+    archive_.drifting = std::move(part.drifting);
+  };
+  provide(Stage::competitors, {learn_all, copy_all, take_all});
+}
+
+/// A run may have fewer than the one before.
+void Chain::forget_competitors() {
+  for (const char* filter : competitor_names) {
+    put_rows<FilterEvaluation>(filter, {}, archive_.evaluations);
+    put_rows<SummaryRow>(filter, {}, archive_.summary);
+    put_rows<HorizonRow>(filter, {}, archive_.horizons);
+    put_rows<DiagnosticsRow>(filter, {}, archive_.diagnostics);
+    put_rows<ResidualTestSet>(filter, {}, archive_.residual_tests);
+  }
+}
+
+void Chain::score_competitors(const CompetitorScoreInputs& inputs) {
+  const auto score_all = [&] {
+    forget_competitors();
+    put(test_global(*archive_.recording, *archive_.windows, inputs.window));
+    for (const char* filter : competitor_names) score(filter, competitor_filter(filter, inputs.filter), inputs.scoring);
+  };
+  const auto copy = [&] {
+    std::vector<std::string> models(competitor_names.begin(), competitor_names.end());
+    models.emplace_back("global");
+    return scores_of(models, archive_);
+  };
+  const auto take = [&](Archive&& part) {
+    forget_competitors();
+    put_scores(std::move(part));
+  };
+  provide(Stage::competitor_scores, {score_all, copy, take});
+}
+
+}  // namespace modebank

@@ -1,0 +1,152 @@
+// Mean NIS and NEES with their intervals, whatever signals are missing: by closed forms and by simulation.
+#include "filter/judge/squared_distances.hpp"
+
+#include <gtest/gtest.h>
+
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "filter/judge/diagnostics.hpp"
+#include "filter/judge/scores.hpp"
+#include "ident/base/distributions.hpp"
+#include "tests/filter/filter_test_support.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+
+SquaredDistances distances_of(const std::vector<double>& values, Index degrees = 1) {
+  SquaredDistances distances;
+  distances.begin_run();
+  for (const double value : values) distances.add(value, degrees);
+  return distances;
+}
+
+TEST(SquaredDistances, AMeanCountsSamplesByTheirDegrees) {
+  SquaredDistances distances = distances_of({6.0}, 3);
+  distances.add(1.0, 1);
+  distances.begin_run();
+  distances.add(5.0, 2);
+  distances.add(std::nan(""), 0);                        // nothing there
+  EXPECT_DOUBLE_EQ(mean_distance(distances, 3.0), 6.0);  // 12 over 6 degrees, of 3
+  EXPECT_TRUE(std::isnan(mean_distance({}, 1.0)));
+  EXPECT_TRUE(std::isnan(mean_distance_interval({}, 1.0, true).lower));
+}
+
+/// Chi-square's own quantiles: 74.22 and 129.56 at 100 degrees of freedom, however they are dealt to samples.
+TEST(SquaredDistances, TheIntervalIsThatOfTheSum) {
+  for (const Index degrees : {1, 4}) {
+    const SquaredDistances whole =
+        distances_of(std::vector<double>(static_cast<std::size_t>(100 / degrees), 1.0), degrees);
+    const Interval interval = mean_distance_interval(whole, 1.0, true);
+    EXPECT_NEAR(interval.lower, 0.7422, 5e-5);
+    EXPECT_NEAR(interval.upper, 1.2956, 5e-5);
+    EXPECT_NEAR(mean_distance_interval(whole, 4.0, true).upper, 4.0 * 1.2956, 2e-4);
+  }
+}
+
+/// Every value twice: as wide as for half as many, but for the margin.
+TEST(SquaredDistances, RelatedSamplesAreFewer) {
+  std::mt19937_64 generator(1);
+  std::vector<double> once, twice;
+  for (int i = 0; i < 4000; ++i) {
+    once.push_back(static_cast<double>(generator() >> 11));
+    twice.insert(twice.end(), {once.back(), once.back()});
+  }
+  const Interval a = mean_distance_interval(distances_of(once), 1.0, true),
+                 b = mean_distance_interval(distances_of(twice), 1.0, true);
+  EXPECT_NEAR((b.upper - b.lower) / (a.upper - a.lower), 1.0, 0.1);
+}
+
+/// Chi-square's own of any degrees, and a mixture's in closed form: variances 1 and 9 with equal chances, mean 5,
+/// variance 98.
+TEST(SquaredDistances, DispersionIsThatOfTheLaw) {
+  std::mt19937_64 generator(5);
+  boost::random::normal_distribution<double> normal;
+  SquaredDistances single;
+  single.begin_run();
+  std::vector<double> mixture;
+  for (int k = 0; k < 200000; ++k) {
+    const double square = std::pow(normal(generator), 2), other = std::pow(normal(generator), 2);
+    if (k % 3 == 0)
+      single.add(3.0 * square, 1);
+    else
+      single.add(3.0 * (square + other), 2);
+    mixture.push_back((k % 2 == 0 ? 1.0 : 9.0) * square);
+  }
+  EXPECT_NEAR(dispersion(single), 1.0, 0.03);
+  EXPECT_NEAR(dispersion(distances_of(mixture)), (0.5 * (3.0 + 3.0 * 81.0) - 25.0) / 50.0, 0.06);
+  EXPECT_EQ(dispersion({}), 1.0);
+  EXPECT_EQ(dispersion(distances_of({0.0, 0.0})), 1.0);
+}
+
+/// A run of the bank of which signals are missing: each with this probability, on its own.
+Trajectory with_missing(const Bank& bank, double missing, Index samples, std::uint64_t seed) {
+  Trajectory run = test::simulate_bank(bank, samples, seed);
+  run.role = Role::test;
+  std::mt19937_64 generator(seed + 1);
+  std::uniform_real_distribution<double> uniform;
+  for (Index k = 1; k < samples; ++k)
+    for (double& value : run.state.col(k))
+      if (uniform(generator) < missing) value = std::numeric_limits<double>::quiet_NaN();
+  return run;
+}
+
+/// The mean over samples that some signal is missing of, raw, would be n_y (1 - missing) or so.
+TEST(SquaredDistances, ATrueFilterHasMeanNisOfItsSignalsWhateverIsMissing) {
+  const Bank bank = test::single_mode(test::example_bank(3, 1, 1), 0);
+  for (const double missing : {0.0, 0.3, 0.7}) {
+    const std::vector<Trajectory> runs{with_missing(bank, missing, 6000, 3), with_missing(bank, missing, 6000, 5)};
+    const std::vector<RunEvaluation> evaluations{evaluate_run(bank, runs[0], {}), evaluate_run(bank, runs[1], {})};
+    const std::vector<RunScores> scores = score_runs(evaluations);
+    const std::vector<SummaryRow> summary = summarize("bank", runs, evaluations, scores);
+    const DiagnosticsRow row = diagnose("bank", bank, {}, runs, evaluations, scores).front();
+    const double signals = 2.0 * 6000.0 * 3.0 * (1.0 - missing);
+    EXPECT_NEAR(row.nis_mean, 3.0, 4.0 * 3.0 * std::sqrt(2.0 / signals)) << missing;
+    EXPECT_DOUBLE_EQ(row.nis_mean, summary.back().nis_mean) << missing;  // one definition in both tables
+    EXPECT_LT(row.nis_lower, 3.0);
+    EXPECT_GT(row.nis_upper, 3.0);
+    EXPECT_NEAR(row.nis_upper - row.nis_lower, 2.0 * 1.96 * 3.0 * std::sqrt(2.0 / signals), 0.02) << missing;
+    EXPECT_EQ(row.verdict, Verdict::calibrated) << missing;
+  }
+}
+
+/// The interval holds a true filter's mean in 95 % of the seeds: five standard errors of 400.
+TEST(SquaredDistances, TheIntervalCoversWithMissingSignals) {
+  std::mt19937_64 generator(9);
+  boost::random::normal_distribution<double> normal;
+  int inside = 0;
+  for (int seed = 0; seed < 400; ++seed) {
+    SquaredDistances distances;
+    distances.begin_run();
+    for (int k = 0; k < 200; ++k) {
+      const Index degrees = 1 + static_cast<Index>(generator() % 4);
+      double square = 0.0;
+      for (Index i = 0; i < degrees; ++i) square += std::pow(normal(generator), 2);
+      distances.add(square, degrees);
+    }
+    const Interval interval = mean_distance_interval(distances, 4.0, true);
+    const double mean = mean_distance(distances, 4.0);
+    inside += mean >= interval.lower && mean <= interval.upper ? 1 : 0;
+  }
+  EXPECT_NEAR(inside / 400.0, 0.95, 5.0 * std::sqrt(0.95 * 0.05 / 400.0));
+}
+
+/// On the scale of all signals a NIS lies beyond the region's edges where it does by its own degrees.
+TEST(SquaredDistances, NisOfFewerSignalsIsDrawnWhereAllWouldBe) {
+  RunEvaluation e;
+  const double nan = std::nan("");
+  e.pit = Eigen::MatrixXd{{nan, 0.5, 0.5, nan}, {nan, 0.5, nan, 0.5}};
+  e.nis = Eigen::Vector4d(nan, 5.0, chi_square_quantile(0.975, 1.0), chi_square_quantile(0.025, 1.0));
+  const Eigen::VectorXd drawn = nis_of_all_signals(e);
+  EXPECT_TRUE(std::isnan(drawn(0)));
+  EXPECT_EQ(drawn(1), 5.0);
+  EXPECT_NEAR(drawn(2), chi_square_quantile(0.975, 2.0), 1e-9);
+  EXPECT_NEAR(drawn(3), chi_square_quantile(0.025, 2.0), 1e-9);
+}
+
+}  // namespace
+}  // namespace modebank

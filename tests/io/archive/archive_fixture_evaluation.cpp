@@ -1,0 +1,127 @@
+// The part of the archive of archive_fixture.cpp that says what filters said and how good that was.
+#include "ident/base/not_a_number.hpp"
+#include "tests/io/archive/archive_fixture.hpp"
+
+namespace modebank::test {
+
+namespace {
+
+RunEvaluation make_evaluation(Index n, Index samples, Index count) {
+  RunEvaluation evaluation;
+  evaluation.prediction = pattern(n, samples, 70.0);
+  evaluation.innovation = pattern(n, samples, 71.0);
+  evaluation.innovation_covariance = pattern(n * n, samples, 72.0);
+  evaluation.state = pattern(n, samples, 73.0);
+  evaluation.covariance = pattern(n * n, samples, 74.0);
+  evaluation.nis = pattern(samples, 1, 75.0);
+  evaluation.nis(0) = not_a_number;
+  evaluation.pit = pattern(n, samples, 76.0);
+  evaluation.log_density = pattern(samples, 1, 77.0);
+  evaluation.mode_probability_predicted = pattern(count, samples, 78.0);
+  evaluation.mode_probability = pattern(count, samples, 79.0);
+  evaluation.spread_share = pattern(samples, 1, 81.0);
+  if (count == 1) return evaluation;  // as without filter.smooth
+  evaluation.smoothed_state = pattern(n, samples, 82.0);
+  evaluation.smoothed_covariance = pattern(n * n, samples, 83.0);
+  evaluation.viterbi_mode = Eigen::VectorXi::LinSpaced(samples, -1, static_cast<int>(samples) - 2);
+  return evaluation;
+}
+
+ResidualTests make_residual_tests(Index n, Index m, Index run) {
+  constexpr Index lags = 4;
+  ResidualTests tests;
+  tests.samples = 10 + run;
+  tests.autocorrelation = pattern(n, lags, 90.0 + static_cast<double>(run));
+  tests.cross_correlation = pattern(n * m, lags, 91.0);
+  tests.autocorrelation_band = 0.25;
+  tests.cross_correlation_band = pattern(m, n, 92.0);
+  tests.ljung_box_p = pattern(n, 1, 93.0);
+  return tests;
+}
+
+SummaryRow make_row(const std::string& filter, Role role, const std::string& run, Index n) {
+  return {filter, role, run,  123,   2.5, pattern(n, 1, 80.0), 0.9, 0.02, 0.03, 0.01, 0.04,
+          0.51,   0.91, 0.96, 0.995, 0.1, not_a_number};
+}
+
+DiagnosticsRow make_diagnostics(const std::string& filter, Index n) {
+  return {filter,
+          Role::test,
+          2,
+          123,
+          0.25,
+          0.5,
+          12.5,
+          20.0,
+          0.51,
+          0.47,
+          0.55,
+          0.91,
+          0.88,
+          0.93,
+          0.96,
+          0.94,
+          0.97,
+          0.995,
+          0.98,
+          1.0,
+          0.03,
+          0.01,
+          0.06,
+          0.02,
+          0.005,
+          0.05,
+          1.1,
+          0.9,
+          1.2,
+          2.1,
+          1.8,
+          2.2,
+          pattern(n, 1, 85.0),
+          0.4,
+          0.1,
+          Verdict::overconfident,
+          "probabilities flat; heavy tails"};
+}
+
+Finding make_finding() {
+  Finding finding;
+  finding.answer = Answer::no_evidence;
+  finding.role = Role::test;
+  finding.runs = 6;
+  finding.modes = 3;
+  finding.modes_differ = true;
+  finding.gains = {{"baseline", 700, 1.25, 0.25, 5.0, 0.5, false},
+                   {"one_motion", 699, -0.125, 0.0625, 11.0, 0.125, true}};
+  finding.best_competitor = "one_motion";
+  finding.gain = -0.125;
+  finding.standard_error = 0.0625;
+  finding.better_description = "noise_only";
+  finding.better_means = {{"noise_only", 10, "wz", 0.5, 0.25}};
+  finding.text = "6 held-out runs show no evidence for modes of motion.";
+  return finding;
+}
+
+}  // namespace
+
+void add_evaluation(Archive& archive) {
+  const Index n = archive.recording->state_count(), m = archive.recording->input_count();
+  archive.finding = make_finding();
+  for (const char* filter : {"bank", "baseline", "noise_only", "one_motion"}) {
+    FilterEvaluation evaluation{filter, {}, {}};
+    const Index count = evaluation.filter == "baseline" ? 1 : archive.bank->mode_count();
+    for (const Trajectory& run : archive.recording->runs)
+      evaluation.runs.push_back(make_evaluation(n, run.samples(), count));
+    archive.evaluations.push_back(evaluation);
+    archive.summary.push_back(make_row(filter, Role::train, "run 2", n));
+    archive.summary.push_back(make_row(filter, Role::test, "*", n));
+    archive.horizons.push_back({filter, Role::test, "*", 5, 118, 1.5, pattern(n, 1, 84.0)});
+    archive.diagnostics.push_back(make_diagnostics(filter, n));
+  }
+  for (const char* model : {"global", "bank"}) {
+    archive.residual_tests.push_back({model, {}});
+    for (Index r = 0; r < 3; ++r) archive.residual_tests.back().runs.push_back(make_residual_tests(n, m, r));
+  }
+}
+
+}  // namespace modebank::test
