@@ -11,6 +11,7 @@
 #include "app/text/number_text.hpp"
 #include "app/text/summary_tables.hpp"
 #include "app/text/terminal.hpp"
+#include "ident/model/parameter_labels.hpp"
 #include "mixture/criteria.hpp"
 
 namespace modebank::app {
@@ -28,11 +29,14 @@ Index member_windows(const MixtureResult& result) {
   return count;
 }
 
-std::string mixture_text(const MixtureResult& result) {
+/// `labels`: of the first features, the parameters.
+std::string mixture_text(const MixtureResult& result, const std::vector<std::string>& labels) {
   const auto& candidates = result.candidates;
   const auto chosen = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.selected; });
-  std::string text = fmt::format("mixture   {} components over {}", result.mixture.components(),
-                                 fmt::join(result.feature_names, ", "));
+  std::vector<std::string> features = result.feature_names;
+  std::copy_n(labels.begin(), std::min(labels.size(), features.size()), features.begin());
+  std::string text =
+      fmt::format("mixture   {} components over {}", result.mixture.components(), fmt::join(features, ", "));
   if (chosen == candidates.end()) return text + "\n";
   const Index members = member_windows(result), clustered = result.clustered > 0 ? result.clustered : members;
   text +=
@@ -207,21 +211,50 @@ std::vector<std::string> window_warnings(const WindowFits& fits, const WindowCou
   return warnings;
 }
 
-std::string windows_text(const WindowFits& fits, const WindowCounts& counts) {
+std::string refinement_warning(MeasuredFit fit) {
+  if (fit == MeasuredFit::iteration_limit)
+    return "the fit with measurement noise was stopped by bank.max_iterations before it had converged";
+  if (fit == MeasuredFit::stalled) return "the fit with measurement noise stalled before it had converged";
+  return "";
+}
+
+std::vector<std::string> archive_warnings(const Archive& archive) {
+  std::vector<std::string> warnings;
+  const auto add = [&](const std::vector<std::string>& more) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  };
+  if (archive.windows) {
+    WindowCounts counts;
+    counts.add(*archive.windows);
+    add(window_warnings(*archive.windows, counts));
+  }
+  if (archive.mixture) add(selection_warnings(archive.mixture->candidates));
+  if (const std::string refined = refinement_warning(archive.measured_fit); archive.bank && !refined.empty())
+    add({refined});
+  return warnings;
+}
+
+std::vector<std::string> window_labels(const Archive& archive) {
+  if (!archive.windows) return {};
+  const Recording none;
+  const Recording& recording = archive.recording ? *archive.recording : none;
+  return parameter_labels(*archive.windows, names_of(recording.states), names_of(recording.inputs));
+}
+
+std::string windows_text(const WindowFits& fits, const WindowCounts& counts, const std::vector<std::string>& labels) {
   std::string text = fmt::format(
       "windows   {} of {} transitions: {} converged, {} rank deficient, {} at the iteration limit, {} failed\n",
       counts.total(), fits.length, counts.of(FitStatus::converged), counts.of(FitStatus::rank_deficient),
       counts.of(FitStatus::iteration_limit), counts.of(FitStatus::failed));
   text += audit_text(fits.audit);
   for (const std::string& warning : window_warnings(fits, counts)) text += "warning   " + warning + "\n";
-  const auto names = fits.parameter_names();
-  text += "global   ";
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  text += "global    ";
+  for (std::size_t i = 0; i < labels.size(); ++i) {
     const auto k = static_cast<Index>(i);
-    text +=
-        fmt::format(" {} = {:.4g} +- {:.2g}", names[i], fits.global.theta(k), std::sqrt(fits.global.covariance(k, k)));
+    text += fmt::format("{}{} = {:.4g} +- {:.2g}", i == 0 ? "" : ", ", labels[i], fits.global.theta(k),
+                        std::sqrt(fits.global.covariance(k, k)));
   }
-  return text + fmt::format(", residual variance {:.4g}\n", fmt::join(fits.global.noise_variance(), " "));
+  return text + fmt::format("; residual variance {:.4g}\n", fmt::join(fits.global.noise_variance(), " "));
 }
 
 std::string summary_text(const Archive& archive, int width) {
@@ -231,10 +264,14 @@ std::string summary_text(const Archive& archive, int width) {
   if (archive.windows) {
     WindowCounts counts;
     counts.add(*archive.windows);
-    text += windows_text(*archive.windows, counts);
+    text += windows_text(*archive.windows, counts, window_labels(archive));
   }
-  if (archive.mixture) text += mixture_text(*archive.mixture);
-  if (archive.bank) text += bank_text(*archive.bank) + merging_text(archive);
+  if (archive.mixture) text += mixture_text(*archive.mixture, window_labels(archive));
+  if (archive.bank) {
+    text += bank_text(*archive.bank) + merging_text(archive);
+    if (const std::string warning = refinement_warning(archive.measured_fit); !warning.empty())
+      text += "          warning: " + warning + "\n";
+  }
   text += residuals_text(archive);
   if (!archive.summary.empty())
     text += "\n" + scores_text(archive, width) + verdicts_text(archive) + horizon_text(archive) + finding_text(archive);
