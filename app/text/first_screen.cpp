@@ -8,8 +8,8 @@
 
 #include "app/chain/judged_runs.hpp"
 #include "app/text/mode_words.hpp"
-#include "app/text/summary_text.hpp"
 #include "app/text/terminal.hpp"
+#include "app/text/warnings.hpp"
 
 namespace modebank::app {
 namespace {
@@ -19,8 +19,9 @@ constexpr int least_columns = 40;
 
 int lines_of(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
-/// Lines no wider than the screen, however long a name in them is.
-std::string narrowed(const std::string& text, int columns) {
+/// Lines no wider than the screen, however long a name in them is; a tab in one counts as a space.
+std::string narrowed(std::string text, int columns) {
+  std::replace(text.begin(), text.end(), '\t', ' ');
   std::vector<std::string> lines;
   boost::split(lines, text, boost::is_any_of("\n"));
   for (std::string& line : lines)
@@ -54,8 +55,11 @@ std::string read_words(const Archive& archive) {
       test == 0 ? fmt::format("{} training run{}, none held out, {} steps", train, train == 1 ? "" : "s", steps)
                 : fmt::format("{} training and {} held-out run{}, {} and {} steps", train, test, test == 1 ? "" : "s",
                               steps, held_out);
-  text += fmt::format(" of {:.4g} s; {}", recording.median_period_s(), fmt::join(names_of(recording.states), ", "));
-  return recording.inputs.empty() ? text : text + fmt::format(" from {}", fmt::join(names_of(recording.inputs), ", "));
+  text += fmt::format(" of {:.3g} s; {}", recording.median_period_s(), fmt::join(names_of(recording.states), ", "));
+  if (!recording.inputs.empty()) text += fmt::format(" from {}", fmt::join(names_of(recording.inputs), ", "));
+  if (archive.lag && archive.lag->correction != LagCorrection::none)
+    text += fmt::format(", which act {:+.3f} s later", archive.lag->lag.mean);
+  return text;
 }
 
 const DiagnosticsRow* diagnosis_of_bank(const Archive& archive) {
@@ -65,15 +69,19 @@ const DiagnosticsRow* diagnosis_of_bank(const Archive& archive) {
   return nullptr;
 }
 
+std::string verdict_words(Verdict verdict) {
+  if (verdict == Verdict::undecided) return "undecided, for too few samples";
+  return fmt::format("{}, {}", name_of(verdict), calibration_words(verdict));
+}
+
 std::string trust_words(const Archive& archive) {
   const DiagnosticsRow* row = diagnosis_of_bank(archive);
   if (!row) return "";
   return fmt::format(
-      "{:.1f} % [{:.1f}, {:.1f}] of the {} samples lie in the 95 % band: {}, {}; {:.1f} % in the 50 %, {:.1f} % in the "
+      "{:.1f} % [{:.1f}, {:.1f}] of the {} samples lie in the 95 % band: {}; {:.1f} % in the 50 %, {:.1f} % in the "
       "90 %, {:.1f} % in the 99 % band",
       100 * row->coverage_95, 100 * row->coverage_95_lower, 100 * row->coverage_95_upper, words_for(row->role),
-      name_of(row->verdict), calibration_words(row->verdict), 100 * row->coverage_50, 100 * row->coverage_90,
-      100 * row->coverage_99);
+      verdict_words(row->verdict), 100 * row->coverage_50, 100 * row->coverage_90, 100 * row->coverage_99);
 }
 
 /// "0.0301 rad/s", or per state "wz 0.0301 rad/s, v 0.2 m/s".

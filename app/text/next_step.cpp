@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "app/chain/judged_runs.hpp"
-#include "app/text/summary_text.hpp"
+#include "app/text/warnings.hpp"
 
 namespace modebank::app {
 namespace {
@@ -35,9 +35,13 @@ bool is_lost(const Situation& s) {
   return counts.of(FitStatus::failed) > 0;
 }
 
-bool is_linear(const Situation& s) {
+int state_lags(const Situation& s) { return std::atoi(s.setting("window.state_lags").c_str()); }
+
+/// Beyond a few it is not lags that a model lacks.
+bool may_have_more_lags(const Situation& s) {
+  constexpr int most_lags = 5;
   const std::string model = s.setting("window.model");
-  return model == "linear" || model == "varx";
+  return (model == "linear" || model == "varx") && state_lags(s) < most_lags;
 }
 
 bool is_not_white(const Situation& s) { return s.bank.flags.find("innovations not white") != std::string::npos; }
@@ -79,18 +83,18 @@ const Rule rules[] = {
        return fmt::format("use the simpler {} ({}): /{} in the archive", s.finding.better_description,
                           description_of(s.finding.better_description), s.finding.better_description);
      }},
-    {[](const Situation& s) { return is_not_white(s) && is_linear(s); },
+    {[](const Situation& s) { return is_not_white(s) && may_have_more_lags(s); },
      [](const Situation& s) {
        return fmt::format(
            "errors follow a pattern, so the model lacks memory: repeat with --window.model varx "
-           "--window.state_lags {}, or --data.lag_s auto",
-           std::atoi(s.setting("window.state_lags").c_str()) + 1);
+           "--window.state_lags {}{}",
+           state_lags(s) + 1, s.setting("data.lag_s") == "auto" ? "" : ", or with --data.lag_s auto");
      }},
     {is_not_white,
      [](const Situation&) -> std::string {
-       return "errors follow a pattern: `modebank check CONFIG` looks for a lag between inputs and states, "
-              "--data.lag_s auto "
-              "takes it out";
+       return "errors follow a pattern: `modebank check CONFIG` looks for a lag between inputs and states, and for "
+              "what "
+              "the model lacks";
      }},
     {[](const Situation& s) { return is_uncertain_wrongly(s) && s.setting("filter.noise") != "adaptive"; },
      [](const Situation&) -> std::string {

@@ -30,7 +30,8 @@ void expect_fits(const Archive& archive, const std::string& what) {
     EXPECT_LE(app::columns_of(line), app::screen_columns) << what << ": " << line;
   EXPECT_LE(lines, app::screen_lines) << what << '\n' << screen;
   for (const char* label : {"read ", "finding ", "modes ", "band ", "mean ", "next ", "archive "})
-    EXPECT_THAT(screen, HasSubstr(std::string("\n") + label)) << what;
+    EXPECT_THAT("\n" + screen, HasSubstr(std::string("\n") + label)) << what;
+  EXPECT_EQ(screen.find('\t'), std::string::npos) << what;
 }
 
 /// With the longest finding and a warning of many.
@@ -73,8 +74,8 @@ TEST(FirstScreen, SaysWhatMatters) {
                             HasSubstr("steady gains in (rad/s)/(m/s)"), HasSubstr("wz per vel1"),
                             HasSubstr("96.6 % [95.6, 97.4] of the held-out samples lie in the 95 % band: calibrated")));
   EXPECT_THAT(screen,
-              AllOf(HasSubstr("RMSE one step ahead 0.03 rad/s (drifting: 0.04 rad/s); 10 steps ahead 0.06 rad/s "
-                              "(drifting: 0.08 rad/s)"),
+              AllOf(HasSubstr("RMSE one step ahead 0.03 rad/s (drifting: 0.04 rad/s); 10 steps ahead 0.06 rad/s\n"),
+                    HasSubstr("(drifting: 0.08 rad/s)\n"),
                     HasSubstr("1.2 s"),  // 12 samples of 0.1 s
                     HasSubstr("nothing: use it"), HasSubstr("archive   demo.h5"), Not(HasSubstr("warning"))));
   EXPECT_THAT(screen_of(screen_archive(1, 2, 3, Role::train)), HasSubstr("none held out"));
@@ -142,8 +143,13 @@ TEST_F(NextStep, ColouredErrorsAskForMemory) {
   row().flags = "innovations not white: autocorrelation 0.45 at lag 1";
   settings["window.state_lags"] = "2";
   EXPECT_THAT(advice(), HasSubstr("--window.state_lags 3"));
+  EXPECT_THAT(advice(), HasSubstr("--data.lag_s auto"));
+  settings["data.lag_s"] = "auto";
+  EXPECT_THAT(advice(), Not(HasSubstr("lag_s")));
+  settings["window.state_lags"] = "5";
+  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("state_lags"))));
   settings["window.model"] = "slip";
-  EXPECT_THAT(advice(), AllOf(HasSubstr("--data.lag_s auto"), Not(HasSubstr("state_lags"))));
+  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("state_lags"))));
 }
 
 TEST_F(NextStep, AFalseBandAsksForAdaptiveNoiseOnce) {

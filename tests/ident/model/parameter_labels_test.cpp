@@ -34,7 +34,7 @@ TEST(ParameterLabels, StandInThetasOrder) {
     const bool constant = codes[i][0] == 'c';
     const std::string row = codes[i][1] == '1' ? "p" : "q";
     const std::string from = codes[i][0] == 'A' ? (codes[i][2] == '1' ? "p" : "q") : (codes[i][2] == '1' ? "l" : "r");
-    const std::string lag = codes[i].substr(codes[i].find("_lag") + 4);
+    const std::string lag = constant ? "" : codes[i].substr(codes[i].find("_lag") + 4);
     EXPECT_EQ(labels[i], constant ? row + " <- 1" : row + " <- " + from + " (lag " + lag + ")") << codes[i];
   }
 }
