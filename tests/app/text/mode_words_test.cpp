@@ -32,7 +32,7 @@ TEST(ModeWords, AScalarModeInClosedForm) {
   archive.bank->structure.intercept = false;
   Mode& mode = archive.bank->modes[0];
   mode.model.A << -0.4;
-  mode.model.B << 0.3;
+  mode.model.B << 0.32;
   mode.standard_error = Eigen::Vector2d(0.02, 0.0);
   mode.spread.resize(0, 0);
   const double error = 0.02 * 0.1 / (0.6 * std::log(0.6) * std::log(0.6));
@@ -40,7 +40,7 @@ TEST(ModeWords, AScalarModeInClosedForm) {
   const std::string text = app::modes_in_words(archive);
   EXPECT_THAT(text, HasSubstr("0.600"));
   EXPECT_THAT(text, HasSubstr("0.196 +- 0.013 s"));  // -0.1 / log 0.6 = 0.19576
-  EXPECT_THAT(text, HasSubstr("0.750 +- 0.037"));    // 0.02 * 0.3 / 0.16 = 0.0375
+  EXPECT_THAT(text, HasSubstr("0.800 +- 0.040"));    // 0.02 * 0.32 / 0.16
   EXPECT_THAT(text, HasSubstr("wz per vel0"));
 }
 
