@@ -22,14 +22,23 @@ std::string where(const Finding& finding) {
 
 std::string shows(const Finding& finding) { return where(finding) + (finding.runs == 1 ? " shows" : " show"); }
 
+/// " (error from 12 blocks of the one run)", where runs are too few to be what the error is clustered by.
+std::string blocks_words(const Finding& finding) {
+  for (const PairedGain& gain : finding.gains)
+    if (gain.competitor == finding.best_competitor && gain.by_blocks && std::isfinite(gain.standard_error))
+      return fmt::format(" (error from {:.0f} blocks of the {})", gain.degrees_of_freedom + 1.0,
+                         finding.runs == 1 ? "one run" : fmt::format("{} runs", finding.runs));
+  return "";
+}
+
 /// " The bank of 5 modes gains +0.134 +- 0.040 nats per sample over one_motion (...), its best competitor."
 std::string least_gain_words(const Finding& finding) {
   if (finding.best_competitor.empty()) return "";
   const std::string error =
       std::isfinite(finding.standard_error) ? fmt::format(" +- {:.3f}", finding.standard_error) : " (of unknown error)";
-  return fmt::format(" The bank of {} gains {:+.3f}{} nats per sample over {} ({}), its best competitor.",
+  return fmt::format(" The bank of {} gains {:+.3f}{} nats per sample over {} ({}), its best competitor{}.",
                      counted(finding.modes, "mode"), finding.gain, error, finding.best_competitor,
-                     description_of(finding.best_competitor));
+                     description_of(finding.best_competitor), blocks_words(finding));
 }
 
 /// What describes the runs instead, better or as well.
@@ -38,9 +47,12 @@ std::string instead_words(const Finding& finding) {
   const bool better = std::any_of(finding.gains.begin(), finding.gains.end(), [&](const PairedGain& gain) {
     return gain.competitor == finding.better_description && gain.falls_short();
   });
-  return fmt::format(
-      " These runs {} {} by {} ({}).", finding.answer == Answer::cannot_tell ? "may be described" : "are described",
-      better ? "better" : "as well", description_of(finding.better_description), finding.better_description);
+  // Only a gain beyond its margin is known: what cannot be told apart may be as good, or not.
+  return fmt::format(" These runs {} by {} ({}).",
+                     !better                                 ? "may be described as well"
+                     : finding.answer == Answer::cannot_tell ? "may be described better"
+                                                             : "are described better",
+                     description_of(finding.better_description), finding.better_description);
 }
 
 std::string why_not_told(const Finding& finding) {

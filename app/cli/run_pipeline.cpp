@@ -9,7 +9,10 @@
 #include "app/chain/provenance.hpp"
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
+#include "app/text/first_screen.hpp"
 #include "app/text/summary_text.hpp"
+#include "app/text/terminal.hpp"
+#include "ident/model/parameter_labels.hpp"
 #include "io/archive/archive.hpp"
 #include "io/import/import.hpp"
 #include "mixture/criteria.hpp"
@@ -90,15 +93,15 @@ class Log : public Listener {
     }
     if (stage == Stage::mixture)
       for (const std::string& text : selection_warnings(archive.mixture->candidates)) warning("mixture: " + text);
-    if (archive.bank && archive.measured_fit == MeasuredFit::iteration_limit && stage == Stage::bank)
-      warning("refine: the fit with measurement noise was stopped by bank.max_iterations before it had converged");
-    if (archive.bank && archive.measured_fit == MeasuredFit::stalled && stage == Stage::bank)
-      warning("refine: the fit with measurement noise stalled before it had converged");
+    if (const std::string text = refinement_warning(archive.measured_fit); stage == Stage::bank && !text.empty())
+      warning("refine: " + text);
   }
   void warn_of_windows(const WindowFits& windows, const WindowCounts& counts) const {
     for (const std::string& text : window_warnings(windows, counts)) warning("windows: " + text);
   }
 };
+
+std::string archive_line(const Config& config) { return fmt::format("\narchive   {}\n", config.archive.output); }
 
 /// Too many windows for memory: written as they are fitted. Returns the summary.
 std::string identify_many(const Config& config, const Archive& data, const Log& log) {
@@ -109,14 +112,17 @@ std::string identify_many(const Config& config, const Archive& data, const Log& 
       identify_into_file(config.archive.output, data, inputs, [&](const WindowFits& fits) { counts.add(fits); });
   log.progress(fmt::format("windows: {} fitted and archived in {:.2f} s", counts.total(), watch.seconds()));
   log.warn_of_windows(common, counts);
-  return data_text(*data.recording) + windows_text(common, counts);
+  return data_text(*data.recording) +
+         windows_text(common, counts,
+                      parameter_labels(common, names_of(data.recording->states), names_of(data.recording->inputs))) +
+         archive_line(config);
 }
 
 Stage last_stage(const std::string& command) {
   return command == "identify" ? Stage::windows : command == "cluster" ? Stage::mixture : Stage::bank_scores;
 }
 
-/// Runs the stages of the command and writes the archive. Returns the summary.
+/// Runs the stages of the command and writes the archive. Returns what to print.
 std::string execute(const CommandLine& line, const Config& config, StageSource& source) {
   const Log log;
   Chain chain(source, log);
@@ -130,7 +136,9 @@ std::string execute(const CommandLine& line, const Config& config, StageSource& 
   const Archive& archive = banks.empty() ? chain.run(options, last_stage(line.command), execution)
                                          : chain.judge_stored(banks, options, execution);
   write_archive(config.archive.output, archive);
-  return summary_text(archive);
+  if (has_first_screen(archive))
+    return first_screen(archive, resolved_values(archive.config), config.archive.output, standard_output().width);
+  return summary_text(archive) + archive_line(config);
 }
 
 }  // namespace
@@ -153,7 +161,7 @@ int run_pipeline(const CommandLine& line) {
     StoredStages earlier = earlier_stages(config, line.command);
     summary = execute(line, config, earlier);
   }
-  fmt::print("{}\narchive {}\n", summary, config.archive.output);
+  fmt::print("{}", summary);
   return 0;
 }
 

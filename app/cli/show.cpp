@@ -3,6 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/commands.hpp"
+#include "app/config/config_file.hpp"
+#include "app/text/first_screen.hpp"
+#include "app/text/mode_words.hpp"
 #include "app/text/sparkline.hpp"
 #include "app/text/summary_tables.hpp"
 #include "app/text/summary_text.hpp"
@@ -20,12 +23,14 @@ void print_overview(const std::string& file, bool full_form) {
   const Archive archive = read_archive(file);
   const Terminal terminal = standard_output();
   const int width = terminal.width;
+  if (has_first_screen(archive))
+    fmt::print("{}\n", first_screen(archive, resolved_values(archive.config), file, width));
   fmt::print("{}\n{}", wrapped(provenance_text(archive), width), summary_text(archive, width));
   if (const std::string strip = mode_strip_text(archive, terminal); !strip.empty()) fmt::print("\n{}", strip);
-  if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(*archive.windows, width));
+  if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(archive, width));
   if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture, width));
   if (archive.bank) fmt::print("\nmodes\n{}", modes_text(*archive.bank, full_form, width));
-  fmt::print("{}", mode_diagnostics_text(archive, width));
+  fmt::print("{}{}", modes_in_words(archive, width), mode_diagnostics_text(archive, width));
 }
 
 /// I + A instead of A, for datasets A (K, n, n).

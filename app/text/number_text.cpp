@@ -12,4 +12,14 @@ std::string fixed_or_short(double value, int decimals) {
                                                               : fmt::format("{:.4g}", value);
 }
 
+std::string estimate_text(double value, double standard_error, const char* plus_minus) {
+  constexpr int most_decimals = 12;
+  if (!std::isfinite(value) || !std::isfinite(standard_error) || standard_error <= 0.0)
+    return fmt::format("{:.4g}", value);
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(standard_error)));
+  if (decimals > most_decimals || decimals < 0)
+    return fmt::format("{:.4g} {} {:.2g}", value, plus_minus, standard_error);
+  return fmt::format("{:.{}f} {} {:.{}f}", value, decimals, plus_minus, standard_error, decimals);
+}
+
 }  // namespace modebank::app

@@ -47,19 +47,10 @@ void share_width(std::vector<StripRun>& runs, Index width) {
   }
 }
 
-std::string cut(const std::string& text, Index characters) {
-  std::string result;
-  for (const char c : text) {
-    if ((static_cast<unsigned char>(c) & 0xC0) != 0x80 && characters-- == 0) break;
-    result += c;
-  }
-  return result;
-}
-
 std::string names_line(const std::vector<StripRun>& runs) {
   std::string line;
   for (const StripRun& run : runs) {
-    const std::string name = cut(run.name, run.characters);
+    const std::string name = first_columns(run.name, static_cast<int>(run.characters));
     line += name + std::string(static_cast<std::size_t>(run.characters - columns_of(name)) + 1, ' ');
   }
   line.erase(line.find_last_not_of(' ') + 1);

@@ -7,8 +7,10 @@
 
 #include "app/chain/judged_runs.hpp"
 #include "app/text/number_text.hpp"
+#include "app/text/summary_text.hpp"
 #include "app/text/text_table.hpp"
 #include "ident/fit/window_summary.hpp"
+#include "ident/model/parameter_labels.hpp"
 
 namespace modebank::app {
 namespace {
@@ -110,13 +112,14 @@ std::string candidates_text(const MixtureResult& mixture, int width) {
   return table.text(width) + component_errors_text(mixture, width);
 }
 
-std::string window_parameters_text(const WindowFits& fits, int width) {
+std::string window_parameters_text(const Archive& archive, int width) {
+  const WindowFits& fits = *archive.windows;
+  const std::vector<std::string> labels = window_labels(archive);
   const WindowSummary summary = summarize(fits);
-  const auto names = fits.parameter_names();
   TextTable table({{"parameter", 9}, {"median", 12}, {"standard error", 16}, {"|t| > 2", 12}});
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  for (std::size_t i = 0; i < labels.size(); ++i) {
     const auto j = static_cast<Index>(i);
-    table.add({names[i], fmt::format("{:.4g}", summary.parameter(j)), fmt::format("{:.3g}", summary.standard_error(j)),
+    table.add({labels[i], fmt::format("{:.4g}", summary.parameter(j)), fmt::format("{:.3g}", summary.standard_error(j)),
                fmt::format("{:.0f} %", 100 * summary.significant(j))});
   }
   return table.text(width) + fmt::format("R^2 of the increments {:.3f}, AIC {:.2f} (medians)\n",
@@ -170,8 +173,10 @@ std::string motion_parameters_text(const Bank& bank, int width) {
 
 std::string modes_text(const Bank& bank, bool full_form, int width) {
   std::vector<TextTable::Column> columns{{"mode", 4}, {"weight", 7}};
-  for (const std::string& name : bank.structure.parameter_names())
-    columns.push_back({name + (full_form && name[0] == 'A' ? " (full)" : ""), 20});
+  const std::vector<std::string> labels = parameter_labels(bank.structure, bank.state_names, bank.input_names),
+                                 names = bank.structure.parameter_names();
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    columns.push_back({labels[i] + (full_form && names[i][0] == 'A' ? " (full)" : ""), 20});
   columns.push_back({"sqrt diag Q", 12});
   TextTable table(std::move(columns));
   for (Index k = 0; k < bank.mode_count(); ++k) {

@@ -14,7 +14,7 @@ std::string scores_text(const Archive& archive, int width = 0);
 std::string candidates_text(const MixtureResult& mixture, int width = 0);
 
 /// What windows say of the parameters: medians over the windows of estimate, standard error and t value, R^2 and AIC.
-std::string window_parameters_text(const WindowFits& fits, int width = 0);
+std::string window_parameters_text(const Archive& archive, int width = 0);
 
 /// How the bank's modes were used on the held-out runs (without any: the training runs), and whether they are
 /// calibrated.

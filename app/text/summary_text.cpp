@@ -11,6 +11,7 @@
 #include "app/text/number_text.hpp"
 #include "app/text/summary_tables.hpp"
 #include "app/text/terminal.hpp"
+#include "ident/model/parameter_labels.hpp"
 #include "mixture/criteria.hpp"
 
 namespace modebank::app {
@@ -28,11 +29,14 @@ Index member_windows(const MixtureResult& result) {
   return count;
 }
 
-std::string mixture_text(const MixtureResult& result) {
+/// `labels`: of the first features, the parameters.
+std::string mixture_text(const MixtureResult& result, const std::vector<std::string>& labels) {
   const auto& candidates = result.candidates;
   const auto chosen = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.selected; });
-  std::string text = fmt::format("mixture   {} components over {}", result.mixture.components(),
-                                 fmt::join(result.feature_names, ", "));
+  std::vector<std::string> features = result.feature_names;
+  std::copy_n(labels.begin(), std::min(labels.size(), features.size()), features.begin());
+  std::string text =
+      fmt::format("mixture   {} components over {}", result.mixture.components(), fmt::join(features, ", "));
   if (chosen == candidates.end()) return text + "\n";
   const Index members = member_windows(result), clustered = result.clustered > 0 ? result.clustered : members;
   text +=
@@ -163,10 +167,6 @@ std::string data_text(const Recording& recording) {
                      recording.transitions(Role::test), recording.median_period_s());
 }
 
-void WindowCounts::add(const WindowFits& fits) {
-  for (const int value : fits.status) ++status[static_cast<std::size_t>(value)];
-}
-
 namespace {
 
 /// Who solved the windows, and the audit of the batch solver; empty for archives that do not say in words.
@@ -190,38 +190,27 @@ std::string audit_text(const WindowAudit& audit) {
 
 }  // namespace
 
-std::vector<std::string> window_warnings(const WindowFits& fits, const WindowCounts& counts) {
-  std::vector<std::string> warnings;
-  if (fits.audit.replaced > 0)
-    warnings.push_back(
-        fmt::format("the batch solver's cost was above Ceres' by more than {:.0e} relative, or its gradient above "
-                    "{:.0e}, in {} of {} "
-                    "audited windows, which have been solved by {}; window.solver = ceres solves all of them so",
-                    WindowAudit::tolerance, WindowAudit::gradient_tolerance, fits.audit.replaced, fits.audit.checked,
-                    fits.audit.ceres_method));
-  if (const Index failed = counts.of(FitStatus::failed); failed > 0)
-    warnings.push_back(
-        fmt::format("{} of {} windows have no finite fit and are left out: their samples may hold values too large to "
-                    "square; see `modebank check`",
-                    failed, counts.total()));
-  return warnings;
+std::vector<std::string> window_labels(const Archive& archive) {
+  if (!archive.windows) return {};
+  const Recording none;
+  const Recording& recording = archive.recording ? *archive.recording : none;
+  return parameter_labels(*archive.windows, names_of(recording.states), names_of(recording.inputs));
 }
 
-std::string windows_text(const WindowFits& fits, const WindowCounts& counts) {
+std::string windows_text(const WindowFits& fits, const WindowCounts& counts, const std::vector<std::string>& labels) {
   std::string text = fmt::format(
       "windows   {} of {} transitions: {} converged, {} rank deficient, {} at the iteration limit, {} failed\n",
       counts.total(), fits.length, counts.of(FitStatus::converged), counts.of(FitStatus::rank_deficient),
       counts.of(FitStatus::iteration_limit), counts.of(FitStatus::failed));
   text += audit_text(fits.audit);
   for (const std::string& warning : window_warnings(fits, counts)) text += "warning   " + warning + "\n";
-  const auto names = fits.parameter_names();
-  text += "global   ";
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  text += "global    ";
+  for (std::size_t i = 0; i < labels.size(); ++i) {
     const auto k = static_cast<Index>(i);
-    text +=
-        fmt::format(" {} = {:.4g} +- {:.2g}", names[i], fits.global.theta(k), std::sqrt(fits.global.covariance(k, k)));
+    text += fmt::format("{}{} = {:.4g} +- {:.2g}", i == 0 ? "" : ", ", labels[i], fits.global.theta(k),
+                        std::sqrt(fits.global.covariance(k, k)));
   }
-  return text + fmt::format(", residual variance {:.4g}\n", fmt::join(fits.global.noise_variance(), " "));
+  return text + fmt::format("; residual variance {:.4g}\n", fmt::join(fits.global.noise_variance(), " "));
 }
 
 std::string summary_text(const Archive& archive, int width) {
@@ -231,10 +220,14 @@ std::string summary_text(const Archive& archive, int width) {
   if (archive.windows) {
     WindowCounts counts;
     counts.add(*archive.windows);
-    text += windows_text(*archive.windows, counts);
+    text += windows_text(*archive.windows, counts, window_labels(archive));
   }
-  if (archive.mixture) text += mixture_text(*archive.mixture);
-  if (archive.bank) text += bank_text(*archive.bank) + merging_text(archive);
+  if (archive.mixture) text += mixture_text(*archive.mixture, window_labels(archive));
+  if (archive.bank) {
+    text += bank_text(*archive.bank) + merging_text(archive);
+    if (const std::string warning = refinement_warning(archive.measured_fit); !warning.empty())
+      text += "          warning: " + warning + "\n";
+  }
   text += residuals_text(archive);
   if (!archive.summary.empty())
     text += "\n" + scores_text(archive, width) + verdicts_text(archive) + horizon_text(archive) + finding_text(archive);

@@ -1,28 +1,21 @@
 #pragma once
 
-#include <array>
-#include <numeric>
 #include <string>
 #include <vector>
 
+#include "app/text/warnings.hpp"
 #include "io/archive/archive.hpp"
 
 namespace modebank::app {
 
-/// Windows by how their fits ended, for those that are not in memory.
-struct WindowCounts {
-  std::array<Index, 4> status{};  ///< by FitStatus
-  void add(const WindowFits& fits);
-  Index of(FitStatus which) const { return status[static_cast<std::size_t>(which)]; }
-  Index total() const { return std::accumulate(status.begin(), status.end(), Index{0}); }
-};
-
 /// What the summary says of windows: how many, how they ended, the global model, and the batch solver's audit.
-std::string windows_text(const WindowFits& common, const WindowCounts& counts);
-std::string data_text(const Recording& recording);
+/// `labels`: of the parameters.
+std::string windows_text(const WindowFits& common, const WindowCounts& counts, const std::vector<std::string>& labels);
 
-/// What of the windows needs a look: solutions that the audit replaced, windows without a finite fit.
-std::vector<std::string> window_warnings(const WindowFits& fits, const WindowCounts& counts);
+/// parameter_labels of the archive's windows; empty without windows.
+std::vector<std::string> window_labels(const Archive& archive);
+
+std::string data_text(const Recording& recording);
 
 /// The summary of an archive as people read it: data, windows, mixture, bank, scores and what the bank gains. Lines
 /// longer than `width` columns are broken; 0: none.

@@ -81,6 +81,15 @@ int columns_of(std::string_view text) {
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
+std::string first_columns(std::string_view text, int columns) {
+  std::string result;
+  for (const char c : text) {
+    if ((static_cast<unsigned char>(c) & 0xC0) != 0x80 && columns-- == 0) break;
+    result += c;
+  }
+  return result;
+}
+
 std::string wrapped(const std::string& text, int width) {
   if (width <= 0) return text;
   std::string result;

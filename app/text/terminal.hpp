@@ -17,6 +17,9 @@ Terminal standard_output();
 /// Characters of UTF-8 text, each taken as one column.
 int columns_of(std::string_view text);
 
+/// The first `columns` characters.
+std::string first_columns(std::string_view text, int columns);
+
 /// Breaks lines longer than `width` columns at spaces; continuation lines are indented as far as the label of their
 /// line reaches ("windows   2250 of ..."). Words longer than a line stay whole. width 0: the text as it is.
 std::string wrapped(const std::string& text, int width);

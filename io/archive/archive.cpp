@@ -76,7 +76,7 @@ WindowFits write_archive(const std::filesystem::path& path, const Archive& archi
         common = produce([&](const WindowFits& fits, Index first) {
           member.windows_from(static_cast<hsize_t>(first), static_cast<hsize_t>(fits.count()),
                               static_cast<hsize_t>(count), run_names(recording.runs));
-          layout::exchange_windows(member, fits, recording.runs, units);
+          layout::exchange_windows(member, fits, recording, units);
         });
       });
       hdf5::check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "complete the archive");

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "ident/model/parameter_labels.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/layout_bank.hpp"
 #include "io/archive/bank/layout_drifting.hpp"
@@ -46,7 +47,8 @@ void exchange_audit(Io& io, A& audit) {
 }
 
 template <class Io, class W>
-void exchange_windows(Io& io, W& fits, const std::vector<Trajectory>& runs, const Units& units) {
+void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& units) {
+  const std::vector<Trajectory>& runs = recording.runs;
   const Unit parameters = window_units(fits, units);
   io.attribute("residual", fits.residual);
   exchange_model_parameters(io, fits.model_parameters, "model_parameter");
@@ -81,6 +83,9 @@ void exchange_windows(Io& io, W& fits, const std::vector<Trajectory>& runs, cons
   if constexpr (Io::reads) io.finish([&] { restore_window_structure(fits, io.size("n"), io.size("p")); });
   std::vector<std::string> names = fits.parameter_names();
   io.attribute_texts("parameter_names", names);
+  if constexpr (!Io::reads)
+    io.attribute_texts("parameter_labels",
+                       parameter_labels(fits, names_of(recording.states), names_of(recording.inputs)));
   io.group("global", io.known({"n", "p"}),
            [&](auto& member) { exchange_global(member, fits.global, parameters, units.states()); });
 }
@@ -134,7 +139,7 @@ void exchange_archive(Io& io, A& archive) {
   const Recording& recording = archive.recording ? *archive.recording : none;
   const Units units(recording);
   exchange_part(io, "windows", archive.windows, {},
-                [&](auto& member, auto& part) { exchange_windows(member, part, recording.runs, units); });
+                [&](auto& member, auto& part) { exchange_windows(member, part, recording, units); });
   Sizes known;
   Unit parameters;
   if (archive.windows) {

@@ -119,7 +119,7 @@ class RunPages(PageTest):
         session.browser.move(point["left"], point["top"])
         session.browser.wait("return document.getElementById('window-info').textContent !== arguments[0]", before, what="hover to tell of the window")
         told = session.browser.run("return document.getElementById('window-info').textContent")
-        self.assertRegex(told, r"Window in run \w+, [\d.]+ to [\d.]+ s: A = ")
+        self.assertRegex(told, r"Window in run \w+, [\d.]+ to [\d.]+ s: wz <- wz = ")
         session.browser.click(point["left"], point["top"])
         session.browser.wait("const m = document.querySelector('#data div.plot')._fullLayout.shapes; return m.some((s) => s.xref === 'x' && s.type === 'rect')",
                      what="the click to mark the window's stretch of the data")

@@ -7,6 +7,7 @@
 #include "app/report/figures/run_figures.hpp"
 #include "app/report/page/assets.hpp"
 #include "app/report/page/unit_text.hpp"
+#include "app/text/summary_text.hpp"
 #include "io/archive/bank/units.hpp"
 
 namespace modebank::app::report {
@@ -68,7 +69,7 @@ std::string label_of(const Archive& archive, std::size_t parameter) {
   const Unit all = fits.model_parameters.empty() ? parameter_units(fits.structure, units.states(), units.inputs())
                                                  : unit_of(fits.model_parameters);
   const std::string unit = parameter < all.size() && all[parameter] != "1" ? all[parameter] : "";
-  return with_unit(fits.parameter_names()[parameter], unit);
+  return with_unit(window_labels(archive)[parameter], unit);
 }
 
 Figure local_models(const Archive& archive, const std::vector<Index>& axes) {

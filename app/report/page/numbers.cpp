@@ -6,13 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/text/number_text.hpp"
 #include "app/text/text_units.hpp"
 
 namespace modebank::app::report {
 namespace {
 
 constexpr const char* not_known = "–";
-constexpr int most_decimals = 12;
 
 }  // namespace
 
@@ -23,9 +23,7 @@ std::string number_text(double value) {
 
 std::string estimate_text(double value, double standard_error) {
   if (!std::isfinite(value) || !std::isfinite(standard_error) || standard_error <= 0.0) return number_text(value);
-  const int decimals = 1 - static_cast<int>(std::floor(std::log10(standard_error)));
-  if (decimals > most_decimals || decimals < 0) return fmt::format("{:.4g} ± {:.2g}", value, standard_error);
-  return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, standard_error, decimals);
+  return app::estimate_text(value, standard_error, "±");
 }
 
 std::string percent_text(double share) {

@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
-#include "app/report/page/mode_dynamics.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
+#include "app/text/mode_words.hpp"
+#include "ident/model/parameter_labels.hpp"
 #include "io/archive/bank/units.hpp"
 
 namespace modebank::app::report {
@@ -11,16 +12,10 @@ namespace {
 
 using nlohmann::json;
 
-std::string decay_text(const Decay& decay) {
-  const std::string time = decay.time_constant_s < 0 ? fmt::format("grows, {:.3g} s", -decay.time_constant_s)
-                                                     : number_text(decay.time_constant_s) + " s";
-  return decay.frequency_hz > 0 ? fmt::format("{} at {:.3g} Hz", time, decay.frequency_hz) : time;
-}
-
 /// All time constants in one cell, slowest first; it sorts by the slowest.
 json decays_cell(const std::vector<Decay>& decays) {
   std::string text;
-  for (const Decay& decay : decays) text += (text.empty() ? "" : "; ") + decay_text(decay);
+  for (const Decay& decay : decays) text += (text.empty() ? "" : "; ") + decay_words(decay, "±");
   return number(decays.empty() ? 0.0 : decays.front().time_constant_s, text);
 }
 
@@ -34,13 +29,16 @@ json mode_row(const Bank& bank, Index k) {
   const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
   const ModeDynamics dynamics = mode_dynamics(bank, k);
   json gains = json::array();
-  for (const double gain : dynamics.gain.transpose().reshaped()) gains.push_back(number(gain));
+  const Eigen::VectorXd gain = dynamics.gain.transpose().reshaped(), error = dynamics.gain_error.transpose().reshaped();
+  for (Index i = 0; i < gain.size(); ++i) gains.push_back(estimate(gain(i), error(i)));
   const Index n_y = bank.C.rows();
   return {{"mode", k},
           {"weight", number(mode.weight, fmt::format("{:.3f}", mode.weight))},
           {"parameters", estimates(bank.theta(k), mode.standard_error)},
           {"motion", estimates(mode.motion_theta, mode.motion_standard_error)},
           {"noise_sd", number_list(mode.Q.diagonal().head(std::min(n_y, mode.Q.rows())).cwiseSqrt())},
+          {"per_sample", number(dynamics.decays.empty() ? NAN : dynamics.decays.front().per_sample,
+                                per_sample_words(dynamics.decays))},
           {"decays", decays_cell(dynamics.decays)},
           {"gains", gains}};
 }
@@ -51,7 +49,8 @@ const DiagnosticsRow* mode_diagnosis(const Archive& archive, Role role, Index mo
   return nullptr;
 }
 
-void add_diagnosis(json& row, const DiagnosticsRow& diagnosis) {
+void add_diagnosis(json& row, const DiagnosticsRow& diagnosis, double dt_s) {
+  row["stay"] = number(diagnosis.dwell * dt_s);
   row["usage"] = number(diagnosis.usage, fmt::format("{:.3f}", diagnosis.usage));
   row["samples"] = count(diagnosis.samples);
   row["dwell"] = number(diagnosis.dwell);
@@ -68,13 +67,13 @@ json column_names(const std::vector<std::string>& names, const Unit& units) {
   return columns;
 }
 
-std::vector<std::string> gain_names(const Bank& bank, const Recording& recording) {
+std::vector<std::string> steady_gain_names(const Bank& bank, const Recording& recording) {
   std::vector<std::string> names;
   const std::vector<std::string> inputs = names_of(recording.inputs), states = names_of(recording.states);
   for (Index i = 0; i < bank.C.rows(); ++i)
     for (Index j = 0; j < bank.structure.inputs; ++j)
       names.push_back(
-          fmt::format("{} / {}", states.at(static_cast<std::size_t>(i)), inputs.at(static_cast<std::size_t>(j))));
+          fmt::format("{} per {}", states.at(static_cast<std::size_t>(i)), inputs.at(static_cast<std::size_t>(j))));
   return names;
 }
 
@@ -130,17 +129,17 @@ nlohmann::json bank_section(const Archive& archive) {
   json modes = json::array();
   for (Index k = 0; k < bank.mode_count(); ++k) {
     modes.push_back(mode_row(bank, k));
-    if (const DiagnosticsRow* row = mode_diagnosis(archive, role, k)) add_diagnosis(modes.back(), *row);
+    if (const DiagnosticsRow* row = mode_diagnosis(archive, role, k)) add_diagnosis(modes.back(), *row, bank.dt_s);
   }
   return {{"modes", modes},
           {"baseline", archive.baseline ? mode_row(*archive.baseline, 0) : json()},
           {"role", name_of(role)},
           {"model", bank.model},
           {"dt_s", number(bank.dt_s)},
-          {"parameter_names", column_names(bank.structure.parameter_names(),
+          {"parameter_names", column_names(parameter_labels(bank.structure, bank.state_names, bank.input_names),
                                            parameter_units(bank.structure, units.states(), units.inputs()))},
           {"motion_names", column_names(motion_names(bank), unit_of(bank.motion_parameters))},
-          {"gain_names", column_names(gain_names(bank, recording), ratios(units.states(), units.inputs()))},
+          {"gain_names", column_names(steady_gain_names(bank, recording), ratios(units.states(), units.inputs()))},
           {"noise_name", with_unit("step noise sd", common_unit(recording.states))},
           {"R", number_list(bank.R.diagonal())},
           {"transition", transition_of(bank)},

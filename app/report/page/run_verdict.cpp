@@ -4,6 +4,7 @@
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
+#include "app/text/first_screen.hpp"
 
 namespace modebank::app::report {
 namespace {
@@ -25,20 +26,6 @@ json decisive(const Archive& archive, Role role, const std::string& name, const 
   return {{"name", name}, {"unit", unit}, {"better", better}, {"values", values}};
 }
 
-std::string calibration_words(const DiagnosticsRow& row) {
-  switch (row.verdict) {
-    case Verdict::calibrated:
-      return "its stated uncertainty is true";
-    case Verdict::overconfident:
-      return "it claims more certainty than it has";
-    case Verdict::underconfident:
-      return "it claims less certainty than it has";
-    case Verdict::undecided:
-      break;
-  }
-  return "whether its stated uncertainty is true is undecided";
-}
-
 /// What was found, as the archive says it, and whether the bank's uncertainty is true. Good: evidence, and calibrated.
 json sentence(const Archive& archive) {
   if (!archive.finding) return {{"text", "No bank was scored, so there is nothing to judge yet."}, {"good", nullptr}};
@@ -46,7 +33,7 @@ json sentence(const Archive& archive) {
   std::string text = finding.text;
   bool good = finding.answer == Answer::evidence;
   if (const DiagnosticsRow* row = diagnosis(archive, "bank", finding.role)) {
-    text += fmt::format(" Of the bank: {}.", calibration_words(*row));
+    text += fmt::format(" Of the bank: {}.", calibration_words(row->verdict));
     good = good && row->verdict == Verdict::calibrated;
   }
   return {{"text", text}, {"good", good}, {"answer", name_of(finding.answer)}};

@@ -1,7 +1,10 @@
+#include <algorithm>
+
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
 #include "app/report/page/window_modes.hpp"
+#include "app/text/summary_text.hpp"
 #include "ident/base/distributions.hpp"
 #include "io/archive/bank/units.hpp"
 #include "mixture/features.hpp"
@@ -23,11 +26,18 @@ Unit units_of_parameters(const Archive& archive) {
                                        : unit_of(fits.model_parameters);
 }
 
+/// The parameters among the features are the first of them; they go by their labels.
+std::vector<std::string> with_labels(std::vector<std::string> features, const Archive& archive) {
+  const std::vector<std::string> labels = window_labels(archive);
+  std::copy_n(labels.begin(), std::min(labels.size(), features.size()), features.begin());
+  return features;
+}
+
 /// The cloud's axes: parameters and the logarithm of the noise variance.
-json axes_of(const FeatureCloud& cloud, const Unit& units) {
+json axes_of(const std::vector<std::string>& names, const Unit& units) {
   json axes = json::array();
-  for (std::size_t i = 0; i < cloud.names.size(); ++i)
-    axes.push_back({{"name", cloud.names[i]}, {"unit", i < units.size() && units[i] != "1" ? units[i] : ""}});
+  for (std::size_t i = 0; i < names.size(); ++i)
+    axes.push_back({{"name", names[i]}, {"unit", i < units.size() && units[i] != "1" ? units[i] : ""}});
   return axes;
 }
 
@@ -61,7 +71,8 @@ json rows_of_matrix(const Eigen::MatrixXd& matrix) {
 }
 
 /// The mixture in the cloud's coordinates, for ellipses.
-json components_of(const MixtureResult& result) {
+json components_of(const Archive& archive) {
+  const MixtureResult& result = *archive.mixture;
   json components = json::array();
   for (Index k = 0; k < result.mixture.components(); ++k) {
     const Eigen::VectorXd mean = result.mixture.means.col(k);
@@ -69,7 +80,7 @@ json components_of(const MixtureResult& result) {
                           {"mean", std::vector<double>(mean.begin(), mean.end())},
                           {"covariance", rows_of_matrix(result.mixture.covariances[static_cast<std::size_t>(k)])}});
   }
-  return {{"features", result.feature_names}, {"list", components}};
+  return {{"features", with_labels(result.feature_names, archive)}, {"list", components}};
 }
 
 /// The bank's modes in the cloud's coordinates; their spread over the windows where the model is linear.
@@ -147,7 +158,7 @@ nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
                   {"length", fits.length},
                   {"model", fits.model},
                   {"parameters", fits.parameter_count()},
-                  {"axes", axes_of(cloud, units_of_parameters(archive))},
+                  {"axes", axes_of(with_labels(cloud.names, archive), units_of_parameters(archive))},
                   {"default_axes", default_axes(fits, cloud.points.rows())},
                   {"values", values},
                   {"covariance", covariances_of(arrays, fits, drawn.windows)},
@@ -158,7 +169,7 @@ nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
   add_places(section, arrays, archive, drawn.windows);
   if (archive.mixture) {
     section["label"] = labels_of(arrays, archive.mixture->labels, drawn.windows);
-    section["components"] = components_of(*archive.mixture);
+    section["components"] = components_of(archive);
   }
   if (archive.bank) section["bank"] = modes_of(*archive.bank);
   if (const FilterEvaluation* evaluation = bank_evaluation(archive))

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "ident/model/parameter_labels.hpp"
 #include "io/archive/bank/stored_bank.hpp"
 #include "io/archive/bank/units.hpp"
 #include "io/hdf5/columns.hpp"
@@ -72,6 +73,8 @@ template <class Io, class B>
 void exchange_bank(Io& io, B& bank, const Units& units) {
   io.attribute_texts("state_names", bank.state_names);
   io.attribute_texts("input_names", bank.input_names);
+  if constexpr (!Io::reads)
+    io.attribute_texts("parameter_labels", parameter_labels(bank.structure, bank.state_names, bank.input_names));
   io.attribute("dt_s", bank.dt_s);
   io.optional_attribute("noise_forgetting", bank.noise_adaptation.forgetting);
   io.optional_attribute("noise_prior_samples", bank.noise_adaptation.prior_samples);

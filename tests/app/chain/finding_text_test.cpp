@@ -38,7 +38,10 @@ TEST(FindingText, NoEvidenceNamesWhatDescribesTheRunsInstead) {
   finding.better_description = "drifting";
   EXPECT_THAT(finding_text(finding),
               AllOf(HasSubstr("no evidence for modes of motion"),
-                    HasSubstr("These runs are described as well by one motion whose parameters drift (drifting).")));
+                    HasSubstr("These runs may be described as well by one motion whose parameters drift (drifting).")));
+  finding.better_description = "one_motion";
+  finding.gains.front().gain = -0.2;
+  EXPECT_THAT(finding_text(finding), HasSubstr("These runs are described better by one motion with changing noise"));
   finding.modes_differ = false;
   EXPECT_THAT(finding_text(finding), HasSubstr("The modes do not differ in their parameters beyond their errors"));
 }
@@ -63,6 +66,16 @@ TEST(FindingText, OneModeAndCoarseMeasurementsClaimNothing) {
   EXPECT_THAT(finding_text(coarse),
               AllOf(HasSubstr("wz comes in steps of 0.2, predictions are uncertain by 0.12"),
                     HasSubstr("78 % of the samples of v repeat the one before"), Not(HasSubstr("evidence"))));
+}
+
+TEST(FindingText, AnErrorFromBlocksSaysSo) {
+  Finding finding = finding_of(Answer::evidence);
+  EXPECT_THAT(finding_text(finding), Not(HasSubstr("blocks")));
+  finding.gains = {{"one_motion", 700, 0.1344, 0.0402, 11.0, 0.1034, true}};
+  finding.runs = 1;
+  EXPECT_THAT(finding_text(finding), HasSubstr("its best competitor (error from 12 blocks of the one run)."));
+  finding.runs = 3;
+  EXPECT_THAT(finding_text(finding), HasSubstr("(error from 12 blocks of the 3 runs)."));
 }
 
 TEST(FindingText, ABetterMeanIsTold) {

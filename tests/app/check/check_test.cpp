@@ -65,7 +65,7 @@ TEST_F(Check, ExitStatusTellsUsageFromUnusableData) {
 TEST_F(Check, LagAutoReachesSummaryAndArchive) {
   const ProgramResult result = run({"--data.lag_s", "auto"});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("log score none"));
+  EXPECT_THAT(modebank({"show", archive()}).out, HasSubstr("log score none"));
   const ProgramResult shown = modebank({"show", archive(), "lag/runs", "--json"});
   ASSERT_EQ(shown.status, 0) << shown.err;
   EXPECT_EQ(json::parse(shown.out).at("value")[0].at("run"), "00");

@@ -19,6 +19,7 @@ F = p + 1
 RUNS = {"run 2": 12, "Gelände.ä": 13, "10": 14}
 STATE_UNITS = [b"rad/s", b"m/s"]
 PARAMETER_UNITS = [b"1", b"(rad/s)/(m/s)", b"(rad/s)/(m/s)", b"rad/s", b"(m/s)/(rad/s)", b"1", b"1", b"m/s"]
+LABELS = np.array([b"x0 <- x0", b"x0 <- x1", b"x0 <- u0", b"x0 <- 1", b"x1 <- x0", b"x1 <- x1", b"x1 <- u0", b"x1 <- 1"])
 problems = []
 
 
@@ -131,6 +132,7 @@ def check_windows(file):
     expect("model", group.attrs["model"], b"linear")
     expect("parameter_names", group.attrs["parameter_names"],
            np.array([b"A11", b"A12", b"B11", b"c1", b"A21", b"A22", b"B21", b"c2"]))
+    expect("parameter_labels", group.attrs["parameter_labels"], LABELS)
     check_strings(group["run"], "run", ("utf-8", "ascii"))  # ASCII is UTF-8, and all that Octave reads
     expect("run", [name.decode() for name in group["run"]], ["10" if i % 3 == 2 else "run 2" for i in range(M)])
     expect_array(group["start"], (M,), "<i8")
@@ -200,6 +202,7 @@ def check_bank(group, modes, uncertain):
     expect(f"{name} form", group.attrs["form"], b"increment")
     expect(f"{name} state_names", group.attrs["state_names"], np.array([b"x0", b"x1"]))
     expect(f"{name} input_names", group.attrs["input_names"], np.array([b"u0"]))
+    expect(f"{name} parameter_labels", group.attrs["parameter_labels"], LABELS)
     expect(f"{name} dt_s", group.attrs["dt_s"], 2.0 / 13.0)
     ratios = [[b"1", b"(rad/s)/(m/s)"], [b"(m/s)/(rad/s)", b"1"]]
     expect_array(group["A"], (modes, n, n), "<f8", ratios)

@@ -100,7 +100,9 @@ function bankTable(bank, letter) {
     {name: 'Weight', of: (row) => row.weight},
     ...bank.parameter_names.map((name, i) => ({name, of: (row) => row.parameters[i]})),
     {name: bank.noise_name, of: (row) => row.noise_sd},
+    {name: 'Decay per sample', of: (row) => row.per_sample},
     {name: 'Time constants', text: true, of: (row) => row.decays},
+    ...bank.gain_names.map((name, i) => ({name: `steady gain ${name}`, of: (row) => row.gains[i]})),
   ];
   return table(columns, bank.modes, {caption: `Modes of ${letter}`, sortable: true});
 }

@@ -10,6 +10,7 @@ function modeColumns(bank) {
   const list = (key, names) => names.map((name, i) => ({name, of: (row) => row[key] && row[key][i]}));
   const seen = [
     {name: 'Usage', of: (row) => row.usage},
+    {name: 'Stay [s]', of: (row) => row.stay},
     {name: 'too far', of: (row) => row.too_far},
     {name: 'too close', of: (row) => row.too_close},
     {name: 'Verdict', text: true, of: (row) => row.verdict},
@@ -20,6 +21,7 @@ function modeColumns(bank) {
     ...list('motion', bank.motion_names),
     ...list('parameters', bank.parameter_names),
     {name: bank.noise_name, of: (row) => row.noise_sd},
+    {name: 'Decay per sample', of: (row) => row.per_sample},
     {name: 'Time constants', of: (row) => row.decays},
     ...list('gains', bank.gain_names.map((name) => `steady gain ${name}`)),
     ...(bank.modes.some((row) => row.usage) ? seen : []),

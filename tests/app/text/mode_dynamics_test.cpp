@@ -1,4 +1,4 @@
-#include "app/report/page/mode_dynamics.hpp"
+#include "app/text/mode_dynamics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -76,6 +76,41 @@ TEST(ModeDynamics, IntegratorsDeadBeatAndGrowth) {
   EXPECT_NEAR(mode_dynamics(bank_of({1, 1}, vector({std::expm1(0.1), 0.2}), 0.1), 0).decays[0].time_constant_s, -1.0,
               dynamics_rounding);
   EXPECT_EQ(mode_dynamics(bank_of({1, 0}, vector({-0.3}), 0.1), 0).gain.cols(), 0);
+}
+
+/// A scalar AR(1) with one input: tau = -dt / log(1 + A), so dtau/dA = dt / ((1 + A) log^2(1 + A)), and g = -B / A.
+TEST(ModeDynamics, StandardErrorsAreTheDeltaMethods) {
+  const double dt = 0.2, A = -0.4, B = 0.3;
+  Bank bank = bank_of({1, 1}, vector({A, B}), dt);
+  Mode& mode = bank.modes[0];
+  EXPECT_TRUE(std::isnan(mode_dynamics(bank, 0).gain_error(0, 0)));  // nothing is known of theta
+  Eigen::Matrix2d covariance;
+  covariance << 4e-4, -2.4e-4, -2.4e-4, 9e-4;
+  mode.standard_error = covariance.diagonal().cwiseSqrt();
+  const double log_left = std::log(1.0 + A), of_tau = dt / ((1.0 + A) * log_left * log_left);
+  const auto error_of_gain = [&](const Eigen::Matrix2d& of_theta) {
+    const Eigen::Vector2d gradient(B / (A * A), -1.0 / A);
+    return std::sqrt(gradient.dot(of_theta * gradient));
+  };
+  constexpr double rounding = 1e-8;
+  const ModeDynamics apart = mode_dynamics(bank, 0);
+  EXPECT_NEAR(apart.decays[0].per_sample, 0.6, dynamics_rounding);
+  EXPECT_NEAR(apart.decays[0].time_constant_error_s, 0.02 * of_tau, rounding);
+  EXPECT_NEAR(apart.gain_error(0, 0), error_of_gain(covariance.diagonal().asDiagonal()), rounding);
+  mode.spread = 25.0 * covariance;  // of windows, which spread wider than their mean errs
+  EXPECT_NEAR(mode_dynamics(bank, 0).gain_error(0, 0), error_of_gain(covariance), rounding);
+}
+
+/// A rotation's size is sqrt(det(I + A)) whatever its angle: only c counts where s is free of error and c alone varies.
+TEST(ModeDynamics, OscillationsErrorsFollowTheEigenvaluesSize) {
+  const double dt = 0.1, c = 0.6, s = 0.5, size = std::hypot(c, s), error = 1e-3;
+  Bank bank = bank_of({2, 0}, vector({c - 1, -s, s, c - 1}), dt);
+  bank.modes[0].standard_error = vector({error, 0, 0, 0});
+  const Decay decay = mode_dynamics(bank, 0).decays.at(0);
+  EXPECT_NEAR(decay.per_sample, size, dynamics_rounding);
+  // det = a c + s^2 with a = c + e: d size / d a = c / (2 size).
+  const double of_size = c / (2 * size), log_size = std::log(size);
+  EXPECT_NEAR(decay.time_constant_error_s, error * of_size * dt / (size * log_size * log_size), 1e-9);
 }
 
 TEST(WindowModes, TheMostProbableOverTheTransitions) {

@@ -1,0 +1,107 @@
+#include "app/text/mode_dynamics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+#include "ident/base/linalg.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+namespace {
+
+/// From here on an eigenvalue's distance to one is rounding: an integrator.
+constexpr double integrator_slack = 1e-12;
+/// Of a parameter, relative: the cube root of the machine's precision, best for central differences.
+constexpr double difference_step = 6e-6;
+
+Decay decay_of(const std::complex<double>& lambda, double dt_s) {
+  const double size = std::abs(lambda), log_size = std::log(size);
+  Decay decay;
+  decay.per_sample = lambda.imag() == 0.0 ? lambda.real() : size;
+  decay.time_constant_s = size == 0.0                             ? 0.0
+                          : std::abs(log_size) < integrator_slack ? std::numeric_limits<double>::infinity()
+                                                                  : -dt_s / log_size;
+  decay.frequency_hz = size == 0.0 ? 0.0 : std::abs(std::arg(lambda)) / (2.0 * std::numbers::pi * dt_s);
+  return decay;
+}
+
+/// What grows never dies out: it comes before what dies out slowly.
+double slowness(const Decay& decay) {
+  return decay.time_constant_s < 0.0 ? std::numeric_limits<double>::infinity() : decay.time_constant_s;
+}
+
+Eigen::MatrixXd steady_gain(const Bank& bank, const LinearModel& model) {
+  const Eigen::Index inputs = bank.structure.inputs;
+  Eigen::MatrixXd held = Eigen::MatrixXd::Zero(model.A.rows(), inputs);
+  for (Eigen::Index first = 0; first < model.B.cols(); first += inputs) held += model.B.middleCols(first, inputs);
+  const PivotedLu lu(-model.A);
+  if (!lu.invertible()) return Eigen::MatrixXd::Constant(bank.C.rows(), inputs, not_a_number);
+  return bank.C * lu.solve(held);
+}
+
+ModeDynamics dynamics_of(const Bank& bank, const LinearModel& model) {
+  ModeDynamics dynamics;
+  const Eigen::VectorXcd lambdas = eigenvalues(model.full_form());
+  for (const std::complex<double>& lambda : lambdas)
+    if (lambda.imag() >= 0.0) dynamics.decays.push_back(decay_of(lambda, bank.dt_s));
+  std::stable_sort(dynamics.decays.begin(), dynamics.decays.end(),
+                   [](const Decay& a, const Decay& b) { return slowness(a) > slowness(b); });
+  dynamics.gain = bank.structure.inputs > 0 ? steady_gain(bank, model) : Eigen::MatrixXd(bank.C.rows(), 0);
+  return dynamics;
+}
+
+/// Time constants, then gains.
+Eigen::VectorXd numbers_of(const ModeDynamics& dynamics) {
+  const auto decays = static_cast<Eigen::Index>(dynamics.decays.size());
+  Eigen::VectorXd numbers(decays + dynamics.gain.size());
+  for (Eigen::Index i = 0; i < decays; ++i) numbers(i) = dynamics.decays[static_cast<std::size_t>(i)].time_constant_s;
+  numbers.tail(dynamics.gain.size()) = dynamics.gain.reshaped();
+  return numbers;
+}
+
+/// Covariance of theta; empty where no standard errors are known.
+Eigen::MatrixXd covariance_of(const Mode& mode, Eigen::Index parameters) {
+  if (mode.standard_error.size() != parameters) return {};
+  Eigen::MatrixXd covariance = mode.standard_error.cwiseAbs2().asDiagonal();
+  if (mode.spread.rows() != parameters || !(mode.spread.diagonal().array() > 0.0).all()) return covariance;
+  const Eigen::VectorXd scale = mode.standard_error.cwiseQuotient(mode.spread.diagonal().cwiseSqrt());
+  return scale.asDiagonal() * mode.spread * scale.asDiagonal();
+}
+
+/// Derivatives of numbers_of by theta; NaN where a step changes how many there are, as where two roots meet.
+Eigen::MatrixXd derivatives(const Bank& bank, const Eigen::VectorXd& theta, Eigen::Index count) {
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Constant(count, theta.size(), not_a_number);
+  for (Eigen::Index j = 0; j < theta.size(); ++j) {
+    const double step = difference_step * std::max(std::abs(theta(j)), 1e-3);
+    Eigen::VectorXd above = theta, below = theta;
+    above(j) += step;
+    below(j) -= step;
+    const Eigen::VectorXd up = numbers_of(dynamics_of(bank, unpack(bank.structure, above))),
+                          down = numbers_of(dynamics_of(bank, unpack(bank.structure, below)));
+    if (up.size() == count && down.size() == count) jacobian.col(j) = (up - down) / (above(j) - below(j));
+  }
+  return jacobian;
+}
+
+}  // namespace
+
+ModeDynamics mode_dynamics(const Bank& bank, Eigen::Index mode) {
+  const Mode& chosen = bank.modes.at(static_cast<std::size_t>(mode));
+  ModeDynamics dynamics = dynamics_of(bank, chosen.model);
+  const Eigen::MatrixXd covariance = covariance_of(chosen, bank.structure.parameters());
+  const Eigen::Index gains = dynamics.gain.size(), decays = static_cast<Eigen::Index>(dynamics.decays.size());
+  Eigen::VectorXd errors = Eigen::VectorXd::Constant(decays + gains, not_a_number);
+  if (covariance.size() > 0) {
+    const Eigen::MatrixXd J = derivatives(bank, bank.theta(mode), decays + gains);
+    errors = (J * covariance * J.transpose()).diagonal().cwiseSqrt();
+  }
+  for (Eigen::Index i = 0; i < decays; ++i)
+    dynamics.decays[static_cast<std::size_t>(i)].time_constant_error_s = errors(i);
+  dynamics.gain_error = errors.tail(gains).reshaped(dynamics.gain.rows(), dynamics.gain.cols());
+  return dynamics;
+}
+
+}  // namespace modebank

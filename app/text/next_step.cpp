@@ -1,0 +1,135 @@
+#include "app/text/next_step.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "app/chain/judged_runs.hpp"
+#include "app/text/warnings.hpp"
+
+namespace modebank::app {
+namespace {
+
+struct Situation {
+  const Archive& archive;
+  const Settings& settings;
+  const Finding& finding;
+  const DiagnosticsRow& bank;  ///< the whole filter on the judged runs
+
+  std::string setting(const std::string& key) const {
+    const auto found = settings.find(key);
+    return found == settings.end() ? std::string() : found->second;
+  }
+  bool says(Answer answer) const { return finding.answer == answer; }
+};
+
+struct Rule {
+  bool (*applies)(const Situation&);
+  std::string (*advice)(const Situation&);
+};
+
+bool is_lost(const Situation& s) {
+  WindowCounts counts;
+  if (s.archive.windows) counts.add(*s.archive.windows);
+  return counts.of(FitStatus::failed) > 0;
+}
+
+int state_lags(const Situation& s) { return std::atoi(s.setting("window.state_lags").c_str()); }
+
+/// Beyond a few it is not lags that a model lacks.
+bool may_have_more_lags(const Situation& s) {
+  constexpr int most_lags = 5;
+  const std::string model = s.setting("window.model");
+  return (model == "linear" || model == "varx") && state_lags(s) < most_lags;
+}
+
+bool is_not_white(const Situation& s) { return s.bank.flags.find("innovations not white") != std::string::npos; }
+
+bool is_uncertain_wrongly(const Situation& s) {
+  return s.bank.verdict == Verdict::overconfident || s.bank.verdict == Verdict::underconfident;
+}
+
+bool has_few_agreeing_restarts(const Situation& s) {
+  if (!s.archive.mixture || s.archive.unrefined) return false;  // refinement has starts of its own
+  const auto& all = s.archive.mixture->candidates;
+  return std::any_of(all.begin(), all.end(),
+                     [](const Candidate& c) { return c.selected && 2 * c.agreeing_restarts < c.restarts; });
+}
+
+/// From what spoils every number to what only could be better. README has the same list.
+const Rule rules[] = {
+    {is_lost,
+     [](const Situation&) -> std::string {
+       return "some windows have no finite fit: `modebank check CONFIG` says which samples are wild";
+     }},
+    {[](const Situation& s) { return s.says(Answer::not_comparable); },
+     [](const Situation&) -> std::string {
+       return "measure more finely, or go by the RMSE: `modebank check CONFIG` says what repeats or comes in steps, "
+              "and "
+              "which data.rate_hz leaves it out";
+     }},
+    {[](const Situation& s) { return !s.finding.held_out(); },
+     [](const Situation&) -> std::string {
+       return "hold runs out, for only they can be evidence: record another, or name some with --data.test";
+     }},
+    {[](const Situation& s) { return s.says(Answer::cannot_tell); },
+     [](const Situation& s) {
+       return fmt::format("more held-out runs than {}: record some, or name more of them with --data.test",
+                          s.finding.runs);
+     }},
+    {[](const Situation& s) { return s.says(Answer::no_evidence) && !s.finding.better_description.empty(); },
+     [](const Situation& s) {
+       return fmt::format("use the simpler {} ({}): /{} in the archive", s.finding.better_description,
+                          description_of(s.finding.better_description), s.finding.better_description);
+     }},
+    {[](const Situation& s) { return is_not_white(s) && may_have_more_lags(s); },
+     [](const Situation& s) {
+       return fmt::format(
+           "errors follow a pattern, so the model lacks memory: repeat with --window.model varx "
+           "--window.state_lags {}{}",
+           state_lags(s) + 1, s.setting("data.lag_s") == "auto" ? "" : ", or with --data.lag_s auto");
+     }},
+    {is_not_white,
+     [](const Situation&) -> std::string {
+       return "errors follow a pattern: `modebank check CONFIG` looks for a lag between inputs and states, and for "
+              "what "
+              "the model lacks";
+     }},
+    {[](const Situation& s) { return is_uncertain_wrongly(s) && s.setting("filter.noise") != "adaptive"; },
+     [](const Situation&) -> std::string {
+       return "let the noise follow the run: repeat with --filter.noise adaptive";
+     }},
+    {is_uncertain_wrongly,
+     [](const Situation&) -> std::string {
+       return "train on runs like the held-out ones: `modebank check CONFIG` compares runs, --data.train names them";
+     }},
+    {[](const Situation& s) { return s.bank.verdict == Verdict::undecided; },
+     [](const Situation&) -> std::string {
+       return "more held-out samples, to know whether the band is true: record some, or name more with --data.test";
+     }},
+    {has_few_agreeing_restarts,
+     [](const Situation& s) {
+       return fmt::format("look for a better mixture: repeat with --mixture.restarts {}",
+                          4 * std::max(5, std::atoi(s.setting("mixture.restarts").c_str())));
+     }},
+    {[](const Situation&) { return true; },
+     [](const Situation&) -> std::string {
+       return "nothing: use it (`modebank track ARCHIVE` filters samples as they come)";
+     }},
+};
+
+}  // namespace
+
+std::string next_step(const Archive& archive, const Settings& settings) {
+  const Role role = judged_role(archive);
+  const auto row = std::find_if(archive.diagnostics.begin(), archive.diagnostics.end(), [&](const DiagnosticsRow& r) {
+    return r.filter == "bank" && r.role == role && r.mode < 0;
+  });
+  if (!archive.finding || row == archive.diagnostics.end()) return "";
+  const Situation situation{archive, settings, *archive.finding, *row};
+  return std::find_if(std::begin(rules), std::end(rules), [&](const Rule& rule) { return rule.applies(situation); })
+      ->advice(situation);
+}
+
+}  // namespace modebank::app

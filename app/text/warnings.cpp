@@ -1,0 +1,53 @@
+#include "app/text/warnings.hpp"
+
+#include <fmt/format.h>
+
+#include "mixture/criteria.hpp"
+
+namespace modebank::app {
+
+void WindowCounts::add(const WindowFits& fits) {
+  for (const int value : fits.status) ++status[static_cast<std::size_t>(value)];
+}
+
+std::vector<std::string> window_warnings(const WindowFits& fits, const WindowCounts& counts) {
+  std::vector<std::string> warnings;
+  if (fits.audit.replaced > 0)
+    warnings.push_back(
+        fmt::format("the batch solver's cost was above Ceres' by more than {:.0e} relative, or its gradient above "
+                    "{:.0e}, in {} of {} "
+                    "audited windows, which have been solved by {}; window.solver = ceres solves all of them so",
+                    WindowAudit::tolerance, WindowAudit::gradient_tolerance, fits.audit.replaced, fits.audit.checked,
+                    fits.audit.ceres_method));
+  if (const Index failed = counts.of(FitStatus::failed); failed > 0)
+    warnings.push_back(
+        fmt::format("{} of {} windows have no finite fit and are left out: their samples may hold values too large to "
+                    "square; see `modebank check`",
+                    failed, counts.total()));
+  return warnings;
+}
+
+std::string refinement_warning(MeasuredFit fit) {
+  if (fit == MeasuredFit::iteration_limit)
+    return "the fit with measurement noise was stopped by bank.max_iterations before it had converged";
+  if (fit == MeasuredFit::stalled) return "the fit with measurement noise stalled before it had converged";
+  return "";
+}
+
+std::vector<std::string> archive_warnings(const Archive& archive) {
+  std::vector<std::string> warnings;
+  const auto add = [&](const std::vector<std::string>& more) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  };
+  if (archive.windows) {
+    WindowCounts counts;
+    counts.add(*archive.windows);
+    add(window_warnings(*archive.windows, counts));
+  }
+  if (archive.mixture) add(selection_warnings(archive.mixture->candidates));
+  if (const std::string refined = refinement_warning(archive.measured_fit); archive.bank && !refined.empty())
+    add({refined});
+  return warnings;
+}
+
+}  // namespace modebank::app

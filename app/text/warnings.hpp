@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "io/archive/archive.hpp"
+
+namespace modebank::app {
+
+/// Windows by how their fits ended, for those that are not in memory.
+struct WindowCounts {
+  std::array<Index, 4> status{};  ///< by FitStatus
+  void add(const WindowFits& fits);
+  Index of(FitStatus which) const { return status[static_cast<std::size_t>(which)]; }
+  Index total() const { return std::accumulate(status.begin(), status.end(), Index{0}); }
+};
+
+/// What of the windows needs a look: solutions that the audit replaced, windows without a finite fit.
+std::vector<std::string> window_warnings(const WindowFits& fits, const WindowCounts& counts);
+
+/// What of the bank's refinement needs a look; empty where nothing does.
+std::string refinement_warning(MeasuredFit fit);
+
+/// Every warning of an archive: of its windows, mixture and bank. `show` prints each where it belongs.
+std::vector<std::string> archive_warnings(const Archive& archive);
+
+}  // namespace modebank::app

@@ -1,0 +1,47 @@
+#include "ident/model/parameter_labels.hpp"
+
+#include <algorithm>
+
+namespace modebank {
+
+namespace {
+
+/// Without the sample that a bank's lagged names end with: "[k-1]" or "[k+1]".
+std::string channel_name(const std::string& name) {
+  const std::size_t sample = std::max(name.rfind("[k-") + 1, name.rfind("[k+") + 1);  // 0: neither
+  return sample > 0 && name.back() == ']' ? name.substr(0, sample - 1) : name;
+}
+
+std::vector<std::string> channel_names(const std::vector<std::string>& names, Eigen::Index count, char otherwise) {
+  std::vector<std::string> result;
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    result.push_back(i < names.size() ? channel_name(names[i]) : otherwise + std::to_string(j + 1));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::string> parameter_labels(const LinearStructure& s, const std::vector<std::string>& states,
+                                          const std::vector<std::string>& inputs) {
+  const std::vector<std::string> x = channel_names(states, s.states, 'x'), u = channel_names(inputs, s.inputs, 'u');
+  std::vector<std::string> labels;
+  const auto add = [&](const std::string& row, const std::vector<std::string>& names, Eigen::Index lag) {
+    for (const std::string& name : names)
+      labels.push_back(row + " <- " + name + (s.lagged() ? " (lag " + std::to_string(lag) + ")" : ""));
+  };
+  for (const std::string& row : x) {
+    for (Eigen::Index lag = 1; lag <= s.state_lags; ++lag) add(row, x, lag);
+    for (Eigen::Index lag = s.input_delay; lag < s.input_delay + s.input_lags; ++lag) add(row, u, lag);
+    if (s.intercept) labels.push_back(row + " <- 1");
+  }
+  return labels;
+}
+
+std::vector<std::string> parameter_labels(const WindowFits& fits, const std::vector<std::string>& states,
+                                          const std::vector<std::string>& inputs) {
+  return fits.model_parameters.empty() ? parameter_labels(fits.structure, states, inputs) : fits.parameter_names();
+}
+
+}  // namespace modebank

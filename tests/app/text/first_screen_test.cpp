@@ -1,0 +1,179 @@
+// The screen that a run ends with: it always fits, says what it must, and every rule of what to do next has its case.
+#include "app/text/first_screen.hpp"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "app/cli/help_text.hpp"
+#include "app/text/terminal.hpp"
+#include "tests/app/text/screen_archive.hpp"
+
+namespace modebank::test {
+namespace {
+
+using app::first_screen;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+const app::Settings defaults{
+    {"window.model", "linear"}, {"window.state_lags", "1"}, {"filter.noise", "gaussian"}, {"mixture.restarts", "5"}};
+
+std::string screen_of(const Archive& archive) { return first_screen(archive, defaults, "demo.h5"); }
+
+void expect_fits(const Archive& archive, const std::string& what) {
+  const std::string screen = screen_of(archive);
+  std::istringstream stream(screen);
+  int lines = 0;
+  for (std::string line; std::getline(stream, line); ++lines)
+    EXPECT_LE(app::columns_of(line), app::screen_columns) << what << ": " << line;
+  EXPECT_LE(lines, app::screen_lines) << what << '\n' << screen;
+  for (const char* label : {"read ", "finding ", "modes ", "band ", "mean ", "next ", "archive "})
+    EXPECT_THAT("\n" + screen, HasSubstr(std::string("\n") + label)) << what;
+  EXPECT_EQ(screen.find('\t'), std::string::npos) << what;
+}
+
+/// With the longest finding and a warning of many.
+Archive talkative(Archive archive) {
+  for (int i = 0; i < 200; ++i) archive.finding->text += " And another word.";
+  MixtureResult mixture;
+  mixture.candidates.resize(3);
+  for (Candidate& candidate : mixture.candidates) candidate.restarts = 5;
+  mixture.candidates.back().selected = true;
+  archive.mixture = mixture;
+  archive.measured_fit = MeasuredFit::stalled;
+  return archive;
+}
+
+Archive with_names(Archive archive, const std::string& name, const std::string& unit) {
+  for (Channel& state : archive.recording->states) state = {name + state.name, unit};
+  for (Channel& input : archive.recording->inputs) input = {name + input.name, unit};
+  return archive;
+}
+
+TEST(FirstScreen, FitsWhateverTheArchiveHolds) {
+  for (const auto& [states, inputs, modes] :
+       {std::array<Index, 3>{1, 2, 8}, {1, 2, 1}, {1, 2, 20}, {2, 2, 5}, {4, 6, 9}, {1, 0, 3}}) {
+    const Archive archive = screen_archive(states, inputs, modes);
+    const std::string what = std::to_string(states) + ", " + std::to_string(inputs) + ", " + std::to_string(modes);
+    expect_fits(archive, what);
+    expect_fits(talkative(archive), what + " talkative");
+    expect_fits(screen_archive(states, inputs, modes, Role::train), what + ", nothing held out");
+    const std::string words = "a very long name of a channel with words ", word(120, 'w');
+    for (const std::string& name :
+         {words, word, std::string("Längsgeschwindigkeit ä<b>\"{}%s\t "), std::string("[k-1]")})
+      expect_fits(talkative(with_names(archive, name, name)), what + " " + name);
+  }
+}
+
+TEST(FirstScreen, SaysWhatMatters) {
+  const std::string screen = screen_of(screen_archive(1, 2, 3));
+  EXPECT_THAT(screen, AllOf(HasSubstr("1 training and 1 held-out run, 4 and 4 steps of 0.1 s; wz from vel0, vel1"),
+                            HasSubstr("shows evidence for modes of motion"), HasSubstr("3 on held-out runs"),
+                            HasSubstr("steady gains in (rad/s)/(m/s)"), HasSubstr("wz per vel1"),
+                            HasSubstr("96.6 % [95.6, 97.4] of the held-out samples lie in the 95 % band: calibrated")));
+  EXPECT_THAT(screen,
+              AllOf(HasSubstr("RMSE one step ahead 0.03 rad/s (drifting: 0.04 rad/s); 10 steps ahead 0.06 rad/s\n"),
+                    HasSubstr("(drifting: 0.08 rad/s)\n"),
+                    HasSubstr("1.2 s"),  // 12 samples of 0.1 s
+                    HasSubstr("nothing: use it"), HasSubstr("archive   demo.h5"), Not(HasSubstr("warning"))));
+  EXPECT_THAT(screen_of(screen_archive(1, 2, 3, Role::train)), HasSubstr("none held out"));
+}
+
+/// Halves and less: 0.5, 0.3, 0.18, ... falls below a hundredth after the eighth.
+TEST(FirstScreen, FoldsModesThatAreHardlyUsed) {
+  EXPECT_THAT(screen_of(screen_archive(1, 1, 20)), HasSubstr("and 12 others, used 2.1 %"));
+  EXPECT_THAT(screen_of(screen_archive(1, 1, 3)), Not(HasSubstr("other")));
+  Archive archive = screen_archive(1, 1, 3);
+  for (DiagnosticsRow& row : archive.diagnostics)
+    if (row.mode == 1) row.usage = 0.004;
+  EXPECT_THAT(screen_of(archive), HasSubstr("and 1 other, used 0.4 %"));
+}
+
+TEST(FirstScreen, WarningsAreCountedAndTheFirstIsTold) {
+  const std::string screen = screen_of(talkative(screen_archive(1, 2, 3)));
+  EXPECT_THAT(screen, AllOf(HasSubstr("warning "), HasSubstr("the first: "), HasSubstr("0 of 5 restarts")));
+}
+
+/// What the glossary of `help` and of the page must know.
+TEST(FirstScreen, ItsTermsHaveAMeaning) {
+  for (const char* term :
+       {"evidence", "mode",      "bank",       "drifting",      "competitor",    "nats",   "held-out",
+        "step",     "used",      "stay",       "decay/sample",  "time constant", "period", "steady gain",
+        "band",     "95 % band", "calibrated", "overconfident", "RMSE",          "+-"})
+    EXPECT_FALSE(app::meaning_of(term).empty()) << term;
+}
+
+struct NextStep : testing::Test {
+  Archive archive = screen_archive(1, 2, 3);
+  app::Settings settings = defaults;
+  DiagnosticsRow& row() { return archive.diagnostics.front(); }
+  std::string advice() const { return app::next_step(archive, settings); }
+};
+
+TEST_F(NextStep, NothingIsLeft) { EXPECT_THAT(advice(), HasSubstr("nothing: use it")); }
+
+TEST_F(NextStep, WhatIsNotScoredHasNone) {
+  archive.finding.reset();
+  EXPECT_EQ(advice(), "");
+}
+
+TEST_F(NextStep, LostWindowsComeFirst) {
+  archive.windows.emplace();
+  archive.windows->status = Eigen::VectorXi::Constant(1, static_cast<int>(FitStatus::failed));
+  archive.finding->answer = Answer::not_comparable;
+  EXPECT_THAT(advice(), HasSubstr("no finite fit"));
+}
+
+TEST_F(NextStep, AnswersHaveTheirs) {
+  archive.finding->answer = Answer::not_comparable;
+  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), HasSubstr("data.rate_hz")));
+  archive.finding->answer = Answer::cannot_tell;
+  EXPECT_THAT(advice(), AllOf(HasSubstr("more held-out runs than 1"), HasSubstr("--data.test")));
+  archive.finding->role = Role::train;
+  EXPECT_THAT(advice(), HasSubstr("hold runs out"));
+  archive.finding->role = Role::test;
+  archive.finding->answer = Answer::no_evidence;
+  archive.finding->better_description = "one_motion";
+  EXPECT_THAT(advice(), HasSubstr("use the simpler one_motion (one motion with changing noise)"));
+}
+
+TEST_F(NextStep, ColouredErrorsAskForMemory) {
+  row().flags = "innovations not white: autocorrelation 0.45 at lag 1";
+  settings["window.state_lags"] = "2";
+  EXPECT_THAT(advice(), HasSubstr("--window.state_lags 3"));
+  EXPECT_THAT(advice(), HasSubstr("--data.lag_s auto"));
+  settings["data.lag_s"] = "auto";
+  EXPECT_THAT(advice(), Not(HasSubstr("lag_s")));
+  settings["window.state_lags"] = "5";
+  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("state_lags"))));
+  settings["window.model"] = "slip";
+  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("state_lags"))));
+}
+
+TEST_F(NextStep, AFalseBandAsksForAdaptiveNoiseOnce) {
+  for (const Verdict verdict : {Verdict::overconfident, Verdict::underconfident}) {
+    row().verdict = verdict;
+    settings["filter.noise"] = "gaussian";
+    EXPECT_THAT(advice(), HasSubstr("--filter.noise adaptive"));
+    settings["filter.noise"] = "adaptive";
+    EXPECT_THAT(advice(), AllOf(HasSubstr("--data.train"), Not(HasSubstr("adaptive"))));
+  }
+  row().verdict = Verdict::undecided;
+  EXPECT_THAT(advice(), HasSubstr("more held-out samples"));
+}
+
+/// A refined bank has starts of its own beside the mixture.
+TEST_F(NextStep, RestartsMatterWhereTheMixtureIsTheBank) {
+  archive.mixture.emplace();
+  archive.mixture->candidates.resize(1);
+  archive.mixture->candidates[0].selected = true;
+  archive.mixture->candidates[0].restarts = 5;
+  EXPECT_THAT(advice(), HasSubstr("--mixture.restarts 20"));
+  archive.unrefined = archive.bank;
+  EXPECT_THAT(advice(), HasSubstr("nothing: use it"));
+}
+
+}  // namespace
+}  // namespace modebank::test
