@@ -142,7 +142,7 @@ std::vector<PartPredictions> predict_parts(const std::vector<ValidationSplit>& s
 }
 
 LeftOut predict_all(ChainOptions options, const LeftOutPlan& plan, double common_s) {
-  options.bank.em.restarts = 0;
+  options.bank.em.restarts = 0;  // half of the time, or more
   const std::vector<ValidationSplit> splits = splits_of(options.data, plan);
   if (splits.empty()) throw DataError("there is nothing to leave out");
   LeftOut left_out;

@@ -11,7 +11,10 @@
 namespace modebank {
 namespace {
 
-bool exceeds_its_error(const PairedGain& gain) { return gain.gain > 0.0 && gain.gain > gain.standard_error; }
+/// By more than what bounds each choice inside refinement: less would not survive on other runs.
+bool exceeds_its_error(const PairedGain& gain) {
+  return gain.gain > RefineTuning{}.least_gain && gain.gain > gain.standard_error;
+}
 
 CheckOptions check_options(const ChainOptions& options) {
   return {options.data, options.window.length, options.window.intercept};
@@ -103,6 +106,7 @@ class Search {
     to.rate_hz = wanted_hz();
     DataCheck then = checked(to, to.lag_s);
     if (then.advice.length.length > 0) to.window_length = then.advice.length.length;
+    to.window_step = std::max<Index>(1, std::lround(static_cast<double>(to.window_step) * wanted_hz() / present_hz()));
     Advice advice = then.advice;
     advice.rate_facts = check_.advice.rate_facts;
     advice.rate = check_.advice.rate;
@@ -150,7 +154,8 @@ class Search {
 }  // namespace
 
 Settings settings_of(const ChainOptions& options) {
-  return {options.data.rate_hz, options.data.lag_auto, options.data.lag_s, options.window.length, options.window.loss};
+  return {options.data.rate_hz,  options.data.lag_auto, options.data.lag_s,
+          options.window.length, options.window.step,   options.window.loss};
 }
 
 ChainOptions with_settings(ChainOptions options, const Settings& settings) {
@@ -158,6 +163,7 @@ ChainOptions with_settings(ChainOptions options, const Settings& settings) {
   options.data.lag_auto = settings.lag_auto;
   options.data.lag_s = settings.lag_s;
   options.window.length = settings.window_length;
+  options.window.step = settings.window_step;
   options.window.loss = settings.loss;
   return options;
 }

@@ -15,7 +15,7 @@ struct Settings {
   double rate_hz = 0.0;
   bool lag_auto = false;
   double lag_s = 0.0;
-  Index window_length = 0;
+  Index window_length = 0, window_step = 1;
   Loss loss = Loss::huber;
 };
 Settings settings_of(const ChainOptions& options);
@@ -46,10 +46,10 @@ struct Suggestions {
 };
 
 /// Tries what the data speak for, one after the other, each on top of what was accepted before and computed for the
-/// data at the rate, and with the lag, accepted before: the rate together with the window length that suits it; the lag
-/// found by cross-validation; the window length; the loss. A trial is accepted if its paired gain on training runs left
-/// out (left_out.hpp) exceeds one standard error. Should all of them together not do so, the last are taken back.
-/// `check`: of the data as `options` say.
+/// data at the rate, and with the lag, accepted before: the rate together with the window length that suits it, and
+/// windows that start as often as before; the lag found by cross-validation; the window length; the loss. A trial is
+/// accepted if its paired gain on training runs left out (left_out.hpp) exceeds one standard error and 0.001 nats per
+/// sample. Should all of them together not do so, the last are taken back. `check`: of the data as `options` say.
 Suggestions suggest(const ChainOptions& options, const DataCheck& check, const Listener& listener);
 
 }  // namespace modebank

@@ -80,7 +80,7 @@ json gain_json(const PairedGain& gain) {
 KeyValues changed_keys(const Config& config, const Settings& from, const Settings& to) {
   const Config before = with(config, from), after = with(config, to);
   KeyValues keys;
-  for (const char* key : {"data.rate_hz", "data.lag_s", "window.length", "window.loss"})
+  for (const char* key : {"data.rate_hz", "data.lag_s", "window.length", "window.step", "window.loss"})
     if (const Option* option = find_option(key); option->get(before) != option->get(after))
       keys.emplace_back(key, option->get(after));
   return keys;
