@@ -141,8 +141,7 @@ std::vector<PartPredictions> predict_parts(const std::vector<ValidationSplit>& s
   return said;
 }
 
-LeftOut predict_all(ChainOptions options, const LeftOutPlan& plan, double common_s) {
-  options.bank.em.restarts = 0;  // half of the time, or more
+LeftOut predict_all(const ChainOptions& options, const LeftOutPlan& plan, double common_s) {
   const std::vector<ValidationSplit> splits = splits_of(options.data, plan);
   if (splits.empty()) throw DataError("there is nothing to leave out");
   LeftOut left_out;

@@ -33,9 +33,9 @@ struct LeftOut {
   std::string problem;           ///< why nothing was learned; empty: something was
 };
 
-/// Learns a bank as `run` does, but for refinement's random starts, from the other training runs of each part in turn,
-/// and predicts those left out. Lags are estimated anew without them. `common_s`: how long ahead predictions are made
-/// in common with configurations of another rate. The same for any number of threads.
+/// Learns a bank as `run` does from the other training runs of each part in turn, and predicts those left out. Lags are
+/// estimated anew without them. `common_s`: how long ahead predictions are made in common with configurations of
+/// another rate. The same for any number of threads.
 LeftOut predict_left_out(const ChainOptions& options, const LeftOutPlan& plan, double common_s);
 
 /// What `better` gains over `other`. At the same rate: of predictions one sample ahead, on the samples that both have.

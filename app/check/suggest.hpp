@@ -29,7 +29,7 @@ struct Trial {
   Change change = Change::rate;
   Settings from, to;
   Advice advice;         ///< computed for the data as they would then be
-  PairedGain gain;       ///< of `to` over `from` on training runs left out
+  PairedGain gain;       ///< of `to` over `from` on training runs left out; learned as `run` learns if it is accepted
   std::string unscored;  ///< why there is no gain to tell of; empty: there is
   bool accepted = false;
 };
