@@ -34,7 +34,7 @@ MAY_INCLUDE = {
     "io/import": FIT + ["ident/lag", "io/files"],
     "io/simulation": IDENT + ["ident/simulate", "io/files"],
     "app/chain": BELOW_APP,
-    "app/check": BELOW_APP,
+    "app/check": BELOW_APP + ["app/chain"],
     "app/config": BELOW_APP + ["app/chain"],
     "app/text": BELOW_APP + ["app/chain"],
     "app/study": BELOW_APP + ["app/chain", "app/config"],

@@ -43,20 +43,26 @@ DriftingModel drifting(const Recording& recording, const WindowFits& windows, co
 
 }  // namespace
 
-Competitors learn_competitors(const Recording& recording, const WindowFits& windows, Index components,
-                              const CompetitorInputs& inputs, const Listener& listener) {
-  Baseline baseline = learn_baseline(recording, linear_global(recording, windows, inputs.window), windows.structure);
+Bank learn_single_filter(const Recording& recording, const WindowFits& windows, const FitOptions& window,
+                         const FilterOptions& filter, const Listener& listener) {
+  Baseline baseline = learn_baseline(recording, linear_global(recording, windows, window), windows.structure);
   baseline.bank.model = windows.model;
   if (baseline.at_bound) listener.progress("baseline: R is at its lower bound: the data show no measurement noise");
   if (!baseline.converged) listener.warning("baseline: its noise did not reach a maximum of the likelihood");
-  Competitors learned{std::move(baseline.bank), {}, {}, {}};
+  if (filter.noise == FilterNoise::adaptive)
+    baseline.bank.noise_adaptation = most_likely_adaptation(baseline.bank, recording, filter, {});
+  return std::move(baseline.bank);
+}
+
+Competitors learn_competitors(const Recording& recording, const WindowFits& windows, Index components,
+                              const CompetitorInputs& inputs, const Listener& listener) {
+  Competitors learned{learn_single_filter(recording, windows, inputs.window, inputs.filter, listener), {}, {}, {}};
   learned.drifting = drifting(recording, windows, inputs, listener);
   learned.noise_only = learn_noise_only(recording, windows.structure, learned.baseline.R);
   if (inputs.one_motion)
     learned.one_motion = one_motion(recording, windows, learned.baseline, components, inputs, listener);
   if (inputs.filter.noise == FilterNoise::adaptive)
-    for (Bank* bank : {&learned.baseline, &learned.noise_only})
-      bank->noise_adaptation = most_likely_adaptation(*bank, recording, inputs.filter, {});
+    learned.noise_only.noise_adaptation = most_likely_adaptation(learned.noise_only, recording, inputs.filter, {});
   return learned;
 }
 

@@ -29,6 +29,10 @@ MixtureResult cluster(const Recording& recording, const WindowFits& windows, con
 /// The global model of the windows in linear terms, whatever they were fitted with.
 GlobalModel linear_global(const Recording& recording, const WindowFits& windows, const FitOptions& window);
 
+/// The baseline: one Kalman filter on the global model. `filter`: that runs competitors.
+Bank learn_single_filter(const Recording& recording, const WindowFits& windows, const FitOptions& window,
+                         const FilterOptions& filter, const Listener& listener);
+
 struct Competitors {
   Bank baseline;                   ///< one Kalman filter
   Bank noise_only;                 ///< switches noise alone

@@ -152,25 +152,39 @@ double median_of(std::vector<double> values) {
   return values.empty() ? 0.0 : median(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
 }
 
+/// Largest share of repeated values of a measured input. Commands are coarse; measurements take many values.
+double repeated_inputs(const Material& material) {
+  double most = 0.0;
+  for (Index i = 0; i < material.structure.inputs; ++i) {
+    std::vector<VectorXd> rows;
+    for (const RunPair& run : material.ordered)
+      if (run.role == Role::train) rows.push_back(run.inputs.values.row(i));
+    const ChannelCheck values = check_channel(joined(rows));
+    if (values.quantum == 0.0) most = std::max(most, values.repeated);
+  }
+  return most;
+}
+
+/// By the training runs alone: what is held out must not decide how it is looked at.
 void advise(const Material& material, DataCheck& check) {
   std::vector<double> inputs_hz, states_hz, jitter, time_constants;
   for (const RunReport& run : check.runs) {
+    if (run.role != Role::train) continue;
     inputs_hz.push_back(run.inputs.rate_hz);
     states_hz.push_back(run.states.rate_hz);
     jitter.push_back(run.inputs.jitter);
     const bool resolved = run.lag.time_constant_s * run.inputs.rate_hz > least_resolved;
     if (run.lag.status == LagStatus::converged && resolved) time_constants.push_back(run.lag.time_constant_s);
   }
-  check.rate_facts = {median_of(inputs_hz), median_of(states_hz), median_of(jitter), 0.0, median_of(time_constants)};
-  for (const ChannelSummary& channel : check.channels)  // commands are coarse; measurements take many values
-    if (!channel.is_state && channel.values.quantum == 0.0)
-      check.rate_facts.repeated = std::max(check.rate_facts.repeated, channel.values.repeated);
-  check.rate = advise_rate(check.rate_facts);
-  check.length = advise_length(material.parts, material.structure);
+  Advice& advice = check.advice;
+  advice.rate_facts = {median_of(inputs_hz), median_of(states_hz), median_of(jitter), repeated_inputs(material),
+                       median_of(time_constants)};
+  advice.rate = advise_rate(advice.rate_facts);
   Recording training;
   for (const Trajectory& part : material.parts)
     if (part.role == Role::train) training.runs.push_back(part);
-  if (!training.runs.empty()) check.loss = advise_loss(training, material.structure);
+  advice.length = advise_length(training.runs, material.structure);
+  if (!training.runs.empty()) advice.loss = advise_loss(training, material.structure);
 }
 
 Index longest_training_stretch(const Material& material) {

@@ -35,16 +35,21 @@ struct ChannelSummary {
   double saturated = 0.0;
 };
 
+/// What the training runs, joined as they were, speak for.
+struct Advice {
+  RateFacts rate_facts;
+  RateAdvice rate;
+  LengthAdvice length;
+  LossAdvice loss;
+};
+
 struct DataCheck {
   Index window_length = 0;
   std::vector<RunReport> runs;
   std::vector<ChannelSummary> channels;  ///< states, then inputs
   LagReport lag;
   bool has_lag = false;
-  RateFacts rate_facts;
-  RateAdvice rate;
-  LengthAdvice length;
-  LossAdvice loss;
+  Advice advice;
   Index longest_stretch = 0;  ///< transitions without a gap in the training runs
   std::string unusable;       ///< why nothing can be identified; empty: something can
 };

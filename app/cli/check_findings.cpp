@@ -120,10 +120,11 @@ void lag_findings(const DataCheck& check, const Config& config, std::vector<std:
   if (check.lag.correction != LagCorrection::none && !config.data.lag_auto && config.data.lag_s == 0.0) {
     const auto score = std::find_if(check.lag.scores.begin(), check.lag.scores.end(),
                                     [&](const LagScore& s) { return s.correction == check.lag.correction; });
-    found.push_back(fmt::format(
-        "the inputs act {:+.3f} +- {:.3f} s later than their stamps say: data.lag_s = auto gains {:.3f} +- {:.3f} "
-        "nats/transition on training runs left out",
-        check.lag.lag.mean, check.lag.lag.standard_error, score->gain, score->gain_standard_error));
+    found.push_back(
+        fmt::format("the inputs act {:+.3f} +- {:.3f} s later than their stamps say: undone, the global model gains "
+                    "{:.3f} +- {:.3f} "
+                    "nats/transition on training runs left out",
+                    check.lag.lag.mean, check.lag.lag.standard_error, score->gain, score->gain_standard_error));
   }
   if (const auto runs = runs_where(check,
                                    [](const RunReport& run) {
@@ -153,9 +154,9 @@ std::vector<std::string> findings_of(const DataCheck& check, const Config& confi
   return found;
 }
 
-std::string rate_reason(const DataCheck& check) {
-  const RateFacts& facts = check.rate_facts;
-  switch (check.rate.reason) {
+std::string rate_reason(const Advice& advice) {
+  const RateFacts& facts = advice.rate_facts;
+  switch (advice.rate.reason) {
     case RateReason::too_fast:
       return fmt::format(
           "{:.3g} Hz resolves the response's time constant of {:.2g} s {:.0f}-fold, which leaves mostly "
@@ -183,26 +184,26 @@ std::string rate_reason(const DataCheck& check) {
                      facts.inputs_hz, percent * facts.jitter);
 }
 
-std::string length_reason(const DataCheck& check) {
-  if (check.length.length == 0) return "no run is long enough for any";
-  if (check.length.enough)
-    return fmt::format("at the present rate the shortest with at most a fifth of the windows rank deficient ({:.0f} %)",
-                       percent * check.length.deficient);
+std::string length_reason(const Advice& advice) {
+  if (advice.length.length == 0) return "no run is long enough for any";
+  if (advice.length.enough)
+    return fmt::format("the shortest with at most a fifth of the windows rank deficient ({:.0f} %)",
+                       percent * advice.length.deficient);
   return fmt::format(
       "{:.0f} % of the windows are rank deficient even so, and longer ones hardly gain: the prior has to "
       "carry them",
-      percent * check.length.deficient);
+      percent * advice.length.deficient);
 }
 
-std::string loss_reason(const DataCheck& check) {
-  const TailCheck& tails = check.loss.tails;
+std::string loss_reason(const Advice& advice) {
+  const TailCheck& tails = advice.loss.tails;
   return fmt::format(
       "{:.2g} % of one-step errors are beyond 4 robust standard deviations, {:.2g} % beyond 8 (normal "
       "noise: 0.006 %, 0 %); {}",
       percent * tails.beyond_four, percent * tails.beyond_eight,
-      check.loss.loss == Loss::trivial ? "least squares loses nothing"
-      : check.loss.loss == Loss::tukey ? "that many gross errors must have no pull at all"
-                                       : "a bounded pull is safe, and costs 5 % at most");
+      advice.loss.loss == Loss::trivial ? "least squares loses nothing"
+      : advice.loss.loss == Loss::tukey ? "that many gross errors must have no pull at all"
+                                        : "a bounded pull is safe, and costs 5 % at most");
 }
 
 }  // namespace modebank::app

@@ -133,9 +133,9 @@ json check_json(const DataCheck& check, const std::vector<std::string>& findings
           {"lag", check.has_lag ? lags_json(check.lag) : json(nullptr)},
           {"findings", findings},
           {"advice",
-           {{"rate_hz", {{"value", check.rate.rate_hz}, {"reason", rate_reason(check)}}},
-            {"window_length", {{"value", check.length.length}, {"reason", length_reason(check)}}},
-            {"window_loss", {{"value", name_of(check.loss.loss)}, {"reason", loss_reason(check)}}}}}};
+           {{"rate_hz", {{"value", check.advice.rate.rate_hz}, {"reason", rate_reason(check.advice)}}},
+            {"window_length", {{"value", check.advice.length.length}, {"reason", length_reason(check.advice)}}},
+            {"window_loss", {{"value", name_of(check.advice.loss.loss)}, {"reason", loss_reason(check.advice)}}}}}};
 }
 
 }  // namespace modebank::app

@@ -19,8 +19,8 @@ std::string check_text(const DataCheck& check, const std::vector<std::string>& f
 nlohmann::json check_json(const DataCheck& check, const std::vector<std::string>& findings);
 
 /// Why the advice is what it is.
-std::string rate_reason(const DataCheck& check);
-std::string length_reason(const DataCheck& check);
-std::string loss_reason(const DataCheck& check);
+std::string rate_reason(const Advice& advice);
+std::string length_reason(const Advice& advice);
+std::string loss_reason(const Advice& advice);
 
 }  // namespace modebank::app

@@ -120,9 +120,6 @@ std::string check_text(const DataCheck& check, const std::vector<std::string>& f
   text += "\nfindings\n";
   for (const std::string& finding : findings) text += "- " + finding + "\n";
   if (findings.empty()) text += "- nothing stands out\n";
-  text += fmt::format("\nsuggested\n  data.rate_hz = {:g}: {}\n  window.length = {}: {}\n  window.loss = {}: {}\n",
-                      check.rate.rate_hz, rate_reason(check), check.length.length, length_reason(check),
-                      name_of(check.loss.loss), loss_reason(check));
   return text;
 }
 

@@ -29,7 +29,10 @@ constexpr Command commands[] = {
     {"cluster", "CONFIG", "cluster the windows (of --archive.input, if given)", run_pipeline},
     {"evaluate", "CONFIG", "learn the bank and score it (stages of --archive.input; or the bank of --archive.bank)",
      run_pipeline},
-    {"check", "CONFIG", "advice on the data before identification, run by run; --json", run_check},
+    {"check", "CONFIG",
+     "advice on the data before identification, run by run, and settings that gain in cross-validation; --json; "
+     "--apply -o FILE writes the configuration with them",
+     run_check},
     {"simulate", "CONFIG", "write runs with known truth in the CSV layout that run reads", run_simulate},
     {"study", "CONFIG", "a parameter study: plans, runs and merges, resuming what is done; --study.stage does one step",
      run_study},
@@ -50,8 +53,9 @@ std::string help_text() {
   for (const Command& command : commands)
     text += fmt::format("  {:<24} {}\n", fmt::format("{} {}", command.name, command.arguments), command.help);
   text +=
-      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report), --repair "
-      "(verify).\n"
+      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report, check), --apply "
+      "(check), "
+      "--repair (verify).\n"
       "Every configuration key is an option too, and wins over the file. Exit status: 0 done; 2 usage, configuration "
       "or "
       "path; 1 content or run failure. `modebank help TERM` says what a word of the summary or a key means.\n";

@@ -1,24 +1,82 @@
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "app/cli/check_output.hpp"
+#include "app/cli/check_suggestions.hpp"
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
+#include "io/files/replace_file.hpp"
+#include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
+namespace {
+
+void require_usage(const CommandLine& line) {
+  if (line.files.size() != 1) throw ConfigurationError("check needs one configuration file: modebank check CONFIG");
+  if (line.apply && line.output.empty())
+    throw ConfigurationError("--apply: name the configuration file to write: modebank check CONFIG --apply -o FILE");
+  if (!line.apply && !line.output.empty())
+    throw ConfigurationError("-o: check writes a file with --apply only: modebank check CONFIG --apply -o FILE");
+}
+
+/// A configuration must not take the place of what it was made from.
+void check_target(const CommandLine& line, const Config& config) {
+  if (!line.apply) return;
+  if (const std::string obstacle = write_obstacle(line.output); !obstacle.empty())
+    throw ConfigurationError("-o: " + obstacle);
+  std::vector<std::filesystem::path> sources = data_files(config.data);
+  sources.emplace_back(line.files.front());
+  for (const std::filesystem::path& source : sources) {
+    std::error_code absent;
+    if (std::filesystem::equivalent(source, line.output, absent))
+      throw ConfigurationError(fmt::format("-o: {} is read by this check; name another file", line.output));
+  }
+}
+
+class ScoringLog : public Listener {
+ public:
+  void progress(const std::string& line) const override { spdlog::info("{}", line); }
+};
+
+/// Findings come at once, suggestions when they are scored.
+Suggestions tell(const CommandLine& line, const Config& config, const DataCheck& check) {
+  const std::vector<std::string> findings = findings_of(check, config);
+  if (!line.json) fmt::print("{}", check_text(check, findings));
+  std::fflush(stdout);
+  const bool usable = check.unusable.empty();
+  const Suggestions suggestions = usable ? suggest(chain_options(config), check, ScoringLog()) : Suggestions{};
+  if (line.json) {
+    nlohmann::json page = check_json(check, findings);
+    page["suggestions"] = usable ? suggestions_json(suggestions, config) : nlohmann::json(nullptr);
+    fmt::print("{}\n", page.dump(2));
+  } else if (usable) {
+    fmt::print("{}", suggestions_text(suggestions, config));
+  }
+  std::fflush(stdout);
+  if (!usable) throw DataError("unusable as configured: " + unusable_text(check));
+  return suggestions;
+}
+
+}  // namespace
 
 int run_check(const CommandLine& line) {
-  if (line.files.size() != 1) throw ConfigurationError("check needs one configuration file: modebank check CONFIG");
+  require_usage(line);
   const Config config = load_config(line.files.front(), line.overrides);
   validate(config);
+  check_target(line, config);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   const DataCheck check = check_data({config.data, config.window.length, config.window.intercept});
-  const std::vector<std::string> findings = findings_of(check, config);
-  fmt::print("{}", line.json ? check_json(check, findings).dump(2) + "\n" : check_text(check, findings));
-  if (!check.unusable.empty()) throw DataError("unusable as configured: " + unusable_text(check));
+  const Suggestions suggestions = tell(line, config, check);
+  if (!line.apply) return 0;
+  replace_file(line.output, {applied_text(suggestions, config, line.files.front(), line.overrides, line.output)});
+  if (!line.json)
+    fmt::print("{}: {}\n", line.output,
+               suggestions.any() ? "the configuration with what is suggested" : "the configuration as it is");
   return 0;
 }
 

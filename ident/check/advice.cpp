@@ -12,10 +12,19 @@ namespace modebank {
 
 namespace {
 
-/// Two digits: nobody needs 6.4935 Hz.
+/// Four digits, so that the ratio of two such rates is whole to a thousandth.
 double rounded(double value) {
-  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
   return std::round(value / unit) * unit;
+}
+
+/// The rate next to `wanted_hz` that a lower one goes into, or that goes into a higher one: at least twice.
+double slower(double rate_hz, double wanted_hz) {
+  return rounded(rate_hz / std::max(2.0, std::round(rate_hz / wanted_hz)));
+}
+double faster(double rate_hz, double wanted_hz, double most_hz) {
+  const double times = std::min(std::round(wanted_hz / rate_hz), std::floor(most_hz / rate_hz));
+  return rounded(rate_hz * std::max(2.0, times));
 }
 
 }  // namespace
@@ -82,11 +91,12 @@ RateAdvice advise_rate(const RateFacts& facts) {
   constexpr double much_jitter = 0.2, many_repeats = 0.3;
   const double per_time_constant = facts.inputs_hz * facts.time_constant_s;
   if (facts.time_constant_s > 0.0 && per_time_constant > most_samples)
-    return {rounded(wanted_fast / facts.time_constant_s), RateReason::too_fast};
-  if (facts.repeated >= many_repeats) return {rounded(facts.inputs_hz * (1.0 - facts.repeated)), RateReason::repeats};
+    return {slower(facts.inputs_hz, wanted_fast / facts.time_constant_s), RateReason::too_fast};
+  if (facts.repeated >= many_repeats)
+    return {slower(facts.inputs_hz, facts.inputs_hz * (1.0 - facts.repeated)), RateReason::repeats};
   const double slow_hz = wanted_slow / std::max(facts.time_constant_s, 1e-30);
   if (facts.time_constant_s > 0.0 && per_time_constant < least_samples && facts.states_hz >= slow_hz)
-    return {rounded(slow_hz), RateReason::too_slow};
+    return {faster(facts.inputs_hz, slow_hz, facts.states_hz), RateReason::too_slow};
   if (facts.jitter > much_jitter) return {rounded(facts.inputs_hz), RateReason::jitter};
   return {};
 }

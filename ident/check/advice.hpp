@@ -49,7 +49,8 @@ struct RateAdvice {
 };
 /// Two to thirty samples per time constant are fine; faster data are brought to ten, slower ones to five as long as
 /// the states are sampled fast enough for it. Jitter above a fifth of a period asks for resampling at the median rate;
-/// an encoder that repeats at least 30 % of its samples for the rate of its changes.
+/// an encoder that repeats at least 30 % of its samples for the rate of its changes. The rate is a whole multiple or
+/// fraction of the inputs' own, so that what is predicted at both can be compared at the same instants.
 RateAdvice advise_rate(const RateFacts& facts);
 
 }  // namespace modebank

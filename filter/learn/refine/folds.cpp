@@ -26,27 +26,27 @@ std::vector<Trajectory> training_stretches_of(const Recording& recording, Index 
   return parts;
 }
 
-/// Which part each run is left out with: the longest first, each to the part that is shortest so far.
-std::vector<Index> part_of_runs(const std::vector<Trajectory>& runs, Index parts) {
-  std::vector<Index> order(runs.size()), part(runs.size());
+}  // namespace
+
+std::vector<Index> deal_by_length(const std::vector<Index>& lengths, Index parts) {
+  std::vector<Index> order(lengths.size()), part(lengths.size());
   std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return runs[a].transitions() > runs[b].transitions(); });
-  std::vector<Index> length(parts, 0);
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return lengths[a] > lengths[b]; });
+  std::vector<Index> sum(parts, 0);
   for (const Index i : order) {
-    part[i] = std::min_element(length.begin(), length.end()) - length.begin();
-    length[part[i]] += runs[i].transitions();
+    part[i] = std::min_element(sum.begin(), sum.end()) - sum.begin();
+    sum[part[i]] += lengths[i];
   }
   return part;
 }
-
-}  // namespace
 
 std::vector<ValidationSplit> validation_splits(const Recording& recording, Index most, const RefineTuning& tuning) {
   const std::vector<Trajectory> runs = training_stretches_of(recording, most, tuning);
   if (runs.size() < 2 || most < 2) return {};
   const Index parts = std::min(most, std::ssize(runs));
-  const std::vector<Index> part = part_of_runs(runs, parts);
+  std::vector<Index> lengths;
+  for (const Trajectory& run : runs) lengths.push_back(run.transitions());
+  const std::vector<Index> part = deal_by_length(lengths, parts);
   std::vector<ValidationSplit> splits(parts);
   for (Index s = 0; s < parts; ++s) {
     splits[s].training = {recording.states, recording.inputs, {}};

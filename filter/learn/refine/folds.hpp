@@ -13,6 +13,9 @@ struct ValidationSplit {
   Recording left_out;
 };
 
+/// Which of the parts each run is left out with: the longest first, each to the part that is shortest so far.
+std::vector<Index> deal_by_length(const std::vector<Index>& lengths, Index parts);
+
 /// Splits of the training runs for cross-validation: every run is left out once; with more than `most` runs several are
 /// left out together, dealt by length so that the parts are about equal. Fewer than three training runs are cut into
 /// `most` contiguous stretches each first (those too short to be cut are only trained on). Empty when nothing can be

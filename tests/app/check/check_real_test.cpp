@@ -108,5 +108,30 @@ TEST_F(CheckOfRealData, FindsTheFactsOfDriveBuckAndBag) {
   EXPECT_NEAR(bag.at("runs")[0].at("rest_mean")[0].get<double>(), -0.4e-3, 3e-4);
 }
 
+/// The settings that configs/husky_ice.ini states were found by scores such as these.
+TEST_F(CheckOfRealData, SuggestsForIceWhatGainsAndNamesWhatDoesNot) {
+  NEEDS_SHARED_DATA();
+  const json said =
+      real(
+          "inputs = borealtc/ICE/pro_*.csv\nstates = borealtc/ICE/imu_*.csv\nstate = wz\ninput = velL, velR\n"
+          "[mixture]\ncomponents = 3\n")
+          .at("suggestions");
+  EXPECT_EQ(said.at("training_runs"), 6);
+  EXPECT_TRUE(said.at("whole_runs_left_out").get<bool>());
+  json suggested = json::object();
+  std::vector<std::string> tried;
+  for (const json& trial : said.at("trials")) {
+    EXPECT_EQ(trial.at("unscored_because"), "");
+    const double gain = trial.at("gain").get<double>();
+    EXPECT_EQ(trial.at("accepted").get<bool>(), gain > trial.at("standard_error").get<double>() && gain > 1e-3);
+    for (const auto& [key, value] : trial.at("keys").items()) {
+      tried.push_back(key);
+      if (trial.at("accepted").get<bool>()) suggested[key] = value;
+    }
+  }
+  EXPECT_EQ(said.at("suggested"), suggested);
+  EXPECT_THAT(tried, ::testing::IsSupersetOf({"data.rate_hz", "data.lag_s"})) << "both show in the data";
+}
+
 }  // namespace
 }  // namespace modebank::test

@@ -1,0 +1,179 @@
+#include "app/check/suggest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/check/left_out.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+namespace {
+
+/// By more than what bounds each choice inside refinement: less would not survive on other runs.
+bool exceeds_its_error(const PairedGain& gain) {
+  return gain.gain > RefineTuning{}.least_gain && gain.gain > gain.standard_error;
+}
+
+CheckOptions check_options(const ChainOptions& options) {
+  return {options.data, options.window.length, options.window.intercept};
+}
+
+/// The way through the trials. Predictions of all that was accepted are kept, those of the present settings first.
+class Search {
+ public:
+  Search(const ChainOptions& options, const DataCheck& check, const Listener& listener)
+      : options_(options), check_(check), listener_(listener), plan_(plan_left_out(check)) {
+    found_.present = found_.suggested = settings_of(options);
+    found_.runs = std::ssize(plan_.runs);
+    found_.whole_runs = !plan_.parts.empty();
+    common_s_ = common_time_s();
+  }
+
+  Suggestions run() {
+    held_.push_back(predict(found_.present));
+    if (!held_.front().problem.empty()) {
+      found_.unscored = held_.front().problem;
+      return found_;
+    }
+    try_rate();
+    try_lag();
+    try_length();
+    try_loss();
+    judge_together();
+    return found_;
+  }
+
+ private:
+  const ChainOptions& options_;
+  DataCheck check_;  ///< of the data as accepted so far
+  const Listener& listener_;
+  LeftOutPlan plan_;
+  double common_s_ = 0.0;
+  std::vector<LeftOut> held_;
+  Suggestions found_;
+
+  Settings& held() { return found_.suggested; }
+
+  double wanted_hz() const { return check_.advice.rate.rate_hz; }
+  double present_hz() const {
+    return found_.present.rate_hz > 0.0 ? found_.present.rate_hz : check_.advice.rate_facts.inputs_hz;
+  }
+
+  /// Of the two rates that may be compared the slower one's period.
+  double common_time_s() const {
+    return 1.0 / (wanted_hz() > 0.0 ? std::min(wanted_hz(), present_hz()) : present_hz());
+  }
+
+  LeftOut predict(const Settings& settings) const {
+    const Stopwatch watch;
+    LeftOut left_out = predict_left_out(with_settings(options_, settings), plan_, common_s_);
+    listener_.progress(
+        fmt::format("check: rate {:g} Hz, lag {}, length {}, loss {} scored on {} training runs left out in {:.2f} s",
+                    settings.rate_hz, settings.lag_auto ? "auto" : fmt::format("{:g} s", settings.lag_s),
+                    settings.window_length, name_of(settings.loss), plan_.runs.size(), watch.seconds()));
+    return left_out;
+  }
+
+  DataCheck checked(const Settings& settings, double lag_s) const {
+    ChainOptions options = with_settings(options_, settings);
+    options.data.lag_auto = false;
+    options.data.lag_s = lag_s;
+    return check_data(check_options(options));
+  }
+
+  void attempt(Change change, const Settings& to, const Advice& advice) {
+    Trial trial{change, held(), to, advice, {}, {}, false};
+    LeftOut said = predict(to);
+    trial.unscored = said.problem;
+    if (trial.unscored.empty()) {
+      trial.gain = compare_left_out(said, held_.back());
+      trial.accepted = exceeds_its_error(trial.gain);
+      if (!std::isfinite(trial.gain.gain) || std::isnan(trial.gain.standard_error))
+        trial.unscored = "too few predictions of the same samples to compare";
+    }
+    if (trial.accepted) {
+      held() = to;
+      held_.push_back(std::move(said));
+    }
+    found_.trials.push_back(std::move(trial));
+  }
+
+  void try_rate() {
+    if (wanted_hz() == held().rate_hz) return;
+    Settings to = held();
+    to.rate_hz = wanted_hz();
+    DataCheck then = checked(to, to.lag_s);
+    if (then.advice.length.length > 0) to.window_length = then.advice.length.length;
+    to.window_step = std::max<Index>(1, std::lround(static_cast<double>(to.window_step) * wanted_hz() / present_hz()));
+    Advice advice = then.advice;
+    advice.rate_facts = check_.advice.rate_facts;
+    advice.rate = check_.advice.rate;
+    attempt(Change::rate, to, advice);
+    if (found_.trials.back().accepted) check_ = std::move(then);
+  }
+
+  void try_lag() {
+    if (!check_.has_lag || check_.lag.correction == LagCorrection::none || held().lag_auto || held().lag_s != 0.0)
+      return;
+    Settings to = held();
+    to.lag_auto = true;
+    Trial unscored{Change::lag, held(), to, check_.advice, {}, "fewer than three training runs", false};
+    if (plan_.parts.empty()) return found_.trials.push_back(unscored);  // their own lag would be known
+    attempt(Change::lag, to, check_.advice);
+    if (found_.trials.back().accepted) check_ = checked(to, check_.lag.lag.mean);
+  }
+
+  void try_length() {
+    const bool with_rate = held().rate_hz != found_.present.rate_hz;  // chosen together
+    Settings to = held();
+    to.window_length = check_.advice.length.length;
+    if (to.window_length == 0 || to.window_length == held().window_length || with_rate) return;
+    attempt(Change::length, to, check_.advice);
+  }
+
+  void try_loss() {
+    Settings to = held();
+    to.loss = check_.advice.loss.loss;
+    if (check_.advice.loss.tails.transitions > 0 && to.loss != held().loss) attempt(Change::loss, to, check_.advice);
+  }
+
+  void judge_together() {
+    for (auto last = found_.trials.rbegin(); last != found_.trials.rend(); ++last) {
+      if (!last->accepted) continue;
+      found_.together = compare_left_out(held_.back(), held_.front());
+      if (exceeds_its_error(found_.together)) return;
+      last->accepted = false;
+      held() = last->from;
+      held_.pop_back();
+    }
+  }
+};
+
+}  // namespace
+
+Settings settings_of(const ChainOptions& options) {
+  return {options.data.rate_hz,  options.data.lag_auto, options.data.lag_s,
+          options.window.length, options.window.step,   options.window.loss};
+}
+
+ChainOptions with_settings(ChainOptions options, const Settings& settings) {
+  options.data.rate_hz = settings.rate_hz;
+  options.data.lag_auto = settings.lag_auto;
+  options.data.lag_s = settings.lag_s;
+  options.window.length = settings.window_length;
+  options.window.step = settings.window_step;
+  options.window.loss = settings.loss;
+  return options;
+}
+
+bool Suggestions::any() const {
+  return std::any_of(trials.begin(), trials.end(), [](const Trial& trial) { return trial.accepted; });
+}
+
+Suggestions suggest(const ChainOptions& options, const DataCheck& check, const Listener& listener) {
+  return Search(options, check, listener).run();
+}
+
+}  // namespace modebank
