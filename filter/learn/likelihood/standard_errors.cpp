@@ -18,6 +18,7 @@ namespace {
 
 // Of coordinates: standard errors of theta given the modes, logarithms of the others. Truncation is a ten thousandth.
 constexpr double difference_step = 1e-2;
+constexpr double weight_unit_share = 0.1;  // of the prior's standard deviation
 // Errors are wanted to a few per cent: their own relative error falls with the root of the samples.
 constexpr double most_numbers = 4e6;  // samples times coordinates: 32 MB
 constexpr Index fewest_samples = 2000, most_samples = 20000;
@@ -76,12 +77,22 @@ void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior,
   }
   const Eigen::ArrayXXd T = bank.transition.matrix().array();
   const Eigen::ArrayXd rows = sums.switches.rowwise().sum().array() + 1.0;
+  if (!bank.transition_logit.empty())
+    bank.transition_weight_error.setConstant(bank.mode_count(), bank.transition_logit.weights.cols(), not_a_number);
   bank.transition_standard_error = ((T * (1.0 - T)).colwise() / rows).sqrt().matrix();
   if (with_R)
     bank.R_standard_error = Eigen::VectorXd::Constant(bank.R.rows(), not_a_number).asDiagonal().toDenseMatrix();
 }
 
-void set_observed_errors(const ParameterPlaces& at, const Eigen::MatrixXd& covariance, Bank& bank) {
+/// Of weights that the data determine: where their error is about the prior's, as at a border without a sample
+/// on it, data say that they are large and no more.
+Eigen::VectorXd determined(const Eigen::VectorXd& error, const Eigen::VectorXd& prior_sd) {
+  constexpr double most = 0.5;
+  return (error.array() < most * prior_sd.array()).select(error, not_a_number);
+}
+
+void set_observed_errors(const ParameterPlaces& at, const Eigen::MatrixXd& covariance, const SwitchingPrior& prior,
+                         Bank& bank) {
   const Index n = bank.structure.states;
   const Eigen::VectorXd error = covariance.diagonal().cwiseSqrt();
   for (Index j = 0; j < at.modes; ++j) {
@@ -92,6 +103,9 @@ void set_observed_errors(const ParameterPlaces& at, const Eigen::MatrixXd& covar
     for (Index b = 0; b < n; ++b)
       for (Index a = b; a < n; ++a, ++next) mode.Q_standard_error(a, b) = mode.Q_standard_error(b, a) = error(next);
     if (at.transition) bank.transition_standard_error.row(j) = error.segment(at.T(j), at.modes);
+    if (at.regressors > 0)
+      bank.transition_weight_error.row(j) =
+          determined(error.segment(at.weights(j), at.regressors), prior.weight_sd).transpose();
   }
   if (at.outputs > 0) bank.R_standard_error = error.segment(at.R(), at.outputs).asDiagonal().toDenseMatrix();
 }
@@ -110,6 +124,7 @@ FreeParameters all_parameters(const Bank& bank, const SwitchingSums& complete, c
   std::iota(free.R.begin(), free.R.end(), Index{0});
   free.least_R = least_R;
   free.transition = bank.mode_count() > 1;
+  if (!bank.transition_logit.empty()) free.weight_unit = weight_unit_share * prior.weight_sd;
   return free;
 }
 
@@ -118,7 +133,7 @@ Bank with_standard_errors(const LikelihoodTarget& target, const FreeParameters& 
   set_complete_errors(complete, *target.prior, !free.R.empty(), bank);
   const BankCoordinates around(bank, free);
   if (const auto covariance = observed_covariance(target, around))
-    set_observed_errors(around.places(), *covariance, bank);
+    set_observed_errors(around.places(), *covariance, *target.prior, bank);
   return bank;
 }
 

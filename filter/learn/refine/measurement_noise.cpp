@@ -38,10 +38,10 @@ LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const Refi
 /// Mean log scores of the runs left out before and after the fit goes on: from the fits to the others, with the R of
 /// all training runs. A fit to all of them would have seen what is left out.
 std::pair<double, double> scores_left_out(const LikelihoodTarget& target, const RefineInput& in,
-                                          const CrossValidation& validation, const MeasuredBank& measured,
-                                          double Q_factor) {
+                                          const CrossValidation& validation, const std::vector<Bank>& of_splits,
+                                          const MeasuredBank& measured, double Q_factor) {
   std::vector<Bank> banks;
-  for (const Bank& of_split : validation.chosen().banks)
+  for (const Bank& of_split : of_splits)
     banks.push_back(with_noise_of(of_split, measured.bank.R, Q_factor, measured.bank.noise_adaptation));
   const double before = validation.score(banks);
   tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
@@ -88,7 +88,8 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
 }
 
 MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation,
-                                        const SwitchingPrior& prior, const Bank& bank) {
+                                        const std::vector<Bank>& of_splits, const SwitchingPrior& prior,
+                                        const Bank& bank) {
   const RefineTuning& tuning = in.options.tuning;
   MeasuredBank result{bank, {}, prior};
   if (in.options.measurement_noise) {
@@ -105,7 +106,8 @@ MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValida
   result.stage = {maximum.iterations, maximum.end};
   if (validation.possible()) {
     const double Q_factor = result.bank.modes.front().Q(0, 0) / bank.modes.front().Q(0, 0);
-    std::tie(result.stage.score_before, result.stage.score) = scores_left_out(target, in, validation, result, Q_factor);
+    std::tie(result.stage.score_before, result.stage.score) =
+        scores_left_out(target, in, validation, of_splits, result, Q_factor);
     if (result.stage.score < result.stage.score_before - tuning.least_gain) {
       result.stage = {0, MeasuredFit::none, result.stage.score_before, result.stage.score_before};
       return result;

@@ -34,7 +34,9 @@ struct MeasuredBank {
 /// fit goes on with the states unknown, theta, Q, R and T together, to the maximum of the filter's likelihood; that is
 /// kept if it pays on the runs left out, each scored by a fit that went on
 /// from the fit to the others.
+/// `of_splits`: the chosen fit of every split of the cross-validation.
 MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation,
-                                        const SwitchingPrior& prior, const Bank& bank);
+                                        const std::vector<Bank>& of_splits, const SwitchingPrior& prior,
+                                        const Bank& bank);
 
 }  // namespace modebank
