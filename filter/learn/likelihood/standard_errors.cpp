@@ -43,13 +43,27 @@ FirstSamples first_samples(const Recording& recording, Index coordinates) {
   return first;
 }
 
-/// Of the parameters in ParameterPlaces' order; empty where the information has no inverse.
-std::optional<Eigen::MatrixXd> observed_covariance(const LikelihoodTarget& target, const BankCoordinates& around) {
+/// Of the parameters in ParameterPlaces' order: their covariance, and how far the maximum is from where they stand.
+struct Observed {
+  Eigen::MatrixXd covariance;
+  Eigen::VectorXd newton_step;
+};
+
+/// Gradient of the prior on the logit's weights, which are the last coordinates.
+void add_weights_gradient(const BankCoordinates& around, const SwitchingPrior& prior, Eigen::VectorXd& gradient) {
+  const ParameterPlaces at = around.places();
+  for (Index a = 0; a < at.regressors; ++a)
+    gradient.segment(around.size() - (at.regressors - a) * at.modes, at.modes) -=
+        around.weight_unit()(a) / (prior.weight_sd(a) * prior.weight_sd(a)) *
+        around.origin().transition_logit.weights.col(a);
+}
+
+/// Empty where the information has no inverse.
+std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordinates& around) {
   const FirstSamples first = first_samples(target.recording, around.size());
   const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), difference_step);
-  const Eigen::MatrixXd information =
-      first.factor * sample_gradients(around, steps, first.recording, target.filter).information +
-      prior_information(around, *target.prior);
+  const SampleGradients gradients = sample_gradients(around, steps, first.recording, target.filter);
+  const Eigen::MatrixXd information = first.factor * gradients.information + prior_information(around, *target.prior);
   if (!information.allFinite()) return std::nullopt;
   // Coordinates differ in scale by orders of magnitude: the factorisation sees correlations.
   const Eigen::VectorXd unit =
@@ -57,9 +71,12 @@ std::optional<Eigen::MatrixXd> observed_covariance(const LikelihoodTarget& targe
   const Cholesky factor(unit.asDiagonal() * information * unit.asDiagonal());
   if (!factor.definite()) return std::nullopt;
   const Eigen::MatrixXd root = factor.whiten(Eigen::MatrixXd(unit.asDiagonal() * around.jacobian().transpose()));
-  Eigen::MatrixXd covariance = root.transpose() * root;
-  if (!covariance.allFinite() || !(covariance.diagonal().minCoeff() > 0.0)) return std::nullopt;
-  return covariance;
+  Eigen::VectorXd gradient = first.factor * gradients.sum;
+  add_weights_gradient(around, *target.prior, gradient);
+  const Eigen::VectorXd whitened = factor.whiten(Eigen::MatrixXd(unit.cwiseProduct(gradient)));
+  Observed observed{root.transpose() * root, root.transpose() * whitened};
+  if (!observed.covariance.allFinite() || !(observed.covariance.diagonal().minCoeff() > 0.0)) return std::nullopt;
+  return observed;
 }
 
 /// Given the smoothed modes: of theta by its posterior covariance, of Q by the normal scatter's (Q_ii Q_jj + Q_ij^2) /
@@ -84,15 +101,17 @@ void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior,
     bank.R_standard_error = Eigen::VectorXd::Constant(bank.R.rows(), not_a_number).asDiagonal().toDenseMatrix();
 }
 
-/// Of weights that the data determine: where their error is about the prior's, as at a border without a sample
-/// on it, data say that they are large and no more.
-Eigen::VectorXd determined(const Eigen::VectorXd& error, const Eigen::VectorXd& prior_sd) {
-  constexpr double most = 0.5;
-  return (error.array() < most * prior_sd.array()).select(error, not_a_number);
+/// Errors of the logit's weights that the data determine. Where a mode begins at a border that no sample lies on, data
+/// say no more than that weights are large: their error is about the prior's, or they were still growing when
+/// expectation-maximisation stopped. Then none is stated of that mode.
+Eigen::VectorXd determined(const Eigen::VectorXd& error, const Eigen::VectorXd& step, const Eigen::VectorXd& prior_sd) {
+  constexpr double most = 0.5;  // of the prior's standard deviation, and of the error still to go
+  const bool all = (error.array() < most * prior_sd.array()).all() && (step.array().abs() < most * error.array()).all();
+  return all ? error : Eigen::VectorXd::Constant(error.size(), not_a_number);
 }
 
-void set_observed_errors(const ParameterPlaces& at, const Eigen::MatrixXd& covariance, const SwitchingPrior& prior,
-                         Bank& bank) {
+void set_observed_errors(const ParameterPlaces& at, const Observed& observed, const SwitchingPrior& prior, Bank& bank) {
+  const Eigen::MatrixXd& covariance = observed.covariance;
   const Index n = bank.structure.states;
   const Eigen::VectorXd error = covariance.diagonal().cwiseSqrt();
   for (Index j = 0; j < at.modes; ++j) {
@@ -105,7 +124,9 @@ void set_observed_errors(const ParameterPlaces& at, const Eigen::MatrixXd& covar
     if (at.transition) bank.transition_standard_error.row(j) = error.segment(at.T(j), at.modes);
     if (at.regressors > 0)
       bank.transition_weight_error.row(j) =
-          determined(error.segment(at.weights(j), at.regressors), prior.weight_sd).transpose();
+          determined(error.segment(at.weights(j), at.regressors),
+                     observed.newton_step.segment(at.weights(j), at.regressors), prior.weight_sd)
+              .transpose();
   }
   if (at.outputs > 0) bank.R_standard_error = error.segment(at.R(), at.outputs).asDiagonal().toDenseMatrix();
 }
@@ -132,8 +153,8 @@ Bank with_standard_errors(const LikelihoodTarget& target, const FreeParameters& 
                           Bank bank) {
   set_complete_errors(complete, *target.prior, !free.R.empty(), bank);
   const BankCoordinates around(bank, free);
-  if (const auto covariance = observed_covariance(target, around))
-    set_observed_errors(around.places(), *covariance, *target.prior, bank);
+  if (const auto observed = observe(target, around))
+    set_observed_errors(around.places(), *observed, *target.prior, bank);
   return bank;
 }
 

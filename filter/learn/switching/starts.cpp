@@ -55,8 +55,8 @@ SwitchingRegression start_from_stretches(const TrainingTransitions& transitions,
   model.Q.assign(static_cast<std::size_t>(modes), prior.noise);
   model.transition = TransitionMatrix::sticky(modes, tuning.start_stay).matrix();
   model.initial = Eigen::VectorXd::Constant(modes, 1.0 / static_cast<double>(modes));
-  ModePosterior posterior{
-      Eigen::MatrixXd::Zero(N, modes), Eigen::MatrixXd::Zero(modes, modes), {}, Eigen::VectorXd::Zero(modes)};
+  ModePosterior posterior{Eigen::MatrixXd::Zero(N, modes), Eigen::MatrixXd::Zero(modes, modes),
+                          Eigen::VectorXd::Zero(modes)};
   for (Index j = 0; j < modes; ++j)
     posterior.probability.col(j).segment(slots[static_cast<std::size_t>(j) % slots.size()], length).setOnes();
   const SwitchingSums sums = sum_transitions(transitions, posterior, prior);

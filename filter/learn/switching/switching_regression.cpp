@@ -135,8 +135,8 @@ ModePosterior smooth_modes(const TrainingTransitions& transitions, const Switchi
   tbb::parallel_for(Index{0}, K, [&](Index j) {
     log_density.col(j) = log_densities(transitions, model.theta.col(j), model.Q[static_cast<std::size_t>(j)]);
   });
-  ModePosterior posterior{
-      Eigen::MatrixXd::Zero(transitions.count(), K), Eigen::MatrixXd::Zero(K, K), {}, Eigen::VectorXd::Zero(K)};
+  ModePosterior posterior{Eigen::MatrixXd::Zero(transitions.count(), K), Eigen::MatrixXd::Zero(K, K),
+                          Eigen::VectorXd::Zero(K)};
   if (!model.logit.empty()) posterior.pairs.setZero(K * K, transitions.count());
   RunSmoother smoother(model, transitions, log_density);
   for (const RunRows& rows : transitions.runs) smoother.add(rows, transitions.usable, posterior);
