@@ -100,6 +100,10 @@ void tell_of(const Refinement& refined, const Listener& listener) {
   if (!std::isnan(measured.score))
     listener.progress(fmt::format("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
                                   measured.iterations, measured.score_before, measured.score));
+  if (const SwitchingStage& s = refined.switching; !std::isnan(s.gain))
+    listener.progress(
+        fmt::format("refine: switches that see state and input gain {:.4f} +- {:.4f} nats/sample left out{}", s.gain,
+                    s.gain_standard_error, s.width > 0.0 ? fmt::format(" (taken, width {})", s.width) : ": not taken"));
   const Averaging& averaged = refined.averaging;
   if (!std::isnan(averaged.score))
     listener.progress(fmt::format("refine: {} fits averaged: {:.4f} -> {:.4f} nats/sample left out", averaged.members,

@@ -70,10 +70,10 @@ MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, straddling, er
 MODEBANK_KEY_FIELDS(RefineTuning, checkpoints, falls, forgettings, noise_prior_samples, fewest_whole_runs,
                     shortest_stretch, most_loss, Q_transitions, other_Q_transitions, Q_transitions_unvalidated,
                     Q_transitions_with_R, least_information, alternations, start_stay, modes_kept,
-                    duplicate_significance, growth_slack, iterations_after_screening, least_R_share, R_start_shares,
-                    least_gain)
+                    duplicate_significance, growth_slack, iterations_after_screening, weight_width, other_weight_widths,
+                    least_R_share, R_start_shares, least_gain)
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, members, folds, measurement_noise,
-                    screen, one_theta, seed, tuning)
+                    screen, guards, one_theta, seed, tuning)
 MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, modes,
                     refine, em)
 MODEBANK_KEY_FIELDS(FilterOptions, variant, parameter_noise, time_steps, noise)

@@ -18,6 +18,21 @@ void check_prior(const FitOptions& window, Index parameters) {
           fmt::format("window.prior_sd has {} values: give one, or one per parameter ({}), or none", sds, parameters));
 }
 
+/// bank.transition = logit has no meaning where no bank is refined, and none in filters that know a constant T alone.
+void check_logit(const Config& config) {
+  if (config.bank.transition != TransitionSource::logit) return;
+  require(config.bank.refine != Refine::none && is_linear(config.window),
+          "bank.transition = logit is learned by refinement: it needs bank.refine = auto or em, and window.model = "
+          "linear or varx");
+  require(config.bank.em.members == 1,
+          fmt::format("bank.transition = logit needs bank.members = 1, not {}: fits that switch by state and input are "
+                      "not averaged",
+                      config.bank.em.members));
+  require(config.filter.variant != FilterVariant::salvi2025,
+          "bank.transition = logit needs another filter.variant than salvi2025, whose equations know a constant "
+          "transition matrix alone");
+}
+
 }  // namespace
 
 void validate(const Config& config) {
@@ -39,6 +54,7 @@ void validate(const Config& config) {
   require(config.bank.refine != Refine::em || is_linear(config.window),
           fmt::format("bank.refine = em needs window.model = linear or varx, not {}: it fits linear modes",
                       config.window.model));
+  check_logit(config);
 }
 
 }  // namespace modebank::app

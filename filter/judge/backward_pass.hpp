@@ -80,7 +80,9 @@ class BackwardPass {
         modes(model.modes.size(), Gaussian<N>(n())),
         probability(model.mode_count()),
         next_(modes),
-        weights_(model.mode_count(), model.mode_count()) {}
+        weights_(model.mode_count(), model.mode_count()),
+        transition_(model.mode_count(), model.transition_logit),
+        combined_(n()) {}
 
   /// The end of a stretch: there is nothing to add to the filter.
   void begin(Eigen::Index t) {
@@ -97,7 +99,7 @@ class BackwardPass {
   template <class U, class Visit>
   void step(Eigen::Index t, const U& input, Visit visit) {
     next_ = modes;
-    weigh_pairs(t);
+    weigh_pairs(t, input);
     for (std::size_t j = 0; j < modes.size(); ++j) {
       history_.get(t, j, filtered_);
       const auto row = static_cast<Eigen::Index>(j);
@@ -130,15 +132,29 @@ class BackwardPass {
  private:
   std::vector<Gaussian<N>> next_;
   Eigen::MatrixXd weights_;  ///< P(mode j at t, mode k at t + 1 | all)
+  TransitionWorkspace transition_;
+  Eigen::Matrix<double, N, 1> combined_;  ///< of all modes
 
   Eigen::Index n() const { return model_.structure.dimension(); }
 
-  void weigh_pairs(Eigen::Index t) {
+  template <class U>
+  const Eigen::MatrixXd& transition_from(Eigen::Index t, const U& input) {
+    if (model_.transition_logit.empty()) return model_.transition.matrix();
+    combined_.setZero();
+    for (std::size_t j = 0; j < modes.size(); ++j) {
+      history_.get(t, j, filtered_);
+      combined_ += history_.probability(t)(static_cast<Eigen::Index>(j)) * filtered_.mean;
+    }
+    return transition_at(model_.transition.matrix(), model_.transition_logit, combined_, input, transition_);
+  }
+
+  template <class U>
+  void weigh_pairs(Eigen::Index t, const U& input) {
     const auto mu = history_.probability(t);
     if (model_.variant == FilterVariant::mmae || model_.mode_count() == 1) {
       weights_ = probability.asDiagonal();
     } else {
-      weights_ = mu.asDiagonal() * model_.transition.matrix();
+      weights_ = mu.asDiagonal() * transition_from(t, input);
       for (Eigen::Index k = 0; k < weights_.cols(); ++k) {
         const double c = weights_.col(k).sum();
         weights_.col(k) *= c < impossible_probability ? 0.0 : probability(k) / c;

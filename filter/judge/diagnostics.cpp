@@ -164,7 +164,8 @@ std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank
       row.role = role;
       row.mode = mode;
       if (mode < 0) colour = largest_autocorrelation(collected.z);
-      if (mode >= 0) row.dwell_model = 1.0 / (1.0 - bank.transition.matrix()(mode, mode));
+      if (mode >= 0 && bank.transition_logit.empty())
+        row.dwell_model = 1.0 / (1.0 - bank.transition.matrix()(mode, mode));
       return row;
     };
     DiagnosticsRow all = row_of(-1);

@@ -55,7 +55,10 @@ class BestHistories {
  public:
   BestHistories(const FilterModel<N, NY>& model, const Eigen::VectorXd& scales, const RunInstants& run,
                 const Trajectory& trajectory)
-      : K_(model.mode_count()), log_transition_(model.transition.matrix().array().log()) {
+      : K_(model.mode_count()),
+        model_(model),
+        transition_(K_, model.transition_logit),
+        log_transition_(model.transition.matrix().array().log()) {
     from_.setZero(K_, run.count());
     best_.setZero(run.count());
     FilterStep<N, NY> step(model);
@@ -65,6 +68,7 @@ class BestHistories {
       const bool starts = run.instants[static_cast<std::size_t>(t)].starts;
       state.mode_probability.setConstant(1.0 / static_cast<double>(K_));  // histories are scored here, not there
       state.noise_scale = scales(t);
+      if (!starts) set_transition(state, run.inputs.col(t));
       const bool measured = step_to(model, run, t, trajectory, state, step);
       if (starts)
         score = model.initial_probability.array().max(mode_probability_floor).log();
@@ -84,9 +88,23 @@ class BestHistories {
 
  private:
   Index K_;
+  const FilterModel<N, NY>& model_;
+  TransitionWorkspace transition_;
   Eigen::MatrixXd log_transition_;
   Eigen::MatrixXi from_;  ///< K x moments: the mode before, on the best history that ends in mode j
   Eigen::Matrix<Index, Eigen::Dynamic, 1> best_;
+
+  /// Each row at the state that its mode's best history has reached.
+  template <class U>
+  void set_transition(const FilterState<N>& state, const U& input) {
+    if (model_.transition_logit.empty()) return;
+    for (Index i = 0; i < K_; ++i)
+      log_transition_.row(i) = transition_at(model_.transition.matrix(), model_.transition_logit,
+                                             state.modes[static_cast<std::size_t>(i)].mean, input, transition_)
+                                   .row(i)
+                                   .array()
+                                   .log();
+  }
 
   void extend(Index t, bool measured, const FilterStep<N, NY>& step, FilterState<N>& state, Eigen::VectorXd& score) {
     Eigen::VectorXd next(K_);

@@ -42,6 +42,14 @@ void check_numbers(const Mode& mode, const std::string& of_mode) {
   require(is_covariance(mode.Q), "Q" + of_mode + " is no covariance");
 }
 
+void check_logit_sizes(const Bank& bank) {
+  const TransitionLogit& logit = bank.transition_logit;
+  if (logit.empty() && logit.reference.size() == 0) return;
+  const Index d = bank.structure.dimension() + bank.structure.acting_inputs();
+  expect_size("weights of the transition", logit.weights.rows(), logit.weights.cols(), bank.mode_count(), d);
+  expect_size("reference of the transition", logit.reference.size(), 1, d, 1);
+}
+
 void check_adaptation(const NoiseAdaptation& adaptation) {
   const double f = adaptation.forgetting, n0 = adaptation.prior_samples;
   require(f > 0.0 && f <= 1.0, "noise forgetting is " + std::to_string(f) + ", must lie above 0 and not above 1");
@@ -98,6 +106,7 @@ void check_sizes(const Bank& bank) {
   expect_size("R", bank.R.rows(), bank.R.cols(), n_y, n_y);
   expect_size("transition matrix", bank.transition.modes(), bank.transition.modes(), K, K);
   expect_size("initial probability", bank.initial_probability.size(), 1, K, 1);
+  check_logit_sizes(bank);
   if (bank.structure.state_lags > 1 && n_y != bank.structure.states)
     throw std::invalid_argument("a bank with lagged states must measure each of its " +
                                 std::to_string(bank.structure.states) + " states");
@@ -111,6 +120,8 @@ void validate(const Bank& bank) {
               bank.initial_probability.sum() > 0.0,
           "initial probabilities are none");
   for (std::size_t j = 0; j < bank.modes.size(); ++j) check_numbers(bank.modes[j], " of mode " + std::to_string(j));
+  require(bank.transition_logit.weights.allFinite() && bank.transition_logit.reference.allFinite(),
+          "weights of the transition are not finite");
   check_adaptation(bank.noise_adaptation);
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "filter/step/transition_logit.hpp"
 #include "ident/model/linear_model.hpp"
 #include "ident/model/motion_model.hpp"
 #include "modebank/filter/screened_mode.hpp"
@@ -56,6 +57,7 @@ struct Bank {
   Eigen::MatrixXd C;                    ///< n_y x n
   Eigen::MatrixXd R;                    ///< n_y x n_y
   TransitionMatrix transition;          ///< K x K
+  TransitionLogit transition_logit;     ///< how state and input change it; empty: not at all
   Eigen::VectorXd initial_probability;  ///< K
   std::vector<std::string> state_names;
   std::vector<std::string> input_names;
@@ -65,6 +67,7 @@ struct Bank {
   NoiseAdaptation noise_adaptation;               ///< for filters whose noise is adaptive
   Eigen::MatrixXd R_standard_error;               ///< n_y x n_y; empty unless R was estimated with the bank
   Eigen::MatrixXd transition_standard_error;      ///< K x K; of refined banks, empty otherwise
+  Eigen::MatrixXd transition_weight_error;        ///< K x d standard errors of the logit's weights; empty: not known
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
   Eigen::VectorXd theta(Eigen::Index mode) const { return pack(structure, modes[mode].model); }

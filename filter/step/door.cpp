@@ -41,6 +41,8 @@ std::shared_ptr<const modebank::Bank> inside(const BankDescription& d) {
   bank.C = d.C.values.empty() ? Eigen::MatrixXd::Identity(bank.structure.states, n) : Eigen::MatrixXd(view(d.C));
   bank.R = view(d.R);
   bank.transition = TransitionMatrix(view(d.transition));
+  if (!d.transition_weights.values.empty())
+    bank.transition_logit = {view(d.transition_weights), view(d.transition_reference)};
   bank.initial_probability = d.initial_probability.empty() ? Eigen::VectorXd::Constant(K, 1.0 / static_cast<double>(K))
                                                            : Eigen::VectorXd(view(d.initial_probability));
   bank.state_names = d.state_names;
@@ -97,6 +99,8 @@ BankDescription Bank::description() const {
   d.C = to_matrix(bank_->C);
   d.R = to_matrix(bank_->R);
   d.transition = to_matrix(bank_->transition.matrix());
+  d.transition_weights = to_matrix(bank_->transition_logit.weights);
+  d.transition_reference = to_vector(bank_->transition_logit.reference);
   d.initial_probability = to_vector(bank_->initial_probability);
   d.state_names = bank_->state_names;
   d.input_names = bank_->input_names;

@@ -8,7 +8,11 @@ std::vector<Option> bank_options() {
       words("bank.theta", "a mode's parameters: pooled least squares, or the component's mean",
             MODEBANK_FIELD(bank.theta)),
       words("bank.noise", "process noise Q", MODEBANK_FIELD(bank.noise)),
-      words("bank.transition", "transition matrix from window labels, or bank.stay", MODEBANK_FIELD(bank.transition)),
+      words("bank.transition",
+            "transition matrix from window labels, or bank.stay; logit: as from labels, and in a refined bank a "
+            "function of "
+            "state and input where training runs left out gain by it",
+            MODEBANK_FIELD(bank.transition)),
       numeric("bank.stay", inside(0, 1), "", "probability to stay in a mode, for transition = stay",
               MODEBANK_FIELD(bank.stay)),
       numeric("bank.process_variance", above(0), "state unit^2", "Q for noise = fixed",

@@ -38,6 +38,7 @@ Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const 
                       const FilterOptions& filter) {
   RefineOptions em = options.em;
   em.one_theta = true;
+  em.guards = options.transition == TransitionSource::logit;
   em.restarts = 0;  // stretches of the runs differ in theta, which there is one of
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   const std::vector<Bank> starts =

@@ -214,6 +214,7 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   }
   RefineOptions em = options.em;
   em.screen = options.screen;
+  em.guards = options.transition == TransitionSource::logit;
   if (options.modes > 0) {
     em.members = 1;  // several fits would have more modes than that
     em.most_modes = std::min(em.most_modes, options.modes);
@@ -225,7 +226,7 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
 Refine refinement_asked(const BankOptions& options, bool linear) {
   if (options.refine != Refine::automatic) return options.refine;
   const bool kept = options.theta != ThetaSource::pooled || options.noise != NoiseSource::per_mode ||
-                    options.transition != TransitionSource::labels;
+                    options.transition == TransitionSource::stay;
   return linear && !kept ? Refine::em : Refine::none;
 }
 

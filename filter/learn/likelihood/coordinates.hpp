@@ -15,22 +15,26 @@ struct FreeParameters {
   std::vector<Eigen::Index> R = {};  ///< outputs whose variance is estimated
   Eigen::VectorXd least_R = {};      ///< n_y, lower bounds of R's diagonal [state unit^2]
   bool transition = true;            ///< false: T is known
+  Eigen::VectorXd weight_unit = {};  ///< d, of the weights of T's logit; empty: there are none
 };
 
 /// Where parameters stand in the vector of a bank's free parameters: theta of every mode, the lower triangles of every
-/// Q (column by column, measured states), R of the estimated outputs, T row by row.
+/// Q (column by column, measured states), R of the estimated outputs, T row by row, the logit's weights mode by mode
+/// about their mean over the modes, which changes no probability.
 struct ParameterPlaces {
   Eigen::Index parameters = 0;  ///< p; 0: theta is known
   Eigen::Index triangle = 0;    ///< n (n + 1) / 2
   Eigen::Index modes = 0;
   Eigen::Index outputs = 0;  ///< whose R is estimated
   bool transition = false;
+  Eigen::Index regressors = 0;  ///< d of the logit's weights; 0: none
 
   Eigen::Index theta(Eigen::Index mode) const { return mode * parameters; }
   Eigen::Index Q(Eigen::Index mode) const { return modes * parameters + mode * triangle; }
   Eigen::Index R() const { return Q(modes); }
   Eigen::Index T(Eigen::Index from) const { return R() + outputs + from * modes; }
-  Eigen::Index size() const { return transition ? T(modes) : T(0); }
+  Eigen::Index weights(Eigen::Index mode) const { return (transition ? T(modes) : T(0)) + mode * regressors; }
+  Eigen::Index size() const { return weights(modes); }
 };
 
 /// Unconstrained coordinates of everything that is estimated about a bank, relative to one bank, the origin:
@@ -38,7 +42,8 @@ struct ParameterPlaces {
 ///   Q_j           = L0 M M' L0' with L0 L0' = Q0_j, M lower triangular, exp(z) on its diagonal (log-Cholesky: Pinheiro
 ///                   & Bates 1996), its diagonal at least least_Q; or Q0_j exp(z) with one z for all modes;
 ///   R_ii          = least_R_i + (R0_ii - least_R_i) exp(z);
-///   row i of T    proportional to T0_ij exp(z_j), z = 0 for its largest entry.
+///   row i of T    proportional to T0_ij exp(z_j), z = 0 for its largest entry;
+///   weights_ja    = weights0_ja + unit_a z, the last coordinates, regressor by regressor.
 /// Initial probabilities and what else a bank holds stay as they are.
 class BankCoordinates {
  public:
@@ -46,6 +51,7 @@ class BankCoordinates {
 
   Eigen::Index size() const;
   const Bank& origin() const { return origin_; }
+  const Eigen::VectorXd& weight_unit() const { return free_.weight_unit; }
   bool has_one_theta() const { return free_.theta_unit.cols() == 1; }
   /// `at`: size(); zero is the origin.
   Bank decode(const Eigen::VectorXd& at) const;
@@ -61,7 +67,8 @@ class BankCoordinates {
   const double* set_theta(const double* at, Bank& bank) const;
   const double* set_process_noise(const double* at, Bank& bank) const;
   const double* set_measurement_noise(const double* at, Bank& bank) const;
-  void set_transition(const double* at, Bank& bank) const;
+  const double* set_transition(const double* at, Bank& bank) const;
+  void set_weights(const double* at, Bank& bank) const;
   Eigen::VectorXd parameters_of(const Bank& bank) const;
 };
 

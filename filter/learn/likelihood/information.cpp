@@ -76,6 +76,11 @@ Eigen::MatrixXd prior_information(const BankCoordinates& around, const Switching
     const auto of_theta = J.middleRows(at.theta(j), at.parameters);
     information.noalias() += of_theta.transpose() * prior.information * of_theta;
   }
+  // The logit's weights are the last coordinates, and their prior is one of them themselves.
+  for (Index a = 0; a < at.regressors; ++a) {
+    const double share = around.weight_unit()(a) / prior.weight_sd(a);
+    information.diagonal().segment(around.size() - (at.regressors - a) * at.modes, at.modes).array() += share * share;
+  }
   return information;
 }
 

@@ -18,6 +18,7 @@ namespace {
 
 // Of coordinates: standard errors of theta given the modes, logarithms of the others. Truncation is a ten thousandth.
 constexpr double difference_step = 1e-2;
+constexpr double weight_unit_share = 0.1;  // of the prior's standard deviation
 // Errors are wanted to a few per cent: their own relative error falls with the root of the samples.
 constexpr double most_numbers = 4e6;  // samples times coordinates: 32 MB
 constexpr Index fewest_samples = 2000, most_samples = 20000;
@@ -42,13 +43,27 @@ FirstSamples first_samples(const Recording& recording, Index coordinates) {
   return first;
 }
 
-/// Of the parameters in ParameterPlaces' order; empty where the information has no inverse.
-std::optional<Eigen::MatrixXd> observed_covariance(const LikelihoodTarget& target, const BankCoordinates& around) {
+/// Of the parameters in ParameterPlaces' order: their covariance, and how far the maximum is from where they stand.
+struct Observed {
+  Eigen::MatrixXd covariance;
+  Eigen::VectorXd newton_step;
+};
+
+/// Gradient of the prior on the logit's weights, which are the last coordinates.
+void add_weights_gradient(const BankCoordinates& around, const SwitchingPrior& prior, Eigen::VectorXd& gradient) {
+  const ParameterPlaces at = around.places();
+  for (Index a = 0; a < at.regressors; ++a)
+    gradient.segment(around.size() - (at.regressors - a) * at.modes, at.modes) -=
+        around.weight_unit()(a) / (prior.weight_sd(a) * prior.weight_sd(a)) *
+        around.origin().transition_logit.weights.col(a);
+}
+
+/// Empty where the information has no inverse.
+std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordinates& around) {
   const FirstSamples first = first_samples(target.recording, around.size());
   const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), difference_step);
-  const Eigen::MatrixXd information =
-      first.factor * sample_gradients(around, steps, first.recording, target.filter).information +
-      prior_information(around, *target.prior);
+  const SampleGradients gradients = sample_gradients(around, steps, first.recording, target.filter);
+  const Eigen::MatrixXd information = first.factor * gradients.information + prior_information(around, *target.prior);
   if (!information.allFinite()) return std::nullopt;
   // Coordinates differ in scale by orders of magnitude: the factorisation sees correlations.
   const Eigen::VectorXd unit =
@@ -56,9 +71,12 @@ std::optional<Eigen::MatrixXd> observed_covariance(const LikelihoodTarget& targe
   const Cholesky factor(unit.asDiagonal() * information * unit.asDiagonal());
   if (!factor.definite()) return std::nullopt;
   const Eigen::MatrixXd root = factor.whiten(Eigen::MatrixXd(unit.asDiagonal() * around.jacobian().transpose()));
-  Eigen::MatrixXd covariance = root.transpose() * root;
-  if (!covariance.allFinite() || !(covariance.diagonal().minCoeff() > 0.0)) return std::nullopt;
-  return covariance;
+  Eigen::VectorXd gradient = first.factor * gradients.sum;
+  add_weights_gradient(around, *target.prior, gradient);
+  const Eigen::VectorXd whitened = factor.whiten(Eigen::MatrixXd(unit.cwiseProduct(gradient)));
+  Observed observed{root.transpose() * root, root.transpose() * whitened};
+  if (!observed.covariance.allFinite() || !(observed.covariance.diagonal().minCoeff() > 0.0)) return std::nullopt;
+  return observed;
 }
 
 /// Given the smoothed modes: of theta by its posterior covariance, of Q by the normal scatter's (Q_ii Q_jj + Q_ij^2) /
@@ -76,12 +94,24 @@ void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior,
   }
   const Eigen::ArrayXXd T = bank.transition.matrix().array();
   const Eigen::ArrayXd rows = sums.switches.rowwise().sum().array() + 1.0;
+  if (!bank.transition_logit.empty())
+    bank.transition_weight_error.setConstant(bank.mode_count(), bank.transition_logit.weights.cols(), not_a_number);
   bank.transition_standard_error = ((T * (1.0 - T)).colwise() / rows).sqrt().matrix();
   if (with_R)
     bank.R_standard_error = Eigen::VectorXd::Constant(bank.R.rows(), not_a_number).asDiagonal().toDenseMatrix();
 }
 
-void set_observed_errors(const ParameterPlaces& at, const Eigen::MatrixXd& covariance, Bank& bank) {
+/// Errors of the logit's weights that the data determine. Where a mode begins at a border that no sample lies on, data
+/// say no more than that weights are large: their error is about the prior's, or they were still growing when
+/// expectation-maximisation stopped. Then none is stated of that mode.
+Eigen::VectorXd determined(const Eigen::VectorXd& error, const Eigen::VectorXd& step, const Eigen::VectorXd& prior_sd) {
+  constexpr double most = 0.5;  // of the prior's standard deviation, and of the error still to go
+  const bool all = (error.array() < most * prior_sd.array()).all() && (step.array().abs() < most * error.array()).all();
+  return all ? error : Eigen::VectorXd::Constant(error.size(), not_a_number);
+}
+
+void set_observed_errors(const ParameterPlaces& at, const Observed& observed, const SwitchingPrior& prior, Bank& bank) {
+  const Eigen::MatrixXd& covariance = observed.covariance;
   const Index n = bank.structure.states;
   const Eigen::VectorXd error = covariance.diagonal().cwiseSqrt();
   for (Index j = 0; j < at.modes; ++j) {
@@ -92,6 +122,11 @@ void set_observed_errors(const ParameterPlaces& at, const Eigen::MatrixXd& covar
     for (Index b = 0; b < n; ++b)
       for (Index a = b; a < n; ++a, ++next) mode.Q_standard_error(a, b) = mode.Q_standard_error(b, a) = error(next);
     if (at.transition) bank.transition_standard_error.row(j) = error.segment(at.T(j), at.modes);
+    if (at.regressors > 0)
+      bank.transition_weight_error.row(j) =
+          determined(error.segment(at.weights(j), at.regressors),
+                     observed.newton_step.segment(at.weights(j), at.regressors), prior.weight_sd)
+              .transpose();
   }
   if (at.outputs > 0) bank.R_standard_error = error.segment(at.R(), at.outputs).asDiagonal().toDenseMatrix();
 }
@@ -112,6 +147,7 @@ FreeParameters all_parameters(const Bank& bank, const SwitchingSums& complete, c
   std::iota(free.R.begin(), free.R.end(), Index{0});
   free.least_R = least_R;
   free.transition = bank.mode_count() > 1;
+  if (!bank.transition_logit.empty()) free.weight_unit = weight_unit_share * prior.weight_sd;
   return free;
 }
 
@@ -119,8 +155,8 @@ Bank with_standard_errors(const LikelihoodTarget& target, const FreeParameters& 
                           Bank bank) {
   set_complete_errors(complete, *target.prior, !free.R.empty(), bank);
   const BankCoordinates around(bank, free);
-  if (const auto covariance = observed_covariance(target, around))
-    set_observed_errors(around.places(), *covariance, bank);
+  if (const auto observed = observe(target, around))
+    set_observed_errors(around.places(), *observed, *target.prior, bank);
   return bank;
 }
 

@@ -36,11 +36,16 @@ class CrossValidation {
   bool possible() const { return !splits_.empty(); }
   const std::vector<SplitData>& splits() const { return splits_; }
   const ScoredFit& chosen() const { return fits_[chosen_]; }
+  const ScoredFit& of_start(std::size_t row) const { return fits_[row]; }
+  /// Of each run left out.
+  const Eigen::VectorXd& samples() const { return samples_; }
   std::vector<RefineCandidate> table() const;
 
   /// The best fit from every start, the best first.
   std::vector<ScoredFit> best_of_starts() const;
 
+  /// Log-likelihoods of the runs left out; `banks`: one per split.
+  LeftOutScores scores(const std::vector<Bank>& banks) const { return {banks.front().mode_count(), run_scores(banks)}; }
   /// Mean log score of the runs left out, nats per sample; `banks`: one per split. Minus infinity where there is none.
   double score(const std::vector<Bank>& banks) const;
 

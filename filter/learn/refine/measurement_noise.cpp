@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "filter/learn/likelihood/standard_errors.hpp"
+#include "filter/learn/switching/transition_regression.hpp"
 #include "ident/base/linalg.hpp"
 
 namespace modebank {
@@ -30,8 +31,9 @@ LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const Refi
 /// scored on: not theta and T, nor R or the prior.
 class MeasuredSplits {
  public:
-  MeasuredSplits(const RefineInput& in, const CrossValidation& validation, const NoiseAdaptation& adaptation)
-      : in_(in), validation_(validation), banks_(validation.chosen().banks) {
+  MeasuredSplits(const RefineInput& in, const CrossValidation& validation, const ChosenFit& chosen,
+                 const NoiseAdaptation& adaptation)
+      : in_(in), validation_(validation), chosen_(chosen), banks_(chosen.of_splits) {
     for (Bank& bank : banks_) bank.noise_adaptation = adaptation;
   }
 
@@ -49,7 +51,8 @@ class MeasuredSplits {
 
   void maximise() {
     for_each([&](const SplitData& split, Bank& bank) {
-      const SwitchingPrior exact = prior_of_split(in_, split, validation_.chosen().start.noise_transitions);
+      SwitchingPrior exact = prior_of_split(in_, split, chosen_.noise_transitions);
+      if (chosen_.weight_width > 0.0) exact = with_weights(std::move(exact), split.transitions, chosen_.weight_width);
       const LikelihoodTarget target{split.runs.training, learning_filter(in_.filter),
                                     prior_with_states_unknown(exact, bank, in_.options.tuning), in_.options.one_theta};
       bank = maximise_everything(target, in_, bank).bank;
@@ -65,6 +68,7 @@ class MeasuredSplits {
 
   const RefineInput& in_;
   const CrossValidation& validation_;
+  const ChosenFit& chosen_;
   std::vector<Bank> banks_;
 };
 
@@ -124,12 +128,12 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
 }
 
 MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation,
-                                        const SwitchingPrior& prior, const Bank& bank) {
+                                        const ChosenFit& chosen, const SwitchingPrior& prior, const Bank& bank) {
   const RefineTuning& tuning = in.options.tuning;
   MeasuredBank result{bank, {}, prior};
   MeasurementStage& stage = result.stage;
   std::optional<MeasuredSplits> splits;
-  if (validation.possible()) splits.emplace(in, validation, bank.noise_adaptation);
+  if (validation.possible()) splits.emplace(in, validation, chosen, bank.noise_adaptation);
   if (in.options.measurement_noise) {
     MeasurementNoise noise = estimate_measurement_noise({in.recording, in.filter, std::nullopt}, bank, tuning);
     stage.starts = noise.starts;

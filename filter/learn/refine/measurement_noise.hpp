@@ -37,11 +37,18 @@ struct MeasuredBank {
   bool R_estimated = false;
 };
 
+/// The fit that goes on, on every split of the cross-validation.
+struct ChosenFit {
+  const std::vector<Bank>& of_splits;
+  double noise_transitions = 0.0;  ///< of the prior
+  double weight_width = 0.0;       ///< of the prior on a logit's weights; 0: there is none
+};
+
 /// Where R is more than nothing (by estimate_measurement_noise in the filter that will run the bank, unless it costs
 /// the runs left out more than least_gain, or as given), the fit goes on with the states unknown, theta, Q, R and T
 /// together, to the maximum of the filter's likelihood; that is kept if it pays on the runs left out, each scored by a
 /// fit that has not seen it: its R, its prior and all else are those of the other runs.
 MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation,
-                                        const SwitchingPrior& prior, const Bank& bank);
+                                        const ChosenFit& chosen, const SwitchingPrior& prior, const Bank& bank);
 
 }  // namespace modebank

@@ -7,6 +7,7 @@
 
 #include "filter/learn/refine/averaging.hpp"
 #include "filter/learn/refine/cross_validation.hpp"
+#include "filter/learn/refine/guards.hpp"
 #include "filter/learn/refine/measurement_noise.hpp"
 #include "filter/learn/refine/training_fit.hpp"
 #include "filter/learn/switching/starts.hpp"
@@ -79,16 +80,26 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   const RefineInput in{recording, fits, frame, transitions, options, filter};
 
   const CrossValidation validation = cross_validate(in, banks);
-  const ScoredFit& chosen = validation.chosen();
-  const SwitchingPrior prior = in.prior(chosen.start.noise_transitions);
-  const TrainingFit fit = fit_training_runs(in, chosen.start, prior, chosen.iterations);
-  const Bank exact = bank_of_fit(in, fit, validation.adaptation(chosen.banks));
-  const MeasuredBank measured = fit_with_measurement_noise(in, validation, prior, exact);
+  SwitchingStage switching;
+  std::optional<Guards> guards;
+  if (options.guards) guards = choose_guards(in, validation, switching);
+  const ScoredFit& chosen = guards ? validation.of_start(guards->fit.row) : validation.chosen();
+  SwitchingPrior prior = in.prior(chosen.start.noise_transitions);
+  TrainingFit fit = fit_training_runs(in, chosen.start, prior, chosen.iterations);
+  if (guards) {
+    prior = with_weights(std::move(prior), transitions, guards->width);
+    fit = fit_guards(in, *guards, prior, fit);
+  }
+  const ChosenFit on_splits{guards ? guards->fit.banks : chosen.banks, chosen.start.noise_transitions,
+                            guards ? guards->width : 0.0};
+  const Bank exact = bank_of_fit(in, fit, validation.adaptation(on_splits.of_splits));
+  const MeasuredBank measured = fit_with_measurement_noise(in, validation, on_splits, prior, exact);
 
   const FilterOptions maximised = measured.stage.iterations > 0 ? learning_filter(filter) : exact_filter(filter);
   Refinement result{with_errors(in, fit, measured.prior, measured.R_estimated, maximised, measured.bank), banks.front(),
                     validation.table(), fit.objective, measured.stage};
-  if (options.members == 1 || measured.R_estimated || measured.stage.iterations > 0) return result;
+  result.switching = switching;
+  if (options.members == 1 || guards || measured.R_estimated || measured.stage.iterations > 0) return result;
   AveragedBank averaged = average_fits(in, validation, result.bank);
   result.averaging = averaged.averaging;
   if (!averaged.bank) return result;

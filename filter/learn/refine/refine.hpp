@@ -20,6 +20,7 @@ struct Refinement {
   std::vector<double> objective;  ///< penalised log-likelihood of the training transitions before each iteration
   MeasurementStage measurement;
   Averaging averaging = {};
+  SwitchingStage switching = {};
 };
 
 /// Expectation-maximisation of the switching model (switching_regression.hpp) from banks of mixtures. Which start, how

@@ -4,6 +4,7 @@
 #include <unsupported/Eigen/KroneckerProduct>
 #include <utility>
 
+#include "filter/learn/switching/transition_regression.hpp"
 #include "ident/base/linalg.hpp"
 
 namespace modebank {
@@ -70,7 +71,7 @@ SwitchingRegression maximise(const LinearStructure& structure, const SwitchingSu
   const Eigen::MatrixXd counts = sums.switches.array() + prior.counts;
   for (Index i = 0; i < model.modes(); ++i) {
     const double row = counts.row(i).sum();
-    if (row > 0.0) model.transition.row(i) = counts.row(i) / row;
+    if (row > 0.0 && model.logit.empty()) model.transition.row(i) = counts.row(i) / row;
   }
   model.initial = sums.first.array() + prior.counts;
   model.initial /= model.initial.sum();
@@ -88,6 +89,7 @@ void ExpectationMaximisation::step() {
   objective_.push_back(posterior_.log_likelihood + log_prior(prior_, options_.one_theta, model_));
   const SwitchingSums sums = sum_transitions(transitions_, posterior_, prior_);
   model_ = maximise(transitions_.structure, sums, prior_, options_, std::move(model_));
+  if (!model_.logit.empty()) raise_switching(transitions_, posterior_, prior_, model_);
   posterior_ = smooth_modes(transitions_, model_);
   const double gain = posterior_.log_likelihood + log_prior(prior_, options_.one_theta, model_) - objective_.back();
   // The first step leaves the start's own optimum for the prior's and may lose.

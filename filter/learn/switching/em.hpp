@@ -14,7 +14,8 @@ struct SwitchingEmOptions {
 };
 
 /// The model with the largest expected log posterior near `model`, whose parameters the sums were computed with: theta
-/// given Q, then Q given theta, a few times each (ECM: Meng & Rubin 1993), T and initial probabilities exactly.
+/// given Q, then Q given theta, a few times each (ECM: Meng & Rubin 1993), T and initial probabilities exactly; T of a
+/// logit is not among them (transition_regression.hpp).
 SwitchingRegression maximise(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
                              const SwitchingEmOptions& options, SwitchingRegression model);
 

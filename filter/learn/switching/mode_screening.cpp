@@ -72,6 +72,7 @@ Eigen::MatrixXd without(const Eigen::MatrixXd& columns, Index drop) {
 /// Leaves one mode out; what led to it or from it is spread over the others as they are.
 void drop_mode(Index mode, SwitchingRegression& model) {
   model.theta = without(model.theta, mode);
+  if (!model.logit.empty()) model.logit.weights = without(model.logit.weights.transpose(), mode).transpose();
   model.Q.erase(model.Q.begin() + mode);
   const Eigen::MatrixXd rows = without(model.transition.transpose(), mode).transpose();
   model.transition = without(rows, mode);
@@ -87,6 +88,8 @@ void merge_sequence(const Twins& twins, const std::vector<RegressionSums>& modes
   Eigen::MatrixXd& T = model.transition;
   T.row(twins.kept) = ((kept * T.row(twins.kept) + dropped * T.row(twins.dropped)) / (kept + dropped)).eval();
   T.col(twins.kept) += T.col(twins.dropped);
+  if (Eigen::MatrixXd& w = model.logit.weights; !model.logit.empty())
+    w.row(twins.kept) = ((kept * w.row(twins.kept) + dropped * w.row(twins.dropped)) / (kept + dropped)).eval();
   model.initial(twins.kept) += model.initial(twins.dropped);
 }
 

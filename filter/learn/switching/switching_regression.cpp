@@ -30,8 +30,9 @@ Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eige
 /// Forward-backward over the rows of one run; adds to the posterior's sums and fills its rows.
 class RunSmoother {
  public:
-  RunSmoother(const SwitchingRegression& model, const Eigen::MatrixXd& log_density)
-      : model_(model), log_density_(log_density) {}
+  RunSmoother(const SwitchingRegression& model, const TrainingTransitions& transitions,
+              const Eigen::MatrixXd& log_density)
+      : model_(model), transitions_(transitions), log_density_(log_density), transition_(model.modes(), model.logit) {}
 
   /// Leading transitions that are not usable are left out, as the filter starts after them.
   void add(RunRows rows, const Eigen::VectorXd& usable, ModePosterior& posterior) {
@@ -52,7 +53,7 @@ class RunSmoother {
     scale_.resize(rows.count);
     for (Index k = 0; k < rows.count; ++k) {
       const auto of_step = log_density_.row(rows.first + k).transpose();
-      filtered_.col(k).noalias() = model_.transition.transpose() * before(k);
+      filtered_.col(k).noalias() = transition_of(rows.first + k).transpose() * before(k);
       const auto possible = filtered_.col(k).array() > 0.0;
       const double largest = possible.select(of_step.array(), -std::numeric_limits<double>::infinity()).maxCoeff();
       density_.col(k) = possible.select((of_step.array() - largest).exp(), 0.0);
@@ -66,22 +67,36 @@ class RunSmoother {
   void backward(const RunRows& rows, ModePosterior& posterior) {
     const Index K = model_.modes();
     Eigen::VectorXd later = Eigen::VectorXd::Ones(K), weighted(K);
-    Eigen::MatrixXd pairs = Eigen::MatrixXd::Zero(K, K);
+    Eigen::MatrixXd pairs(K, K);
     for (Index k = rows.count - 1; k >= 0; --k) {
       posterior.probability.row(rows.first + k) = filtered_.col(k).cwiseProduct(later);
       weighted = density_.col(k).cwiseProduct(later) / scale_(k);
-      pairs.noalias() += before(k) * weighted.transpose();
-      later.noalias() = model_.transition * weighted;
+      const Eigen::MatrixXd& T = transition_of(rows.first + k);
+      pairs.noalias() = before(k) * weighted.transpose();
+      pairs.array() *= T.array();
+      posterior.switches += pairs;
+      if (!model_.logit.empty()) posterior.pairs.col(rows.first + k) = pairs.reshaped();
+      later.noalias() = T * weighted;
     }
-    posterior.switches += pairs.cwiseProduct(model_.transition);
     posterior.first += model_.initial.cwiseProduct(later);
   }
 
   /// Mode probabilities that the step to transition k starts from.
   Eigen::VectorXd before(Index k) const { return k > 0 ? filtered_.col(k - 1) : model_.initial; }
 
+  /// A transition that misses a sample switches by T alone.
+  const Eigen::MatrixXd& transition_of(Index row) {
+    if (model_.logit.empty() || transitions_.usable(row) == 0.0) return model_.transition;
+    const Index n = transitions_.structure.dimension();
+    const auto phi = transitions_.data.regressors.row(row);
+    return transition_at(model_.transition, model_.logit, phi.head(n),
+                         phi.segment(n, transitions_.structure.acting_inputs()), transition_);
+  }
+
   const SwitchingRegression& model_;
+  const TrainingTransitions& transitions_;
   const Eigen::MatrixXd& log_density_;
+  TransitionWorkspace transition_;
   Eigen::MatrixXd density_, filtered_;
   Eigen::VectorXd scale_;
 };
@@ -97,6 +112,7 @@ SwitchingRegression switching_model(const Bank& bank) {
     model.Q.push_back(bank.modes[static_cast<std::size_t>(j)].Q.topLeftCorner(n, n));
   }
   model.transition = bank.transition.matrix();
+  model.logit = bank.transition_logit;
   model.initial = bank.initial_probability;
   return model;
 }
@@ -110,6 +126,7 @@ Bank with_modes(const Bank& frame, const SwitchingRegression& model) {
                                    Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Constant(p, not_a_number),
                                    1.0 / static_cast<double>(K)));
   bank.transition = TransitionMatrix(model.transition);
+  bank.transition_logit = model.logit;
   bank.initial_probability = model.initial;
   return bank;
 }
@@ -122,7 +139,8 @@ ModePosterior smooth_modes(const TrainingTransitions& transitions, const Switchi
   });
   ModePosterior posterior{Eigen::MatrixXd::Zero(transitions.count(), K), Eigen::MatrixXd::Zero(K, K),
                           Eigen::VectorXd::Zero(K)};
-  RunSmoother smoother(model, log_density);
+  if (!model.logit.empty()) posterior.pairs.setZero(K * K, transitions.count());
+  RunSmoother smoother(model, transitions, log_density);
   for (const RunRows& rows : transitions.runs) smoother.add(rows, transitions.usable, posterior);
   return posterior;
 }
@@ -166,6 +184,8 @@ double log_prior(const SwitchingPrior& prior, bool one_theta, const SwitchingReg
     if (!inverse) return -std::numeric_limits<double>::infinity();
     sum -= 0.5 * prior.noise_transitions * (log_determinant(Q) + (*inverse * prior.noise).trace());
   }
+  if (!model.logit.empty())
+    sum -= 0.5 * (model.logit.weights * prior.weight_sd.cwiseInverse().asDiagonal()).squaredNorm();
   if (prior.counts > 0.0)
     sum += prior.counts * (model.transition.array().log().sum() + model.initial.array().log().sum());
   return sum;

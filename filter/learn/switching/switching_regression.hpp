@@ -16,6 +16,7 @@ struct SwitchingRegression {
   std::vector<Eigen::MatrixXd> Q;  ///< K of n x n, of the measured states
   Eigen::MatrixXd transition;      ///< K x K, row = from
   Eigen::VectorXd initial;         ///< K, before the step to a run's first transition, as the filter has it
+  TransitionLogit logit = {};      ///< how x[k] and the inputs that act on the step change T; empty: not at all
 
   Index modes() const { return theta.cols(); }
 };
@@ -35,6 +36,7 @@ struct SwitchingPrior {
   Eigen::MatrixXd noise;        ///< n x n: Q is as if `noise_transitions` more transitions of this covariance were seen
   double noise_transitions = 0.0;  ///< >= 0
   double counts = 0.0;             ///< >= 0, added to every expected count of switches and of first modes
+  Eigen::VectorXd weight_sd = {};  ///< d, of the logit's weights, normal about zero; empty: T is the same everywhere
 };
 
 /// Smoothed mode probabilities given all transitions of the runs.
@@ -43,6 +45,7 @@ struct ModePosterior {
   Eigen::MatrixXd switches;     ///< K x K expected counts of (i, then j)
   Eigen::VectorXd first;        ///< K expected counts of the modes that runs start from
   double log_likelihood = 0.0;  ///< nats, of all runs
+  Eigen::MatrixXd pairs = {};   ///< K*K x N, P(i, then j) at each transition, column-major; of a logit alone
 };
 
 /// Forward-backward over every run, each step scaled by the largest density of a possible mode (the log domain). An

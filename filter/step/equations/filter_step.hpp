@@ -42,8 +42,8 @@ FilterState<N> start(const FilterModel<N, NY>& model, const Y& y) {
 }
 
 /// Where each mode's prediction starts, and how probable each mode is before the measurement.
-template <int N, int NY>
-const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const FilterState<N>& state,
+template <int N, int NY, class U>
+const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
                                     FilterStep<N, NY>& step) {
   if (model.variant == FilterVariant::mmae || model.mode_count() == 1) {
     step.predicted_probability = state.mode_probability;
@@ -53,7 +53,8 @@ const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const Filte
     step.predicted_probability = state.mode_probability;
     salvi2025::mixing_weights(model.transition, state.mode_probability, step.mixing);
   } else {
-    mixing_weights(model.transition, state.mode_probability, step.predicted_probability, step.mixing);
+    mixing_weights(transition_of_step(model, state, u, step), state.mode_probability, step.predicted_probability,
+                   step.mixing);
   }
   if (model.variant == FilterVariant::gpb1)
     gpb::start_from_one(state, step.mixed);
@@ -66,7 +67,7 @@ const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const Filte
 template <int N, int NY, class U>
 void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u, FilterStep<N, NY>& step) {
   if (step.pairs()) return gpb::predict_pairs(model, state, u, step);
-  predict_modes(model, mix(model, state, step), state.noise_scale, u, step);
+  predict_modes(model, mix(model, state, u, step), state.noise_scale, u, step);
 }
 
 /// A missing measurement: the prediction is all there is.

@@ -48,6 +48,7 @@ struct FilterStep {
   std::vector<KalmanStep<N, NY>> kalman;  ///< one per hypothesis
   std::vector<Gaussian<N>> mixed;         ///< K, where each mode's prediction starts
   MixingWeights mixing;
+  TransitionWorkspace transition;
   Eigen::VectorXd log_likelihood;          ///< of each hypothesis
   PartialSensor<N, NY> partial;            ///< of the last measurement; `missing` is 0 when that was whole
   Eigen::Matrix<double, N, 1> difference;  ///< workspace of size n
@@ -61,6 +62,7 @@ struct FilterStep {
 
   explicit FilterStep(const FilterModel<N, NY>& model)
       : predicted_probability(model.mode_count()),
+        transition(model.mode_count(), model.transition_logit),
         partial(model.structure.dimension(), model.C.rows()),
         difference(model.structure.dimension()),
         residual(model.C.rows()) {
@@ -84,11 +86,22 @@ struct FilterStep {
   const Eigen::VectorXd& hypothesis_probability() const { return pairs() ? pair_probability : predicted_probability; }
 };
 
+/// T of the step that starts from `state` under the acting inputs `u`: for a logit at the combined estimate, which is
+/// exact where the state is measured exactly.
+template <int N, int NY, class U>
+const Eigen::MatrixXd& transition_of_step(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
+                                          FilterStep<N, NY>& step) {
+  if (model.transition_logit.empty()) return model.transition.matrix();
+  step.difference.setZero();
+  for (std::size_t i = 0; i < state.modes.size(); ++i)
+    step.difference += state.mode_probability(static_cast<Eigen::Index>(i)) * state.modes[i].mean;
+  return transition_at(model.transition.matrix(), model.transition_logit, step.difference, u, step.transition);
+}
+
 /// Step 1. c_j = sum_i T_ij mu_i (11.6.6-8) and mu_{i|j} = T_ij mu_i / c_j (11.6.6-7). An impossible mode keeps its own
-/// state.
-inline void mixing_weights(const TransitionMatrix& transition, const Eigen::VectorXd& mu, Eigen::VectorXd& c,
+/// state. T: row-stochastic.
+inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, Eigen::VectorXd& c,
                            MixingWeights& weights) {
-  const Eigen::MatrixXd& T = transition.matrix();
   for (Eigen::Index j = 0; j < mu.size(); ++j) {
     double sum = 0.0;
     for (Eigen::Index i = 0; i < mu.size(); ++i) sum += weights.matrix(i, j) = T(i, j) * mu(i);

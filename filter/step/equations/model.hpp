@@ -30,6 +30,7 @@ struct FilterModel {
   Eigen::Matrix<double, NY, N> C;
   Eigen::Matrix<double, NY, NY> R;
   TransitionMatrix transition;
+  TransitionLogit transition_logit;
   Eigen::VectorXd initial_probability;                  ///< K
   Eigen::Matrix<double, N, Eigen::Dynamic> start_gain;  ///< x[0] = start_gain y[0], y[0] all of z with lags
   Eigen::Matrix<double, N, N> start_covariance;         ///< P[0]
@@ -49,10 +50,13 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
       C(bank.C),
       R(bank.R),
       transition(bank.transition),
+      transition_logit(bank.transition_logit),
       initial_probability(bank.initial_probability) {
   if (variant == FilterVariant::kf && bank.mode_count() != 1)
     throw std::invalid_argument("a Kalman filter (kf) steps a bank of one mode, this one has " +
                                 std::to_string(bank.mode_count()));
+  if (variant == FilterVariant::salvi2025 && !transition_logit.empty())
+    throw std::invalid_argument("the paper's equations (salvi2025) know no switching by state and input");
   for (const modebank::Mode& mode : bank.modes) {
     const bool noisy = options.parameter_noise && mode.spread.size() > 0;
     modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q,

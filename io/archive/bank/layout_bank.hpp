@@ -60,6 +60,9 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.field("C", stored.C, {"n_y", "n"}, measured ? ratios(outputs, states) : Unit());
   io.field("R", stored.R, {"n_y", "n_y"}, measured ? outer(outputs) : Unit());
   io.field("transition", stored.transition, {"K", "K"});
+  io.optional_field("transition_weights", stored.transition_weights, {"K", "K", "features"});
+  io.optional_field("transition_reference", stored.transition_reference, {"features"});
+  io.optional_field("transition_weight_standard_error", stored.transition_weight_error, {"K", "features"});
   io.field("initial_probability", stored.initial_probability, {"K"});
   io.optional_field("motion_parameters", stored.motion_parameters, {"K", "p_motion"}, motion);
   io.optional_field("motion_standard_error", stored.motion_standard_error, {"K", "p_motion"}, motion);

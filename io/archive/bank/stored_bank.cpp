@@ -90,6 +90,28 @@ void for_each_bank_matrix(Visit visit) {
   visit(&StoredBank::R, &Bank::R);
   visit(&StoredBank::R_standard_error, &Bank::R_standard_error);
   visit(&StoredBank::transition_standard_error, &Bank::transition_standard_error);
+  visit(&StoredBank::transition_weight_error, &Bank::transition_weight_error);
+}
+
+/// The layout has a place for weights that depend on the mode before; ours are the same for all.
+void store_logit(const Bank& bank, StoredBank& stored) {
+  const TransitionLogit& logit = bank.transition_logit;
+  if (logit.empty()) return;
+  stored.transition_weights = side_by_side(
+      bank.modes.size(), logit.weights.rows(), logit.weights.cols(),
+      "transition weights", [&](std::size_t) -> const auto& { return logit.weights; });
+  stored.transition_reference = logit.reference;
+}
+
+TransitionLogit restore_logit(const StoredBank& stored, Index modes) {
+  const Eigen::MatrixXd& weights = stored.transition_weights;
+  if (weights.size() == 0) return {};
+  if (weights.rows() != modes * stored.transition_reference.size())
+    throw DataError("transition weights and their reference differ in the number of features");
+  for (Index k = 1; k < weights.cols(); ++k)
+    if (weights.col(k) != weights.col(0))
+      throw DataError("transition weights that differ by the mode before are none of this version's");
+  return {one_of(weights, 0, modes, stored.transition_reference.size()), stored.transition_reference};
 }
 
 }  // namespace
@@ -115,6 +137,7 @@ StoredBank store_bank(const Bank& bank) {
   }
   for_each_bank_matrix([&](auto array, auto matrix) { stored.*array = (bank.*matrix).transpose(); });
   stored.transition = bank.transition.matrix().transpose();
+  store_logit(bank, stored);
   stored.initial_probability = bank.initial_probability;
   return stored;
 }
@@ -139,6 +162,7 @@ Bank restore_bank(const StoredBank& stored, Bank bank) {
   }
   for_each_bank_matrix([&](auto array, auto matrix) { bank.*matrix = (stored.*array).transpose(); });
   bank.transition = TransitionMatrix(stored.transition.transpose());
+  bank.transition_logit = restore_logit(stored, stored.weight.size());
   bank.initial_probability = stored.initial_probability;
   validate(bank);
   return bank;

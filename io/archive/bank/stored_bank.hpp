@@ -64,6 +64,9 @@ struct StoredBank {
   Eigen::MatrixXd Q_standard_error;           ///< n*n x K, empty without
   Eigen::MatrixXd R_standard_error;           ///< transposed, empty without
   Eigen::MatrixXd transition_standard_error;  ///< transposed, empty without
+  Eigen::MatrixXd transition_weights;         ///< K*d x K: of every mode before, empty without
+  Eigen::VectorXd transition_reference;       ///< d, empty without
+  Eigen::MatrixXd transition_weight_error;    ///< d x K, empty without
   Eigen::MatrixXd C;                          ///< transposed
   Eigen::MatrixXd R;                          ///< transposed
   Eigen::MatrixXd transition;                 ///< transposed

@@ -27,21 +27,25 @@ struct Mode {
 /// All numbers of a bank, to write one down or to read it: K modes, how they follow each other, and how the state is
 /// measured, y = C x + v, v ~ N(0, R).
 struct BankDescription {
-  std::vector<Mode> modes;                  ///< K >= 1
-  Matrix C;                                 ///< n_y x n; empty: the state is measured
-  Matrix R;                                 ///< n_y x n_y, covariance of the measurement noise [state unit^2]
-  Matrix transition;                        ///< K x K, row i: probabilities of the mode that follows mode i
-  std::vector<double> initial_probability;  ///< K; empty: all alike
-  std::vector<std::string> state_names;     ///< of the measured states; may be empty
-  std::vector<std::string> input_names;     ///< of the inputs; may be empty
-  double dt_s = 0.0;                        ///< sample period that one step stands for [s]; 0: whatever comes
-  std::ptrdiff_t inputs = 0;                ///< input channels
-  std::ptrdiff_t state_lags = 1;            ///< samples of the state that predict the next one
-  std::ptrdiff_t input_lags = 1;            ///< samples of the input that act on one transition
-  std::ptrdiff_t input_delay = 1;           ///< samples from an input to its first effect
-  bool intercept = false;                   ///< whether c is part of theta
-  double noise_forgetting = 0.98;           ///< of the adaptive noise scale, per sample, in (0, 1]
-  double noise_prior_samples = 5.0;         ///< samples at scale one that a run's start is worth, > 0
+  std::vector<Mode> modes;  ///< K >= 1
+  Matrix C;                 ///< n_y x n; empty: the state is measured
+  Matrix R;                 ///< n_y x n_y, covariance of the measurement noise [state unit^2]
+  Matrix transition;        ///< K x K, row i: probabilities of the mode that follows mode i
+  /// Where state and input move the switches: K x d, d = n + acting inputs. P(j | i, z) is proportional to T_ij
+  /// exp(w_j' (z - reference)), z = (x, v) as a step starts; empty: T whatever z is.
+  Matrix transition_weights;
+  std::vector<double> transition_reference;  ///< d, the z at which T holds
+  std::vector<double> initial_probability;   ///< K; empty: all alike
+  std::vector<std::string> state_names;      ///< of the measured states; may be empty
+  std::vector<std::string> input_names;      ///< of the inputs; may be empty
+  double dt_s = 0.0;                         ///< sample period that one step stands for [s]; 0: whatever comes
+  std::ptrdiff_t inputs = 0;                 ///< input channels
+  std::ptrdiff_t state_lags = 1;             ///< samples of the state that predict the next one
+  std::ptrdiff_t input_lags = 1;             ///< samples of the input that act on one transition
+  std::ptrdiff_t input_delay = 1;            ///< samples from an input to its first effect
+  bool intercept = false;                    ///< whether c is part of theta
+  double noise_forgetting = 0.98;            ///< of the adaptive noise scale, per sample, in (0, 1]
+  double noise_prior_samples = 5.0;          ///< samples at scale one that a run's start is worth, > 0
 };
 
 /// A bank of modes, immutable and cheap to copy; its numbers live inside the library.

@@ -28,12 +28,13 @@ struct EnumNames<NoiseSource> {
   static constexpr Names<3> values{"per-mode", "shared", "fixed"};
 };
 
-/// Where the transition matrix comes from: how labels of neighbouring windows follow each other, or BankOptions::stay.
-enum class TransitionSource { labels, stay };
+/// Where the transition matrix comes from: how labels of neighbouring windows follow each other, or BankOptions::stay;
+/// logit: as labels, and in a refined bank a function of state and input where training runs left out gain by it.
+enum class TransitionSource { labels, stay, logit };
 
 template <>
 struct EnumNames<TransitionSource> {
-  static constexpr Names<2> values{"labels", "stay"};
+  static constexpr Names<3> values{"labels", "stay", "logit"};
 };
 
 /// What follows the bank of the mixture: nothing, or expectation-maximisation of the switching model. automatic: that,
@@ -60,6 +61,7 @@ struct RefineOptions {
   std::ptrdiff_t folds = 6;             ///< parts of the cross-validation; 1: none, every start runs to convergence
   bool measurement_noise = true;  ///< R by maximum likelihood of the filter on the training runs; false: the start's R
   bool screen = true;             ///< take unstable, starved and duplicate modes out
+  bool guards = false;            ///< switches may see state and input (TransitionSource::logit)
   bool one_theta = false;         ///< all modes have the same theta and differ in Q: the rival that knows one motion
   std::uint64_t seed = 1;         ///< of the random starts
   RefineTuning tuning;            ///< what has no key in configurations

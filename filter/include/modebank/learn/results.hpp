@@ -42,6 +42,14 @@ struct MeasurementStage {
   double score = std::numeric_limits<double>::quiet_NaN();  ///< the same after them; NaN without cross-validation or R
 };
 
+/// Whether switches see state and input, by cross-validation inside the training runs.
+struct SwitchingStage {
+  double width = 0.0;  ///< prior standard deviation of the weights in units of the regressors' spread; 0: they do not
+  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out, constant T
+  double gain = std::numeric_limits<double>::quiet_NaN();  ///< of the logit over it, nats per sample; NaN: not asked
+  double gain_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< clustered by run
+};
+
 /// What averaging several fits was worth.
 struct Averaging {
   std::ptrdiff_t members = 1;  ///< fits in the bank; those of the candidates that are marked as selected

@@ -47,6 +47,11 @@ struct RefineTuning {
   std::ptrdiff_t iterations_after_screening =
       10;  ///< as many as the first checkpoint: the others take over what is left
 
+  // Switching by state and input.
+  double weight_width =
+      30.0;  ///< prior sd of its weights in units of the regressors' spread: a border a thirtieth wide
+  std::array<double, 2> other_weight_widths{3.0, 300.0};  ///< tried for the chosen number of modes
+
   // Measurement noise and averaging.
   double least_R_share = 1e-9;  ///< of the global residual variance: the least R that refinement knows, as good as none
   /// Of the mean Q, where the searches for R start; below a half, because R counts twice in what Q held. From 5 % alone

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace modebank {
+
+/// How state and input move the switches, a multinomial logit (McFadden 1974): of the step from k to k + 1, under mode
+/// j after mode i,
+///   P(j | i, z[k]) = T_ij exp(w_j' (z[k] - reference)) / sum_l T_il exp(w_l' (z[k] - reference)),
+/// z[k] = (x[k], v[k]) the state that the step starts from and the inputs that act on it, known before its measurement.
+/// T alone is the case without weights. A constant added to a column of the weights changes nothing.
+struct TransitionLogit {
+  Eigen::MatrixXd weights = {};    ///< K x d, d = n + acting inputs [1 / unit of z]; empty: T wherever z is
+  Eigen::VectorXd reference = {};  ///< d, the z at which T holds
+
+  bool empty() const { return weights.size() == 0; }
+};
+
+/// Where a step's transition probabilities are worked out, sized once.
+struct TransitionWorkspace {
+  TransitionWorkspace(Eigen::Index modes, const TransitionLogit& logit)
+      : offset(logit.empty() ? Eigen::VectorXd() : Eigen::VectorXd(logit.weights * logit.reference)) {
+    if (logit.empty()) return;
+    T.resize(modes, modes);
+    factor.resize(modes);
+  }
+
+  Eigen::MatrixXd T;       ///< K x K, rows sum to one
+  Eigen::VectorXd factor;  ///< K
+  Eigen::VectorXd offset;  ///< K, weights times reference
+};
+
+/// Odds further apart than this exponential are as good as certain, and rows of T stay possible.
+inline constexpr double largest_log_odds = 200.0;
+
+/// The probabilities at (x, v); T where z is not known (not finite). Allocates nothing.
+template <class X, class V>
+const Eigen::MatrixXd& transition_at(const Eigen::MatrixXd& T, const TransitionLogit& logit, const X& x, const V& v,
+                                     TransitionWorkspace& at) {
+  if (logit.empty()) return T;
+  const Eigen::Index K = T.rows(), n = x.size();
+  at.factor = -at.offset;
+  for (Eigen::Index a = 0; a < n; ++a) at.factor += logit.weights.col(a) * x(a);
+  for (Eigen::Index a = 0; a < v.size(); ++a) at.factor += logit.weights.col(n + a) * v(a);
+  if (!at.factor.allFinite()) return T;
+  at.factor = (at.factor.array() - at.factor.maxCoeff()).max(-largest_log_odds).exp();
+  for (Eigen::Index i = 0; i < K; ++i) {
+    double sum = 0.0;
+    for (Eigen::Index j = 0; j < K; ++j) sum += at.T(i, j) = T(i, j) * at.factor(j);
+    for (Eigen::Index j = 0; j < K; ++j) at.T(i, j) /= sum;
+  }
+  return at.T;
+}
+
+}  // namespace modebank

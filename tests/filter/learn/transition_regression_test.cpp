@@ -1,0 +1,233 @@
+// Switches that see state and input: closed forms, the filter's likelihood, laws of the fit, and recovery of a soft
+// guard.
+#include "filter/learn/switching/transition_regression.hpp"
+
+#include <gtest/gtest.h>
+
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <cmath>
+#include <random>
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/refine/refine.hpp"
+#include "filter/learn/switching/em.hpp"
+#include "filter/learn/switching/starts.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using test::near;
+
+constexpr double a[] = {-0.5, -0.1}, b[] = {0.4, -0.3}, sd[] = {0.05, 0.1};
+
+/// Mode 1 after mode i has the log odds offset(i) + slope u.
+struct Guard {
+  Eigen::Vector2d offset;
+  double slope;
+};
+
+/// x+ = x + a_m x + b_m u + w, the mode of a step drawn by the guard.
+Recording guarded_runs(const Guard& guard, Index runs, Index samples, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  boost::random::normal_distribution<double> normal;
+  boost::random::uniform_01<double> uniform;
+  Recording recording = test::empty_recording(1, 1);
+  for (Index r = 0; r < runs; ++r) {
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, samples), u(1, samples);
+    int mode = 0;
+    for (Index k = 0; k < samples; ++k) {
+      u(k) = normal(generator);
+      mode = uniform(generator) < 1.0 / (1.0 + std::exp(-guard.offset(mode) - guard.slope * u(k))) ? 1 : 0;
+      if (k + 1 < samples) x(k + 1) = x(k) + a[mode] * x(k) + b[mode] * u(k) + sd[mode] * normal(generator);
+    }
+    test::add_run(recording, x, u);
+  }
+  return recording;
+}
+
+SwitchingRegression true_model(const Guard& guard) {
+  SwitchingRegression model;
+  model.theta = Eigen::MatrixXd{{a[0], a[1]}, {b[0], b[1]}};
+  model.Q = {Eigen::MatrixXd::Constant(1, 1, sd[0] * sd[0]), Eigen::MatrixXd::Constant(1, 1, sd[1] * sd[1])};
+  model.transition.resize(2, 2);
+  for (Index i = 0; i < 2; ++i) {
+    const double p = 1.0 / (1.0 + std::exp(-guard.offset(i)));
+    model.transition.row(i) << 1.0 - p, p;
+  }
+  model.initial = Eigen::Vector2d(0.5, 0.5);
+  model.logit = {Eigen::MatrixXd{{0.0, -0.5 * guard.slope}, {0.0, 0.5 * guard.slope}}, Eigen::VectorXd::Zero(2)};
+  return model;
+}
+
+const Guard soft{{-2.0, 1.0}, 1.5};
+
+TEST(TransitionLogit, IsTheLogisticFunctionForTwoModes) {
+  const TransitionLogit logit = true_model(soft).logit;
+  TransitionWorkspace at(2, logit);
+  for (const double u : {-3.0, 0.0, 0.7, 40.0, 1e3}) {
+    const Eigen::MatrixXd& P = transition_at(true_model(soft).transition, logit, Eigen::VectorXd::Ones(1),
+                                             Eigen::VectorXd::Constant(1, u), at);
+    for (Index i = 0; i < 2; ++i) {
+      EXPECT_NEAR(P(i, 1), 1.0 / (1.0 + std::exp(-soft.offset(i) - soft.slope * u)), 1e-14) << u;
+      EXPECT_NEAR(P.row(i).sum(), 1.0, 1e-15);
+    }
+  }
+}
+
+TEST(TransitionLogit, IsTWithoutWeightsAndWhereTheStateIsNotKnown) {
+  const SwitchingRegression model = true_model(soft);
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(1), unknown = Eigen::VectorXd::Constant(1, std::nan(""));
+  TransitionWorkspace none(2, {}), some(2, model.logit);
+  EXPECT_EQ(transition_at(model.transition, {}, one, one, none), model.transition);
+  EXPECT_EQ(transition_at(model.transition, model.logit, one, unknown, some), model.transition);
+}
+
+Bank bank_of(const Recording& recording, const TrainingTransitions& t, const SwitchingRegression& model) {
+  return with_modes(bank_frame(recording, t.structure, Eigen::MatrixXd::Zero(1, 1)), model);
+}
+
+TEST(TransitionRegression, LikelihoodIsTheFiltersWithoutMeasurementNoise) {
+  const Recording recording = guarded_runs(soft, 2, 150, 1);
+  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+  const SwitchingRegression model = true_model(soft);
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::gpb2}) {
+    double expected = 0.0;
+    for (const Trajectory& run : recording.runs)
+      expected += log_likelihood(bank_of(recording, t, model), run, {.variant = variant});
+    EXPECT_NEAR(smooth_modes(t, model).log_likelihood, expected, 1e-6);  // the filter floors probabilities
+  }
+}
+
+TEST(TransitionRegression, NoEffectIsTheConstantTransitionMatrix) {
+  const Recording recording = guarded_runs(soft, 2, 100, 2);
+  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+  SwitchingRegression model = true_model(soft);
+  model.logit = {};
+  const ModePosterior constant = smooth_modes(t, model);
+  model.logit = no_effect(t, 2);
+  const ModePosterior logit = smooth_modes(t, model);
+  EXPECT_NEAR(logit.log_likelihood, constant.log_likelihood, 1e-12 * std::abs(constant.log_likelihood));
+  EXPECT_TRUE(near(logit.switches, constant.switches, 1e-11));
+  EXPECT_TRUE(near(logit.pairs.rowwise().sum().reshaped(2, 2), constant.switches, 1e-11));
+}
+
+SwitchingPrior prior_of(const Recording& recording, const TrainingTransitions& t, double width) {
+  SwitchingPrior prior = switching_prior(t, fit_global(recording, t.structure), {}, 4.0);
+  prior.weight_sd = width * regressor_spread(t).cwiseInverse();
+  return prior;
+}
+
+TEST(TransitionRegression, EveryIterationRaisesThePenalisedLikelihood) {
+  for (const double width : {1.0, 300.0}) {
+    const Recording recording = guarded_runs({{-20.0, -20.0}, 100.0}, 3, 200, 3);
+    const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+    const SwitchingPrior prior = prior_of(recording, t, width);
+    SwitchingRegression start = true_model(soft);
+    start.logit = no_effect(t, 2);
+    ExpectationMaximisation em(t, prior, {}, start);
+    for (int i = 0; i < 40; ++i) em.step();
+    const std::vector<double>& objective = em.objective();
+    for (std::size_t i = 1; i < objective.size(); ++i)
+      EXPECT_GE(objective[i], objective[i - 1] - 1e-9 * std::abs(objective[i - 1])) << width << ", iteration " << i;
+    EXPECT_GT(objective.back(), objective.front() + 50.0);
+  }
+}
+
+/// One Newton step from the maximum gains nothing, and near it the objective, written anew here, falls in every
+/// direction.
+TEST(TransitionRegression, EndsWhereTheExpectedLogPosteriorIsLargest) {
+  const Recording recording = guarded_runs(soft, 2, 300, 4);
+  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+  const SwitchingPrior prior = prior_of(recording, t, 3.0);
+  SwitchingRegression model = true_model(soft);
+  const ModePosterior posterior = smooth_modes(t, model);
+  for (int i = 0; i < 30; ++i) raise_switching(t, posterior, prior, model);
+  const auto value = [&](const SwitchingRegression& at) {
+    double sum = prior.counts * at.transition.array().log().sum();
+    for (Index c = 0; c < 2; ++c)
+      for (Index j = 0; j < 2; ++j) sum -= 0.5 * std::pow(at.logit.weights(j, c) / prior.weight_sd(c), 2);
+    for (Index k = 0; k < t.count(); ++k)
+      for (Index i = 0; i < 2; ++i) {
+        const Eigen::VectorXd z = t.data.regressors.row(k).transpose() - at.logit.reference;
+        Eigen::VectorXd odds = at.transition.row(i).transpose().array().log().matrix() + at.logit.weights * z;
+        const double total = std::log(odds.array().exp().sum());
+        for (Index j = 0; j < 2; ++j) sum += posterior.pairs(i + 2 * j, k) * (odds(j) - total);
+      }
+    return sum;
+  };
+  const double best = value(model);
+  for (Index j = 0; j < 2; ++j)
+    for (Index c = 0; c < 2; ++c)
+      for (const double step : {-1e-3, 1e-3}) {
+        SwitchingRegression moved = model;
+        moved.logit.weights(j, c) += step;
+        EXPECT_LT(value(moved), best);
+      }
+  for (Index i = 0; i < 2; ++i)
+    for (const double factor : {0.999, 1.001}) {
+      SwitchingRegression moved = model;
+      moved.transition(i, 0) *= factor;
+      moved.transition(i, 1) = 1.0 - moved.transition(i, 0);
+      EXPECT_LT(value(moved), best);
+    }
+}
+
+RefineOptions quick() {
+  RefineOptions options;
+  options.restarts = 0;
+  options.folds = 4;
+  options.measurement_noise = false;
+  options.guards = true;
+  return options;
+}
+
+Refinement refined(const Recording& recording, const Guard& start) {
+  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+  SwitchingRegression constant = true_model(start);
+  constant.logit = {};
+  WindowFits fits = test::windows_of(recording, 10, 10);
+  return refine_bank(recording, fits, {bank_of(recording, t, constant)}, quick(), {});
+}
+
+TEST(Guards, ASoftGuardIsFoundWithinItsErrors) {
+  const Recording recording = guarded_runs(soft, 8, 500, 5);
+  const Refinement result = refined(recording, soft);
+  ASSERT_GT(result.switching.width, 0.0);
+  EXPECT_GT(result.switching.gain, result.switching.gain_standard_error);
+  const TransitionLogit& logit = result.bank.transition_logit;
+  const Eigen::MatrixXd& error = result.bank.transition_weight_error;
+  ASSERT_TRUE(error.allFinite());
+  EXPECT_NEAR(logit.weights(1, 1), 0.5 * soft.slope, 3.0 * error(1, 1));
+  EXPECT_NEAR(logit.weights(1, 0), 0.0, 3.0 * error(1, 0));
+  EXPECT_LT(error(1, 1), 0.3);
+}
+
+TEST(Guards, AMarkovChainKeepsItsTransitionMatrix) {
+  const Recording recording = guarded_runs({{-3.0, 3.0}, 0.0}, 8, 400, 6);
+  const Refinement result = refined(recording, {{-3.0, 3.0}, 0.0});
+  EXPECT_EQ(result.switching.width, 0.0);
+  EXPECT_FALSE(std::isnan(result.switching.gain));
+  EXPECT_TRUE(result.bank.transition_logit.empty());
+}
+
+TEST(Guards, OfAHardGuardNoErrorIsStatedAndTheBorderLiesInTheGap) {
+  const double border = 0.4;
+  const Recording recording = guarded_runs({{-1e6 * border, -1e6 * border}, 1e6}, 8, 400, 7);
+  const Refinement result = refined(recording, {{-3.0, 3.0}, 0.0});
+  ASSERT_GT(result.switching.width, 0.0);
+  EXPECT_TRUE(result.bank.transition_weight_error.array().isNaN().all());
+  const TransitionLogit& logit = result.bank.transition_logit;
+  const Eigen::MatrixXd& T = result.bank.transition.matrix();
+  for (Index i = 0; i < 2; ++i) {
+    const double odds = std::log(T(i, 1) / T(i, 0)) - (logit.weights.row(1) - logit.weights.row(0)) * logit.reference;
+    EXPECT_NEAR(-odds / (logit.weights(1, 1) - logit.weights(0, 1)), border, 0.05);
+  }
+}
+
+}  // namespace
+}  // namespace modebank
