@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/chain/stage_inputs.hpp"
 #include "app/check/left_out.hpp"
 #include "modebank/base/error.hpp"
 
@@ -32,7 +33,7 @@ class Search {
   }
 
   Suggestions run() {
-    held_.push_back(predict(found_.present));
+    held_.push_back(predict(found_.present, false));
     if (!held_.front().problem.empty()) {
       found_.unscored = held_.front().problem;
       return found_;
@@ -51,7 +52,8 @@ class Search {
   const Listener& listener_;
   LeftOutPlan plan_;
   double common_s_ = 0.0;
-  std::vector<LeftOut> held_;
+  std::vector<LeftOut> held_;   ///< without random starts
+  std::vector<LeftOut> whole_;  ///< with them; the first as soon as it is needed
   Suggestions found_;
 
   Settings& held() { return found_.suggested; }
@@ -66,9 +68,16 @@ class Search {
     return 1.0 / (wanted_hz() > 0.0 ? std::min(wanted_hz(), present_hz()) : present_hz());
   }
 
-  LeftOut predict(const Settings& settings) const {
+  /// Whether refinement has random starts, which take half of the time or more.
+  bool has_random_starts() const {
+    return options_.bank.em.restarts > 0 && chain_inputs(options_).bank.bank.refine == Refine::em;
+  }
+
+  LeftOut predict(const Settings& settings, bool random_starts) const {
     const Stopwatch watch;
-    LeftOut left_out = predict_left_out(with_settings(options_, settings), plan_, common_s_);
+    ChainOptions options = with_settings(options_, settings);
+    if (!random_starts) options.bank.em.restarts = 0;
+    LeftOut left_out = predict_left_out(options, plan_, common_s_);
     listener_.progress(
         fmt::format("check: rate {:g} Hz, lag {}, length {}, loss {} scored on {} training runs left out in {:.2f} s",
                     settings.rate_hz, settings.lag_auto ? "auto" : fmt::format("{:g} s", settings.lag_s),
@@ -85,19 +94,30 @@ class Search {
 
   void attempt(Change change, const Settings& to, const Advice& advice) {
     Trial trial{change, held(), to, advice, {}, {}, false};
-    LeftOut said = predict(to);
-    trial.unscored = said.problem;
-    if (trial.unscored.empty()) {
-      trial.gain = compare_left_out(said, held_.back());
-      trial.accepted = exceeds_its_error(trial.gain);
-      if (!std::isfinite(trial.gain.gain) || std::isnan(trial.gain.standard_error))
-        trial.unscored = "too few predictions of the same samples to compare";
-    }
-    if (trial.accepted) {
-      held() = to;
-      held_.push_back(std::move(said));
-    }
+    LeftOut said = predict(to, false);
+    judge(said, held_.back(), trial);
+    if (trial.accepted) confirm(std::move(said), trial);
     found_.trials.push_back(std::move(trial));
+  }
+
+  static void judge(const LeftOut& said, const LeftOut& before, Trial& trial) {
+    trial.unscored = said.problem.empty() ? before.problem : said.problem;
+    trial.gain = trial.unscored.empty() ? compare_left_out(said, before) : PairedGain{};
+    trial.accepted = trial.unscored.empty() && exceeds_its_error(trial.gain);
+    if (trial.unscored.empty() && (!std::isfinite(trial.gain.gain) || std::isnan(trial.gain.standard_error)))
+      trial.unscored = "too few predictions of the same samples to compare";
+  }
+
+  /// What gained without random starts must gain with them: else it made up for an optimum that `run` does not end in.
+  void confirm(LeftOut said, Trial& trial) {
+    const bool again = has_random_starts();
+    if (whole_.empty()) whole_.push_back(again ? predict(found_.present, true) : held_.front());
+    LeftOut whole = again ? predict(trial.to, true) : said;
+    judge(whole, whole_.back(), trial);
+    if (!trial.accepted) return;
+    held() = trial.to;
+    held_.push_back(std::move(said));
+    whole_.push_back(std::move(whole));
   }
 
   void try_rate() {
@@ -142,11 +162,11 @@ class Search {
   void judge_together() {
     for (auto last = found_.trials.rbegin(); last != found_.trials.rend(); ++last) {
       if (!last->accepted) continue;
-      found_.together = compare_left_out(held_.back(), held_.front());
+      found_.together = compare_left_out(whole_.back(), whole_.front());
       if (exceeds_its_error(found_.together)) return;
       last->accepted = false;
       held() = last->from;
-      held_.pop_back();
+      whole_.pop_back();
     }
   }
 };

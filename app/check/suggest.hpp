@@ -49,7 +49,8 @@ struct Suggestions {
 /// data at the rate, and with the lag, accepted before: the rate together with the window length that suits it, and
 /// windows that start as often as before; the lag found by cross-validation; the window length; the loss. A trial is
 /// accepted if its paired gain on training runs left out (left_out.hpp) exceeds one standard error and 0.001 nats per
-/// sample. Should all of them together not do so, the last are taken back. `check`: of the data as `options` say.
+/// sample: first with refinement's starts from the mixture alone, then with all that `run` has. Should all accepted
+/// ones together not gain so much, the last are taken back. `check`: of the data as `options` say.
 Suggestions suggest(const ChainOptions& options, const DataCheck& check, const Listener& listener);
 
 }  // namespace modebank
