@@ -17,7 +17,7 @@ struct CommandLine {
   bool json = false;
   bool repair = false;             ///< verify: remove what is broken in study folders
   std::string form = "increment";  ///< of models that `show` prints: increment or full
-  std::string output;              ///< -o: the file that `report` writes
+  std::string output;              ///< -o: the file that `report` or `predict` writes
   std::string typed;               ///< the whole line, for provenance
 };
 

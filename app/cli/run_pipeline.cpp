@@ -9,6 +9,7 @@
 #include "app/chain/provenance.hpp"
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
+#include "app/text/free_run_text.hpp"
 #include "app/text/summary_text.hpp"
 #include "io/archive/archive.hpp"
 #include "io/import/import.hpp"
@@ -130,7 +131,7 @@ std::string execute(const CommandLine& line, const Config& config, StageSource& 
   const Archive& archive = banks.empty() ? chain.run(options, last_stage(line.command), execution)
                                          : chain.judge_stored(banks, options, execution);
   write_archive(config.archive.output, archive);
-  return summary_text(archive);
+  return summary_text(archive) + free_run_text(archive);
 }
 
 }  // namespace

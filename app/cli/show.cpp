@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/commands.hpp"
+#include "app/text/free_run_text.hpp"
 #include "app/text/sparkline.hpp"
 #include "app/text/summary_tables.hpp"
 #include "app/text/summary_text.hpp"
@@ -21,6 +22,7 @@ void print_overview(const std::string& file, bool full_form) {
   const Terminal terminal = standard_output();
   const int width = terminal.width;
   fmt::print("{}\n{}", wrapped(provenance_text(archive), width), summary_text(archive, width));
+  fmt::print("{}", wrapped(free_run_text(archive, width), width));
   if (const std::string strip = mode_strip_text(archive, terminal); !strip.empty()) fmt::print("\n{}", strip);
   if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(*archive.windows, width));
   if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture, width));
