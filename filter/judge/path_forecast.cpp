@@ -16,9 +16,9 @@ PathForecast::PathForecast(const Bank& bank, const FilterOptions& options, Index
       share_(bank.mode_count()) {}
 
 void PathForecast::arrive(Index) {
-  sorted_ = (C_ * paths_.states()).transpose();
-  if (R_root_.cols() > 0)
-    for (Index i = 0; i < sorted_.rows(); ++i) sorted_.row(i) += paths_.draw(R_root_).transpose();
+  Eigen::MatrixXd measured = C_ * paths_.states();
+  for (Index i = 0; i < measured.cols(); ++i) paths_.add_draw(R_root_, measured.col(i));
+  sorted_ = measured.transpose();
   for (Index s = 0; s < sorted_.cols(); ++s) std::sort(sorted_.col(s).begin(), sorted_.col(s).end());
   share_.setZero();
   for (const Index mode : paths_.modes()) share_(mode) += 1.0;

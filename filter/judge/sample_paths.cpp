@@ -46,11 +46,11 @@ SamplePaths::SamplePaths(const Bank& bank, const FilterOptions& options, Index p
                                                                              : Eigen::MatrixXd());
 }
 
-Eigen::VectorXd SamplePaths::draw(const Eigen::MatrixXd& root) {
+void SamplePaths::add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to) {
   boost::random::normal_distribution<double> standard;
   normal_.resize(root.cols());
   for (double& value : normal_) value = standard(generator_);
-  return root * normal_;
+  to.noalias() += root * normal_;
 }
 
 Index SamplePaths::draw_mode(const Eigen::VectorXd& probability) {
@@ -78,7 +78,8 @@ void SamplePaths::start(const FilterMemory& origin) {
   for (Index i = 0; i < paths_; ++i) {
     const Index mode = draw_mode(origin.mode_probability);
     modes_[static_cast<std::size_t>(i)] = mode;
-    states_.col(i) = origin.means.col(mode) + draw(start_root[static_cast<std::size_t>(mode)]);
+    states_.col(i) = origin.means.col(mode);
+    add_draw(start_root[static_cast<std::size_t>(mode)], states_.col(i));
   }
   predicted_ = states_;
 }
@@ -88,9 +89,10 @@ void SamplePaths::add_parameter_noise(Index mode, const Vector& state, const Vec
   const Eigen::MatrixXd& root = spread_root_[static_cast<std::size_t>(mode)];
   if (root.size() == 0) return;
   fill_regressor(bank_.structure, state, inputs, regressor_);
-  const Eigen::VectorXd d = draw(root);
+  deviation_.setZero(root.rows());
+  add_draw(root, deviation_);
   const Index q = regressor_.size();
-  for (Index i = 0; i < bank_.structure.states; ++i) next_(i) += regressor_.dot(d.segment(i * q, q));
+  for (Index i = 0; i < bank_.structure.states; ++i) next_(i) += regressor_.dot(deviation_.segment(i * q, q));
 }
 
 void SamplePaths::step(const Vector& inputs) {
@@ -103,7 +105,8 @@ void SamplePaths::step(const Vector& inputs) {
     propagate(model.A, model.B, model.c, states_.col(i), inputs, next_);
     predicted_.col(i) = next_;
     add_parameter_noise(mode, states_.col(i), inputs);
-    states_.col(i) = next_ + draw(noise_root_[static_cast<std::size_t>(mode)]);
+    add_draw(noise_root_[static_cast<std::size_t>(mode)], next_);
+    states_.col(i) = next_;
     if ((states_.col(i).array().abs() < largest_mean).all()) finite.push_back(i);
   }
   if (std::ssize(finite) < count()) keep(finite);

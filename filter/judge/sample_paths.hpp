@@ -37,8 +37,8 @@ class SamplePaths {
   const Eigen::MatrixXd& predicted() const { return predicted_; }    ///< n x count: before the last step's noise
   const std::vector<Eigen::Index>& modes() const { return modes_; }  ///< count, of the last step
   const Eigen::MatrixXd& step_noise(Eigen::Index mode) const { return noise_[static_cast<std::size_t>(mode)]; }  ///< Q
-  /// Draws N(0, root root').
-  Eigen::VectorXd draw(const Eigen::MatrixXd& root);
+  /// Adds a draw of N(0, root root').
+  void add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to);
 
  private:
   Bank bank_;
@@ -49,7 +49,7 @@ class SamplePaths {
   std::vector<Eigen::MatrixXd> spread_root_;         ///< K; empty: parameters are taken as known
   Eigen::MatrixXd states_, predicted_;
   std::vector<Eigen::Index> modes_;
-  Eigen::VectorXd probability_, regressor_, next_, normal_;
+  Eigen::VectorXd probability_, regressor_, next_, normal_, deviation_;
 
   Eigen::Index draw_mode(const Eigen::VectorXd& probability);
   void add_parameter_noise(Eigen::Index mode, const Vector& state, const Vector& inputs);
