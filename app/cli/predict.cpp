@@ -3,12 +3,12 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <optional>
 
 #include "app/chain/stages.hpp"
+#include "app/chain/stored_banks.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/live_filter.hpp"
 #include "app/config/config_file.hpp"
@@ -51,18 +51,12 @@ void turn_to_new_files(const CommandLine& line, DataOptions& data) {
   if (data.lag_auto && !given(line, "data.lag_s")) take_lag(archive, data);
 }
 
-void warn_of_period(const std::string& archive, double bank_s, double data_s) {
-  constexpr double tolerated = 0.1;
-  if (bank_s > 0.0 && std::abs(data_s - bank_s) > tolerated * bank_s)
-    spdlog::warn("{}: its bank steps by {:.4g} s, the data by {:.4g} s", archive, bank_s, data_s);
-}
-
 std::vector<FreeRun> predict_all(const std::string& archive, const Config& config, const Recording& recording) {
   const FilterOptions options = tracked_options(config);
   const FreeRunOptions how = scoring_inputs(chain_options(config)).free_run;
   const auto check = [&](const Bank& bank) {
     check_columns(config, bank, archive);
-    warn_of_period(archive, bank.dt_s, recording.median_period_s());
+    if (const std::string remark = period_remark(archive, bank, recording); !remark.empty()) spdlog::warn("{}", remark);
   };
   if (config.track.filter == TrackedFilter::drifting) {
     const DriftingModel model = load_drifting(archive);

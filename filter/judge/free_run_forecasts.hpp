@@ -77,7 +77,9 @@ class PathForecast final : public Forecast {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
 
-  PathForecast(const Bank& bank, const FilterOptions& options, Eigen::Index paths, std::uint64_t seed);
+  /// `row`: as SamplePaths takes it.
+  PathForecast(const Bank& bank, const FilterOptions& options, Eigen::Index paths, std::uint64_t seed,
+               TransitionRow row = {});
   void start(const FilterMemory& origin) { paths_.start(origin); }
   void step(const Vector& inputs) override { paths_.step(inputs); }
   void arrive(Eigen::Index) override;

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include "filter/judge/free_run_forecasts.hpp"
 #include "ident/base/linalg.hpp"
@@ -8,11 +9,12 @@ namespace modebank {
 
 using Eigen::Index;
 
-PathForecast::PathForecast(const Bank& bank, const FilterOptions& options, Index paths, std::uint64_t seed)
+PathForecast::PathForecast(const Bank& bank, const FilterOptions& options, Index paths, std::uint64_t seed,
+                           TransitionRow row)
     : C_(bank.C),
       R_(bank.R),
       R_root_(covariance_root(bank.R)),
-      paths_(bank, options, paths, seed),
+      paths_(bank, options, paths, seed, std::move(row)),
       share_(bank.mode_count()) {}
 
 void PathForecast::arrive(Index) {
