@@ -141,12 +141,15 @@ void Chain::score(const std::string& filter, const FilterOptions& options, const
 
 void Chain::put(FilterScores scores) {
   const std::string filter = scores.evaluation.filter;
+  for (const std::string& line : remarks(filter, archive_.recording->runs, scores.evaluation.free_runs))
+    listener_.warning(line);
   put(test_filter(*archive_.recording, scores.evaluation));
   std::vector<FilterEvaluation> evaluation;
   evaluation.push_back(std::move(scores.evaluation));
   put_rows(filter, std::move(evaluation), archive_.evaluations);
   put_rows(filter, std::move(scores.summary), archive_.summary);
   put_rows(filter, std::move(scores.horizons), archive_.horizons);
+  put_rows(filter, std::move(scores.free_runs), archive_.free_runs);
   put_rows(filter, std::move(scores.diagnostics), archive_.diagnostics);
 }
 
@@ -159,7 +162,7 @@ void Chain::put_scores(Archive&& part) {
   for (FilterEvaluation& evaluation : part.evaluations) {
     const std::string filter = evaluation.filter;
     put({std::move(evaluation), rows_of({filter}, part.summary), rows_of({filter}, part.horizons),
-         rows_of({filter}, part.diagnostics)});
+         rows_of({filter}, part.diagnostics), rows_of({filter}, part.free_runs)});
   }
   for (ResidualTestSet& tests : part.residual_tests) put(std::move(tests));
 }
@@ -188,8 +191,9 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   archive_.drifting = std::move(stored.drifting);
   archive_.unrefined = std::move(stored.unrefined);
   archive_.measured_fit = stored.measured_fit;
-  score("bank", options.filter, options.scoring);
-  for (const char* filter : competitor_names) score(filter, competitor_filter(filter, options.filter), options.scoring);
+  const ScoringOptions scoring = scoring_inputs(options);
+  score("bank", options.filter, scoring);
+  for (const char* filter : competitor_names) score(filter, competitor_filter(filter, options.filter), scoring);
   archive_.finding = find_modes(archive_);
   listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
   describe(execution, {describe_file(banks)});

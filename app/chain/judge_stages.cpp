@@ -44,12 +44,14 @@ namespace {
 
 /// `bank` and `filter`: what made the evaluations.
 FilterScores scores_of(FilterEvaluation said, const Bank& bank, const FilterOptions& filter,
-                       const std::vector<Trajectory>& runs, const std::vector<HorizonEvaluation>& ahead) {
+                       const std::vector<Trajectory>& runs, const std::vector<HorizonEvaluation>& ahead,
+                       const FreeRunOptions& free_run) {
   FilterScores scores;
   said.scores = score_runs(said.runs);
   scores.summary = summarize(said.filter, runs, said.runs, said.scores);
   scores.diagnostics = diagnose(said.filter, bank, filter, runs, said.runs, said.scores);
   if (!ahead.empty()) scores.horizons = summarize_horizons(said.filter, runs, ahead);
+  if (!said.free_runs.empty()) scores.free_runs = summarize_free_runs(said.filter, runs, said.free_runs, free_run);
   scores.evaluation = std::move(said);
   return scores;
 }
@@ -63,7 +65,9 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
   const std::vector<Trajectory>& runs = recording.runs;
   std::vector<HorizonEvaluation> ahead;
   if (looks_ahead(scoring)) ahead = look_ahead(bank, runs, filter, scoring.horizon);
-  return scores_of({name, evaluate_runs(bank, runs, filter, scoring.smooth), {}}, bank, filter, runs, ahead);
+  return scores_of(
+      {name, evaluate_runs(bank, runs, filter, scoring.smooth), {}, free_runs(bank, runs, filter, scoring.free_run)},
+      bank, filter, runs, ahead, scoring.free_run);
 }
 
 FilterScores score_drifting(const DriftingModel& model, const Recording& recording, TimeSteps time_steps,
@@ -77,7 +81,8 @@ FilterScores score_drifting(const DriftingModel& model, const Recording& recordi
   });
   FilterOptions filter;
   filter.noise = FilterNoise::adaptive;  // its variance is learned on the way, so its NIS is not chi-square
-  return scores_of({"drifting", std::move(said), {}}, fixed_bank(model), filter, runs, ahead);
+  return scores_of({"drifting", std::move(said), {}, free_runs(model, runs, time_steps, scoring.free_run)},
+                   fixed_bank(model), filter, runs, ahead, scoring.free_run);
 }
 
 ResidualTestSet test_global(const Recording& recording, const WindowFits& windows, const FitOptions& window) {

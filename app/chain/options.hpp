@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "filter/judge/evaluate.hpp"
+#include "filter/judge/free_run.hpp"
 #include "filter/learn/learn.hpp"
 #include "ident/fit/options.hpp"
 #include "io/import/options.hpp"
@@ -17,6 +18,7 @@ namespace modebank {
 struct ScoringOptions {
   std::vector<Index> horizon{1};  ///< samples ahead; 1 alone is what the summary scores anyway
   bool smooth = true;             ///< smoothed states and the most probable sequence of modes, too
+  FreeRunOptions free_run = {};   ///< its seed is the chain's
 };
 
 /// Everything that decides the numbers of a chain beside its data. `seed` is the one seed: it takes the place of those

@@ -40,17 +40,28 @@ FilterOptions competitor_filter(const std::string& name, const FilterOptions& of
   return filter;
 }
 
+ScoringOptions scoring_inputs(const ChainOptions& options) {
+  ScoringOptions scoring = options.scoring;
+  FreeRunOptions& free_run = scoring.free_run;
+  if (free_run.samples == 0) free_run = {};  // one key for what is the same
+  const bool drawn = free_run.method == FreeRunMethod::paths;
+  free_run.seed = drawn ? options.seed : 0;
+  if (!drawn) free_run.paths = 0;
+  return scoring;
+}
+
 ChainInputs chain_inputs(const ChainOptions& options) {
   FitOptions window = options.window;
   window.seed = options.seed;
   const std::string& start = options.mixture_start;
+  const ScoringOptions scoring = scoring_inputs(options);
   return {{options.data},
           {window},
           {options.mixture, start, start.empty() ? "" : describe_file(start).sha256, options.seed},
           competitor_inputs(options, window),
           bank_inputs(options, window),
-          {window, competitor_filter("one_motion", options.filter), options.scoring},
-          {options.filter, options.scoring}};
+          {window, competitor_filter("one_motion", options.filter), scoring},
+          {options.filter, scoring}};
 }
 
 }  // namespace modebank

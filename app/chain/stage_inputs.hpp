@@ -67,6 +67,9 @@ struct ChainInputs {
 /// How a competitor steps: by its own kind of filter, with the bank's noise and time steps.
 FilterOptions competitor_filter(const std::string& name, const FilterOptions& of_bank);
 
+/// What is found out about filters, with the chain's seed where something is drawn.
+ScoringOptions scoring_inputs(const ChainOptions& options);
+
 /// Parts the options into what each stage needs. Reads mixture_start, if there is one, for its hash: throws
 /// ConfigurationError when it cannot be read.
 ChainInputs chain_inputs(const ChainOptions& options);

@@ -77,7 +77,8 @@ MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_mod
 MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, modes,
                     refine, em)
 MODEBANK_KEY_FIELDS(FilterOptions, variant, parameter_noise, time_steps, noise)
-MODEBANK_KEY_FIELDS(ScoringOptions, horizon, smooth)
+MODEBANK_KEY_FIELDS(FreeRunOptions, samples, horizon, start, method, paths, seed)
+MODEBANK_KEY_FIELDS(ScoringOptions, horizon, smooth, free_run)
 
 MODEBANK_KEY_FIELDS(DataInputs, data)
 MODEBANK_KEY_FIELDS(WindowInputs, window)

@@ -64,6 +64,7 @@ struct FilterScores {
   std::vector<SummaryRow> summary;
   std::vector<HorizonRow> horizons;
   std::vector<DiagnosticsRow> diagnostics;
+  std::vector<FreeRunRow> free_runs = {};
 };
 
 /// `name`: bank, baseline, noise_only or one_motion.
@@ -73,6 +74,18 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
 /// The same of the drifting competitor.
 FilterScores score_drifting(const DriftingModel& model, const Recording& recording, TimeSteps time_steps,
                             const ScoringOptions& scoring);
+
+/// Free runs of every run, none where none is asked for. Throws ConfigurationError, naming the key, when the model
+/// needs more measured samples than the options have.
+std::vector<FreeRun> free_runs(const Bank& bank, const std::vector<Trajectory>& runs, const FilterOptions& filter,
+                               const FreeRunOptions& options);
+std::vector<FreeRun> free_runs(const DriftingModel& model, const std::vector<Trajectory>& runs, TimeSteps time_steps,
+                               const FreeRunOptions& options);
+/// What is to be said of them, one line each: of the bank's, runs of which nothing was predicted; of all, paths lost.
+std::vector<std::string> remarks(const std::string& filter, const std::vector<Trajectory>& runs,
+                                 const std::vector<FreeRun>& free_runs);
+/// Throws ConfigurationError, naming the key, unless a free run of this model can start from so many samples.
+void check_free_run(const LinearStructure& structure, const FreeRunOptions& options);
 
 /// Whether the judged runs of an archive ask for the modes of its bank, from what was scored, with its sentences; empty
 /// without a scored bank.

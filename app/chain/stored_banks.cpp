@@ -36,12 +36,17 @@ void warn_of_foreign_bank(const std::string& file, const Archive& stored, const 
                                  fmt::join(bank.state_names, ", "), fmt::join(bank.input_names, ", "),
                                  fmt::join(names_of(recording.states), ", "),
                                  fmt::join(names_of(recording.inputs), ", ")));
-  constexpr double tolerated = 0.1;  // a tenth more or less time per step changes increments by as much
-  if (const double dt_s = recording.median_period_s(); std::abs(dt_s - bank.dt_s) > tolerated * bank.dt_s)
-    listener.warning(fmt::format("{}: its bank steps by {:.4g} s, the data by {:.4g} s", file, bank.dt_s, dt_s));
+  if (const std::string remark = period_remark(file, bank, recording); !remark.empty()) listener.warning(remark);
 }
 
 }  // namespace
+
+std::string period_remark(const std::string& file, const Bank& bank, const Recording& recording) {
+  constexpr double tolerated = 0.1;  // a tenth more or less time per step changes increments by as much
+  const double dt_s = recording.median_period_s();
+  if (std::abs(dt_s - bank.dt_s) <= tolerated * bank.dt_s) return "";
+  return fmt::format("{}: its bank steps by {:.4g} s, the data by {:.4g} s", file, bank.dt_s, dt_s);
+}
 
 StoredBanks read_banks(const std::filesystem::path& path, const Recording& recording, bool one_model,
                        const Listener& listener) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "app/chain/listener.hpp"
 #include "io/archive/archive.hpp"
@@ -15,6 +16,9 @@ struct StoredBanks {
   std::optional<DriftingModel> drifting;
   MeasuredFit measured_fit = MeasuredFit::none;
 };
+
+/// What is to be said where data are sampled at another period than the bank's steps take; empty where they are not.
+std::string period_remark(const std::string& file, const Bank& bank, const Recording& recording);
 
 /// `one_model`: a single Kalman filter is asked for, so that the bank is the archive's baseline. Warns of what makes
 /// the scores mean something else than they seem to: test runs that the bank was trained on, other columns, another

@@ -13,6 +13,10 @@ namespace po = boost::program_options;
 namespace modebank::app {
 namespace {
 
+/// Options of predict alone, short for these keys.
+constexpr std::pair<const char*, const char*> predict_words[]{
+    {"samples", "filter.simulate"}, {"horizon", "filter.simulate_horizon"}, {"filter", "track.filter"}};
+
 po::options_description describe_options(CommandLine& line) {
   po::options_description description;
   auto add = description.add_options();
@@ -25,6 +29,7 @@ po::options_description describe_options(CommandLine& line) {
   add("form", po::value(&line.form));
   add("output,o", po::value(&line.output));
   add("words", po::value<std::vector<std::string>>());
+  for (const auto& [word, key] : predict_words) add(word, po::value<std::string>());
   for (const Option& option : option_table())
     add(option.key.c_str(), po::value<std::vector<std::string>>()->composing());  // given twice, the last wins
   return description;
@@ -79,6 +84,12 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   if (!line.files.empty()) {
     line.command = line.files.front();
     line.files.erase(line.files.begin());
+  }
+  for (const auto& [word, key] : predict_words) {
+    if (!values.count(word)) continue;
+    if (line.command != "predict")
+      throw ConfigurationError(fmt::format("--{} is an option of predict; elsewhere it is --{}", word, key));
+    line.overrides.emplace_back(key, values[word].as<std::string>());
   }
   if (line.form != "increment" && line.form != "full")
     throw ConfigurationError(fmt::format("--form {}: allowed are increment and full", line.form));

@@ -18,7 +18,7 @@ struct CommandLine {
   bool repair = false;             ///< verify: remove what is broken in study folders
   bool apply = false;              ///< check: write what it suggests
   std::string form = "increment";  ///< of models that `show` prints: increment or full
-  std::string output;              ///< -o: the file that `report` or `check --apply` writes
+  std::string output;              ///< -o: the file that `report`, `predict` or `check --apply` writes
   std::string typed;               ///< the whole line, for provenance
 };
 

@@ -39,6 +39,10 @@ constexpr Command commands[] = {
     {"show", "ARCHIVE [PATH]", "provenance, candidates, modes, summary; or one object; --json; --form full", run_show},
     {"track", "ARCHIVE", "live filter: samples in on standard input, estimates out on standard output, line by line",
      run_track},
+    {"predict", "ARCHIVE",
+     "free run on new inputs (--data.inputs FILES --samples N [--horizon H] [--filter NAME]): CSV on standard output, "
+     "or -o FILE",
+     run_predict},
     {"report", "ARCHIVE|STUDY [ARCHIVE]",
      "an interactive page that opens offline in a browser (-o page.html): of a run, a study, or two runs", run_report},
     {"verify", "ARCHIVE...",
@@ -53,9 +57,8 @@ std::string help_text() {
   for (const Command& command : commands)
     text += fmt::format("  {:<24} {}\n", fmt::format("{} {}", command.name, command.arguments), command.help);
   text +=
-      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report, check), --apply "
-      "(check), "
-      "--repair (verify).\n"
+      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report, predict, check), "
+      "--apply (check), --repair (verify).\n"
       "Every configuration key is an option too, and wins over the file. Exit status: 0 done; 2 usage, configuration "
       "or "
       "path; 1 content or run failure. `modebank help TERM` says what a word of the summary or a key means.\n";

@@ -1,5 +1,7 @@
 #include "app/cli/live_filter.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -67,18 +69,29 @@ class LiveDrifting final : public LiveOf<DriftingFilter, DriftingSnapshot> {
   }
 };
 
+}  // namespace
+
 /// kf is the global model alone, whatever the bank.
 std::string tracked_bank(const Config& config) {
   const bool single = config.track.filter == TrackedFilter::bank && config.filter.variant == FilterVariant::kf;
   return std::string(name_of(single ? TrackedFilter::baseline : config.track.filter));
 }
 
-}  // namespace
+FilterOptions tracked_options(const Config& config) {
+  if (config.track.filter == TrackedFilter::bank) return config.filter;
+  return competitor_filter(std::string(name_of(config.track.filter)), config.filter);
+}
+
+void check_columns(const Config& config, const Bank& bank, const std::string& archive) {
+  if (std::ssize(config.data.state) == bank.C.rows() && std::ssize(config.data.input) == bank.structure.inputs) return;
+  throw ConfigurationError(
+      fmt::format("data.state and data.input name {} and {} columns, the bank of {} has {} states and {} inputs",
+                  config.data.state.size(), config.data.input.size(), archive, bank.C.rows(), bank.structure.inputs));
+}
 
 OpenedFilter open_filter(const std::string& archive, const Config& config) {
   const TrackedFilter tracked = config.track.filter;
-  FilterOptions options = config.filter;  // competitors run as evaluate runs them
-  if (tracked != TrackedFilter::bank) options = competitor_filter(std::string(name_of(tracked)), config.filter);
+  const FilterOptions options = tracked_options(config);
   if (tracked == TrackedFilter::drifting) {
     if (!config.track.checkpoint.empty() || !config.track.resume.empty()) LiveDrifting::refuse();
     const DriftingModel model = load_drifting(archive);

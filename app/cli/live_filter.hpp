@@ -31,6 +31,12 @@ struct OpenedFilter {
   FilterOptions options;
   std::unique_ptr<LiveFilter> filter;
 };
+/// Which of an archive's banks the configuration asks for.
+std::string tracked_bank(const Config& config);
+/// How it steps: competitors run as evaluate runs them.
+FilterOptions tracked_options(const Config& config);
+/// Throws ConfigurationError when the columns named are more or fewer than the bank has.
+void check_columns(const Config& config, const Bank& bank, const std::string& archive);
 /// Throws as load_bank does.
 OpenedFilter open_filter(const std::string& archive, const Config& config);
 

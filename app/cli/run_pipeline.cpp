@@ -10,6 +10,7 @@
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
 #include "app/text/first_screen.hpp"
+#include "app/text/free_run_text.hpp"
 #include "app/text/summary_text.hpp"
 #include "app/text/terminal.hpp"
 #include "ident/model/parameter_labels.hpp"
@@ -138,7 +139,7 @@ std::string execute(const CommandLine& line, const Config& config, StageSource& 
   write_archive(config.archive.output, archive);
   if (has_first_screen(archive))
     return first_screen(archive, resolved_values(archive.config), config.archive.output, standard_output().width);
-  return summary_text(archive) + archive_line(config);
+  return summary_text(archive) + free_run_text(archive) + archive_line(config);
 }
 
 }  // namespace

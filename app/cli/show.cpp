@@ -5,6 +5,7 @@
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
 #include "app/text/first_screen.hpp"
+#include "app/text/free_run_text.hpp"
 #include "app/text/mode_words.hpp"
 #include "app/text/sparkline.hpp"
 #include "app/text/summary_tables.hpp"
@@ -26,6 +27,7 @@ void print_overview(const std::string& file, bool full_form) {
   if (has_first_screen(archive))
     fmt::print("{}\n", first_screen(archive, resolved_values(archive.config), file, width));
   fmt::print("{}\n{}", wrapped(provenance_text(archive), width), summary_text(archive, width));
+  fmt::print("{}", wrapped(free_run_text(archive, width), width));
   if (const std::string strip = mode_strip_text(archive, terminal); !strip.empty()) fmt::print("\n{}", strip);
   if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(archive, width));
   if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture, width));

@@ -27,10 +27,7 @@ class Tracker {
         opened_(open_filter(archive, config)),
         judge_(bank_, config.track.level, config.track.alarm),
         reader_({config.data.time, config.data.input, config.data.state}, config.track.format) {
-    if (std::ssize(config.data.state) != bank_.C.rows() || std::ssize(config.data.input) != bank_.structure.inputs)
-      throw ConfigurationError(fmt::format(
-          "data.state and data.input name {} and {} columns, the bank of {} has {} states and {} inputs",
-          config.data.state.size(), config.data.input.size(), archive, bank_.C.rows(), bank_.structure.inputs));
+    check_columns(config, bank_, archive);
     const FilterOptions& options = opened_.options;
     identity_ = fmt::format("{} {} {} {} {} {}", archive_digest(archive), name_of(config.track.filter),
                             name_of(options.variant), name_of(options.noise), options.parameter_noise,

@@ -155,8 +155,9 @@ Config config_of(const std::string& resolved, Wanted wanted) {
 }  // namespace
 
 Config stored_config(const std::string& resolved, const KeyValues& overrides) {
-  Config config = config_of(
-      resolved, [](const std::string& key) { return key.rfind("data.", 0) == 0 || key.rfind("filter.", 0) == 0; });
+  Config config = config_of(resolved, [](const std::string& key) {
+    return key.rfind("data.", 0) == 0 || key.rfind("filter.", 0) == 0 || key == "job.seed";
+  });
   apply_overrides(config, overrides);
   return config;
 }

@@ -17,8 +17,8 @@ using KeyValues = std::vector<std::pair<std::string, std::string>>;
 /// naming line, key and, for an unknown key, the nearest known one.
 Config load_config(const std::filesystem::path& path, const KeyValues& overrides);
 
-/// The [data] and [filter] keys of a configuration that an archive holds, then the overrides. Keys that this version
-/// does not know are left out.
+/// The [data] and [filter] keys and the seed of a configuration that an archive holds, then the overrides. Keys that
+/// this version does not know are left out.
 Config stored_config(const std::string& resolved, const KeyValues& overrides);
 
 /// A resolved configuration read back whole. Keys that this version does not know are left out.

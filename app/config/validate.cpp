@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/chain/section.hpp"
+#include "app/chain/stages.hpp"
 #include "app/config/config.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "modebank/base/error.hpp"
@@ -44,6 +45,7 @@ void validate(const Config& config) {
                       data.state.size()));
   const Index states = std::ssize(data.state), inputs = std::ssize(data.input);
   in_section("window", [&] { check_model(config.window, states, inputs); });
+  check_free_run(linear_structure(states, inputs, config.window), config.scoring.free_run);
   check_prior(config.window, parameter_count(config.window, states, inputs));
   require(config.window.scale != ScaleSource::fixed || config.window.sigma > 0.0,
           "window.scale = fixed needs window.sigma, the residual standard deviation, above 0");

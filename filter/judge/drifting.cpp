@@ -34,6 +34,15 @@ double log_density(const StudentNoise& noise, const Eigen::Ref<const Eigen::Vect
   return sum;
 }
 
+}  // namespace
+
+double log_density(const StudentNoise& noise, const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
+  const WhitenedError white = whiten(error, covariance);
+  return log_density(noise, white.error) - white.log_scale;
+}
+
+namespace {
+
 /// Looks ahead from where the filter stands at one moment of a run.
 class DriftingLookAhead {
  public:
@@ -71,21 +80,21 @@ class DriftingLookAhead {
   }
 };
 
-/// One moment further; v follows where something was measured.
-void follow(const DriftingModel& model, const Instant& instant, const Eigen::MatrixXd& inputs, Index t,
-            const Trajectory& run, DriftingRecursion& recursion, Eigen::VectorXd& v) {
+}  // namespace
+
+void follow(const DriftingModel& model, const RunInstants& instants, Index t, const Trajectory& run,
+            DriftingRecursion& recursion, Eigen::VectorXd& v) {
+  const Instant& instant = instants.instants[static_cast<std::size_t>(t)];
   if (instant.starts) {
     recursion.start(instant.start);
     v = model.v0;
     return;
   }
-  recursion.predict(inputs.col(t));
+  recursion.predict(instants.inputs.col(t));
   if (instant.sample < 0) return recursion.skip();
   recursion.update(run.state.col(instant.sample));
   adapt_variance(model, recursion, v);
 }
-
-}  // namespace
 
 DriftingForecasts forecast(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps,
                            std::vector<Index> horizons) {
@@ -101,7 +110,7 @@ DriftingForecasts forecast(const DriftingModel& model, const Trajectory& run, Ti
   DriftingLookAhead look(model, instants, run, out);
   for (Index t = 0; t < instants.count(); ++t) {
     const Instant& instant = instants.instants[static_cast<std::size_t>(t)];
-    follow(model, instant, instants.inputs, t, run, recursion, v);
+    follow(model, instants, t, run, recursion, v);
     if (instant.sample >= 0) look.from(t, recursion.memory(), v);
   }
   return out;

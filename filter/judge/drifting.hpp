@@ -6,6 +6,7 @@
 #include "filter/judge/evaluate.hpp"
 #include "filter/judge/horizon.hpp"
 #include "filter/step/drifting.hpp"
+#include "filter/step/feed/run_samples.hpp"
 #include "filter/step/student_noise.hpp"
 #include "ident/data/trajectory.hpp"
 
@@ -22,6 +23,13 @@ struct DriftingForecasts {
 };
 DriftingForecasts forecast(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps,
                            std::vector<Eigen::Index> horizons);
+
+/// Takes the recursion from the moment before to moment t of a run; v follows where something was measured.
+void follow(const DriftingModel& model, const RunInstants& instants, Eigen::Index t, const Trajectory& run,
+            DriftingRecursion& recursion, Eigen::VectorXd& v);
+
+/// Log density of the error of a prediction: outputs decorrelated in their order, then each Student's [nats].
+double log_density(const StudentNoise& noise, const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
 
 /// By how much the log density of whitened errors changes when their variance is multiplied by `factor`.
 double widening_gain(const StudentNoise& noise, const Eigen::Ref<const Eigen::VectorXd>& whitened, double factor);

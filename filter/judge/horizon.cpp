@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "filter/step/equations/filter_step.hpp"
+#include "filter/judge/forecast.hpp"
 #include "filter/step/feed/run_samples.hpp"
 #include "ident/base/not_a_number.hpp"
 
@@ -20,49 +20,30 @@ template <int N, int NY>
 class LookAhead {
  public:
   LookAhead(const FilterModel<N, NY>& model, const RunInstants& instants, const Trajectory& run, HorizonEvaluation& out)
-      : model_(model),
-        instants_(instants),
-        run_(run),
-        out_(out),
-        step_(model),
-        state_(initial_state(model)),
-        weights_(step_.hypothesis_probability().size()) {}
+      : instants_(instants), run_(run), out_(out), forecast_(model) {}
 
   void from(Index t, const FilterState<N>& state) {
-    state_ = state;
+    forecast_.start(state);
     Index ahead = 0;
     std::size_t next = 0;
     while (next < out_.horizons.size() && instants_.continues(t)) {
-      predict(model_, state_, instants_.inputs.col(++t), step_);
+      forecast_.step(instants_.inputs.col(++t));
       if (const Index k = instants_.instants[static_cast<std::size_t>(t)].sample;
           k >= 0 && ++ahead == out_.horizons[next])
         score(next++, k);
-      skip_measurement(step_, state_);
     }
   }
 
  private:
-  const FilterModel<N, NY>& model_;
   const RunInstants& instants_;
   const Trajectory& run_;
   HorizonEvaluation& out_;
-  FilterStep<N, NY> step_;
-  FilterState<N> state_;
-  Eigen::VectorXd weights_;
+  BankForecast<N, NY> forecast_;
 
   void score(std::size_t horizon, Index k) {
     const auto y = run_.state.col(k);
     if (missing_entries(y) > 0) return;
-    auto error = out_.error[horizon].col(k);
-    error = y;
-    for (std::size_t h = 0; h < step_.kalman.size(); ++h) {
-      const auto i = static_cast<Index>(h);
-      step_.kalman[h].observe(model_, y);
-      step_.log_likelihood(i) = step_.kalman[h].log_density;
-      error -= step_.hypothesis_probability()(i) * (y - step_.kalman[h].innovation);
-    }
-    out_.log_density(static_cast<Index>(horizon), k) =
-        bayes(step_.hypothesis_probability(), step_.log_likelihood, weights_);
+    out_.log_density(static_cast<Index>(horizon), k) = forecast_.observe(y, out_.error[horizon].col(k));
   }
 };
 

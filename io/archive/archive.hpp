@@ -10,6 +10,7 @@
 #include "filter/judge/diagnostics.hpp"
 #include "filter/judge/evaluate.hpp"
 #include "filter/judge/finding.hpp"
+#include "filter/judge/free_run.hpp"
 #include "filter/judge/horizon.hpp"
 #include "filter/judge/scores.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
@@ -41,7 +42,8 @@ struct Provenance {
 struct FilterEvaluation {
   std::string filter;  ///< bank or a competitor
   std::vector<RunEvaluation> runs;
-  std::vector<RunScores> scores;  ///< of these, where they have just been made; archives do not hold them
+  std::vector<RunScores> scores;        ///< of these, where they have just been made; archives do not hold them
+  std::vector<FreeRun> free_runs = {};  ///< with filter.simulate; archives hold neither pit nor log_density nor notes
 };
 
 /// Residual tests of one model over all runs of the recording, in its order.
@@ -70,8 +72,9 @@ struct Archive {
   std::vector<HorizonRow> horizons;  ///< with filter.horizon
   std::vector<DiagnosticsRow> diagnostics;
   std::vector<ResidualTestSet> residual_tests;
-  std::vector<MergingCost> merging = {};  ///< with bank.modes, where components were merged
-  std::optional<Finding> finding = {};    ///< where a bank was scored
+  std::vector<MergingCost> merging = {};   ///< with bank.modes, where components were merged
+  std::vector<FreeRunRow> free_runs = {};  ///< with filter.simulate
+  std::optional<Finding> finding = {};     ///< where a bank was scored
 
   /// By the name of its filter, where there is one; of drifting its fixed_bank, whose states and measurements are its.
   std::optional<Bank> bank_of(const std::string& filter) const;

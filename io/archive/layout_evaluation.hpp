@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/archive/archive.hpp"
@@ -38,9 +40,20 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"N"});
 }
 
+template <class Io, class F>
+void exchange_free_run(Io& io, F& run, const Unit& states) {
+  io.optional_field("free_run_mean", run.mean, {"N", "n_y"}, states);
+  io.optional_field("free_run_sd", run.deviation, {"N", "n_y"}, states);
+  io.optional_field("free_run_lower", run.lower, {"N", "n_y"}, states);
+  io.optional_field("free_run_upper", run.upper, {"N", "n_y"}, states);
+  io.optional_field("free_run_mode", run.mode, {"N"});
+}
+
 /// One filter's evaluation of every run of the recording.
 template <class Io, class F>
 void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Unit& states) {
+  auto free_runs = evaluation.free_runs;
+  free_runs.resize(recording.runs.size());  // without any they are empty, and left out
   if constexpr (Io::reads) evaluation.runs.resize(recording.runs.size());
   if (evaluation.runs.size() != recording.runs.size())
     throw std::invalid_argument("filter " + evaluation.filter + " has evaluated " +
@@ -49,9 +62,14 @@ void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Un
   for (std::size_t i = 0; i < recording.runs.size(); ++i) {
     Sizes known;
     if (recording.runs[i].samples() > 0) known.set("N", static_cast<hsize_t>(recording.runs[i].samples()));
-    io.group(recording.runs[i].run, known,
-             [&](auto& member) { exchange_run_evaluation(member, evaluation.runs[i], states); });
+    io.group(recording.runs[i].run, known, [&](auto& member) {
+      exchange_run_evaluation(member, evaluation.runs[i], states);
+      exchange_free_run(member, free_runs[i], states);
+    });
   }
+  if constexpr (Io::reads)
+    if (std::any_of(free_runs.begin(), free_runs.end(), [](const FreeRun& run) { return run.mean.size() > 0; }))
+      evaluation.free_runs = std::move(free_runs);
 }
 
 template <class Io, class S>
@@ -73,6 +91,18 @@ void exchange_horizon(Io& io, R& rows, const Unit& states) {
                     column("run", &HorizonRow::run), column("horizon", &HorizonRow::horizon, "samples"),
                     column("samples", &HorizonRow::samples), column("log_score", &HorizonRow::log_score, "nat"),
                     column("rmse", &HorizonRow::rmse, joined(states)));
+}
+
+template <class Io, class R>
+void exchange_free_runs(Io& io, R& rows, const Unit& states) {
+  using Row = FreeRunRow;
+  io.optional_table("free_run", rows, column("filter", &Row::filter), column("role", &Row::role),
+                    column("run", &Row::run), column("method", &Row::method), column("start", &Row::start, "samples"),
+                    column("samples", &Row::samples), column("log_score", &Row::log_score, "nat"),
+                    column("rmse", &Row::rmse, joined(states)), column("nrmse", &Row::nrmse),
+                    column("fit", &Row::fit, "%"), column("coverage_50", &Row::coverage_50),
+                    column("coverage_90", &Row::coverage_90), column("coverage_95", &Row::coverage_95),
+                    column("coverage_99", &Row::coverage_99), column("lost_paths", &Row::lost_paths));
 }
 
 template <class Io, class R>
@@ -139,6 +169,7 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
              [&](auto& member) { exchange_filter(member, evaluation, recording, units.states()); });
   exchange_summary(io, archive.summary, units.states());
   exchange_horizon(io, archive.horizons, units.states());
+  exchange_free_runs(io, archive.free_runs, units.states());
   exchange_diagnostics(io, archive.diagnostics, units.states());
   exchange_part(io, "evidence", archive.finding, {}, [](auto& member, auto& part) { exchange_finding(member, part); });
 }

@@ -45,6 +45,17 @@ class RunPages(PageTest):
                                  ("in 95 %", "coverage_95"), ("too far", "too_far"), ("too close", "too_close"), ("mean NIS", "nis_mean")):
                 self.same(line[heading][1], row[key])
 
+    def test_free_runs_are_the_archives(self):
+        self.open(session.modebank.page("no_truth", session.made["no_truth"]))
+        with h5py.File(session.made["no_truth"]) as file:
+            rows = {(row["filter"].decode(), row["role"].decode()): row for row in file["evaluation/free_run"][:] if row["run"] == b"*"}
+        table = self.table("Free run, all runs together")
+        self.assertEqual(len(table), len(rows))
+        for line in table:
+            row = rows[line["Filter"][0].replace(" ", "_"), "test" if line["Runs"][0].startswith("held") else "train"]
+            for heading, key in (("Samples", "samples"), ("Log score [nats]", "log_score"), ("NRMSE", "nrmse"), ("FIT [%]", "fit"), ("in 95 %", "coverage_95")):
+                self.same(line[heading][1], float(row[key].ravel()[0]))
+
     def check_bank(self, archive):
         with h5py.File(archive) as file:
             theta, error, weight = (file[f"bank/{name}"][:] for name in ("parameters", "parameter_standard_error", "weight"))

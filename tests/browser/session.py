@@ -22,7 +22,8 @@ def start(program, source, folder):
     data = archives.demo_data(modebank)
     made["demo"] = archives.demo(modebank, data, "demo", "--mixture.components", "1..4")
     made["one_mode"] = archives.demo(modebank, data, "one_mode", "--mixture.components", "1")
-    made["no_truth"] = archives.demo(modebank, data, "no_truth", "--data.truth=", "--mixture.components", "2")
+    made["no_truth"] = archives.demo(modebank, data, "no_truth", "--data.truth=", "--mixture.components", "2",
+                                     "--filter.simulate", "10")
     made["hostile"] = archives.hostile(modebank)
     if archives.real_data():
         made["ice"] = archives.ice(modebank)

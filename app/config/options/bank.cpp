@@ -58,6 +58,23 @@ std::vector<Option> filter_options() {
               "predictions this far ahead are scored, too: a number, a range such as 1..10, or a list; 1: the summary "
               "alone",
               MODEBANK_FIELD(scoring.horizon)),
+      numeric("filter.simulate", between(0, 1'000'000'000), "samples",
+              "free run: after so many measured samples of each run the rest is predicted from the inputs alone, and "
+              "scored; 0: none",
+              MODEBANK_FIELD(scoring.free_run.samples)),
+      numeric("filter.simulate_horizon", between(0, 1'000'000'000), "samples",
+              "of the free run: so many are predicted; 0: to the end of the run",
+              MODEBANK_FIELD(scoring.free_run.horizon)),
+      words("filter.simulate_start",
+            "of the free run: what the filter knows after the measured samples; or the last of them as if it were the "
+            "first",
+            MODEBANK_FIELD(scoring.free_run.start)),
+      words("filter.simulate_method",
+            "of the free run: the modes' probabilities, means and covariances, exact for a constant transition matrix, "
+            "each mode taken for a Gaussian; or sample paths",
+            MODEBANK_FIELD(scoring.free_run.method)),
+      numeric("filter.paths", between(10, 1'000'000), "", "sample paths of a free run by paths",
+              MODEBANK_FIELD(scoring.free_run.paths)),
       flag("filter.smooth", "smoothed states and the most probable sequence of modes, too",
            MODEBANK_FIELD(scoring.smooth)),
   };

@@ -71,6 +71,29 @@ json horizon_row(const HorizonRow& row) {
           {"rmse", number_list(row.rmse)}};
 }
 
+/// Of every state, in one cell.
+json percent_list(const Eigen::VectorXd& shares) {
+  json cell = number_list(shares);
+  std::string text;
+  for (const double share : shares) text += (text.empty() ? "" : ", ") + percent_text(share);
+  cell["t"] = text;
+  return cell;
+}
+
+json free_run_row(const FreeRunRow& row) {
+  return {{"filter", row.filter},
+          {"role", name_of(row.role)},
+          {"run", row.run},
+          {"start", count(row.start)},
+          {"samples", count(row.samples)},
+          {"log_score", number(row.log_score, fmt::format("{:.4f}", row.log_score))},
+          {"rmse", number_list(row.rmse)},
+          {"nrmse", number_list(row.nrmse)},
+          {"fit", number_list(row.fit)},
+          {"coverage_50", percent_list(row.coverage_50)},
+          {"coverage_95", percent_list(row.coverage_95)}};
+}
+
 json verdict_row(const DiagnosticsRow& row) {
   const auto with_interval = [](double share, double lower, double upper) {
     return number(share, fmt::format("{} [{:.2f}, {:.2f}]", percent_text(share), 100 * lower, 100 * upper));
@@ -93,13 +116,11 @@ json verdict_row(const DiagnosticsRow& row) {
 
 nlohmann::json filter_section(const Archive& archive) {
   if (!archive.recording || archive.evaluations.empty()) return nullptr;
-  json section = {{"scores", json::array()},
-                  {"histograms", json::array()},
-                  {"autocorrelations", json::array()},
-                  {"horizons", json::array()},
-                  {"verdicts", json::array()},
-                  {"tail", 0.5 * (1.0 - drawn_level)},
-                  {"rmse_name", with_unit("RMSE", common_unit(archive.recording->states))}};
+  json section = {
+      {"scores", json::array()},           {"histograms", json::array()},
+      {"autocorrelations", json::array()}, {"horizons", json::array()},
+      {"free_runs", json::array()},        {"verdicts", json::array()},
+      {"tail", 0.5 * (1.0 - drawn_level)}, {"rmse_name", with_unit("RMSE", common_unit(archive.recording->states))}};
   for (const SummaryRow& row : archive.summary) section["scores"].push_back(score_row(row));
   for (const Role role : {Role::test, Role::train}) {
     for (const FilterEvaluation& evaluation : archive.evaluations) {
@@ -113,6 +134,8 @@ nlohmann::json filter_section(const Archive& archive) {
   }
   for (const HorizonRow& row : archive.horizons)
     if (row.run == "*") section["horizons"].push_back(horizon_row(row));
+  for (const FreeRunRow& row : archive.free_runs)
+    if (row.run == "*") section["free_runs"].push_back(free_run_row(row));
   for (const DiagnosticsRow& row : archive.diagnostics)
     if (row.mode < 0) section["verdicts"].push_back(verdict_row(row));
   return section;

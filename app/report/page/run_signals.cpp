@@ -51,6 +51,14 @@ json filter_signals(PageArrays& arrays, const Bank& bank, const RunEvaluation& e
   return signals;
 }
 
+json free_run_signals(PageArrays& arrays, const FreeRun& run, Index finest) {
+  return {{"prediction", rows_of(arrays, run.mean, finest)},
+          {"center", rows_of(arrays, 0.5 * (run.lower + run.upper), finest)},
+          {"half_width", rows_of(arrays, 0.5 * (run.upper - run.lower), finest)},
+          {"lower", rows_of(arrays, run.lower, finest, Bucket::lowest)},
+          {"upper", rows_of(arrays, run.upper, finest, Bucket::highest)}};
+}
+
 json channels_of(const std::vector<Channel>& channels) {
   json list = json::array();
   for (const Channel& channel : channels) list.push_back({{"name", channel.name}, {"unit", channel.unit}});
@@ -72,6 +80,8 @@ json run_signals(const Archive& archive, std::size_t i, PageArrays& arrays, cons
     if (!bank || i >= evaluation.runs.size()) continue;
     const Index finest = evaluation.filter == "bank" ? detail.finest : std::max(detail.finest, detail.finest_others);
     entry["filters"][evaluation.filter] = filter_signals(arrays, *bank, evaluation.runs[i], run, finest);
+    if (!evaluation.free_runs.empty())
+      entry["free_runs"][evaluation.filter] = free_run_signals(arrays, evaluation.free_runs[i], finest);
   }
   return entry;
 }

@@ -256,6 +256,9 @@ def check_evaluation(file):
             expect(f"{name} {run} nis[0]", np.isnan(group["nis"][0]), True)
             expect_array(group["spread_share"], (N,), "<f8")
             expect(f"{name} {run} smoothed", "smoothed_state" in group, modes > 1)
+            for which in ("mean", "sd", "lower", "upper"):
+                expect_array(group[f"free_run_{which}"], (N, n), "<f8", STATE_UNITS)
+            expect_array(group["free_run_mode"], (N,), "<i4")
             if modes > 1:
                 expect_array(group["smoothed_state"], (N, n), "<f8", STATE_UNITS)
                 expect_array(group["smoothed_covariance"], (N, n, n), "<f8", outer(STATE_UNITS))
@@ -271,6 +274,12 @@ def check_evaluation(file):
     expect("summary run", table["run"], np.array([b"run 2", b"*"] * 4))
     expect("horizon columns", file["evaluation/horizon"].dtype.names,
            ("filter", "role", "run", "horizon", "samples", "log_score", "rmse"))
+    free = file["evaluation/free_run"]
+    expect("free run columns", free.dtype.names,
+           ("filter", "role", "run", "method", "start", "samples", "log_score", "rmse", "nrmse", "fit", "coverage_50", "coverage_90", "coverage_95",
+            "coverage_99", "lost_paths"))
+    expect("free run method", free["method"], np.array([b"paths"] * 4))
+    expect("free run fit", free["fit"], np.array([[66.0 + 1.0 / 3.0, 67.0 + 1.0 / 3.0]] * 4))
     diagnostics = file["evaluation/diagnostics"]
     expect("diagnostics verdict", diagnostics["verdict"], np.array([b"overconfident"] * 4))
     expect("diagnostics flags", diagnostics["flags"], np.array([b"probabilities flat; heavy tails"] * 4))

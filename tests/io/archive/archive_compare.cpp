@@ -76,6 +76,28 @@ void expect_same(const Finding& actual, const Finding& expected) {
   }
 }
 
+void expect_same(const FreeRun& actual, const FreeRun& expected) {
+  EXPECT_TRUE(same_bits(actual.mean, expected.mean));
+  EXPECT_TRUE(same_bits(actual.deviation, expected.deviation));
+  EXPECT_TRUE(same_bits(actual.lower, expected.lower));
+  EXPECT_TRUE(same_bits(actual.upper, expected.upper));
+  EXPECT_EQ(actual.mode, expected.mode);
+}
+
+void expect_same(const FreeRunRow& actual, const FreeRunRow& expected) {
+  EXPECT_EQ(actual.filter, expected.filter);
+  EXPECT_EQ(actual.role, expected.role);
+  EXPECT_EQ(actual.run, expected.run);
+  EXPECT_EQ(actual.method, expected.method);
+  EXPECT_EQ(actual.start, expected.start);
+  EXPECT_EQ(actual.samples, expected.samples);
+  EXPECT_EQ(actual.log_score, expected.log_score);
+  for (const auto member : {&FreeRunRow::rmse, &FreeRunRow::nrmse, &FreeRunRow::fit, &FreeRunRow::coverage_50,
+                            &FreeRunRow::coverage_90, &FreeRunRow::coverage_95, &FreeRunRow::coverage_99})
+    EXPECT_TRUE(same_bits(actual.*member, expected.*member));
+  EXPECT_EQ(actual.lost_paths, expected.lost_paths);
+}
+
 void expect_same(const HorizonRow& actual, const HorizonRow& expected) {
   EXPECT_EQ(actual.filter, expected.filter);
   EXPECT_EQ(actual.role, expected.role);
@@ -248,6 +270,9 @@ void expect_same(const Archive& actual, const Archive& expected) {
     ASSERT_EQ(actual.evaluations[f].runs.size(), expected.evaluations[f].runs.size());
     for (std::size_t r = 0; r < actual.evaluations[f].runs.size(); ++r)
       expect_same(actual.evaluations[f].runs[r], expected.evaluations[f].runs[r]);
+    ASSERT_EQ(actual.evaluations[f].free_runs.size(), expected.evaluations[f].free_runs.size());
+    for (std::size_t r = 0; r < actual.evaluations[f].free_runs.size(); ++r)
+      expect_same(actual.evaluations[f].free_runs[r], expected.evaluations[f].free_runs[r]);
   }
   ASSERT_EQ(actual.residual_tests.size(), expected.residual_tests.size());
   for (std::size_t s = 0; s < actual.residual_tests.size(); ++s) {
@@ -258,6 +283,8 @@ void expect_same(const Archive& actual, const Archive& expected) {
   }
   ASSERT_EQ(actual.summary.size(), expected.summary.size());
   for (std::size_t i = 0; i < actual.summary.size(); ++i) expect_same(actual.summary[i], expected.summary[i]);
+  ASSERT_EQ(actual.free_runs.size(), expected.free_runs.size());
+  for (std::size_t i = 0; i < actual.free_runs.size(); ++i) expect_same(actual.free_runs[i], expected.free_runs[i]);
   ASSERT_EQ(actual.horizons.size(), expected.horizons.size());
   for (std::size_t i = 0; i < actual.horizons.size(); ++i) expect_same(actual.horizons[i], expected.horizons[i]);
   ASSERT_EQ(actual.diagnostics.size(), expected.diagnostics.size());

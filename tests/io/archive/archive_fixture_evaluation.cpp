@@ -44,6 +44,34 @@ SummaryRow make_row(const std::string& filter, Role role, const std::string& run
           0.51,   0.91, 0.96, 0.995, 0.1, not_a_number};
 }
 
+FreeRun make_free_run(Index n, Index samples) {
+  FreeRun run;
+  run.mean = pattern(n, samples, 60.0);
+  run.deviation = pattern(n, samples, 61.0);
+  run.lower = pattern(n, samples, 62.0);
+  run.upper = pattern(n, samples, 63.0);
+  run.mode = Eigen::VectorXi::Constant(samples, 2);
+  return run;
+}
+
+FreeRunRow make_free_run_row(const std::string& filter, Index n) {
+  return {filter,
+          Role::test,
+          "*",
+          FreeRunMethod::paths,
+          8,
+          118,
+          1.5,
+          pattern(n, 1, 64.0),
+          pattern(n, 1, 65.0),
+          pattern(n, 1, 66.0),
+          pattern(n, 1, 67.0),
+          pattern(n, 1, 68.0),
+          pattern(n, 1, 69.0),
+          pattern(n, 1, 70.0),
+          3};
+}
+
 DiagnosticsRow make_diagnostics(const std::string& filter, Index n) {
   return {filter,
           Role::test,
@@ -115,6 +143,9 @@ void add_evaluation(Archive& archive) {
     archive.evaluations.push_back(evaluation);
     archive.summary.push_back(make_row(filter, Role::train, "run 2", n));
     archive.summary.push_back(make_row(filter, Role::test, "*", n));
+    for (const Trajectory& run : archive.recording->runs)
+      archive.evaluations.back().free_runs.push_back(make_free_run(n, run.samples()));
+    archive.free_runs.push_back(make_free_run_row(filter, n));
     archive.horizons.push_back({filter, Role::test, "*", 5, 118, 1.5, pattern(n, 1, 84.0)});
     archive.diagnostics.push_back(make_diagnostics(filter, n));
   }

@@ -2,6 +2,7 @@
 import {choice, choiceIfAny, controls, h, note} from './elements.js';
 import {autocorrelationLayout, autocorrelationTrace, outsideBars, outsideLayout, pitBars} from './filter_drawings.js';
 import {filterNames, kindNames, roleNames, roleOf, shortNames, sideNames, sidesOf} from './filters.js';
+import {drawFreeRun} from './free_run.js';
 import {section} from './page.js';
 import {dashedLine, figure, filterColour, greyBand, palette} from './plots.js';
 import {drawScores} from './run_scores.js';
@@ -169,5 +170,5 @@ export function drawFilter(filter, runs, state, options, picker) {
       modes > 1 ? options.modeLegend(modes) : null, filterPlot(runs, state, options),
       h('div', {class: 'pair'}, h('div', {}, histograms(filter)),
         h('div', {}, autocorrelations(filter, runs.states), outside(filter))),
-      drawScores(filter));
+      drawScores(filter), drawFreeRun(filter, runs, state));
 }

@@ -60,6 +60,22 @@ const horizonColumns = (filter) =>
      number(filter.rmse_name, 'rmse'),
 ];
 
+const freeRunColumns = (filter) =>
+    [whose,
+     whichRuns,
+     number('Measured first', 'start'),
+     number('Samples', 'samples'),
+     number('Log score [nats]', 'log_score'),
+     number(filter.rmse_name, 'rmse'),
+     number('NRMSE', 'nrmse'),
+     number('FIT [%]', 'fit'),
+     number('in 50 % band', 'coverage_50'),
+     number('in 95 %', 'coverage_95'),
+];
+
+export const freeRunTable = (filter) =>
+    table(freeRunColumns(filter), filter.free_runs, {caption: 'Free run, all runs together', sortable: true});
+
 export function drawScores(filter) {
   const of = (wanted) => filter.scores.filter((row) => (row.run === '*') === wanted);
   const scores = (wanted, caption) => table(scoreColumns(filter), of(wanted), {caption, sortable: true});

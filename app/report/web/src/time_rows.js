@@ -18,7 +18,7 @@ const shapeOf = (per) => (per === 1 ? 'hv' : 'linear');
 
 async function predictionTraces(layer, filter, i, {clock, shown}) {
   const edges = {
-    center: filter.prediction[i],
+    center: (filter.center || filter.prediction)[i],  // a free run's band need not be symmetric
     half: filter.half_width[i],
     lowest: filter.lower[i],
     highest: filter.upper[i],
@@ -75,7 +75,7 @@ export function stateRow(runs, i, layers, height = 230) {
     }
     traces.push(await measuredTrace(run.state[i], view));
     const [filter] = filters;
-    if (layers.length === 1 && filter && filter.outliers.count) {
+    if (layers.length === 1 && filter && filter.outliers && filter.outliers.count) {
       traces.push(await outlierTrace(filter.outliers, i, range));
     }
     return traces;

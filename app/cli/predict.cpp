@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <optional>
+
+#include "app/chain/stages.hpp"
+#include "app/chain/stored_banks.hpp"
+#include "app/cli/commands.hpp"
+#include "app/cli/live_filter.hpp"
+#include "app/config/config_file.hpp"
+#include "io/archive/archive.hpp"
+#include "io/archive/bank/load_bank.hpp"
+#include "io/files/replace_file.hpp"
+#include "io/import/import.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+bool given(const CommandLine& line, const std::string& key) {
+  return std::any_of(line.overrides.begin(), line.overrides.end(), [&](const auto& o) { return o.first == key; });
+}
+
+/// Where inputs are delayed by a lag that was estimated, new runs have the pooled one, as held-out runs had.
+void take_lag(const std::string& archive, DataOptions& data) {
+  const std::optional<LagReport> lag = read_archive(archive).lag;
+  data.lag_auto = false;
+  data.lag_s = lag && lag->correction != LagCorrection::none ? lag->lag.mean : 0.0;
+  if (lag && lag->correction == LagCorrection::drift)
+    spdlog::warn("{}: its lag drifts; new runs have the constant lag of {} s", archive, data.lag_s);
+}
+
+/// What the archive says of its own files does not hold for new ones: roles and places; their measurements may end.
+void turn_to_new_files(const CommandLine& line, DataOptions& data) {
+  const std::string& archive = line.files.front();
+  if (!given(line, "data.root")) data.root = std::filesystem::current_path().string();
+  if (!given(line, "data.states") && !data.states.empty())
+    throw ConfigurationError(
+        fmt::format("data.states: the states of {} came from files of their own ({}): name those of the new inputs, or "
+                    "--data.states= where they are columns of the same files",
+                    archive, data.states));
+  if (!given(line, "data.train")) data.train.clear();
+  if (!given(line, "data.test")) data.test.clear();
+  if (!given(line, "data.missing")) data.missing = Missing::predict;
+  data.truth.clear();
+  data.weight.clear();
+  if (data.lag_auto && !given(line, "data.lag_s")) take_lag(archive, data);
+}
+
+std::vector<FreeRun> predict_all(const std::string& archive, const Config& config, const Recording& recording) {
+  const FilterOptions options = tracked_options(config);
+  const FreeRunOptions how = scoring_inputs(chain_options(config)).free_run;
+  const auto check = [&](const Bank& bank) {
+    check_columns(config, bank, archive);
+    if (const std::string remark = period_remark(archive, bank, recording); !remark.empty()) spdlog::warn("{}", remark);
+  };
+  if (config.track.filter == TrackedFilter::drifting) {
+    const DriftingModel model = load_drifting(archive);
+    check(fixed_bank(model));
+    return free_runs(model, recording.runs, options.time_steps, how);
+  }
+  const Bank bank = load_bank(archive, tracked_bank(config));
+  check(bank);
+  return free_runs(bank, recording.runs, options, how);
+}
+
+/// A line per predicted sample; how many there are.
+Index write_csv(const Recording& recording, const std::vector<FreeRun>& predicted, fmt::memory_buffer& out) {
+  auto to = std::back_inserter(out);
+  fmt::format_to(to, "run,time");
+  for (const Channel& s : recording.states) fmt::format_to(to, ",{0}_predicted,{0}_sd,{0}_lower,{0}_upper", s.name);
+  fmt::format_to(to, ",mode\n");
+  Index lines = 0;
+  for (std::size_t r = 0; r < predicted.size(); ++r) {
+    const FreeRun& run = predicted[r];
+    for (Index k = 0; k < run.mode.size(); ++k) {
+      if (run.mode(k) < 0) continue;
+      ++lines;
+      fmt::format_to(to, "{},{}", recording.runs[r].run, recording.runs[r].time_s(k));
+      for (Index i = 0; i < run.mean.rows(); ++i)
+        fmt::format_to(to, ",{},{},{},{}", run.mean(i, k), run.deviation(i, k), run.lower(i, k), run.upper(i, k));
+      fmt::format_to(to, ",{}\n", run.mode(k));
+    }
+  }
+  return lines;
+}
+
+Config predict_config(const CommandLine& line) {
+  const std::string& archive = line.files.front();
+  Config config = stored_config(load_configuration(archive), line.overrides);
+  if (config.scoring.free_run.samples == 0)
+    throw ConfigurationError(
+        "predict needs the number of measured samples that it starts from: --samples N (filter.simulate)");
+  if (given(line, "data.inputs")) turn_to_new_files(line, config.data);
+  if (!line.output.empty()) check_writable(line.output);
+  return config;
+}
+
+}  // namespace
+
+int run_predict(const CommandLine& line) {
+  if (line.files.size() != 1)
+    throw ConfigurationError("predict needs one archive: modebank predict ARCHIVE --data.inputs FILES --samples N");
+  const Config config = predict_config(line);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
+  const ImportedData data = import_data(config.data);
+  for (const std::string& note : data.notes) spdlog::warn("{}", note);
+  const std::vector<FreeRun> predicted = predict_all(line.files.front(), config, data.recording);
+  for (const std::string& remark : remarks("bank", data.recording.runs, predicted)) spdlog::warn("{}", remark);
+  fmt::memory_buffer out;
+  if (write_csv(data.recording, predicted, out) == 0) throw DataError("nothing could be predicted");
+  const std::string_view text(out.data(), out.size());
+  if (line.output.empty())
+    fmt::print("{}", text);
+  else
+    replace_file(line.output, {text});
+  return 0;
+}
+
+}  // namespace modebank::app

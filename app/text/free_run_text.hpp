@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "io/archive/archive.hpp"
+
+namespace modebank::app {
+
+/// The table of free runs: every filter on the training and on the held-out runs; empty without filter.simulate.
+std::string free_run_text(const Archive& archive, int width = 0);
+
+}  // namespace modebank::app

@@ -1,0 +1,124 @@
+#include "filter/judge/sample_paths.hpp"
+
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "filter/step/equations/bounds.hpp"
+#include "ident/base/linalg.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
+  const SymmetricEigen parts = symmetric_eigen(covariance);
+  const Index directions = (parts.values.array() > 0.0).count();  // values increase: the last ones
+  return parts.vectors.rightCols(directions) * parts.values.tail(directions).cwiseSqrt().asDiagonal();
+}
+
+namespace {
+
+/// Every mode's next one by the matrix, whatever state and inputs are.
+TransitionRow constant_row(const Bank& bank, FilterVariant variant) {
+  if (variant == FilterVariant::mmae || bank.mode_count() == 1)
+    return [](Index mode, const auto&, const auto&, Eigen::VectorXd& row) { row.setZero()(mode) = 1.0; };
+  return [T = bank.transition.matrix()](Index mode, const auto&, const auto&, Eigen::VectorXd& row) {
+    row = T.row(mode).transpose();
+  };
+}
+
+}  // namespace
+
+SamplePaths::SamplePaths(const Bank& bank, const FilterOptions& options, Index paths, std::uint64_t seed,
+                         TransitionRow row)
+    : bank_(bank),
+      paths_(paths),
+      row_(row ? std::move(row) : constant_row(bank_, options.variant)),
+      generator_(seed),
+      probability_(bank.mode_count()),
+      regressor_(bank.structure.regressors()),
+      next_(bank.structure.dimension()) {
+  if (paths < 2) throw std::invalid_argument("at least two sample paths, not " + std::to_string(paths));
+  for (const Mode& mode : bank_.modes)
+    spread_root_.push_back(options.parameter_noise && mode.spread.size() > 0 ? covariance_root(mode.spread)
+                                                                             : Eigen::MatrixXd());
+}
+
+void SamplePaths::add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to) {
+  boost::random::normal_distribution<double> standard;
+  normal_.resize(root.cols());
+  for (double& value : normal_) value = standard(generator_);
+  to.noalias() += root * normal_;
+}
+
+Index SamplePaths::draw_mode(const Eigen::VectorXd& probability) {
+  double u = boost::random::uniform_01<double>()(generator_) * probability.sum();
+  Index mode = 0;
+  while (mode + 1 < probability.size() && (u -= probability(mode)) >= 0.0) ++mode;
+  while (mode > 0 && !(probability(mode) > 0.0)) --mode;  // by rounding alone
+  return mode;
+}
+
+void SamplePaths::start(const FilterMemory& origin) {
+  const Index n = next_.size();
+  std::vector<Eigen::MatrixXd> start_root;
+  noise_.clear();
+  noise_root_.clear();
+  for (Index j = 0; j < bank_.mode_count(); ++j) {
+    start_root.push_back(covariance_root(origin.covariances.col(j).reshaped(n, n)));
+    noise_.emplace_back(origin.noise_scale * bank_.modes[static_cast<std::size_t>(j)].Q);
+    noise_root_.push_back(covariance_root(noise_.back()));
+  }
+  states_.resize(n, paths_);
+  predicted_.resize(n, paths_);
+  modes_.resize(static_cast<std::size_t>(paths_));
+  lost_ = 0;
+  for (Index i = 0; i < paths_; ++i) {
+    const Index mode = draw_mode(origin.mode_probability);
+    modes_[static_cast<std::size_t>(i)] = mode;
+    states_.col(i) = origin.means.col(mode);
+    add_draw(start_root[static_cast<std::size_t>(mode)], states_.col(i));
+  }
+  predicted_ = states_;
+}
+
+/// What theta's spread adds to a step is (I (x) phi') d, d ~ N(0, spread).
+void SamplePaths::add_parameter_noise(Index mode, const Vector& state, const Vector& inputs) {
+  const Eigen::MatrixXd& root = spread_root_[static_cast<std::size_t>(mode)];
+  if (root.size() == 0) return;
+  fill_regressor(bank_.structure, state, inputs, regressor_);
+  deviation_.setZero(root.rows());
+  add_draw(root, deviation_);
+  const Index q = regressor_.size();
+  for (Index i = 0; i < bank_.structure.states; ++i) next_(i) += regressor_.dot(deviation_.segment(i * q, q));
+}
+
+void SamplePaths::step(const Vector& inputs) {
+  std::vector<Index> finite;
+  for (Index i = 0; i < count(); ++i) {
+    Index& mode = modes_[static_cast<std::size_t>(i)];
+    row_(mode, states_.col(i), inputs, probability_);
+    mode = draw_mode(probability_);
+    const LinearModel& model = bank_.modes[static_cast<std::size_t>(mode)].model;
+    propagate(model.A, model.B, model.c, states_.col(i), inputs, next_);
+    predicted_.col(i) = next_;
+    add_parameter_noise(mode, states_.col(i), inputs);
+    add_draw(noise_root_[static_cast<std::size_t>(mode)], next_);
+    states_.col(i) = next_;
+    if ((states_.col(i).array().abs() < largest_mean).all()) finite.push_back(i);
+  }
+  if (std::ssize(finite) < count()) keep(finite);
+}
+
+void SamplePaths::keep(const std::vector<Index>& which) {
+  lost_ += count() - std::ssize(which);
+  std::vector<Index> modes;
+  for (const Index i : which) modes.push_back(modes_[static_cast<std::size_t>(i)]);
+  modes_ = std::move(modes);
+  states_ = states_(Eigen::all, which).eval();
+  predicted_ = predicted_(Eigen::all, which).eval();
+}
+
+}  // namespace modebank

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "filter/step/bank.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "modebank/filter/options.hpp"
+
+namespace modebank {
+
+/// Fills `row` (K) with the probabilities of the mode that rules the next step, given the mode of the last one, the
+/// state (z with lags) before the step and the inputs that act on it.
+using TransitionRow = std::function<void(Eigen::Index mode, const Eigen::Ref<const Eigen::VectorXd>& state,
+                                         const Eigen::Ref<const Eigen::VectorXd>& inputs, Eigen::VectorXd& row)>;
+
+/// Random futures of a switching system, all from what a filter knows at one moment: each draws its state and mode
+/// there, then mode and noise in every step. One generator, path by path, so that equal seeds give equal paths.
+class SamplePaths {
+ public:
+  using Vector = Eigen::Ref<const Eigen::VectorXd>;
+
+  /// `row`: what the transition matrix is where it is not constant; empty: the bank's, or none (FilterVariant::mmae).
+  SamplePaths(const Bank& bank, const FilterOptions& options, Eigen::Index paths, std::uint64_t seed,
+              TransitionRow row = {});
+
+  void start(const FilterMemory& origin);
+  /// One model step of every path. One that leaves the finite range (beyond largest_mean) is lost from then on.
+  void step(const Vector& inputs);
+
+  Eigen::Index lost() const { return lost_; }
+  Eigen::Index count() const { return states_.cols(); }              ///< those that are left
+  const Eigen::MatrixXd& states() const { return states_; }          ///< n x count
+  const Eigen::MatrixXd& predicted() const { return predicted_; }    ///< n x count: before the last step's noise
+  const std::vector<Eigen::Index>& modes() const { return modes_; }  ///< count, of the last step
+  const Eigen::MatrixXd& step_noise(Eigen::Index mode) const { return noise_[static_cast<std::size_t>(mode)]; }  ///< Q
+  /// Adds a draw of N(0, root root').
+  void add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to);
+
+ private:
+  Bank bank_;
+  Eigen::Index paths_, lost_ = 0;
+  TransitionRow row_;
+  std::mt19937_64 generator_;
+  std::vector<Eigen::MatrixXd> noise_, noise_root_;  ///< K, scaled as at the origin
+  std::vector<Eigen::MatrixXd> spread_root_;         ///< K; empty: parameters are taken as known
+  Eigen::MatrixXd states_, predicted_;
+  std::vector<Eigen::Index> modes_;
+  Eigen::VectorXd probability_, regressor_, next_, normal_, deviation_;
+
+  Eigen::Index draw_mode(const Eigen::VectorXd& probability);
+  void add_parameter_noise(Eigen::Index mode, const Vector& state, const Vector& inputs);
+  void keep(const std::vector<Eigen::Index>& which);
+};
+
+/// A matrix whose product with its transpose is the covariance; of a singular one it has fewer columns than rows.
+Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance);
+
+}  // namespace modebank
