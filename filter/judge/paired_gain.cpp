@@ -32,7 +32,7 @@ SeriesByRun differences(const std::vector<Eigen::VectorXd>& better, const std::v
   return result;
 }
 
-double sum_of(const std::vector<double>& values, std::size_t first, std::size_t count) {
+double stretch_sum(const std::vector<double>& values, std::size_t first, std::size_t count) {
   double sum = 0.0;
   for (std::size_t k = first; k < first + count; ++k) sum += values[k];
   return sum;
@@ -46,7 +46,7 @@ MeanError error_by_runs(const SeriesByRun& d) {
   Eigen::VectorXd sums(std::ssize(d)), samples(std::ssize(d));
   for (Index r = 0; r < sums.size(); ++r) {
     const std::vector<double>& run = d[static_cast<std::size_t>(r)];
-    sums(r) = sum_of(run, 0, run.size());
+    sums(r) = stretch_sum(run, 0, run.size());
     samples(r) = static_cast<double>(run.size());
   }
   return {clustered_error(sums, samples), static_cast<double>(sums.size()) - 1.0};
@@ -60,7 +60,7 @@ MeanError error_by_blocks(const SeriesByRun& d, double mean, double samples) {
     const std::size_t whole_blocks = run.size() / length;
     side_by_side += static_cast<double>(whole_blocks);
     for (std::size_t first = 0; first + length <= run.size(); ++first) {
-      const double excess = sum_of(run, first, length) - mean * static_cast<double>(length);
+      const double excess = stretch_sum(run, first, length) - mean * static_cast<double>(length);
       squares += excess * excess;
       ++count;
     }

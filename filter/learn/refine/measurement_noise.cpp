@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "filter/learn/likelihood/information.hpp"
 #include "filter/learn/likelihood/standard_errors.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
 #include "ident/base/linalg.hpp"
@@ -15,6 +16,60 @@ namespace {
 
 // The search for R alone: its end is where the fit of everything begins.
 constexpr AscentLimits search_limits{30, 1e-7};
+constexpr double gradient_step = 1e-2;  // of coordinates, as for standard errors
+
+/// R = `share` of the mean Q, taken out of Q: white measurement noise of variance r enters a residual of exact states
+/// about twice.
+Bank with_share_as_R(Bank bank, double share) {
+  const Index n_y = bank.R.rows();
+  Eigen::VectorXd mean_Q = Eigen::VectorXd::Zero(n_y);
+  for (const Mode& mode : bank.modes) mean_Q += mode.weight * mode.Q.diagonal().head(n_y);
+  bank.R = (share * mean_Q).asDiagonal();
+  for (Mode& mode : bank.modes) mode.Q *= 1.0 - 2.0 * share;
+  return bank;
+}
+
+/// R of every output and one factor on Q.
+FreeParameters free_noise(Index n_y) {
+  FreeParameters free;
+  free.Q_by_one_factor = true;
+  free.R.resize(static_cast<std::size_t>(n_y));
+  std::iota(free.R.begin(), free.R.end(), Index{0});
+  free.least_R = Eigen::VectorXd::Zero(n_y);
+  free.transition = false;
+  return free;
+}
+
+/// Whether a step of Newton's method from `start`, by the information of single samples, leads above `level`.
+bool promises(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start, double level) {
+  const BankCoordinates around(start, free);
+  const SampleGradients gradients = sample_gradients(around, Eigen::VectorXd::Constant(around.size(), gradient_step),
+                                                     target.recording, target.filter);
+  const Cholesky information(gradients.information);
+  if (!information.definite() || !gradients.sum.allFinite()) return false;
+  return target.value(start) + 0.5 * information.whiten(gradients.sum).squaredNorm() > level;
+}
+
+/// The fit that took the state as measured exactly has its theta drawn to errors in variables, at times so far that
+/// with this theta no R is likelier than none. Then theta is searched with R and one factor on Q, if the gradient
+/// promises anything. Empty where that does not lead above the bank by least_gain per sample either.
+std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const RefineInput& in,
+                                        const SwitchingPrior& prior, const Bank& bank) {
+  const RefineTuning& tuning = in.options.tuning;
+  const TrainingTransitions transitions = gather_training_transitions(target.recording, bank.structure);
+  const SwitchingSums sums = sum_transitions(transitions, smooth_modes(transitions, switching_model(bank)), prior);
+  FreeParameters free = free_noise(bank.R.rows());
+  free.theta_unit =
+      all_parameters(bank, sums, prior, in.options.one_theta, false, least_measurement_noise(in.fits, tuning))
+          .theta_unit;
+  const double level =
+      target.value(bank) + tuning.least_gain * static_cast<double>(target.recording.transitions(Role::train));
+  const Bank start = with_share_as_R(bank, tuning.R_start_share_with_theta);
+  if (!promises(target, free, start, level)) return std::nullopt;
+  LikelihoodMaximum end = maximise_likelihood(target, free, start, search_limits);
+  if (!(std::isfinite(end.value) && end.value > level)) return std::nullopt;
+  return std::move(end.bank);
+}
 
 /// Theta, Q, T and (where it is to be estimated) R of a bank together, from there to the maximum on these runs.
 LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const RefineInput& in, const Bank& bank) {
@@ -43,8 +98,10 @@ class MeasuredSplits {
   /// R of each split; a split may ask for none.
   void estimate_R() {
     for_each([&](const SplitData& split, Bank& bank) {
-      MeasurementNoise noise =
-          estimate_measurement_noise({split.runs.training, in_.filter, std::nullopt}, bank, in_.options.tuning);
+      const LikelihoodTarget target{split.runs.training, in_.filter, std::nullopt};
+      MeasurementNoise noise = estimate_measurement_noise(target, bank, in_.options.tuning);
+      if (!noise.bank)
+        noise.bank = estimate_with_theta(target, in_, prior_of_split(in_, split, chosen_.noise_transitions), bank);
       if (noise.bank) bank = std::move(*noise.bank);
     });
   }
@@ -72,30 +129,15 @@ class MeasuredSplits {
   std::vector<Bank> banks_;
 };
 
-/// The target's maximum over R and one factor on Q, from R = `share` of the mean Q.
-LikelihoodMaximum maximise_from_share(const LikelihoodTarget& target, Bank bank, double share) {
-  const Index n_y = bank.R.rows();
-  Eigen::VectorXd mean_Q = Eigen::VectorXd::Zero(n_y);
-  for (const Mode& mode : bank.modes) mean_Q += mode.weight * mode.Q.diagonal().head(n_y);
-  bank.R = (share * mean_Q).asDiagonal();
-  // White measurement noise of variance r enters a residual of exact states about twice.
-  for (Mode& mode : bank.modes) mode.Q *= 1.0 - 2.0 * share;
-  FreeParameters free;
-  free.Q_by_one_factor = true;
-  free.R.resize(static_cast<std::size_t>(n_y));
-  std::iota(free.R.begin(), free.R.end(), Index{0});
-  free.least_R = Eigen::VectorXd::Zero(n_y);
-  free.transition = false;
-  return maximise_likelihood(target, free, bank, search_limits);
-}
-
 }  // namespace
 
 MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
                                             const RefineTuning& tuning) {
   std::vector<LikelihoodMaximum> ends(tuning.R_start_shares.size());
-  tbb::parallel_for(std::size_t{0}, ends.size(),
-                    [&](std::size_t i) { ends[i] = maximise_from_share(target, bank, tuning.R_start_shares[i]); });
+  tbb::parallel_for(std::size_t{0}, ends.size(), [&](std::size_t i) {
+    ends[i] = maximise_likelihood(target, free_noise(bank.R.rows()), with_share_as_R(bank, tuning.R_start_shares[i]),
+                                  search_limits);
+  });
   MeasurementNoise result;
   result.starts = std::ssize(ends);
   const double transitions = static_cast<double>(target.recording.transitions(Role::train));
@@ -138,6 +180,7 @@ MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValida
     MeasurementNoise noise = estimate_measurement_noise({in.recording, in.filter, std::nullopt}, bank, tuning);
     stage.starts = noise.starts;
     stage.failed_starts = noise.failed_starts;
+    if (!noise.bank) noise.bank = estimate_with_theta({in.recording, in.filter, std::nullopt}, in, prior, bank);
     if (!noise.bank) return result;
     if (splits) {
       const double without_R = splits->score();

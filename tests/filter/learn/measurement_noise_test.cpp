@@ -185,8 +185,9 @@ TEST(RefineMeasured, ScoresAreOfFitsThatLeaveTheRunOut) {
   CrossValidation validation(in);
   const RefineStart start{"mixture", switching_model(frame), 4.0};
   validation.consider({start});
-  const MeasurementStage stage =
-      fit_with_measurement_noise(in, validation, in.prior(4.0), validation.chosen().banks.front()).stage;
+  const MeasurementStage stage = fit_with_measurement_noise(in, validation, {validation.chosen().banks, 4.0, 0.0},
+                                                            in.prior(4.0), validation.chosen().banks.front())
+                                     .stage;
   double expected = 0.0, samples = 0.0;
   std::vector<double> R;
   for (std::size_t s = 0; s < validation.splits().size(); ++s) {

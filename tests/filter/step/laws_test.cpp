@@ -37,7 +37,7 @@ TEST(MixingWeights, PredictedProbabilitiesFollowTheRowsOfTheTransitionMatrix) {
   const TransitionMatrix T((Eigen::MatrixXd(2, 2) << 0.95, 0.05, 0.10, 0.90).finished());
   Eigen::VectorXd c(2);
   MixingWeights weights{Eigen::MatrixXd(2, 2)};
-  mixing_weights(T, Eigen::Vector2d(0.7, 0.3), c, weights);
+  mixing_weights(T.matrix(), Eigen::Vector2d(0.7, 0.3), c, weights);
   EXPECT_TRUE(near(c, Eigen::Vector2d(0.695, 0.305), rounding));
   EXPECT_TRUE(near(weights.matrix.colwise().sum(), Eigen::RowVector2d::Ones(), rounding));
   EXPECT_NEAR(weights.matrix(1, 0), 0.3 * 0.10 / 0.695, rounding);

@@ -57,6 +57,8 @@ struct RefineTuning {
   /// Of the mean Q, where the searches for R start; below a half, because R counts twice in what Q held. From 5 % alone
   /// an R of a per cent of Q, or of many times Q, could be missed.
   std::array<double, 4> R_start_shares{0.05, 0.005, 0.2, 0.45};
+  /// The same where theta is searched, too, because with the theta of exact states no R was likelier than none.
+  double R_start_share_with_theta = 0.2;
   double least_gain = 1e-3;  ///< nats per sample for R, for its fit and for one more member: less would not survive
                              ///< on other runs (seeds move held-out scores by 0.03 to 0.07)
 };
