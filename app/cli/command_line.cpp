@@ -25,6 +25,7 @@ po::options_description describe_options(CommandLine& line) {
   add("markdown", po::bool_switch(&line.markdown));
   add("json", po::bool_switch(&line.json));
   add("repair", po::bool_switch(&line.repair));
+  add("findings", po::bool_switch(&line.findings));
   add("apply", po::bool_switch(&line.apply));
   add("form", po::value(&line.form));
   add("output,o", po::value(&line.output));

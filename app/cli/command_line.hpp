@@ -16,6 +16,7 @@ struct CommandLine {
   bool markdown = false;  ///< help: the table of keys as README holds it
   bool json = false;
   bool repair = false;             ///< verify: remove what is broken in study folders
+  bool findings = false;           ///< check: what it finds, without settings to try
   bool apply = false;              ///< check: write what it suggests
   std::string form = "increment";  ///< of models that `show` prints: increment or full
   std::string output;              ///< -o: the file that `report`, `predict` or `check --apply` writes

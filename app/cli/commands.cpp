@@ -31,7 +31,8 @@ constexpr Command commands[] = {
      run_pipeline},
     {"check", "CONFIG",
      "advice on the data before identification, run by run, and settings that gain in cross-validation; --json; "
-     "--apply -o FILE writes the configuration with them",
+     "--apply -o FILE writes the configuration with them; --findings leaves the settings out, which take minutes on "
+     "large data",
      run_check},
     {"simulate", "CONFIG", "write runs with known truth in the CSV layout that run reads", run_simulate},
     {"study", "CONFIG", "a parameter study: plans, runs and merges, resuming what is done; --study.stage does one step",
@@ -58,7 +59,7 @@ std::string help_text() {
     text += fmt::format("  {:<24} {}\n", fmt::format("{} {}", command.name, command.arguments), command.help);
   text +=
       "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report, predict, check), "
-      "--apply (check), --repair (verify).\n"
+      "--apply, --findings (check), --repair (verify).\n"
       "Every configuration key is an option too, and wins over the file. Exit status: 0 done; 2 usage, configuration "
       "or "
       "path; 1 content or run failure. `modebank help TERM` says what a word of the summary or a key means.\n";

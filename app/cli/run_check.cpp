@@ -22,6 +22,8 @@ void require_usage(const CommandLine& line) {
     throw ConfigurationError("--apply: name the configuration file to write: modebank check CONFIG --apply -o FILE");
   if (!line.apply && !line.output.empty())
     throw ConfigurationError("-o: check writes a file with --apply only: modebank check CONFIG --apply -o FILE");
+  if (line.apply && line.findings)
+    throw ConfigurationError("--findings tries no settings, so --apply has none to write");
 }
 
 /// A configuration must not take the place of what it was made from.
@@ -48,13 +50,13 @@ Suggestions tell(const CommandLine& line, const Config& config, const DataCheck&
   const std::vector<std::string> findings = findings_of(check, config);
   if (!line.json) fmt::print("{}", check_text(check, findings));
   std::fflush(stdout);
-  const bool usable = check.unusable.empty();
-  const Suggestions suggestions = usable ? suggest(chain_options(config), check, ScoringLog()) : Suggestions{};
+  const bool usable = check.unusable.empty(), scored = usable && !line.findings;
+  const Suggestions suggestions = scored ? suggest(chain_options(config), check, ScoringLog()) : Suggestions{};
   if (line.json) {
     nlohmann::json page = check_json(check, findings);
-    page["suggestions"] = usable ? suggestions_json(suggestions, config) : nlohmann::json(nullptr);
+    page["suggestions"] = scored ? suggestions_json(suggestions, config) : nlohmann::json(nullptr);
     fmt::print("{}\n", page.dump(2));
-  } else if (usable) {
+  } else if (scored) {
     fmt::print("{}", suggestions_text(suggestions, config));
   }
   std::fflush(stdout);

@@ -15,9 +15,9 @@ const std::filesystem::path shared_data = shared_data_dir();
 
 class CheckOfRealData : public Check {
  protected:
-  json real(const std::string& data_section) const {
+  json real(const std::string& data_section, std::vector<std::string> options = {"--findings"}) const {
     write("real.ini", "[data]\nroot = " + shared_data.string() + "\n" + data_section);
-    return check_json(file("real.ini").string());
+    return check_json(file("real.ini").string(), std::move(options));
   }
 };
 
@@ -114,7 +114,8 @@ TEST_F(CheckOfRealData, SuggestsForIceWhatGainsAndNamesWhatDoesNot) {
   const json said =
       real(
           "inputs = borealtc/ICE/pro_*.csv\nstates = borealtc/ICE/imu_*.csv\nstate = wz\ninput = velL, velR\n"
-          "[mixture]\ncomponents = 3\n")
+          "[mixture]\ncomponents = 3\n",
+          {})
           .at("suggestions");
   EXPECT_EQ(said.at("training_runs"), 6);
   EXPECT_TRUE(said.at("whole_runs_left_out").get<bool>());

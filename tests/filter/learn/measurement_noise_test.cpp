@@ -165,6 +165,34 @@ TEST(EstimateMeasurementNoise, AStartThatFailsIsCountedAndTheOthersDecide) {
   EXPECT_FALSE(all_failed.bank);
 }
 
+/// Of 50 known systems one was told R = 0 and lost 0.12 nats: with the theta of exact states no R was likelier than
+/// none.
+TEST(RefineMeasured, FindsRThatThetaHides) {
+  SystemTruth truth;
+  truth.theta.col(1) = truth.theta.col(0);
+  truth.Q(1) = truth.Q(0);
+  const Recording recording = measured_runs(truth, 4, 800, 5);
+  const WindowFits fits = test::windows_of(recording, 25, 1);
+  const TrainingTransitions transitions = gather_training_transitions(recording, test::structure_of(recording));
+  const Eigen::VectorXd theta = truth.theta.col(0) - Eigen::Vector2d(0.4, 0.0);
+  const Eigen::VectorXd residual = transitions.data.increments - transitions.data.regressors * theta;
+  const Bank drawn =
+      bank_of(recording, theta,
+              Eigen::VectorXd::Constant(1, residual.squaredNorm() / static_cast<double>(residual.size())), 1e-9);
+  const LikelihoodTarget target{recording, {}, std::nullopt};
+  ASSERT_FALSE(estimate_measurement_noise(target, drawn, {}).bank);
+  RefineOptions options;
+  options.folds = 1;
+  const FilterOptions filter;
+  const RefineInput in{recording, fits, drawn, transitions, options, filter};
+  const CrossValidation validation(in);
+  const std::vector<Bank> none;
+  const MeasuredBank measured = fit_with_measurement_noise(in, validation, {none, 4.0, 0.0}, in.prior(4.0), drawn);
+  EXPECT_TRUE(measured.R_estimated);
+  EXPECT_NEAR(measured.bank.R(0, 0), truth.R, 0.2 * truth.R);
+  EXPECT_NEAR(measured.bank.theta(0)(0), truth.theta(0, 0), 0.05);
+}
+
 /// Nothing of a fit has seen the runs it is scored on, its R neither: here the last run is measured ten times as badly.
 TEST(RefineMeasured, ScoresAreOfFitsThatLeaveTheRunOut) {
   SystemTruth truth;
