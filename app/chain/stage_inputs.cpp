@@ -44,6 +44,9 @@ ScoringOptions scoring_inputs(const ChainOptions& options) {
   ScoringOptions scoring = options.scoring;
   FreeRunOptions& free_run = scoring.free_run;
   if (free_run.samples == 0) free_run = {};  // one key for what is the same
+  // Where state and input move the switches, moments do not know where each path switches.
+  if (options.bank.transition == TransitionSource::logit && free_run.samples > 0)
+    free_run.method = FreeRunMethod::paths;
   const bool drawn = free_run.method == FreeRunMethod::paths;
   free_run.seed = drawn ? options.seed : 0;
   if (!drawn) free_run.paths = 0;

@@ -20,12 +20,14 @@ Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
 
 namespace {
 
-/// Every mode's next one by the matrix, whatever state and inputs are.
-TransitionRow constant_row(const Bank& bank, FilterVariant variant) {
+/// Every mode's next one by the bank's matrix, at the path's own state where that matters.
+TransitionRow bank_row(const Bank& bank, FilterVariant variant) {
   if (variant == FilterVariant::mmae || bank.mode_count() == 1)
     return [](Index mode, const auto&, const auto&, Eigen::VectorXd& row) { row.setZero()(mode) = 1.0; };
-  return [T = bank.transition.matrix()](Index mode, const auto&, const auto&, Eigen::VectorXd& row) {
-    row = T.row(mode).transpose();
+  return [T = bank.transition.matrix(), logit = bank.transition_logit,
+          at = TransitionWorkspace(bank.mode_count(), bank.transition_logit)](
+             Index mode, const auto& state, const auto& inputs, Eigen::VectorXd& row) mutable {
+    row = transition_at(T, logit, state, inputs, at).row(mode).transpose();
   };
 }
 
@@ -35,7 +37,7 @@ SamplePaths::SamplePaths(const Bank& bank, const FilterOptions& options, Index p
                          TransitionRow row)
     : bank_(bank),
       paths_(paths),
-      row_(row ? std::move(row) : constant_row(bank_, options.variant)),
+      row_(row ? std::move(row) : bank_row(bank_, options.variant)),
       generator_(seed),
       probability_(bank.mode_count()),
       regressor_(bank.structure.regressors()),

@@ -71,7 +71,7 @@ std::vector<Option> filter_options() {
             MODEBANK_FIELD(scoring.free_run.start)),
       words("filter.simulate_method",
             "of the free run: the modes' probabilities, means and covariances, exact for a constant transition matrix, "
-            "each mode taken for a Gaussian; or sample paths",
+            "each mode taken for a Gaussian; or sample paths, which bank.transition = logit always takes",
             MODEBANK_FIELD(scoring.free_run.method)),
       numeric("filter.paths", between(10, 1'000'000), "", "sample paths of a free run by paths",
               MODEBANK_FIELD(scoring.free_run.paths)),

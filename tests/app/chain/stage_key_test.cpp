@@ -154,6 +154,7 @@ const std::vector<RuledOut> ruled_out{
     {"window.residual", "does not simulate model = varx"},
     {"window.scale", "window.scale = fixed needs window.sigma"},
     {"window.sigma", "window.scale = fixed needs window.sigma"},
+    {"bank.transition", "bank.transition = logit"},
     {"mixture.bootstrap", "needs 2 resamples or more"},
     {"mixture.covariance_floor", "needs a finite covariance_floor"},
 };
