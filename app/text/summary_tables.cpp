@@ -171,6 +171,27 @@ std::string motion_parameters_text(const Bank& bank, int width) {
 
 }  // namespace
 
+/// The weights of switches that see state and input.
+std::string switches_text(const Bank& bank, int width) {
+  const TransitionLogit& logit = bank.transition_logit;
+  if (logit.empty()) return "";
+  std::vector<TextTable::Column> columns{{"mode", 4}};
+  for (const std::string& label : regressor_labels(bank.structure, bank.state_names, bank.input_names))
+    columns.push_back({label, 20});
+  TextTable table(std::move(columns));
+  for (Index k = 0; k < bank.mode_count(); ++k) {
+    std::vector<std::string> cells{std::to_string(k)};
+    for (Index a = 0; a < logit.weights.cols(); ++a)
+      cells.push_back(bank.transition_weight_error.allFinite() && bank.transition_weight_error.size() > 0
+                          ? estimate(logit.weights(k, a), bank.transition_weight_error(k, a))
+                          : fmt::format("{:.4f}", logit.weights(k, a)));
+    table.add(std::move(cells));
+  }
+  return "\nswitches to each mode: log odds per unit of state and input (no error: data say that they are large, no "
+         "more)\n" +
+         table.text(width);
+}
+
 std::string modes_text(const Bank& bank, bool full_form, int width) {
   std::vector<TextTable::Column> columns{{"mode", 4}, {"weight", 7}};
   const std::vector<std::string> labels = parameter_labels(bank.structure, bank.state_names, bank.input_names),
@@ -189,7 +210,7 @@ std::string modes_text(const Bank& bank, bool full_form, int width) {
     cells.push_back(fmt::format("{:.4g}", fmt::join(mode.Q.diagonal().cwiseSqrt().eval(), " ")));
     table.add(std::move(cells));
   }
-  return table.text(width) + motion_parameters_text(bank, width);
+  return table.text(width) + motion_parameters_text(bank, width) + switches_text(bank, width);
 }
 
 }  // namespace modebank::app

@@ -23,17 +23,25 @@ std::vector<std::string> channel_names(const std::vector<std::string>& names, Ei
 
 }  // namespace
 
-std::vector<std::string> parameter_labels(const LinearStructure& s, const std::vector<std::string>& states,
+std::vector<std::string> regressor_labels(const LinearStructure& s, const std::vector<std::string>& states,
                                           const std::vector<std::string>& inputs) {
   const std::vector<std::string> x = channel_names(states, s.states, 'x'), u = channel_names(inputs, s.inputs, 'u');
   std::vector<std::string> labels;
-  const auto add = [&](const std::string& row, const std::vector<std::string>& names, Eigen::Index lag) {
+  const auto add = [&](const std::vector<std::string>& names, Eigen::Index lag) {
     for (const std::string& name : names)
-      labels.push_back(row + " <- " + name + (s.lagged() ? " (lag " + std::to_string(lag) + ")" : ""));
+      labels.push_back(name + (s.lagged() ? " (lag " + std::to_string(lag) + ")" : ""));
   };
-  for (const std::string& row : x) {
-    for (Eigen::Index lag = 1; lag <= s.state_lags; ++lag) add(row, x, lag);
-    for (Eigen::Index lag = s.input_delay; lag < s.input_delay + s.input_lags; ++lag) add(row, u, lag);
+  for (Eigen::Index lag = 1; lag <= s.state_lags; ++lag) add(x, lag);
+  for (Eigen::Index lag = s.input_delay; lag < s.input_delay + s.input_lags; ++lag) add(u, lag);
+  return labels;
+}
+
+std::vector<std::string> parameter_labels(const LinearStructure& s, const std::vector<std::string>& states,
+                                          const std::vector<std::string>& inputs) {
+  const std::vector<std::string> regressors = regressor_labels(s, states, inputs);
+  std::vector<std::string> labels;
+  for (const std::string& row : channel_names(states, s.states, 'x')) {
+    for (const std::string& regressor : regressors) labels.push_back(row + " <- " + regressor);
     if (s.intercept) labels.push_back(row + " <- 1");
   }
   return labels;

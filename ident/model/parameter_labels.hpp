@@ -15,6 +15,10 @@ namespace modebank {
 std::vector<std::string> parameter_labels(const LinearStructure& structure, const std::vector<std::string>& states,
                                           const std::vector<std::string>& inputs);
 
+/// What predicts, without the constant: "wz (lag 2)", "velL".
+std::vector<std::string> regressor_labels(const LinearStructure& structure, const std::vector<std::string>& states,
+                                          const std::vector<std::string>& inputs);
+
 /// Of windows; a motion model's parameters have names of their own.
 std::vector<std::string> parameter_labels(const WindowFits& fits, const std::vector<std::string>& states,
                                           const std::vector<std::string>& inputs);

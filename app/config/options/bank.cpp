@@ -25,7 +25,7 @@ std::vector<Option> bank_options() {
               MODEBANK_FIELD(bank.modes)),
       words("bank.refine",
             "em: expectation-maximisation of the switching model from the mixture's start; auto: that, but none for a "
-            "motion model and where bank.theta, bank.noise or bank.transition is not the default, which em would undo",
+            "motion model and where bank.theta, bank.noise or bank.transition = stay ask for what em would undo",
             MODEBANK_FIELD(bank.refine)),
       numeric("bank.restarts", between(0, 1000), "",
               "starts of em from random stretches of runs, besides the mixture's", MODEBANK_FIELD(bank.em.restarts)),

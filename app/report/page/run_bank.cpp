@@ -96,6 +96,22 @@ json transition_of(const Bank& bank) {
   return rows;
 }
 
+/// The weights of switches that see state and input; null where they do not.
+json switch_weights_of(const Bank& bank) {
+  const TransitionLogit& logit = bank.transition_logit;
+  if (logit.empty()) return nullptr;
+  json rows = json::array();
+  for (Index k = 0; k < bank.mode_count(); ++k) {
+    json row = json::array();
+    for (Index a = 0; a < logit.weights.cols(); ++a)
+      row.push_back(bank.transition_weight_error.size() > 0 && bank.transition_weight_error.allFinite()
+                        ? estimate(logit.weights(k, a), bank.transition_weight_error(k, a))
+                        : number(logit.weights(k, a)));
+    rows.push_back(row);
+  }
+  return {{"names", regressor_labels(bank.structure, bank.state_names, bank.input_names)}, {"rows", rows}};
+}
+
 json screened_of(const Bank& bank) {
   json list = json::array();
   for (const ScreenedMode& mode : bank.screened)
@@ -143,6 +159,7 @@ nlohmann::json bank_section(const Archive& archive) {
           {"noise_name", with_unit("step noise sd", common_unit(recording.states))},
           {"R", number_list(bank.R.diagonal())},
           {"transition", transition_of(bank)},
+          {"switch_weights", switch_weights_of(bank)},
           {"screened", screened_of(bank)},
           {"merged", merging_of(archive, role)},
           {"refined", archive.unrefined.has_value()}};

@@ -103,7 +103,7 @@ void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior,
 
 /// Errors of the logit's weights that the data determine. Where a mode begins at a border that no sample lies on, data
 /// say no more than that weights are large: their error is about the prior's, or they were still growing when
-/// expectation-maximisation stopped. Then none is stated of that mode.
+/// expectation-maximisation stopped. Then none is stated.
 Eigen::VectorXd determined(const Eigen::VectorXd& error, const Eigen::VectorXd& step, const Eigen::VectorXd& prior_sd) {
   constexpr double most = 0.5;  // of the prior's standard deviation, and of the error still to go
   const bool all = (error.array() < most * prior_sd.array()).all() && (step.array().abs() < most * error.array()).all();
@@ -128,6 +128,8 @@ void set_observed_errors(const ParameterPlaces& at, const Observed& observed, co
                      observed.newton_step.segment(at.weights(j), at.regressors), prior.weight_sd)
               .transpose();
   }
+  // Weights of modes are about each other: of one that is not known the others are not either.
+  if (!bank.transition_weight_error.allFinite()) bank.transition_weight_error.setConstant(not_a_number);
   if (at.outputs > 0) bank.R_standard_error = error.segment(at.R(), at.outputs).asDiagonal().toDenseMatrix();
 }
 

@@ -117,6 +117,19 @@ function transitionMap(transition) {
       'Transition probabilities as a map; the matrix in numbers stands below', () => ({traces: [trace], layout}));
 }
 
+/** The weights of switches that see state and input. */
+function switchWeights(weights) {
+  const first = {name: 'to', text: true, of: (row) => `mode ${row.k}`, swatch: (row) => modeColour(row.k)};
+  const columns = [first, ...weights.names.map((name, i) => ({name, of: (row) => row.cells[i]}))];
+  return [
+    note(
+        'State and input move these switches: the matrix holds where they are at their training mean, and each unit ' +
+        'more adds the weights to the log odds of a mode. Where no error stands, data say that a weight is large and ' +
+        'no more: a hard border.'),
+    table(columns, weights.rows.map((cells, k) => ({cells, k})), {caption: 'Log odds per unit of state and input'}),
+  ];
+}
+
 function switching(bank) {
   if (bank.modes.length < 2) return note('One mode: it has nothing to switch to.');
   const matrix = details('The matrix in numbers', transitionTable(bank.transition));
@@ -128,6 +141,7 @@ function switching(bank) {
   return [
     h('h3', {}, 'How modes follow each other'),
     pair,
+    bank.switch_weights ? switchWeights(bank.switch_weights) : null,
     matrix,
     stays ? [h('h3', {}, 'How long they last'), dwellFigure(bank), dwellTable(bank)] : null,
   ];
