@@ -90,7 +90,11 @@ class StageKey : public ::testing::Test {
 };
 
 const std::vector<KeyValues> bases{
-    {{"bank.modes", "2"}, {"bank.refine", "none"}, {"filter.simulate", "5"}, {"filter.simulate_method", "paths"}},
+    {{"bank.modes", "2"},
+     {"bank.refine", "none"},
+     {"filter.simulate", "5"},
+     {"filter.simulate_method", "paths"},
+     {"filter.paths", "10"}},
     {{"bank.modes", "2"}, {"bank.refine", "em"}},
     {{"bank.refine", "em"}, {"bank.members", "2"}, {"filter.noise", "adaptive"}},
     {{"window.model", "varx"}, {"bank.modes", "2"}},
