@@ -96,7 +96,7 @@ std::optional<Guards> choose_guards(const RefineInput& in, const CrossValidation
   }
   if (sizes.empty()) return std::nullopt;
   Guards best = sizes[fewest_modes_as_good(scores, validation.samples(), tuning.most_loss)];
-  const ScoredFit constant = validation.of_start(best.fit.row);
+  const ScoredFit& constant = validation.of_start(best.fit.row);
   for (const double width : tuning.other_weight_widths)
     if (Guards other = scored(in, validation, constant, width); higher(other, best)) best = std::move(other);
 
