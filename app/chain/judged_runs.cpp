@@ -6,6 +6,12 @@ const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, 
   return modebank::pooled_row(archive.summary, filter, role);
 }
 
+const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filter, Role role, Eigen::Index mode) {
+  for (const DiagnosticsRow& row : archive.diagnostics)
+    if (row.filter == filter && row.role == role && row.mode == mode) return &row;
+  return nullptr;
+}
+
 Role judged_role(const Archive& archive) { return modebank::judged_role(archive.summary); }
 
 const char* words_for(Role role) { return role == Role::test ? "held-out" : "training"; }

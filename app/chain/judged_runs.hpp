@@ -9,6 +9,9 @@ namespace modebank {
 /// The summary's row of a filter over all runs of a role; null without.
 const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role);
 
+/// The row of a filter's mode over all runs of a role; null without. mode -1: the whole filter.
+const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filter, Role role, Eigen::Index mode = -1);
+
 /// The runs that filters are judged on: those held out, or, where nothing was, those they learned from.
 Role judged_role(const Archive& archive);
 

@@ -62,20 +62,13 @@ std::string read_words(const Archive& archive) {
   return text;
 }
 
-const DiagnosticsRow* diagnosis_of_bank(const Archive& archive) {
-  const Role role = judged_role(archive);
-  for (const DiagnosticsRow& row : archive.diagnostics)
-    if (row.filter == "bank" && row.role == role && row.mode < 0) return &row;
-  return nullptr;
-}
-
 std::string verdict_words(Verdict verdict) {
   if (verdict == Verdict::undecided) return "undecided, for too few samples";
   return fmt::format("{}, {}", name_of(verdict), calibration_words(verdict));
 }
 
 std::string trust_words(const Archive& archive) {
-  const DiagnosticsRow* row = diagnosis_of_bank(archive);
+  const DiagnosticsRow* row = diagnosis(archive, "bank", judged_role(archive));
   if (!row) return "";
   return fmt::format(
       "{:.1f} % [{:.1f}, {:.1f}] of the {} samples lie in the 95 % band: {}; {:.1f} % in the 50 %, {:.1f} % in the "

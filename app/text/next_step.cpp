@@ -122,11 +122,8 @@ const Rule rules[] = {
 }  // namespace
 
 std::string next_step(const Archive& archive, const Settings& settings) {
-  const Role role = judged_role(archive);
-  const auto row = std::find_if(archive.diagnostics.begin(), archive.diagnostics.end(), [&](const DiagnosticsRow& r) {
-    return r.filter == "bank" && r.role == role && r.mode < 0;
-  });
-  if (!archive.finding || row == archive.diagnostics.end()) return "";
+  const DiagnosticsRow* const row = diagnosis(archive, "bank", judged_role(archive));
+  if (!archive.finding || !row) return "";
   const Situation situation{archive, settings, *archive.finding, *row};
   return std::find_if(std::begin(rules), std::end(rules), [&](const Rule& rule) { return rule.applies(situation); })
       ->advice(situation);

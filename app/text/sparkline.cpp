@@ -99,9 +99,8 @@ std::string mode_strip_text(const Archive& archive, const Terminal& terminal) {
   }
   for (std::size_t k = 0; k < lines.size(); ++k) {
     text += fmt::format("{:>4} {}", k, lines[k]);
-    for (const DiagnosticsRow& row : archive.diagnostics)
-      if (row.filter == "bank" && row.role == role && row.mode == static_cast<Index>(k))
-        text += fmt::format(" {:>3.0f} %", 100 * row.usage);
+    if (const DiagnosticsRow* row = diagnosis(archive, "bank", role, static_cast<Index>(k)))
+      text += fmt::format(" {:>3.0f} %", 100 * row->usage);
     text += "\n";
   }
   return text;

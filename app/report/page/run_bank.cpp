@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "app/chain/judged_runs.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
@@ -41,12 +42,6 @@ json mode_row(const Bank& bank, Index k) {
                                 per_sample_words(dynamics.decays))},
           {"decays", decays_cell(dynamics.decays)},
           {"gains", gains}};
-}
-
-const DiagnosticsRow* mode_diagnosis(const Archive& archive, Role role, Index mode) {
-  for (const DiagnosticsRow& row : archive.diagnostics)
-    if (row.filter == "bank" && row.role == role && row.mode == mode) return &row;
-  return nullptr;
 }
 
 void add_diagnosis(json& row, const DiagnosticsRow& diagnosis, double dt_s) {
@@ -141,11 +136,11 @@ nlohmann::json bank_section(const Archive& archive) {
   const Bank& bank = *archive.bank;
   const Recording& recording = *archive.recording;
   const Units units(recording);
-  const Role role = mode_diagnosis(archive, Role::test, -1) ? Role::test : Role::train;
+  const Role role = diagnosis(archive, "bank", Role::test) ? Role::test : Role::train;
   json modes = json::array();
   for (Index k = 0; k < bank.mode_count(); ++k) {
     modes.push_back(mode_row(bank, k));
-    if (const DiagnosticsRow* row = mode_diagnosis(archive, role, k)) add_diagnosis(modes.back(), *row, bank.dt_s);
+    if (const DiagnosticsRow* row = diagnosis(archive, "bank", role, k)) add_diagnosis(modes.back(), *row, bank.dt_s);
   }
   return {{"modes", modes},
           {"baseline", archive.baseline ? mode_row(*archive.baseline, 0) : json()},

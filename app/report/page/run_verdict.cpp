@@ -11,12 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filter, Role role) {
-  for (const DiagnosticsRow& row : archive.diagnostics)
-    if (row.filter == filter && row.role == role && row.mode < 0) return &row;
-  return nullptr;
-}
-
 /// One of the numbers that decide, for every filter.
 json decisive(const Archive& archive, Role role, const std::string& name, const std::string& unit,
               const std::string& better, json (*of)(const SummaryRow&)) {
