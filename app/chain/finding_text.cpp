@@ -114,9 +114,11 @@ std::string answer_words(const Finding& finding) {
 }
 
 std::string mean_words(const BetterMean& mean) {
-  const std::string ahead = mean.horizon == 1 ? "one step" : fmt::format("{} samples", mean.horizon);
-  return fmt::format("{} ahead{} (RMSE {:.4g}, the bank {:.4g}; {})", ahead,
-                     mean.state.empty() ? "" : " in " + mean.state, mean.rmse, mean.rmse_bank, mean.competitor);
+  const std::string when = mean.horizon == 0   ? "in free run"
+                           : mean.horizon == 1 ? "one step ahead"
+                                               : fmt::format("{} samples ahead", mean.horizon);
+  return fmt::format("{}{} (RMSE {:.4g}, the bank {:.4g}; {})", when, mean.state.empty() ? "" : " in " + mean.state,
+                     mean.rmse, mean.rmse_bank, mean.competitor);
 }
 
 std::string better_means_words(const Finding& finding) {

@@ -17,13 +17,12 @@ namespace {
 constexpr int finding_lines = 6;
 constexpr int least_columns = 40;
 
-int lines_of(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
+int line_count(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
 /// Lines no wider than the screen, however long a name in them is; a tab in one counts as a space.
 std::string narrowed(std::string text, int columns) {
   std::replace(text.begin(), text.end(), '\t', ' ');
-  std::vector<std::string> lines;
-  boost::split(lines, text, boost::is_any_of("\n"));
+  std::vector<std::string> lines = lines_of(text);
   for (std::string& line : lines)
     if (columns_of(line) > columns) line = first_columns(line, columns - 3) + "...";
   return boost::algorithm::join(lines, "\n");
@@ -32,9 +31,7 @@ std::string narrowed(std::string text, int columns) {
 /// A labelled paragraph of at most `most` lines; what does not fit ends in "..." (show has all of it).
 std::string section(const char* label, const std::string& text, int most, int columns) {
   if (text.empty()) return "";
-  std::string whole = wrapped(fmt::format("{:<10}{}", label, text), columns);
-  std::vector<std::string> lines;
-  boost::split(lines, whole, boost::is_any_of("\n"));
+  std::vector<std::string> lines = lines_of(wrapped(fmt::format("{:<10}{}", label, text), columns));
   if (static_cast<int>(lines.size()) > most) {
     lines.resize(static_cast<std::size_t>(most));
     lines.back() = first_columns(lines.back(), columns - 4) + " ...";
@@ -96,6 +93,27 @@ const HorizonRow* longest_horizon(const Archive& archive, const std::string& fil
   return longest;
 }
 
+const FreeRunRow* free_run_of(const Archive& archive, const std::string& filter, Role role) {
+  const auto found = std::find_if(archive.free_runs.begin(), archive.free_runs.end(), [&](const FreeRunRow& row) {
+    return row.filter == filter && row.role == role && row.run == "*";
+  });
+  return found == archive.free_runs.end() ? nullptr : &*found;
+}
+
+/// "; free run from 3 samples FIT 71.2 % (drifting: 65.0 %)"
+std::string free_run_words(const Archive& archive, const std::string& best, Role role) {
+  const auto fit = [](const FreeRunRow& row) {
+    std::vector<std::string> parts;
+    for (const double percent : row.fit) parts.push_back(fmt::format("{:.1f} %", percent));
+    return boost::algorithm::join(parts, ", ");
+  };
+  const FreeRunRow* bank = free_run_of(archive, "bank", role);
+  if (!bank) return "";
+  const FreeRunRow* other = free_run_of(archive, best, role);
+  return fmt::format("; free run from {} samples FIT {}{}", bank->start, fit(*bank),
+                     other ? fmt::format(" ({}: {})", best, fit(*other)) : "");
+}
+
 std::string mean_words(const Archive& archive) {
   const Role role = judged_role(archive);
   const std::string best = archive.finding ? archive.finding->best_competitor : "";
@@ -110,7 +128,7 @@ std::string mean_words(const Archive& archive) {
   if (const HorizonRow* far = longest_horizon(archive, "bank", role))
     text += fmt::format("; {} steps ahead {}{}", far->horizon, rmse_words(far->rmse, states),
                         beside(longest_horizon(archive, best, role)));
-  return text;
+  return text + free_run_words(archive, best, role);
 }
 
 std::string warning_words(const Archive& archive) {
@@ -167,10 +185,11 @@ std::string first_screen(const Archive& archive, const Settings& settings, const
   };
   const std::string before = part("read", read_words(archive), 2) +
                              part("finding", archive.finding ? archive.finding->text : "", finding_lines);
-  const std::string after = part("band", trust_words(archive), 3) + part("mean", mean_words(archive), 2) +
+  const std::string after = part("band", trust_words(archive), 3) +
+                            part("mean", mean_words(archive), archive.free_runs.empty() ? 2 : 3) +
                             part("warning", warning_words(archive), 2) + part("next", next_step(archive, settings), 2) +
                             file_line(file, columns);
-  return before + modes_section(archive, screen_lines - lines_of(before) - lines_of(after), columns) + after;
+  return before + modes_section(archive, screen_lines - line_count(before) - line_count(after), columns) + after;
 }
 
 }  // namespace modebank::app

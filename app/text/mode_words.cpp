@@ -66,10 +66,8 @@ GainNames gains_of(const Archive& archive) {
 }
 
 int widest_line(const std::string& text) {
-  std::vector<std::string> lines;
-  boost::split(lines, text, boost::is_any_of("\n"));
   int widest = 0;
-  for (const std::string& line : lines) widest = std::max(widest, columns_of(line));
+  for (const std::string& line : lines_of(text)) widest = std::max(widest, columns_of(line));
   return widest;
 }
 

@@ -90,6 +90,16 @@ std::string first_columns(std::string_view text, int columns) {
   return result;
 }
 
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = text.find('\n', begin);
+    lines.push_back(text.substr(begin, end - begin));
+    if (end == std::string::npos) return lines;
+    begin = end + 1;
+  }
+}
+
 std::string wrapped(const std::string& text, int width) {
   if (width <= 0) return text;
   std::string result;

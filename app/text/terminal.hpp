@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace modebank::app {
 
@@ -19,6 +20,9 @@ int columns_of(std::string_view text);
 
 /// The first `columns` characters.
 std::string first_columns(std::string_view text, int columns);
+
+/// What stands between the line ends.
+std::vector<std::string> lines_of(const std::string& text);
 
 /// Breaks lines longer than `width` columns at spaces; continuation lines are indented as far as the label of their
 /// line reaches ("windows   2250 of ..."). Words longer than a line stay whole. width 0: the text as it is.

@@ -15,7 +15,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double coarse_share = 0.25;     // of the innovation's standard deviation: densities then peak between quanta
+constexpr double coarse_share = 0.25;  // of the innovation's standard deviation: densities then peak between quanta
+constexpr Index free_run_horizon = 0;
 constexpr double noticeable_rmse = 1e-3;  // relative: what a table of three digits shows
 
 Index scored_runs(const Densities& densities) {
@@ -91,6 +92,8 @@ class BestMeans {
       result.back().rmse_bank = bank->second(where.second);
       if (states.size() > 1) result.back().state = states[static_cast<std::size_t>(where.second)].state;
     }
+    // Free runs look furthest ahead.
+    std::stable_partition(result.begin(), result.end(), [](const BetterMean& m) { return m.horizon > 0; });
     return result;
   }
 
@@ -105,6 +108,8 @@ std::vector<BetterMean> better_means(const FindingInputs& in) {
     if (row.run == "*" && row.role == in.role) means.add(row.filter, 1, row.rmse);
   for (const HorizonRow& row : in.horizons)
     if (row.run == "*" && row.role == in.role && row.horizon > 1) means.add(row.filter, row.horizon, row.rmse);
+  for (const FreeRunRow& row : in.free_runs)
+    if (row.run == "*" && row.role == in.role) means.add(row.filter, free_run_horizon, row.rmse);
   return means.better(in.states);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "filter/judge/free_run.hpp"
 #include "filter/judge/horizon.hpp"
 #include "filter/judge/paired_gain.hpp"
 #include "filter/judge/scores.hpp"
@@ -50,7 +51,7 @@ inline constexpr double repeated_share = 0.1;
 /// A competitor that predicts the mean better than the bank, in root mean square over the judged runs.
 struct BetterMean {
   std::string competitor;
-  Eigen::Index horizon = 1;  ///< samples ahead
+  Eigen::Index horizon = 1;  ///< samples ahead; 0: in free run
   std::string state;
   double rmse_bank = 0.0, rmse = 0.0;  ///< [state unit]
 };
@@ -84,6 +85,7 @@ struct FindingInputs {
   const std::vector<SummaryRow>& summary;
   const std::vector<HorizonRow>& horizons;
   const std::vector<Resolution>& states;
+  const std::vector<FreeRunRow>& free_runs;
 };
 
 /// evidence: the gain over each competitor exceeds its margin (paired_gain.hpp) and the modes differ. no evidence: a

@@ -80,10 +80,12 @@ TEST(FindingText, AnErrorFromBlocksSaysSo) {
 
 TEST(FindingText, ABetterMeanIsTold) {
   Finding finding = finding_of(Answer::evidence);
-  finding.better_means = {{"noise_only", 1, "", 0.0145, 0.0141}, {"drifting", 10, "wz", 0.0504, 0.0237}};
+  finding.better_means = {
+      {"noise_only", 1, "", 0.0145, 0.0141}, {"drifting", 10, "wz", 0.0504, 0.0237}, {"baseline", 0, "", 0.7, 0.6}};
   EXPECT_THAT(finding_text(finding),
               AllOf(HasSubstr("predicts the mean better one step ahead (RMSE 0.0141, the bank 0.0145; noise_only)"),
-                    HasSubstr("10 samples ahead in wz (RMSE 0.0237, the bank 0.0504; drifting)")));
+                    HasSubstr("10 samples ahead in wz (RMSE 0.0237, the bank 0.0504; drifting)"),
+                    HasSubstr(", in free run (RMSE 0.6, the bank 0.7; baseline).")));
 }
 
 }  // namespace

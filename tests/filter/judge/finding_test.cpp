@@ -34,6 +34,7 @@ struct Case {
                                      scores_of("one_motion", 0.1), scores_of("drifting", 0.05)};
   std::vector<SummaryRow> summary;
   std::vector<HorizonRow> horizons;
+  std::vector<FreeRunRow> free_runs;
   std::vector<Resolution> states{{"wz", 0.0, 0.0, 0.01}};
 
   static Bank with_errors(Bank bank, double error) {
@@ -42,7 +43,7 @@ struct Case {
   }
   Finding judged() const {
     const Densities of_bank = scores_of("bank", bank_gain);
-    return judge_modes({bank, role, of_bank, competitors, summary, horizons, states});
+    return judge_modes({bank, role, of_bank, competitors, summary, horizons, states, free_runs});
   }
 };
 
@@ -154,14 +155,22 @@ TEST(Finding, ACompetitorThatPredictsTheMeanBetterIsNamed) {
     row.rmse = VectorXd::Constant(1, rmse);
     worse.summary.push_back(row);
     worse.horizons.push_back({filter, Role::test, "*", 10, 100, 0.0, VectorXd::Constant(1, 2.0 * rmse * rmse)});
+    FreeRunRow free_run;
+    free_run.filter = filter;
+    free_run.role = Role::test;
+    free_run.run = "*";
+    free_run.rmse = VectorXd::Constant(1, 10.0 * rmse);
+    worse.free_runs.push_back(free_run);
   }
   const std::vector<BetterMean> better = worse.judged().better_means;
-  ASSERT_EQ(better.size(), 2U);
+  ASSERT_EQ(better.size(), 3U);
   EXPECT_EQ(better[0].competitor, "noise_only");
   EXPECT_EQ(better[0].horizon, 1);
   EXPECT_EQ(better[0].rmse_bank, 0.02);
   EXPECT_EQ(better[1].horizon, 10);
   EXPECT_TRUE(better[1].state.empty());
+  EXPECT_EQ(better[2].horizon, 0) << "the free run stands last";
+  EXPECT_DOUBLE_EQ(better[2].rmse, 0.19);
 }
 
 }  // namespace
