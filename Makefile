@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo test benchmarks bench uncertainty recovery evidence systems check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
+.PHONY: all api build demo test bench-programs bench benchmarks guards uncertainty recovery evidence systems check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
 
 all: build
 
@@ -29,12 +29,12 @@ test: packages-build packages-test build/build.ninja
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset release -j $(JOBS)
 
-benchmarks: packages-build packages-bench build/build.ninja
+bench-programs: packages-build packages-bench build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_BENCHMARKS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank benchmarks
 
 # The others compare window fits and EM with other people's, in Python too where it is installed.
-bench: benchmarks
+bench: bench-programs
 	build/bench_modebank
 	build/compare_windows 5 build/compare_windows.bin
 	build/compare_imm
@@ -44,12 +44,25 @@ bench: benchmarks
 	build/compare_em memory
 	-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 /usr/bin/python3 tests/bench/em_peers.py build/compare_em
 
+# Other people's benchmarks, their data in MODEBANK_DATA: one table each, build/benchmarks/NAME.md; half an hour of a processor.
+BENCHMARKS := $(notdir $(basename $(shell grep -l '^def main' tests/bench/benchmarks/*.py)))
+benchmarks: $(BENCHMARKS:%=build/benchmarks/%.md)
+build/benchmarks/%.md: build FORCE
+	@mkdir -p build/benchmarks
+	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/benchmarks/$*.py build/modebank build/benchmarks/archives > $@.new && mv $@.new $@
+	@cat $@
+FORCE:
+
+# Switches that see state and input, on systems that are known, over seeds; MODEBANK_DATA as for benchmarks.
+guards: build
+	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_guards.py build/modebank
+
 # Coverage of the stated 95 % regions, as the README's table has it.
-uncertainty: benchmarks
+uncertainty: bench-programs
 	build/measure_coverage
 
 # How often the true number of modes is found, as the README's table has it.
-recovery: benchmarks
+recovery: bench-programs
 	build/measure_recovery
 
 # How often modes of motion are claimed where there are none, and found where there are some; hours on two cores.

@@ -22,12 +22,20 @@ void Chain::provide(Stage stage, const StagePart& part) {
 
 const Archive& Chain::run(const ChainOptions& options, Stage last, const Execution& execution) {
   seconds_.fill(0.0);
-  const ChainInputs inputs = chain_inputs(options);
-  wanted_ = stage_keys(inputs, "");  // what the data hold is known when they are read
-  import(inputs.data);
-  const std::string data_key = wanted_[index_of(Stage::data)];
-  wanted_ = stage_keys(inputs, data_.data_hash);
-  wanted_[index_of(Stage::data)] = data_key;
+  inputs_ = chain_inputs(options);
+  wanted_ = stage_keys(inputs_, "");  // what the data hold is known when they are read
+  import(inputs_.data);
+  const auto want = [this, data_key = wanted_[index_of(Stage::data)]] {
+    wanted_ = stage_keys(inputs_, data_.data_hash);
+    wanted_[index_of(Stage::data)] = data_key;
+  };
+  want();
+  if (last >= Stage::lag_counts) count_lags(inputs_.lag_counts);
+  if (archive_.lag_counts) {
+    inputs_ = chain_inputs(with_lag_counts(options, *archive_.lag_counts));
+    want();
+  }
+  const ChainInputs& inputs = inputs_;
   if (last >= Stage::windows) identify_windows(inputs.windows);
   if (last >= Stage::mixture) cluster_windows(inputs.mixture);
   if (last >= Stage::bank) learn_bank(inputs);
@@ -65,6 +73,24 @@ void Chain::import(const DataInputs& inputs) {
     data_.data_hash = std::move(part.provenance.data_hash);
   };
   provide(Stage::data, {compute, copy, take});
+}
+
+void Chain::count_lags(const std::optional<LagCountInputs>& inputs) {
+  if (!inputs) {
+    archive_.lag_counts.reset();
+    held_[index_of(Stage::lag_counts)].clear();
+    return;
+  }
+  const auto compute = [&] { archive_.lag_counts = find_lag_counts(*archive_.recording, *inputs, listener_); };
+  const auto copy = [&] {
+    Archive part;
+    part.lag_counts = archive_.lag_counts;
+    return part;
+  };
+  const auto take = [&](Archive&& part) { archive_.lag_counts = std::move(part.lag_counts); };
+  provide(Stage::lag_counts, {compute, copy, take});
+  listener_.progress(fmt::format("lags: {} of the state, {} of the inputs", archive_.lag_counts->state_lags,
+                                 archive_.lag_counts->input_lags));
 }
 
 void Chain::identify_windows(const WindowInputs& inputs) {

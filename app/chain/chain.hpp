@@ -62,12 +62,16 @@ class Chain {
   const Archive& judge_stored(const std::filesystem::path& banks, const ChainOptions& options,
                               const Execution& execution);
 
+  /// Of the last run, with the numbers of lags that it found.
+  const ChainInputs& inputs() const { return inputs_; }
+
   /// Seconds that the last run spent on each stage; 0 for those left as they were.
   const std::array<double, stage_count>& seconds() const { return seconds_; }
 
  private:
   void provide(Stage stage, const StagePart& part);
   void import(const DataInputs& inputs);
+  void count_lags(const std::optional<LagCountInputs>& inputs);
   void identify_windows(const WindowInputs& inputs);
   void cluster_windows(const MixtureInputs& inputs);
   void learn_competitor_banks(const CompetitorInputs& inputs);
@@ -86,6 +90,7 @@ class Chain {
   Archive archive_;
   ImportedData data_;                     ///< what is said of the recording: files and hash
   std::vector<InputFile> mixture_files_;  ///< that the mixture started from
+  ChainInputs inputs_;
   StageKeys wanted_, held_;
   std::array<double, stage_count> seconds_{};
 };

@@ -21,6 +21,15 @@ struct ScoringOptions {
   FreeRunOptions free_run = {};   ///< its seed is the chain's
 };
 
+/// Which numbers of lags are found by cross-validation (lag_counts_stage.cpp), whatever FitOptions say of them.
+struct AutomaticLags {
+  bool state = false;
+  bool input = false;
+  bool any() const { return state || input; }
+};
+/// The most that are tried.
+inline constexpr Index most_automatic_lags = 4;
+
 /// Everything that decides the numbers of a chain beside its data. `seed` is the one seed: it takes the place of those
 /// in `window` and `bank`.
 struct ChainOptions {
@@ -32,6 +41,7 @@ struct ChainOptions {
   FilterOptions filter;
   ScoringOptions scoring;
   std::uint64_t seed = 1;
+  AutomaticLags automatic_lags = {};
 };
 
 }  // namespace modebank

@@ -53,14 +53,45 @@ ScoringOptions scoring_inputs(const ChainOptions& options) {
   return scoring;
 }
 
-ChainInputs chain_inputs(const ChainOptions& options) {
+namespace {
+
+/// With the chain's seed.
+FitOptions window_inputs(const ChainOptions& options) {
   FitOptions window = options.window;
   window.seed = options.seed;
+  return window;
+}
+
+MixtureInputs mixture_inputs(const ChainOptions& options) {
   const std::string& start = options.mixture_start;
+  return {options.mixture, start, start.empty() ? "" : describe_file(start).sha256, options.seed};
+}
+
+/// What options say of the lags that are found counts for nothing. Random starts of refinement, half of the time or
+/// more, are for the bank that is kept.
+std::optional<LagCountInputs> lag_count_inputs(ChainOptions options) {
+  if (!options.automatic_lags.any()) return std::nullopt;
+  if (options.automatic_lags.state) options.window.state_lags = 1;
+  if (options.automatic_lags.input) options.window.input_lags = 1;
+  options.bank.em.restarts = 0;
+  return LagCountInputs{options.automatic_lags, learning_inputs(options)};
+}
+
+}  // namespace
+
+LearningInputs learning_inputs(const ChainOptions& options) {
+  const FitOptions window = window_inputs(options);
+  return {mixture_inputs(options), competitor_inputs(options, window).filter, bank_inputs(options, window),
+          options.filter};
+}
+
+ChainInputs chain_inputs(const ChainOptions& options) {
+  const FitOptions window = window_inputs(options);
   const ScoringOptions scoring = scoring_inputs(options);
   return {{options.data},
+          lag_count_inputs(options),
           {window},
-          {options.mixture, start, start.empty() ? "" : describe_file(start).sha256, options.seed},
+          mixture_inputs(options),
           competitor_inputs(options, window),
           bank_inputs(options, window),
           {window, competitor_filter("one_motion", options.filter), scoring},

@@ -53,9 +53,24 @@ struct BankScoreInputs {
   ScoringOptions scoring;
 };
 
+/// What learning a bank takes beside data.
+struct LearningInputs {
+  MixtureInputs mixture;
+  FilterOptions baseline_filter;
+  BankInputs bank;
+  FilterOptions filter;  ///< that predicts
+};
+
+/// How the numbers of lags are found; those not automatic are in learning.bank.window.
+struct LagCountInputs {
+  AutomaticLags automatic;
+  LearningInputs learning;
+};
+
 /// Of a whole chain.
 struct ChainInputs {
   DataInputs data;
+  std::optional<LagCountInputs> lag_counts;  ///< empty where none is automatic
   WindowInputs windows;
   MixtureInputs mixture;
   CompetitorInputs competitors;
@@ -73,5 +88,7 @@ ScoringOptions scoring_inputs(const ChainOptions& options);
 /// Parts the options into what each stage needs. Reads mixture_start, if there is one, for its hash: throws
 /// ConfigurationError when it cannot be read.
 ChainInputs chain_inputs(const ChainOptions& options);
+/// The part of them that cross-validation learns banks by.
+LearningInputs learning_inputs(const ChainOptions& options);
 
 }  // namespace modebank

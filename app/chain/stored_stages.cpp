@@ -17,12 +17,14 @@ void StoredStages::provide(Stage stage, const std::string& /*key*/, const StageP
     result.recording = std::move(stored_.recording);
     result.lag = std::move(stored_.lag);
     result.provenance = stored_.provenance;
+  } else if (stage == Stage::lag_counts && stage <= until_) {
+    result.lag_counts = std::move(stored_.lag_counts);
   } else if (stage == Stage::windows && stage <= until_) {
     result.windows = std::move(stored_.windows);
   } else if (stage == Stage::mixture && stage <= until_) {
     result.mixture = std::move(stored_.mixture);
   }
-  if (result.recording || result.windows || result.mixture)
+  if (result.recording || result.lag_counts || result.windows || result.mixture)
     part.take(std::move(result));
   else
     part.compute();

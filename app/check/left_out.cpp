@@ -1,15 +1,9 @@
 #include "app/check/left_out.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <numeric>
 
-#include "app/chain/stages.hpp"
-#include "filter/judge/horizon.hpp"
-#include "filter/learn/refine/folds.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
@@ -47,28 +41,10 @@ std::vector<ValidationSplit> splits_of(const DataOptions& data, const LeftOutPla
   return splits;
 }
 
-Bank learn_on(const Recording& training, const ChainInputs& inputs) {
-  const Listener silent;
-  const WindowFits windows = identify(training, inputs.windows);
-  const MixtureResult mixture = cluster(training, windows, inputs.mixture, silent);
-  const Bank baseline =
-      learn_single_filter(training, windows, inputs.windows.window, inputs.competitors.filter, silent);
-  return learn_modes({training, windows, mixture, baseline}, inputs.bank, silent).bank;
-}
-
 /// How many samples are as long as `common_s`; 0: no whole number is.
 Index samples_ahead(double common_s, double period_s) {
   const double ahead = std::round(common_s / period_s);
   return ahead >= 1.0 && as_long(ahead * period_s, common_s) ? static_cast<Index>(ahead) : 0;
-}
-
-LeftOutRun predict(const Bank& bank, const Trajectory& run, const FilterOptions& filter, Index ahead) {
-  std::vector<Index> horizons{1};
-  if (ahead > 1) horizons.push_back(ahead);
-  const HorizonEvaluation said = evaluate_horizons(bank, run, filter, horizons);
-  LeftOutRun predicted{run.time_s, said.log_density.row(0), {}};
-  if (ahead > 0) predicted.common_step = said.log_density.row(said.log_density.rows() - 1);
-  return predicted;
 }
 
 /// Position of the run that a part of it belongs to: import and validation_splits name parts RUN.2 and RUN[40].
@@ -105,40 +81,7 @@ LeftOutRun in_one(std::vector<LeftOutRun> parts) {
     one_step.push_back(&part.one_step);
     common_step.push_back(&part.common_step);
   }
-  return {joined(time_s), joined(one_step), joined(common_step)};
-}
-
-/// What one part's bank says of each run left out with it.
-struct PartPredictions {
-  std::vector<std::size_t> owners;
-  std::vector<LeftOutRun> runs;
-};
-
-PartPredictions predict_part(const ValidationSplit& split, const ChainInputs& inputs, const LeftOutPlan& plan,
-                             Index ahead) {
-  PartPredictions said;
-  const Bank bank = learn_on(split.training, inputs);
-  for (const Trajectory& run : split.left_out.runs) {
-    said.owners.push_back(owner_of(run.run, plan.runs));
-    said.runs.push_back(predict(bank, run, inputs.bank_scores.filter, ahead));
-  }
-  return said;
-}
-
-std::vector<PartPredictions> predict_parts(const std::vector<ValidationSplit>& splits, const ChainInputs& inputs,
-                                           const LeftOutPlan& plan, Index ahead) {
-  std::vector<PartPredictions> said(splits.size());
-  std::vector<std::exception_ptr> errors(splits.size());
-  tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t part) {
-    try {
-      said[part] = predict_part(splits[part], inputs, plan, ahead);
-    } catch (const std::exception&) {
-      errors[part] = std::current_exception();
-    }
-  });
-  for (const std::exception_ptr& error : errors)  // the first in order, whichever came first
-    if (error) std::rethrow_exception(error);
-  return said;
+  return {joined(time_s), joined(one_step), joined(common_step), {}};
 }
 
 LeftOut predict_all(const ChainOptions& options, const LeftOutPlan& plan, double common_s) {
@@ -148,8 +91,8 @@ LeftOut predict_all(const ChainOptions& options, const LeftOutPlan& plan, double
   left_out.period_s = splits.front().training.median_period_s();
   const Index ahead = samples_ahead(common_s, left_out.period_s);
   std::vector<std::vector<LeftOutRun>> of_runs(plan.runs.size());
-  for (PartPredictions& said : predict_parts(splits, chain_inputs(options), plan, ahead))
-    for (std::size_t i = 0; i < said.runs.size(); ++i) of_runs.at(said.owners[i]).push_back(std::move(said.runs[i]));
+  for (std::vector<LeftOutRun>& part : predict_left_out(splits, learning_inputs(options), ahead))
+    for (LeftOutRun& run : part) of_runs.at(owner_of(run.run, plan.runs)).push_back(std::move(run));
   for (std::vector<LeftOutRun>& parts : of_runs) left_out.runs.push_back(in_one(std::move(parts)));
   return left_out;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/chain/learn_left_out.hpp"
 #include "app/chain/options.hpp"
 #include "app/check/check.hpp"
 #include "filter/judge/paired_gain.hpp"
@@ -19,13 +20,6 @@ struct LeftOutPlan {
   std::vector<std::vector<std::string>> parts;
 };
 LeftOutPlan plan_left_out(const DataCheck& check);
-
-/// Predictions of the samples of one run while it was left out.
-struct LeftOutRun {
-  Eigen::VectorXd time_s;       ///< N, increasing
-  Eigen::VectorXd one_step;     ///< N, log density [nats] one sample ahead; NaN where there is none
-  Eigen::VectorXd common_step;  ///< N, the same a common time ahead; empty where that is no whole number of samples
-};
 
 struct LeftOut {
   std::vector<LeftOutRun> runs;  ///< in the plan's order

@@ -5,10 +5,13 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/chain/stages.hpp"
 #include "app/cli/check_output.hpp"
 #include "app/cli/check_suggestions.hpp"
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
+#include "app/text/lag_counts_text.hpp"
+#include "app/text/terminal.hpp"
 #include "io/files/replace_file.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
@@ -45,15 +48,41 @@ class ScoringLog : public Listener {
   void progress(const std::string& line) const override { spdlog::info("{}", line); }
 };
 
+/// Numbers of lags that are automatic are found first: what is suggested is tried with them.
+std::optional<LagCounts> lags_found(const ChainOptions& options) {
+  const std::optional<LagCountInputs> inputs = chain_inputs(options).lag_counts;
+  if (!inputs) return std::nullopt;
+  return find_lag_counts(import_data(options.data).recording, *inputs, ScoringLog());
+}
+
+nlohmann::json lag_counts_json(const LagCounts& found) {
+  nlohmann::json scores = nlohmann::json::array();
+  for (const LagCountScore& s : found.scores)
+    scores.push_back({{"varied", s.varied},
+                      {"state_lags", s.state_lags},
+                      {"input_lags", s.input_lags},
+                      {"samples", s.samples},
+                      {"log_score", s.log_score},
+                      {"loss", s.loss},
+                      {"loss_standard_error", s.loss_standard_error},
+                      {"chosen", s.chosen}});
+  return {{"state_lags", found.state_lags}, {"input_lags", found.input_lags}, {"scores", scores}};
+}
+
 /// Findings come at once, suggestions when they are scored.
 Suggestions tell(const CommandLine& line, const Config& config, const DataCheck& check) {
   const std::vector<std::string> findings = findings_of(check, config);
   if (!line.json) fmt::print("{}", check_text(check, findings));
   std::fflush(stdout);
   const bool usable = check.unusable.empty(), scored = usable && !line.findings;
-  const Suggestions suggestions = scored ? suggest(chain_options(config), check, ScoringLog()) : Suggestions{};
+  ChainOptions options = chain_options(config);
+  const std::optional<LagCounts> lags = scored ? lags_found(options) : std::nullopt;
+  if (lags) options = with_lag_counts(options, *lags);
+  if (lags && !line.json) fmt::print("\n{}", wrapped(lag_counts_text(*lags), standard_output().width));
+  const Suggestions suggestions = scored ? suggest(options, check, ScoringLog()) : Suggestions{};
   if (line.json) {
     nlohmann::json page = check_json(check, findings);
+    page["lag_counts"] = lags ? lag_counts_json(*lags) : nlohmann::json(nullptr);
     page["suggestions"] = scored ? suggestions_json(suggestions, config) : nlohmann::json(nullptr);
     fmt::print("{}\n", page.dump(2));
   } else if (scored) {

@@ -105,10 +105,10 @@ class Log : public Listener {
 std::string archive_line(const Config& config) { return fmt::format("\narchive   {}\n", config.archive.output); }
 
 /// Too many windows for memory: written as they are fitted. Returns the summary.
-std::string identify_many(const Config& config, const Archive& data, const Log& log) {
+std::string identify_many(const Config& config, const Chain& chain, const Archive& data, const Log& log) {
   const Stopwatch watch;
   WindowCounts counts;
-  const WindowInputs inputs = chain_inputs(chain_options(config)).windows;
+  const WindowInputs& inputs = chain.inputs().windows;
   const WindowFits common =
       identify_into_file(config.archive.output, data, inputs, [&](const WindowFits& fits) { counts.add(fits); });
   log.progress(fmt::format("windows: {} fitted and archived in {:.2f} s", counts.total(), watch.seconds()));
@@ -130,8 +130,8 @@ std::string execute(const CommandLine& line, const Config& config, StageSource& 
   const ChainOptions options = chain_options(config);
   const Execution execution{resolved_text(config), make_provenance(config_hash(config), line.typed)};
   if (line.command == "identify") {
-    const Archive& data = chain.run(options, Stage::data, execution);
-    if (streams_windows(*data.recording, chain_inputs(options).windows)) return identify_many(config, data, log);
+    const Archive& data = chain.run(options, Stage::lag_counts, execution);
+    if (streams_windows(*data.recording, chain.inputs().windows)) return identify_many(config, chain, data, log);
   }
   const std::string& banks = config.archive.bank;
   const Archive& archive = banks.empty() ? chain.run(options, last_stage(line.command), execution)

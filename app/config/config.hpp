@@ -70,6 +70,7 @@ struct Config {
   DataOptions data;
   FitOptions window;
   ClusterOptions mixture;
+  AutomaticLags automatic_lags;
   std::string mixture_start;  ///< an archive as mixture.start; empty: none
   BankOptions bank;
   FilterOptions filter;

@@ -7,7 +7,7 @@
 namespace modebank::app {
 
 ChainOptions chain_options(const Config& c) {
-  return {c.data, c.window, c.mixture, c.mixture_start, c.bank, c.filter, c.scoring, c.job.seed};
+  return {c.data, c.window, c.mixture, c.mixture_start, c.bank, c.filter, c.scoring, c.job.seed, c.automatic_lags};
 }
 
 const std::vector<Option>& option_table() {

@@ -34,6 +34,23 @@ void check_logit(const Config& config) {
           "transition matrix alone");
 }
 
+/// The window options with the most lags that may be found: whatever is, must do. Motion models and linear have none.
+FitOptions most_lags(const Config& config) {
+  FitOptions window = config.window;
+  const AutomaticLags& automatic = config.automatic_lags;
+  require(!automatic.any() || window.model == "varx",
+          fmt::format("window.state_lags = auto and window.input_lags = auto are those of model = varx, not of {}",
+                      window.model));
+  require(!automatic.any() || window.prior_sd.size() <= 1,
+          "window.prior_sd: with window.state_lags or window.input_lags = auto the number of parameters is not known "
+          "beforehand; give one value for all, or none");
+  require(!automatic.input || !config.data.input.empty(),
+          "window.input_lags = auto needs inputs (data.input): without one there is no lag");
+  if (automatic.state) window.state_lags = most_automatic_lags;
+  if (automatic.input) window.input_lags = most_automatic_lags;
+  return window;
+}
+
 }  // namespace
 
 void validate(const Config& config) {
@@ -44,8 +61,9 @@ void validate(const Config& config) {
           fmt::format("data.truth names {} columns, data.state {}: there must be as many, or none", data.truth.size(),
                       data.state.size()));
   const Index states = std::ssize(data.state), inputs = std::ssize(data.input);
-  in_section("window", [&] { check_model(config.window, states, inputs); });
-  check_free_run(linear_structure(states, inputs, config.window), config.scoring.free_run);
+  const FitOptions widest = most_lags(config);
+  in_section("window", [&] { check_model(widest, states, inputs); });
+  check_free_run(linear_structure(states, inputs, widest), config.scoring.free_run);
   check_prior(config.window, parameter_count(config.window, states, inputs));
   require(config.window.scale != ScaleSource::fixed || config.window.sigma > 0.0,
           "window.scale = fixed needs window.sigma, the residual standard deviation, above 0");

@@ -56,6 +56,9 @@ std::string read_words(const Archive& archive) {
   if (!recording.inputs.empty()) text += fmt::format(" from {}", fmt::join(names_of(recording.inputs), ", "));
   if (archive.lag && archive.lag->correction != LagCorrection::none)
     text += fmt::format(", which act {:+.3f} s later", archive.lag->lag.mean);
+  if (archive.lag_counts)
+    text += fmt::format("; lags found: {} of the state, {} of the inputs", archive.lag_counts->state_lags,
+                        archive.lag_counts->input_lags);
   return text;
 }
 

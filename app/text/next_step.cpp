@@ -41,7 +41,8 @@ int state_lags(const Situation& s) { return std::atoi(s.setting("window.state_la
 bool may_have_more_lags(const Situation& s) {
   constexpr int most_lags = 5;
   const std::string model = s.setting("window.model");
-  return (model == "linear" || model == "varx") && state_lags(s) < most_lags;
+  return (model == "linear" || model == "varx") && s.setting("window.state_lags") != "auto" &&
+         state_lags(s) < most_lags;
 }
 
 bool is_not_white(const Situation& s) { return s.bank.flags.find("innovations not white") != std::string::npos; }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/chain/judged_runs.hpp"
+#include "app/text/lag_counts_text.hpp"
 #include "app/text/lag_text.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/summary_tables.hpp"
@@ -217,6 +218,7 @@ std::string summary_text(const Archive& archive, int width) {
   std::string text;
   if (archive.recording) text += data_text(*archive.recording);
   if (archive.lag) text += lag_text(*archive.lag);
+  if (archive.lag_counts) text += lag_counts_text(*archive.lag_counts);
   if (archive.windows) {
     WindowCounts counts;
     counts.add(*archive.windows);

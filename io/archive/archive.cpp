@@ -72,6 +72,9 @@ WindowFits write_archive(const std::filesystem::path& path, const Archive& archi
       root.group("data", {}, [&](GroupWriter& member) { layout::exchange_recording(member, recording); });
       layout::exchange_part(root, "lag", archive.lag, {},
                             [](GroupWriter& member, const LagReport& lag) { layout::exchange_lag(member, lag); });
+      layout::exchange_part(
+          root, "lag_counts", archive.lag_counts, {},
+          [](GroupWriter& member, const LagCounts& counts) { layout::exchange_lag_counts(member, counts); });
       root.group("windows", {}, [&](GroupWriter& member) {
         common = produce([&](const WindowFits& fits, Index first) {
           member.windows_from(static_cast<hsize_t>(first), static_cast<hsize_t>(fits.count()),

@@ -18,6 +18,7 @@
 #include "filter/step/drifting.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/fit/fit_windows.hpp"
+#include "ident/fit/lag_counts.hpp"
 #include "ident/lag/report.hpp"
 #include "ident/model/local_model.hpp"
 #include "ident/model/residual_tests.hpp"
@@ -57,7 +58,8 @@ struct Archive {
   Provenance provenance;
   std::string config;  ///< fully resolved, itself a valid configuration file
   std::optional<Recording> recording;
-  std::optional<LagReport> lag;  ///< with data.lag_s = auto
+  std::optional<LagReport> lag;         ///< with data.lag_s = auto
+  std::optional<LagCounts> lag_counts;  ///< with window.state_lags = auto or window.input_lags = auto
   std::optional<WindowFits> windows;
   std::optional<MixtureResult> mixture;
   std::optional<Bank> bank;

@@ -135,6 +135,8 @@ void exchange_archive(Io& io, A& archive) {
   exchange_origin(io, archive);
   exchange_part(io, "data", archive.recording, {}, [](auto& member, auto& part) { exchange_recording(member, part); });
   exchange_part(io, "lag", archive.lag, {}, [](auto& member, auto& part) { exchange_lag(member, part); });
+  exchange_part(io, "lag_counts", archive.lag_counts, {},
+                [](auto& member, auto& part) { exchange_lag_counts(member, part); });
   const Recording none;
   const Recording& recording = archive.recording ? *archive.recording : none;
   const Units units(recording);

@@ -102,4 +102,17 @@ void exchange_lag(Io& io, L& lag) {
            column("applied_reference_s", &RunLag::applied_reference_s, "s"));
 }
 
+/// /lag_counts: what window.state_lags = auto and window.input_lags = auto found.
+template <class Io, class L>
+void exchange_lag_counts(Io& io, L& counts) {
+  io.attribute("state_lags", counts.state_lags);
+  io.attribute("input_lags", counts.input_lags);
+  io.table("scores", counts.scores, column("varied", &LagCountScore::varied),
+           column("state_lags", &LagCountScore::state_lags), column("input_lags", &LagCountScore::input_lags),
+           column("samples", &LagCountScore::samples), column("log_score", &LagCountScore::log_score, "nat"),
+           column("loss", &LagCountScore::loss, "nat"),
+           column("loss_standard_error", &LagCountScore::loss_standard_error, "nat"),
+           column("chosen", &LagCountScore::chosen));
+}
+
 }  // namespace modebank::layout

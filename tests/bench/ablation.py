@@ -217,7 +217,7 @@ def table(stages, title, folds, features, pool):
         errors = [r for r in results if isinstance(r, str)]
         print(f"| {name} | " + (errors[0] if errors else cells(results, "bank")) + " |", flush=True)
         if name == features[0][0] and not errors:
-            for competitor in ("noise_only", "baseline"):
+            for competitor in ("noise_only", "one_motion", "drifting", "baseline"):
                 print(f"| competitor: {competitor} | {cells(results, competitor)} |", flush=True)
 
 

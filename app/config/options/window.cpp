@@ -20,15 +20,34 @@ Option model_option() {
   return result;
 }
 
+/// A number, or a word in its place.
+Option lag_count_option(std::string key, const std::string& help, Field<std::ptrdiff_t> count, Field<bool> automatic) {
+  Option result = numeric(
+      std::move(key), between(1, 100), "samples",
+      fmt::format("{}; auto: of 1 to {} what training runs left out ask for, the fewest within one standard error",
+                  help, most_automatic_lags),
+      count);
+  result.range += " or auto";
+  result.set = [set = result.set, count, automatic](Config& config, const std::string& text) {
+    if (text != "auto") set(config, text);
+    automatic.in(config) = text == "auto";
+    if (text == "auto") count.in(config) = 1;
+  };
+  result.get = [get = result.get, automatic](const Config& config) {
+    return automatic.of(config) ? "auto" : get(config);
+  };
+  return result;
+}
+
 }  // namespace
 
 std::vector<Option> window_options() {
   return {
       model_option(),
-      numeric("window.state_lags", between(1, 100), "samples", "varx: states x[k], x[k-1], ... that predict x[k+1]",
-              MODEBANK_FIELD(window.state_lags)),
-      numeric("window.input_lags", between(1, 100), "samples", "varx: input samples that act on one transition",
-              MODEBANK_FIELD(window.input_lags)),
+      lag_count_option("window.state_lags", "varx: states x[k], x[k-1], ... that predict x[k+1]",
+                       MODEBANK_FIELD(window.state_lags), MODEBANK_FIELD(automatic_lags.state)),
+      lag_count_option("window.input_lags", "varx: input samples that act on one transition",
+                       MODEBANK_FIELD(window.input_lags), MODEBANK_FIELD(automatic_lags.input)),
       numeric("window.input_delay", between(0, 1000), "samples",
               "varx: from an input to its first effect; 0: u[k+1] acts on x[k+1]", MODEBANK_FIELD(window.input_delay)),
       numeric("window.wheel_radius_m", above(0), "m",

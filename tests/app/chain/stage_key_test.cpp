@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "app/chain/chain.hpp"
+#include "app/chain/stages.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "io/files/read_file.hpp"
@@ -103,13 +104,27 @@ const std::vector<KeyValues> bases{
 
 /// Other values of keys whose range no rule can be read from.
 const std::map<std::string, std::vector<std::string>> texts{
-    {"data.root", {"elsewhere"}},   {"data.inputs", {"run_0*.csv"}}, {"data.states", {"run_*.csv"}},
-    {"data.state", {"other"}},      {"data.input", {"left"}},        {"data.truth", {"other"}},
-    {"data.weight", {"weight"}},    {"data.state_unit", {"rad/s"}},  {"data.input_unit", {"m/s"}},
-    {"data.time", {"clock"}},       {"data.run", {"block"}},         {"data.train", {"01"}},
-    {"data.test", {"00"}},          {"data.lag_s", {"0.1", "auto"}}, {"mixture.components", {"2", "1..3"}},
-    {"window.prior_sd", {"0.3"}},   {"job.seed", {"2", "3"}},        {"filter.horizon", {"2", "1..3"}},
+    {"data.root", {"elsewhere"}},
+    {"data.inputs", {"run_0*.csv"}},
+    {"data.states", {"run_*.csv"}},
+    {"data.state", {"other"}},
+    {"data.input", {"left"}},
+    {"data.truth", {"other"}},
+    {"data.weight", {"weight"}},
+    {"data.state_unit", {"rad/s"}},
+    {"data.input_unit", {"m/s"}},
+    {"data.time", {"clock"}},
+    {"data.run", {"block"}},
+    {"data.train", {"01"}},
+    {"data.test", {"00"}},
+    {"data.lag_s", {"0.1", "auto"}},
+    {"mixture.components", {"2", "1..3"}},
+    {"window.prior_sd", {"0.3"}},
+    {"job.seed", {"2", "3"}},
+    {"filter.horizon", {"2", "1..3"}},
     {"filter.paths", {"20", "50"}},
+    {"window.state_lags", {"2", "auto"}},
+    {"window.input_lags", {"2", "auto"}},
 };
 
 /// Other values that the option accepts: words, or some numbers.
@@ -248,6 +263,31 @@ TEST_F(StageKey, OfABankWhoseModesAreMergedHoldsTheFilter) {
   };
   EXPECT_EQ(automatic("linear"), Refine::em);
   EXPECT_EQ(automatic("icr"), Refine::none) << "shares its bank with what says none";
+}
+
+/// Which lags are found hangs on how banks are learned; what follows from them alone does not.
+TEST_F(StageKey, OfLagsThatAreFoundHoldsWhatLearnsBanks) {
+  const auto options = [&](KeyValues keys) {
+    keys.emplace_back("window.model", "varx");
+    return chain_options(configured(keys));
+  };
+  const auto keys = [](const ChainOptions& of) { return stage_keys(chain_inputs(of), "data"); };
+  const KeyValues found{{"window.state_lags", "auto"}};
+  const auto counts = [&](const char* key, const char* value) {
+    KeyValues other = found;
+    other.emplace_back(key, value);
+    return keys(options(other))[index_of(Stage::lag_counts)];
+  };
+  const std::string base = keys(options(found))[index_of(Stage::lag_counts)];
+  EXPECT_NE(counts("bank.folds", "3"), base);
+  EXPECT_NE(counts("mixture.components", "2"), base);
+  EXPECT_NE(counts("window.input_lags", "2"), base);
+  EXPECT_NE(counts("window.input_lags", "auto"), base);
+  EXPECT_EQ(counts("filter.horizon", "2"), base);
+  const StageKeys two = keys(with_lag_counts(options(found), {2, 1, {}}));
+  EXPECT_EQ(two[index_of(Stage::lag_counts)], base) << "what is found is no part of how it is found";
+  EXPECT_EQ(two[index_of(Stage::windows)], keys(options({{"window.state_lags", "2"}}))[index_of(Stage::windows)]);
+  EXPECT_NE(two[index_of(Stage::windows)], keys(with_lag_counts(options(found), {3, 1, {}}))[index_of(Stage::windows)]);
 }
 
 TEST_F(StageKey, HoldsTheContentOfFiles) {

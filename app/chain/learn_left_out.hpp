@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "app/chain/stage_inputs.hpp"
+#include "filter/learn/refine/folds.hpp"
+
+/// Cross-validation of the chain: banks learned as `run` learns them without some training runs, and what they predict
+/// of these.
+namespace modebank {
+
+/// Predictions of the samples of one run while it was left out.
+struct LeftOutRun {
+  Eigen::VectorXd time_s;       ///< N, increasing
+  Eigen::VectorXd one_step;     ///< N, log density [nats] one sample ahead; NaN where there is none
+  Eigen::VectorXd common_step;  ///< N, the same `ahead` samples ahead; empty where none was asked for
+  std::string run = {};
+};
+
+/// Learns a bank from the training part of each split and predicts the runs left out with it; of each split its runs,
+/// in their order. `ahead`: samples of common_step, 0: none. The same for any number of threads; throws what the stages
+/// throw.
+std::vector<std::vector<LeftOutRun>> predict_left_out(const std::vector<ValidationSplit>& splits,
+                                                      const LearningInputs& inputs, Index ahead);
+
+}  // namespace modebank

@@ -1,0 +1,15 @@
+#!/usr/bin/env python3
+"""DRIVE: a Husky under random wheel commands, configs/drive_husky.ini with either half of the blocks training."""
+from benchmark import Arguments
+from halves import both_halves
+
+PROTOCOL = """DATA/drive_husky/husky_samples.csv, configs/drive_husky.ini, both halves of the 201 blocks train in turn; held-out log score [nats/sample] / one-step RMSE [rad/s], samples too
+far and too close [%]. The data's authors publish steady-state models of slip, no one-step predictions."""
+
+
+def main():
+    both_halves(Arguments(__doc__), "DRIVE Husky", PROTOCOL, "drive_husky.ini")
+
+
+if __name__ == "__main__":
+    main()

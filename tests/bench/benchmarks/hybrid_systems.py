@@ -1,0 +1,75 @@
+"""The hybrid systems of DATA/hybrid/simulate.py: their configuration, and one seed's scores beside the true guard's."""
+import importlib.util
+
+import h5py
+import numpy as np
+
+from benchmark import held_out, modes, run
+
+CONFIG = """[data]
+inputs = {folder}/run_*.csv
+state = {states}
+input = {inputs}
+time = time
+[window]
+intercept = true
+step = 5
+[mixture]
+components = 1..6
+[bank]
+transition = {transition}
+[filter]
+simulate = 1
+"""
+INPUTS = {"deadzone": "u", "contact": "force", "yaw": "v_steer, speed"}
+
+
+def simulator(data):
+    spec = importlib.util.spec_from_file_location("hybrid_simulate", data / "hybrid" / "simulate.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def seed_scores(program, simulate, system, seed, folder, transition="logit"):
+    """What the bank scores on the held-out runs of one seed, beside the true parameters with the true guard and with a Markov chain."""
+    runs = [simulate.simulate(system, 1500, seed, i) for i in range(12)]
+    folder.mkdir(parents=True, exist_ok=True)
+    simulate.write(system, runs, folder, False)
+    config = folder / f"{system.name}.ini"
+    config.write_text(CONFIG.format(folder=folder / system.name, states=", ".join(system.states), inputs=INPUTS[system.name],
+                                    transition=transition), encoding="utf-8")
+    archive = run(program, config, folder / f"{system.name}_{transition}.h5")
+    train, test = runs[0::2], runs[1::2]
+    one, free = simulate.truth(system, test)
+    markov, _ = simulate.markov(system, train, test)
+    measured = np.concatenate([x[1:] for x, _, _ in test])
+    bank, free_run = held_out(archive, "summary", filter="bank"), held_out(archive, "free_run", filter="bank")
+    competitors = [held_out(archive, "free_run", filter=name) for name in ("baseline", "noise_only", "one_motion", "drifting")]
+    return {"system": system.name, "seed": seed, "true_modes": len(system.A), "modes": modes(archive),
+            "score": float(bank["log_score"]), "truth": float(np.mean(np.concatenate(one[0]))),
+            "markov": float(np.mean(np.concatenate(markov[0]))), "sd": measured.std(0).tolist(),
+            "free": np.atleast_1d(free_run["rmse"]).tolist(), "free_score": float(free_run["log_score"]),
+            "free_truth": rms(free[1]), "free_truth_score": float(np.mean(np.concatenate(free[0]))),
+            "free_competitor": np.min([np.atleast_1d(c["rmse"]) for c in competitors if c], axis=0).tolist(),
+            "accuracy": accuracy(archive, [m for _, _, m in test]),
+            "logit": has_logit(archive), "archive": str(archive)}
+
+
+def rms(errors):
+    return np.sqrt(np.mean(np.concatenate(errors) ** 2, 0)).tolist()
+
+
+def has_logit(archive):
+    with h5py.File(archive) as file:
+        return "transition_weights" in file["bank"]
+
+
+def accuracy(archive, truth):
+    """Share of samples whose most probable filtered mode is the true one that led to it, each of the bank's modes taken for the true one
+    that it meets most often. The true filter's is 1: states are measured exactly, so that it knows what the guard says."""
+    with h5py.File(archive) as file:
+        names = [name for name in file["data"] if file[f"data/{name}"].attrs["role"] == b"test"]
+        said = [np.argmax(file[f"evaluation/bank/{name}/mode_probability"][:], axis=1)[1:] for name in names]
+    said, led = np.concatenate(said), np.concatenate([m[:-1] for m in truth])
+    return float(sum(np.bincount(led[said == mode]).max() for mode in np.unique(said)) / len(led))
