@@ -14,10 +14,11 @@ namespace modebank {
 namespace {
 
 std::vector<RunEvaluation> evaluate_runs(const Bank& bank, const std::vector<Trajectory>& runs,
-                                         const FilterOptions& options, bool smooth) {
+                                         const FilterOptions& options, bool smooth, std::uint64_t seed) {
   std::vector<RunEvaluation> evaluations(runs.size());
   tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
     evaluations[i] = evaluate_run(bank, runs[i], options);
+    draw_pit(runs[i], seed, evaluations[i]);
     if (smooth) smooth_run(bank, runs[i], options, evaluations[i]);
   });
   return evaluations;
@@ -65,9 +66,11 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
   const std::vector<Trajectory>& runs = recording.runs;
   std::vector<HorizonEvaluation> ahead;
   if (looks_ahead(scoring)) ahead = look_ahead(bank, runs, filter, scoring.horizon);
-  return scores_of(
-      {name, evaluate_runs(bank, runs, filter, scoring.smooth), {}, free_runs(bank, runs, filter, scoring.free_run)},
-      bank, filter, runs, ahead, scoring.free_run);
+  return scores_of({name,
+                    evaluate_runs(bank, runs, filter, scoring.smooth, scoring.seed),
+                    {},
+                    free_runs(bank, runs, filter, scoring.free_run)},
+                   bank, filter, runs, ahead, scoring.free_run);
 }
 
 FilterScores score_drifting(const DriftingModel& model, const Recording& recording, TimeSteps time_steps,
@@ -77,6 +80,7 @@ FilterScores score_drifting(const DriftingModel& model, const Recording& recordi
   std::vector<HorizonEvaluation> ahead(looks_ahead(scoring) ? runs.size() : 0);
   tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
     said[i] = evaluate_run(model, runs[i], time_steps);
+    draw_pit(runs[i], scoring.seed, said[i]);
     if (!ahead.empty()) ahead[i] = evaluate_horizons(model, runs[i], time_steps, scoring.horizon);
   });
   FilterOptions filter;

@@ -42,6 +42,7 @@ FilterOptions competitor_filter(const std::string& name, const FilterOptions& of
 
 ScoringOptions scoring_inputs(const ChainOptions& options) {
   ScoringOptions scoring = options.scoring;
+  scoring.seed = options.seed;
   FreeRunOptions& free_run = scoring.free_run;
   if (free_run.samples == 0) free_run = {};  // one key for what is the same
   // Where state and input move the switches, moments do not know where each path switches.

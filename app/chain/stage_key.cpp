@@ -59,7 +59,7 @@ class KeyText {
 };
 
 MODEBANK_KEY_FIELDS(DataOptions, root, inputs, states, state, input, truth, state_unit, input_unit, weight, time, join,
-                    run, rate_hz, lag_s, lag_auto, lag_range_s, missing, disorder, train, test)
+                    run, rate_hz, lag_s, lag_auto, lag_range_s, quantum, quantum_auto, missing, disorder, train, test)
 MODEBANK_KEY_FIELDS(FitOptions, model, state_lags, input_lags, input_delay, wheel_radius_m, residual, length, step,
                     loss, loss_scale, scale, sigma, prior, prior_sd, intercept, covariance, max_iterations, solver,
                     seed)
@@ -78,7 +78,7 @@ MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_varianc
                     refine, em)
 MODEBANK_KEY_FIELDS(FilterOptions, variant, parameter_noise, time_steps, noise)
 MODEBANK_KEY_FIELDS(FreeRunOptions, samples, horizon, start, method, paths, seed)
-MODEBANK_KEY_FIELDS(ScoringOptions, horizon, smooth, free_run)
+MODEBANK_KEY_FIELDS(ScoringOptions, horizon, smooth, free_run, seed)
 
 MODEBANK_KEY_FIELDS(AutomaticLags, state, input)
 MODEBANK_KEY_FIELDS(DataInputs, data)

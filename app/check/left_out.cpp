@@ -28,7 +28,8 @@ ValidationSplit split_of(const DataOptions& data, const LeftOutPlan& plan, std::
   for (const std::string& run : plan.runs)
     if (std::find(options.test.begin(), options.test.end(), run) == options.test.end()) options.train.push_back(run);
   const Recording recording = import_data(options).recording;
-  ValidationSplit split{{recording.states, recording.inputs, {}}, {recording.states, recording.inputs, {}}};
+  ValidationSplit split{{recording.states, recording.inputs, {}, recording.quantum},
+                        {recording.states, recording.inputs, {}, recording.quantum}};
   for (const Trajectory& run : recording.runs)
     (run.role == Role::train ? split.training : split.left_out).runs.push_back(run);
   return split;

@@ -70,7 +70,11 @@ std::string bank_text(const Bank& bank) {
   std::string text = fmt::format("bank      {} modes", bank.mode_count());
   for (const ScreenedMode& mode : bank.screened)
     text += fmt::format("; component {} screened: {}", mode.component, mode.reason);
-  return text + fmt::format("; R = {:.4g}\n", fmt::join(bank.R.diagonal(), " "));
+  text += fmt::format("; R = {:.4g}", fmt::join(bank.R.diagonal(), " "));
+  if (bank.is_quantised())
+    text +=
+        fmt::format("; values are intervals of {:.4g}, log scores log(mass / interval)", fmt::join(bank.quantum, " "));
+  return text + "\n";
 }
 
 /// Of the training and of the held-out runs, as far as there are any.

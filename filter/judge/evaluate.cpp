@@ -1,5 +1,6 @@
 #include "filter/judge/evaluate.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -8,6 +9,7 @@
 #include "filter/step/feed/run_samples.hpp"
 #include "filter/step/stepper.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "ident/base/seed.hpp"
 
 namespace modebank {
 
@@ -25,6 +27,7 @@ RunEvaluation sized_evaluation(const Bank& bank, Index samples) {
   e.covariance.resize(n * n, samples);
   e.nis.resize(samples);
   e.pit.resize(n_y, samples);
+  if (bank.is_quantised()) e.pit_width.setZero(n_y, samples);
   e.log_density.resize(samples);
   e.mode_probability_predicted.resize(K, samples);
   e.mode_probability.resize(K, samples);
@@ -40,6 +43,7 @@ void record(const FilterEstimate& estimate, Index k, RunEvaluation& e) {
   e.covariance.col(k) = estimate.covariance.reshaped();
   e.nis(k) = estimate.nis;
   e.pit.col(k) = estimate.pit;
+  if (e.pit_width.size() > 0) e.pit_width.col(k) = estimate.pit_width;
   e.log_density(k) = estimate.log_density;
   e.mode_probability_predicted.col(k) = estimate.mode_probability_predicted;
   e.mode_probability.col(k) = estimate.mode_probability;
@@ -83,6 +87,20 @@ RunEvaluation evaluate_run(const DriftingModel& model, const Trajectory& run, Ti
   const Bank bank = fixed_bank(model);
   check_run(bank, run);
   return evaluate_samples(bank, DriftingFilter(model, time_steps), run);
+}
+
+void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluation) {
+  if (evaluation.pit_width.size() == 0) return;
+  const std::uint64_t of_run = derive_seed(seed, "pit of " + run.run);
+  for (Index k = 0; k < evaluation.pit.cols(); ++k) {
+    std::mt19937_64 generator = make_generator(of_run, "pit", static_cast<std::uint64_t>(k));
+    for (Index i = 0; i < evaluation.pit.rows(); ++i) {
+      const double draw = std::ldexp(static_cast<double>(generator() >> 11U), -53);
+      double& pit = evaluation.pit(i, k);
+      if (const double width = evaluation.pit_width(i, k); width > 0.0)
+        pit = std::clamp(pit + (draw - 0.5) * width, 0.0, 1.0);
+    }
+  }
 }
 
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options) {

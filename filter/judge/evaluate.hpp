@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
@@ -16,7 +17,8 @@ struct RunEvaluation {
   Eigen::MatrixXd state;                       ///< n x N, after the measurement
   Eigen::MatrixXd covariance;                  ///< n*n x N, after the measurement
   Eigen::VectorXd nis;                         ///< N
-  Eigen::MatrixXd pit;                         ///< n_y x N, Rosenblatt's transform
+  Eigen::MatrixXd pit;                         ///< n_y x N, Rosenblatt's transform; of quantised signals draw_pit's
+  Eigen::MatrixXd pit_width;                   ///< n_y x N, of the interval that pit lies in; empty: nothing quantised
   Eigen::VectorXd log_density;                 ///< N, nats
   Eigen::MatrixXd mode_probability_predicted;  ///< K x N, before the measurement
   Eigen::MatrixXd mode_probability;            ///< K x N, after the measurement
@@ -34,6 +36,11 @@ struct RunEvaluation {
 /// samples are all measured. Longer times between samples: see TimeSteps. Throws std::invalid_argument when sizes
 /// disagree and DataError for an input that is not finite.
 RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options);
+
+/// The transform of a quantised measurement is an interval (predicted_mixture.hpp): moves it from its middle to a point
+/// drawn uniformly within it, which makes it uniform in a true filter. The draw depends on the seed, the run's name and
+/// the sample alone. Nothing of a continuous one.
+void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluation);
 
 /// Sum of log predictive densities over the scored samples of a run [nats]: the log-likelihood of theta, Q, R and T.
 /// Nothing is stored, so maximum likelihood may call it thousands of times. Same conditions as evaluate_run.

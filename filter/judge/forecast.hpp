@@ -43,7 +43,11 @@ template <int N, int NY>
 class BankForecast {
  public:
   explicit BankForecast(const FilterModel<N, NY>& model)
-      : model_(model), step_(model), state_(initial_state(model)), posterior_(step_.hypothesis_probability().size()) {}
+      : model_(model),
+        step_(model),
+        state_(initial_state(model)),
+        posterior_(step_.hypothesis_probability().size()),
+        unused_(model.structure.dimension()) {}
 
   void start(const FilterState<N>& origin) {
     state_ = origin;
@@ -65,7 +69,10 @@ class BankForecast {
     error = y;
     for (std::size_t h = 0; h < step_.kalman.size(); ++h) {
       const auto i = static_cast<Eigen::Index>(h);
-      step_.kalman[h].observe(model_, y);
+      if (model_.quantised)
+        correct_intervals(model_, y, step_.kalman[h], unused_);
+      else
+        step_.kalman[h].observe(model_, y);
       step_.log_likelihood(i) = step_.kalman[h].log_density;
       error -= step_.hypothesis_probability()(i) * (y - step_.kalman[h].innovation);
     }
@@ -77,6 +84,7 @@ class BankForecast {
   FilterStep<N, NY> step_;
   FilterState<N> state_;
   Eigen::VectorXd posterior_;
+  Gaussian<N> unused_;
   bool ahead_ = false;
 };
 

@@ -37,7 +37,8 @@ class MomentForecast final : public Forecast {
       for (std::size_t s = 0; s < signals_.size(); ++s) {
         const auto i = static_cast<Eigen::Index>(s), j = static_cast<Eigen::Index>(h);
         signals_[s].mean(j) = y(i);
-        signals_[s].deviation(j) = std::sqrt(std::max(step.kalman[h].innovation_covariance(i, i), least_variance));
+        signals_[s].deviation(j) =
+            std::sqrt(std::max(step.kalman[h].innovation_covariance(i, i) + rounding(i), least_variance));
       }
     }
   }
@@ -67,6 +68,8 @@ class MomentForecast final : public Forecast {
   BankForecast<N, NY> bank_;
   std::vector<NormalMixture> signals_;  ///< n_y, of the sample arrived at
 
+  /// What the recorded value differs by from the signal.
+  double rounding(Eigen::Index i) const { return bank_.model().quantum(i) * bank_.model().quantum(i) / 12.0; }
   const NormalMixture& of(Eigen::Index i) const { return signals_[static_cast<std::size_t>(i)]; }
 };
 

@@ -12,8 +12,8 @@ using Eigen::Index;
 PathForecast::PathForecast(const Bank& bank, const FilterOptions& options, Index paths, std::uint64_t seed,
                            TransitionRow row)
     : C_(bank.C),
-      R_(bank.R),
-      R_root_(covariance_root(bank.R)),
+      R_(bank.recording_noise()),
+      R_root_(covariance_root(R_)),
       paths_(bank, options, paths, seed, std::move(row)),
       share_(bank.mode_count()) {}
 

@@ -21,7 +21,8 @@ struct Baseline {
   bool at_bound = false;  ///< R stopped where it adds 1e-8 to the residual variance: the data show no measurement noise
 };
 
-/// theta fixed at the global least squares; Q (full) and R (diagonal) maximise the exact Gaussian likelihood.
+/// theta fixed at the global least squares; Q (full) and R (diagonal) maximise the exact Gaussian likelihood. Of
+/// rounded states all three maximise the likelihood of their intervals.
 Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure);
 
 /// The competitor that switches noise only: one Huber theta, eight log-spaced noise scales, `stay` chosen on the

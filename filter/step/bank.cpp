@@ -60,7 +60,8 @@ void check_adaptation(const NoiseAdaptation& adaptation) {
 StartMoments measured_lags(const Bank& bank) {
   const Eigen::Index n = bank.structure.dimension(), n_y = bank.R.rows();
   StartMoments moments{Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd::Zero(n, n)};
-  for (Eigen::Index i = 0; i + n_y <= n; i += n_y) moments.covariance.block(i, i, n_y, n_y) = bank.R;
+  const Eigen::MatrixXd R = bank.recording_noise();
+  for (Eigen::Index i = 0; i + n_y <= n; i += n_y) moments.covariance.block(i, i, n_y, n_y) = R;
   return moments;
 }
 
@@ -104,6 +105,7 @@ void check_sizes(const Bank& bank) {
   if (n_y < 1) throw std::invalid_argument("C of the bank is empty");
   expect_size("C", n_y, bank.C.cols(), n_y, bank.structure.dimension());
   expect_size("R", bank.R.rows(), bank.R.cols(), n_y, n_y);
+  if (bank.quantum.size() > 0) expect_size("quantum", bank.quantum.size(), 1, n_y, 1);
   expect_size("transition matrix", bank.transition.modes(), bank.transition.modes(), K, K);
   expect_size("initial probability", bank.initial_probability.size(), 1, K, 1);
   check_logit_sizes(bank);
@@ -116,6 +118,8 @@ void validate(const Bank& bank) {
   check_sizes(bank);
   require(is_covariance(bank.R), "R is no covariance");
   require(bank.C.allFinite(), "C is not finite");
+  require(bank.quantum.allFinite() && (bank.quantum.array() >= 0.0).all(), "quanta are no sizes");
+  require(!bank.is_quantised() || bank.R.isDiagonal(0.0), "R is not diagonal, as quantised measurements need it");
   require(bank.initial_probability.allFinite() && bank.initial_probability.minCoeff() >= 0.0 &&
               bank.initial_probability.sum() > 0.0,
           "initial probabilities are none");
@@ -125,13 +129,19 @@ void validate(const Bank& bank) {
   check_adaptation(bank.noise_adaptation);
 }
 
+Eigen::MatrixXd Bank::recording_noise() const {
+  if (!is_quantised()) return R;
+  return R + Eigen::MatrixXd((quantum.array().square() / 12.0).matrix().asDiagonal());
+}
+
 StartMoments start_moments(const Bank& bank) {
   if (bank.structure.state_lags > 1) return measured_lags(bank);
-  double largest = bank.R.diagonal().maxCoeff();
+  const Eigen::MatrixXd R = bank.recording_noise();
+  double largest = R.diagonal().maxCoeff();
   for (const Mode& mode : bank.modes) largest = std::max(largest, mode.Q.diagonal().maxCoeff());
   const Eigen::Index n = bank.structure.dimension();
   const Eigen::MatrixXd C_pinv = bank.C.completeOrthogonalDecomposition().pseudoInverse();
-  Eigen::MatrixXd P = C_pinv * bank.R * C_pinv.transpose();
+  Eigen::MatrixXd P = C_pinv * R * C_pinv.transpose();
   const Eigen::MatrixXd unobserved = Eigen::MatrixXd::Identity(n, n) - C_pinv * bank.C;
   if (bank.C.rows() < n) P += unobserved_variance_factor * largest * unobserved;
   return {C_pinv, 0.5 * (P + P.transpose())};

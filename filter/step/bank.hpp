@@ -53,9 +53,12 @@ struct NoiseAdaptation {
 struct Bank {
   std::string model = "linear";  ///< linear, varx, or the name of a motion model
   LinearStructure structure;
-  std::vector<Mode> modes;              ///< K >= 1
-  Eigen::MatrixXd C;                    ///< n_y x n
-  Eigen::MatrixXd R;                    ///< n_y x n_y
+  std::vector<Mode> modes;  ///< K >= 1
+  Eigen::MatrixXd C;        ///< n_y x n
+  Eigen::MatrixXd R;        ///< n_y x n_y
+  /// n_y, of what the measured values are multiples [state unit]: a value says no more than which interval C x + v lies
+  /// in (equations/interval.hpp); 0: continuous; empty: all of them are.
+  Eigen::VectorXd quantum = {};
   TransitionMatrix transition;          ///< K x K
   TransitionLogit transition_logit;     ///< how state and input change it; empty: not at all
   Eigen::VectorXd initial_probability;  ///< K
@@ -70,6 +73,9 @@ struct Bank {
   Eigen::MatrixXd transition_weight_error;        ///< K x d standard errors of the logit's weights; empty: not known
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
+  bool is_quantised() const { return (quantum.array() > 0.0).any(); }
+  /// Variances of what a recorded value differs from C x by: R's, and of rounding that is uniform within the quantum.
+  Eigen::MatrixXd recording_noise() const;
   Eigen::VectorXd theta(Eigen::Index mode) const { return pack(structure, modes[mode].model); }
 };
 
@@ -85,7 +91,7 @@ void check_sizes(const Bank& bank);
 inline constexpr double unobserved_variance_factor = 1e4;
 
 /// How a filter starts from its first measurement: x[0] = gain y[0]. With lagged states it starts from the measurements
-/// of all of z: gain I, and R for each sample.
+/// of all of z: gain I, and R for each sample. Quantised values start as uniform within their interval.
 struct StartMoments {
   Eigen::MatrixXd gain;        ///< n x n_y, the pseudo-inverse C+; n x n with lagged states
   Eigen::MatrixXd covariance;  ///< n x n, C+ R C+' (+ wide variance where C sees nothing); R itself for C = I

@@ -67,7 +67,7 @@ struct BankFilter::Parts : FilterShell {
     combined.observe(C, estimate.prediction, estimate.innovation_covariance, measurement);
     estimate.innovation = combined.innovation;
     estimate.nis = combined.nis;
-    stepper->transform(measurement, estimate.pit);
+    stepper->transform(measurement, estimate.pit, estimate.pit_width);
   }
 
   void record_posterior() {

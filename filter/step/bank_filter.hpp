@@ -17,7 +17,8 @@ struct FilterEstimate {
   Eigen::MatrixXd innovation_covariance;       ///< n_y x n_y, of the combined prediction
   Eigen::VectorXd state;                       ///< n, after the measurement
   Eigen::MatrixXd covariance;                  ///< n x n, after the measurement
-  Eigen::VectorXd pit;                         ///< n_y, Rosenblatt's transform
+  Eigen::VectorXd pit;                         ///< n_y, Rosenblatt's transform; of an interval its middle
+  Eigen::VectorXd pit_width;                   ///< n_y, from its lower to its upper end; 0 of a continuous signal
   Eigen::VectorXd mode_probability_predicted;  ///< K, before the measurement
   Eigen::VectorXd mode_probability;            ///< K, after the measurement
   double nis = 0.0;                            ///< of the signals that are there

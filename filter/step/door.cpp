@@ -40,6 +40,7 @@ std::shared_ptr<const modebank::Bank> inside(const BankDescription& d) {
   for (const Mode& mode : d.modes) bank.modes.push_back(inside(mode, n, bank.structure.acting_inputs()));
   bank.C = d.C.values.empty() ? Eigen::MatrixXd::Identity(bank.structure.states, n) : Eigen::MatrixXd(view(d.C));
   bank.R = view(d.R);
+  bank.quantum = view(d.quantum);
   bank.transition = TransitionMatrix(view(d.transition));
   if (!d.transition_weights.values.empty())
     bank.transition_logit = {view(d.transition_weights), view(d.transition_reference)};
@@ -98,6 +99,7 @@ BankDescription Bank::description() const {
                        to_matrix(mode.spread), mode.weight});
   d.C = to_matrix(bank_->C);
   d.R = to_matrix(bank_->R);
+  d.quantum = to_vector(bank_->quantum);
   d.transition = to_matrix(bank_->transition.matrix());
   d.transition_weights = to_matrix(bank_->transition_logit.weights);
   d.transition_reference = to_vector(bank_->transition_logit.reference);

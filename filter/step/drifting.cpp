@@ -31,6 +31,8 @@ void validate(const DriftingModel& m) {
   need(m.scale.size() == m.structure.regressors() && positive(m.scale), "needs a positive scale per regressor");
   need(m.v0.size() == n && positive(m.v0), "needs a positive variance per state");
   need(m.variance_floor.size() == n && positive(m.variance_floor), "needs a positive least variance per state");
+  need(m.quantum.size() == 0 || (m.quantum.size() == n && m.quantum.allFinite() && (m.quantum.array() >= 0.0).all()),
+       "needs a quantum per state, or none");
   need(m.rates.q >= 0.0 && m.rates.p0 >= 0.0 && std::isfinite(m.rates.q + m.rates.p0), "q and p0 are variances");
   need(m.rates.leak > 0.0 && m.rates.leak <= 1.0, "leak lies in (0, 1]");
   need(m.lam >= 0.0 && m.lam <= 1.0, "lam lies in [0, 1]");
@@ -48,6 +50,7 @@ Bank fixed_bank(const DriftingModel& m) {
   bank.dt_s = m.dt_s;
   bank.C = Eigen::MatrixXd::Identity(n, dimension);
   bank.R = Eigen::MatrixXd::Zero(n, n);
+  bank.quantum = m.quantum;
   Eigen::MatrixXd Q = Eigen::MatrixXd::Zero(dimension, dimension);
   Q.diagonal().head(n) = m.v0;
   bank.modes.push_back({unpack(m.structure, m.theta0), Q, Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Zero(p), 1.0});
@@ -145,9 +148,22 @@ struct DriftingFilter::Parts : FilterShell {
       if (std::isnan(estimate.nis)) estimate.nis = estimate.log_density = 0.0;
       const double square = e * e / variance;
       estimate.nis += square;
+      if (model.quantum.size() > 0 && model.quantum(i) > 0.0) {
+        record_interval(i, e, std::sqrt(variance));
+        continue;
+      }
       estimate.log_density += noise.log_density(square) - 0.5 * std::log(variance);
       estimate.pit(i) = noise.probability(e / std::sqrt(variance));
     }
+  }
+
+  /// The interval's probability in the predictive distribution, which is of recorded values already.
+  void record_interval(Index i, double e, double deviation) {
+    const double half = 0.5 * model.quantum(i);
+    const double low = noise.probability((e - half) / deviation), high = noise.probability((e + half) / deviation);
+    estimate.pit(i) = 0.5 * (low + high);
+    estimate.pit_width(i) = high - low;
+    estimate.log_density += noise.log_mass((e - half) / deviation, (e + half) / deviation) - std::log(model.quantum(i));
   }
 
   void record_posterior() {

@@ -41,6 +41,7 @@ struct DriftingModel {
   double nu = 0.0;                 ///< degrees of freedom, above 2; 0: Gaussian
   Eigen::VectorXd v0;              ///< n, variance of the training residuals: v at a start
   Eigen::VectorXd variance_floor;  ///< n, least v
+  Eigen::VectorXd quantum = {};    ///< n, as a bank's: intervals are what it is scored by, values what it learns from
   /// What the first-order variance so many samples ahead is multiplied with: ascending horizons from 2 on. One sample
   /// ahead it is 1, so that it is the filter's own prediction.
   std::vector<std::pair<Eigen::Index, double>> horizon_factor;
@@ -70,8 +71,8 @@ struct DriftingSnapshot {
 
 /// The model at work, sample by sample, as BankFilter: same starts, same samples, same treatment of what is missing and
 /// of gaps. Its estimate is that of one mode: state is z with the newest measured value (the prediction where missing),
-/// covariance zero, innovation_covariance diagonal, pit by Student's distribution, log_density the outputs' sum. A step
-/// allocates nothing.
+/// covariance zero, innovation_covariance diagonal, pit by Student's distribution, log_density the outputs' sum; of
+/// quantised outputs log (mass of the interval / q). A step allocates nothing.
 class DriftingFilter {
  public:
   /// Throws std::invalid_argument for a model that validate refuses.

@@ -13,6 +13,7 @@ FilterShell::FilterShell(const Bank& bank, TimeSteps time_steps)
   estimate.state.resize(n);
   estimate.covariance.resize(n, n);
   estimate.pit.resize(n_y);
+  estimate.pit_width.setZero(n_y);
   wait();
 }
 
@@ -32,6 +33,7 @@ void FilterShell::clear_prediction() {
 void FilterShell::clear_scores() {
   estimate.innovation.setConstant(not_a_number);
   estimate.pit.setConstant(not_a_number);
+  estimate.pit_width.setZero();
   estimate.nis = estimate.log_density = not_a_number;
 }
 

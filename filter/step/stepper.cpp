@@ -33,7 +33,8 @@ class EquationStepper final : public Stepper {
   double combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) override {
     return modebank::combine(model_, step_, state, innovation_covariance);
   }
-  void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit) override {
+  void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) override {
+    if (model_.quantised) return interval_transform(model_, y, step_, weights_, pit, width);
     probability_transform(y, step_, weights_, pit);
   }
   void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) override {

@@ -42,8 +42,9 @@ class Stepper {
 
   /// After predict: moments of the predicted mixture, n and n_y x n_y. Returns the modes' share in the trace of S.
   virtual double combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) = 0;
-  /// After update with the same y: its probability integral transform (predicted_mixture.hpp), n_y.
-  virtual void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit) = 0;
+  /// After update with the same y: its probability integral transform (predicted_mixture.hpp), n_y. `width`: of the
+  /// interval whose middle pit is; left as it is where nothing is quantised.
+  virtual void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) = 0;
   /// Moments of the mixture as it stands, n and n x n.
   virtual void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) = 0;
   virtual Eigen::Map<const Eigen::VectorXd> predicted_probability() const = 0;  ///< K

@@ -3,7 +3,9 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "filter/step/truncated_normal.hpp"
 #include "ident/base/distributions.hpp"
 
 namespace modebank {
@@ -30,6 +32,16 @@ StudentNoise::StudentNoise(double degrees) : degrees_(degrees), log_constant_(0.
 double StudentNoise::probability(double value) const {
   if (gaussian()) return 0.5 * std::erfc(-value / std::numbers::sqrt2);
   return student_probability(value * std::sqrt(degrees_ / (degrees_ - 2.0)), degrees_);
+}
+
+double StudentNoise::log_mass(double low, double high) const {
+  if (gaussian()) return truncated_normal(low, high).log_mass;
+  if (low + high > 0.0) low = -std::exchange(high, -low);  // the lower tail keeps its digits
+  const double mass = probability(high) - probability(low), middle = 0.5 * (low + high);
+  // Of an interval that is narrow against its distance, what the difference has lost is in the density.
+  constexpr double narrow = 1e-3;
+  if (high - low < narrow * (1.0 + std::abs(middle))) return log_density(middle * middle) + std::log(high - low);
+  return std::log(mass);
 }
 
 }  // namespace modebank

@@ -22,6 +22,8 @@ class StudentNoise {
   }
   /// P(X <= value).
   double probability(double value) const;
+  /// log P(low <= X <= high), low < high.
+  double log_mass(double low, double high) const;
 
  private:
   double degrees_, log_constant_;

@@ -54,6 +54,7 @@ struct Recording {
   std::vector<Channel> states;  ///< n
   std::vector<Channel> inputs;  ///< m
   std::vector<Trajectory> runs;
+  Eigen::VectorXd quantum = {};  ///< n, of what states are multiples [state unit]; 0: continuous; empty: all are
 
   Index state_count() const { return static_cast<Index>(states.size()); }
   Index input_count() const { return static_cast<Index>(inputs.size()); }

@@ -66,6 +66,7 @@ void exchange_recording(Io& io, R& recording) {
       member.field("input", run.input, {"N", "m"}, units.inputs());
       member.optional_field("truth", run.truth, {"N", "n"}, units.states());
       member.optional_field("weight", run.weight, {"N"});
+      member.optional_field("quantum", recording.quantum, {"n"}, units.states());  // of all runs
     });
 }
 

@@ -14,6 +14,7 @@
 #include "io/files/run_names.hpp"
 #include "io/import/import_plan.hpp"
 #include "io/import/missing_values.hpp"
+#include "io/import/quanta.hpp"
 #include "io/import/read_runs.hpp"
 #include "io/import/run_roles.hpp"
 #include "modebank/base/error.hpp"
@@ -137,13 +138,16 @@ ImportedData import_data(const DataOptions& options) {
   std::vector<RunStreams> streams = named_streams(plan_import(options), options, data, false);
   if (options.lag_auto) data.lag = find_lags(streams, options);
   auto& runs = data.recording.runs;
+  Quanta quanta(options);
   for (std::size_t i = 0; i < streams.size(); ++i) {
     runs.push_back(join_run(streams[i], options, data.lag ? data.lag->runs[i].applied() : InputClock{}));
+    quanta.look_at(streams[i], runs.back());
     streams[i] = {};
   }
   treat_missing_values(runs, options.missing, data.notes);
   sort_by_name(runs);
   check_run_names(run_names(runs));
+  data.recording.quantum = quanta.decide(data.recording, data.notes);
   return data;
 }
 

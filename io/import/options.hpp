@@ -51,10 +51,12 @@ struct DataOptions {
   /// Column whose value separates runs inside one file: the run is named by it, after "<matched part>_" where inputs
   /// has a *. Join::time needs it in both files; else it is looked up in the states file first, as `time` is.
   std::string run;
-  double rate_hz = 0.0;      ///< 0: the inputs file's own times; else resampled (states linear, inputs held)
-  double lag_s = 0.0;        ///< inputs act this much later: at time t the input is u(t - lag_s), held
-  bool lag_auto = false;     ///< lag_s is estimated on the training runs (ident/lag/choice.hpp)
-  double lag_range_s = 2.5;  ///< lags that the estimate searches, either way
+  double rate_hz = 0.0;         ///< 0: the inputs file's own times; else resampled (states linear, inputs held)
+  double lag_s = 0.0;           ///< inputs act this much later: at time t the input is u(t - lag_s), held
+  bool lag_auto = false;        ///< lag_s is estimated on the training runs (ident/lag/choice.hpp)
+  double lag_range_s = 2.5;     ///< lags that the estimate searches, either way
+  std::vector<double> quantum;  ///< what states are multiples of, one each or one for all [state unit]; empty: none
+  bool quantum_auto = false;    ///< found in the training runs (io/import/quanta.hpp)
   Missing missing = Missing::error;
   Disorder disorder = Disorder::error;
   std::vector<std::string> train;  ///< run names; empty: all not in test, or positions 0, 2, 4, ... in name order

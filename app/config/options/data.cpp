@@ -20,6 +20,28 @@ Option lag_option() {
   return result;
 }
 
+/// Numbers, or a word in their place.
+Option quantum_option() {
+  Option result =
+      numeric("data.quantum", each(above(0)), "state unit",
+              "states are multiples of this, one for each or one for all: a value says which interval the "
+              "state lies in, and filters and learning take it so; auto: what the training runs show, where "
+              "it is a third of their residuals' standard deviation or more; none: values as they stand",
+              MODEBANK_FIELD(data.quantum));
+  result.range = "none, auto or numbers > 0";
+  result.set = [set = result.set](Config& config, const std::string& text) {
+    const bool word = text == "auto" || text == "none" || text.empty();
+    if (word) config.data.quantum.clear();
+    if (!word) set(config, text);
+    config.data.quantum_auto = text == "auto";
+  };
+  result.get = [get = result.get](const Config& config) {
+    if (config.data.quantum_auto) return std::string("auto");
+    return config.data.quantum.empty() ? std::string("none") : get(config);
+  };
+  return result;
+}
+
 }  // namespace
 
 std::vector<Option> data_options() {
@@ -51,6 +73,7 @@ std::vector<Option> data_options() {
       numeric("data.lag_range_s", above(0), "s",
               "lags from minus to plus this are searched by lag_s = auto and by check",
               MODEBANK_FIELD(data.lag_range_s)),
+      quantum_option(),
       words("data.missing",
             "NaN, infinite or empty values: an error; a gap that splits the run; or a missing state is a step of "
             "prediction only, a missing input the last known one",

@@ -36,16 +36,18 @@ Eigen::VectorXd measurement_bound(const LinearStructure& structure, const Eigen:
   return bound;
 }
 
-/// The search for Q and R: theta is known, and one mode has no T.
+/// The search for Q and R: theta is known unless the states are rounded, and one mode has no T.
 struct NoiseSearch {
   LikelihoodTarget target;
-  Eigen::VectorXd scale;  ///< n residual variances: the unit of the starts
-  Eigen::VectorXd bound;  ///< n lower bounds of R's diagonal
+  Eigen::VectorXd scale;            ///< n residual variances: the unit of the starts
+  Eigen::VectorXd bound;            ///< n lower bounds of R's diagonal
+  Eigen::VectorXd theta_unit = {};  ///< p standard errors; empty: theta is known
 
   double samples() const { return static_cast<double>(target.recording.transitions(Role::train)); }
 
   LikelihoodMaximum maximise(const Bank& start, const std::vector<Index>& free_R) const {
     FreeParameters free;
+    free.theta_unit = theta_unit;
     free.least_Q = rounding_share * scale;
     free.R = free_R;
     free.least_R = bound;
@@ -107,8 +109,10 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
   set_mode_sequence(bank, TransitionMatrix());
 
   const Eigen::VectorXd scale = global.noise_variance().unaryExpr(&positive_variance);
-  const NoiseSearch search{
+  NoiseSearch search{
       {training, {FilterVariant::kf}, std::nullopt}, scale, measurement_bound(structure, global.theta, scale)};
+  if (bank.is_quantised())  // least squares take rounding for noise of what predicts
+    search.theta_unit = global.covariance.diagonal().cwiseSqrt().unaryExpr(&positive_variance);
   std::vector<Index> outputs(static_cast<std::size_t>(n));
   std::iota(outputs.begin(), outputs.end(), Index{0});
   HeldNoise noise = hold_at_bounds(search, best_of_starts(search, bank, outputs), outputs);

@@ -43,6 +43,7 @@ DriftingModel undecided_model(const Recording& recording, const GlobalModel& glo
   model.scale = regressor_scale(recording, structure);
   model.v0 = global.noise_variance().unaryExpr(&positive_variance);
   model.variance_floor = model.v0;
+  model.quantum = recording.quantum;
   return model;
 }
 

@@ -9,9 +9,9 @@
 
 namespace modebank {
 
-/// A bank without modes: structure, measurement (C = [I 0]: the newest sample of z, the given R), names and sample
-/// period of the training data; a lagged state is called "wz[k-1]". Throws std::invalid_argument when R does not have
-/// one row per measured state or the structure is not the recording's.
+/// A bank without modes: structure, measurement (C = [I 0]: the newest sample of z, the given R, the recording's
+/// quanta), names and sample period of the training data; a lagged state is called "wz[k-1]". Throws
+/// std::invalid_argument when R does not have one row per measured state or the structure is not the recording's.
 Bank bank_frame(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R);
 
 /// Names of a bank's states and inputs over the recording's columns.

@@ -84,7 +84,7 @@ RegressionSums regression_sums(const Eigen::MatrixXd& regressors, const Eigen::V
 }
 
 Recording training_part(const Recording& recording) {
-  Recording training{recording.states, recording.inputs, {}};
+  Recording training{recording.states, recording.inputs, {}, recording.quantum};
   std::copy_if(recording.runs.begin(), recording.runs.end(), std::back_inserter(training.runs),
                [](const Trajectory& run) { return run.role == Role::train; });
   return training;

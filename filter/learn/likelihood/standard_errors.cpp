@@ -32,7 +32,7 @@ struct FirstSamples {
 FirstSamples first_samples(const Recording& recording, Index coordinates) {
   Index room =
       std::clamp(static_cast<Index>(most_numbers / static_cast<double>(coordinates)), fewest_samples, most_samples);
-  FirstSamples first{{recording.states, recording.inputs, {}}};
+  FirstSamples first{{recording.states, recording.inputs, {}, recording.quantum}};
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train || run.samples() < 2 || room < 2) continue;
     first.recording.runs.push_back(run.samples() <= room ? run : stretch(run, 0, room));

@@ -49,7 +49,7 @@ std::vector<ValidationSplit> validation_splits(const Recording& recording, Index
   const std::vector<Index> part = deal_by_length(lengths, parts);
   std::vector<ValidationSplit> splits(parts);
   for (Index s = 0; s < parts; ++s) {
-    splits[s].training = {recording.states, recording.inputs, {}};
+    splits[s].training = {recording.states, recording.inputs, {}, recording.quantum};
     splits[s].left_out = splits[s].training;
     for (std::size_t i = 0; i < runs.size(); ++i)
       (part[i] == s ? splits[s].left_out : splits[s].training).runs.push_back(runs[i]);

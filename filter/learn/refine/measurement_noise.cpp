@@ -71,14 +71,19 @@ std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const Re
   return std::move(end.bank);
 }
 
+/// Whether R is estimated. Of rounded states it is held: what they differ by from the states is in the likelihood of
+/// their intervals already.
+bool estimates_R(const RefineInput& in, const Bank& bank) {
+  return in.options.measurement_noise && !bank.is_quantised();
+}
+
 /// Theta, Q, T and (where it is to be estimated) R of a bank together, from there to the maximum on these runs.
 LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const RefineInput& in, const Bank& bank) {
   const TrainingTransitions transitions = gather_training_transitions(target.recording, bank.structure);
   const SwitchingSums sums =
       sum_transitions(transitions, smooth_modes(transitions, switching_model(bank)), *target.prior);
-  const FreeParameters free =
-      all_parameters(bank, sums, *target.prior, in.options.one_theta, in.options.measurement_noise,
-                     least_measurement_noise(in.fits, in.options.tuning));
+  const FreeParameters free = all_parameters(bank, sums, *target.prior, in.options.one_theta, estimates_R(in, bank),
+                                             least_measurement_noise(in.fits, in.options.tuning));
   return maximise_likelihood(target, free, bank, {in.options.max_iterations, in.options.tolerance});
 }
 
@@ -176,7 +181,7 @@ MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValida
   MeasurementStage& stage = result.stage;
   std::optional<MeasuredSplits> splits;
   if (validation.possible()) splits.emplace(in, validation, chosen, bank.noise_adaptation);
-  if (in.options.measurement_noise) {
+  if (estimates_R(in, bank)) {
     MeasurementNoise noise = estimate_measurement_noise({in.recording, in.filter, std::nullopt}, bank, tuning);
     stage.starts = noise.starts;
     stage.failed_starts = noise.failed_starts;
@@ -189,7 +194,8 @@ MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValida
     }
     result.bank = std::move(*noise.bank);
     result.R_estimated = true;
-  } else if (!(bank.R.diagonal().array() > least_measurement_noise(in.fits, tuning).array()).any()) {
+  } else if (!bank.is_quantised() &&
+             !(bank.R.diagonal().array() > least_measurement_noise(in.fits, tuning).array()).any()) {
     return result;
   }
   result.prior = prior_with_states_unknown(prior, result.bank, tuning);

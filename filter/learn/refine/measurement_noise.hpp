@@ -47,7 +47,8 @@ struct ChosenFit {
 /// Where R is more than nothing (by estimate_measurement_noise in the filter that will run the bank, unless it costs
 /// the runs left out more than least_gain, or as given), the fit goes on with the states unknown, theta, Q, R and T
 /// together, to the maximum of the filter's likelihood; that is kept if it pays on the runs left out, each scored by a
-/// fit that has not seen it: its R, its prior and all else are those of the other runs.
+/// fit that has not seen it: its R, its prior and all else are those of the other runs. Rounded states are unknown
+/// whatever R is: their fit goes on so in any case, R held as it stands.
 MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation,
                                         const ChosenFit& chosen, const SwitchingPrior& prior, const Bank& bank);
 

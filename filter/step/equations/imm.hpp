@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "filter/step/equations/bounds.hpp"
+#include "filter/step/equations/interval.hpp"
 #include "filter/step/equations/kalman.hpp"
 #include "filter/step/equations/model.hpp"
 
@@ -155,14 +156,18 @@ void predict_modes(const FilterModel<N, NY>& model, const std::vector<Gaussian<N
 }
 
 /// Step 3, after it: every hypothesis takes the measurement `y` of `sensor` in: its estimate, and its log likelihood
-/// log Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) of the signals that are there.
+/// log Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) of the signals that are there; of quantised ones interval.hpp.
 template <int N, int NY, class Sensor, class Y>
 void correct(const Sensor& sensor, const Y& y, FilterStep<N, NY>& step, std::vector<Gaussian<N>>& estimates) {
   constexpr double half_log_two_pi = 0.91893853320467274178;
   const double excess = half_log_two_pi * static_cast<double>(step.partial.missing);
   for (std::size_t h = 0; h < step.kalman.size(); ++h) {
-    step.kalman[h].observe(sensor, y);
-    step.kalman[h].correct(sensor, estimates[h]);
+    if (sensor.quantised) {
+      correct_intervals(sensor, y, step.kalman[h], estimates[h]);
+    } else {
+      step.kalman[h].observe(sensor, y);
+      step.kalman[h].correct(sensor, estimates[h]);
+    }
     step.log_likelihood(static_cast<Eigen::Index>(h)) = step.kalman[h].log_density + excess;
   }
 }

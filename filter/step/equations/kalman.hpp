@@ -39,21 +39,26 @@ struct PartialSensor {
   Eigen::Matrix<double, NY, N> C;
   Eigen::Matrix<double, NY, NY> R;
   Eigen::Matrix<double, NY, 1> y;
+  Eigen::Matrix<double, NY, 1> quantum;
+  bool quantised = false;
   Eigen::Index missing = 0;  ///< signals
 
-  PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y) {}
+  PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y), quantum(n_y) {}
 
   template <class Sensor, class Y>
   void assign(const Sensor& whole, const Y& measured) {
     C = whole.C;
     R = whole.R;
     y = measured;
+    quantum = whole.quantum;
+    quantised = whole.quantised;
     missing = 0;
     for (Eigen::Index i = 0; i < y.size(); ++i)
       if (is_missing(measured(i))) {
         C.row(i).setZero();
         detach(R, i);
         y(i) = 0.0;
+        quantum(i) = 0.0;
         ++missing;
       }
   }
@@ -69,6 +74,10 @@ struct KalmanStep {
   Eigen::Matrix<double, NY, NY> innovation_covariance;  ///< S = C P C' + R
   small::Cholesky<NY> cholesky;                         ///< of S; a singular S is regularised there
   double log_density = 0.0;                             ///< log N(e; 0, S)
+  // Of quantised measurements alone (interval.hpp).
+  Eigen::Matrix<double, NY, 1> signal_log_density;  ///< of each signal given those before
+  Eigen::Matrix<double, NY, 1> second_moment;       ///< E[e^2 / s | interval] of each signal given those before
+  Eigen::Matrix<double, N, 1> column;               ///< workspace
 
   KalmanStep(Eigen::Index n, Eigen::Index n_y, Eigen::Index regressors)
       : predicted(n),
@@ -77,6 +86,9 @@ struct KalmanStep {
         decorrelated(n_y),
         innovation_covariance(n_y, n_y),
         cholesky(n_y),
+        signal_log_density(n_y),
+        second_moment(n_y),
+        column(n),
         NN_(n, n),
         gain_(n, n_y),
         PCt_(n, n_y),

@@ -29,6 +29,8 @@ struct FilterModel {
   std::vector<Mode> modes;           ///< K
   Eigen::Matrix<double, NY, N> C;
   Eigen::Matrix<double, NY, NY> R;
+  Eigen::Matrix<double, NY, 1> quantum;  ///< 0: continuous
+  bool quantised;                        ///< whether any signal is
   TransitionMatrix transition;
   TransitionLogit transition_logit;
   Eigen::VectorXd initial_probability;                  ///< K
@@ -49,6 +51,8 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
       noise_adaptation(bank.noise_adaptation),
       C(bank.C),
       R(bank.R),
+      quantum(Eigen::VectorXd::Zero(bank.C.rows())),
+      quantised(bank.is_quantised()),
       transition(bank.transition),
       transition_logit(bank.transition_logit),
       initial_probability(bank.initial_probability) {
@@ -57,6 +61,9 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
                                 std::to_string(bank.mode_count()));
   if (variant == FilterVariant::salvi2025 && !transition_logit.empty())
     throw std::invalid_argument("the paper's equations (salvi2025) know no switching by state and input");
+  if (variant == FilterVariant::salvi2025 && quantised)
+    throw std::invalid_argument("the paper's equations (salvi2025) know no quantised measurements");
+  if (quantised) quantum = bank.quantum;
   for (const modebank::Mode& mode : bank.modes) {
     const bool noisy = options.parameter_noise && mode.spread.size() > 0;
     modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q,

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "filter/step/equations/bounds.hpp"
+#include "filter/step/equations/interval.hpp"
 #include "filter/step/equations/model.hpp"
 
 /// The scale of the process noise that a filter with adaptive noise learns as it goes: every mode's Q is multiplied by
@@ -89,6 +90,12 @@ void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::Ve
     if (!(weight > 0.0)) continue;
     const auto& Q = model.modes[h / per_mode].Q;
     total += weight;
+    if (sensor.quantised) {
+      const IntervalSums sums = interval_sums(sensor, Q, step.kalman[h], largest_standardised * largest_standardised);
+      share += weight * s * sums.share;
+      square += weight * s * sums.square;
+      continue;
+    }
     share += weight * s * explained_share(sensor, Q, step.kalman[h], step.residual);
     square += weight * s * explained_square(sensor, Q, step.kalman[h], n_y, step.residual);
   }

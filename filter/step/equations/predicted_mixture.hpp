@@ -14,8 +14,9 @@ namespace modebank {
 /// Larger normalised squares are not told apart.
 inline constexpr double largest_nis = 1e300;
 
-/// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)'). Returns
-/// the share of the spread of the modes' predictions in the trace of S.
+/// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)'), with
+/// the variance of rounding, q^2 / 12, for quantised signals. Returns the share of the spread of the modes' predictions
+/// in the trace of S.
 template <int N, int NY, class State, class Covariance>
 double combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&& x, Covariance&& S) {
   const Eigen::VectorXd& c = step.hypothesis_probability();
@@ -31,6 +32,7 @@ double combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&&
     small::add_spread(S, weight, step.kalman[j].innovation_covariance, step.residual);
     for (Eigen::Index i = 0; i < step.residual.size(); ++i) spread += weight * step.residual(i) * step.residual(i);
   }
+  if (model.quantised) S.diagonal().array() += model.quantum.array().square() / 12.0;  // of the recorded value
   const double total = S.diagonal().sum();
   return total > 0.0 ? std::min(1.0, spread / total) : 0.0;
 }
@@ -94,6 +96,37 @@ void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd&
     }
     pit(i) = sum < 1.0 ? sum : 1.0;  // weights sum to one up to rounding
     if (more) bayes(weights, step.log_likelihood, weights);
+  }
+}
+
+/// Of quantised measurements: component i of the transform lies between the predictive distribution function at the
+/// lower end of the interval of y_i and that at its upper end, given the intervals of y_1 .. y_(i-1). `pit`: the middle
+/// of the two, `width`: their difference, 0 for a continuous signal or a missing one. Otherwise as
+/// probability_transform.
+template <int N, int NY, class Y, class Pit, class Width>
+void interval_transform(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights,
+                        Pit&& pit, Width&& width) {
+  weights = step.hypothesis_probability();
+  width.setZero();
+  for (Eigen::Index i = 0; i < pit.size(); ++i) {
+    if (is_missing(y(i))) {
+      pit(i) = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    const double half = 0.5 * model.quantum(i);
+    double low = 0.0, high = 0.0;
+    for (Eigen::Index j = 0; j < weights.size(); ++j) {
+      const KalmanStep<N, NY>& kalman = step.kalman[static_cast<std::size_t>(j)];
+      const double e = kalman.decorrelated(i), deviation = std::sqrt(kalman.cholesky.D(i));
+      low += weights(j) * normal_cdf((e - half) / deviation);
+      high += weights(j) * normal_cdf((e + half) / deviation);
+      step.log_likelihood(j) = kalman.signal_log_density(i);
+    }
+    high = std::min(high, 1.0);
+    low = std::min(low, high);
+    pit(i) = 0.5 * (low + high);
+    width(i) = high - low;
+    if (i + 1 < pit.size()) bayes(weights, step.log_likelihood, weights);
   }
 }
 

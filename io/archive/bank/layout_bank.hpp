@@ -59,6 +59,7 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.optional_field("transition_standard_error", stored.transition_standard_error, {"K", "K"});
   io.field("C", stored.C, {"n_y", "n"}, measured ? ratios(outputs, states) : Unit());
   io.field("R", stored.R, {"n_y", "n_y"}, measured ? outer(outputs) : Unit());
+  io.optional_field("quantum", stored.quantum, {"n_y"}, outputs);
   io.field("transition", stored.transition, {"K", "K"});
   io.optional_field("transition_weights", stored.transition_weights, {"K", "K", "features"});
   io.optional_field("transition_reference", stored.transition_reference, {"features"});

@@ -52,6 +52,7 @@ void exchange_drifting(Io& io, M& model, const Units& units) {
   io.field("regressor_scale", model.scale, {"r"});
   io.field("initial_variance", model.v0, {"n_y"}, squared(units.states()));
   io.field("variance_floor", model.variance_floor, {"n_y"}, squared(units.states()));
+  io.optional_field("quantum", model.quantum, {"n_y"}, units.states());
   io.through(model.horizon_factor, store_factors, restore_factors, [&](auto& stored) {
     io.optional_field("horizon", stored.horizon, {"H"}, {"samples"});
     io.optional_field("horizon_factor", stored.factor, {"H"});

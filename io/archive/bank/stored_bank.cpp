@@ -138,6 +138,7 @@ StoredBank store_bank(const Bank& bank) {
   for_each_bank_matrix([&](auto array, auto matrix) { stored.*array = (bank.*matrix).transpose(); });
   stored.transition = bank.transition.matrix().transpose();
   store_logit(bank, stored);
+  stored.quantum = bank.quantum;
   stored.initial_probability = bank.initial_probability;
   return stored;
 }
@@ -163,6 +164,7 @@ Bank restore_bank(const StoredBank& stored, Bank bank) {
   for_each_bank_matrix([&](auto array, auto matrix) { bank.*matrix = (stored.*array).transpose(); });
   bank.transition = TransitionMatrix(stored.transition.transpose());
   bank.transition_logit = restore_logit(stored, stored.weight.size());
+  bank.quantum = stored.quantum;
   bank.initial_probability = stored.initial_probability;
   validate(bank);
   return bank;

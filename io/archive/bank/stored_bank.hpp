@@ -69,6 +69,7 @@ struct StoredBank {
   Eigen::MatrixXd transition_weight_error;    ///< d x K, empty without
   Eigen::MatrixXd C;                          ///< transposed
   Eigen::MatrixXd R;                          ///< transposed
+  Eigen::VectorXd quantum;                    ///< n_y, empty without
   Eigen::MatrixXd transition;                 ///< transposed
   Eigen::VectorXd initial_probability;
 };

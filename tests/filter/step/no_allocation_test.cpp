@@ -68,6 +68,24 @@ TEST(NoAllocation, TheBankFilter) {
     }
 }
 
+TEST(NoAllocation, TheBankFilterOfRoundedSignals) {
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2})
+    for (const FilterNoise noise : {FilterNoise::gaussian, FilterNoise::adaptive})
+      for (const Eigen::Index n : {1, 3}) {
+        Bank bank = test::example_bank(n, 2, 3);
+        bank.quantum.setConstant(n, 0.02);
+        if (n > 1) bank.quantum(1) = 0.0;
+        Trajectory run = test::simulate_bank(bank, 30, 1);
+        run.state(0, 12) = std::nan("");
+        FilterOptions options{variant};
+        options.noise = noise;
+        BankFilter filter(bank, options);
+        const long before = test::allocations;
+        for (Eigen::Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
+        EXPECT_EQ(test::allocations - before, 0) << name_of(variant) << ", n = " << n;
+      }
+}
+
 TEST(NoAllocation, EveryVariantAndSize) {
   for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::mmae, FilterVariant::gpb1, FilterVariant::gpb2,
                                       FilterVariant::salvi2025, FilterVariant::kf})

@@ -30,7 +30,7 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
   Gaussian<any> estimate(n);
   VectorImm kernel(bank, options);
   kernel.start(run.state.col(0));
-  VectorXd mean(n), expected_mean(n), pit(n_y), expected_pit(n_y), weights(bank.mode_count());
+  VectorXd mean(n), expected_mean(n), pit(n_y), width(n_y), expected_pit(n_y), weights(bank.mode_count());
   MatrixXd covariance(n, n), S(n_y, n_y), expected_S(n_y, n_y);
   const auto same = [&](const MatrixXd& a, const MatrixXd& b) {
     return test::near(a, b, relative * std::max(1e-3, b.cwiseAbs().maxCoeff()));
@@ -52,7 +52,7 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
     ASSERT_TRUE(same(kernel.mode_probability(), state.mode_probability)) << "sample " << k;
     ASSERT_EQ(std::isnan(log_density), std::isnan(expected));
     if (!std::isnan(expected)) {
-      kernel.transform(run.state.col(k), pit);
+      kernel.transform(run.state.col(k), pit, width);
       probability_transform(run.state.col(k), step, weights, expected_pit);
       for (Index i = 0; i < n_y; ++i) {
         ASSERT_EQ(std::isnan(pit(i)), std::isnan(expected_pit(i)));
@@ -239,14 +239,14 @@ TEST(VectorImm, TransformsByTheNormalDistributionFunction) {
       {-0.6, 0.27425311775007358769},      {-0.05, 0.4800611941616275373},      {0.0, 0.5},
       {0.02, 0.50797831371690198119},      {0.9, 0.81593987465324051735},       {2.2, 0.98609655248650139569},
       {4.1, 0.99997934249308745323},       {7.7, 0.99999999999999319669},       {40.0, 1.0}};
-  VectorXd pit(1);
+  VectorXd pit(1), width(1);
   for (const auto& [z, probability] : cases) {
     VectorImm kernel(bank, {});
     kernel.start(VectorXd::Zero(1));
     kernel.predict(VectorXd::Zero(1));
     const VectorXd y = VectorXd::Constant(1, z);
     kernel.update(y);
-    kernel.transform(y, pit);
+    kernel.transform(y, pit, width);
     // z itself is rounded, which the tail feels as z^2.
     EXPECT_NEAR(pit(0), probability, (1e-14 + 2.3e-16 * z * z) * probability) << z;
   }

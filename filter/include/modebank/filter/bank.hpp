@@ -30,7 +30,9 @@ struct BankDescription {
   std::vector<Mode> modes;  ///< K >= 1
   Matrix C;                 ///< n_y x n; empty: the state is measured
   Matrix R;                 ///< n_y x n_y, covariance of the measurement noise [state unit^2]
-  Matrix transition;        ///< K x K, row i: probabilities of the mode that follows mode i
+  std::vector<double>
+      quantum;        ///< n_y, of what measured values are multiples [state unit], 0: continuous; may be empty
+  Matrix transition;  ///< K x K, row i: probabilities of the mode that follows mode i
   /// Where state and input move the switches: K x d, d = n + acting inputs. P(j | i, z) is proportional to T_ij
   /// exp(w_j' (z - reference)), z = (x, v) as a step starts; empty: T whatever z is.
   Matrix transition_weights;

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "filter/step/equations/kalman.hpp"
+#include "filter/step/truncated_normal.hpp"
+
+/// Quantised measurements: a signal that comes in multiples of q says that C x + v lies in [y - q/2, y + q/2], and no
+/// more. The state is latent. A mode's prediction of the signal is N(C x, s), so the interval's probability is a
+/// difference of normal distribution functions, and what is known of the signal afterwards is a truncated normal, whose
+/// mean and variance reach the state by the Kalman gain:
+///   x <- x + K (E[C x + v | interval] - C x),   P <- P + K (Var[C x + v | interval] - s) K',   K = P C' / s.
+/// For one signal these are the exact moments. Several are taken in one after another, each time with what is then
+/// known taken for a Gaussian (assumed density filtering: Maybeck 1982, "Stochastic Models, Estimation and Control",
+/// volume 2, chapter 12), as every later step takes it. A signal of quantum zero is measured as it stands.
+namespace modebank {
+
+/// Log of the mean density of the interval's signal, log(mass / q): what a density is in the limit of q = 0, so that
+/// scores of coarser and finer data have one unit. Between models of the same data it differs as the log of the mass.
+struct SignalLikelihood {
+  double log_density = 0.0;
+  double mean = 0.0;      ///< of the standardised innovation given the measurement
+  double variance = 0.0;  ///< of it
+};
+
+/// Of innovation `e` of variance `s` > 0.
+inline SignalLikelihood signal_likelihood(double e, double s, double quantum) {
+  constexpr double half_log_two_pi = 0.91893853320467274178;
+  const double deviation = std::sqrt(s), z = e / deviation;
+  if (quantum == 0.0) return {-half_log_two_pi - std::log(deviation) - 0.5 * z * z, z, 0.0};
+  const double half = 0.5 * quantum;
+  const TruncatedNormal within = truncated_normal((e - half) / deviation, (e + half) / deviation);
+  return {within.log_mass - std::log(quantum), within.mean, within.variance};
+}
+
+/// Observes and corrects in one (kalman.hpp), after expect. `sensor` has C, diagonal R and quantum. Leaves the signals'
+/// innovations given the signals before them in `decorrelated` and their variances in `cholesky.D`, which is all that
+/// is left of the factor.
+template <int N, int NY, class Sensor, class Y>
+void correct_intervals(const Sensor& sensor, const Y& y, KalmanStep<N, NY>& kalman, Gaussian<N>& posterior) {
+  const Eigen::Index n = posterior.mean.size();
+  small::multiply(kalman.innovation, sensor.C, kalman.predicted.mean);
+  kalman.innovation = y - kalman.innovation;
+  posterior = kalman.predicted;
+  kalman.log_density = 0.0;
+  for (Eigen::Index i = 0; i < kalman.innovation.size(); ++i) {
+    double expected = 0.0, s = sensor.R(i, i);
+    for (Eigen::Index a = 0; a < n; ++a) {
+      double sum = 0.0;
+      for (Eigen::Index b = 0; b < n; ++b) sum += posterior.covariance(a, b) * sensor.C(i, b);
+      kalman.column(a) = sum;
+      expected += sensor.C(i, a) * posterior.mean(a);
+    }
+    for (Eigen::Index a = 0; a < n; ++a) s += sensor.C(i, a) * kalman.column(a);
+    s = std::max(s, least_variance);
+    const double e = y(i) - expected;
+    const SignalLikelihood said = signal_likelihood(e, s, sensor.quantum(i));
+    const double step = said.mean / std::sqrt(s), shrink = (1.0 - said.variance) / s;
+    for (Eigen::Index b = 0; b < n; ++b) {
+      posterior.mean(b) += step * kalman.column(b);
+      for (Eigen::Index a = b; a < n; ++a)
+        posterior.covariance(b, a) = posterior.covariance(a, b) -= shrink * kalman.column(a) * kalman.column(b);
+    }
+    kalman.decorrelated(i) = e;
+    kalman.cholesky.D(i) = s;
+    kalman.signal_log_density(i) = said.log_density;
+    kalman.second_moment(i) = said.mean * said.mean + said.variance;
+    kalman.log_density += said.log_density;
+  }
+  if (!(kalman.log_density > lowest_log_density)) kalman.log_density = lowest_log_density;
+  if (!is_finite(posterior)) posterior = kalman.predicted;  // an overflowing correction is no information
+  bound_variances(kalman.predicted, posterior);
+}
+
+/// The noise scale's sums of one Kalman step (noise_scale.hpp) after correct_intervals: signal by signal, e^2 / s
+/// replaced by its expectation given the interval.
+struct IntervalSums {
+  double share = 0.0, square = 0.0;
+};
+
+template <class Sensor, class Matrix, class Kalman>
+IntervalSums interval_sums(const Sensor& sensor, const Matrix& P, const Kalman& kalman, double most) {
+  IntervalSums sums;
+  for (Eigen::Index i = 0; i < kalman.decorrelated.size(); ++i) {
+    double variance = 0.0;
+    for (Eigen::Index q = 0; q < P.cols(); ++q)
+      for (Eigen::Index p = 0; p < P.rows(); ++p) variance += sensor.C(i, p) * P(p, q) * sensor.C(i, q);
+    const double share = variance / kalman.cholesky.D(i);
+    sums.share += share;
+    sums.square += share * std::min(kalman.second_moment(i), most);
+  }
+  return sums;
+}
+
+}  // namespace modebank

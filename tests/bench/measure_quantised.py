@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Known systems whose outputs are rounded: bias and stated uncertainty with intervals and with the Gaussian likelihood (make quantised).
+
+  measure_quantised.py build/modebank [--seeds 50] [--first 0] [--jobs N] [--modes 1,2] [--quanta 0.3,1,3] [--rows FILE]
+
+One state without measurement noise, one mode or two that differ in A, B and noise, twelve runs of 400 samples of which six train; outputs
+are multiples of a quantum of so many innovation standard deviations. Each seed's files are learned from twice, with data.quantum = the
+quantum and with none; mixture.components is the number of modes. Bias: mean over seeds of theta less the truth in the bank's stated
+errors, of the parameter where it is largest, with the standard error of that mean (seeds whose bank has the true number of modes).
+Tails: of the held-out runs. Prints a Markdown table.
+"""
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import sys
+import tempfile
+import time
+
+import h5py
+import numpy as np
+
+from switching_system import SD, Switching, run_program
+
+RUNS, SAMPLES, STAY = 12, 400, 100
+MODES = [([[-.15]], [[-.15, .15]], 1.0), ([[-.5]], [[.3, .1]], 1.0)]
+
+
+def learned(program, runs, folder, modes, quantum):
+    start = time.monotonic()
+    done = run_program(program, runs, folder, ["--data.quantum", quantum, "--mixture.components", str(modes)])
+    if done.returncode != 0:
+        return {"failed": done.stderr.strip().splitlines()[-1:]}
+    with h5py.File(folder / "out.h5") as file:
+        bank = file["bank"]
+        rows = file["evaluation/summary"][:]
+        pooled = [r for r in rows if (r["filter"], r["role"], r["run"]) == (b"bank", b"test", b"*")][0]
+        return {"theta": np.concatenate([bank["A"][:].reshape(len(bank["A"]), -1), bank["B"][:].reshape(len(bank["A"]), -1)], axis=1).tolist(),
+                "packed": bank["parameters"][:].tolist(), "error": bank["parameter_standard_error"][:].tolist(),
+                "Q": bank["Q"][:].ravel().tolist(), "too_far": float(pooled["too_far"]), "too_close": float(pooled["too_close"]),
+                "log_score": float(pooled["log_score"]), "seconds": time.monotonic() - start}
+
+
+def trial(program, modes, deviations, seed):
+    g = np.random.default_rng([seed, modes])
+    chosen = MODES[:modes]
+    system = Switching([np.array(A) for A, _, _ in chosen], [np.array(B) for _, B, _ in chosen], [SD * s for _, _, s in chosen], 0.0, STAY)
+    quantum = deviations * SD
+    runs = [(u, np.round(y / quantum) * quantum) for u, y in (system.simulate(g, run, SAMPLES) for run in range(RUNS))]
+    result = {"modes": modes, "deviations": deviations, "seed": seed}
+    with tempfile.TemporaryDirectory() as path:
+        result["interval"] = learned(program, runs, pathlib.Path(path), modes, f"{quantum:.9g}")
+        result["Gaussian"] = learned(program, runs, pathlib.Path(path), modes, "none")
+    return result
+
+
+def standardised(said, modes):
+    """Errors of theta in stated ones, mode by mode in the true order; None where the number of modes is another."""
+    if "failed" in said or len(said["theta"]) != modes:
+        return None
+    truth = np.array([np.concatenate([np.ravel(A), np.ravel(B)]) for A, B, _ in MODES[:modes]])
+    theta, error = np.array(said["theta"]), np.array(said["error"])
+    nearest = [int(np.argmin(((truth - row) ** 2).sum(1))) for row in theta]
+    if sorted(nearest) != list(range(modes)):
+        return None
+    z = np.zeros_like(theta)
+    for j, t in enumerate(nearest):
+        z[t] = (theta[j] - truth[t]) / error[j]  # one state: theta is archived as (A, B), too
+    return z.ravel()
+
+
+def row(results, likelihood):
+    modes, deviations = results[0]["modes"], results[0]["deviations"]
+    said = [r[likelihood] for r in results if "failed" not in r[likelihood]]
+    z = [v for v in (standardised(s, modes) for s in said) if v is not None]
+    if z:
+        mean, count = np.mean(z, axis=0), len(z)
+        worst = int(np.argmax(np.abs(mean)))
+        bias = f"{mean[worst]:+.2f} ± {np.std(z, axis=0, ddof=1)[worst] / np.sqrt(count) if count > 1 else np.nan:.2f}"
+        spread = f"{np.sqrt(np.mean(np.var(z, axis=0))):.2f}"
+    else:
+        bias = spread = "–"
+    far, close = np.array([s["too_far"] for s in said]), np.array([s["too_close"] for s in said])
+    both = ((far >= 0.01) & (far <= 0.04) & (close >= 0.01) & (close <= 0.04)).sum()
+    return (f"| {modes} | {deviations:g} | {likelihood} | {len(results)} | {len(z)} | {bias} | {spread} | {100 * far.mean():.1f} | {100 * close.mean():.1f} | "
+            f"{both} | {np.median([s['seconds'] for s in said]):.1f} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("--seeds", type=int, default=50)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--modes", default="1,2")
+    parser.add_argument("--quanta", default="0.3,1,3")
+    parser.add_argument("--rows", help="one line of JSON per seed goes here")
+    options = parser.parse_args()
+    print("| modes | quantum / sd | likelihood | seeds | right number | largest mean error in stated errors | spread in stated errors | too far % | "
+          "too close % | both 1 to 4 % | s |\n|" + "---|" * 11)
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        for modes in map(int, options.modes.split(",")):
+            for deviations in map(float, options.quanta.split(",")):
+                seeds = range(options.first, options.first + options.seeds)
+                results = list(pool.map(lambda seed, m=modes, d=deviations: trial(options.program, m, d, seed), seeds))
+                if options.rows:
+                    with open(options.rows, "a", encoding="utf-8") as rows:
+                        rows.writelines(json.dumps(r) + "\n" for r in results)
+                for likelihood in ("interval", "Gaussian"):
+                    print(row(results, likelihood), flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,225 @@
+// Filters of quantised measurements (filter/step/equations/interval.hpp).
+#include "filter/step/equations/interval.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "filter/judge/drifting.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/horizon.hpp"
+#include "filter/judge/statistics.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "tests/filter/drifting_test_support.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/support/golden.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using nlohmann::json;
+
+Trajectory rounded(Trajectory run, double quantum) {
+  for (double& value : run.state.reshaped()) value = std::round(value / quantum) * quantum;
+  return run;
+}
+
+Bank with_quantum(Bank bank, double quantum) {
+  bank.quantum.setConstant(bank.C.rows(), quantum);
+  return bank;
+}
+
+Bank golden_bank(const json& source, double R, double quantum) {
+  Bank bank;
+  bank.structure = {1, 1, true};
+  const auto one = [](double value) { return Eigen::MatrixXd(Eigen::MatrixXd::Constant(1, 1, value)); };
+  for (std::size_t j = 0; j < source.at("A").size(); ++j) {
+    bank.modes.push_back({});
+    bank.modes[j].model = {one(source.at("A")[j]), one(source.at("B")[j]), one(source.at("c")[j])};
+    bank.modes[j].Q = one(source.at("Q")[j]);
+  }
+  bank.C = one(1.0);
+  bank.R = one(R);
+  bank.transition = TransitionMatrix(test::golden_rows(source.at("T")));
+  bank.initial_probability = test::golden_rows(source.at("pi"));
+  return with_quantum(bank, quantum);
+}
+
+TEST(Interval, FilterAgreesWithTheIndependentReference) {
+  const json golden = test::read_golden("imm_quantised");
+  for (const json& source : golden.at("cases")) {
+    const double quantum = source.at("quantum");
+    SCOPED_TRACE(quantum);
+    Trajectory run;
+    run.input = test::golden_rows(golden.at("input")).transpose();
+    run.state = test::golden_rows(source.at("measurement")).transpose();
+    const RunEvaluation actual = evaluate_run(golden_bank(golden.at("bank"), source.at("R"), quantum), run, {});
+    const json& expected = source.at("expected");
+    const auto row = [&](const char* name) {
+      return Eigen::MatrixXd(test::golden_rows(expected.at(name)).transpose());
+    };
+    EXPECT_TRUE(test::near(actual.log_density.transpose(), row("log_density"), 1e-7));
+    EXPECT_TRUE(test::near(actual.state, row("state"), 1e-7));
+    EXPECT_TRUE(test::near(actual.covariance, row("covariance"), 1e-7));
+    EXPECT_TRUE(test::near(actual.mode_probability, test::golden_columns(expected.at("mu")), 1e-7));
+    EXPECT_TRUE(test::near(actual.pit - 0.5 * actual.pit_width, row("low"), 1e-7));
+    EXPECT_TRUE(test::near(actual.pit + 0.5 * actual.pit_width, row("high"), 1e-7));
+  }
+}
+
+TEST(Interval, QuantumZeroChangesNoBit) {
+  for (const Index n : {1, 2, 6}) {
+    const Bank bank = test::example_bank(n, 2, 3);
+    const Trajectory run = test::simulate_bank(bank, 100, 3);
+    EXPECT_EQ(log_likelihood(bank, run, {}), log_likelihood(with_quantum(bank, 0.0), run, {}));
+  }
+}
+
+TEST(Interval, FineOnesHaveTheDensityOfContinuousSignals) {
+  const Bank bank = test::example_bank(2, 1, 2);
+  const Trajectory run = test::simulate_bank(bank, 200, 5);
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2, FilterVariant::mmae}) {
+    FilterOptions options;
+    options.variant = variant;
+    const double continuous = log_likelihood(bank, run, options);
+    const double coarse = std::abs(log_likelihood(with_quantum(bank, 1e-3), run, options) - continuous);
+    const double fine = std::abs(log_likelihood(with_quantum(bank, 1e-5), run, options) - continuous);
+    EXPECT_LT(fine, 1e-3) << name_of(variant);
+    EXPECT_LT(fine, 1e-2 * coarse + 1e-6) << name_of(variant);  // it goes with the square
+  }
+}
+
+/// What it says of all values that a sample can have.
+template <class Filter>
+double total_mass(Filter filter, const Trajectory& run, double quantum) {
+  const Index last = run.samples() - 1;
+  for (Index k = 0; k < last; ++k) filter.step(sample_time_s(run, k), run.input.col(k), run.state.col(k));
+  const auto before = filter.snapshot();
+  double sum = 0.0;
+  for (Index i = -400; i <= 400; ++i) {
+    filter.restore(before);
+    const double y = run.state(0, last) + static_cast<double>(i) * quantum;
+    sum += quantum *
+           std::exp(filter.step(sample_time_s(run, last), run.input.col(last), VectorXd::Constant(1, y)).log_density);
+  }
+  return sum;
+}
+
+TEST(Interval, MassesOfAllValuesSumToOne) {
+  const double quantum = 0.02;
+  const Bank bank = with_quantum(test::example_bank(1, 1, 2), quantum);
+  const Trajectory run = rounded(test::simulate_bank(bank, 30, 2), quantum);
+  EXPECT_NEAR(total_mass(BankFilter(bank, {}), run, quantum), 1.0, 1e-10);
+  DriftingModel drifting;
+  drifting.structure = bank.structure;
+  drifting.theta0 = bank.theta(0);
+  drifting.scale = VectorXd::Ones(3);
+  drifting.rates = {1e-3, 1e-2, 0.97};
+  drifting.nu = 5.0;
+  drifting.v0 = VectorXd::Constant(1, 1e-3);
+  drifting.variance_floor = 1e-3 * drifting.v0;
+  drifting.quantum = bank.quantum;
+  EXPECT_NEAR(total_mass(DriftingFilter(drifting, TimeSteps::repeat), run, quantum), 1.0, 1e-4);  // heavy tails
+}
+
+/// Two systems that have nothing to do with each other are filtered as each by itself, one rounded and one not.
+TEST(Interval, UnrelatedSignalsAreTakenInApart) {
+  Bank both = test::single_mode(test::example_bank(2, 1, 1), 0);
+  Mode& mode = both.modes.front();
+  mode.model.A = Eigen::Vector2d(-0.2, -0.5).asDiagonal();
+  mode.Q = Eigen::Vector2d(1e-3, 4e-3).asDiagonal();
+  both.quantum = Eigen::Vector2d(0.05, 0.0);
+  Trajectory run = test::simulate_bank(both, 100, 4);
+  run.state.row(0) = rounded(run, 0.05).state.row(0);
+  run.state(0, 30) = run.state(1, 40) = run.state(0, 50) = run.state(1, 50) = std::nan("");
+  VectorXd sum = VectorXd::Zero(run.samples());
+  for (const Index i : {0, 1}) {
+    Bank one = test::single_mode(test::example_bank(1, 1, 1), 0);
+    one.modes.front().model = {mode.model.A.block(i, i, 1, 1), mode.model.B.row(i), mode.model.c.segment(i, 1)};
+    one.modes.front().Q = mode.Q.block(i, i, 1, 1);
+    one.R = both.R.block(i, i, 1, 1);
+    one.quantum = both.quantum.segment(i, 1);
+    Trajectory alone = run;
+    alone.state = run.state.row(i);
+    const VectorXd densities = log_densities(one, alone, {});
+    sum += densities.unaryExpr([](double value) { return std::isnan(value) ? 0.0 : value; });
+  }
+  const VectorXd joint = log_densities(both, run, {});
+  EXPECT_TRUE(std::isnan(joint(50)));
+  for (Index k = 1; k < run.samples(); ++k)
+    if (k != 50) EXPECT_NEAR(joint(k), sum(k), 1e-10) << k;
+}
+
+TEST(Interval, TransformIsUniformInATrueFilter) {
+  const Index samples = 20000;
+  Bank bank = test::example_bank(1, 1, 2, 0.0);
+  bank.modes[0].Q(0, 0) = bank.modes[1].Q(0, 0) = 1e-2;
+  for (const double deviations : {0.3, 1.0, 3.0}) {
+    const double quantum = 0.1 * deviations;
+    const Trajectory run = rounded(test::simulate_bank(bank, samples, 6), quantum);
+    RunEvaluation evaluation = evaluate_run(with_quantum(bank, quantum), run, {});
+    draw_pit(run, 1, evaluation);
+    std::vector<double> pit(evaluation.pit.data() + 1, evaluation.pit.data() + samples);
+    constexpr double one_per_mille = 1.95;  // Kolmogorov's distribution
+    EXPECT_LT(kolmogorov_distance(pit), one_per_mille / std::sqrt(static_cast<double>(samples))) << deviations;
+  }
+}
+
+TEST(Interval, DrawsDependOnSeedRunAndSampleAlone) {
+  const Bank bank = with_quantum(test::example_bank(1, 1, 2), 0.05);
+  Trajectory run = rounded(test::simulate_bank(bank, 50, 6), 0.05);
+  const auto drawn = [&](std::uint64_t seed) {
+    RunEvaluation evaluation = evaluate_run(bank, run, {});
+    draw_pit(run, seed, evaluation);
+    return Eigen::MatrixXd(evaluation.pit.rightCols(49));
+  };
+  const Eigen::MatrixXd first = drawn(1);
+  EXPECT_EQ(first, drawn(1));
+  EXPECT_NE(first, drawn(2));
+  run.run = "other";
+  EXPECT_NE(first, drawn(1));
+}
+
+TEST(Interval, AdaptiveNoiseFindsTheScaleOfRoundedRuns) {
+  Bank bank = test::example_bank(1, 1, 1, 0.0);
+  bank.modes[0].Q(0, 0) = 1e-2;
+  bank.noise_adaptation = {1.0, 5.0};
+  Bank rougher = bank;
+  rougher.modes[0].Q(0, 0) = 4e-2;
+  for (const double quantum : {0.05, 0.3}) {
+    const Trajectory run = rounded(test::simulate_bank(rougher, 4000, 8), quantum);
+    FilterOptions options;
+    options.noise = FilterNoise::adaptive;
+    BankFilter filter(with_quantum(bank, quantum), options);
+    for (Index k = 0; k < run.samples(); ++k) filter.step(sample_time_s(run, k), run.input.col(k), run.state.col(k));
+    EXPECT_NEAR(filter.snapshot().noise_scale, 4.0, 0.4) << quantum;
+  }
+}
+
+TEST(Interval, HorizonOneIsTheFiltersOwnScore) {
+  const Bank bank = with_quantum(test::example_bank(1, 1, 2), 0.05);
+  const Trajectory run = rounded(test::simulate_bank(bank, 60, 6), 0.05);
+  const HorizonEvaluation ahead = evaluate_horizons(bank, run, {}, {1, 3});
+  const VectorXd densities = log_densities(bank, run, {});
+  for (Index k = 1; k < run.samples(); ++k) EXPECT_NEAR(ahead.log_density(0, k), densities(k), 1e-12);
+}
+
+TEST(Interval, RefusesWhatNoFilterCanTake) {
+  Bank bank = with_quantum(test::example_bank(2, 1, 2), 0.05);
+  FilterOptions paper;
+  paper.variant = FilterVariant::salvi2025;
+  EXPECT_THROW(BankFilter(bank, paper), std::invalid_argument);
+  bank.R(0, 1) = bank.R(1, 0) = 1e-5;
+  EXPECT_THROW(validate(bank), std::invalid_argument);
+  bank.quantum = VectorXd::Ones(3);
+  EXPECT_THROW(validate(bank), std::invalid_argument);
+  bank.quantum = Eigen::Vector2d(-1.0, 0.0);
+  EXPECT_THROW(validate(bank), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace modebank

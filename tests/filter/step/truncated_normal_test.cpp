@@ -1,0 +1,89 @@
+#include "filter/step/truncated_normal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+
+namespace modebank {
+namespace {
+
+/// Moments in long double: integrals of t^i exp(-low t - t^2 / 2), piece by piece of the fall of its logarithm.
+struct Reference {
+  long double log_mass, mean, variance;
+
+  Reference(long double low, long double high) {
+    const long double peak = std::clamp(0.0L, low, high);  // integrands are one there
+    long double sum = 0.0L, first = 0.0L, second = 0.0L;
+    const auto add = [&](long double from, long double to) {
+      const auto moment = [&](int power) {
+        const auto integrand = [&](long double t) { return std::pow(t, power) * std::exp(-(peak + 0.5L * t) * t); };
+        return boost::math::quadrature::gauss_kronrod<long double, 31>::integrate(integrand, from, to, 0);
+      };
+      sum += moment(0);
+      first += moment(1);
+      second += moment(2);
+    };
+    const auto walk = [&](long double until) {  // from the peak, by pieces of half a unit of scale
+      const long double scale = 0.5L / std::max(1.0L, std::abs(peak)), sign = until < 0.0L ? -1.0L : 1.0L;
+      for (long double t = 0.0L; t < std::abs(until) && t < 140.0L * scale; t += scale) {
+        const long double end = std::min(t + scale, std::abs(until));
+        add(sign > 0.0L ? t : -end, sign > 0.0L ? end : -t);
+      }
+    };
+    walk(high - peak);
+    walk(low - peak);
+    mean = peak + first / sum;
+    variance = second / sum - (first / sum) * (first / sum);
+    log_mass = -0.5L * peak * peak - 0.918938533204672741780329736406L + std::log(sum);
+  }
+};
+
+void expect_agreement(double low, double width) {
+  const double high = low + width;
+  if (!(high > low)) return;
+  const TruncatedNormal actual = truncated_normal(low, high);
+  const Reference expected(low, high);
+  SCOPED_TRACE(testing::Message() << "[" << low << ", " << low << " + " << width << "]");
+  const double log_mass = static_cast<double>(expected.log_mass);
+  EXPECT_NEAR(actual.log_mass, log_mass, 1e-13 * std::max(1.0, std::abs(log_mass)));
+  const double deviation = std::sqrt(static_cast<double>(expected.variance));
+  EXPECT_NEAR(actual.mean, static_cast<double>(expected.mean), 1e-11 * deviation + 1e-15 * std::abs(low));
+  EXPECT_NEAR(actual.variance, static_cast<double>(expected.variance), 2e-11 * static_cast<double>(expected.variance));
+}
+
+TEST(TruncatedNormal, HasTheMomentsOfQuadratureHoweverNarrowAndFarOut) {
+  for (const double low : {-40.0, -8.0, -3.0, -1.0, -0.1, 0.0, 0.5, 2.0, 3.9, 4.1, 6.0, 15.0, 40.0, 1e3, 1e6})
+    for (const double width : {1e-7, 1e-4, 0.1, 0.24, 0.26, 1.0, 3.0, 10.0, 100.0}) expect_agreement(low, width);
+}
+
+TEST(TruncatedNormal, HasTheMassOfBoost) {
+  const boost::math::normal normal;
+  for (const double low : {0.0, 1.0, 5.0, 20.0, 35.0}) {
+    const double mass = cdf(complement(normal, low)) - cdf(complement(normal, low + 1.5));
+    EXPECT_NEAR(truncated_normal(low, low + 1.5).log_mass, std::log(mass), 1e-12 * std::max(1.0, -std::log(mass)));
+  }
+}
+
+TEST(TruncatedNormal, IsMirrored) {
+  for (const double low : {-5.0, 0.3, 30.0}) {
+    const TruncatedNormal right = truncated_normal(low, low + 0.7), left = truncated_normal(-low - 0.7, -low);
+    EXPECT_EQ(right.log_mass, left.log_mass);
+    EXPECT_EQ(right.mean, -left.mean);
+    EXPECT_EQ(right.variance, left.variance);
+  }
+}
+
+TEST(TruncatedNormal, OfAllNumbersIsNormalAndOfNoneThatCountIsFinite) {
+  const TruncatedNormal all = truncated_normal(-1e10, 1e12);
+  EXPECT_EQ(all.log_mass, 0.0);
+  EXPECT_EQ(all.mean, 0.0);
+  EXPECT_EQ(all.variance, 1.0);
+  const TruncatedNormal none = truncated_normal(1e140, 1e160);
+  EXPECT_TRUE(std::isfinite(none.log_mass) && std::isfinite(none.mean) && std::isfinite(none.variance));
+}
+
+}  // namespace
+}  // namespace modebank
