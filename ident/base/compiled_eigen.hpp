@@ -4,7 +4,9 @@
 
 /// Eigen's inner loops for dense matrices of doubles, compiled once, in compiled_eigen.cpp: in a file that multiplies
 /// and solves they are a third of what a compiler has to do. The precompiled headers begin with this one, so that
-/// nobody needs to include it; who does not have it compiles the loops himself.
+/// nobody needs to include it; who does not have it compiles the loops himself, as everybody does with another Eigen
+/// than the one whose internals these are.
+#if EIGEN_WORLD_VERSION == 3 && EIGEN_MAJOR_VERSION == 4 && EIGEN_MINOR_VERSION == 0
 #ifndef MODEBANK_EIGEN_TEMPLATE
 #define MODEBANK_EIGEN_TEMPLATE extern template
 #endif
@@ -101,3 +103,4 @@ MODEBANK_EIGEN_TEMPLATE LDLT<MatrixXd>& LDLT<MatrixXd>::compute(const EigenBase<
 MODEBANK_EIGEN_TEMPLATE void PartialPivLU<MatrixXd>::compute();
 
 }  // namespace Eigen
+#endif
