@@ -120,7 +120,7 @@ def hybrid_row(name, results):
     right = np.array([r["accuracy"] for r in done])
     return (f"| {name} | {len(results)} | {np.median(lost):.4f}, {lost.max():.4f} | {np.median(gap):.4f}, {gap.max():.4f} | "
             f"{100 * np.median(right):.2f}, {100 * right.min():.2f} | {sum(r['modes'] == r['true_modes'] for r in done)} | {sum(r['logit'] for r in done)} | "
-            f"{len(results) - len(done)} |")
+            f"{sum(r['stated'] for r in done)} | {len(results) - len(done)} |")
 
 
 def kind_row(kind, results):
@@ -158,7 +158,7 @@ def main():
         if options.only in ("", "hybrid"):
             made = simulator(pathlib.Path(options.data))
             print("| system | seeds | nats lost to the true guard: median, most | free run, RMSE above the true guard's in sd: median, most | filtered modes right, %: median, "
-                  "least | right number of modes | logit chosen | failed |\n|" + "---|" * 8, flush=True)
+                  "least | right number of modes | logit chosen | errors stated | failed |\n|" + "---|" * 9, flush=True)
             for system in made.SYSTEMS:
                 seeds = range(options.first, options.first + options.hybrid_seeds)
                 show(pool, options, [lambda s=seed, y=system: hybrid_trial(options.program, y, made, s) for seed in seeds],

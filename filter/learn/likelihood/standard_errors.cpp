@@ -101,6 +101,18 @@ void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior,
     bank.R_standard_error = Eigen::VectorXd::Constant(bank.R.rows(), not_a_number).asDiagonal().toDenseMatrix();
 }
 
+/// Whether the training runs speak against borders twice as hard: all log odds doubled, which leaves every border where
+/// it is. Where no sample lies near a border they do not, however narrow the prior makes the curvature there look.
+bool against_harder_borders(const LikelihoodTarget& target, const Bank& bank) {
+  constexpr double clearly = 1.92;  // nats: 95 % of a chi-squared with one degree of freedom
+  Bank harder = bank;
+  harder.transition_logit.weights *= 2.0;
+  const Eigen::MatrixXd squared = bank.transition.matrix().cwiseAbs2();
+  harder.transition = TransitionMatrix(squared.array().colwise() / squared.rowwise().sum().array());
+  const LikelihoodTarget data_alone{target.recording, target.filter, std::nullopt};
+  return data_alone.value(bank) - data_alone.value(harder) > clearly;
+}
+
 /// Errors of the logit's weights that the data determine. Where a mode begins at a border that no sample lies on, data
 /// say no more than that weights are large: their error is about the prior's, or they were still growing when
 /// expectation-maximisation stopped. Then none is stated.
@@ -159,6 +171,8 @@ Bank with_standard_errors(const LikelihoodTarget& target, const FreeParameters& 
   const BankCoordinates around(bank, free);
   if (const auto observed = observe(target, around))
     set_observed_errors(around.places(), *observed, *target.prior, bank);
+  if (!bank.transition_logit.empty() && !against_harder_borders(target, bank))
+    bank.transition_weight_error.setConstant(not_a_number);
   return bank;
 }
 

@@ -53,7 +53,7 @@ def seed_scores(program, simulate, system, seed, folder, transition="logit"):
             "free_truth": rms(free[1]), "free_truth_score": float(np.mean(np.concatenate(free[0]))),
             "free_competitor": np.min([np.atleast_1d(c["rmse"]) for c in competitors if c], axis=0).tolist(),
             "accuracy": accuracy(archive, [m for _, _, m in test]),
-            "logit": has_logit(archive), "archive": str(archive)}
+            "logit": has_logit(archive), "stated": errors_stated(archive), "archive": str(archive)}
 
 
 def rms(errors):
@@ -63,6 +63,11 @@ def rms(errors):
 def has_logit(archive):
     with h5py.File(archive) as file:
         return "transition_weights" in file["bank"]
+
+
+def errors_stated(archive):
+    with h5py.File(archive) as file:
+        return has_logit(archive) and bool(np.isfinite(file["bank/transition_weight_standard_error"][:]).all())
 
 
 def accuracy(archive, truth):
