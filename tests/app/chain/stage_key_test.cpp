@@ -103,13 +103,26 @@ const std::vector<KeyValues> bases{
 
 /// Other values of keys whose range no rule can be read from.
 const std::map<std::string, std::vector<std::string>> texts{
-    {"data.root", {"elsewhere"}},   {"data.inputs", {"run_0*.csv"}}, {"data.states", {"run_*.csv"}},
-    {"data.state", {"other"}},      {"data.input", {"left"}},        {"data.truth", {"other"}},
-    {"data.weight", {"weight"}},    {"data.state_unit", {"rad/s"}},  {"data.input_unit", {"m/s"}},
-    {"data.time", {"clock"}},       {"data.run", {"block"}},         {"data.train", {"01"}},
-    {"data.test", {"00"}},          {"data.lag_s", {"0.1", "auto"}}, {"mixture.components", {"2", "1..3"}},
-    {"window.prior_sd", {"0.3"}},   {"job.seed", {"2", "3"}},        {"filter.horizon", {"2", "1..3"}},
+    {"data.root", {"elsewhere"}},
+    {"data.inputs", {"run_0*.csv"}},
+    {"data.states", {"run_*.csv"}},
+    {"data.state", {"other"}},
+    {"data.input", {"left"}},
+    {"data.truth", {"other"}},
+    {"data.weight", {"weight"}},
+    {"data.state_unit", {"rad/s"}},
+    {"data.input_unit", {"m/s"}},
+    {"data.time", {"clock"}},
+    {"data.run", {"block"}},
+    {"data.train", {"01"}},
+    {"data.test", {"00"}},
+    {"data.lag_s", {"0.1", "auto"}},
+    {"mixture.components", {"2", "1..3"}},
+    {"window.prior_sd", {"0.3"}},
+    {"job.seed", {"2", "3"}},
+    {"filter.horizon", {"2", "1..3"}},
     {"filter.paths", {"20", "50"}},
+    {"data.quantum", {"0.02", "auto"}},
 };
 
 /// Other values that the option accepts: words, or some numbers.
