@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo test bench-programs bench benchmarks guards uncertainty recovery evidence systems check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
+.PHONY: all api build demo test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
 
 all: build
 
@@ -72,6 +72,10 @@ evidence: build
 # How much is lost against the filter with the true parameters, on systems that are known; about three hours of a processor.
 systems: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_systems.py build/modebank
+
+# Bias and stated uncertainty on rounded outputs, by their intervals and as they stand.
+quantised: build
+	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_quantised.py build/modebank
 
 # Everything CI runs beside `make test`.
 check: format lint shellcheck api tidy-changed seeds sanitize

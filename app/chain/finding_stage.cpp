@@ -38,8 +38,9 @@ double innovation_sd(const FilterEvaluation& bank, const Recording& recording, R
   return std::sqrt(*middle);
 }
 
-/// Over the judged runs, one after another.
-std::vector<Resolution> resolutions(const FilterEvaluation& bank, const Recording& recording, Role role) {
+/// Over the judged runs, one after another. `quantum`: of the bank; where it has one its scores know of the rounding.
+std::vector<Resolution> resolutions(const FilterEvaluation& bank, const Eigen::VectorXd& quantum,
+                                    const Recording& recording, Role role) {
   const std::vector<const Trajectory*> runs = runs_of(recording, role);
   Index samples = 0;
   for (const Trajectory* run : runs) samples += run->samples();
@@ -51,7 +52,8 @@ std::vector<Resolution> resolutions(const FilterEvaluation& bank, const Recordin
       values.segment(at, run->samples()) = run->state.row(i).transpose();
       at += run->samples();
     }
-    const ChannelCheck check = check_channel(values);
+    const bool known = i < quantum.size() && quantum(i) > 0.0;
+    const ChannelCheck check = known ? ChannelCheck() : check_channel(values);
     states.push_back({recording.states[static_cast<std::size_t>(i)].name, check.quantum, check.repeated,
                       innovation_sd(bank, recording, role, i)});
   }
@@ -71,9 +73,9 @@ std::optional<Finding> find_modes(const Archive& archive) {
       competitors.push_back(densities_of(evaluation, *archive.recording, role));
   }
   if (!bank || !archive.bank) return {};
-  Finding finding =
-      judge_modes({*archive.bank, role, densities_of(*bank, *archive.recording, role), competitors, archive.summary,
-                   archive.horizons, resolutions(*bank, *archive.recording, role), archive.free_runs});
+  Finding finding = judge_modes(
+      {*archive.bank, role, densities_of(*bank, *archive.recording, role), competitors, archive.summary,
+       archive.horizons, resolutions(*bank, archive.bank->quantum, *archive.recording, role), archive.free_runs});
   finding.text = finding_text(finding);
   return finding;
 }

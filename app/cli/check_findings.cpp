@@ -78,8 +78,11 @@ void channel_findings(const DataCheck& check, std::vector<std::string>& found) {
             return (channel.is_state ? run.state_saturated[i] : run.input_saturated[i - states]) > 0.0;
           })));
     if (channel.values.quantum > 0.0)
-      found.push_back(fmt::format("{} comes in multiples of {:.6g}{}", channel.channel.name, channel.values.quantum,
-                                  channel.is_state ? ": noise of a third of that is in every sample" : ""));
+      found.push_back(fmt::format(
+          "{} comes in multiples of {:.6g}{}", channel.channel.name, channel.values.quantum,
+          channel.is_state ? ": noise of a third of that is in every sample; data.quantum = auto takes values for "
+                             "intervals of it where that is coarse against the noise"
+                           : ""));
     if (channel.values.repeated > 0.3 && (channel.is_state || channel.values.quantum == 0.0))
       found.push_back(fmt::format("{} repeats {:.0f} % of its samples: its source is slower than the file",
                                   channel.channel.name, percent * channel.values.repeated));

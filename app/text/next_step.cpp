@@ -68,7 +68,7 @@ const Rule rules[] = {
      [](const Situation&) -> std::string {
        return "measure more finely, or go by the RMSE: `modebank check CONFIG` says what repeats or comes in steps, "
               "and "
-              "which data.rate_hz leaves it out";
+              "which data.rate_hz leaves it out; of rounded values --data.quantum auto compares the intervals";
      }},
     {[](const Situation& s) { return !s.finding.held_out(); },
      [](const Situation&) -> std::string {

@@ -47,7 +47,7 @@ struct NoiseSearch {
 
   LikelihoodMaximum maximise(const Bank& start, const std::vector<Index>& free_R) const {
     FreeParameters free;
-    free.theta_unit = theta_unit;
+    if (theta_unit.size() > 0) free.theta_unit = theta_unit;  // an empty vector is a column, which is one theta
     free.least_Q = rounding_share * scale;
     free.R = free_R;
     free.least_R = bound;

@@ -125,6 +125,7 @@ const std::map<std::string, std::vector<std::string>> texts{
     {"filter.paths", {"20", "50"}},
     {"window.state_lags", {"2", "auto"}},
     {"window.input_lags", {"2", "auto"}},
+    {"data.quantum", {"0.02", "auto"}},
 };
 
 /// Other values that the option accepts: words, or some numbers.

@@ -150,8 +150,11 @@ TEST(Interval, UnrelatedSignalsAreTakenInApart) {
   }
   const VectorXd joint = log_densities(both, run, {});
   EXPECT_TRUE(std::isnan(joint(50)));
-  for (Index k = 1; k < run.samples(); ++k)
-    if (k != 50) EXPECT_NEAR(joint(k), sum(k), 1e-10) << k;
+  for (Index k = 1; k < run.samples(); ++k) {
+    if (k != 50) {
+      EXPECT_NEAR(joint(k), sum(k), 1e-10) << k;
+    }
+  }
 }
 
 TEST(Interval, TransformIsUniformInATrueFilter) {

@@ -63,6 +63,25 @@ TEST(ArchiveRoundTrip, ABankThatNoFilterCanRunIsRefusedAtLoad) {
   }
 }
 
+TEST(ArchiveRoundTrip, KeepsQuanta) {
+  Archive archive = full_archive(2, 1);
+  archive.recording->quantum = archive.bank->quantum = archive.drifting->quantum = Eigen::Vector2d(0.1, 0.0);
+  const Archive read = round_trip(archive);
+  EXPECT_EQ(read.recording->quantum, archive.recording->quantum);
+  EXPECT_EQ(read.bank->quantum, archive.bank->quantum);
+  EXPECT_EQ(read.drifting->quantum, archive.drifting->quantum);
+  EXPECT_EQ(read.baseline->quantum.size(), 0);
+}
+
+TEST(ArchiveRoundTrip, ABankWithQuantaThatAreNoneIsRefusedAtLoad) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "a.h5";
+  Archive archive = full_archive(2, 1);
+  archive.bank->quantum = Eigen::Vector2d(0.1, -1.0);
+  write_archive(path, archive);
+  EXPECT_THROW(load_bank(path), DataError);
+}
+
 TEST(ArchiveRoundTrip, LargeArchivesAreMadeInTheFileSystem) {
   const Archive archive = full_archive(2, 1);
   const test::TemporaryFolder folder;

@@ -1,0 +1,55 @@
+// What is learned from measurements that come in multiples of a quantum.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filter/judge/evaluate.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
+
+namespace modebank {
+namespace {
+
+Bank known_system() {
+  Bank bank = test::single_mode(test::example_bank(1, 1, 1, 0.0), 0);
+  bank.structure.intercept = false;
+  bank.modes[0].model.A(0, 0) = -0.3;
+  bank.modes[0].model.B(0, 0) = 0.5;
+  bank.modes[0].Q(0, 0) = 1e-2;
+  return bank;
+}
+
+Recording rounded_recording(double quantum) {
+  Recording recording = test::empty_recording(1, 1);
+  for (std::uint64_t i = 0; i < 6; ++i) {
+    Trajectory run = test::simulate_bank(known_system(), 500, 70 + i);
+    for (double& value : run.state.reshaped()) value = std::round(value / quantum) * quantum;
+    test::add_run(recording, run.state, run.input);
+  }
+  return recording;
+}
+
+TEST(RoundedStates, TheBaselineFindsWhatLeastSquaresMiss) {
+  const double quantum = 0.2;  // two innovation standard deviations
+  Recording recording = rounded_recording(quantum);
+  const LinearStructure structure = test::structure_of(recording);
+  const GlobalModel global = fit_global(recording, structure);
+  const double error = std::sqrt(global.covariance(0, 0));
+  EXPECT_GT(std::abs(global.theta(0) + 0.3), 3.0 * error) << "rounding counts as noise of what predicts";
+  recording.quantum.setConstant(1, quantum);
+  const Baseline fit = learn_baseline(recording, global, structure);
+  EXPECT_LT(std::abs(fit.bank.theta(0)(0) + 0.3), 3.0 * error);
+  EXPECT_LT(std::abs(fit.bank.theta(0)(1) - 0.5), 4.0 * std::sqrt(global.covariance(1, 1)));
+  EXPECT_NEAR(fit.bank.modes[0].Q(0, 0) + fit.bank.R(0, 0), 1e-2, 1e-3);
+  EXPECT_EQ(fit.bank.quantum, recording.quantum);
+}
+
+TEST(RoundedStates, WithoutAQuantumTheBaselineKeepsLeastSquares) {
+  const Recording recording = rounded_recording(0.2);
+  const LinearStructure structure = test::structure_of(recording);
+  const GlobalModel global = fit_global(recording, structure);
+  EXPECT_EQ(learn_baseline(recording, global, structure).bank.theta(0), global.theta);
+}
+
+}  // namespace
+}  // namespace modebank
