@@ -97,6 +97,9 @@ void tell_of(const Refinement& refined, const Listener& listener) {
     listener.warning(fmt::format("refine: {} of {} searches for R failed{}", measured.failed_starts, measured.starts,
                                  measured.failed_starts < measured.starts ? "; the best of the others counts"
                                                                           : ", so R is not known to be none"));
+  if (measured.starts > 0)
+    listener.progress(fmt::format("refine: measurement noise looked for from {} starts, in {:.2f} s{}", measured.starts,
+                                  measured.seconds, std::isnan(measured.score) ? ": none that pays" : ""));
   if (!std::isnan(measured.score))
     listener.progress(fmt::format("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
                                   measured.iterations, measured.score_before, measured.score));

@@ -168,7 +168,7 @@ std::string modes_section(const Archive& archive, int lines, int columns) {
 std::string calibration_words(Verdict verdict) {
   switch (verdict) {
     case Verdict::calibrated:
-      return "its stated uncertainty is true";
+      return "its stated uncertainty is not found false";
     case Verdict::overconfident:
       return "it claims more certainty than it has";
     case Verdict::underconfident:
@@ -176,7 +176,7 @@ std::string calibration_words(Verdict verdict) {
     case Verdict::undecided:
       break;
   }
-  return "whether its stated uncertainty is true is undecided";
+  return "whether its stated uncertainty is false is undecided";
 }
 
 bool has_first_screen(const Archive& archive) { return archive.bank && !archive.summary.empty(); }

@@ -19,7 +19,7 @@ bool has_first_screen(const Archive& archive);
 /// terminal of less `width` has narrower ones.
 std::string first_screen(const Archive& archive, const Settings& settings, const std::string& file, int width = 0);
 
-/// What a verdict means: "its stated uncertainty is true".
+/// What a verdict means: "its stated uncertainty is not found false".
 std::string calibration_words(Verdict verdict);
 
 }  // namespace modebank::app

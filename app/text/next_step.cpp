@@ -52,7 +52,7 @@ bool is_uncertain_wrongly(const Situation& s) {
 }
 
 bool has_few_agreeing_restarts(const Situation& s) {
-  if (!s.archive.mixture || s.archive.unrefined) return false;  // refinement has starts of its own
+  if (!s.archive.mixture) return false;
   const auto& all = s.archive.mixture->candidates;
   return std::any_of(all.begin(), all.end(),
                      [](const Candidate& c) { return c.selected && 2 * c.agreeing_restarts < c.restarts; });
@@ -107,12 +107,22 @@ const Rule rules[] = {
      }},
     {[](const Situation& s) { return s.bank.verdict == Verdict::undecided; },
      [](const Situation&) -> std::string {
-       return "more held-out samples, to know whether the band is true: record some, or name more with --data.test";
+       return "more held-out samples, to know whether the band is false: record some, or name more with --data.test";
      }},
     {has_few_agreeing_restarts,
      [](const Situation& s) {
        return fmt::format("look for a better mixture: repeat with --mixture.restarts {}",
                           4 * std::max(5, std::atoi(s.setting("mixture.restarts").c_str())));
+     }},
+    {[](const Situation& s) { return s.archive.measured_fit == MeasuredFit::iteration_limit; },
+     [](const Situation& s) {
+       return fmt::format("let the fit with measurement noise end: repeat with --bank.max_iterations {}",
+                          std::min(1000, 4 * std::max(25, std::atoi(s.setting("bank.max_iterations").c_str()))));
+     }},
+    {[](const Situation& s) { return !archive_warnings(s.archive).empty(); },
+     [](const Situation&) -> std::string {
+       return "see to the warning first (`modebank show ARCHIVE` has it where it belongs); what it leaves is ready to "
+              "use";
      }},
     {[](const Situation&) { return true; },
      [](const Situation&) -> std::string {

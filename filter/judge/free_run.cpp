@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "filter/judge/free_run_forecasts.hpp"
+#include "filter/step/equations/filter_memory.hpp"
 #include "filter/step/feed/run_samples.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
@@ -136,17 +137,6 @@ void predict_on(Forecast& forecast, const Given& given, Index t, Index end, Free
   }
 }
 
-FilterMemory memory_of(const FilterState<Eigen::Dynamic>& state) {
-  const Index n = state.modes.front().mean.size(), K = std::ssize(state.modes);
-  FilterMemory memory{Eigen::MatrixXd(n, K), Eigen::MatrixXd(n * n, K), state.mode_probability, state.noise_scale,
-                      state.noise_samples};
-  for (Index j = 0; j < K; ++j) {
-    memory.means.col(j) = state.modes[static_cast<std::size_t>(j)].mean;
-    memory.covariances.col(j) = state.modes[static_cast<std::size_t>(j)].covariance.reshaped();
-  }
-  return memory;
-}
-
 /// Runs the bank's filter over each start; hands its state to from(state, t, end).
 template <int N, int NY, class From>
 void from_each_start(const FilterModel<N, NY>& model, const Given& given, FreeRun& out, From from) {
@@ -166,9 +156,11 @@ FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& f
   FreeRun out = sized_free_run(bank.C.rows(), run.samples());
   if (options.method == FreeRunMethod::paths) {
     const FilterModel<Eigen::Dynamic, Eigen::Dynamic> model(bank, filter);
+    FilterMemory memory;
     PathForecast forecast(bank, filter, options.paths, derive_seed(options.seed, "free run " + run.run));
     from_each_start(model, given, out, [&](const FilterState<Eigen::Dynamic>& state, Index t, Index end) {
-      forecast.start(memory_of(state));
+      save(state, memory);
+      forecast.start(memory);
       predict_on(forecast, given, t, end, out);
       out.lost_paths += forecast.lost();
     });

@@ -15,7 +15,7 @@ namespace modebank {
 /// history alone (Pavlovic, Rehg & MacCormick 2000, NIPS 13). Neither crosses a new start of the filter. mmae: modes
 /// never change. With adaptive noise both take the filter's own scale at every moment for known. gpb1: GPB2's estimates
 /// are smoothed, because its own of a mode have not come from one mode. salvi2025 has no smoother: its smoothed arrays
-/// stay empty. Cost: K^2 Kalman steps per sample.
+/// stay empty. Cost: at most K^2 Kalman steps per sample, and K of them where histories and pairs differ by much.
 void smooth_run(const Bank& bank, const Trajectory& run, const FilterOptions& options, RunEvaluation& evaluation);
 
 }  // namespace modebank

@@ -1,13 +1,11 @@
 #include "filter/step/stepper.hpp"
 
-#include "filter/step/bank_filter.hpp"
 #include "filter/step/detail/vector/vector_imm.hpp"
+#include "filter/step/equations/filter_memory.hpp"
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/equations/predicted_mixture.hpp"
 
 namespace modebank {
-
-using Eigen::Index;
 
 namespace {
 
@@ -45,29 +43,8 @@ class EquationStepper final : public Stepper {
   Eigen::Map<const Eigen::VectorXd> predicted_probability() const override { return map(step_.predicted_probability); }
   Eigen::Map<const Eigen::VectorXd> mode_probability() const override { return map(state_.mode_probability); }
 
-  void save(FilterMemory& memory) const override {
-    const Index n = model_.structure.dimension(), K = model_.mode_count();
-    memory.means.resize(n, K);
-    memory.covariances.resize(n * n, K);
-    for (Index j = 0; j < K; ++j) {
-      memory.means.col(j) = state_.modes[static_cast<std::size_t>(j)].mean;
-      memory.covariances.col(j) = state_.modes[static_cast<std::size_t>(j)].covariance.reshaped();
-    }
-    memory.mode_probability = state_.mode_probability;
-    memory.noise_scale = state_.noise_scale;
-    memory.noise_samples = state_.noise_samples;
-  }
-  void restore(const FilterMemory& memory) override {
-    const Index n = model_.structure.dimension();
-    for (Index j = 0; j < model_.mode_count(); ++j) {
-      Gaussian<N>& mode = state_.modes[static_cast<std::size_t>(j)];
-      mode.mean = memory.means.col(j);
-      mode.covariance = memory.covariances.col(j).reshaped(n, n);
-    }
-    state_.mode_probability = memory.mode_probability;
-    state_.noise_scale = memory.noise_scale;
-    state_.noise_samples = memory.noise_samples;
-  }
+  void save(FilterMemory& memory) const override { modebank::save(state_, memory); }
+  void restore(const FilterMemory& memory) override { modebank::restore(memory, state_); }
 
  private:
   FilterModel<N, NY> model_;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/chain/judged_runs.hpp"
+#include "app/report/page/guard_map.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
@@ -155,6 +156,7 @@ nlohmann::json bank_section(const Archive& archive) {
           {"R", number_list(bank.R.diagonal())},
           {"transition", transition_of(bank)},
           {"switch_weights", switch_weights_of(bank)},
+          {"guard", guard_of(archive)},
           {"screened", screened_of(bank)},
           {"merged", merging_of(archive, role)},
           {"refined", archive.unrefined.has_value()}};

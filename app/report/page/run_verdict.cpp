@@ -20,7 +20,7 @@ json decisive(const Archive& archive, Role role, const std::string& name, const 
   return {{"name", name}, {"unit", unit}, {"better", better}, {"values", values}};
 }
 
-/// What was found, as the archive says it, and whether the bank's uncertainty is true. Good: evidence, and calibrated.
+/// What was found, as the archive says it, and whether the bank's uncertainty is false. Good: evidence, and calibrated.
 json sentence(const Archive& archive) {
   if (!archive.finding) return {{"text", "No bank was scored, so there is nothing to judge yet."}, {"good", nullptr}};
   const Finding& finding = *archive.finding;

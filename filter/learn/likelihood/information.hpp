@@ -9,6 +9,10 @@
 
 namespace modebank {
 
+/// Of coordinates that are in units of about their standard error, or logarithms: central differences by so much are
+/// off by a ten thousandth.
+inline constexpr double difference_step = 1e-2;
+
 /// Derivatives of the log predictive densities of single training samples by a bank's coordinates, at their origin.
 struct SampleGradients {
   Eigen::VectorXd sum;          ///< gradient of the training runs' log-likelihood [nats per coordinate]

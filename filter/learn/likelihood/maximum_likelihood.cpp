@@ -20,7 +20,7 @@ constexpr double step_share = 1e-2;       // of a standard error, for central di
 constexpr double first_step = 1e-3;       // while no standard errors are known
 constexpr double least_curvature = 1e-2;  // of a coordinate that the data say nothing about: such are logarithms
 constexpr double remaining_gain = 1e-3;   // nats
-constexpr Index iterations_per_metric = 15;
+constexpr Index iterations_per_metric = 40;
 
 /// The target around one bank.
 class Neighbourhood {
@@ -35,18 +35,28 @@ class Neighbourhood {
   Bank decode(const Eigen::VectorXd& at) const { return coordinates_.decode(at); }
   double value(const Eigen::VectorXd& at) const { return target_.value(decode(at)); }
 
-  /// By central differences, where the value is wanted besides.
+  /// Where the value is wanted besides: back over the filter's steps where they know the way, else by differences.
   Eigen::VectorXd gradient(const Eigen::VectorXd& at) const {
-    return differences(at, [this](const Bank& bank) { return target_.value(bank); });
+    if (!has_likelihood_gradient(coordinates_.origin(), target_.filter))
+      return differences(at, [this](const Bank& bank) { return target_.value(bank); });
+    const BankGradient by_bank = training_gradient(decode(at), target_.recording, target_.filter);
+    Eigen::VectorXd result(size());
+    tbb::parallel_for(Index{0}, size(), [&](Index c) {
+      const Eigen::VectorXd step = steps_(c) * Eigen::VectorXd::Unit(size(), c);
+      const Bank up = decode(at + step), down = decode(at - step);
+      const double likelihood = by_bank.along(down, up);
+      const double prior = target_.prior ? target_.log_prior(up) - target_.log_prior(down) : 0.0;
+      result(c) = (likelihood + prior) / (2.0 * steps_(c));
+    });
+    return result;
   }
 
   /// Gradient and information of likelihood and prior at the origin.
   SampleGradients gradients() const {
     SampleGradients result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter);
     if (!target_.prior) return result;
-    result.sum += differences(Eigen::VectorXd::Zero(size()), [this](const Bank& bank) {
-      return log_prior(*target_.prior, target_.one_theta, switching_model(bank));
-    });
+    result.sum +=
+        differences(Eigen::VectorXd::Zero(size()), [this](const Bank& bank) { return target_.log_prior(bank); });
     result.information += prior_information(coordinates_, *target_.prior);
     return result;
   }
@@ -145,7 +155,11 @@ bool is_finite(const Bank& bank) {
 double LikelihoodTarget::value(const Bank& bank) const {
   if (!is_finite(bank)) return -std::numeric_limits<double>::infinity();
   const double likelihood = weighted_training_log_likelihood(bank, recording, filter);
-  return prior ? likelihood + log_prior(*prior, one_theta, switching_model(bank)) : likelihood;
+  return prior ? likelihood + log_prior(bank) : likelihood;
+}
+
+double LikelihoodTarget::log_prior(const Bank& bank) const {
+  return modebank::log_prior(*prior, one_theta, switching_model(bank));
 }
 
 LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start,

@@ -22,6 +22,8 @@ struct LikelihoodTarget {
 
   /// Minus infinity of a bank that is not all numbers, which no filter can run.
   double value(const Bank& bank) const;
+  /// Requires a prior.
+  double log_prior(const Bank& bank) const;
 };
 
 struct AscentLimits {

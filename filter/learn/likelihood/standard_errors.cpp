@@ -16,8 +16,6 @@
 namespace modebank {
 namespace {
 
-// Of coordinates: standard errors of theta given the modes, logarithms of the others. Truncation is a ten thousandth.
-constexpr double difference_step = 1e-2;
 constexpr double weight_unit_share = 0.1;  // of the prior's standard deviation
 // Errors are wanted to a few per cent: their own relative error falls with the root of the samples.
 constexpr double most_numbers = 4e6;  // samples times coordinates: 32 MB

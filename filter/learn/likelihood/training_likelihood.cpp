@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace modebank {
@@ -26,6 +27,19 @@ double weighted_training_log_likelihood(const Bank& bank, const Recording& recor
     sum += run.weight.size() > 0 ? (known * run.weight.array()).sum() / unit : known.sum();
   }
   return sum;
+}
+
+BankGradient training_gradient(const Bank& bank, const Recording& recording, const FilterOptions& options) {
+  std::vector<const Trajectory*> runs;
+  for (const Trajectory& run : recording.runs)
+    if (run.role == Role::train) runs.push_back(&run);
+  const double unit = mean_training_weight(recording);
+  std::vector<BankGradient> of_run(runs.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
+    of_run[i] = log_likelihood_gradient(bank, *runs[i], runs[i]->weight / unit, options);
+  });
+  for (std::size_t i = 1; i < of_run.size(); ++i) of_run[0] += of_run[i];
+  return std::move(of_run.at(0));
 }
 
 double mean_training_weight(const Recording& recording) {

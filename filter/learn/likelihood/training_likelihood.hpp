@@ -2,6 +2,7 @@
 
 #include "filter/judge/evaluate.hpp"
 #include "filter/step/bank.hpp"
+#include "filter/step/likelihood_gradient.hpp"
 #include "ident/data/trajectory.hpp"
 
 namespace modebank {
@@ -12,6 +13,9 @@ double training_log_likelihood(const Bank& bank, const Recording& recording, con
 
 /// The same with every sample's density to the power of its weight in units of mean_training_weight.
 double weighted_training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options);
+
+/// The gradient of weighted_training_log_likelihood; requires has_likelihood_gradient (filter/step).
+BankGradient training_gradient(const Bank& bank, const Recording& recording, const FilterOptions& options);
 
 /// Mean of the training samples' positive weights, which only count in ratios; 1 without weights.
 double mean_training_weight(const Recording& recording);

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -16,7 +17,6 @@ namespace {
 
 // The search for R alone: its end is where the fit of everything begins.
 constexpr AscentLimits search_limits{30, 1e-7};
-constexpr double gradient_step = 1e-2;  // of coordinates, as for standard errors
 
 /// R = `share` of the mean Q, taken out of Q: white measurement noise of variance r enters a residual of exact states
 /// about twice.
@@ -43,7 +43,7 @@ FreeParameters free_noise(Index n_y) {
 /// Whether a step of Newton's method from `start`, by the information of single samples, leads above `level`.
 bool promises(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start, double level) {
   const BankCoordinates around(start, free);
-  const SampleGradients gradients = sample_gradients(around, Eigen::VectorXd::Constant(around.size(), gradient_step),
+  const SampleGradients gradients = sample_gradients(around, Eigen::VectorXd::Constant(around.size(), difference_step),
                                                      target.recording, target.filter);
   const Cholesky information(gradients.information);
   if (!information.definite() || !gradients.sum.allFinite()) return false;
@@ -52,11 +52,12 @@ bool promises(const LikelihoodTarget& target, const FreeParameters& free, const 
 
 /// The fit that took the state as measured exactly has its theta drawn to errors in variables, at times so far that
 /// with this theta no R is likelier than none. Then theta is searched with R and one factor on Q, if the gradient
-/// promises anything. Empty where that does not lead above the bank by least_gain per sample either.
+/// promises anything. Empty where that does not lead above the bank by least_gain per sample either. `transitions`: of
+/// the target's recording.
 std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const RefineInput& in,
-                                        const SwitchingPrior& prior, const Bank& bank) {
+                                        const TrainingTransitions& transitions, const SwitchingPrior& prior,
+                                        const Bank& bank) {
   const RefineTuning& tuning = in.options.tuning;
-  const TrainingTransitions transitions = gather_training_transitions(target.recording, bank.structure);
   const SwitchingSums sums = sum_transitions(transitions, smooth_modes(transitions, switching_model(bank)), prior);
   FreeParameters free = free_noise(bank.R.rows());
   free.theta_unit =
@@ -78,8 +79,8 @@ bool estimates_R(const RefineInput& in, const Bank& bank) {
 }
 
 /// Theta, Q, T and (where it is to be estimated) R of a bank together, from there to the maximum on these runs.
-LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const RefineInput& in, const Bank& bank) {
-  const TrainingTransitions transitions = gather_training_transitions(target.recording, bank.structure);
+LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const RefineInput& in,
+                                      const TrainingTransitions& transitions, const Bank& bank) {
   const SwitchingSums sums =
       sum_transitions(transitions, smooth_modes(transitions, switching_model(bank)), *target.prior);
   const FreeParameters free = all_parameters(bank, sums, *target.prior, in.options.one_theta, estimates_R(in, bank),
@@ -106,7 +107,8 @@ class MeasuredSplits {
       const LikelihoodTarget target{split.runs.training, in_.filter, std::nullopt};
       MeasurementNoise noise = estimate_measurement_noise(target, bank, in_.options.tuning);
       if (!noise.bank)
-        noise.bank = estimate_with_theta(target, in_, prior_of_split(in_, split, chosen_.noise_transitions), bank);
+        noise.bank = estimate_with_theta(target, in_, split.transitions,
+                                         prior_of_split(in_, split, chosen_.noise_transitions), bank);
       if (noise.bank) bank = std::move(*noise.bank);
     });
   }
@@ -117,7 +119,7 @@ class MeasuredSplits {
       if (chosen_.weight_width > 0.0) exact = with_weights(std::move(exact), split.transitions, chosen_.weight_width);
       const LikelihoodTarget target{split.runs.training, learning_filter(in_.filter),
                                     prior_with_states_unknown(exact, bank, in_.options.tuning), in_.options.one_theta};
-      bank = maximise_everything(target, in_, bank).bank;
+      bank = maximise_everything(target, in_, split.transitions, bank).bank;
     });
   }
 
@@ -174,8 +176,10 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
   return prior;
 }
 
-MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation,
-                                        const ChosenFit& chosen, const SwitchingPrior& prior, const Bank& bank) {
+namespace {
+
+MeasuredBank fit_untimed(const RefineInput& in, const CrossValidation& validation, const ChosenFit& chosen,
+                         const SwitchingPrior& prior, const Bank& bank) {
   const RefineTuning& tuning = in.options.tuning;
   MeasuredBank result{bank, {}, prior};
   MeasurementStage& stage = result.stage;
@@ -185,7 +189,8 @@ MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValida
     MeasurementNoise noise = estimate_measurement_noise({in.recording, in.filter, std::nullopt}, bank, tuning);
     stage.starts = noise.starts;
     stage.failed_starts = noise.failed_starts;
-    if (!noise.bank) noise.bank = estimate_with_theta({in.recording, in.filter, std::nullopt}, in, prior, bank);
+    if (!noise.bank)
+      noise.bank = estimate_with_theta({in.recording, in.filter, std::nullopt}, in, in.transitions, prior, bank);
     if (!noise.bank) return result;
     if (splits) {
       const double without_R = splits->score();
@@ -199,8 +204,6 @@ MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValida
     return result;
   }
   result.prior = prior_with_states_unknown(prior, result.bank, tuning);
-  const LikelihoodTarget target{in.recording, learning_filter(in.filter), result.prior, in.options.one_theta};
-  LikelihoodMaximum maximum = maximise_everything(target, in, result.bank);
   if (splits) {
     stage.score_before = splits->score();
     splits->maximise();
@@ -210,9 +213,21 @@ MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValida
       return result;
     }
   }
+  const LikelihoodTarget target{in.recording, learning_filter(in.filter), result.prior, in.options.one_theta};
+  LikelihoodMaximum maximum = maximise_everything(target, in, in.transitions, result.bank);
   stage.iterations = maximum.iterations;
   stage.end = maximum.end;
   result.bank = std::move(maximum.bank);
+  return result;
+}
+
+}  // namespace
+
+MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation,
+                                        const ChosenFit& chosen, const SwitchingPrior& prior, const Bank& bank) {
+  const auto start = std::chrono::steady_clock::now();
+  MeasuredBank result = fit_untimed(in, validation, chosen, prior, bank);
+  result.stage.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
 

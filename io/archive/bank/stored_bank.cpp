@@ -105,7 +105,10 @@ void store_logit(const Bank& bank, StoredBank& stored) {
 
 TransitionLogit restore_logit(const StoredBank& stored, Index modes) {
   const Eigen::MatrixXd& weights = stored.transition_weights;
-  if (weights.size() == 0) return {};
+  if (weights.size() == 0) {
+    if (stored.transition_reference.size() > 0) throw DataError("a transition reference without transition weights");
+    return {};
+  }
   if (weights.rows() != modes * stored.transition_reference.size())
     throw DataError("transition weights and their reference differ in the number of features");
   for (Index k = 1; k < weights.cols(); ++k)

@@ -1,11 +1,13 @@
 // The live filter's checkpoints from outside.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "io/archive/archive.hpp"
 #include "tests/app/cli/track_fixture.hpp"
 
 namespace modebank::test {
@@ -14,7 +16,42 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-class TrackCheckpoint : public Track {};
+class TrackCheckpoint : public Track {
+ protected:
+  /// Feeds samples first .. last - 1 of a run, after the header, and adds the answers. `ending`: a signal, or 0 for the
+  /// end of the input.
+  void feed(const std::vector<std::string>& options, std::size_t first, std::size_t last, int ending,
+            std::vector<std::string>& answers) const {
+    const std::vector<std::string> samples = lines("run_01.csv");
+    PipedProgram program(command(options));
+    program.write(samples[0] + "\n");
+    program.read_line();
+    for (std::size_t k = first; k < last; ++k) {
+      program.write(samples[k] + "\n");
+      answers.push_back(program.read_line().value());
+    }
+    if (ending != 0)
+      program.send_signal(ending);
+    else
+      program.close_input();
+    const int status = program.wait();
+    EXPECT_TRUE(status == 0 || ending == SIGKILL) << program.errors();
+  }
+
+  std::string checkpoint() const { return file("state.json").string(); }
+
+  /// The archive's bank with switches that see state and input.
+  void give_the_bank_a_logit() const {
+    Archive stored = read_archive(archive());
+    Bank& bank = *stored.bank;
+    ASSERT_GT(bank.mode_count(), 1);
+    const Index d = bank.structure.dimension() + bank.structure.acting_inputs();
+    Eigen::MatrixXd weights(bank.mode_count(), d);
+    for (Index i = 0; i < weights.size(); ++i) weights.data()[i] = 3.0 * std::sin(static_cast<double>(i + 1));
+    bank.transition_logit = {weights, Eigen::VectorXd::Constant(d, 0.05)};
+    write_archive(archive(), stored);
+  }
+};
 
 TEST_F(TrackCheckpoint, RefusesCheckpointsThatNoFilterWrote) {
   const std::vector<std::string> samples = lines("run_01.csv");
@@ -49,32 +86,15 @@ TEST_F(TrackCheckpoint, RefusesCheckpointsThatNoFilterWrote) {
 }
 
 TEST_F(TrackCheckpoint, GoesOnFromACheckpointAsIfItHadNeverStopped) {
-  const std::vector<std::string> samples = lines("run_01.csv");
   std::vector<std::string> whole, parts;
-  const auto feed = [&](const std::vector<std::string>& options, std::size_t first, std::size_t last, bool interrupt,
-                        std::vector<std::string>& answers) {
-    PipedProgram program(command(options));
-    program.write(samples[0] + "\n");
-    program.read_line();
-    for (std::size_t k = first; k < last; ++k) {
-      program.write(samples[k] + "\n");
-      answers.push_back(program.read_line().value());
-    }
-    if (interrupt)
-      program.send_signal(SIGINT);
-    else
-      program.close_input();
-    EXPECT_EQ(program.wait(), 0) << program.errors();
-  };
-  const std::string checkpoint = file("state.json").string();
-  feed({}, 1, 40, false, whole);
-  feed({"--track.checkpoint", checkpoint}, 1, 20, true, parts);
-  feed({"--track.resume", checkpoint, "--track.checkpoint", checkpoint}, 20, 30, false, parts);
-  feed({"--track.resume", checkpoint}, 30, 40, false, parts);
+  feed({}, 1, 40, 0, whole);
+  feed({"--track.checkpoint", checkpoint()}, 1, 20, SIGINT, parts);
+  feed({"--track.resume", checkpoint(), "--track.checkpoint", checkpoint()}, 20, 30, 0, parts);
+  feed({"--track.resume", checkpoint()}, 30, 40, 0, parts);
   EXPECT_EQ(parts, whole);
 
   const ProgramResult other =
-      modebank({"track", archive(), "--track.resume", checkpoint, "--track.filter", "baseline"});
+      modebank({"track", archive(), "--track.resume", checkpoint(), "--track.filter", "baseline"});
   EXPECT_EQ(other.status, 1);
   EXPECT_THAT(other.err, HasSubstr("is a checkpoint of another bank or of other filter settings"));
   write("half.json", "{\"format\": \"modebank checkpoint 1\"");
@@ -83,15 +103,28 @@ TEST_F(TrackCheckpoint, GoesOnFromACheckpointAsIfItHadNeverStopped) {
   EXPECT_EQ(modebank({"track", archive(), "--track.checkpoint", "/nowhere/state.json"}).status, 2);
 }
 
+/// Killed right after a checkpoint was due: the next one goes on from there, to the last bit.
+TEST_F(TrackCheckpoint, GoesOnAfterItWasKilledWhereSwitchesSeeStateAndInput) {
+  std::vector<std::string> constant, whole, parts;
+  feed({}, 1, 40, 0, constant);
+  give_the_bank_a_logit();
+  feed({}, 1, 40, 0, whole);
+  EXPECT_NE(whole, constant);
+  feed({"--track.checkpoint", checkpoint(), "--track.checkpoint_interval", "10"}, 1, 12, SIGKILL, parts);
+  ASSERT_TRUE(std::filesystem::exists(checkpoint()));
+  parts.resize(10);
+  feed({"--track.resume", checkpoint()}, 11, 40, 0, parts);
+  EXPECT_EQ(parts, whole);
+}
+
 TEST_F(TrackCheckpoint, KeepsCheckpointsOnTheWay) {
-  const std::string checkpoint = file("state.json").string();
-  PipedProgram program(command({"--track.checkpoint", checkpoint, "--track.checkpoint_interval", "5"}));
+  PipedProgram program(command({"--track.checkpoint", checkpoint(), "--track.checkpoint_interval", "5"}));
   const std::vector<std::string> samples = lines("run_01.csv");
   for (std::size_t k = 0; k <= 6; ++k) {
     program.write(samples[k] + "\n");
     program.read_line();
   }
-  EXPECT_TRUE(std::filesystem::exists(checkpoint));
+  EXPECT_TRUE(std::filesystem::exists(checkpoint()));
 }
 
 }  // namespace

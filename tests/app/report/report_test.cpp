@@ -1,9 +1,11 @@
+#include <gmock/gmock.h>
 #include <zlib.h>
 
 #include <boost/algorithm/string.hpp>
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "app/report/page/guard_map.hpp"
 #include "app/report/page/html_page.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/series.hpp"
@@ -142,6 +144,47 @@ TEST_F(Report, PageHoldsTheArchivesNumbersAndReachesNowhere) {
   EXPECT_FALSE(std::regex_search(html.substr(0, 4000), std::regex("(src|href)=\"(https?:)?//")));
   EXPECT_NE(html.find("default-src 'none'"), std::string::npos);  // the browser itself keeps it from the network
   EXPECT_LE(html.size(), 64e6);
+}
+
+/// Two modes: p0 T01 = p1 T10, T01 and T10 moved by the odds of the weights.
+TEST(ReportGuard, SharesAreThoseThatStandStill) {
+  Bank bank;
+  bank.structure = {1, 1, false};
+  bank.modes.resize(2);
+  bank.transition = TransitionMatrix(Eigen::MatrixXd{{0.9, 0.1}, {0.3, 0.7}});
+  bank.transition_logit = {Eigen::MatrixXd{{0.0, 0.0}, {2.0, -1.0}}, Eigen::Vector2d(0.5, 0.0)};
+  const Eigen::Vector2d z(0.8, 0.2);
+  const double odds = std::exp(2.0 * 0.3 - 0.2), T01 = 0.1 * odds / (0.9 + 0.1 * odds), T10 = 0.3 / (0.3 + 0.7 * odds);
+  const Eigen::VectorXd shares = app::report::settled_shares(bank, z);
+  EXPECT_NEAR(shares(0), T10 / (T01 + T10), 1e-12);
+  EXPECT_NEAR(shares.sum(), 1.0, 1e-12);
+}
+
+TEST_F(Report, DrawsTheGuardOfSwitchesThatSeeStateAndInput) {
+  ASSERT_EQ(run().status, 0);
+  ASSERT_EQ(modebank({"report", archive(), "-o", page()}).status, 0);
+  EXPECT_TRUE(data_of_page()["bank"]["guard"].is_null());
+  Archive stored = read_archive(archive());
+  Bank& bank = *stored.bank;
+  const Index K = bank.mode_count(), d = bank.structure.dimension() + bank.structure.acting_inputs();
+  for (const bool one : {true, false}) {
+    bank.transition_logit = {Eigen::MatrixXd::Zero(K, d), Eigen::VectorXd::Zero(d)};
+    bank.transition_logit.weights(0, 0) = 10.0;
+    if (!one) bank.transition_logit.weights(1, d - 1) = -10.0;
+    write_archive(archive(), stored);
+    ASSERT_EQ(modebank({"report", archive(), "-o", page()}).status, 0);
+    const json guard = data_of_page()["bank"]["guard"];
+    ASSERT_FALSE(guard.is_null());
+    EXPECT_EQ(guard["one"], one);
+    ASSERT_EQ(guard["axes"].size(), one ? 1u : 2u);
+    EXPECT_THAT(guard["axes"][0]["name"].get<std::string>() + (one ? "" : guard["axes"][1]["name"].get<std::string>()),
+                ::testing::HasSubstr(stored.recording->states[0].name));
+    EXPECT_EQ(guard["samples"]["at"][0].size(), guard["samples"]["mode"].size());
+    EXPECT_GT(guard["samples"]["mode"].size(), 100u);
+    const json& grid = guard[one ? "lines" : "modes"];
+    EXPECT_EQ(grid.size(), one ? static_cast<std::size_t>(K) : guard["axes"][1]["values"].size());
+    EXPECT_EQ(grid[0].size(), guard["axes"][0]["values"].size());
+  }
 }
 
 TEST_F(Report, EarlierStagesAlone) {

@@ -164,15 +164,23 @@ TEST_F(NextStep, AFalseBandAsksForAdaptiveNoiseOnce) {
   EXPECT_THAT(advice(), HasSubstr("more held-out samples"));
 }
 
-/// A refined bank has starts of its own beside the mixture.
-TEST_F(NextStep, RestartsMatterWhereTheMixtureIsTheBank) {
+/// Refined or not: what a warning asks for comes before any use.
+TEST_F(NextStep, WarningsComeBeforeUse) {
   archive.mixture.emplace();
   archive.mixture->candidates.resize(1);
   archive.mixture->candidates[0].selected = true;
   archive.mixture->candidates[0].restarts = 5;
   EXPECT_THAT(advice(), HasSubstr("--mixture.restarts 20"));
   archive.unrefined = archive.bank;
+  EXPECT_THAT(advice(), HasSubstr("--mixture.restarts 20"));
+  archive.mixture->candidates[0].agreeing_restarts = 5;
+  archive.mixture->candidates[0].converged = true;
   EXPECT_THAT(advice(), HasSubstr("nothing: use it"));
+  archive.mixture->candidates[0].floor_active = true;
+  EXPECT_THAT(advice(), AllOf(HasSubstr("warning first"), Not(HasSubstr("nothing"))));
+  archive.measured_fit = MeasuredFit::iteration_limit;
+  settings["bank.max_iterations"] = "100";
+  EXPECT_THAT(advice(), HasSubstr("--bank.max_iterations 400"));
 }
 
 }  // namespace

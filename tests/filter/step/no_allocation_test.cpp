@@ -14,6 +14,12 @@
 namespace modebank {
 namespace {
 
+Bank with_logit(Bank bank) {
+  const Eigen::Index d = bank.structure.dimension() + bank.structure.acting_inputs();
+  bank.transition_logit = {Eigen::MatrixXd::Random(bank.mode_count(), d), Eigen::VectorXd::Constant(d, 0.1)};
+  return bank;
+}
+
 template <int N, int NY>
 void step_without_allocation(const Bank& modes, const FilterOptions& options) {
   const Bank bank = test::steppable(modes, options.variant);
@@ -96,6 +102,21 @@ TEST(NoAllocation, EveryVariantAndSize) {
       step_without_allocation<3, 3>(test::example_bank(3, 2, 3), options);
       step_without_allocation<-1, -1>(test::example_bank(5, 2, 3), options);
     }
+}
+
+/// Switches that see state and input are worked out anew at every step.
+TEST(NoAllocation, NorWithATransitionLogit) {
+  for (const FilterVariant variant :
+       {FilterVariant::imm, FilterVariant::mmae, FilterVariant::gpb1, FilterVariant::gpb2}) {
+    const Bank bank = with_logit(test::example_bank(2, 2, 3));
+    step_without_allocation<2, 2>(bank, {variant});
+    step_without_allocation<-1, -1>(with_logit(test::example_bank(5, 2, 3)), {variant});
+    const Trajectory run = test::simulate_bank(bank, 30, 1);
+    BankFilter filter(bank, {variant});
+    const long before = test::allocations;
+    for (Eigen::Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
+    EXPECT_EQ(test::allocations - before, 0) << name_of(variant);
+  }
 }
 
 TEST(NoAllocation, DriftingFilterStepsWithoutAny) {

@@ -219,6 +219,9 @@ void expect_same(const Bank& actual, const Bank& expected) {
   EXPECT_TRUE(same_bits(actual.C, expected.C));
   EXPECT_TRUE(same_bits(actual.R, expected.R));
   EXPECT_TRUE(same_bits(actual.transition.matrix(), expected.transition.matrix()));
+  EXPECT_TRUE(same_bits(actual.transition_logit.weights, expected.transition_logit.weights));
+  EXPECT_TRUE(same_bits(actual.transition_logit.reference, expected.transition_logit.reference));
+  EXPECT_TRUE(same_bits(actual.transition_weight_error, expected.transition_weight_error));
   EXPECT_TRUE(same_bits(actual.initial_probability, expected.initial_probability));
   EXPECT_TRUE(same_bits(actual.R_standard_error, expected.R_standard_error));
   EXPECT_TRUE(same_bits(actual.transition_standard_error, expected.transition_standard_error));

@@ -1,8 +1,10 @@
 #include <boost/random/uniform_int_distribution.hpp>
+#include <cmath>
 #include <cstdlib>
 
 #include "ident/base/seed.hpp"
 #include "io/archive/bank/load_bank.hpp"
+#include "io/archive/bank/stored_bank.hpp"
 #include "io/archive/inspect.hpp"
 #include "io/archive/study_file.hpp"
 #include "tests/io/archive/archive_file_fixture.hpp"
@@ -149,6 +151,33 @@ TEST_F(ArchiveDamage, HostileContentIsAnErrorAndNeverMore) {
   refuses("/baseline/parameters", {1, 7}, test::Kind::real, "do not fit");
   refuses("/mixture/candidates", {2}, test::Kind::real, "not a table");
   refuses("/bank/weight", {3}, test::Kind::text, "another kind");
+}
+
+/// Whatever an archive holds: weights of switches that no filter could run do not become a bank.
+TEST(StoredSwitches, OfOtherSizesOrNoNumbersAreRefused) {
+  const Bank bank = *test::full_archive(2, 1).bank;
+  const auto refuses = [&](void (*change)(StoredBank&), const std::string& reason) {
+    StoredBank stored = store_bank(bank);
+    change(stored);
+    EXPECT_THAT([&] { restore_bank(stored, Bank()); }, ThrowsMessage<std::exception>(HasSubstr(reason)));
+  };
+  refuses([](StoredBank& s) { s.transition_weights(0, 0) = std::nan(""); }, "differ by the mode before");
+  refuses([](StoredBank& s) { s.transition_weights.row(0).setConstant(HUGE_VAL); }, "not finite");
+  refuses([](StoredBank& s) { s.transition_reference(1) = std::nan(""); }, "not finite");
+  refuses([](StoredBank& s) { s.transition_reference.conservativeResize(1); }, "number of features");
+  refuses([](StoredBank& s) { s.transition_weights.conservativeResize(3, Eigen::NoChange); }, "number of features");
+  refuses(
+      [](StoredBank& s) {
+        const Index more = s.transition_reference.size() + 1;
+        s.transition_weights.setZero(s.weight.size() * more, s.weight.size());
+        s.transition_reference.setZero(more);
+      },
+      "weights of the transition");
+  refuses([](StoredBank& s) { s.transition_weights(0, 1) += 1.0; }, "differ by the mode before");
+  refuses([](StoredBank& s) { s.transition_weights.resize(0, 0); }, "without transition weights");
+  StoredBank huge = store_bank(bank);  // finite is enough: log odds have limits of their own
+  huge.transition_weights.setConstant(1e300);
+  EXPECT_NO_THROW(restore_bank(huge, Bank()));
 }
 
 TEST_F(ArchiveDamage, ContentElsewhereIsRefused) {

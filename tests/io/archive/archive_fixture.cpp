@@ -145,6 +145,9 @@ Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
     bank.R_standard_error = pattern(n, n, 80.0);
     bank.transition_standard_error = pattern(count, count, 90.0);
     bank.noise_adaptation = {0.995, 20.0};
+    const Index features = structure.dimension() + structure.acting_inputs();
+    bank.transition_logit = {pattern(count, features, 95.0), pattern(features, 1, 96.0)};
+    bank.transition_weight_error = pattern(count, features, 97.0);
   }
   if (uncertain) bank.screened.push_back({4, 0.01, 1.25, "unstable: spectral radius 1.25"});
   return bank;

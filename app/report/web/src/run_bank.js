@@ -2,6 +2,7 @@
 import {details, facts, h, note} from './elements.js';
 import {roleNames} from './filters.js';
 import {transitionGraph} from './graph.js';
+import {guardFigure} from './guard.js';
 import {section} from './page.js';
 import {figure, filterColour, modeColour} from './plots.js';
 import {table} from './table.js';
@@ -142,6 +143,9 @@ function switching(bank) {
     h('h3', {}, 'How modes follow each other'),
     pair,
     bank.switch_weights ? switchWeights(bank.switch_weights) : null,
+    bank.guard ?
+        [h('h3', {}, 'Which states and inputs belong to which mode'), guardFigure(bank.guard, bank.modes.length)] :
+        null,
     matrix,
     stays ? [h('h3', {}, 'How long they last'), dwellFigure(bank), dwellTable(bank)] : null,
   ];

@@ -40,6 +40,7 @@ struct MeasurementStage {
   MeasuredFit end = MeasuredFit::none;  ///< how they ended
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out
   double score = std::numeric_limits<double>::quiet_NaN();  ///< the same after them; NaN without cross-validation or R
+  double seconds = 0.0;                                     ///< wall time of all this
 };
 
 /// Whether switches see state and input, by cross-validation inside the training runs.

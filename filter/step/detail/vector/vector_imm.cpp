@@ -12,6 +12,7 @@
 namespace modebank {
 
 using Eigen::Index;
+using vector_imm::count_of;
 using vector_imm::row_multiple;
 
 namespace {
@@ -19,7 +20,6 @@ namespace {
 constexpr std::size_t register_bytes = row_multiple * sizeof(double);
 constexpr double half_log_two_pi = 0.91893853320467274178;
 
-std::size_t count_of(Index n) { return static_cast<std::size_t>(n); }
 Index packed_size(Index n) { return n * (n + 1) / 2; }
 
 /// Calls visit(place, a, b) for the lower triangle in the kernels' order.
@@ -71,7 +71,8 @@ VectorImm::VectorImm(const Bank& bank, const FilterOptions& options)
   fill(bank);
 }
 
-/// One block for all rows, so that a step after a pause finds its numbers in few cache lines.
+/// One block for all rows, so that a step after a pause finds its numbers in few cache lines. Those of the state follow
+/// each other: VectorGradient copies them at once.
 void VectorImm::lay_out() {
   const Index m = static_cast<Index>(rows_.inputs), p = packed_size(n_), q = packed_size(n_y_);
   const Index bank_rows = n_ * n_ + n_ * m + n_ + p + K_, step_rows = 3 * (n_ + p) + 3 + 5 * n_y_ + 2 * q + 2;
@@ -174,11 +175,9 @@ double VectorImm::update(const Vector& y) {
     sensor = detach_missing(y, missing);
     kernels_.expect(rows_, sensor);
   }
-  const vector_imm::UpdateResult result =
-      kernels_.update(rows_, sensor, missing > 0 ? y_.data() : y.data(), adaptive_ ? noise_scale_ : 0.0);
-  if (adaptive_)
-    move_noise_scale(adaptation_, result.share, result.square, sensor.signals, noise_scale_, noise_samples_);
-  return result.log_density + half_log_two_pi * static_cast<double>(missing);
+  last_ = kernels_.update(rows_, sensor, missing > 0 ? y_.data() : y.data(), adaptive_ ? noise_scale_ : 0.0);
+  if (adaptive_) move_noise_scale(adaptation_, last_.share, last_.square, sensor.signals, noise_scale_, noise_samples_);
+  return last_.log_density + half_log_two_pi * static_cast<double>(missing);
 }
 
 void VectorImm::follow(const Columns& inputs, const Columns& measurements, Eigen::Ref<Eigen::VectorXd> log_density) {

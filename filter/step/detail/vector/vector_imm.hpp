@@ -8,6 +8,10 @@
 
 namespace modebank {
 
+namespace vector_imm {
+inline std::size_t count_of(Eigen::Index n) { return static_cast<std::size_t>(n); }
+}  // namespace vector_imm
+
 /// The interacting multiple model filter with a mode per lane of the processor's vector registers (Highway, chosen for
 /// the machine at run time), for the sizes most robots have. It computes what equations/filter_step.hpp computes, to
 /// rounding: the same mixing, floors, adaptive noise and treatment of impossible modes, in another order of summation.
@@ -38,6 +42,7 @@ class VectorImm final : public Stepper {
   void restore(const FilterMemory& memory) override;
 
  private:
+  friend class VectorGradient;  // goes back over the same steps
   struct Free {
     void operator()(double* memory) const;
   };
@@ -46,6 +51,7 @@ class VectorImm final : public Stepper {
   bool adaptive_;
   NoiseAdaptation adaptation_;
   double noise_scale_ = 1.0, noise_samples_ = 0.0;  // of FilterMemory
+  vector_imm::UpdateResult last_;                   // update's
   vector_imm::Kernels kernels_;
   std::unique_ptr<double[], Free> memory_;
   vector_imm::ModeRows rows_;              // within memory_

@@ -1,0 +1,180 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "app/report/figures/run_figures.hpp"
+#include "app/report/page/guard_map.hpp"
+#include "app/report/page/run_sections.hpp"
+#include "app/report/page/unit_text.hpp"
+#include "filter/step/feed/run_samples.hpp"
+#include "ident/model/parameter_labels.hpp"
+#include "io/archive/bank/units.hpp"
+
+namespace modebank::app::report {
+namespace {
+
+using nlohmann::json;
+
+constexpr Index line_points = 201, map_points = 61;  // along an axis
+constexpr Index most_samples = 3000;                 // that are drawn
+/// Of the first feature's effect on the log odds: below it one feature is all there is to draw.
+constexpr double least_second_effect = 0.05;
+
+/// The states and inputs that steps started from, and the most probable mode after each.
+struct SeenSamples {
+  std::vector<Eigen::VectorXd> z;
+  std::vector<Index> mode;
+};
+
+void add_run(const Bank& bank, const Trajectory& run, const RunEvaluation& evaluation, SeenSamples& seen) {
+  RunSamples(bank, run, TimeSteps::repeat).for_each([&](const SampleFeed& feed, Index k, bool starts) {
+    if (starts || feed.steps() != 1) return;
+    Eigen::VectorXd z(bank.transition_logit.weights.cols());
+    z << evaluation.state.col(k - 1), feed.inputs();
+    if (!z.allFinite() || !evaluation.mode_probability.col(k).allFinite()) return;
+    Index mode = 0;
+    evaluation.mode_probability.col(k).maxCoeff(&mode);
+    seen.z.push_back(z);
+    seen.mode.push_back(mode);
+  });
+}
+
+/// Of all runs, evenly thinned.
+SeenSamples seen_samples(const Archive& archive) {
+  SeenSamples all;
+  const FilterEvaluation* const evaluation = evaluation_of(archive, "bank");
+  if (!evaluation) return all;
+  for (std::size_t i = 0; i < evaluation->runs.size(); ++i)
+    add_run(*archive.bank, archive.recording->runs[i], evaluation->runs[i], all);
+  const std::size_t every = (all.z.size() + most_samples - 1) / most_samples;
+  SeenSamples thin;
+  for (std::size_t i = 0; i < all.z.size(); i += every) {
+    thin.z.push_back(all.z[i]);
+    thin.mode.push_back(all.mode[i]);
+  }
+  return thin;
+}
+
+Eigen::VectorXd values_of(const SeenSamples& seen, Index feature) {
+  Eigen::VectorXd values(std::ssize(seen.z));
+  for (Index i = 0; i < values.size(); ++i) values(i) = seen.z[static_cast<std::size_t>(i)](feature);
+  return values;
+}
+
+/// By how much a standard deviation of each feature moves the log odds of two modes at most.
+Eigen::VectorXd effects(const TransitionLogit& logit, const SeenSamples& seen) {
+  Eigen::VectorXd effect(logit.weights.cols());
+  for (Index a = 0; a < effect.size(); ++a) {
+    const Eigen::VectorXd values = values_of(seen, a);
+    const double spread = std::sqrt((values.array() - values.mean()).square().mean());
+    effect(a) = spread * (logit.weights.col(a).maxCoeff() - logit.weights.col(a).minCoeff());
+  }
+  return effect;
+}
+
+/// One or two features, the one of most effect first.
+std::vector<Index> drawn_features(const Eigen::VectorXd& effect) {
+  std::vector<Index> order(static_cast<std::size_t>(effect.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return effect(a) > effect(b); });
+  const bool one = order.size() < 2 || effect(order[1]) < least_second_effect * effect(order[0]);
+  order.resize(one ? 1 : 2);
+  return order;
+}
+
+/// The name as tables of the page have it, with the unit of its channel.
+std::string feature_name(const Bank& bank, const Recording& recording, Index feature) {
+  const Index n = bank.structure.dimension();
+  const auto label = regressor_labels(bank.structure, bank.state_names, bank.input_names);
+  const Units units(recording);
+  const Unit of = feature < n ? units.states() : units.inputs();
+  const auto channel =
+      static_cast<std::size_t>(feature < n ? feature % bank.structure.states : (feature - n) % bank.structure.inputs);
+  return with_unit(label.at(static_cast<std::size_t>(feature)),
+                   channel < of.size() && of[channel] != "1" ? of[channel] : "");
+}
+
+Eigen::VectorXd axis_values(const Eigen::VectorXd& seen, Index points) {
+  const double low = seen.minCoeff(), high = seen.maxCoeff(), margin = 0.03 * std::max(high - low, 1e-12);
+  return Eigen::VectorXd::LinSpaced(points, low - margin, high + margin);
+}
+
+json numbers(const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
+
+/// Every mode's share along one feature.
+json lines(const Bank& bank, Index feature, const Eigen::VectorXd& along) {
+  Eigen::MatrixXd shares(bank.mode_count(), along.size());
+  Eigen::VectorXd z = bank.transition_logit.reference;
+  for (Index i = 0; i < along.size(); ++i) {
+    z(feature) = along(i);
+    shares.col(i) = settled_shares(bank, z);
+  }
+  json rows = json::array();
+  for (Index k = 0; k < shares.rows(); ++k) rows.push_back(numbers(shares.row(k)));
+  return rows;
+}
+
+/// The mode of most share over two features, row by row upwards, and its share.
+void add_map(const Bank& bank, const std::vector<Index>& feature, const Eigen::VectorXd& x, const Eigen::VectorXd& y,
+             json& to) {
+  json modes = json::array(), shares = json::array();
+  Eigen::VectorXd z = bank.transition_logit.reference;
+  for (const double up : y) {
+    std::vector<Index> mode_row;
+    std::vector<double> share_row;
+    for (const double right : x) {
+      z(feature[0]) = right;
+      z(feature[1]) = up;
+      Index mode = 0;
+      share_row.push_back(settled_shares(bank, z).maxCoeff(&mode));
+      mode_row.push_back(mode);
+    }
+    modes.push_back(mode_row);
+    shares.push_back(share_row);
+  }
+  to["modes"] = modes;
+  to["shares"] = shares;
+}
+
+}  // namespace
+
+Eigen::VectorXd settled_shares(const Bank& bank, const Eigen::VectorXd& z) {
+  const Index n = bank.structure.dimension(), K = bank.mode_count();
+  TransitionWorkspace at(K, bank.transition_logit);
+  const Eigen::MatrixXd& T =
+      transition_at(bank.transition.matrix(), bank.transition_logit, z.head(n), z.tail(z.size() - n), at);
+  // p' (I - T + 1 1') = 1' has what is stationary as its solution.
+  const Eigen::MatrixXd system = Eigen::MatrixXd::Identity(K, K) - T + Eigen::MatrixXd::Ones(K, K);
+  const Eigen::VectorXd p = system.transpose().partialPivLu().solve(Eigen::VectorXd::Ones(K)).cwiseMax(0.0);
+  return p / p.sum();
+}
+
+nlohmann::json guard_of(const Archive& archive) {
+  if (!archive.bank || !archive.recording || archive.bank->transition_logit.empty()) return nullptr;
+  const Bank& bank = *archive.bank;
+  const SeenSamples seen = seen_samples(archive);
+  if (seen.z.size() < 2) return nullptr;
+  const std::vector<Index> features = drawn_features(effects(bank.transition_logit, seen));
+  const bool one = features.size() == 1;
+  json guard = {{"one", one}, {"others", bank.transition_logit.weights.cols() > std::ssize(features)}};
+  std::array<Eigen::VectorXd, 2> axis;
+  json axes = json::array(), samples = json::array();
+  for (std::size_t a = 0; a < features.size(); ++a) {
+    const Eigen::VectorXd values = values_of(seen, features[a]);
+    axis[a] = axis_values(values, one ? line_points : map_points);
+    axes.push_back({{"name", feature_name(bank, *archive.recording, features[a])}, {"values", numbers(axis[a])}});
+    samples.push_back(numbers(values));
+  }
+  guard["axes"] = axes;
+  guard["samples"] = {{"at", samples}, {"mode", seen.mode}};
+  if (one)
+    guard["lines"] = lines(bank, features[0], axis[0]);
+  else
+    add_map(bank, features, axis[0], axis[1], guard);
+  return guard;
+}
+
+}  // namespace modebank::app::report

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "filter/step/detail/vector/reverse.hpp"
+#include "filter/step/detail/vector/vector_imm.hpp"
+#include "filter/step/likelihood_gradient.hpp"
+
+namespace modebank {
+
+/// VectorImm that remembers every step, to go back over them for the gradient of their log densities.
+class VectorGradient {
+ public:
+  using Vector = Stepper::Vector;
+
+  static bool can_step(const Bank& bank, const FilterOptions& options);
+  /// Requires can_step(bank, options) and check_sizes(bank).
+  VectorGradient(const Bank& bank, const FilterOptions& options);
+
+  void reserve(Eigen::Index samples);
+  void start(const Vector& y);
+  void skip(const Vector& v);
+  /// `weight`: of the log density.
+  void step(const Vector& v, const Vector& y, double weight);
+  /// Of the sum of all steps' weighted log densities. Once.
+  BankGradient go_back();
+
+ private:
+  enum class Kind { start, skip, step };
+  /// What a moment was reached by, and the noise scale after it.
+  struct Moment {
+    Kind kind;
+    double weight = 0.0;
+    double noise_scale = 1.0, noise_samples = 0.0;
+    double share = 0.0, square = 0.0;  ///< of UpdateResult
+  };
+
+  VectorImm filter_;
+  vector_imm::Reverse reverse_;
+  Eigen::Index n_, n_y_, m_, K_, packed_, stride_, state_numbers_;
+  std::vector<Moment> moments_;
+  std::vector<double> states_, inputs_, measured_;  ///< state_numbers_, m_ and n_y_ numbers a moment
+  Eigen::VectorXd memory_;                          ///< of rows_ and probability_after_
+  vector_imm::ReverseRows rows_;
+  double* probability_after_ = nullptr;  ///< a row within memory_
+  Eigen::VectorXd by_R_;
+  Eigen::MatrixXd by_start_covariance_;
+  double by_noise_scale_ = 0.0, by_noise_samples_ = 0.0;
+
+  void remember(const Moment& moment, const double* v, const double* y);
+  void lay_out();
+  double* by_state() { return rows_.mean; }
+  void back_to_start();
+  void back_over(std::size_t t);
+  void back_over_noise_scale(const Moment& before, const Moment& after, double signals, vector_imm::ReverseStep& step);
+  BankGradient result() const;
+};
+
+}  // namespace modebank

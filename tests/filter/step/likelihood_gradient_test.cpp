@@ -1,0 +1,155 @@
+// The gradient of the filter's likelihood against differences of the likelihood itself.
+#include "filter/step/likelihood_gradient.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/step/feed/sample_feed.hpp"
+#include "tests/filter/filter_test_support.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+
+using Change = std::function<void(Bank&, double)>;
+
+/// Every number of a bank by itself; of T a pair in a row, which goes on to sum to one.
+std::vector<std::pair<std::string, Change>> all_changes(const Bank& bank) {
+  std::vector<std::pair<std::string, Change>> changes;
+  const Index n = bank.structure.dimension(), m = bank.structure.acting_inputs(), K = bank.mode_count();
+  for (std::size_t j = 0; j < bank.modes.size(); ++j) {
+    const double Q_scale = bank.modes[j].Q(0, 0);
+    for (Index a = 0; a < n; ++a) {
+      for (Index b = 0; b < n; ++b)
+        changes.emplace_back("A", [=](Bank& to, double h) { to.modes[j].model.A(a, b) += 0.1 * h; });
+      for (Index i = 0; i < m; ++i)
+        changes.emplace_back("B", [=](Bank& to, double h) { to.modes[j].model.B(a, i) += 0.1 * h; });
+      changes.emplace_back("c", [=](Bank& to, double h) { to.modes[j].model.c(a) += 0.1 * h; });
+      for (Index b = 0; b <= a; ++b)
+        changes.emplace_back("Q", [=](Bank& to, double h) {
+          to.modes[j].Q(a, b) += Q_scale * h;
+          if (a != b) to.modes[j].Q(b, a) += Q_scale * h;
+        });
+    }
+  }
+  for (Index i = 0; i < K; ++i)
+    for (Index j = 1; j < K; ++j)
+      changes.emplace_back("T", [=](Bank& to, double h) {
+        Eigen::MatrixXd T = to.transition.matrix();
+        T(i, 0) -= 0.01 * h;
+        T(i, j) += 0.01 * h;
+        to.transition = TransitionMatrix(T);
+      });
+  const double R_scale = bank.R(0, 0);
+  for (Index i = 0; i < bank.R.rows(); ++i)
+    for (Index k = 0; k <= i; ++k)
+      changes.emplace_back("R", [=](Bank& to, double h) {
+        to.R(i, k) += R_scale * h;
+        if (i != k) to.R(k, i) += R_scale * h;
+      });
+  return changes;
+}
+
+double weighted_sum(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,
+                    const FilterOptions& options) {
+  const Eigen::ArrayXd densities = log_densities(bank, run, options);
+  const Eigen::ArrayXd known = densities.isNaN().select(0.0, densities);
+  return weight.size() > 0 ? (known * weight.array()).sum() : known.sum();
+}
+
+void expect_gradient(const Bank& bank, const Trajectory& run, const FilterOptions& options,
+                     const Eigen::VectorXd& weight = {}) {
+  ASSERT_TRUE(has_likelihood_gradient(bank, options));
+  const BankGradient gradient = log_likelihood_gradient(bank, run, weight, options);
+  constexpr double step = 1e-5;
+  for (const auto& [name, change] : all_changes(bank)) {
+    Bank up = bank, down = bank;
+    change(up, step);
+    change(down, -step);
+    const double expected = weighted_sum(up, run, weight, options) - weighted_sum(down, run, weight, options);
+    EXPECT_NEAR(gradient.along(down, up), expected, 1e-9 + 2e-6 * std::abs(expected)) << name;
+  }
+}
+
+Bank bank_of(Index n, Index K, double r) {
+  Bank bank = test::example_bank(n, 2, K, r);
+  bank.dt_s = 1.0;
+  bank.transition = TransitionMatrix::sticky(K, 0.8);
+  if (n > 1) bank.R(1, 0) = bank.R(0, 1) = 0.3 * r;
+  return bank;
+}
+
+TEST(LikelihoodGradient, IsThatOfEverySize) {
+  for (const Index n : {1, 2, 3})
+    for (const Index K : {2, 3, 9})
+      for (const double r : {1e-3, 1e-5}) {
+        SCOPED_TRACE(testing::Message() << "n " << n << ", K " << K << ", R " << r);
+        const Bank bank = bank_of(n, K > 4 ? 4 : K, r);
+        Bank more = bank;
+        if (K > 4) {  // more than a register of modes
+          for (Index j = 4; j < K; ++j) {
+            more.modes.push_back(bank.modes[static_cast<std::size_t>(j % 4)]);
+            more.modes.back().model.A *= 0.8 + 0.02 * static_cast<double>(j);
+          }
+          more.transition = TransitionMatrix::sticky(K, 0.8);
+          more.initial_probability = Eigen::VectorXd::Constant(K, 1.0 / static_cast<double>(K));
+        }
+        expect_gradient(more, test::simulate_bank(bank, 60, 3), {});
+      }
+}
+
+TEST(LikelihoodGradient, SeesPartOfTheState) {
+  Bank bank = bank_of(2, 3, 1e-3);
+  bank.C = Eigen::MatrixXd{{1.0, 0.5}};
+  bank.R = Eigen::MatrixXd{{1e-3}};
+  expect_gradient(bank, test::simulate_bank(bank, 60, 4), {});
+}
+
+/// Missing signals and samples, a longer time between samples, and one so long that the filter starts anew.
+TEST(LikelihoodGradient, IsThatOfRunsWithGaps) {
+  for (const FilterNoise noise : {FilterNoise::gaussian, FilterNoise::adaptive}) {
+    const Bank bank = bank_of(2, 3, 1e-3);
+    Trajectory run = test::simulate_bank(bank, 80, 5);
+    run.state(0, 10) = run.state(1, 15) = std::nan("");
+    run.state.middleCols(20, 2).setConstant(std::nan(""));
+    run.time_s.tail(50).array() += 3.0;
+    run.time_s.tail(30).array() += 2.0 * longest_gap_steps;
+    FilterOptions options;
+    options.noise = noise;
+    expect_gradient(bank, run, options);
+  }
+}
+
+/// The noise scale depends on all that was before, and outliers count to it as what they are cut to.
+TEST(LikelihoodGradient, GoesBackOverTheNoiseScale) {
+  FilterOptions options;
+  options.noise = FilterNoise::adaptive;
+  for (const Index n : {1, 2, 3}) {
+    Bank bank = bank_of(n, 3, 1e-4);
+    bank.noise_adaptation = {0.9, 2.0};
+    Trajectory run = test::simulate_bank(bank, 60, 6);
+    run.state.middleCols(30, 1).array() += 3.0;
+    expect_gradient(bank, run, options);
+  }
+}
+
+TEST(LikelihoodGradient, CountsSamplesByTheirWeight) {
+  const Bank bank = bank_of(1, 2, 1e-3);
+  const Trajectory run = test::simulate_bank(bank, 50, 7);
+  const Eigen::VectorXd weight = Eigen::VectorXd::LinSpaced(50, 0.0, 2.0);
+  expect_gradient(bank, run, {}, weight);
+}
+
+TEST(LikelihoodGradient, IsNotThereWhereStepsHaveNoKernel) {
+  EXPECT_FALSE(has_likelihood_gradient(test::single_mode(bank_of(1, 2, 1e-3), 0), {}));
+  Bank logit = bank_of(1, 2, 1e-3);
+  logit.transition_logit = {Eigen::MatrixXd::Ones(2, 3), Eigen::VectorXd::Zero(3)};
+  EXPECT_FALSE(has_likelihood_gradient(logit, {}));
+}
+
+}  // namespace
+}  // namespace modebank
