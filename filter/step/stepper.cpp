@@ -26,7 +26,7 @@ class EquationStepper final : public Stepper {
   void predict(const Vector& v) override { modebank::predict(model_, state_, v, step_); }
   void skip(const Vector& v) override {
     modebank::predict(model_, state_, v, step_);
-    skip_measurement(step_, state_);
+    skip_measurement(model_, step_, state_);
   }
   double update(const Vector& y) override { return modebank::update(model_, y, step_, state_); }
 
@@ -55,6 +55,7 @@ class EquationStepper final : public Stepper {
     memory.mode_probability = state_.mode_probability;
     memory.noise_scale = state_.noise_scale;
     memory.noise_samples = state_.noise_samples;
+    memory.drift = state_.drift;
   }
   void restore(const FilterMemory& memory) override {
     const Index n = model_.structure.dimension();
@@ -66,6 +67,7 @@ class EquationStepper final : public Stepper {
     state_.mode_probability = memory.mode_probability;
     state_.noise_scale = memory.noise_scale;
     state_.noise_samples = memory.noise_samples;
+    state_.drift = memory.drift;
   }
 
  private:
