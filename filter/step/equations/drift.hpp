@@ -55,7 +55,8 @@ void add_errors(const FilterModel<N, NY>& model, const FilterState<N>& state, st
       const double own = at.regressor.dot(at.PG.col(b).segment(a * r, r));
       kalman.process_noise(a, b) += own;
       P(a, b) += own;
-      if (a != b) kalman.process_noise(b, a) = P(b, a) = P(a, b);
+      kalman.process_noise(b, a) = kalman.process_noise(a, b);
+      P(b, a) = P(a, b);
     }
     for (Eigen::Index i = 0; i < n; ++i) {
       const double with_state = F.row(i).dot(at.through.row(b));
