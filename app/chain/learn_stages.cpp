@@ -107,6 +107,10 @@ void tell_of(const Refinement& refined, const Listener& listener) {
     listener.progress(
         fmt::format("refine: switches that see state and input gain {:.4f} +- {:.4f} nats/sample left out{}", s.gain,
                     s.gain_standard_error, s.width > 0.0 ? fmt::format(" (taken, width {})", s.width) : ": not taken"));
+  if (const DriftStage& s = refined.drift; !std::isnan(s.gain))
+    listener.progress(fmt::format(
+        "refine: {} modes that drift (rate {:g}, start {:g}, leak {:g}) gain {:.4f} +- {:.4f} nats/sample left out: {}",
+        s.modes, s.rate, s.start, s.leak, s.gain, s.gain_standard_error, s.taken ? "taken" : "not taken"));
   const Averaging& averaged = refined.averaging;
   if (!std::isnan(averaged.score))
     listener.progress(fmt::format("refine: {} fits averaged: {:.4f} -> {:.4f} nats/sample left out", averaged.members,

@@ -3,6 +3,7 @@
 #include "app/chain/section.hpp"
 #include "app/chain/stages.hpp"
 #include "app/config/config.hpp"
+#include "filter/learn/learn.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "modebank/base/error.hpp"
 
@@ -51,6 +52,29 @@ FitOptions most_lags(const Config& config) {
   return window;
 }
 
+/// Modes that drift are learned by refinement, for states measured exactly and the one filter that knows them.
+void check_drift(const Config& config) {
+  if (config.bank.em.drift.how == Drift::none) return;
+  const std::string drift = fmt::format("bank.drift = {}", name_of(config.bank.em.drift.how));
+  require(is_linear(config.window),
+          fmt::format("{} needs window.model = linear or varx, not {}", drift, config.window.model));
+  require(refinement_asked(config.bank, true) == Refine::em,
+          drift + " is learned by refinement: it needs bank.refine = em, or auto with nothing that keeps it from em");
+  require(!config.bank.measurement_variance,
+          drift + " needs states measured exactly: leave bank.measurement_variance empty");
+  require(config.data.quantum.empty() && !config.data.quantum_auto,
+          drift + " needs states measured exactly: data.quantum = none");
+  require(config.bank.em.members == 1, fmt::format("{} needs bank.members = 1, not {}", drift, config.bank.em.members));
+  require(config.filter.variant == FilterVariant::imm,
+          fmt::format("{} needs filter.variant = imm, not {}", drift, name_of(config.filter.variant)));
+  const bool paths =
+      config.scoring.free_run.method == FreeRunMethod::paths || config.bank.transition == TransitionSource::logit;
+  require(config.scoring.free_run.samples == 0 || !paths,
+          drift +
+              " knows no free run by sample paths: it needs filter.simulate_method = moments and "
+              "bank.transition = labels, or filter.simulate = 0");
+}
+
 }  // namespace
 
 void validate(const Config& config) {
@@ -75,6 +99,7 @@ void validate(const Config& config) {
           fmt::format("bank.refine = em needs window.model = linear or varx, not {}: it fits linear modes",
                       config.window.model));
   check_logit(config);
+  check_drift(config);
 }
 
 }  // namespace modebank::app

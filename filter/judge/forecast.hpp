@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "filter/judge/drifting_forecast.hpp"
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/equations/predicted_mixture.hpp"
 
@@ -51,11 +52,12 @@ class BankForecast {
 
   void start(const FilterState<N>& origin) {
     state_ = origin;
-    ahead_ = false;
+    ahead_ = contracted_ = false;
   }
   template <class U>
   void step(const U& inputs) {
-    if (ahead_) skip_measurement(step_, state_);
+    if (ahead_) skip_measurement(model_, step_, state_);
+    if (ahead_ && !contracted_) contract();
     predict(model_, state_, inputs, step_);
     ahead_ = true;
   }
@@ -85,7 +87,18 @@ class BankForecast {
   FilterState<N> state_;
   Eigen::VectorXd posterior_;
   Gaussian<N> unused_;
-  bool ahead_ = false;
+  bool ahead_ = false, contracted_ = false;
+
+  /// Coefficients that drifted to where they are unstable, good for one step, would run away in many; as
+  /// DriftingForecast has it.
+  void contract() {
+    contracted_ = true;
+    const LinearStructure& s = model_.structure;
+    if (!model_.drift.on()) return;
+    const Eigen::VectorXd units = Eigen::VectorXd::Ones(s.regressors());
+    for (auto theta : state_.drift.theta.colwise())
+      theta = contracted(s, units, theta.reshaped(s.regressors(), s.states)).reshaped();
+  }
 };
 
 /// A mixture of normal distributions of one signal.

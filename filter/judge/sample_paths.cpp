@@ -42,6 +42,7 @@ SamplePaths::SamplePaths(const Bank& bank, const FilterOptions& options, Index p
       probability_(bank.mode_count()),
       regressor_(bank.structure.regressors()),
       next_(bank.structure.dimension()) {
+  if (!bank.drift.empty()) throw std::invalid_argument("sample paths know no modes that drift");
   if (paths < 2) throw std::invalid_argument("at least two sample paths, not " + std::to_string(paths));
   for (const Mode& mode : bank_.modes)
     spread_root_.push_back(options.parameter_noise && mode.spread.size() > 0 ? covariance_root(mode.spread)

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "filter/judge/backward_pass.hpp"
+#include "filter/judge/drifting_mode_sequence.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -223,6 +224,10 @@ Eigen::VectorXi viterbi(const Bank& bank, const Trajectory& run, const FilterOpt
 
 void smooth_run(const Bank& bank, const Trajectory& run, const FilterOptions& options, RunEvaluation& evaluation) {
   check_run(bank, run);
+  if (!bank.drift.empty()) {
+    evaluation.viterbi_mode = drifting_mode_sequence(bank, run, options);
+    return;
+  }
   evaluation.viterbi_mode = viterbi(bank, run, options);
   if (options.variant == FilterVariant::salvi2025) return;
   FilterOptions forward = options;

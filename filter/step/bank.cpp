@@ -57,6 +57,20 @@ void check_adaptation(const NoiseAdaptation& adaptation) {
           "noise adaptation starts from " + std::to_string(n0) + " prior samples, must be above 0");
 }
 
+/// Coefficients can follow a run only where its states are known.
+void check_drift(const Bank& bank) {
+  if (bank.drift.empty()) return;
+  const LinearStructure& s = bank.structure;
+  const DriftRates& rates = bank.drift.rates;
+  expect_size("scale of the drift", bank.drift.scale.size(), 1, s.regressors(), 1);
+  require(bank.drift.scale.allFinite() && bank.drift.scale.minCoeff() > 0.0, "drift needs a positive scale");
+  require(rates.q >= 0.0 && rates.p0 >= 0.0 && std::isfinite(rates.q + rates.p0), "drift q and p0 must be variances");
+  require(rates.leak > 0.0 && rates.leak <= 1.0, "drift leak must lie above 0 and not above 1");
+  require(bank.motion_parameters.empty(), "drift needs linear modes, not those of " + bank.model);
+  require((bank.R.array() == 0.0).all(), "drift needs states measured exactly: R must be 0");
+  require(bank.C.isIdentity(0.0) && bank.C.rows() == s.states, "drift needs each state measured by itself");
+}
+
 StartMoments measured_lags(const Bank& bank) {
   const Eigen::Index n = bank.structure.dimension(), n_y = bank.R.rows();
   StartMoments moments{Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd::Zero(n, n)};
@@ -127,6 +141,7 @@ void validate(const Bank& bank) {
   require(bank.transition_logit.weights.allFinite() && bank.transition_logit.reference.allFinite(),
           "weights of the transition are not finite");
   check_adaptation(bank.noise_adaptation);
+  check_drift(bank);
 }
 
 Eigen::MatrixXd Bank::recording_noise() const {

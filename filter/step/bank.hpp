@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "filter/step/drift_rates.hpp"
 #include "filter/step/transition_logit.hpp"
 #include "ident/model/linear_model.hpp"
 #include "ident/model/motion_model.hpp"
@@ -68,6 +69,7 @@ struct Bank {
   std::vector<ScreenedMode> screened;
   std::vector<ModelParameter> motion_parameters;  ///< of a motion model; empty for linear ones
   NoiseAdaptation noise_adaptation;               ///< for filters whose noise is adaptive
+  BankDrift drift;                                ///< how theta of each mode wanders in a run; empty: not at all
   Eigen::MatrixXd R_standard_error;               ///< n_y x n_y; empty unless R was estimated with the bank
   Eigen::MatrixXd transition_standard_error;      ///< K x K; of refined banks, empty otherwise
   Eigen::MatrixXd transition_weight_error;        ///< K x d standard errors of the logit's weights; empty: not known

@@ -1,5 +1,6 @@
 #include "filter/step/bank_filter.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -31,6 +32,23 @@ void check_memory(const FilterMemory& memory, Index n, Index K) {
       memory.mode_probability.minCoeff() < 0.0 || !is_positive(memory.mode_probability.sum()) ||
       !is_positive(memory.noise_scale) || !(memory.noise_samples >= 0.0 && std::isfinite(memory.noise_samples)))
     throw std::invalid_argument("the snapshot holds numbers that no filter has");
+}
+
+/// The same of what is known of coefficients that drift; `own`: that of this filter.
+void check_memory(const DriftState& drift, const DriftState& own) {
+  const auto same = [](const std::vector<Eigen::MatrixXd>& a, const std::vector<Eigen::MatrixXd>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
+      return x.rows() == y.rows() && x.cols() == y.cols();
+    });
+  };
+  if (drift.theta.rows() != own.theta.rows() || drift.theta.cols() != own.theta.cols() || !same(drift.P, own.P) ||
+      !same(drift.cross, own.cross))
+    throw std::invalid_argument("the snapshot is not of a filter whose modes drift as these do");
+  const auto finite = [](const Eigen::MatrixXd& x) { return x.allFinite(); };
+  const auto variances = [](const Eigen::MatrixXd& P) { return P.allFinite() && (P.diagonal().array() >= 0.0).all(); };
+  if (!drift.theta.allFinite() || !std::all_of(drift.P.begin(), drift.P.end(), variances) ||
+      !std::all_of(drift.cross.begin(), drift.cross.end(), finite))
+    throw std::invalid_argument("the snapshot holds numbers that no drifting mode has");
 }
 
 }  // namespace
@@ -102,6 +120,9 @@ FilterSnapshot BankFilter::snapshot() const {
 
 void BankFilter::restore(const FilterSnapshot& snapshot) {
   check_memory(snapshot, parts_->estimate.state.size(), parts_->initial_probability.size());
+  FilterMemory own;
+  parts_->stepper->save(own);
+  check_memory(snapshot.drift, own.drift);
   parts_->feed.restore(snapshot.samples);  // refuses before it changes anything, as the line above does
   parts_->stepper->restore(snapshot);
   parts_->started = snapshot.started;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "filter/step/bank.hpp"
+#include "filter/step/equations/drift_state.hpp"
 #include "filter/step/feed/sample_feed.hpp"
 #include "modebank/filter/options.hpp"
 
@@ -34,6 +35,7 @@ struct FilterMemory {
   Eigen::VectorXd mode_probability;  ///< K
   double noise_scale = 1.0;
   double noise_samples = 0.0;  ///< how many samples the scale rests on
+  DriftState drift = {};       ///< of modes that drift; empty otherwise
 };
 
 /// All that a BankFilter remembers, to go on later where it stopped.

@@ -50,6 +50,7 @@ std::shared_ptr<const modebank::Bank> inside(const BankDescription& d) {
   bank.input_names = d.input_names;
   bank.dt_s = d.dt_s;
   bank.noise_adaptation = {d.noise_forgetting, d.noise_prior_samples};
+  bank.drift = {{d.drift_rate, d.drift_start, d.drift_leak}, view(d.drift_scale)};
   validate(bank);
   return std::make_shared<const modebank::Bank>(std::move(bank));
 }
@@ -114,6 +115,10 @@ BankDescription Bank::description() const {
   d.intercept = bank_->structure.intercept;
   d.noise_forgetting = bank_->noise_adaptation.forgetting;
   d.noise_prior_samples = bank_->noise_adaptation.prior_samples;
+  d.drift_scale = to_vector(bank_->drift.scale);
+  d.drift_rate = bank_->drift.rates.q;
+  d.drift_start = bank_->drift.rates.p0;
+  d.drift_leak = bank_->drift.rates.leak;
   return d;
 }
 

@@ -3,18 +3,10 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "filter/step/drift_rates.hpp"
 #include "ident/model/linear_model.hpp"
 
 namespace modebank {
-
-/// How coefficients of scaled regressors wander, in units of the noise variance v (method: section 6).
-struct DriftRates {
-  double q = 0.0;     ///< variance that a step adds to every coefficient; 0: they are constant
-  double p0 = 0.0;    ///< variance of every coefficient at the start; with q = 0 both fix the coefficients
-  double leak = 1.0;  ///< what a step leaves of their difference from theta0, in (0, 1]
-
-  bool operator==(const DriftRates&) const = default;
-};
 
 /// What the recursion knows between two samples; its sizes never change. n outputs, r = regressors().
 struct DriftingMemory {

@@ -24,7 +24,7 @@ class EquationStepper final : public Stepper {
   void predict(const Vector& v) override { modebank::predict(model_, state_, v, step_); }
   void skip(const Vector& v) override {
     modebank::predict(model_, state_, v, step_);
-    skip_measurement(step_, state_);
+    skip_measurement(model_, step_, state_);
   }
   double update(const Vector& y) override { return modebank::update(model_, y, step_, state_); }
 

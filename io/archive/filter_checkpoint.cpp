@@ -43,22 +43,43 @@ Eigen::MatrixXd matrix_of(const json& stored) {
   return matrix;
 }
 
+json to_json(const std::vector<Eigen::MatrixXd>& matrices) {
+  json list = json::array();
+  for (const Eigen::MatrixXd& matrix : matrices) list.push_back(to_json(matrix));
+  return list;
+}
+
+std::vector<Eigen::MatrixXd> matrices_of(const json& stored) {
+  std::vector<Eigen::MatrixXd> matrices;
+  for (const json& matrix : stored) matrices.push_back(matrix_of(matrix));
+  return matrices;
+}
+
+/// Of filters whose modes drift; others have none.
+DriftState drift_of(const json& stored) {
+  if (!stored.contains("drift")) return {};
+  const json& drift = stored.at("drift");
+  return {matrix_of(drift.at("theta")), matrices_of(drift.at("P")), matrices_of(drift.at("cross"))};
+}
+
 }  // namespace
 
 void save_checkpoint(const std::filesystem::path& path, const std::string& identity, const FilterSnapshot& snapshot) {
-  const json stored{{"format", checkpoint_format},
-                    {"identity", identity},
-                    {"started", snapshot.started},
-                    {"means", to_json(snapshot.means)},
-                    {"covariances", to_json(snapshot.covariances)},
-                    {"mode_probability", to_json(snapshot.mode_probability)},
-                    {"noise_scale", snapshot.noise_scale},
-                    {"noise_samples", snapshot.noise_samples},
-                    {"inputs", to_json(snapshot.samples.inputs)},
-                    {"measurements", to_json(snapshot.samples.measurements)},
-                    {"samples", snapshot.samples.samples},
-                    {"whole", snapshot.samples.whole},
-                    {"time_s", std::isfinite(snapshot.samples.time_s) ? json(snapshot.samples.time_s) : json()}};
+  json stored{{"format", checkpoint_format},
+              {"identity", identity},
+              {"started", snapshot.started},
+              {"means", to_json(snapshot.means)},
+              {"covariances", to_json(snapshot.covariances)},
+              {"mode_probability", to_json(snapshot.mode_probability)},
+              {"noise_scale", snapshot.noise_scale},
+              {"noise_samples", snapshot.noise_samples},
+              {"inputs", to_json(snapshot.samples.inputs)},
+              {"measurements", to_json(snapshot.samples.measurements)},
+              {"samples", snapshot.samples.samples},
+              {"whole", snapshot.samples.whole},
+              {"time_s", std::isfinite(snapshot.samples.time_s) ? json(snapshot.samples.time_s) : json()}};
+  if (const DriftState& drift = snapshot.drift; drift.theta.size() > 0)
+    stored["drift"] = {{"theta", to_json(drift.theta)}, {"P", to_json(drift.P)}, {"cross", to_json(drift.cross)}};
   replace_file(path, {stored.dump(1), "\n"});
 }
 
@@ -77,6 +98,7 @@ FilterSnapshot load_checkpoint(const std::filesystem::path& path, const std::str
     snapshot.mode_probability = matrix_of(stored.at("mode_probability"));
     snapshot.noise_scale = stored.at("noise_scale").get<double>();
     snapshot.noise_samples = stored.at("noise_samples").get<double>();
+    snapshot.drift = drift_of(stored);
     snapshot.samples.inputs = matrix_of(stored.at("inputs"));
     snapshot.samples.measurements = matrix_of(stored.at("measurements"));
     snapshot.samples.samples = stored.at("samples").get<Eigen::Index>();

@@ -39,6 +39,19 @@ std::vector<Option> bank_options() {
           "parts of the training runs that em leaves out in turn to choose start, number of modes and of iterations; "
           "1: none",
           MODEBANK_FIELD(bank.em.folds)),
+      words("bank.drift",
+            "whether each mode's theta goes on learning within a run: auto: as fast as training runs left out like it; "
+            "fixed: as the next three keys say",
+            MODEBANK_FIELD(bank.em.drift.how)),
+      numeric("bank.drift_rate", at_least(0), "Q",
+              "for drift = fixed: variance that a step adds to every coefficient of regressors over their root mean "
+              "square",
+              MODEBANK_FIELD(bank.em.drift.rate)),
+      numeric("bank.drift_start", at_least(0), "Q", "for drift = fixed: their variance at a run's start",
+              MODEBANK_FIELD(bank.em.drift.start)),
+      numeric("bank.drift_leak", between(0.01, 1), "",
+              "for drift = fixed: what a step leaves of their difference from the mode's",
+              MODEBANK_FIELD(bank.em.drift.leak)),
       numeric("bank.max_iterations", between(1, 1000), "", "limit of em", MODEBANK_FIELD(bank.em.max_iterations)),
       numeric("bank.tolerance", above(0), "nats/transition", "em stops when the objective gains less",
               MODEBANK_FIELD(bank.em.tolerance)),

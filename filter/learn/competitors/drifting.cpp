@@ -16,11 +16,7 @@
 #include "modebank/base/error.hpp"
 
 namespace modebank {
-namespace {
 
-constexpr Index factors_below = 16, factors_above = 32;  // of the grid 2^(i / 4) of a horizon's factor
-
-/// Root mean square of every regressor over the training transitions; 1 for what is always zero.
 Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructure& structure) {
   Recording training = training_part(recording);
   for (Trajectory& run : training.runs) run.weight.resize(0);  // every sample counts the same
@@ -30,6 +26,10 @@ Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructur
       (transitions.regressors.colwise().squaredNorm() / static_cast<double>(transitions.count())).cwiseSqrt();
   return scale.unaryExpr([](double rms) { return rms > 0.0 ? rms : 1.0; });
 }
+
+namespace {
+
+constexpr Index factors_below = 16, factors_above = 32;  // of the grid 2^(i / 4) of a horizon's factor
 
 DriftingModel undecided_model(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
   const Index n = structure.states;

@@ -42,6 +42,10 @@ struct DriftingScores {
 DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& recording, TimeSteps time_steps,
                                    const DriftingGrid& grid);
 
+/// Root mean square of every regressor over the training transitions, each counting the same; 1 for what is always
+/// zero. Throws DataError where there is none.
+Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructure& structure);
+
 /// The competitor `drifting`. `global`: least squares of this structure on the training runs. Its settings are the best
 /// of the grid by the training runs' log score, one sample ahead; then for each of `horizons` from 2 on the factor of
 /// its variance is the one of 2^(-4), 2^(-3.75), ..., 2^8 that makes the training runs' errors most likely. Samples

@@ -7,6 +7,7 @@
 
 #include "filter/learn/refine/averaging.hpp"
 #include "filter/learn/refine/cross_validation.hpp"
+#include "filter/learn/refine/drift.hpp"
 #include "filter/learn/refine/guards.hpp"
 #include "filter/learn/refine/measurement_noise.hpp"
 #include "filter/learn/refine/training_fit.hpp"
@@ -67,6 +68,20 @@ CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& b
   return validation;
 }
 
+/// The chosen fit with modes that drift; standard errors are those of the likelihood that it maximises, without.
+Refinement drifting_refinement(const RefineInput& in, const CrossValidation& validation, const DriftChoice& drift,
+                               const SwitchingPrior& prior, const TrainingFit& fit, const Bank& start,
+                               const SwitchingStage& switching, const DriftStage& stage) {
+  const Bank steady =
+      with_errors(in, fit, prior, false, exact_filter(in.filter), bank_of_fit(in, fit, drift.adaptation));
+  Refinement result{with_drift(steady, drift), start, validation.table(), fit.objective, {}};
+  result.switching = switching;
+  result.drift = stage;
+  for (std::size_t row = 0; row < result.candidates.size(); ++row)
+    result.candidates[row].selected = row == drift.fit.row;
+  return result;
+}
+
 }  // namespace
 
 Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& banks,
@@ -83,13 +98,18 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   SwitchingStage switching;
   std::optional<Guards> guards;
   if (options.guards) guards = choose_guards(in, validation, switching);
-  const ScoredFit& chosen = guards ? validation.of_start(guards->fit.row) : validation.chosen();
+  const ScoredFit& steady = guards ? guards->fit : validation.chosen();
+  DriftStage drift_stage;
+  std::optional<DriftChoice> drift;
+  if (options.drift.how != Drift::none) drift = choose_drift(in, validation, steady, !guards, drift_stage);
+  const ScoredFit& chosen = validation.of_start(drift ? drift->fit.row : steady.row);
   SwitchingPrior prior = in.prior(chosen.start.noise_transitions);
   TrainingFit fit = fit_training_runs(in, chosen.start, prior, chosen.iterations);
   if (guards) {
     prior = with_weights(std::move(prior), transitions, guards->width);
     fit = fit_guards(in, *guards, prior, fit);
   }
+  if (drift) return drifting_refinement(in, validation, *drift, prior, fit, banks.front(), switching, drift_stage);
   const ChosenFit on_splits{guards ? guards->fit.banks : chosen.banks, chosen.start.noise_transitions,
                             guards ? guards->width : 0.0};
   const Bank exact = bank_of_fit(in, fit, validation.adaptation(on_splits.of_splits));
@@ -99,6 +119,7 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   Refinement result{with_errors(in, fit, measured.prior, measured.R_estimated, maximised, measured.bank), banks.front(),
                     validation.table(), fit.objective, measured.stage};
   result.switching = switching;
+  result.drift = drift_stage;
   if (options.members == 1 || guards || measured.R_estimated || measured.stage.iterations > 0) return result;
   AveragedBank averaged = average_fits(in, validation, result.bank);
   result.averaging = averaged.averaging;

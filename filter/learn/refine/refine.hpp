@@ -21,6 +21,7 @@ struct Refinement {
   MeasurementStage measurement;
   Averaging averaging = {};
   SwitchingStage switching = {};
+  DriftStage drift = {};
 };
 
 /// Expectation-maximisation of the switching model (switching_regression.hpp) from banks of mixtures. Which start, how
@@ -39,8 +40,8 @@ struct Refinement {
 /// likelihood (measurement_noise.hpp) and kept where that is better. Where it is, or where R was given, the fit goes on
 /// with the states unknown, all of theta, Q, R and T together, to the maximum of the filter's likelihood of the
 /// training runs: exact for one mode, the IMM's for several. That is kept unless the runs left out say that it costs
-/// more than least_gain (tuning.hpp). Requires linear or lagged linear banks of one structure; throws
-/// std::invalid_argument for a motion model's.
+/// more than least_gain (tuning.hpp). Where modes drift (choose_drift, drift.hpp) R is zero. Requires linear or lagged
+/// linear banks of one structure; throws std::invalid_argument for a motion model's.
 Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& starts,
                        const RefineOptions& options, const FilterOptions& filter);
 

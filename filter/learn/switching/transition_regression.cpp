@@ -11,7 +11,7 @@ namespace modebank {
 namespace {
 
 constexpr double negligible_share = 1e-12;  // of a transition that starts from a mode
-constexpr double ridge = 1e-10;             // of the largest curvature: a constant on a row of log T changes nothing
+constexpr double curvature_ridge = 1e-10;   // of the largest curvature: a constant on a row of log T changes nothing
 constexpr int most_halvings = 30;
 
 Index regressor_count(const LinearStructure& s) { return s.dimension() + s.acting_inputs(); }
@@ -174,7 +174,7 @@ double raise_switching(const TrainingTransitions& transitions, const ModePosteri
   Eigen::VectorXd gradient;
   Eigen::MatrixXd curvature;
   objective.derivatives(start, gradient, curvature);
-  curvature.diagonal().array() += ridge * curvature.diagonal().maxCoeff();
+  curvature.diagonal().array() += curvature_ridge * curvature.diagonal().maxCoeff();
   const Eigen::VectorXd newton = solve_semidefinite(curvature, gradient);
   const double before = objective.value(start);
   double share = 1.0;

@@ -21,6 +21,7 @@ void save(const FilterState<N>& state, FilterMemory& memory) {
   memory.mode_probability = state.mode_probability;
   memory.noise_scale = state.noise_scale;
   memory.noise_samples = state.noise_samples;
+  memory.drift = state.drift;
 }
 
 /// `state`: of the memory's sizes.
@@ -35,6 +36,7 @@ void restore(const FilterMemory& memory, FilterState<N>& state) {
   state.mode_probability = memory.mode_probability;
   state.noise_scale = memory.noise_scale;
   state.noise_samples = memory.noise_samples;
+  state.drift = memory.drift;
 }
 
 }  // namespace modebank

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "filter/step/equations/drift.hpp"
 #include "filter/step/equations/gpb.hpp"
 #include "filter/step/equations/imm.hpp"
 #include "filter/step/equations/noise_scale.hpp"
@@ -18,7 +19,7 @@ namespace modebank {
 template <int N, int NY>
 FilterState<N> initial_state(const FilterModel<N, NY>& model) {
   return {std::vector<Gaussian<N>>(model.modes.size(), Gaussian<N>(model.structure.dimension())),
-          model.initial_probability};
+          model.initial_probability, 1.0, 0.0, model.drift.start(model.structure.dimension())};
 }
 
 /// x[0] = start_gain y[0], P[0] = start_covariance, mode probabilities from the bank. `y`: the first measurement; with
@@ -32,6 +33,7 @@ void start(const FilterModel<N, NY>& model, const Y& y, FilterState<N>& state) {
   floor_probabilities(state.mode_probability);
   state.noise_scale = 1.0;
   state.noise_samples = model.noise_adaptation.prior_samples;
+  if (model.drift.on()) model.drift.restart(state.drift);
 }
 
 template <int N, int NY, class Y>
@@ -67,32 +69,39 @@ const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const Filte
 template <int N, int NY, class U>
 void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u, FilterStep<N, NY>& step) {
   if (step.pairs()) return gpb::predict_pairs(model, state, u, step);
+  if (model.drift.on()) return drift::predict_modes(model, state, mix(model, state, u, step), u, step);
   predict_modes(model, mix(model, state, u, step), state.noise_scale, u, step);
 }
 
 /// A missing measurement: the prediction is all there is.
 template <int N, int NY>
-void skip_measurement(FilterStep<N, NY>& step, FilterState<N>& state) {
+void skip_measurement(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, FilterState<N>& state) {
   if (step.pairs())
     gpb::keep_prediction(step, state);
   else
     keep_prediction(step, state);
   state.mode_probability = step.predicted_probability;
   floor_probabilities(state.mode_probability);
+  if (model.drift.on()) drift::keep_prediction(model, step, state);
 }
 
 /// What `sensor` measured is taken in: the model itself, or what is left of it where signals are missing.
 template <int N, int NY, class Sensor, class Y>
 double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y, FilterStep<N, NY>& step,
                FilterState<N>& state) {
+  const double noise_scale = state.noise_scale;  // that the prediction was made with
   correct(sensor, y, step, step.pairs() ? step.corrected : state.modes);
   if (model.adaptive) adapt_noise_scale(model, sensor, step.hypothesis_probability(), step, state);
-  if (model.mode_count() == 1) return step.log_likelihood(0);
+  if (model.mode_count() == 1) {
+    if (model.drift.on()) drift::learn(model, sensor, noise_scale, step, state);
+    return step.log_likelihood(0);
+  }
   const double log_density = step.pairs()
                                  ? gpb::merge_pairs(step, state)
                                  : bayes(step.predicted_probability, step.log_likelihood, state.mode_probability);
   if (model.variant == FilterVariant::salvi2025) salvi2025::weigh_by_posterior(sensor, y, step, state);
   floor_probabilities(state.mode_probability);
+  if (model.drift.on()) drift::learn(model, sensor, noise_scale, step, state);
   return log_density;
 }
 
@@ -103,7 +112,7 @@ double update(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& st
   step.partial.missing = missing_entries(y);
   if (step.partial.missing == 0) return take_in(model, model, y, step, state);
   if (step.partial.missing == y.size()) {
-    skip_measurement(step, state);
+    skip_measurement(model, step, state);
     return std::numeric_limits<double>::quiet_NaN();
   }
   step.partial.assign(model, y);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "filter/step/equations/bounds.hpp"
+#include "filter/step/equations/drift_state.hpp"
 #include "filter/step/equations/interval.hpp"
 #include "filter/step/equations/kalman.hpp"
 #include "filter/step/equations/model.hpp"
@@ -33,6 +34,7 @@ struct FilterState {
   Eigen::VectorXd mode_probability;  ///< K, mu
   double noise_scale = 1.0;          ///< multiplies every mode's Q in the next prediction
   double noise_samples = 0.0;        ///< how many samples the scale rests on (noise_scale.hpp)
+  DriftState drift = {};             ///< what is known of coefficients that wander (drift.hpp); empty otherwise
 };
 
 /// Column j holds what each mode i contributes to the start of mode j: mu_{i|j}. Never to be confused with a
@@ -55,6 +57,8 @@ struct FilterStep {
   Eigen::Matrix<double, N, 1> difference;  ///< workspace of size n
   Eigen::Matrix<double, NY, 1> residual;   ///< workspace of size n_y
 
+  DriftWorkspace<N, NY> drift;  ///< of modes that drift; empty otherwise
+
   // GPB2 alone; empty otherwise.
   Eigen::VectorXd pair_probability;    ///< K^2, before the measurement
   std::vector<Gaussian<N>> corrected;  ///< K^2
@@ -66,7 +70,8 @@ struct FilterStep {
         transition(model.mode_count(), model.transition_logit),
         partial(model.structure.dimension(), model.C.rows()),
         difference(model.structure.dimension()),
-        residual(model.C.rows()) {
+        residual(model.C.rows()),
+        drift(model) {
     const Eigen::Index K = model.mode_count(), n = model.structure.dimension();
     const bool pairs = model.variant == FilterVariant::gpb2 && K > 1;
     const Eigen::Index hypotheses = pairs ? K * K : K;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "filter/step/bank.hpp"
+#include "filter/step/equations/drift_state.hpp"
 #include "modebank/filter/options.hpp"
 
 namespace modebank {
@@ -36,6 +37,7 @@ struct FilterModel {
   Eigen::VectorXd initial_probability;                  ///< K
   Eigen::Matrix<double, N, Eigen::Dynamic> start_gain;  ///< x[0] = start_gain y[0], y[0] all of z with lags
   Eigen::Matrix<double, N, N> start_covariance;         ///< P[0]
+  DriftModel drift;                                     ///< how the modes' coefficients wander
 
   /// Requires check_sizes(bank). Throws std::invalid_argument for FilterVariant::kf of several modes.
   FilterModel(const Bank& bank, const FilterOptions& options);
@@ -55,7 +57,8 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
       quantised(bank.is_quantised()),
       transition(bank.transition),
       transition_logit(bank.transition_logit),
-      initial_probability(bank.initial_probability) {
+      initial_probability(bank.initial_probability),
+      drift(bank) {
   if (variant == FilterVariant::kf && bank.mode_count() != 1)
     throw std::invalid_argument("a Kalman filter (kf) steps a bank of one mode, this one has " +
                                 std::to_string(bank.mode_count()));
@@ -64,6 +67,8 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
   if (variant == FilterVariant::salvi2025 && quantised)
     throw std::invalid_argument("the paper's equations (salvi2025) know no quantised measurements");
   if (quantised) quantum = bank.quantum;
+  if (drift.on() && variant != FilterVariant::imm && variant != FilterVariant::kf)
+    throw std::invalid_argument("modes that drift are filtered by imm or kf, not by " + std::string(name_of(variant)));
   for (const modebank::Mode& mode : bank.modes) {
     const bool noisy = options.parameter_noise && mode.spread.size() > 0;
     modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q,

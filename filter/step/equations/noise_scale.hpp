@@ -88,16 +88,18 @@ void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::Ve
     const double weight =
         prior(i) >= impossible_probability ? prior(i) * std::exp(step.log_likelihood(i) - largest) : 0.0;
     if (!(weight > 0.0)) continue;
-    const auto& Q = model.modes[h / per_mode].Q;
+    // The errors of coefficients that drift are known in units of the noise: the scale is theirs, too.
+    const auto& Q = model.drift.on() ? step.kalman[h].process_noise : model.modes[h / per_mode].Q;
+    const double scaled = model.drift.on() ? weight : weight * s;
     total += weight;
     if (sensor.quantised) {
       const IntervalSums sums = interval_sums(sensor, Q, step.kalman[h], largest_standardised * largest_standardised);
-      share += weight * s * sums.share;
-      square += weight * s * sums.square;
+      share += scaled * sums.share;
+      square += scaled * sums.square;
       continue;
     }
-    share += weight * s * explained_share(sensor, Q, step.kalman[h], step.residual);
-    square += weight * s * explained_square(sensor, Q, step.kalman[h], n_y, step.residual);
+    share += scaled * explained_share(sensor, Q, step.kalman[h], step.residual);
+    square += scaled * explained_square(sensor, Q, step.kalman[h], n_y, step.residual);
   }
   if (!(total > 0.0)) return;
   move_noise_scale(model.noise_adaptation, share / total, square / total, n_y, state.noise_scale, state.noise_samples);

@@ -65,6 +65,8 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.optional_field("transition_reference", stored.transition_reference, {"features"});
   io.optional_field("transition_weight_standard_error", stored.transition_weight_error, {"K", "features"});
   io.field("initial_probability", stored.initial_probability, {"K"});
+  io.optional_field("drift_scale", stored.drift_scale, {"regressors"});
+  io.optional_field("drift_rates", stored.drift_rates, {"rates"});
   io.optional_field("motion_parameters", stored.motion_parameters, {"K", "p_motion"}, motion);
   io.optional_field("motion_standard_error", stored.motion_standard_error, {"K", "p_motion"}, motion);
   exchange_structure(io, stored.structure, stored.model);

@@ -117,6 +117,15 @@ TransitionLogit restore_logit(const StoredBank& stored, Index modes) {
   return {one_of(weights, 0, modes, stored.transition_reference.size()), stored.transition_reference};
 }
 
+BankDrift restore_drift(const StoredBank& stored) {
+  if (stored.drift_scale.size() == 0 && stored.drift_rates.size() == 0) return {};
+  if (stored.drift_scale.size() != stored.structure.regressors() || stored.drift_rates.size() != 3)
+    throw DataError("the drift has " + std::to_string(stored.drift_scale.size()) + " scales and " +
+                    std::to_string(stored.drift_rates.size()) + " rates, must be " +
+                    std::to_string(stored.structure.regressors()) + " and 3");
+  return {{stored.drift_rates(0), stored.drift_rates(1), stored.drift_rates(2)}, stored.drift_scale};
+}
+
 }  // namespace
 
 StoredBank store_bank(const Bank& bank) {
@@ -143,6 +152,10 @@ StoredBank store_bank(const Bank& bank) {
   store_logit(bank, stored);
   stored.quantum = bank.quantum;
   stored.initial_probability = bank.initial_probability;
+  if (const DriftRates& rates = bank.drift.rates; !bank.drift.empty()) {
+    stored.drift_scale = bank.drift.scale;
+    stored.drift_rates = Eigen::Vector3d(rates.q, rates.p0, rates.leak);
+  }
   return stored;
 }
 
@@ -169,6 +182,7 @@ Bank restore_bank(const StoredBank& stored, Bank bank) {
   bank.transition_logit = restore_logit(stored, stored.weight.size());
   bank.quantum = stored.quantum;
   bank.initial_probability = stored.initial_probability;
+  bank.drift = restore_drift(stored);
   validate(bank);
   return bank;
 }

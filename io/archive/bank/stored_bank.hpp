@@ -72,6 +72,8 @@ struct StoredBank {
   Eigen::VectorXd quantum;                    ///< n_y, empty without
   Eigen::MatrixXd transition;                 ///< transposed
   Eigen::VectorXd initial_probability;
+  Eigen::VectorXd drift_scale;  ///< r, empty unless modes drift
+  Eigen::VectorXd drift_rates;  ///< q, p0, leak; empty unless modes drift
 };
 StoredBank store_bank(const Bank& bank);
 /// Fills what StoredBank holds and leaves names, dt_s and the screened modes as they are.

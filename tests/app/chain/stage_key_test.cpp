@@ -98,6 +98,7 @@ const std::vector<KeyValues> bases{
      {"filter.paths", "10"}},
     {{"bank.modes", "2"}, {"bank.refine", "em"}},
     {{"bank.refine", "em"}, {"bank.members", "2"}, {"filter.noise", "adaptive"}},
+    {{"bank.refine", "em"}, {"bank.drift", "fixed"}},
     {{"window.model", "varx"}, {"bank.modes", "2"}},
     {{"window.scale", "fixed"}, {"window.sigma", "0.1"}, {"bank.noise", "fixed"}, {"bank.transition", "stay"}},
 };
@@ -175,6 +176,12 @@ const std::vector<RuledOut> ruled_out{
     {"window.scale", "window.scale = fixed needs window.sigma"},
     {"window.sigma", "window.scale = fixed needs window.sigma"},
     {"bank.transition", "bank.transition = logit"},
+    {"bank.drift", "bank.drift = "},
+    {"window.model", "bank.drift = fixed needs"},
+    {"bank.refine", "bank.drift = fixed is learned by refinement"},
+    {"bank.measurement_variance", "bank.drift = fixed needs"},
+    {"bank.members", "bank.drift = fixed needs"},
+    {"filter.variant", "bank.drift = fixed needs"},
     {"mixture.bootstrap", "needs 2 resamples or more"},
     {"mixture.covariance_floor", "needs a finite covariance_floor"},
 };

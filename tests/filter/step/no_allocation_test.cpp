@@ -37,7 +37,7 @@ void step_without_allocation(const Bank& modes, const FilterOptions& options) {
     predict(model, state, run.input.col(k - 1), step);
     combine(model, step, mean, S);
     if (k % 7 == 0) {
-      skip_measurement(step, state);
+      skip_measurement(model, step, state);
     } else {
       if (k % 5 == 0 && run.state.rows() > 1) run.state(0, k) = std::nan("");
       update(model, run.state.col(k), step, state);
@@ -116,6 +116,22 @@ TEST(NoAllocation, NorWithATransitionLogit) {
     const long before = test::allocations;
     for (Eigen::Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
     EXPECT_EQ(test::allocations - before, 0) << name_of(variant);
+  }
+}
+
+TEST(NoAllocation, ModesThatDrift) {
+  for (const Eigen::Index n : {1, 3}) {
+    Bank bank = test::example_bank(n, 2, 3, 0.0);
+    bank.drift = {{1e-3, 0.1, 0.95}, Eigen::VectorXd::Ones(bank.structure.regressors())};
+    FilterOptions options;
+    options.noise = FilterNoise::adaptive;
+    Trajectory run = test::simulate_bank(bank, 40, 1);
+    run.state(0, 12) = std::nan("");
+    run.state.col(15).setConstant(std::nan(""));
+    BankFilter filter(bank, options);
+    const long before = test::allocations;
+    for (Eigen::Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
+    EXPECT_EQ(test::allocations - before, 0) << n;
   }
 }
 

@@ -50,6 +50,18 @@ TEST(ArchiveRoundTrip, KeepsANoiseComponent) {
   expect_same(round_trip(archive), archive);
 }
 
+TEST(ArchiveRoundTrip, ModesThatDriftComeBackOrAreRefused) {
+  Archive archive = full_archive(2, 1);
+  archive.bank->R.setZero();
+  archive.bank->C.setIdentity();
+  archive.bank->drift = {{1e-3, 0.5, 0.97}, Eigen::VectorXd::LinSpaced(archive.bank->structure.regressors(), 0.1, 2.0)};
+  expect_same(round_trip(archive), archive);
+  const test::TemporaryFolder folder;
+  archive.bank->drift.rates.leak = 1.5;
+  write_archive(folder.path() / "a.h5", archive);
+  EXPECT_THROW(read_archive(folder.path() / "a.h5"), DataError);
+}
+
 TEST(ArchiveRoundTrip, ABankThatNoFilterCanRunIsRefusedAtLoad) {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "a.h5";

@@ -48,6 +48,12 @@ struct BankDescription {
   bool intercept = false;                    ///< whether c is part of theta
   double noise_forgetting = 0.98;            ///< of the adaptive noise scale, per sample, in (0, 1]
   double noise_prior_samples = 5.0;          ///< samples at scale one that a run's start is worth, > 0
+  /// Of modes whose theta follows the run: a size per regressor [z; v; (1)], in whose units it wanders; empty: it
+  /// stays.
+  std::vector<double> drift_scale;
+  double drift_rate = 0.0;   ///< variance that a step adds to each coefficient, in units of Q, >= 0
+  double drift_start = 0.0;  ///< variance of each coefficient at a start, in units of Q, >= 0
+  double drift_leak = 1.0;   ///< what a step leaves of a coefficient's difference from the mode's, in (0, 1]
 };
 
 /// A bank of modes, immutable and cheap to copy; its numbers live inside the library.

@@ -48,6 +48,23 @@ struct EnumNames<Refine> {
   static constexpr Names<3> values{"auto", "none", "em"};
 };
 
+/// Whether modes keep learning within a run, each its own theta: not at all; as fast as training runs left out like it,
+/// and not where they gain nothing; or as given.
+enum class Drift { none, automatic, fixed };
+
+template <>
+struct EnumNames<Drift> {
+  static constexpr Names<3> values{"none", "auto", "fixed"};
+};
+
+/// How theta of each mode wanders, in units of the mode's noise and of regressors divided by their root mean square.
+struct DriftOptions {
+  Drift how = Drift::none;  ///< whether it does, in a refined bank whose states are measured exactly
+  double rate = 0.01;       ///< for Drift::fixed: variance that a step adds to every coefficient, >= 0
+  double start = 1.0;       ///< for Drift::fixed: variance of every coefficient at a run's start, >= 0
+  double leak = 1.0;        ///< for Drift::fixed: what a step leaves of the difference from the mode's, in (0, 1]
+};
+
 /// How a bank is refined. Defaults are the recommended method.
 struct RefineOptions {
   std::ptrdiff_t max_iterations = 100;  ///< of expectation-maximisation
@@ -64,6 +81,7 @@ struct RefineOptions {
   bool guards = false;            ///< switches may see state and input (TransitionSource::logit)
   bool one_theta = false;         ///< all modes have the same theta and differ in Q: the rival that knows one motion
   std::uint64_t seed = 1;         ///< of the random starts
+  DriftOptions drift;             ///< whether theta of each mode follows a run
   RefineTuning tuning;            ///< what has no key in configurations
 };
 

@@ -51,6 +51,16 @@ struct SwitchingStage {
   double gain_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< clustered by run
 };
 
+/// Whether modes drift, by cross-validation inside the training runs.
+struct DriftStage {
+  bool taken = false;
+  std::ptrdiff_t modes = 0;  ///< of the bank that drifts best
+  double rate = 0.0, start = 0.0, leak = 1.0;
+  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out, no drift
+  double gain = std::numeric_limits<double>::quiet_NaN();          ///< of the drift, nats per sample; NaN: not asked
+  double gain_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< clustered by run
+};
+
 /// What averaging several fits was worth.
 struct Averaging {
   std::ptrdiff_t members = 1;  ///< fits in the bank; those of the candidates that are marked as selected
