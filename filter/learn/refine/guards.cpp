@@ -1,62 +1,37 @@
 #include "filter/learn/refine/guards.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <memory>
 #include <utility>
 
+#include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/refine/split_fits.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
 
 namespace modebank {
 namespace {
 
-/// One fit after another number of iterations with the same logit, on every split.
-class SplitGuards {
- public:
-  SplitGuards(const RefineInput& in, const CrossValidation& validation, const ScoredFit& constant, double width)
-      : in_(in), splits_(validation.splits()), fits_(splits_.size()) {
-    for (const SplitData& split : splits_)
-      priors_.push_back(
-          with_weights(prior_of_split(in, split, constant.start.noise_transitions), split.transitions, width));
-    tbb::parallel_for(std::size_t{0}, splits_.size(), [&](std::size_t s) {
-      SwitchingRegression start = switching_model(constant.banks[s]);
-      start.logit = no_effect(splits_[s].transitions, start.modes());
-      fits_[s] = std::make_unique<ExpectationMaximisation>(splits_[s].transitions, priors_[s], em_options(in.options),
-                                                           std::move(start));
-    });
+/// Every split's own fit with a constant T, to go on as a logit whose weights have a prior that wide.
+SplitFits logit_fits(const RefineInput& in, const CrossValidation& validation, const ScoredFit& constant,
+                     double width) {
+  const std::vector<SplitData>& splits = validation.splits();
+  std::vector<SwitchingPrior> priors;
+  std::vector<SwitchingRegression> starts;
+  for (std::size_t s = 0; s < splits.size(); ++s) {
+    const TrainingTransitions& transitions = splits[s].transitions;
+    priors.push_back(with_weights(prior_of_split(in, splits[s], constant.start.noise_transitions), transitions, width));
+    starts.push_back(switching_model(constant.banks[s]));
+    starts.back().logit = no_effect(transitions, starts.back().modes());
   }
-
-  void advance(Index iterations) {
-    tbb::parallel_for(std::size_t{0}, fits_.size(), [&](std::size_t s) {
-      for (Index i = 0; i < iterations && !fits_[s]->converged(); ++i) fits_[s]->step();
-    });
-  }
-  bool converged() const {
-    return std::all_of(fits_.begin(), fits_.end(), [](const auto& fit) { return fit->converged(); });
-  }
-  std::vector<Bank> banks() const {
-    std::vector<Bank> banks;
-    for (const auto& fit : fits_) banks.push_back(with_modes(in_.frame, fit->model()));
-    return banks;
-  }
-
- private:
-  const RefineInput& in_;
-  const std::vector<SplitData>& splits_;
-  std::vector<SwitchingPrior> priors_;
-  std::vector<std::unique_ptr<ExpectationMaximisation>> fits_;
-};
+  return {in, splits, std::move(priors), std::move(starts)};
+}
 
 /// The best number of iterations of one fit and width.
 Guards scored(const RefineInput& in, const CrossValidation& validation, const ScoredFit& constant, double width) {
-  SplitGuards fits(in, validation, constant, width);
+  SplitFits fits = logit_fits(in, validation, constant, width);
   Guards best{constant, width, 0};
-  Index done = 0;
   for (const Index checkpoint : in.options.tuning.checkpoints) {
     if (checkpoint > in.options.max_iterations) break;
-    fits.advance(checkpoint - std::exchange(done, checkpoint));
+    fits.advance_to(checkpoint);
     std::vector<Bank> banks = fits.banks();
     LeftOutScores scores = validation.scores(banks);
     if (best.iterations == 0 || scores.log_likelihood.sum() > best.fit.scores.log_likelihood.sum()) {
@@ -108,15 +83,33 @@ std::optional<Guards> choose_guards(const RefineInput& in, const CrossValidation
   return best;
 }
 
+namespace {
+
+double likelihood_of(const RefineInput& in, const TrainingFit& fit) {
+  return training_log_likelihood(with_modes(in.frame, fit.model), in.recording, exact_filter(in.filter));
+}
+
+}  // namespace
+
 TrainingFit fit_guards(const RefineInput& in, const Guards& guards, const SwitchingPrior& prior,
                        const TrainingFit& constant) {
   RefineStart start = guards.fit.start;
   start.model = constant.model;
   start.model.logit = no_effect(in.transitions, start.model.modes());
   TrainingFit fit = fit_training_runs(in, start, prior, guards.iterations);
-  fit.model.logit.weights.rowwise() -= fit.model.logit.weights.colwise().mean().eval();  // changes no probability
   fit.screened.insert(fit.screened.begin(), constant.screened.begin() + std::ssize(in.frame.screened),
                       constant.screened.end());
+  double likelihood = likelihood_of(in, fit);
+  const double clearly = in.options.tuning.least_gain * in.transitions.usable.sum();
+  for (const Bank& of_split : guards.fit.banks) {
+    start.model = switching_model(of_split);
+    TrainingFit other = fit_training_runs(in, start, prior, guards.iterations);
+    const double others = likelihood_of(in, other);
+    if (!(others > likelihood + clearly)) continue;
+    likelihood = others;
+    fit = std::move(other);
+  }
+  fit.model.logit.weights.rowwise() -= fit.model.logit.weights.colwise().mean().eval();  // changes no probability
   return fit;
 }
 

@@ -23,7 +23,9 @@ struct Guards {
 /// with a constant T, which is the case of no weights, and where nothing can be left out. `stage` says what was found.
 std::optional<Guards> choose_guards(const RefineInput& in, const CrossValidation& validation, SwitchingStage& stage);
 
-/// The fit to all training runs with a constant T, taken on as a logit.
+/// The fit to all training runs with a constant T, taken on as a logit; or that of a split, where it leads to a clearly
+/// (least_gain) likelier one. With a guard the optima of expectation-maximisation lie further apart than without: of
+/// ten draws of a dead zone one ended 0.3 nats per sample below the others.
 TrainingFit fit_guards(const RefineInput& in, const Guards& guards, const SwitchingPrior& prior,
                        const TrainingFit& constant);
 

@@ -25,12 +25,27 @@ SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, dou
   return switching_prior(split.transitions, split.global, in.fits.prior_sd, noise_transitions, in.options.tuning);
 }
 
+namespace {
+
+std::vector<SwitchingPrior> priors_of(const RefineInput& in, const std::vector<SplitData>& splits,
+                                      double noise_transitions) {
+  std::vector<SwitchingPrior> priors;
+  for (const SplitData& split : splits) priors.push_back(prior_of_split(in, split, noise_transitions));
+  return priors;
+}
+
+}  // namespace
+
 SplitFits::SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, const RefineStart& start)
-    : frame_(in.frame), fits_(splits.size()) {
-  for (const SplitData& split : splits) priors_.push_back(prior_of_split(in, split, start.noise_transitions));
+    : SplitFits(in, splits, priors_of(in, splits, start.noise_transitions),
+                std::vector<SwitchingRegression>(splits.size(), start.model)) {}
+
+SplitFits::SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, std::vector<SwitchingPrior> priors,
+                     std::vector<SwitchingRegression> starts)
+    : frame_(in.frame), priors_(std::move(priors)), fits_(splits.size()) {
   tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t s) {
     fits_[s] = std::make_unique<ExpectationMaximisation>(splits[s].transitions, priors_[s], em_options(in.options),
-                                                         start.model);
+                                                         std::move(starts[s]));
   });
 }
 

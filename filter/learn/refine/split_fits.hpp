@@ -27,6 +27,9 @@ SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, dou
 class SplitFits {
  public:
   SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, const RefineStart& start);
+  /// The same with a prior and a start of each split.
+  SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, std::vector<SwitchingPrior> priors,
+            std::vector<SwitchingRegression> starts);
 
   /// Goes on to so many iterations in all, or fewer where the objective stands still.
   void advance_to(Index iterations);

@@ -31,8 +31,9 @@ struct Guard {
   double slope;
 };
 
-/// x+ = x + a_m x + b_m u + w, the mode of a step drawn by the guard.
-Recording guarded_runs(const Guard& guard, Index runs, Index samples, std::uint64_t seed) {
+/// x+ = x + a_m x + b_m u + w, the mode of a step drawn by the guard. No input lies within `gap` of `border`.
+Recording guarded_runs(const Guard& guard, Index runs, Index samples, std::uint64_t seed, double border = 0.0,
+                       double gap = 0.0) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;
   boost::random::uniform_01<double> uniform;
@@ -42,6 +43,7 @@ Recording guarded_runs(const Guard& guard, Index runs, Index samples, std::uint6
     int mode = 0;
     for (Index k = 0; k < samples; ++k) {
       u(k) = normal(generator);
+      if (std::abs(u(k) - border) < gap) u(k) += u(k) > border ? gap : -gap;
       mode = uniform(generator) < 1.0 / (1.0 + std::exp(-guard.offset(mode) - guard.slope * u(k))) ? 1 : 0;
       if (k + 1 < samples) x(k + 1) = x(k) + a[mode] * x(k) + b[mode] * u(k) + sd[mode] * normal(generator);
     }
@@ -226,6 +228,23 @@ TEST(Guards, OfAHardGuardNoErrorIsStatedAndTheBorderLiesInTheGap) {
   for (Index i = 0; i < 2; ++i) {
     const double odds = std::log(T(i, 1) / T(i, 0)) - (logit.weights.row(1) - logit.weights.row(0)) * logit.reference;
     EXPECT_NEAR(-odds / (logit.weights(1, 1) - logit.weights(0, 1)), border, 0.05);
+  }
+}
+
+/// There the prior alone curves the likelihood: of that no error may be made.
+TEST(Guards, OfAHardGuardNoErrorIsStatedWhereInputsLeaveAGap) {
+  const double border = 0.4, gap = 0.1;
+  for (const std::uint64_t seed : {8, 9, 10}) {
+    const Recording recording = guarded_runs({{-1e6 * border, -1e6 * border}, 1e6}, 4, 500, seed, border, gap);
+    const Refinement result = refined(recording, {{-3.0, 3.0}, 0.0});
+    ASSERT_GT(result.switching.width, 0.0);
+    EXPECT_TRUE(result.bank.transition_weight_error.array().isNaN().all()) << seed;
+    const TransitionLogit& logit = result.bank.transition_logit;
+    const Eigen::MatrixXd& T = result.bank.transition.matrix();
+    for (Index i = 0; i < 2; ++i) {
+      const double odds = std::log(T(i, 1) / T(i, 0)) - (logit.weights.row(1) - logit.weights.row(0)) * logit.reference;
+      EXPECT_NEAR(-odds / (logit.weights(1, 1) - logit.weights(0, 1)), border, gap);
+    }
   }
 }
 
