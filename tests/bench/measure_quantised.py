@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Known systems whose outputs are rounded: bias and stated uncertainty with intervals and with the Gaussian likelihood (make quantised).
 
-  measure_quantised.py build/modebank [--seeds 50] [--first 0] [--jobs N] [--modes 1,2] [--quanta 0.3,1,3] [--rows FILE]
+  measure_quantised.py build/modebank [--seeds 50] [--first 0] [--jobs N] [--modes 1,2] [--quanta 0.3,1,3] [--scale 1] [--rows FILE]
 
 One state without measurement noise, one mode or two that differ in A, B and noise, twelve runs of 400 samples of which six train; outputs
 are multiples of a quantum of so many innovation standard deviations. Each seed's files are learned from twice, with data.quantum = the
@@ -42,24 +42,24 @@ def learned(program, runs, folder, modes, quantum):
                 "log_score": float(pooled["log_score"]), "seconds": time.monotonic() - start}
 
 
-def trial(program, likelihoods, modes, deviations, seed):
+def trial(program, likelihoods, scale, modes, deviations, seed):
     g = np.random.default_rng([seed, modes])
     chosen = MODES[:modes]
-    system = Switching([np.array(A) for A, _, _ in chosen], [np.array(B) for _, B, _ in chosen], [SD * s for _, _, s in chosen], 0.0, STAY)
+    system = Switching([np.array(A) for A, _, _ in chosen], [scale * np.array(B) for _, B, _ in chosen], [SD * s for _, _, s in chosen], 0.0, STAY)
     quantum = deviations * SD
     runs = [(u, np.round(y / quantum) * quantum) for u, y in (system.simulate(g, run, SAMPLES) for run in range(RUNS))]
-    result = {"modes": modes, "deviations": deviations, "seed": seed}
+    result = {"scale": scale, "modes": modes, "deviations": deviations, "seed": seed}
     with tempfile.TemporaryDirectory() as path:
         for likelihood in likelihoods:
             result[likelihood] = learned(program, runs, pathlib.Path(path), modes, f"{quantum:.9g}" if likelihood == "interval" else "none")
     return result
 
 
-def standardised(said, modes):
+def standardised(said, modes, scale):
     """Errors of theta in stated ones, mode by mode in the true order; None where the number of modes is another."""
     if "failed" in said or len(said["theta"]) != modes:
         return None
-    truth = np.array([np.concatenate([np.ravel(A), np.ravel(B)]) for A, B, _ in MODES[:modes]])
+    truth = np.array([np.concatenate([np.ravel(A), scale * np.ravel(B)]) for A, B, _ in MODES[:modes]])
     theta, error = np.array(said["theta"]), np.array(said["error"])
     nearest = [int(np.argmin(((truth - row) ** 2).sum(1))) for row in theta]
     if sorted(nearest) != list(range(modes)):
@@ -73,7 +73,7 @@ def standardised(said, modes):
 def row(results, likelihood):
     modes, deviations = results[0]["modes"], results[0]["deviations"]
     said = [r[likelihood] for r in results if "failed" not in r[likelihood]]
-    z = [v for v in (standardised(s, modes) for s in said) if v is not None]
+    z = [v for v in (standardised(s, modes, results[0]["scale"]) for s in said) if v is not None]
     if z:
         mean, count = np.mean(z, axis=0), len(z)
         worst = int(np.argmax(np.abs(mean)))
@@ -96,6 +96,7 @@ def main():
     parser.add_argument("--modes", default="1,2")
     parser.add_argument("--quanta", default="0.3,1,3")
     parser.add_argument("--likelihoods", default="interval,Gaussian")
+    parser.add_argument("--scale", type=float, default=1.0, help="of B: a small one keeps the signal within few quanta")
     parser.add_argument("--rows", help="one line of JSON per seed goes here")
     options = parser.parse_args()
     likelihoods = options.likelihoods.split(",")
@@ -105,7 +106,7 @@ def main():
         for modes in map(int, options.modes.split(",")):
             for deviations in map(float, options.quanta.split(",")):
                 seeds = range(options.first, options.first + options.seeds)
-                results = list(pool.map(lambda seed, m=modes, d=deviations: trial(options.program, likelihoods, m, d, seed), seeds))
+                results = list(pool.map(lambda seed, m=modes, d=deviations: trial(options.program, likelihoods, options.scale, m, d, seed), seeds))
                 if options.rows:
                     with open(options.rows, "a", encoding="utf-8") as rows:
                         rows.writelines(json.dumps(r) + "\n" for r in results)
