@@ -40,10 +40,10 @@ class TrackCheckpoint : public Track {
 
   std::string checkpoint() const { return file("state.json").string(); }
 
-  /// The archive's bank with switches that see state and input.
-  void give_the_bank_a_logit() const {
+  /// noise_only, which has several modes, with switches that see state and input.
+  void give_noise_only_a_logit() const {
     Archive stored = read_archive(archive());
-    Bank& bank = *stored.bank;
+    Bank& bank = *stored.noise_only;
     ASSERT_GT(bank.mode_count(), 1);
     const Index d = bank.structure.dimension() + bank.structure.acting_inputs();
     Eigen::MatrixXd weights(bank.mode_count(), d);
@@ -105,15 +105,17 @@ TEST_F(TrackCheckpoint, GoesOnFromACheckpointAsIfItHadNeverStopped) {
 
 /// Killed right after a checkpoint was due: the next one goes on from there, to the last bit.
 TEST_F(TrackCheckpoint, GoesOnAfterItWasKilledWhereSwitchesSeeStateAndInput) {
+  const std::string option = "--track.filter", filter = "noise_only";
   std::vector<std::string> constant, whole, parts;
-  feed({}, 1, 40, 0, constant);
-  give_the_bank_a_logit();
-  feed({}, 1, 40, 0, whole);
+  feed({option, filter}, 1, 40, 0, constant);
+  give_noise_only_a_logit();
+  feed({option, filter}, 1, 40, 0, whole);
   EXPECT_NE(whole, constant);
-  feed({"--track.checkpoint", checkpoint(), "--track.checkpoint_interval", "10"}, 1, 12, SIGKILL, parts);
+  feed({option, filter, "--track.checkpoint", checkpoint(), "--track.checkpoint_interval", "10"}, 1, 12, SIGKILL,
+       parts);
   ASSERT_TRUE(std::filesystem::exists(checkpoint()));
   parts.resize(10);
-  feed({"--track.resume", checkpoint()}, 11, 40, 0, parts);
+  feed({option, filter, "--track.resume", checkpoint()}, 11, 40, 0, parts);
   EXPECT_EQ(parts, whole);
 }
 
