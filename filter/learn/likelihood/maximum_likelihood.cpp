@@ -42,7 +42,8 @@ class Neighbourhood {
 
   /// Gradient and information of likelihood and prior at the origin.
   SampleGradients gradients() const {
-    SampleGradients result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter);
+    SampleGradients result =
+        sample_gradients(coordinates_, steps_, target_.recording, target_.filter, target_.look_ahead);
     if (!target_.prior) return result;
     result.sum += differences(Eigen::VectorXd::Zero(size()), [this](const Bank& bank) {
       return log_prior(*target_.prior, target_.one_theta, switching_model(bank));
@@ -144,7 +145,7 @@ bool is_finite(const Bank& bank) {
 
 double LikelihoodTarget::value(const Bank& bank) const {
   if (!is_finite(bank)) return -std::numeric_limits<double>::infinity();
-  const double likelihood = weighted_training_log_likelihood(bank, recording, filter);
+  const double likelihood = weighted_training_log_likelihood(bank, recording, filter, look_ahead);
   return prior ? likelihood + log_prior(*prior, one_theta, switching_model(bank)) : likelihood;
 }
 

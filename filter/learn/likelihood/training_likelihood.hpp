@@ -7,11 +7,14 @@
 namespace modebank {
 
 /// Log-likelihood of all training runs [nats], each from its second sample, whatever the samples' weights; runs in
-/// parallel, summed in an order of their own.
-double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options);
+/// parallel, summed in an order of their own. `look_ahead`: what learning counts that looks so far
+/// (judge/look_ahead.hpp).
+double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
+                               Eigen::Index look_ahead = 1);
 
 /// The same with every sample's density to the power of its weight in units of mean_training_weight.
-double weighted_training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options);
+double weighted_training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
+                                        Eigen::Index look_ahead = 1);
 
 /// Mean of the training samples' positive weights, which only count in ratios; 1 without weights.
 double mean_training_weight(const Recording& recording);

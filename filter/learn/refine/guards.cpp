@@ -18,8 +18,7 @@ class SplitGuards {
   SplitGuards(const RefineInput& in, const CrossValidation& validation, const ScoredFit& constant, double width)
       : in_(in), splits_(validation.splits()), fits_(splits_.size()) {
     for (const SplitData& split : splits_)
-      priors_.push_back(
-          with_weights(prior_of_split(in, split, constant.start.noise_transitions), split.transitions, width));
+      priors_.push_back(with_weights(prior_of_split(in, split, constant.start), split.transitions, width));
     tbb::parallel_for(std::size_t{0}, splits_.size(), [&](std::size_t s) {
       SwitchingRegression start = switching_model(constant.banks[s]);
       start.logit = no_effect(splits_[s].transitions, start.modes());

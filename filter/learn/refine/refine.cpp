@@ -8,6 +8,7 @@
 #include "filter/learn/refine/averaging.hpp"
 #include "filter/learn/refine/cross_validation.hpp"
 #include "filter/learn/refine/guards.hpp"
+#include "filter/learn/refine/look_ahead_fit.hpp"
 #include "filter/learn/refine/measurement_noise.hpp"
 #include "filter/learn/refine/training_fit.hpp"
 #include "filter/learn/switching/starts.hpp"
@@ -57,6 +58,16 @@ std::vector<RefineStart> other_priors(const RefineStart& best, const RefineTunin
   return starts;
 }
 
+/// The best start again, drawn towards one motion more and more.
+std::vector<RefineStart> towards_one_motion(const RefineStart& best, const RefineTuning& tuning) {
+  std::vector<RefineStart> starts;
+  for (const double transitions : tuning.theta_transitions) {
+    starts.push_back(best);
+    starts.back().theta_transitions = transitions;
+  }
+  return starts;
+}
+
 /// Which start and how many iterations first; then how strong the prior on Q is.
 CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& banks) {
   CrossValidation validation(in);
@@ -64,6 +75,9 @@ CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& b
   validation.consider(
       all_starts(in, banks, validation.possible() ? tuning.Q_transitions : tuning.Q_transitions_unvalidated));
   if (validation.possible()) validation.consider(other_priors(validation.chosen().start, tuning));
+  if (validation.possible() && in.options.look_ahead > 1 && !in.options.one_theta &&
+      validation.chosen().start.model.modes() > 1)
+    validation.consider(towards_one_motion(validation.chosen().start, tuning));
   return validation;
 }
 
@@ -84,14 +98,14 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   std::optional<Guards> guards;
   if (options.guards) guards = choose_guards(in, validation, switching);
   const ScoredFit& chosen = guards ? validation.of_start(guards->fit.row) : validation.chosen();
-  SwitchingPrior prior = in.prior(chosen.start.noise_transitions);
+  SwitchingPrior prior = in.prior(chosen.start);
   TrainingFit fit = fit_training_runs(in, chosen.start, prior, chosen.iterations);
   if (guards) {
     prior = with_weights(std::move(prior), transitions, guards->width);
     fit = fit_guards(in, *guards, prior, fit);
   }
   const ChosenFit on_splits{guards ? guards->fit.banks : chosen.banks, chosen.start.noise_transitions,
-                            guards ? guards->width : 0.0};
+                            guards ? guards->width : 0.0, chosen.start.theta_transitions};
   const Bank exact = bank_of_fit(in, fit, validation.adaptation(on_splits.of_splits));
   const MeasuredBank measured = fit_with_measurement_noise(in, validation, on_splits, prior, exact);
 
@@ -99,7 +113,12 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   Refinement result{with_errors(in, fit, measured.prior, measured.R_estimated, maximised, measured.bank), banks.front(),
                     validation.table(), fit.objective, measured.stage};
   result.switching = switching;
-  if (options.members == 1 || guards || measured.R_estimated || measured.stage.iterations > 0) return result;
+  if (std::optional<Bank> ahead = fit_looking_ahead(in, validation, on_splits, measured.prior, measured.R_estimated,
+                                                    result.bank, result.look_ahead))
+    result.bank = std::move(*ahead);
+  if (options.members == 1 || result.look_ahead.taken || guards || measured.R_estimated ||
+      measured.stage.iterations > 0)
+    return result;
   AveragedBank averaged = average_fits(in, validation, result.bank);
   result.averaging = averaged.averaging;
   if (!averaged.bank) return result;
