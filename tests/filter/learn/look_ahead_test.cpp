@@ -156,10 +156,11 @@ TEST(LookAheadFit, PredictsFartherOnRunsItHasNotSeen) {
     EXPECT_EQ(refined.look_ahead.taken, look_ahead > 1);
     EXPECT_EQ(refined.bank.modes.front().standard_error.allFinite(), look_ahead == 1) << "errors are stated or not";
     double sum = 0.0;
-    for (const Trajectory& run : recording.runs)
-      if (run.role == Role::test)
-        for (const double density : evaluate_horizons(refined.bank, run, {}, {8}).log_density.reshaped())
-          sum += std::isnan(density) ? 0.0 : density;
+    for (const Trajectory& run : recording.runs) {
+      if (run.role != Role::test) continue;
+      const HorizonEvaluation ahead = evaluate_horizons(refined.bank, run, {}, {8});
+      sum += ahead.log_density.array().isNaN().select(0.0, ahead.log_density).sum();
+    }
     return sum / static_cast<double>(recording.transitions(Role::test));
   };
   EXPECT_GT(score(8), score(1) + 0.05);
