@@ -88,10 +88,11 @@ std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& i
 void tell_of(const Refinement& refined, const Listener& listener) {
   for (const RefineCandidate& c : refined.candidates)
     listener.progress(fmt::format(
-        "refine: {:<12} {:>3} modes, Q prior {}: {:.4f} nats/sample left out, {:.4f} +- {:.4f} below the best, after "
+        "refine: {:<12} {:>3} modes, Q prior {}{}: {:.4f} nats/sample left out, {:.4f} +- {:.4f} below the best, after "
         "{} iterations{}",
-        c.start, c.modes, c.noise_transitions, c.score, c.loss, c.loss_standard_error, c.iterations,
-        c.selected ? " (chosen)" : ""));
+        c.start, c.modes, c.noise_transitions,
+        c.theta_transitions > 0.0 ? fmt::format(", to one motion {:g}", c.theta_transitions) : "", c.score, c.loss,
+        c.loss_standard_error, c.iterations, c.selected ? " (chosen)" : ""));
   const MeasurementStage& measured = refined.measurement;
   if (measured.failed_starts > 0)
     listener.warning(fmt::format("refine: {} of {} searches for R failed{}", measured.failed_starts, measured.starts,
@@ -111,6 +112,10 @@ void tell_of(const Refinement& refined, const Listener& listener) {
     listener.progress(fmt::format(
         "refine: {} modes that drift (rate {:g}, start {:g}, leak {:g}) gain {:.4f} +- {:.4f} nats/sample left out: {}",
         s.modes, s.rate, s.start, s.leak, s.gain, s.gain_standard_error, s.taken ? "taken" : "not taken"));
+  if (const LookAheadStage& ahead = refined.look_ahead; ahead.score != ahead.score_before)
+    listener.progress(
+        fmt::format("refine: fit to predictions up to the look-ahead: {:.4f} -> {:.4f} nats/sample left out{}",
+                    ahead.score_before, ahead.score, ahead.taken ? "" : ": not taken"));
   const Averaging& averaged = refined.averaging;
   if (!std::isnan(averaged.score))
     listener.progress(fmt::format("refine: {} fits averaged: {:.4f} -> {:.4f} nats/sample left out", averaged.members,

@@ -34,6 +34,9 @@ std::vector<Option> bank_options() {
           "for prediction: the best refined fits from up to so many starts become one bank, if the runs left out like "
           "it; their modes stand side by side (58, not 12, on ice), so that no mode means a kind of motion any more",
           MODEBANK_FIELD(bank.em.members)),
+      numeric("bank.look_ahead", between(1, 1000), "samples",
+              "what em chooses by: the mean log score of predictions 1 to so many samples ahead of the runs left out",
+              MODEBANK_FIELD(bank.em.look_ahead)),
       numeric(
           "bank.folds", between(1, 1000), "",
           "parts of the training runs that em leaves out in turn to choose start, number of modes and of iterations; "

@@ -2,7 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "filter/judge/evaluate.hpp"
+#include "filter/judge/look_ahead.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 
 namespace modebank {
@@ -12,13 +12,13 @@ constexpr double least_probability = 1e-100;  // its square can be divided by
 
 /// One row per sample, one column per coordinate; zero where a sample has no density.
 Eigen::MatrixXd gradients_of_run(const BankCoordinates& around, const Eigen::VectorXd& steps, const Trajectory& run,
-                                 const FilterOptions& filter) {
+                                 const FilterOptions& filter, Index look_ahead) {
   Eigen::MatrixXd gradients(run.samples(), around.size());
   tbb::parallel_for(Index{0}, around.size(), [&](Index c) {
     const Eigen::VectorXd step = steps(c) * Eigen::VectorXd::Unit(around.size(), c);
-    gradients.col(c) =
-        (log_densities(around.decode(step), run, filter) - log_densities(around.decode(-step), run, filter)) /
-        (2.0 * steps(c));
+    gradients.col(c) = (look_ahead_densities(around.decode(step), run, filter, look_ahead) -
+                        look_ahead_densities(around.decode(-step), run, filter, look_ahead)) /
+                       (2.0 * steps(c));
   });
   return gradients.array().isNaN().select(0.0, gradients);
 }
@@ -49,12 +49,12 @@ Eigen::VectorXd information_of_noise_and_switches(const BankCoordinates& around,
 }  // namespace
 
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
-                                 const Recording& recording, const FilterOptions& filter) {
+                                 const Recording& recording, const FilterOptions& filter, Index look_ahead) {
   SampleGradients result{Eigen::VectorXd::Zero(around.size()), Eigen::MatrixXd::Zero(around.size(), around.size())};
   const double unit = mean_training_weight(recording);
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train || run.samples() < 2) continue;
-    const Eigen::MatrixXd gradients = gradients_of_run(around, steps, run, filter);
+    const Eigen::MatrixXd gradients = gradients_of_run(around, steps, run, filter, look_ahead);
     if (run.weight.size() == 0) {
       result.sum += gradients.colwise().sum().transpose();
       result.information.noalias() += gradients.transpose() * gradients;

@@ -21,9 +21,9 @@ struct SampleGradients {
 };
 
 /// By central differences of `steps` (one per coordinate) in the filter that will run the bank. A sample of weight w,
-/// in units of their mean, counts as w samples.
+/// in units of their mean, counts as w samples. `look_ahead`: of what learning counts that looks so far.
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
-                                 const Recording& recording, const FilterOptions& filter);
+                                 const Recording& recording, const FilterOptions& filter, Eigen::Index look_ahead = 1);
 
 /// What the prior adds to the information about the coordinates, at their origin: of theta exactly, of Q as so many
 /// observations of a normal scatter, of T as so many counts. A prior on one theta of all modes counts once.

@@ -19,6 +19,7 @@ struct LikelihoodTarget {
   FilterOptions filter;                 ///< variant imm for several modes
   std::optional<SwitchingPrior> prior;  ///< empty: the likelihood alone
   bool one_theta = false;               ///< the prior on theta counts once
+  Index look_ahead = 1;                 ///< densities 1 to so many samples ahead, their mean (judge/look_ahead.hpp)
 
   /// Minus infinity of a bank that is not all numbers, which no filter can run.
   double value(const Bank& bank) const;

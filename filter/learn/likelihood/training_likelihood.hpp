@@ -8,11 +8,14 @@
 namespace modebank {
 
 /// Log-likelihood of all training runs [nats], each from its second sample, whatever the samples' weights; runs in
-/// parallel, summed in an order of their own.
-double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options);
+/// parallel, summed in an order of their own. `look_ahead`: what learning counts that looks so far
+/// (judge/look_ahead.hpp).
+double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
+                               Eigen::Index look_ahead = 1);
 
 /// The same with every sample's density to the power of its weight in units of mean_training_weight.
-double weighted_training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options);
+double weighted_training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
+                                        Eigen::Index look_ahead = 1);
 
 /// The gradient of weighted_training_log_likelihood; requires has_likelihood_gradient (filter/step).
 BankGradient training_gradient(const Bank& bank, const Recording& recording, const FilterOptions& options);

@@ -38,7 +38,7 @@ Index fewest_as_good(const Eigen::VectorXd& scores, double least_gain) {
 }
 
 Bank member_bank(const RefineInput& in, const ScoredFit& scored, const NoiseAdaptation& adaptation) {
-  const SwitchingPrior prior = in.prior(scored.start.noise_transitions);
+  const SwitchingPrior prior = in.prior(scored.start);
   const TrainingFit fit = fit_training_runs(in, scored.start, prior, scored.iterations);
   return with_errors(in, fit, prior, false, exact_filter(in.filter), bank_of_fit(in, fit, adaptation));
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "filter/judge/look_ahead.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -84,6 +85,7 @@ std::vector<RefineCandidate> CrossValidation::table() const {
   std::vector<RefineCandidate> rows;
   for (const ScoredFit& fit : fits_) {
     RefineCandidate row{fit.start.name, fit.scores.modes, fit.start.noise_transitions, fit.iterations};
+    row.theta_transitions = fit.start.theta_transitions;
     if (possible()) {
       const PairedLoss loss = paired_loss(fits_[best].scores.log_likelihood, fit.scores.log_likelihood, samples_);
       row.score = mean_score(fit.scores);
@@ -140,7 +142,8 @@ Eigen::VectorXd CrossValidation::run_scores(const std::vector<Bank>& banks) cons
     }
   Eigen::VectorXd scores(std::ssize(runs));
   tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
-    scores(static_cast<Eigen::Index>(i)) = log_likelihood(*bank_of[i], *runs[i], in_.filter);
+    scores(static_cast<Eigen::Index>(i)) =
+        look_ahead_likelihood(*bank_of[i], *runs[i], in_.filter, in_.options.look_ahead);
   });
   return scores;
 }

@@ -18,7 +18,7 @@ SplitFits logit_fits(const RefineInput& in, const CrossValidation& validation, c
   std::vector<SwitchingRegression> starts;
   for (std::size_t s = 0; s < splits.size(); ++s) {
     const TrainingTransitions& transitions = splits[s].transitions;
-    priors.push_back(with_weights(prior_of_split(in, splits[s], constant.start.noise_transitions), transitions, width));
+    priors.push_back(with_weights(prior_of_split(in, splits[s], constant.start), transitions, width));
     starts.push_back(switching_model(constant.banks[s]));
     starts.back().logit = no_effect(transitions, starts.back().modes());
   }

@@ -9,6 +9,7 @@
 
 #include "filter/learn/likelihood/information.hpp"
 #include "filter/learn/likelihood/standard_errors.hpp"
+#include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
 #include "ident/base/linalg.hpp"
 
@@ -116,6 +117,8 @@ class MeasuredSplits {
   void maximise() {
     for_each([&](const SplitData& split, Bank& bank) {
       SwitchingPrior exact = prior_of_split(in_, split, chosen_.noise_transitions);
+      exact = towards_one_motion(std::move(exact), split.transitions, switching_model(bank), chosen_.theta_transitions,
+                                 in_.options.tuning);
       if (chosen_.weight_width > 0.0) exact = with_weights(std::move(exact), split.transitions, chosen_.weight_width);
       const LikelihoodTarget target{split.runs.training, learning_filter(in_.filter),
                                     prior_with_states_unknown(exact, bank, in_.options.tuning), in_.options.one_theta};

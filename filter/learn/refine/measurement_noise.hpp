@@ -42,6 +42,7 @@ struct ChosenFit {
   const std::vector<Bank>& of_splits;
   double noise_transitions = 0.0;  ///< of the prior
   double weight_width = 0.0;       ///< of the prior on a logit's weights; 0: there is none
+  double theta_transitions = 0.0;  ///< of the pull towards one motion
 };
 
 /// Where R is more than nothing (by estimate_measurement_noise in the filter that will run the bank, unless it costs

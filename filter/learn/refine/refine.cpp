@@ -9,6 +9,7 @@
 #include "filter/learn/refine/cross_validation.hpp"
 #include "filter/learn/refine/drift.hpp"
 #include "filter/learn/refine/guards.hpp"
+#include "filter/learn/refine/look_ahead_fit.hpp"
 #include "filter/learn/refine/measurement_noise.hpp"
 #include "filter/learn/refine/training_fit.hpp"
 #include "filter/learn/switching/starts.hpp"
@@ -58,6 +59,16 @@ std::vector<RefineStart> other_priors(const RefineStart& best, const RefineTunin
   return starts;
 }
 
+/// The best start again, drawn towards one motion more and more.
+std::vector<RefineStart> towards_one_motion(const RefineStart& best, const RefineTuning& tuning) {
+  std::vector<RefineStart> starts;
+  for (const double transitions : tuning.theta_transitions) {
+    starts.push_back(best);
+    starts.back().theta_transitions = transitions;
+  }
+  return starts;
+}
+
 /// Which start and how many iterations first; then how strong the prior on Q is.
 CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& banks) {
   CrossValidation validation(in);
@@ -65,6 +76,9 @@ CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& b
   validation.consider(
       all_starts(in, banks, validation.possible() ? tuning.Q_transitions : tuning.Q_transitions_unvalidated));
   if (validation.possible()) validation.consider(other_priors(validation.chosen().start, tuning));
+  if (validation.possible() && in.options.look_ahead > 1 && !in.options.one_theta &&
+      validation.chosen().start.model.modes() > 1)
+    validation.consider(towards_one_motion(validation.chosen().start, tuning));
   return validation;
 }
 
@@ -103,7 +117,7 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   std::optional<DriftChoice> drift;
   if (options.drift.how != Drift::none) drift = choose_drift(in, validation, steady, !guards, drift_stage);
   const ScoredFit& chosen = validation.of_start(drift ? drift->fit.row : steady.row);
-  SwitchingPrior prior = in.prior(chosen.start.noise_transitions);
+  SwitchingPrior prior = in.prior(chosen.start);
   TrainingFit fit = fit_training_runs(in, chosen.start, prior, chosen.iterations);
   if (guards) {
     prior = with_weights(std::move(prior), transitions, guards->width);
@@ -111,7 +125,7 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   }
   if (drift) return drifting_refinement(in, validation, *drift, prior, fit, banks.front(), switching, drift_stage);
   const ChosenFit on_splits{guards ? guards->fit.banks : chosen.banks, chosen.start.noise_transitions,
-                            guards ? guards->width : 0.0};
+                            guards ? guards->width : 0.0, chosen.start.theta_transitions};
   const Bank exact = bank_of_fit(in, fit, validation.adaptation(on_splits.of_splits));
   const MeasuredBank measured = fit_with_measurement_noise(in, validation, on_splits, prior, exact);
 
@@ -120,7 +134,12 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
                     validation.table(), fit.objective, measured.stage};
   result.switching = switching;
   result.drift = drift_stage;
-  if (options.members == 1 || guards || measured.R_estimated || measured.stage.iterations > 0) return result;
+  if (std::optional<Bank> ahead = fit_looking_ahead(in, validation, on_splits, measured.prior, measured.R_estimated,
+                                                    result.bank, result.look_ahead))
+    result.bank = std::move(*ahead);
+  if (options.members == 1 || result.look_ahead.taken || guards || measured.R_estimated ||
+      measured.stage.iterations > 0)
+    return result;
   AveragedBank averaged = average_fits(in, validation, result.bank);
   result.averaging = averaged.averaging;
   if (!averaged.bank) return result;

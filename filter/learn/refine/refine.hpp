@@ -13,6 +13,13 @@
 
 namespace modebank {
 
+/// What a fit that looks ahead was worth (look_ahead_fit.hpp).
+struct LookAheadStage {
+  double score_before = 0.0;  ///< mean look-ahead score of the runs left out [nats per sample]
+  double score = 0.0;         ///< the same of the fits taken on; equal to the other where that was not tried
+  bool taken = false;
+};
+
 struct Refinement {
   Bank bank;
   Bank start;                               ///< the mixture's bank
@@ -22,6 +29,7 @@ struct Refinement {
   Averaging averaging = {};
   SwitchingStage switching = {};
   DriftStage drift = {};
+  LookAheadStage look_ahead = {};
 };
 
 /// Expectation-maximisation of the switching model (switching_regression.hpp) from banks of mixtures. Which start, how

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "ident/fit/global_model.hpp"
 
@@ -25,24 +26,29 @@ SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, dou
   return switching_prior(split.transitions, split.global, in.fits.prior_sd, noise_transitions, in.options.tuning);
 }
 
+SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, const RefineStart& start) {
+  return towards_one_motion(prior_of_split(in, split, start.noise_transitions), split.transitions, start.model,
+                            start.theta_transitions, in.options.tuning);
+}
+
 namespace {
 
 std::vector<SwitchingPrior> priors_of(const RefineInput& in, const std::vector<SplitData>& splits,
-                                      double noise_transitions) {
+                                      const RefineStart& start) {
   std::vector<SwitchingPrior> priors;
-  for (const SplitData& split : splits) priors.push_back(prior_of_split(in, split, noise_transitions));
+  for (const SplitData& split : splits) priors.push_back(prior_of_split(in, split, start));
   return priors;
 }
 
 }  // namespace
 
 SplitFits::SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, const RefineStart& start)
-    : SplitFits(in, splits, priors_of(in, splits, start.noise_transitions),
+    : SplitFits(in, splits, priors_of(in, splits, start),
                 std::vector<SwitchingRegression>(splits.size(), start.model)) {}
 
 SplitFits::SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, std::vector<SwitchingPrior> priors,
                      std::vector<SwitchingRegression> starts)
-    : frame_(in.frame), priors_(std::move(priors)), fits_(splits.size()) {
+    : in_(in), priors_(std::move(priors)), fits_(splits.size()) {
   tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t s) {
     fits_[s] = std::make_unique<ExpectationMaximisation>(splits[s].transitions, priors_[s], em_options(in.options),
                                                          std::move(starts[s]));
@@ -62,7 +68,13 @@ bool SplitFits::converged() const {
 
 std::vector<Bank> SplitFits::banks() const {
   std::vector<Bank> banks;
-  for (const auto& fit : fits_) banks.push_back(with_modes(frame_, fit->model()));
+  for (std::size_t s = 0; s < fits_.size(); ++s) {
+    const SwitchingRegression& model = fits_[s]->model();
+    const auto stable = in_.options.screen && in_.options.look_ahead > 1
+                            ? shrunk_to_stability(in_.frame.structure, model, priors_[s].mean, in_.options.tuning)
+                            : std::nullopt;
+    banks.push_back(with_modes(in_.frame, stable ? *stable : model));
+  }
   return banks;
 }
 

@@ -22,6 +22,7 @@ struct SplitData {
 std::vector<SplitData> split_data(const RefineInput& in);
 /// Of the split's training runs.
 SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, double noise_transitions);
+SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, const RefineStart& start);
 
 /// The fits from one start, one on every split with the prior of that split, iteration by iteration. Keeps references.
 class SplitFits {
@@ -38,7 +39,7 @@ class SplitFits {
   std::vector<Bank> banks() const;
 
  private:
-  const Bank& frame_;
+  const RefineInput& in_;
   std::vector<SwitchingPrior> priors_;
   std::vector<std::unique_ptr<ExpectationMaximisation>> fits_;
   Index done_ = 0;

@@ -6,6 +6,7 @@
 
 #include "filter/learn/likelihood/standard_errors.hpp"
 #include "filter/learn/switching/mode_screening.hpp"
+#include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/starts.hpp"
 
 namespace modebank {
@@ -18,12 +19,21 @@ SwitchingPrior RefineInput::prior(double noise_transitions) const {
   return switching_prior(transitions, fits.global, fits.prior_sd, noise_transitions, options.tuning);
 }
 
+SwitchingPrior RefineInput::prior(const RefineStart& start) const {
+  return towards_one_motion(prior(start.noise_transitions), transitions, start.model, start.theta_transitions,
+                            options.tuning);
+}
+
 TrainingFit fit_training_runs(const RefineInput& in, const RefineStart& start, const SwitchingPrior& prior,
                               Index iterations) {
   ExpectationMaximisation em(in.transitions, prior, em_options(in.options), start.model);
   for (Index i = 0; i < iterations && !em.converged(); ++i) em.step();
   TrainingFit fit{em.model(), em.posterior(), in.frame.screened, em.objective()};
   while (in.options.screen) {
+    if (auto stable = shrunk_to_stability(in.transitions.structure, fit.model, prior.mean, in.options.tuning)) {
+      fit.model = std::move(*stable);
+      fit.posterior = smooth_modes(in.transitions, fit.model);
+    }
     std::optional<ScreenedModel> rest =
         without_worst_mode(in.transitions, fit.posterior, fit.model, in.options.one_theta, in.options.tuning);
     if (!rest) break;

@@ -13,6 +13,14 @@
 
 namespace modebank {
 
+/// What is refined from where.
+struct RefineStart {
+  std::string name;
+  SwitchingRegression model;
+  double noise_transitions = 0.0;
+  double theta_transitions = 0.0;  ///< that draw theta towards one motion (switching/shrinkage.hpp)
+};
+
 /// What a bank is refined from, and how. Keeps references.
 struct RefineInput {
   const Recording& recording;
@@ -23,13 +31,8 @@ struct RefineInput {
   const FilterOptions& filter;
 
   SwitchingPrior prior(double noise_transitions) const;
-};
-
-/// What is refined from where.
-struct RefineStart {
-  std::string name;
-  SwitchingRegression model;
-  double noise_transitions = 0.0;
+  /// Of a start, with its pull towards one motion.
+  SwitchingPrior prior(const RefineStart& start) const;
 };
 
 SwitchingEmOptions em_options(const RefineOptions& options);

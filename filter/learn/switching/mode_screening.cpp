@@ -15,13 +15,13 @@
 namespace modebank {
 namespace {
 
-constexpr double ridge = 1e-12;  // share of the regressors' power: keeps unexcited regressions solvable
+constexpr double power_ridge = 1e-12;  // share of the regressors' power: keeps unexcited regressions solvable
 
 /// 1/2 W log det of the residual covariance about the least squares of these transitions. Sums add: pooling modes adds
 /// theirs.
 double cost(const RegressionSums& sums) {
   Eigen::MatrixXd normal = sums.G;
-  normal.diagonal().array() += ridge * std::max(sums.G.trace(), std::numeric_limits<double>::min());
+  normal.diagonal().array() += power_ridge * std::max(sums.G.trace(), std::numeric_limits<double>::min());
   const Eigen::MatrixXd Q = (sums.S - sums.H.transpose() * solve_semidefinite(normal, sums.H)) / sums.weight;
   const Eigen::VectorXd pivots = semidefinite_pivots(Q).cwiseMax(std::numeric_limits<double>::min());
   return 0.5 * sums.weight * pivots.array().log().sum();

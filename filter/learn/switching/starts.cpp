@@ -14,9 +14,6 @@
 #include "modebank/base/error.hpp"
 
 namespace modebank {
-namespace {
-
-/// Information that one transition carries on average, made definite.
 Eigen::MatrixXd unit_information(const TrainingTransitions& transitions, const Eigen::MatrixXd& Q,
                                  double least_information) {
   const Eigen::MatrixXd& X = transitions.data.regressors;
@@ -30,8 +27,6 @@ Eigen::MatrixXd unit_information(const TrainingTransitions& transitions, const E
   information.diagonal().array() += least_information * information.diagonal().maxCoeff();
   return information;
 }
-
-}  // namespace
 
 SwitchingPrior switching_prior(const TrainingTransitions& transitions, const GlobalModel& global,
                                const Eigen::VectorXd& prior_sd, double noise_transitions, const RefineTuning& tuning) {

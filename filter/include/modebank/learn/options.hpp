@@ -75,6 +75,7 @@ struct RefineOptions {
                                         ///< mixture's number, which is a start and no finding; 0: with that one alone
   std::ptrdiff_t members = 1;           ///< fits from different starts that become one bank at most, if the runs left
                                         ///< out like it
+  std::ptrdiff_t look_ahead = 1;        ///< samples: fits are judged by predictions 1 to so many samples ahead
   std::ptrdiff_t folds = 6;             ///< parts of the cross-validation; 1: none, every start runs to convergence
   bool measurement_noise = true;  ///< R by maximum likelihood of the filter on the training runs; false: the start's R
   bool screen = true;             ///< take unstable, starved and duplicate modes out

@@ -30,6 +30,7 @@ struct RefineCandidate {
   double loss_standard_error =
       std::numeric_limits<double>::quiet_NaN();  ///< of it, clustered by run (by stretch where fewer than three)
   bool selected = false;                         ///< several where fits are averaged
+  double theta_transitions = 0.0;                ///< at one motion, that its theta is drawn by
 };
 
 /// How the search for R went, and the fit once R was known to be more than nothing.

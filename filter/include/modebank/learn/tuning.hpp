@@ -47,6 +47,12 @@ struct RefineTuning {
   std::ptrdiff_t iterations_after_screening =
       10;  ///< as many as the first checkpoint: the others take over what is left
 
+  // Learning that looks ahead.
+  /// Transitions at one motion that every mode's theta is as if it had seen besides its own, tried for the best start.
+  std::array<double, 5> theta_transitions{3.0, 30.0, 300.0, 3e3, 3e5};
+  std::ptrdiff_t one_motion_iterations = 20;  ///< of expectation-maximisation with one theta, to know what is drawn to
+  double shrinkage_digits = 1e-3;             ///< of the share of the way to one motion at which a bank is stable
+
   // Switching by state and input.
   double weight_width =
       30.0;  ///< prior sd of its weights in units of the regressors' spread: a border a thirtieth wide

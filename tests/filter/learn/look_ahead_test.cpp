@@ -1,0 +1,170 @@
+// Learning that looks ahead: what it counts, the pull towards one motion, and stability beyond one step.
+#include "filter/judge/look_ahead.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <unsupported/Eigen/KroneckerProduct>
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/horizon.hpp"
+#include "filter/learn/switching/em.hpp"
+#include "filter/learn/switching/mode_screening.hpp"
+#include "filter/learn/switching/shrinkage.hpp"
+#include "filter/learn/switching/starts.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/fit/global_model.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/filter/learn/refine_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using test::example_bank;
+using test::near;
+using test::quick;
+using test::simulate_bank;
+using test::start_bank;
+
+TEST(LookAhead, OneSampleIsTheLikelihoodBitForBit) {
+  const Bank bank = example_bank(2, 1, 3);
+  Trajectory run = simulate_bank(bank, 150, 3);
+  run.state(0, 40) = not_a_number;
+  for (const FilterOptions& options : {FilterOptions{}, test::adaptive_imm()}) {
+    EXPECT_EQ(look_ahead_likelihood(bank, run, options, 1), log_likelihood(bank, run, options));
+    const Eigen::VectorXd ahead = look_ahead_densities(bank, run, options, 1), one = log_densities(bank, run, options);
+    EXPECT_TRUE(((ahead.array() == one.array()) || (ahead.array().isNaN() && one.array().isNaN())).all());
+  }
+}
+
+TEST(LookAhead, IsTheMeanOfTheHorizonsDensities) {
+  const Bank bank = example_bank(1, 2, 3);
+  const Trajectory run = simulate_bank(bank, 90, 5);
+  for (const Index h : {2, 4, 7}) {
+    std::vector<Index> horizons;
+    for (Index j = 1; j <= h; ++j) horizons.push_back(j);
+    const Eigen::MatrixXd density = evaluate_horizons(bank, run, {}, horizons).log_density;
+    const Index stride = look_ahead_stride(h);
+    Eigen::VectorXd expected = density.row(0);
+    for (Index k = 1; k < run.samples(); ++k)
+      for (Index j = 2; j <= std::min(h, k); ++j)
+        if ((k - j) % stride == 0) expected(k) += static_cast<double>(stride) * density(j - 1, k);
+    const Eigen::VectorXd counted = look_ahead_densities(bank, run, {}, h);
+    EXPECT_TRUE(near(counted.tail(89), expected.tail(89) / static_cast<double>(h), 1e-10)) << h;
+  }
+  EXPECT_THROW(look_ahead_densities(bank, run, {}, 0), std::invalid_argument);
+}
+
+/// Largest eigenvalue of the second moments' operator as one matrix: its blocks are T_ij (F_i (x) F_i).
+double growth_by_kronecker(const LinearStructure& structure, const SwitchingRegression& model) {
+  const Index K = model.modes(), n = structure.dimension();
+  Eigen::MatrixXd moments(K * n * n, K * n * n);
+  for (Index i = 0; i < K; ++i) {
+    const Eigen::MatrixXd F = unpack(structure, model.theta.col(i)).full_form();
+    for (Index j = 0; j < K; ++j)
+      moments.block(j * n * n, i * n * n, n * n, n * n) = model.transition(i, j) * Eigen::kroneckerProduct(F, F).eval();
+  }
+  return moments.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+/// Two states; mode 0 is unstable in one direction, mode 1 is not.
+SwitchingRegression growing_model() {
+  Eigen::MatrixXd theta(6, 2);  // rows of [A B]
+  theta << 0.3, -0.2, 0.2, 0.3, 0.1, 1.0, 0.0, 0.1, -0.4, -0.3, 0.5, 0.0;
+  return {theta,
+          {Eigen::MatrixXd::Identity(2, 2), Eigen::MatrixXd::Identity(2, 2)},
+          Eigen::Matrix2d{{0.9, 0.1}, {0.2, 0.8}},
+          Eigen::Vector2d(0.5, 0.5)};
+}
+
+TEST(Shrinkage, TakesUnstableModesTheLeastWayToMeanSquareStability) {
+  const LinearStructure structure{2, 1, false};
+  const SwitchingRegression model = growing_model();
+  ASSERT_GT(growth_by_kronecker(structure, model), 1.01);
+  EXPECT_NEAR(mean_square_growth(structure, model), growth_by_kronecker(structure, model), 1e-5);
+  const Eigen::VectorXd target = model.theta.col(1);
+  const auto stable = shrunk_to_stability(structure, model, target, {});
+  ASSERT_TRUE(stable);
+  EXPECT_EQ(stable->theta.col(1), model.theta.col(1)) << "a mode that is stable by itself stays";
+  EXPECT_LE(growth_by_kronecker(structure, *stable), 1.0 + 2e-4);
+  const Eigen::VectorXd way = target - model.theta.col(0);
+  const double share = (stable->theta.col(0) - model.theta.col(0)).dot(way) / way.squaredNorm();
+  EXPECT_TRUE(near(stable->theta.col(0), model.theta.col(0) + share * way, 1e-12));
+  SwitchingRegression less = *stable;
+  less.theta.col(0) = model.theta.col(0) + (share - 0.005) * way;
+  EXPECT_GT(growth_by_kronecker(structure, less), 1.0);
+}
+
+TEST(Shrinkage, LeavesStableSystemsAndHopelessOnes) {
+  const LinearStructure structure{2, 1, false};
+  SwitchingRegression model = growing_model();
+  const Eigen::VectorXd unstable = model.theta.col(0);
+  EXPECT_FALSE(shrunk_to_stability(structure, model, unstable, {}));
+  model.theta.col(0) = model.theta.col(1);
+  EXPECT_FALSE(shrunk_to_stability(structure, model, unstable, {}));
+}
+
+using LookAheadLearning = test::RefineTest;
+
+TEST_F(LookAheadLearning, PullWithoutEndLeavesOneMotion) {
+  learn_from(3, 300);
+  const TrainingTransitions transitions = gather_training_transitions(recording, test::structure_of(recording));
+  const GlobalModel global = fit_global(recording, transitions.structure);
+  const SwitchingPrior prior = switching_prior(transitions, global, {}, 4.0);
+  const SwitchingRegression start = switching_model(start_bank(recording, truth.theta));
+  EXPECT_EQ(towards_one_motion(prior, transitions, start, 0.0, {}).information, prior.information);
+  const auto spread = [&](double pull) {
+    const SwitchingPrior drawn = towards_one_motion(prior, transitions, start, pull, {});
+    ExpectationMaximisation em(transitions, drawn, {}, start);
+    for (int i = 0; i < 20; ++i) em.step();
+    return (em.model().theta.colwise() - drawn.mean).cwiseAbs().maxCoeff();
+  };
+  EXPECT_GT(spread(1.0), 0.1);
+  EXPECT_LT(spread(1e3), spread(1.0));
+  EXPECT_LT(spread(1e8), 1e-4);
+}
+
+/// y = x + v with as much noise in v as in x: a model of exact states that is best one step ahead decays too fast for
+/// longer predictions.
+Recording measured_with_noise(std::uint64_t seed, Index runs) {
+  std::mt19937_64 generator(seed);
+  boost::random::normal_distribution<double> normal;
+  Recording recording = test::empty_recording(1, 1);
+  for (Index i = 0; i < runs; ++i) {
+    Eigen::MatrixXd y(1, 300), u(1, 300);
+    double x = 0.0, input = 0.0;
+    for (Index k = 0; k < 300; ++k) {
+      if (k % 25 == 0) input = normal(generator);
+      y(k) = x + 0.5 * normal(generator);
+      u(k) = input;
+      x += -0.05 * x + 0.1 * input + 0.1 * normal(generator);
+    }
+    test::add_run(recording, y, u, i < runs / 2 ? Role::train : Role::test);
+  }
+  return recording;
+}
+
+TEST(LookAheadFit, PredictsFartherOnRunsItHasNotSeen) {
+  const Recording recording = measured_with_noise(11, 12);
+  const WindowFits fits = test::windows_of(recording, 25, 5);
+  RefineOptions options = quick();
+  options.folds = 3;
+  options.measurement_noise = false;
+  const auto score = [&](Index look_ahead) {
+    options.look_ahead = look_ahead;
+    const Refinement refined = refine_bank(recording, fits, {start_bank(recording, fits.global.theta)}, options, {});
+    EXPECT_EQ(refined.look_ahead.taken, look_ahead > 1);
+    EXPECT_EQ(refined.bank.modes.front().standard_error.allFinite(), look_ahead == 1) << "errors are stated or not";
+    double sum = 0.0;
+    for (const Trajectory& run : recording.runs) {
+      if (run.role != Role::test) continue;
+      const HorizonEvaluation ahead = evaluate_horizons(refined.bank, run, {}, {8});
+      sum += ahead.log_density.array().isNaN().select(0.0, ahead.log_density).sum();
+    }
+    return sum / static_cast<double>(recording.transitions(Role::test));
+  };
+  EXPECT_GT(score(8), score(1) + 0.05);
+}
+
+}  // namespace
+}  // namespace modebank
