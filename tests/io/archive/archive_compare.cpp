@@ -37,8 +37,6 @@ void expect_same(const PairedGain& actual, const PairedGain& expected) {
 void expect_same(const DriftingModel& actual, const DriftingModel& expected) {
   EXPECT_EQ(actual.structure.states, expected.structure.states);
   EXPECT_EQ(actual.structure.parameters(), expected.structure.parameters());
-  EXPECT_TRUE(same_bits(actual.drift.scale, expected.drift.scale));
-  EXPECT_EQ(actual.drift.rates, expected.drift.rates);
   EXPECT_EQ(actual.state_names, expected.state_names);
   EXPECT_EQ(actual.input_names, expected.input_names);
   EXPECT_EQ(actual.dt_s, expected.dt_s);
@@ -229,6 +227,8 @@ void expect_same(const Bank& actual, const Bank& expected) {
   EXPECT_TRUE(same_bits(actual.transition_standard_error, expected.transition_standard_error));
   EXPECT_EQ(actual.noise_adaptation.forgetting, expected.noise_adaptation.forgetting);
   EXPECT_EQ(actual.noise_adaptation.prior_samples, expected.noise_adaptation.prior_samples);
+  EXPECT_TRUE(same_bits(actual.drift.scale, expected.drift.scale));
+  EXPECT_EQ(actual.drift.rates, expected.drift.rates);
   EXPECT_EQ(actual.state_names, expected.state_names);
   EXPECT_EQ(actual.input_names, expected.input_names);
   EXPECT_EQ(actual.dt_s, expected.dt_s);
