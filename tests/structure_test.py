@@ -31,7 +31,7 @@ MAY_INCLUDE = {
     "io/hdf5": IDENT[:1],
     "io/archive/bank": STEP + ["io/files", "io/hdf5"],
     "io/archive": LIBRARIES + ["io/files", "io/hdf5", "io/archive/bank"],
-    "io/import": FIT + ["ident/lag", "io/files"],
+    "io/import": FIT + ["ident/lag", "ident/check", "io/files"],
     "io/simulation": IDENT + ["ident/simulate", "io/files"],
     "app/chain": BELOW_APP,
     "app/check": BELOW_APP + ["app/chain"],

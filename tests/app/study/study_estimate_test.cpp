@@ -43,11 +43,11 @@ TEST_F(StudyEstimates, CountSharedStagesOnceForEachOfTheirInputs) {
   std::filesystem::create_directories(file("s/trials"));
   make_archive(0, 1000);
   make_archive(1, 3000);
-  // Of one mixture, the second with all but its filter at hand: seconds, then data, windows, mixture, competitors,
-  // bank, competitors' scores, bank's scores.
-  write("s/log.csv", line(0, ",done,10,1,4,2,0.5,1,0.5,0.7,") + line(1, ",done,2,0,0,0,0,0,0.5,0.9,") +
+  // Of one mixture, the second with all but its filter at hand: seconds, then data, lags, windows, mixture,
+  // competitors, bank, competitors' scores, bank's scores.
+  write("s/log.csv", line(0, ",done,10,1,0,4,2,0.5,1,0.5,0.7,") + line(1, ",done,2,0,0,0,0,0,0,0.5,0.9,") +
                          line(2, ",failed,70,0,0,0,0,0,0,0,\"no, not one\"") + line(3, ",done,5,1,") +
-                         "2026-01-01T00:00:00Z,host,1,another,done,99,9,9,9,9,9,9,9,\n");
+                         "2026-01-01T00:00:00Z,host,1,another,done,99,9,9,9,9,9,9,9,9,\n");
   const StudyEstimate found = estimate();
   EXPECT_EQ(found.left, 4u);
   EXPECT_TRUE(found.known);
