@@ -76,7 +76,8 @@ const double* BankCoordinates::set_process_noise(const double* at, Bank& bank) c
 
 const double* BankCoordinates::set_measurement_noise(const double* at, Bank& bank) const {
   for (const Index i : free_.R)
-    bank.R(i, i) = free_.least_R(i) + (origin_.R(i, i) - free_.least_R(i)) * bounded_exp(*at++);
+    // Below its bound it could only fall further, through zero: it stands at the bound then.
+    bank.R(i, i) = free_.least_R(i) + std::max(origin_.R(i, i) - free_.least_R(i), 0.0) * bounded_exp(*at++);
   return at;
 }
 

@@ -41,7 +41,7 @@ struct ParameterPlaces {
 ///   theta_j       = theta0_j + unit z (one coordinate per parameter);
 ///   Q_j           = L0 M M' L0' with L0 L0' = Q0_j, M lower triangular, exp(z) on its diagonal (log-Cholesky: Pinheiro
 ///                   & Bates 1996), its diagonal at least least_Q; or Q0_j exp(z) with one z for all modes;
-///   R_ii          = least_R_i + (R0_ii - least_R_i) exp(z);
+///   R_ii          = least_R_i + max(R0_ii - least_R_i, 0) exp(z);
 ///   row i of T    proportional to T0_ij exp(z_j), z = 0 for its largest entry;
 ///   weights_ja    = weights0_ja + unit_a z, the last coordinates, regressor by regressor.
 /// Initial probabilities and what else a bank holds stay as they are.

@@ -125,6 +125,22 @@ TEST(BankCoordinates, HoldWhatIsKnownAndScaleQByOneFactor) {
   EXPECT_EQ(moved.transition.matrix(), truth.transition.matrix());
 }
 
+/// Where modes hardly move at all a share of their Q lies below R's bound: a variance never falls through zero.
+TEST(BankCoordinates, KeepRAtItsBound) {
+  Bank truth = test::true_pair(1.0);
+  FreeParameters noise;
+  noise.R = {0, 1};
+  noise.least_R = Eigen::Vector2d(0.01, 0.01);
+  noise.transition = false;
+  truth.R.diagonal() << 0.005, 0.02;
+  const BankCoordinates around(truth, noise);
+  for (const double far : {0.0, 5.0}) {
+    const Eigen::VectorXd all = Eigen::VectorXd::Constant(around.size(), far);
+    EXPECT_EQ(around.decode(all).R(0, 0), 0.01);
+    EXPECT_NEAR(around.decode(all).R(1, 1), 0.01 + 0.01 * std::exp(far), 1e-12);
+  }
+}
+
 /// By hand: R_ii by its logarithm is R_ii, and a row of T by the logarithm of one entry is T_ij (delta - T_ik).
 TEST(BankCoordinates, JacobianIsThatOfTheParameters) {
   const Bank truth = test::true_scalar(1.0);
