@@ -181,6 +181,7 @@ const std::vector<RuledOut> ruled_out{
     {"bank.refine", "bank.drift = fixed is learned by refinement"},
     {"bank.measurement_variance", "bank.drift = fixed needs"},
     {"bank.members", "bank.drift = fixed needs"},
+    {"data.quantum", "bank.drift = fixed needs"},
     {"filter.variant", "bank.drift = fixed needs"},
     {"mixture.bootstrap", "needs 2 resamples or more"},
     {"mixture.covariance_floor", "needs a finite covariance_floor"},

@@ -3,42 +3,17 @@
 import h5py
 import numpy as np
 
-from benchmark import FILTERS, Arguments, head, held_out, line, modes, numbers, run
+from benchmark import FILTERS, SOURCES, Arguments, head, held_out, line, modes, numbers, run
+from dart_prepare import prepare
 
-PROTOCOL = """DATA/dart/README.md: 10 Hz, v_steer = speed * steering made before, two lags of state and inputs, delay 0, no intercept; folds by parity of the run's name; a sample
+PROTOCOL = """DATA/dart/README.md: configs/dart.ini: 10 Hz, v_steer = speed * steering made before, two lags of state and inputs, delay 0, no intercept; folds by parity of the run's name; a sample
 counts from the third of a run on (h ahead: from sample 2 + h on). Nats per sample / RMSE in rad/s; jumps: RMSE one step ahead where v_steer moved by more than 0.5.
 The reference rows are that README's, computed from the same files; nobody has published one-step scores of these data."""
-CONFIG = """[data]
-inputs = {}/*.csv
-state = yaw_rate
-input = v_steer, speed
-time = time
-rate_hz = 10
-[window]
-model = varx
-state_lags = 2
-input_lags = 2
-input_delay = 0
-[filter]
-noise = adaptive
-horizon = 1, 10
-"""
 REFERENCE = [
     ("one global ARX(2,2), constant Gaussian (reference)", "-.671 / .331", "-4.879 / .960", ".348", "-1.434 / .314", "-3.818 / .870", ".930"),
     ("TVP, tuned for nats (reference)", "1.122 / .124", ".871 / .147", ".893", "1.405 / .181", "1.041 / .503", ".455"),
     ("modebank 0.1.0 (f73a770), bank (reference)", ".603 / .290", "-.305 / .675", ".187", ".891 / .254", ".496 / .792", ".655")]
 JUMP = 0.5
-
-
-def prepare(data, out):
-    """The files with the column v_steer = speed * steering; their names in order."""
-    out.mkdir(exist_ok=True)
-    for file in sorted((data / "dart").glob("*.csv")):
-        names = file.read_text(encoding="utf-8").split("\n", 1)[0].split(",")
-        values = np.genfromtxt(file, delimiter=",", skip_header=1)
-        made = values[:, names.index("speed")] * values[:, names.index("steering")]
-        np.savetxt(out / file.name, np.c_[values, made], "%.9g", ",", header=",".join([*names, "v_steer"]), comments="")
-    return sorted(file.stem for file in out.glob("*.csv"))
 
 
 def jump_rmse(archive, name):
@@ -63,18 +38,25 @@ def cells(archive, name):
     return [f"{one['log_score']:.3f} / {numbers(one['rmse'], 3)}", f"{ten['log_score']:.3f} / {numbers(ten['rmse'], 3)}", jump_rmse(archive, name)]
 
 
+def both_folds(given, runs, name, **options):
+    config = SOURCES / "configs" / "dart.ini"
+    return [run(given.program, config, given.out / f"{name}_A.h5", data__root=given.out, **options),
+            run(given.program, config, given.out / f"{name}_B.h5", data__root=given.out, data__train=",".join(runs[1::2]),
+                data__test=",".join(runs[0::2]), **options)]
+
+
 def main():
     given = Arguments(__doc__)
-    runs = prepare(given.data, given.out / "csv")
-    config = given.out / "dart.ini"
-    config.write_text(CONFIG.format(given.out / "csv"), encoding="utf-8")
-    folds = [run(given.program, config, given.out / "A.h5"),
-             run(given.program, config, given.out / "B.h5", data__train=",".join(runs[1::2]), data__test=",".join(runs[0::2]))]
+    (given.out / "dart").mkdir(exist_ok=True)
+    runs = sorted(file.stem for file in (given.data / "dart").glob("*.csv"))
+    for name in runs:
+        prepare(given.data / "dart" / f"{name}.csv", given.out / "dart" / f"{name}.csv")
+    steady, folds = both_folds(given, runs, "steady", bank__drift="none"), both_folds(given, runs, "drift")
     head(given.program, "DART", PROTOCOL, ["predictor", "A: 1 step", "A: 10 steps", "A: jumps", "B: 1 step", "B: 10 steps", "B: jumps"])
-    for name in FILTERS:
-        of_folds = [cells(fold, name) for fold in folds]
-        title = f"bank, {modes(folds[0])} and {modes(folds[1])} modes" if name == "bank" else f"competitor: {name}"
-        line(title, *of_folds[0], *of_folds[1])
+    line(f"bank, {modes(folds[0])} and {modes(folds[1])} modes that may drift", *cells(folds[0], "bank"), *cells(folds[1], "bank"))
+    line(f"bank, {modes(steady[0])} and {modes(steady[1])} modes, bank.drift = none", *cells(steady[0], "bank"), *cells(steady[1], "bank"))
+    for name in FILTERS[1:]:
+        line(f"competitor: {name}", *cells(folds[0], name), *cells(folds[1], name))
     for reference in REFERENCE:
         line(*reference)
     samples = [held_out(fold, "summary", filter="bank")["samples"] for fold in folds]

@@ -8,6 +8,7 @@ inputs = {folder}/part_*.csv
 state = y
 input = u
 time = time
+quantum = {quantum}
 train = a
 test = b, whole
 [window]
@@ -73,14 +74,14 @@ def filter_rows(archive, held):
              f"{100 * (1 - rmse / held.std()):.2f}", f"{free['whole']:.2f}", f"{free['b']:.2f}")
 
 
-def experiment(given, title, protocol, u, y, period_s, order, trains, intercept, reference):
+def experiment(given, title, protocol, u, y, period_s, order, trains, intercept, reference, quantum="none"):
     """`order`: na, nb, delay. `trains`: so many samples at the front."""
     arx = Arx(*order)
     for name, part in (("a", slice(0, trains)), ("b", slice(trains, None)), ("whole", slice(None))):
         table = np.c_[period_s * np.arange(len(y[part])), u[part], y[part]]
         np.savetxt(given.out / f"part_{name}.csv", table, "%.9g", ",", header="time,u,y", comments="")
     config = given.out / "experiment.ini"
-    config.write_text(CONFIG.format(folder=given.out, na=order[0], nb=order[1], delay=order[2], intercept=str(intercept).lower(),
+    config.write_text(CONFIG.format(folder=given.out, na=order[0], nb=order[1], delay=order[2], intercept=str(intercept).lower(), quantum=quantum,
                                     start=arx.start), encoding="utf-8")
     head(given.program, title, protocol,
          ["predictor", "held-out part, one step: nats", "RMSE", "FIT %", "free run of all samples: FIT %", "of the held-out part: FIT %"])
