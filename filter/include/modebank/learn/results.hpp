@@ -54,9 +54,11 @@ struct SwitchingStage {
 
 /// Whether modes drift, by cross-validation inside the training runs.
 struct DriftStage {
-  bool taken = false;
-  std::ptrdiff_t modes = 0;  ///< of the bank that drifts best
-  double rate = 0.0, start = 0.0, leak = 1.0;
+  bool taken = false;                                              ///< whether the bank's modes drift
+  std::ptrdiff_t modes = 0;                                        ///< of the bank that drifts best
+  double rate = 0.0;                                               ///< DriftOptions::rate of that bank
+  double start = 0.0;                                              ///< DriftOptions::start of it
+  double leak = 1.0;                                               ///< DriftOptions::leak of it
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out, no drift
   double gain = std::numeric_limits<double>::quiet_NaN();          ///< of the drift, nats per sample; NaN: not asked
   double gain_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< clustered by run

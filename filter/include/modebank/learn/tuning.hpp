@@ -59,12 +59,12 @@ struct RefineTuning {
   std::array<double, 2> other_weight_widths{3.0, 300.0};  ///< tried for the chosen number of modes
 
   // Modes that drift: values tried, the middle ones first.
-  std::array<double, 5> drift_rates{1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
-  std::array<double, 6> drift_starts{0.0, 0.01, 0.1, 1.0, 10.0, 100.0};
-  std::array<double, 3> drift_leaks{1.0, 0.97, 0.9};
+  std::array<double, 5> drift_rates{1e-5, 1e-4, 1e-3, 1e-2, 1e-1};       ///< of DriftOptions::rate
+  std::array<double, 6> drift_starts{0.0, 0.01, 0.1, 1.0, 10.0, 100.0};  ///< of DriftOptions::start
+  std::array<double, 3> drift_leaks{1.0, 0.97, 0.9};                     ///< of DriftOptions::leak
   /// Coefficients that follow a run let the noise scale be of few samples (DART: 0.9; banks that do not drift 0.98).
   std::array<double, 8> drift_forgettings{0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0};
-  std::array<double, 5> drift_noise_prior_samples{1e-3, 1e-2, 0.1, 1.0, 5.0};
+  std::array<double, 5> drift_noise_prior_samples{1e-3, 1e-2, 0.1, 1.0, 5.0};  ///< that a run's start is worth
 
   // Measurement noise and averaging.
   double least_R_share = 1e-9;  ///< of the global residual variance: the least R that refinement knows, as good as none
