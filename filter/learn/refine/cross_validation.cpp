@@ -118,6 +118,15 @@ std::vector<ScoredFit> CrossValidation::best_of_starts() const {
   return fits;
 }
 
+std::vector<ScoredFit> CrossValidation::best_of_each_size() const {
+  std::vector<ScoredFit> fits;
+  for (ScoredFit& fit : best_of_starts()) {
+    const auto as_many = [&](const ScoredFit& f) { return f.start.model.modes() == fit.start.model.modes(); };
+    if (std::none_of(fits.begin(), fits.end(), as_many)) fits.push_back(std::move(fit));
+  }
+  return fits;
+}
+
 NoiseAdaptation CrossValidation::adaptation(const std::vector<Bank>& of_splits) const {
   if (splits_.empty() || in_.filter.noise != FilterNoise::adaptive) return {};
   std::vector<NoiseAdaptation> ways;

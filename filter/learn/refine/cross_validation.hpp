@@ -43,6 +43,8 @@ class CrossValidation {
 
   /// The best fit from every start, the best first.
   std::vector<ScoredFit> best_of_starts() const;
+  /// The best fit of every number of modes, the best first.
+  std::vector<ScoredFit> best_of_each_size() const;
 
   /// Log-likelihoods of the runs left out; `banks`: one per split.
   LeftOutScores scores(const std::vector<Bank>& banks) const { return {banks.front().mode_count(), run_scores(banks)}; }

@@ -68,10 +68,8 @@ DriftTrial climbed(const RefineInput& in, const CrossValidation& validation, con
 std::vector<ScoredFit> fits_to_try(const CrossValidation& validation, const ScoredFit& steady, bool other_sizes) {
   std::vector<ScoredFit> fits{steady};
   if (!other_sizes) return fits;
-  for (ScoredFit& fit : validation.best_of_starts()) {
-    const auto as_many = [&](const ScoredFit& f) { return f.start.model.modes() == fit.start.model.modes(); };
-    if (std::none_of(fits.begin(), fits.end(), as_many)) fits.push_back(std::move(fit));
-  }
+  for (ScoredFit& fit : validation.best_of_each_size())
+    if (fit.start.model.modes() != steady.start.model.modes()) fits.push_back(std::move(fit));
   return fits;
 }
 

@@ -44,16 +44,6 @@ Guards scored(const RefineInput& in, const CrossValidation& validation, const Sc
   return best;
 }
 
-/// The best fit of every number of modes but one.
-std::vector<ScoredFit> best_of_each_size(const CrossValidation& validation) {
-  std::vector<ScoredFit> fits;
-  for (ScoredFit& fit : validation.best_of_starts()) {
-    const auto as_many = [&](const ScoredFit& f) { return f.start.model.modes() == fit.start.model.modes(); };
-    if (fit.start.model.modes() > 1 && std::none_of(fits.begin(), fits.end(), as_many)) fits.push_back(std::move(fit));
-  }
-  return fits;
-}
-
 bool higher(const Guards& a, const Guards& b) {
   return a.fit.scores.log_likelihood.sum() > b.fit.scores.log_likelihood.sum();
 }
@@ -65,7 +55,8 @@ std::optional<Guards> choose_guards(const RefineInput& in, const CrossValidation
   const RefineTuning& tuning = in.options.tuning;
   std::vector<Guards> sizes;
   std::vector<LeftOutScores> scores;
-  for (const ScoredFit& fit : best_of_each_size(validation)) {
+  for (const ScoredFit& fit : validation.best_of_each_size()) {
+    if (fit.start.model.modes() == 1) continue;  // nothing switches
     sizes.push_back(scored(in, validation, fit, tuning.weight_width));
     scores.push_back(sizes.back().fit.scores);
   }

@@ -8,7 +8,6 @@
 
 #include "filter/learn/likelihood/standard_errors.hpp"
 #include "filter/learn/refine/split_fits.hpp"
-#include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
 #include "ident/base/not_a_number.hpp"
 
@@ -60,9 +59,8 @@ std::optional<Bank> fit_looking_ahead(const RefineInput& in, const CrossValidati
   stage.score_before = validation.score(banks);
   tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
     const SplitData& split = validation.splits()[s];
-    SwitchingPrior of_split = prior_of_split(in, split, chosen.noise_transitions);
-    of_split = towards_one_motion(std::move(of_split), split.transitions, switching_model(banks[s]),
-                                  chosen.theta_transitions, in.options.tuning);
+    SwitchingPrior of_split = prior_of_split(
+        in, split, {"", switching_model(banks[s]), chosen.noise_transitions, chosen.theta_transitions});
     if (chosen.weight_width > 0.0) of_split = with_weights(std::move(of_split), split.transitions, chosen.weight_width);
     banks[s] = taken_on({split.runs.training, filter, of_split, in.options.one_theta, in.options.look_ahead}, in,
                         R_estimated, banks[s]);
