@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "io/import/stamp_check.hpp"
 #include "io/table/stamp.hpp"
 #include "modebank/base/error.hpp"
 
@@ -23,9 +24,9 @@ void check_order(const FileStream& source) {
   const VectorXd& time_s = source.stream.time_s;
   for (Index k = 1; k < time_s.size(); ++k)
     if (!(time_s(k) > time_s(k - 1)))
-      throw DataError(fmt::format("{}:{}: column {}: {} after {}: time going backwards or repeated", source.file,
+      throw DataError(fmt::format("{}:{}: column {}: {} after {}: time going backwards or repeated{}", source.file,
                                   source.line[static_cast<std::size_t>(k)], source.time_column, source.time_text(k),
-                                  source.time_text(k - 1)));
+                                  source.time_text(k - 1), disorder_hint(source, k)));
 }
 
 /// Positions of the samples in order of time; of those that share a time the first in the file.

@@ -62,7 +62,22 @@ std::vector<Option> data_options() {
       text("data.state_unit", "units", "one per state, or one for all; written to the archive and the plots",
            MODEBANK_FIELD(data.state_unit)),
       text("data.input_unit", "units", "one per input, or one for all", MODEBANK_FIELD(data.input_unit)),
-      text("data.time", "a column name", "time in seconds", MODEBANK_FIELD(data.time)),
+      text(
+          "data.time", "one column name, or those of seconds and nanoseconds",
+          "times: numbers or ISO 8601. Of a recording: time is the header's stamp or, where there is none, when it was "
+          "received; receive_time the latter. Empty: row k is at k / rate_hz",
+          MODEBANK_FIELD(data.time)),
+      words("data.time_unit",
+            "what times count; auto: as their name, their size or how far apart they are shows, else seconds",
+            MODEBANK_FIELD(data.time_unit)),
+      words("data.separator", "what is between the fields of text files; auto: what their first rows show",
+            MODEBANK_FIELD(data.format.separator)),
+      words("data.decimal", "the decimal mark of text files; auto: as their first rows show",
+            MODEBANK_FIELD(data.format.decimal)),
+      words("data.header",
+            "whether text files' first row names the columns; if not they are c1, c2, ...; auto: whether it holds "
+            "numbers",
+            MODEBANK_FIELD(data.format.header)),
       words("data.join", "how states join the inputs: interpolated at the inputs' times, or row by row",
             MODEBANK_FIELD(data.join)),
       text("data.run", "a column name", "column whose value separates runs inside one file; empty: one run per file",
