@@ -39,13 +39,6 @@ std::vector<Index> order_of(const VectorXd& time_s) {
   return order;
 }
 
-void reorder(FileStream& source, const std::vector<Index>& order) {
-  source.stream = {source.stream.time_s(order), source.stream.values(Eigen::all, order)};
-  std::vector<std::uint64_t> line;
-  for (const Index k : order) line.push_back(source.line[static_cast<std::size_t>(k)]);
-  source.line = std::move(line);
-}
-
 void check_samples(const RunStreams& run, Index samples, const DataOptions& options, const InputClock& clock) {
   if (samples >= 2) return;
   const double lag_s = options.lag_auto ? clock.lag_s : options.lag_s;
@@ -58,6 +51,13 @@ void check_samples(const RunStreams& run, Index samples, const DataOptions& opti
 
 }  // namespace
 
+void take(FileStream& source, const std::vector<Index>& positions) {
+  source.stream = {source.stream.time_s(positions), source.stream.values(Eigen::all, positions)};
+  std::vector<std::uint64_t> line;
+  for (const Index k : positions) line.push_back(source.line[static_cast<std::size_t>(k)]);
+  source.line = std::move(line);
+}
+
 std::string FileStream::time_text(Index k) const {
   const double time_s = stream.time_s(k);
   if (origin_ns == 0 || std::isnan(time_s)) return fmt::format("{}", time_s);
@@ -66,7 +66,7 @@ std::string FileStream::time_text(Index k) const {
 
 void put_in_order(FileStream& source, Disorder disorder) {
   if (disorder == Disorder::error) return check_order(source);
-  reorder(source, order_of(source.stream.time_s));
+  take(source, order_of(source.stream.time_s));
 }
 
 void put_in_order(RunStreams& run, Disorder disorder) {
@@ -76,9 +76,9 @@ void put_in_order(RunStreams& run, Disorder disorder) {
     return;
   }
   const std::vector<Index> states = order_of(run.states.stream.time_s), inputs = order_of(run.inputs.stream.time_s);
-  reorder(run.states, states);
-  reorder(run.inputs, inputs);
-  for (std::vector<RunStreams::Companion>* columns : {&run.truth, &run.weight})
+  take(run.states, states);
+  take(run.inputs, inputs);
+  for (std::vector<RunStreams::Companion>* columns : run.companions())
     for (RunStreams::Companion& column : *columns)
       column.values = VectorXd(column.values(column.with_states ? states : inputs));
 }
