@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "io/table/table_reader.hpp"
 #include "modebank/base/names.hpp"
 
 namespace modebank {
@@ -33,6 +35,17 @@ struct EnumNames<Disorder> {
   static constexpr Names<2> values{"error", "sort"};
 };
 
+/// How each run becomes runs of its own that train and test in turn (io/import/split.hpp).
+enum class SplitKind { none, blocks, last };
+
+struct SplitOptions {
+  SplitKind kind = SplitKind::none;
+  int blocks = 0;             ///< of kind blocks
+  double last_percent = 0.0;  ///< of kind last
+  /// Dropped between blocks: a window and the lags of what is fitted there. Set by who knows them; 0 without a split.
+  std::ptrdiff_t gap_samples = 0;
+};
+
 /// What to read and how: the [data] section.
 struct DataOptions {
   std::string root;    ///< absolute prefix of relative patterns
@@ -46,7 +59,10 @@ struct DataOptions {
   /// Column of sample weights, at least 0 (Trajectory::weight); looked up as truth is: in the states file first. Empty:
   /// none.
   std::string weight;
-  std::string time = "time";  ///< column of seconds
+  /// Column of times (one, or seconds and nanoseconds). In a recording "time" means its messages' header stamps, or
+  /// where they have none when they were received; receive_time the latter. Empty: row k of a file is k / rate_hz.
+  std::vector<std::string> time{"time"};
+  TimeUnit time_unit = TimeUnit::automatic;
   Join join = Join::time;
   /// Column whose value separates runs inside one file: the run is named by it, after "<matched part>_" where inputs
   /// has a *. Join::time needs it in both files; else it is looked up in the states file first, as `time` is.
@@ -57,8 +73,10 @@ struct DataOptions {
   double lag_range_s = 2.5;     ///< lags that the estimate searches, either way
   std::vector<double> quantum;  ///< what states are multiples of, one each or one for all [state unit]; empty: none
   bool quantum_auto = false;    ///< found in the training runs (io/import/quanta.hpp)
+  FormatOptions format;         ///< what files say too little of themselves
   Missing missing = Missing::error;
   Disorder disorder = Disorder::error;
+  SplitOptions split;
   std::vector<std::string> train;  ///< run names; empty: all not in test, or positions 0, 2, 4, ... in name order
   std::vector<std::string> test;   ///< run names; empty: all that are not train
 };
