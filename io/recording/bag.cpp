@@ -163,6 +163,7 @@ class Bag : public PieceFile {
       }
     } catch (const Damage& damage) {
       scan_cut_chunk(at);
+      if (connections_.empty()) throw;
       note_damage(damage);
     }
     if (connections_.empty()) throw Damage(at, "no message and no connection is whole");

@@ -168,6 +168,7 @@ class Mcap : public PieceFile {
     } catch (const Damage& damage) {
       if (loose.end > loose.begin) add_piece(loose);
       scan_cut_chunk(at);
+      if (connections_.empty()) throw;
       note_damage(damage);
     }
     if (connections_.empty()) throw Damage(at, "no message and no channel is whole");
