@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
-#include "io/recording/byte_source.hpp"
+#include "io/recording/connections.hpp"
 
 namespace modebank {
 
@@ -153,7 +154,8 @@ void PayloadReader::skip(Kind kind, std::uint64_t count) {
   if (bytes > 0) {
     if (count == 0) return;
     align(bytes);
-    if (count > (bytes_.size() - at_) / bytes_of(kind)) need(bytes_.size() - at_ + 1);
+    if (count > (bytes_.size() - at_) / bytes_of(kind))
+      need(std::min<std::uint64_t>(count, most_message_bytes) * bytes_of(kind));
     at_ += static_cast<std::size_t>(count * bytes_of(kind));
     return;
   }
