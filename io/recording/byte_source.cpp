@@ -23,19 +23,30 @@ constexpr std::size_t window_bytes = 1 << 16;  // of a file of images a sixteent
 
 }  // namespace
 
-FileBytes::FileBytes(const std::filesystem::path& path) : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-  if (file_ < 0) fail(path, errno);
+FileBytes::FileBytes(std::filesystem::path path) : path_(std::move(path)) { open(); }
+
+FileBytes::~FileBytes() { close(); }
+
+void FileBytes::open() {
+  if (file_ >= 0) return;
+  file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file_ < 0) fail(path_, errno);
   struct stat status {};
   int error = fstat(file_, &status) == 0 ? 0 : errno;
   if (error == 0 && S_ISDIR(status.st_mode)) error = EISDIR;
   if (error != 0) {
-    ::close(file_);
-    fail(path, error);
+    close();
+    fail(path_, error);
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
 }
 
-FileBytes::~FileBytes() { ::close(file_); }
+void FileBytes::close() {
+  if (file_ >= 0) ::close(file_);
+  file_ = -1;
+  window_bytes_ = 0;
+  window_ = {};
+}
 
 std::size_t FileBytes::read(std::uint64_t at, std::size_t bytes, char* to) const {
   std::size_t done = 0;

@@ -54,19 +54,23 @@ class MemoryBytes : public ByteSource {
 /// A file behind a window: what is skipped is not read.
 class FileBytes : public ByteSource {
  public:
-  /// Throws ConfigurationError, naming path and reason, when the file cannot be read.
-  explicit FileBytes(const std::filesystem::path& path);
+  /// Opens it. Throws ConfigurationError, naming path and reason, when the file cannot be read.
+  explicit FileBytes(std::filesystem::path path);
   ~FileBytes() override;
   FileBytes(const FileBytes&) = delete;
   FileBytes& operator=(const FileBytes&) = delete;
 
   std::uint64_t size() const override { return size_; }
+  /// Closes the file until `open`: a pattern may name thousands.
+  void close();
+  void open();
   /// Copies bytes without touching the window (threads may do so at once); those that are there.
   std::size_t read(std::uint64_t at, std::size_t bytes, char* to) const;
 
  private:
   std::string_view viewed(std::uint64_t at, std::size_t bytes) override;
 
+  std::filesystem::path path_;
   int file_ = -1;
   std::uint64_t size_ = 0;
   std::uint64_t window_at_ = 0;

@@ -41,6 +41,8 @@ class Container {
   virtual std::string visit(const std::vector<bool>& wanted, const MessageSink& sink) = 0;
   /// At least the first and the last message of every connection, in the file's order.
   virtual std::string sample(const MessageSink& sink) = 0;
+  /// Lets go of the file until the next visit.
+  virtual void close() = 0;
 
  protected:
   std::vector<Connection> connections_;

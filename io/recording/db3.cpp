@@ -88,7 +88,7 @@ class Query {
 
 class Db3 : public Container {
  public:
-  explicit Db3(const std::filesystem::path& path) : path_(path), database_(path) {
+  explicit Db3(const std::filesystem::path& path) : path_(path), database_(std::make_unique<Database>(path)) {
     try {
       check_tables();
       read_topics();
@@ -119,6 +119,8 @@ class Db3 : public Container {
     return run("SELECT topic_id, timestamp, data FROM messages WHERE rowid IN (" + list + ") ORDER BY rowid", sink);
   }
 
+  void close() override { database_.reset(); }
+
  private:
   std::string damage(const SqlError& error) const {
     return fmt::format("{}: SQLite: {}", path_.string(), error.what());
@@ -128,7 +130,7 @@ class Db3 : public Container {
   void check_tables() {
     for (const char* name : {"topics", "messages"}) {
       Query query(
-          database_,
+          *database_,
           fmt::format("SELECT 1 FROM sqlite_schema WHERE name = '{}' AND type = 'table' AND rootpage > 0", name));
       if (!query.next())
         throw DataError(fmt::format("{}: an SQLite database, but no recording of rosbag2 (it has no table {})",
@@ -137,7 +139,7 @@ class Db3 : public Container {
   }
 
   void read_topics() {
-    Query query(database_, "SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+    Query query(*database_, "SELECT id, name, type, serialization_format FROM topics ORDER BY id");
     while (query.next() && connections_.size() < most_connections) {
       Connection connection;
       connection.topic = query.text(1);
@@ -150,10 +152,10 @@ class Db3 : public Container {
 
   /// Newer recordings hold the definitions, if the recorder found them.
   void read_definitions() {
-    Query table(database_,
+    Query table(*database_,
                 "SELECT 1 FROM sqlite_schema WHERE name = 'message_definitions' AND type = 'table' AND rootpage > 0");
     if (!table.next()) return;
-    Query query(database_, "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions");
+    Query query(*database_, "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions");
     while (query.next()) {
       const std::string type = query.text(0);
       if (query.bytes(2).size() > most_definition_bytes) continue;
@@ -169,7 +171,7 @@ class Db3 : public Container {
     std::unordered_map<std::size_t, std::pair<std::int64_t, std::int64_t>> ends;
     try {
       // Row by row: what is before damage counts. The payload lies behind what is asked for and is not read.
-      Query query(database_, "SELECT rowid, topic_id FROM messages ORDER BY rowid");
+      Query query(*database_, "SELECT rowid, topic_id FROM messages ORDER BY rowid");
       while (query.next()) {
         const auto found = by_id_.find(query.integer(1));
         if (found == by_id_.end()) continue;
@@ -185,8 +187,9 @@ class Db3 : public Container {
   }
 
   std::string run(const std::string& sql, const MessageSink& sink) {
+    if (!database_) database_ = std::make_unique<Database>(path_);
     try {
-      Query query(database_, sql);
+      Query query(*database_, sql);
       while (query.next()) {
         const auto found = by_id_.find(query.integer(0));
         if (found == by_id_.end()) continue;
@@ -211,7 +214,7 @@ class Db3 : public Container {
   }
 
   std::filesystem::path path_;
-  Database database_;
+  std::unique_ptr<Database> database_;
   std::map<std::int64_t, std::size_t> by_id_;
   std::vector<std::int64_t> sample_ids_;
   bool damage_noted_ = false;

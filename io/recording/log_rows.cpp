@@ -97,8 +97,8 @@ void RowCollector::take(std::size_t reader, const RecordedMessage& message, cons
   try {
     if (decoded) chosen.messages.read(message.payload, row_);
   } catch (const PayloadError& error) {
-    throw DataError(fmt::format("{}: topic {} ({}), message {}: the definition does not fit: {}", file, topic_.name,
-                                topic_.type, rows_.message.size(), error.what()));
+    throw DataError(fmt::format("{}:{}: topic {} ({}): the definition does not fit the message: {}", file,
+                                rows_.message.size(), topic_.name, topic_.type, error.what()));
   }
   for (std::size_t i = 0; i < chosen.slots.size(); ++i) {
     const std::size_t slot = chosen.slots[i];
@@ -110,7 +110,7 @@ void RowCollector::take(std::size_t reader, const RecordedMessage& message, cons
 
 void RowCollector::append(LogColumn& column, const LogWant& want, const Value& value, const std::string& file) {
   const auto fail = [&](const char* why) {
-    throw DataError(fmt::format("{}: message {}: column {}: {}", file, rows_.message.size(), want.column, why));
+    throw DataError(fmt::format("{}:{}: column {}: {}", file, rows_.message.size(), want.column, why));
   };
   const bool missing = value.form == Value::Form::missing;
   switch (want.form) {
@@ -120,10 +120,10 @@ void RowCollector::append(LogColumn& column, const LogWant& want, const Value& v
       if (value.form == Value::Form::text) fail("text, where a number is wanted");
       return column.numbers.push_back(missing ? std::numeric_limits<double>::quiet_NaN() : value.number);
     case Form::exact:
-      if (missing) fail("missing value");
-      if (value.form == Value::Form::text || value.form == Value::Form::real) fail("neither a time nor a whole number");
-      if (value.form == Value::Form::natural && value.exact < 0) fail("too large for a time");
-      return column.exact.push_back(value.exact);
+      if (value.form == Value::Form::text) fail("text, where a number is wanted");
+      if (value.form == Value::Form::real) return column.numbers.push_back(value.number);
+      if (value.form == Value::Form::natural && value.exact < 0) fail("a number beyond 2^63 - 1");
+      return column.exact.push_back(missing ? no_exact_value : value.exact);
   }
 }
 

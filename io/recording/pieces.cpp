@@ -97,6 +97,7 @@ std::string PieceFile::visit_pieces(const std::vector<const Piece*>& pieces, con
   constexpr std::uint64_t batch_bytes = 16 << 20;
   constexpr std::size_t batch_pieces = 8;
   std::vector<Unpacking> unpackings(batch_pieces);
+  file_.open();
   try {
     for (std::size_t first = 0; first < pieces.size();) {
       if (pieces[first]->compression == Compression::none) {

@@ -36,6 +36,7 @@ class PieceFile : public Container {
  public:
   std::string visit(const std::vector<bool>& wanted, const MessageSink& sink) override;
   std::string sample(const MessageSink& sink) override;
+  void close() override { file_.close(); }
 
  protected:
   explicit PieceFile(const std::filesystem::path& path) : path_(path), file_(path) {}

@@ -20,25 +20,25 @@ namespace {
 using Opener = std::unique_ptr<Container> (*)(const std::filesystem::path&);
 
 /// What reads a file that begins so, or nothing.
-Opener opener_of(const std::filesystem::path& path) {
-  struct Form {
-    std::string_view magic;
+Opener opener_of(std::string_view first_bytes) {
+  struct Magic {
+    std::string_view bytes;
     Opener open;
   };
-  static constexpr std::array<Form, 3> forms{{{"#ROSBAG V", &open_bag},
-                                              {std::string_view{"\x89MCAP", 5}, &open_mcap},
-                                              {std::string_view{"SQLite format 3\0", 16}, &open_db3}}};
-  FileBytes file(path);
-  for (const Form& form : forms)
-    if (file.size() >= form.magic.size() && file.view(0, form.magic.size()) == form.magic) return form.open;
+  static constexpr std::array<Magic, 3> forms{{{"#ROSBAG V", &open_bag},
+                                               {std::string_view{"\x89MCAP", 5}, &open_mcap},
+                                               {std::string_view{"SQLite format 3\0", 16}, &open_db3}}};
+  for (const Magic& form : forms)
+    if (first_bytes.starts_with(form.bytes)) return form.open;
   return nullptr;
 }
 
 std::unique_ptr<Container> open_container(const std::filesystem::path& path) {
-  if (const Opener open = opener_of(path)) return open(path);
+  constexpr std::uint64_t probed_bytes = 64;
   FileBytes file(path);
-  constexpr std::string_view zstd_magic = "\x28\xb5\x2f\xfd";
-  if (file.size() >= zstd_magic.size() && file.view(0, zstd_magic.size()) == zstd_magic)
+  const std::string_view first = file.view(0, std::min(file.size(), probed_bytes));
+  if (const Opener open = opener_of(first)) return open(path);
+  if (first.starts_with("\x28\xb5\x2f\xfd"))
     throw DataError(fmt::format("{0}: the whole file is compressed: `zstd -d {0}` unpacks it", path.string()));
   throw DataError(fmt::format("{}: no recording of ROS (.bag, .mcap or .db3)", path.string()));
 }
@@ -74,6 +74,7 @@ void RosLog::open_part(const std::filesystem::path& path, const KnownDefinitions
     const Connection& connection = part.container->connections()[c];
     add_connection(part, connection, choose_decoder(connection, known, samples[c]));
   }
+  part.container->close();
   parts_.push_back(std::move(part));
 }
 
@@ -92,10 +93,7 @@ void RosLog::add_connection(Part& part, const Connection& connection, TopicDecod
     return;
   }
   topic->messages += connection.messages;
-  if (!decoder.schema && topic->problem.empty()) {
-    topic->problem = decoder.problem;
-    notes_.push_back(fmt::format("topic {} ({}) cannot be read: {}", topic->name, topic->type, decoder.problem));
-  }
+  if (!decoder.schema && topic->problem.empty()) topic->problem = decoder.problem;
   std::vector<MessageColumn> columns;
   for (MessageColumn& column : decoder.columns)
     if (column.path != "receive_time") columns.push_back({topic->name + "." + column.path, column.form});
@@ -125,6 +123,7 @@ std::vector<LogRows> RosLog::read(const std::vector<LogRequest>& requests, std::
       for (const Route& route : routes[message.connection])
         collectors[route.collector].take(route.reader, message, file);
     });
+    part.container->close();
     if (!failure.empty()) notes.push_back(std::move(failure) + "; what is before that is read");
   }
   std::vector<LogRows> rows;
@@ -132,9 +131,9 @@ std::vector<LogRows> RosLog::read(const std::vector<LogRequest>& requests, std::
   return rows;
 }
 
-bool is_ros_log(const std::filesystem::path& path) {
+bool is_ros_log(const std::filesystem::path& path, std::string_view first_bytes) {
   std::error_code error;
-  return std::filesystem::is_directory(path, error) || opener_of(path) != nullptr;
+  return opener_of(first_bytes) != nullptr || std::filesystem::is_directory(path, error);
 }
 
 }  // namespace modebank

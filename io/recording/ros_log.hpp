@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -27,11 +28,13 @@ struct LogWant {
   enum class Form {
     number,  ///< times in seconds; NaN where a message has no such element
     text,    ///< numbers written out; empty where a message has no such element
-    exact    ///< times in nanoseconds, whole numbers as they are; other columns have none
+    exact    ///< times in nanoseconds, whole numbers as they are, least where there is none; other numbers as numbers
   };
   std::string column;
   Form form = Form::number;
 };
+
+inline constexpr std::int64_t no_exact_value = std::numeric_limits<std::int64_t>::min();
 
 struct LogRequest {
   std::size_t topic = 0;
@@ -86,7 +89,7 @@ class RosLog {
   std::vector<std::string> notes_;
 };
 
-/// Whether the first bytes of a file (or a folder) are those of a recording that RosLog reads.
-bool is_ros_log(const std::filesystem::path& path);
+/// Whether RosLog reads what begins with these bytes, or is a folder.
+bool is_ros_log(const std::filesystem::path& path, std::string_view first_bytes);
 
 }  // namespace modebank
