@@ -8,6 +8,7 @@
 
 #include "io/files/read_file.hpp"
 #include "io/import/csv.hpp"
+#include "io/recording/recording_reader.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -27,6 +28,10 @@ struct Format {
 
 /// In the order in which they are tried; what none takes is text.
 constexpr std::array formats{
+    Format{is_ros_log,
+           [](const Path& path, const FormatOptions& options) -> std::shared_ptr<const TableReader> {
+             return std::make_shared<RecordingReader>(path, options.definitions);
+           }},
     Format{[](const Path&, std::string_view) { return true; },
            [](const Path& path, const FormatOptions& options) -> std::shared_ptr<const TableReader> {
              return std::make_shared<CsvReader>(path, options);

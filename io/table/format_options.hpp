@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "modebank/base/names.hpp"
 
 namespace modebank {
@@ -27,11 +29,12 @@ struct EnumNames<HeaderRow> {
   static constexpr Names<3> values{"auto", "true", "false"};
 };
 
-/// What users say about text files, which say too little themselves; automatic: it is found out.
+/// What users say about files that say too little themselves; automatic: the reader finds out.
 struct FormatOptions {
   Separator separator = Separator::automatic;
   DecimalMark decimal = DecimalMark::automatic;
   HeaderRow header = HeaderRow::automatic;
+  std::string definitions = {};  ///< folder of .msg files, of recordings whose types nobody else defines; empty: none
 };
 
 }  // namespace modebank
