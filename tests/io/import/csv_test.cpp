@@ -1,6 +1,6 @@
 #include "io/import/csv.hpp"
 
-#include "io/import/csv_number.hpp"
+#include "io/table/number.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/io/import/expect_error.hpp"
 #include "tests/support/paths.hpp"

@@ -63,7 +63,7 @@ TEST(ImportRealData, DriveBlocksAreRuns) {
   options.state = {"gyro_z"};
   options.input = {"wheel_left", "wheel_right"};
   options.truth = {"icp_yawrate_fit"};
-  options.time = "t_block";
+  options.time = {"t_block"};
   options.run = "block";
   const Recording recording = import_data(options).recording;
   ASSERT_EQ(recording.runs.size(), 201);   // the data's README: 201 blocks of 3 x 40 samples at 20 Hz
