@@ -41,7 +41,8 @@ MAY_INCLUDE = {
     "app/text": BELOW_APP + ["app/chain"],
     "app/study": BELOW_APP + ["app/chain", "app/config"],
     "app/report": BELOW_APP + ["app/chain", "app/config", "app/text", "app/study"],
-    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("chain", "check", "config", "text", "study", "report")],
+    "app/init": BELOW_APP,
+    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("init", "chain", "check", "config", "text", "study", "report")],
 }
 # Whose the installed headers <modebank/NAME/...> are.
 PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge",

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "io/files/read_file.hpp"
 #include "io/arrays/array_reader.hpp"
+#include "io/files/read_file.hpp"
 #include "io/import/csv.hpp"
 #include "modebank/base/error.hpp"
 

@@ -77,9 +77,20 @@ void put_in_order(RunStreams& run, Disorder disorder) {
   const std::vector<Index> states = order_of(run.states.stream.time_s), inputs = order_of(run.inputs.stream.time_s);
   reorder(run.states, states);
   reorder(run.inputs, inputs);
-  for (std::vector<RunStreams::Companion>* columns : {&run.truth, &run.weight})
+  for (std::vector<RunStreams::Companion>* columns : {&run.truth, &run.weight, &run.where})
     for (RunStreams::Companion& column : *columns)
       column.values = VectorXd(column.values(column.with_states ? states : inputs));
+}
+
+std::vector<bool> kept_samples(const RunStreams& run, const Trajectory& joined) {
+  std::vector<bool> kept;
+  for (const RunStreams::Companion& where : run.where) {
+    const Stream stream{where.with_states ? run.states.stream.time_s : run.inputs.stream.time_s,
+                        where.values.transpose()};
+    const Eigen::MatrixXd values = where.with_states ? interpolate(stream, joined.time_s) : hold(stream, joined.time_s);
+    for (const double value : values.reshaped()) kept.push_back(value >= 1.0);
+  }
+  return kept;
 }
 
 Trajectory join_run(const RunStreams& run, const DataOptions& options, const InputClock& clock) {

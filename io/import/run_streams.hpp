@@ -38,7 +38,12 @@ struct RunStreams {
   };
   std::vector<Companion> truth;
   std::vector<Companion> weight;  ///< one, or none
+  std::vector<Companion> where;   ///< one, or none: 1 where data.where is true, else 0
 };
+
+/// Per sample of the joined run whether data.where is true there: of the states' samples on both sides, or of the
+/// inputs in force; empty without it.
+std::vector<bool> kept_samples(const RunStreams& run, const Trajectory& joined);
 
 /// Both streams, and what is sampled with them.
 void put_in_order(RunStreams& run, Disorder disorder);
