@@ -39,7 +39,7 @@ TEST(ImportRealData, IceAgreesWithNumpy) {
   const std::string path = (test::golden_dir() / "ice_import.csv").string();
   const Table golden =
       parse_csv(path, read_file(path),
-                {{"samples", "first", "last", "mean_wz", "mean_wz_squared", "mean_velL", "mean_velR"}, "run"});
+                {0, {"samples", "first", "last", "mean_wz", "mean_wz_squared", "mean_velL", "mean_velR"}, "run"});
   const Recording recording = import_data(ice_options()).recording;
   ASSERT_EQ(recording.runs.size(), golden.rows());
   for (std::size_t i = 0; i < golden.rows(); ++i) {
