@@ -81,7 +81,8 @@ using Rows = std::vector<std::size_t>;
 std::vector<Rows> ordered_runs(const Table& table, const std::vector<double>& time_s) {
   std::vector<Rows> runs;
   if (table.text.empty()) {
-    std::iota(runs.emplace_back(table.rows()).begin(), runs.back().end(), std::size_t{0});
+    Rows& all = runs.emplace_back(table.rows());
+    std::iota(all.begin(), all.end(), std::size_t{0});
   } else {
     std::map<std::string, Rows> by_name;
     for (std::size_t row = 0; row < table.rows(); ++row) by_name[table.text[row]].push_back(row);

@@ -103,7 +103,7 @@ TEST_F(ImportDerived, IsGapWhereTheConditionIsFalse) {
     options.missing = how;
     options.where = "u > 0";
     ImportedData data = import();
-    ASSERT_THAT(names(data), ElementsAre("0.1", "0.2"));
+    ASSERT_THAT(names(data), ElementsAre("pro_0.1", "pro_0.2"));
     EXPECT_EQ(data.recording.runs[0].state, row({0, 1, 2}));
     EXPECT_EQ(data.recording.runs[1].state, row({4, 5, 6}));
     options.where = "x < 2.5 || x >= 5";
@@ -122,8 +122,7 @@ TEST_F(ImportDerived, NamesWhatIsWrongBeforeAnySampleIsRead) {
   const auto said = [&](std::vector<std::string> derive, const char* where = "") {
     options.derive = std::move(derive);
     options.where = where;
-    options.state = {"x"};
-    for (const std::string& line : options.derive) options.state.push_back(line.substr(0, 1));
+    options.state = {options.derive.empty() ? "x" : options.derive.front().substr(0, 1)};
     return error<ConfigurationError>();
   };
   EXPECT_THAT(said({"a = steeer + 1"}), HasSubstr("data.derive, a: no column \"steeer\", did you mean steer?"));
