@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/init/survey.hpp"
+#include "app/init/words.hpp"
 
 namespace modebank::app {
 

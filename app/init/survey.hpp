@@ -12,8 +12,8 @@ namespace modebank::app {
 /// One channel of a file, looked at.
 struct SurveyedChannel {
   std::string name, unit, type;
-  ChannelCheck check;
-  Eigen::VectorXd values;  ///< one per row, NaN where missing; empty for text
+  ChannelCheck check = {};
+  Eigen::VectorXd values = {};  ///< one per row, NaN where missing; empty for text
 
   bool is_number() const { return values.size() > 0; }
   bool moves() const { return is_number() && check.largest > check.least; }
@@ -22,12 +22,12 @@ struct SurveyedChannel {
 /// One table of a file with its times, as data.time and data.run would take them.
 struct SurveyedTable {
   std::string name, type;
-  std::vector<SurveyedChannel> channels;
-  std::vector<std::string> time;  ///< data.time; empty: none was found
-  std::string run;                ///< a column whose value separates runs; empty: none is needed
-  Eigen::VectorXd time_s;         ///< of the rows, from their first; the row's number where there is no time
+  std::vector<SurveyedChannel> channels = {};
+  std::vector<std::string> time = {};  ///< data.time; empty: none was found
+  std::string run = {};                ///< a column whose value separates runs; empty: none is needed
+  Eigen::VectorXd time_s = {};         ///< of the rows, from their first; the row's number where there is no time
   std::int64_t origin_ns = 0;
-  SamplingCheck sampling;  ///< of one run
+  SamplingCheck sampling = {};  ///< of one run
 
   const SurveyedChannel* find(const std::string& channel) const;
 };
