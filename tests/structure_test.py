@@ -12,7 +12,7 @@ IDENT = ["ident/base", "ident/data", "ident/model"]
 FIT = IDENT + ["ident/model/models", "ident/fit"]
 STEP = IDENT + ["filter/step"]
 LIBRARIES = FIT + ["ident/lag", "ident/check", "ident/simulate", "mixture", "filter/step", "filter/judge", "filter/learn"]
-IO = ["io/files", "io/hdf5", "io/table", "io/archive/bank", "io/archive", "io/recording", "io/import", "io/simulation"]
+IO = ["io/files", "io/hdf5", "io/table", "io/arrays", "io/archive/bank", "io/archive", "io/recording", "io/import", "io/simulation"]
 BELOW_APP = LIBRARIES + IO
 MAY_INCLUDE = {
     "ident/base": [],
@@ -30,10 +30,11 @@ MAY_INCLUDE = {
     "io/files": IDENT[:1],
     "io/hdf5": IDENT[:1],
     "io/table": IDENT[:1] + ["io/files"],
+    "io/arrays": IDENT[:1] + ["io/files", "io/hdf5", "io/table"],
     "io/archive/bank": STEP + ["io/files", "io/hdf5"],
     "io/archive": LIBRARIES + ["io/files", "io/hdf5", "io/archive/bank"],
     "io/recording": IDENT[:1] + ["io/files", "io/table"],
-    "io/import": FIT + ["ident/lag", "ident/check", "io/files", "io/table", "io/recording"],
+    "io/import": FIT + ["ident/lag", "ident/check", "io/files", "io/table", "io/arrays", "io/recording"],
     "io/simulation": IDENT + ["ident/simulate", "io/files"],
     "app/chain": BELOW_APP,
     "app/check": BELOW_APP + ["app/chain"],
@@ -41,7 +42,8 @@ MAY_INCLUDE = {
     "app/text": BELOW_APP + ["app/chain"],
     "app/study": BELOW_APP + ["app/chain", "app/config"],
     "app/report": BELOW_APP + ["app/chain", "app/config", "app/text", "app/study"],
-    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("chain", "check", "config", "text", "study", "report")],
+    "app/init": BELOW_APP,
+    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("init", "chain", "check", "config", "text", "study", "report")],
 }
 # Whose the installed headers <modebank/NAME/...> are.
 PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge",

@@ -27,6 +27,8 @@ po::options_description describe_options(CommandLine& line) {
   add("repair", po::bool_switch(&line.repair));
   add("findings", po::bool_switch(&line.findings));
   add("apply", po::bool_switch(&line.apply));
+  add("force", po::bool_switch(&line.force));
+  add("yes", po::bool_switch(&line.yes));
   add("form", po::value(&line.form));
   add("output,o", po::value(&line.output));
   add("words", po::value<std::vector<std::string>>());

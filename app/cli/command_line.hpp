@@ -18,6 +18,8 @@ struct CommandLine {
   bool repair = false;             ///< verify: remove what is broken in study folders
   bool findings = false;           ///< check: what it finds, without settings to try
   bool apply = false;              ///< check: write what it suggests
+  bool force = false;              ///< init: overwrite the configuration
+  bool yes = false;                ///< init: ask nothing (it never does)
   std::string form = "increment";  ///< of models that `show` prints: increment or full
   std::string output;              ///< -o: the file that `report`, `predict` or `check --apply` writes
   std::string typed;               ///< the whole line, for provenance

@@ -24,6 +24,9 @@ struct Command {
 };
 
 constexpr Command commands[] = {
+    {"init", "FILE...",
+     "look into logs of any kind, list their channels and write a configuration to start from (-o FILE, --force)",
+     run_init},
     {"run", "CONFIG", "the whole chain: import, windows, mixture, bank, evaluation, archive, summary", run_pipeline},
     {"identify", "CONFIG", "fit the windows and archive them", run_pipeline},
     {"cluster", "CONFIG", "cluster the windows (of --archive.input, if given)", run_pipeline},

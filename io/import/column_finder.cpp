@@ -59,7 +59,8 @@ std::string listing(const std::vector<TableInfo>& tables) {
 
 }  // namespace
 
-ColumnFinder::ColumnFinder(FilePlan& plan, const FormatOptions& options) : plan_(plan) {
+ColumnFinder::ColumnFinder(FilePlan& plan, std::shared_ptr<const DerivedChannels> derived, const FormatOptions& options)
+    : plan_(plan), derived_(std::move(derived)) {
   for (const auto& path : plan.paths) {
     plan.readers.push_back(open_table(path, options));
     names_.push_back(path.string());
@@ -90,6 +91,7 @@ void ColumnFinder::fail(const std::string& column, const std::vector<std::size_t
     for (const TableInfo& table : tables_[file])
       for (const ColumnInfo& known : table.columns) all.push_back(known.name);
   }
+  for (const std::string& known : derived_->names()) all.push_back(known);
   const std::string meant = did_you_mean(column, all);
   if (files.size() > 1) throw ConfigurationError(fmt::format("no column \"{}\"{}{}", column, meant, each));
   throw ConfigurationError(fmt::format("{} has no column \"{}\"{}; columns: {}", names_[files.front()], column, meant,
@@ -107,6 +109,7 @@ std::size_t ColumnFinder::source_with(const std::string& column, const std::vect
 }
 
 ColumnRef ColumnFinder::number(const std::string& column, const std::vector<std::size_t>& files) {
+  if (const DerivedChannel* derived = derived_->find(column)) return derive(*derived, files);
   const std::size_t source = source_with(column, files);
   Texts& requested = plan_.sources[source].request.numbers;
   const auto found = std::find(requested.begin(), requested.end(), column);
@@ -119,6 +122,51 @@ std::vector<ColumnRef> ColumnFinder::numbers(const Texts& columns, const std::ve
   std::vector<ColumnRef> found;
   for (const std::string& column : columns) found.push_back(number(column, files));
   return found;
+}
+
+ColumnRef ColumnFinder::where(const std::vector<std::size_t>& files) { return derive(*derived_->where(), files); }
+
+std::size_t ColumnFinder::clock_of(ColumnRef ref) const {
+  return ref.source == joint_source ? clock_of(plan_.joint[ref.column].operands.front()) : ref.source;
+}
+
+ColumnRef ColumnFinder::derive(const DerivedChannel& channel, const std::vector<std::size_t>& files) {
+  const std::string& key = channel.expression.key();
+  std::vector<std::size_t> all = files;
+  for (std::size_t file = 0; file < names_.size(); ++file) {
+    if (std::find(all.begin(), all.end(), file) == all.end()) all.push_back(file);
+    for (const TableInfo& table : tables_[file])
+      if (!channel.name.empty() && find_column(table, channel.name) != nullptr)
+        throw ConfigurationError(fmt::format("{}: {} has a column of that name: take another", key, names_[file]));
+  }
+  if (channel.expression.channels().empty()) throw ConfigurationError(fmt::format("{}: names no channel", key));
+  std::vector<ColumnRef> operands;
+  try {
+    operands = numbers(channel.expression.channels(), all);
+  } catch (const ConfigurationError& error) {
+    throw ConfigurationError(fmt::format("{}: {}", key, error.what()));
+  }
+  const std::size_t source = operands.front().source;
+  const auto shared = std::make_shared<const DerivedChannel>(channel);
+  if (source != joint_source &&
+      std::all_of(operands.begin(), operands.end(), [source](const ColumnRef ref) { return ref.source == source; }))
+    return derived_of_table(shared, source, operands);
+  for (std::size_t i = 0; i < plan_.joint.size(); ++i)
+    if (plan_.joint[i].channel->name == channel.name) return {joint_source, i};
+  plan_.joint.push_back({shared, operands});
+  return {joint_source, plan_.joint.size() - 1};
+}
+
+ColumnRef ColumnFinder::derived_of_table(std::shared_ptr<const DerivedChannel> channel, std::size_t source,
+                                         const std::vector<ColumnRef>& operands) {
+  SourcePlan& plan = plan_.sources[source];
+  for (const DerivedColumn& known : plan.derived)
+    if (known.channel->name == channel->name) return {source, known.position};
+  DerivedColumn column{plan.request.numbers.size(), std::move(channel), {}};
+  for (const ColumnRef operand : operands) column.operands.push_back(operand.column);
+  plan.request.numbers.push_back(column.channel->name);
+  plan.derived.push_back(column);
+  return {source, column.position};
 }
 
 std::size_t ColumnFinder::source_without_column(std::size_t file, std::size_t states) {
@@ -173,6 +221,12 @@ void ColumnFinder::text(std::size_t source, const std::string& column) {
 std::vector<Channel> ColumnFinder::channels(const std::vector<ColumnRef>& refs) const {
   std::vector<Channel> channels;
   for (const ColumnRef ref : refs) {
+    const auto* computed = ref.source == joint_source ? plan_.joint[ref.column].channel.get() : nullptr;
+    if (computed == nullptr) computed = derived_->find(plan_.sources[ref.source].request.numbers[ref.column]);
+    if (computed != nullptr) {
+      channels.push_back({computed->name, computed->unit});
+      continue;
+    }
     const std::string& name = plan_.sources[ref.source].request.numbers[ref.column];
     channels.push_back({name, find_column(table_of(ref.source), name)->unit});
   }

@@ -11,11 +11,17 @@ namespace modebank {
 /// ConfigurationError for what is not there, naming what is.
 class ColumnFinder {
  public:
-  ColumnFinder(FilePlan& plan, const FormatOptions& options);
+  ColumnFinder(FilePlan& plan, std::shared_ptr<const DerivedChannels> derived, const FormatOptions& options);
 
-  /// A column of numbers: of the first of `files` (positions in FilePlan::paths) that has it.
+  /// A column of numbers, derived or of the first of `files` (positions in FilePlan::paths) that has it; what is
+  /// derived may use other files, too.
   ColumnRef number(const std::string& column, const std::vector<std::size_t>& files);
   std::vector<ColumnRef> numbers(const std::vector<std::string>& columns, const std::vector<std::size_t>& files);
+
+  /// data.where.
+  ColumnRef where(const std::vector<std::size_t>& files);
+  /// A source that it comes from.
+  std::size_t clock_of(ColumnRef ref) const;
 
   /// The source that stands for a file nothing but times is wanted of: its one table, or `states` where that is of the
   /// same file.
@@ -36,10 +42,14 @@ class ColumnFinder {
   const TableInfo& table_of(std::size_t source) const;
   const std::string& path_of(std::size_t source) const { return names_[plan_.sources[source].path]; }
   std::size_t source_of(std::size_t file, std::size_t table);
+  ColumnRef derive(const DerivedChannel& channel, const std::vector<std::size_t>& files);
+  ColumnRef derived_of_table(std::shared_ptr<const DerivedChannel> channel, std::size_t source,
+                             const std::vector<ColumnRef>& operands);
   std::size_t source_with(const std::string& column, const std::vector<std::size_t>& files);
   [[noreturn]] void fail(const std::string& column, const std::vector<std::size_t>& files) const;
 
   FilePlan& plan_;
+  std::shared_ptr<const DerivedChannels> derived_;
   std::vector<std::string> names_;              // of the files
   std::vector<std::vector<TableInfo>> tables_;  // of each file
 };

@@ -119,11 +119,13 @@ void split_runs(std::vector<RunStreams>& runs, const DataOptions& options, std::
 }
 
 /// After the roles are set: data.train and data.test name whole runs.
-void treat_missing_values(std::vector<Trajectory>& runs, Missing missing, std::vector<std::string>& notes) {
+void treat_missing_values(std::vector<Trajectory>& runs, const std::vector<std::vector<bool>>& kept, Missing missing,
+                          std::vector<std::string>& notes) {
   const bool predict = missing == Missing::predict;
   std::vector<Trajectory> treated;
-  for (const Trajectory& run : runs) {
-    std::vector<Trajectory> parts = split_at_gaps(predict ? hold_missing_inputs(run) : run, predict);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Trajectory& run = runs[i];
+    std::vector<Trajectory> parts = split_at_gaps(predict ? hold_missing_inputs(run) : run, predict, kept[i]);
     if (parts.size() > 1)
       notes.push_back(fmt::format("run {} has gaps: it is taken as {} runs, {} to {}", run.run, parts.size(),
                                   parts.front().run, parts.back().run));
@@ -162,13 +164,15 @@ ImportedData import_data(const DataOptions& options) {
   std::vector<RunStreams> streams = named_streams(plans, options, data, false);
   if (options.lag_auto) data.lag = find_lags(streams, options);
   auto& runs = data.recording.runs;
+  std::vector<std::vector<bool>> kept;  // where data.where is true
   Quanta quanta(options);
   for (std::size_t i = 0; i < streams.size(); ++i) {
     runs.push_back(join_run(streams[i], options, data.lag ? data.lag->runs[i].applied() : InputClock{}));
+    kept.push_back(kept_samples(streams[i], runs.back()));
     quanta.look_at(streams[i], runs.back());
     streams[i] = {};
   }
-  treat_missing_values(runs, options.missing, data.notes);
+  treat_missing_values(runs, kept, options.missing, data.notes);
   sort_by_name(runs);
   check_run_names(run_names(runs));
   data.recording.quantum = quanta.decide(data.recording, data.notes);

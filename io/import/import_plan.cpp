@@ -68,22 +68,26 @@ void plan_times(FilePlan& plan, ColumnFinder& find, const DataOptions& options) 
   plan.states_clock = plan.inputs_clock = timed;
 }
 
-void plan_columns(FilePlan& plan, const DataOptions& options) {
-  ColumnFinder find(plan, options.format);
+void plan_columns(FilePlan& plan, const DataOptions& options, const std::shared_ptr<const DerivedChannels>& derived) {
+  ColumnFinder find(plan, derived, options.format);
   const std::size_t inputs = 0, states = plan.paths.size() - 1;
   const std::vector<std::size_t> states_first = states == inputs ? std::vector{inputs} : std::vector{states, inputs};
   plan.state = find.numbers(options.state, {states});
   plan.input = find.numbers(options.input, {inputs});
-  plan.states_clock = plan.state.front().source;
+  plan.states_clock = find.clock_of(plan.state.front());
   plan.inputs_clock =
-      plan.input.empty() ? find.source_without_column(inputs, plan.states_clock) : plan.input.front().source;
+      plan.input.empty() ? find.source_without_column(inputs, plan.states_clock) : find.clock_of(plan.input.front());
   plan.truth = find.numbers(options.truth, states_first);
   if (!options.weight.empty()) plan.weight = {find.number(options.weight, states_first)};
+  if (!options.where.empty()) plan.where = {find.where(states_first)};
   plan_times(plan, find, options);
   // A sample without time has no place, and one without weight should not be guessed at.
   for (SourcePlan& source : plan.sources)
     source.request.may_miss.assign(source.request.numbers.size(), options.missing != Missing::error);
-  for (const ColumnRef weight : plan.weight) plan.sources[weight.source].request.may_miss[weight.column] = false;
+  for (const ColumnRef where : plan.where)
+    if (where.source != joint_source) plan.sources[where.source].request.may_miss[where.column] = true;
+  for (const ColumnRef weight : plan.weight)
+    if (weight.source != joint_source) plan.sources[weight.source].request.may_miss[weight.column] = false;
   plan.states = find.channels(plan.state);
   plan.inputs = find.channels(plan.input);
 }
@@ -100,6 +104,7 @@ ColumnNames without_left_out(const ColumnNames& names, const DataOptions& option
 
 std::vector<FilePlan> plan_import(const DataOptions& options) {
   check_options(options);
+  const auto derived = std::make_shared<const DerivedChannels>(options);
   const FilePattern inputs("data.inputs", options.root, options.inputs);
   ColumnNames names = inputs.runs();
   if (options.run.empty() && options.split.kind == SplitKind::none) names = without_left_out(names, options);
@@ -114,7 +119,7 @@ std::vector<FilePlan> plan_import(const DataOptions& options) {
     const auto partners = find_partners(inputs, {"data.states", options.root, options.states}, names);
     for (std::size_t i = 0; i < plans.size(); ++i) plans[i].paths.push_back(partners[i]);
   }
-  for (FilePlan& plan : plans) plan_columns(plan, options);
+  for (FilePlan& plan : plans) plan_columns(plan, options, derived);
   return plans;
 }
 

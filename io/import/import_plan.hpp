@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ident/data/trajectory.hpp"
+#include "io/import/derived.hpp"
 #include "io/import/options.hpp"
 #include "io/table/table_reader.hpp"
 
@@ -15,12 +16,21 @@ namespace modebank {
 struct SourcePlan {
   std::size_t path = 0;  ///< position in FilePlan::paths
   TableRequest request;
+  std::vector<DerivedColumn> derived;  ///< of this table's columns alone, in order of position
 };
+
+/// Stands for a source where a channel is derived from several, after they were brought to the same times.
+inline constexpr auto joint_source = static_cast<std::size_t>(-1);
 
 /// Where one wanted column stands.
 struct ColumnRef {
-  std::size_t source = 0;  ///< position in FilePlan::sources
-  std::size_t column = 0;  ///< position in that source's TableRequest::numbers
+  std::size_t source = 0;  ///< position in FilePlan::sources, or joint_source
+  std::size_t column = 0;  ///< position in that source's TableRequest::numbers, or in FilePlan::joint
+};
+
+struct JointColumn {
+  std::shared_ptr<const DerivedChannel> channel;
+  std::vector<ColumnRef> operands;
 };
 
 /// What is to be read of one inputs file and its states file, decided on the headers alone.
@@ -31,7 +41,9 @@ struct FilePlan {
   std::vector<std::shared_ptr<const TableReader>> readers;  ///< one per path
   std::vector<SourcePlan> sources;                          ///< the tables that columns come from
   std::vector<ColumnRef> state, input, truth;
-  std::vector<ColumnRef> weight;        ///< one or none
+  std::vector<ColumnRef> weight;  ///< one or none
+  std::vector<ColumnRef> where;   ///< one or none
+  std::vector<JointColumn> joint;
   std::vector<Channel> states, inputs;  ///< names, and units where the files say them
   /// Sources whose times the states and the inputs have; one and the same where rows correspond. What comes from
   /// another source is brought to these times.

@@ -18,17 +18,21 @@ bool known(const Trajectory& run, Index k) { return run.state.col(k).allFinite()
 
 }  // namespace
 
-std::vector<Trajectory> split_at_gaps(const Trajectory& run, bool predict) {
+std::vector<Trajectory> split_at_gaps(const Trajectory& run, bool predict, const std::vector<bool>& kept) {
+  const auto usable = [&](Index k) {
+    // `kept` ends where the run ends: its first samples may have been dropped.
+    const std::size_t dropped = kept.empty() ? 0 : kept.size() - static_cast<std::size_t>(run.samples());
+    return (kept.empty() || kept[dropped + static_cast<std::size_t>(k)]) && (predict || known(run, k));
+  };
   const double longest = gap_periods * median_period_s(run.time_s);
   std::vector<Trajectory> parts;
   for (Index first = 0; first < run.samples();) {
-    if (!predict && !known(run, first)) {
+    if (!usable(first)) {
       ++first;
       continue;
     }
     Index end = first + 1;
-    while (end < run.samples() && (predict || known(run, end)) && run.time_s(end) - run.time_s(end - 1) <= longest)
-      ++end;
+    while (end < run.samples() && usable(end) && run.time_s(end) - run.time_s(end - 1) <= longest) ++end;
     if (end - first >= 2) parts.push_back(stretch(run, first, end - first));
     first = end;
   }

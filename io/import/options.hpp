@@ -54,6 +54,8 @@ struct DataOptions {
   std::vector<std::string> state;  ///< column names
   std::vector<std::string> input;
   std::vector<std::string> truth;       ///< true states; as many as states, or none
+  std::vector<std::string> derive;      ///< computed channels, each "NAME [unit] = EXPRESSION" (io/import/derived.hpp)
+  std::string where;                    ///< a stretch where this expression is false or missing is a gap; empty: none
   std::vector<std::string> state_unit;  ///< one per state, one for all, or none
   std::vector<std::string> input_unit;
   /// Column of sample weights, at least 0 (Trajectory::weight); looked up as truth is: in the states file first. Empty:

@@ -26,7 +26,7 @@ using RunRows = std::map<std::string, Rows>;  // sorted by run name, byte order
 constexpr std::int64_t large_origin_ns = 100'000'000'000'000'000;  // three years: smaller ones cost no precision
 
 /// One table per source of the plan.
-std::vector<Table> read_tables(const FilePlan& plan, FileContent& result) {
+std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent& result) {
   std::vector<Table> tables(plan.sources.size());
   for (std::size_t path = 0; path < plan.paths.size(); ++path) {
     std::vector<std::size_t> here;
@@ -34,7 +34,7 @@ std::vector<Table> read_tables(const FilePlan& plan, FileContent& result) {
     for (std::size_t source = 0; source < plan.sources.size(); ++source)
       if (plan.sources[source].path == path) {
         here.push_back(source);
-        requests.push_back(plan.sources[source].request);
+        requests.push_back(columns_to_read(plan.sources[source].request, plan.sources[source].derived));
       }
     std::vector<Table> read = plan.readers[path]->read(requests, result.files.emplace_back());
     for (std::size_t i = 0; i < here.size(); ++i) {
@@ -42,6 +42,11 @@ std::vector<Table> read_tables(const FilePlan& plan, FileContent& result) {
       result.notes.insert(result.notes.end(), read[i].notes.begin(), read[i].notes.end());
       tables[here[i]] = std::move(read[i]);
     }
+  }
+  for (std::size_t source = 0; source < tables.size(); ++source) {
+    const SourcePlan& of = plan.sources[source];
+    derive_columns(plan.paths[of.path].string(), of.request, of.derived, tables[plan.states_clock], rate_hz,
+                   tables[source]);
   }
   return tables;
 }
@@ -85,24 +90,18 @@ class RowReader {
     return first == std::numeric_limits<std::int64_t>::max() || std::abs(first) < large_origin_ns ? 0 : first;
   }
 
-  /// The samples of `clock`, with the columns `refs` of whatever source; those of others are brought to its times.
+  /// The samples of `clock`, with the columns `refs` of whatever source; those of others are brought to its times, and
+  /// what is derived from several sources is computed there.
   FileStream stream(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run, Bring bring) const {
-    FileStream result = own_stream(clock, refs, run);
-    if (plan_.rows_correspond()) return result;
-    std::vector<std::size_t> others;
-    for (const ColumnRef ref : refs)
-      if (ref.source != clock && std::find(others.begin(), others.end(), ref.source) == others.end())
-        others.push_back(ref.source);
-    if (others.empty()) return result;
-    put_in_order(result, options_.disorder);
-    for (const std::size_t other : others) {
-      FileStream source = own_stream(other, refs, run);
-      put_in_order(source, options_.disorder);
-      std::vector<Index> theirs;
-      for (std::size_t i = 0; i < refs.size(); ++i)
-        if (refs[i].source == other) theirs.push_back(static_cast<Index>(i));
-      bring_to(result, source, theirs, bring);
-    }
+    std::vector<ColumnRef> read;
+    for (const ColumnRef ref : refs) gather_columns(ref, read);
+    if (read.size() == refs.size() && plan_.joint.empty()) return brought(clock, refs, run, bring);
+    FileStream result = brought(clock, read, run, bring);
+    const Stream& from = result.stream;
+    Eigen::MatrixXd values(static_cast<Index>(refs.size()), from.time_s.size());
+    for (std::size_t i = 0; i < refs.size(); ++i)
+      values.row(static_cast<Index>(i)) = derived(refs[i], read, from).transpose();
+    result.stream.values = std::move(values);
     return result;
   }
 
@@ -138,6 +137,52 @@ class RowReader {
   }
 
  private:
+  static bool is_same(ColumnRef a, ColumnRef b) { return a.source == b.source && a.column == b.column; }
+
+  /// Adds the columns of tables that `ref` is made from.
+  void gather_columns(ColumnRef ref, std::vector<ColumnRef>& read) const {
+    if (ref.source == joint_source)
+      for (const ColumnRef operand : plan_.joint[ref.column].operands) gather_columns(operand, read);
+    else if (std::none_of(read.begin(), read.end(), [&](ColumnRef known) { return is_same(known, ref); }))
+      read.push_back(ref);
+  }
+
+  VectorXd derived(ColumnRef ref, const std::vector<ColumnRef>& read, const Stream& from) const {
+    if (ref.source != joint_source) {
+      const auto at = std::find_if(read.begin(), read.end(), [&](ColumnRef known) { return is_same(known, ref); });
+      return from.values.row(at - read.begin()).transpose();
+    }
+    const JointColumn& column = plan_.joint[ref.column];
+    std::vector<VectorXd> operands;
+    for (const ColumnRef operand : column.operands) operands.push_back(derived(operand, read, from));
+    std::vector<std::span<const double>> views;
+    for (const VectorXd& operand : operands)
+      views.emplace_back(operand.data(), static_cast<std::size_t>(operand.size()));
+    const std::vector<double> values =
+        column.channel->expression.evaluate(views, {from.time_s.data(), static_cast<std::size_t>(from.time_s.size())});
+    return VectorXd::Map(values.data(), std::ssize(values));
+  }
+
+  FileStream brought(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run, Bring bring) const {
+    FileStream result = own_stream(clock, refs, run);
+    if (plan_.rows_correspond()) return result;
+    std::vector<std::size_t> others;
+    for (const ColumnRef ref : refs)
+      if (ref.source != clock && std::find(others.begin(), others.end(), ref.source) == others.end())
+        others.push_back(ref.source);
+    if (others.empty()) return result;
+    put_in_order(result, options_.disorder);
+    for (const std::size_t other : others) {
+      FileStream source = own_stream(other, refs, run);
+      put_in_order(source, options_.disorder);
+      std::vector<Index> theirs;
+      for (std::size_t i = 0; i < refs.size(); ++i)
+        if (refs[i].source == other) theirs.push_back(static_cast<Index>(i));
+      bring_to(result, source, theirs, bring);
+    }
+    return result;
+  }
+
   std::string place(std::size_t source, std::size_t row) const {
     return fmt::format("{}:{}", plan_.paths[plan_.sources[source].path].string(), tables_[source].line[row]);
   }
@@ -250,6 +295,7 @@ RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::
   run.run = name;
   run.truth.resize(plan.truth.size());
   run.weight.resize(plan.weight.size());
+  run.where.resize(plan.where.size());
   Gathered states{plan.state, {}}, inputs{plan.input, {}};
   const auto gather = [&](const std::vector<ColumnRef>& refs, std::vector<RunStreams::Companion>& companions) {
     for (std::size_t i = 0; i < refs.size(); ++i) {
@@ -259,11 +305,15 @@ RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::
       with.companions.push_back(&companions[i]);
     }
   };
-  for (const ColumnRef ref : plan.weight) reader.check_weights(ref, slice.rows[ref.source]);
+  for (const ColumnRef ref : plan.weight)
+    if (ref.source != joint_source) reader.check_weights(ref, slice.rows[ref.source]);
   gather(plan.truth, run.truth);
   gather(plan.weight, run.weight);
+  gather(plan.where, run.where);
   run.states = states.split(reader.stream(plan.states_clock, states.refs, slice, Bring::interpolated));
   run.inputs = inputs.split(reader.stream(plan.inputs_clock, inputs.refs, slice, Bring::held));
+  for (RunStreams::Companion& where : run.where)
+    where.values = where.values.unaryExpr([](double value) { return value == 0.0 || std::isnan(value) ? 0.0 : 1.0; });
   return run;
 }
 
@@ -272,7 +322,7 @@ RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::
 FileContent read_runs(const FilePlan& plan, const DataOptions& options) {
   FileContent result;
   result.notes = plan.notes;
-  const std::vector<Table> tables = read_tables(plan, result);
+  const std::vector<Table> tables = read_tables(plan, options.rate_hz, result);
   check_row_counts(plan, tables);
   const RowReader reader(plan, tables, options);
   for (const auto& [value, slice] : slices_of(plan, reader))

@@ -83,6 +83,17 @@ void put_in_order(RunStreams& run, Disorder disorder) {
       column.values = VectorXd(column.values(column.with_states ? states : inputs));
 }
 
+std::vector<bool> kept_samples(const RunStreams& run, const Trajectory& joined) {
+  std::vector<bool> kept;
+  for (const RunStreams::Companion& where : run.where) {
+    const Stream stream{where.with_states ? run.states.stream.time_s : run.inputs.stream.time_s,
+                        where.values.transpose()};
+    const Eigen::MatrixXd values = where.with_states ? interpolate(stream, joined.time_s) : hold(stream, joined.time_s);
+    for (const double value : values.reshaped()) kept.push_back(value >= 1.0);
+  }
+  return kept;
+}
+
 Trajectory join_run(const RunStreams& run, const DataOptions& options, const InputClock& clock) {
   const Stream &states = run.states.stream, &inputs = run.inputs.stream;
   const bool shifted = options.lag_auto && (clock.lag_s != 0.0 || clock.drift != 0.0);

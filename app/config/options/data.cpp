@@ -3,6 +3,8 @@
 
 #include "app/config/option_builders.hpp"
 #include "app/config/options/sections.hpp"
+#include "io/import/derived.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
@@ -81,6 +83,15 @@ Option split_option() {
   return result;
 }
 
+/// For a message that says in which line the key stands.
+void check_derived(const std::string& line) {
+  try {
+    parse_derived(line);
+  } catch (const ConfigurationError& error) {
+    throw std::invalid_argument(std::string("is no derived channel: ") + error.what());
+  }
+}
+
 }  // namespace
 
 std::vector<Option> data_options() {
@@ -93,6 +104,14 @@ std::vector<Option> data_options() {
            "the runs' states files; empty: states are columns of the inputs files", MODEBANK_FIELD(data.states)),
       text("data.state", "column names", "measured states", MODEBANK_FIELD(data.state)),
       text("data.input", "column names", "inputs", MODEBANK_FIELD(data.input)),
+      lines("data.derive", "NAME [unit] = EXPRESSION",
+            "a channel computed of others: + - * / ^, comparisons, && ||, A ? B : C, sin ... atan2 sqrt abs min max, "
+            "diff (per second), unwrap, yaw(x, y, z, w), rotate_x, _y, _z(roll, pitch, yaw, x, y, z); names that are "
+            "no identifiers in 'single quotes'",
+            check_derived, MODEBANK_FIELD(data.derive)),
+      text("data.where", "an expression",
+           "samples at which it is false or missing are left out: a gap that splits the run; empty: none",
+           MODEBANK_FIELD(data.where)),
       text("data.truth", "column names", "true states, one per state, where known; empty: none",
            MODEBANK_FIELD(data.truth)),
       text("data.weight", "a column name",

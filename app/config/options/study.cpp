@@ -10,29 +10,6 @@
 namespace modebank::app {
 namespace {
 
-/// A key that may stand in several lines. Its text has one line per value; setting it adds lines, the empty text
-/// clears.
-Option lines(const std::string& key, const std::string& what, const std::string& help,
-             const std::function<void(const std::string&)>& check, Field<std::vector<std::string>> field) {
-  Option result;
-  result.key = key;
-  result.range = what;
-  result.help = help + " (repeatable)";
-  result.repeatable = true;
-  result.set = [field, check](Config& config, const std::string& text) {
-    std::vector<std::string>& values = field.in(config);
-    if (boost::trim_copy(text).empty()) return values.clear();
-    std::vector<std::string> added;
-    boost::split(added, text, [](char c) { return c == '\n'; });
-    for (const std::string& line : added) {
-      check(line);
-      values.push_back(boost::trim_copy(line));
-    }
-  };
-  result.get = [field](const Config& config) { return boost::join(field.of(config), "\n"); };
-  return result;
-}
-
 Option shard_option() {
   Option result;
   result.key = "study.shard";

@@ -111,6 +111,8 @@ const std::map<std::string, std::vector<std::string>> texts{
     {"data.state", {"other"}},
     {"data.input", {"left"}},
     {"data.truth", {"other"}},
+    {"data.derive", {"twice = 2 * wz"}},
+    {"data.where", {"right > -0.4"}},
     {"data.weight", {"weight"}},
     {"data.state_unit", {"rad/s"}},
     {"data.input_unit", {"m/s"}},
@@ -190,6 +192,7 @@ const std::vector<RuledOut> ruled_out{
 /// Keys that change nothing on these data, so that this test says nothing about them.
 const std::map<std::string, std::string> without_effect{
     {"data.states", "the other value names the same files"},
+    {"data.derive", "no base uses what is derived"},
     {"data.join", "there are no states files to join"},
     {"data.lag_range_s", "no lag is searched"},
     {"data.missing", "nothing is missing"},

@@ -1,0 +1,50 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/cli/commands.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "app/init/proposal.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// Of the inputs' files, beside where the program is called: pro_*.csv gives pro.ini.
+std::string default_name(const std::vector<FileSet>& sets) {
+  std::string stem = std::filesystem::path(sets.front().pattern).stem().string();
+  stem = stem.substr(0, stem.find('*'));
+  while (!stem.empty() && (stem.back() == '_' || stem.back() == '-' || stem.back() == '.')) stem.pop_back();
+  return (stem.empty() ? "log" : stem) + ".ini";
+}
+
+void check_target(const std::string& file, bool force) {
+  if (!force && std::filesystem::exists(file))
+    throw ConfigurationError(fmt::format("{} exists: name another file (-o FILE), or overwrite it with --force", file));
+}
+
+}  // namespace
+
+int run_init(const CommandLine& line) {
+  if (line.files.empty()) throw ConfigurationError("init needs one or more logs: modebank init FILE...");
+  if (!line.output.empty()) check_target(line.output, line.force);
+  const std::vector<FileSet> sets = file_sets(line.files);
+  const std::string target = line.output.empty() ? default_name(sets) : line.output;
+  check_target(target, line.force);
+  std::vector<SurveyedFile> surveyed;
+  for (const FileSet& set : sets) surveyed.push_back(survey_file(set.files.front()));
+  fmt::print("{}", survey_text(sets, surveyed));
+  const std::filesystem::path folder = std::filesystem::absolute(target).lexically_normal().parent_path();
+  Proposal proposal = propose(sets, surveyed, guess_roles(surveyed), folder.string());
+  std::erase_if(proposal.keys, [](const ProposedKey& key) { return find_option("data." + key.key) == nullptr; });
+  const std::string text = configuration_text(proposal, line.typed);
+  replace_file(target, {text});
+  fmt::print("\n{}:\n{}\n", target, text);
+  const std::string archive = std::filesystem::path(target).stem().string() + ".h5";
+  fmt::print("next: modebank run {}\nthen: modebank report {}\n", target, archive);
+  return 0;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,95 @@
+#include "app/init/file_sets.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "app/init/survey.hpp"
+#include "io/import/file_patterns.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+using Path = std::filesystem::path;
+
+bool in_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
+
+/// The common length, cut back to where a word ends in all.
+std::size_t whole_words(const std::vector<std::string>& names, std::size_t common) {
+  while (common > 0 && in_word(names.front()[common - 1]) &&
+         std::any_of(names.begin(), names.end(),
+                     [common](const std::string& name) { return common < name.size() && in_word(name[common]); }))
+    --common;
+  return common;
+}
+
+std::size_t common_start(const std::vector<std::string>& names) {
+  std::size_t common = names.front().size();
+  for (const std::string& name : names)
+    common = static_cast<std::size_t>(
+        std::mismatch(name.begin(), name.begin() + static_cast<std::ptrdiff_t>(std::min(common, name.size())),
+                      names.front().begin())
+            .first -
+        name.begin());
+  return whole_words(names, common);
+}
+
+void find_pattern(FileSet& set) {
+  std::sort(set.files.begin(), set.files.end());
+  const Path& first = set.files.front();
+  set.pattern = first.string();
+  set.runs = {first.stem().string()};
+  if (set.files.size() == 1) return;
+  set.complete = false;
+  std::vector<std::string> names;
+  for (const Path& file : set.files) {
+    if (file.parent_path() != first.parent_path()) return;
+    names.push_back(file.filename().string());
+  }
+  const std::string pattern = common_pattern(names);
+  if (pattern.empty()) return;
+  const std::string whole = (first.parent_path() / pattern).string();
+  const FilePattern matcher("files", "", whole);
+  const std::vector<std::string> runs = matcher.runs();
+  std::vector<std::string> ours;
+  for (const std::string& run : runs)
+    if (std::find(set.files.begin(), set.files.end(), matcher.path_of(run)) != set.files.end()) ours.push_back(run);
+  if (ours.size() != set.files.size()) return;
+  set.complete = true;
+  set.pattern = whole;
+  set.runs = ours;
+  set.others = runs.size() - ours.size();
+}
+
+}  // namespace
+
+std::string common_pattern(const std::vector<std::string>& names) {
+  std::vector<std::string> backwards = names;
+  for (std::string& name : backwards) std::reverse(name.begin(), name.end());
+  const std::size_t start = common_start(names);
+  std::size_t end = common_start(backwards);
+  for (const std::string& name : names) end = std::min(end, name.size() > start ? name.size() - start - 1 : 0);
+  if (start + end == 0 || names.front().find('*') != std::string::npos) return {};
+  return names.front().substr(0, start) + "*" + names.front().substr(names.front().size() - end);
+}
+
+std::vector<FileSet> file_sets(const std::vector<std::string>& files) {
+  std::vector<FileSet> sets;
+  std::vector<std::vector<std::string>> columns;
+  for (const std::string& file : files) {
+    const Path path = std::filesystem::absolute(file).lexically_normal();
+    const std::vector<std::string> own = all_columns(path);
+    const auto known = std::find(columns.begin(), columns.end(), own);
+    const auto at = static_cast<std::size_t>(known - columns.begin());
+    if (known == columns.end()) {
+      columns.push_back(own);
+      sets.emplace_back();
+    }
+    if (std::find(sets[at].files.begin(), sets[at].files.end(), path) == sets[at].files.end())
+      sets[at].files.push_back(path);
+  }
+  for (FileSet& set : sets) find_pattern(set);
+  return sets;
+}
+
+}  // namespace modebank::app

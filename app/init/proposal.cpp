@@ -1,0 +1,274 @@
+#include "app/init/proposal.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/init/words.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+using Path = std::filesystem::path;
+
+/// Repeated values of so many samples mean that an instrument is slower than the file's rows.
+constexpr double most_repeated = 0.5;
+
+/// One configuration from what was found.
+class Proposer {
+ public:
+  Proposer(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess)
+      : sets_(sets), surveyed_(surveyed), guess_(guess) {}
+
+  Proposal propose(const std::string& config_folder) {
+    files(config_folder);
+    mounting();
+    channels();
+    times();
+    sampling();
+    runs();
+    return std::move(proposal_);
+  }
+
+ private:
+  const std::vector<FileSet>& sets_;
+  const std::vector<SurveyedFile>& surveyed_;
+  const Guess& guess_;
+  Proposal proposal_;
+  std::string turned_;  // the name of a derived yaw rate
+
+  const ChannelPlace& state() const { return guess_.states.front(); }
+  const ChannelPlace& input() const { return guess_.inputs.empty() ? state() : guess_.inputs.front(); }
+  const SurveyedTable& table(const ChannelPlace& place) const { return surveyed_[place.file].tables[place.table]; }
+  const SurveyedChannel& channel(const ChannelPlace& place) const { return table(place).channels[place.channel]; }
+  bool one_table() const { return state().file == input().file && state().table == input().table; }
+
+  void add(std::string key, std::string value, std::string why = {}) {
+    proposal_.keys.push_back({std::move(key), std::move(value), std::move(why)});
+  }
+  void doubt(std::string text) { proposal_.doubts.push_back(std::move(text)); }
+
+  std::string runs_text(const FileSet& set) const {
+    if (set.files.size() == 1) return "one run";
+    return fmt::format("{} runs; * names them: {} to {}", set.runs.size(), set.runs.front(), set.runs.back());
+  }
+
+  void files(const std::string& config_folder) {
+    const FileSet &inputs = sets_[input().file], &states = sets_[state().file];
+    Path folder = Path(inputs.pattern).parent_path();
+    while (!folder.empty() && folder != folder.root_path() &&
+           !(states.pattern + "/").starts_with(folder.string() + "/"))
+      folder = folder.parent_path();
+    const Path relative = folder.lexically_relative(config_folder);
+    const bool below = !relative.empty() && *relative.begin() != "..";
+    add("root", below ? relative.string() : folder.string(), "the folder of the data");
+    const auto within = [&](const FileSet& set) { return Path(set.pattern).lexically_relative(folder).string(); };
+    add("inputs", within(inputs), runs_text(inputs));
+    if (input().file != state().file) add("states", within(states), "the same runs' measured states");
+    for (const FileSet* set : {&inputs, &states}) {
+      if (!set->complete)
+        doubt(fmt::format("{} files have the same columns, but no pattern with one * names them: {} alone is taken",
+                          set->files.size(), set->files.front().filename().string()));
+      if (set->others > 0) doubt(fmt::format("{} matches {} files that were not named", set->pattern, set->others));
+      if (set == &inputs && &inputs == &states) break;
+    }
+    if (input().file != state().file && inputs.runs != states.runs && inputs.files.size() + states.files.size() > 2)
+      doubt(fmt::format("{} and {} are not of the same runs: every inputs file needs its states file", within(inputs),
+                        within(states)));
+  }
+
+  static std::string quoted(const std::string& name) {
+    std::string result = "'";
+    for (const char c : name) result += c == '\'' ? std::string("''") : std::string(1, c);
+    return result + "'";
+  }
+
+  void mounting() {
+    if (!guess_.mounting) return;
+    const Mounting& m = *guess_.mounting;
+    const char letter = "xyz"[static_cast<int>(m.up)];
+    const std::string sign = m.reversed ? "-" : "";
+    std::string text = fmt::format(
+        "gravity lies along {}{} of this instrument ({:.2f} m/s^2): it is mounted on its side, and the yaw rate is "
+        "{}{}, not {}",
+        m.reversed ? "-" : "+", letter, std::abs(m.gravity), sign, m.up_rate, m.z_rate);
+    if (m.z_correlation)
+      text += fmt::format(" (correlation with {}: {:.2f} and {:.2f})", m.other, *m.up_correlation, *m.z_correlation);
+    doubt(text);
+    std::vector<std::string> parts;
+    for (const SurveyedChannel& c : table(state()).channels)
+      for (const Axis axis : {Axis::x, Axis::y, Axis::z})
+        if (names_angular_rate(c.name, axis) && parts.size() < 3) parts.push_back(quoted(c.name));
+    const std::string half = m.reversed ? "-pi/2" : "pi/2", other_half = m.reversed ? "pi/2" : "-pi/2";
+    const std::string angles = m.up == Axis::y   ? half + ", 0, 0"
+                               : m.up == Axis::x ? "0, " + other_half + ", 0"
+                                                 : std::string("pi, 0, 0");
+    if (parts.size() < 3) return;
+    const std::string rotation = fmt::format("yaw_rate [rad/s] = rotate_z({}, {})", angles, fmt::join(parts, ", "));
+    if (m.reversed) {
+      turned_ = "yaw_rate";
+      add("derive", rotation, "turned upright");
+    } else {
+      add("derive", "", fmt::format("derive = {} is the same by rotation", rotation));
+    }
+  }
+
+  std::string names(const std::vector<ChannelPlace>& places) const {
+    std::vector<std::string> all;
+    for (const ChannelPlace& place : places)
+      all.push_back(!turned_.empty() && channel(place).name == guess_.mounting->up_rate ? turned_
+                                                                                        : channel(place).name);
+    return fmt::format("{}", fmt::join(all, ", "));
+  }
+
+  /// Units that the format does not say, but the names; none unless all are known.
+  void units(const char* key, const std::vector<ChannelPlace>& places) {
+    std::vector<std::string> all;
+    bool said = true;
+    for (const ChannelPlace& place : places) {
+      const std::string& own = channel(place).unit;
+      said = said && !own.empty();
+      all.push_back(own.empty() ? usual_unit(channel(place).name) : own);
+    }
+    if (said || std::count(all.begin(), all.end(), "") > 0) return;
+    const bool alike = std::count(all.begin(), all.end(), all.front()) == std::ssize(all);
+    add(key, alike ? all.front() : fmt::format("{}", fmt::join(all, ", ")), "a guess from the names");
+  }
+
+  void channels() {
+    for (const std::string& reason : guess_.reasons) doubt(reason);
+    add("state", names(guess_.states), "measured: what the model predicts");
+    if (!guess_.inputs.empty()) add("input", names(guess_.inputs), "what acts on it");
+    units("state_unit", guess_.states);
+    if (!guess_.inputs.empty()) units("input_unit", guess_.inputs);
+  }
+
+  void times() {
+    const SurveyedTable &states = table(state()), &inputs = table(input());
+    const auto own = [](const SurveyedTable& of) {
+      const SurveyedChannel* first = of.time.empty() ? nullptr : of.find(of.time.front());
+      return first != nullptr && first->type == "time";
+    };
+    if (states.time.empty() || inputs.time.empty()) {
+      add("time", "", "");
+      proposal_.keys.back() = {"time", " ", "no column of times was found: row k is k / rate_hz"};
+      add("rate_hz", "1", "samples per second: CHANGE THIS to what it was");
+      doubt("no column of times was found: data.rate_hz = 1 stands for whatever it was");
+      return;
+    }
+    if (own(states) && own(inputs)) return;  // what a recording calls its stamps needs no key
+    const std::string time = fmt::format("{}", fmt::join(states.time, ", "));
+    if (states.time != inputs.time)
+      doubt(fmt::format("times are called {} in one table and {} in the other: data.time takes one name", time,
+                        fmt::join(inputs.time, ", ")));
+    if (time != "time") add("time", time, states.time.size() > 1 ? "seconds and nanoseconds" : "");
+  }
+
+  double repeated(const std::vector<ChannelPlace>& places) const {
+    double least = 1.0;
+    for (const ChannelPlace& place : places) least = std::min(least, channel(place).check.repeated);
+    return places.empty() ? 0.0 : least;
+  }
+
+  void sampling() {
+    const SamplingCheck& rows = table(input()).sampling;
+    const double stale = repeated(guess_.states);
+    if (stale > most_repeated && rows.rate_hz > 0.0 && !table(input()).time.empty()) {
+      const double fresh = rows.rate_hz * (1.0 - stale);
+      const double rate = fresh > 2.0 ? std::round(fresh) : std::round(fresh * 10.0) / 10.0;
+      add("rate_hz", fmt::format("{:g}", rate),
+          fmt::format("of {:.4g} rows a second {:.0f} % only repeat the state before", rows.rate_hz, 100.0 * stale));
+    }
+    if (!one_table() && !guess_.inputs.empty())
+      add("lag_s", "auto", "two instruments rarely share a clock: the lag between them is estimated");
+    bool missing = false, disordered = false, rounded = false;
+    for (const std::vector<ChannelPlace>* places : {&guess_.states, &guess_.inputs})
+      for (const ChannelPlace& place : *places) missing = missing || channel(place).check.missing > 0;
+    for (const ChannelPlace& place : guess_.states) rounded = rounded || channel(place).check.quantum > 0.0;
+    for (const ChannelPlace& place : {state(), input()})
+      disordered = disordered || table(place).sampling.backward_times + table(place).sampling.repeated_times > 0;
+    if (missing) add("missing", "gap", "some values are missing: runs are split there");
+    if (disordered) add("disorder", "sort", "times repeat or go backwards: rows are sorted by time");
+    if (rounded && one_table()) add("quantum", "auto", "the state is rounded");
+  }
+
+  void runs() {
+    if (!table(state()).run.empty()) {
+      add("run", table(state()).run, "separates the runs in one file");
+      return;
+    }
+    if (sets_[input().file].files.size() == 1)
+      add("split", "blocks 10", "one long run: blocks 1, 3, ... train, the others test");
+  }
+};
+
+}  // namespace
+
+Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
+                 const std::string& config_folder) {
+  return Proposer(sets, surveyed, guess).propose(config_folder);
+}
+
+std::string configuration_text(const Proposal& proposal, const std::string& command) {
+  std::string text = fmt::format("# Written by {}: a start, to be looked at.\n", command);
+  for (const std::string& doubt : proposal.doubts) text += fmt::format("# ! {}\n", doubt);
+  text += "\n[data]\n";
+  for (const ProposedKey& key : proposal.keys) {
+    if (key.value.empty()) {
+      text += fmt::format("# {}\n", key.why);
+      continue;
+    }
+    const std::string line = fmt::format("{} = {}", key.key, key.value == " " ? "" : key.value);
+    text += key.why.empty() ? line + "\n" : fmt::format("{:<40}  # {}\n", line, key.why);
+  }
+  text +=
+      "\n# What is not named stands at its default; `modebank help KEY` says what a key means, `modebank check` on "
+      "this "
+      "file what\n# the data allow and which settings gain.\n";
+  return text;
+}
+
+namespace {
+
+std::string row_text(const SurveyedChannel& channel) {
+  if (!channel.is_number()) return fmt::format("  {:<44} text\n", channel.name);
+  std::string notes;
+  if (channel.check.missing > 0) notes += fmt::format("  {} missing", channel.check.missing);
+  if (channel.check.quantum > 0.0) notes += fmt::format("  by {:.4g}", channel.check.quantum);
+  if (channel.check.repeated > most_repeated && channel.moves())
+    notes += fmt::format("  {:.0f} % repeated", 100.0 * channel.check.repeated);
+  const std::string range = channel.moves()
+                                ? fmt::format("{:.5g} to {:.5g}", channel.check.least, channel.check.largest)
+                                : fmt::format("constant {:.5g}", channel.check.least);
+  return fmt::format("  {:<44} {:<8} {}{}\n", channel.name, channel.unit, range, notes);
+}
+
+}  // namespace
+
+std::string survey_text(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed) {
+  std::string text;
+  for (std::size_t i = 0; i < surveyed.size(); ++i) {
+    text += surveyed[i].path.string();
+    if (sets[i].files.size() > 1) text += fmt::format(" (the first of {} alike)", sets[i].files.size());
+    text += "\n";
+    for (const std::string& note : surveyed[i].notes) text += fmt::format("  {}\n", note);
+    for (const SurveyedTable& table : surveyed[i].tables) {
+      const SamplingCheck& rows = table.sampling;
+      const std::string name =
+          table.name.empty() ? "" : table.name + (table.type.empty() ? "" : " (" + table.type + ")") + ": ";
+      const std::string time = table.time.empty() ? "no times"
+                                                  : fmt::format("{:.4g} Hz by {}, {:.4g} s, {} gap{}", rows.rate_hz,
+                                                                fmt::join(table.time, " + "), rows.duration_s,
+                                                                rows.gaps, rows.gaps == 1 ? "" : "s");
+      text += fmt::format(" {}{} rows, {}{}\n", name, table.time_s.size(), time,
+                          table.run.empty() ? "" : fmt::format(", runs by {}", table.run));
+      for (const SurveyedChannel& channel : table.channels) text += row_text(channel);
+    }
+  }
+  return text;
+}
+
+}  // namespace modebank::app

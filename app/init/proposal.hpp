@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/init/file_sets.hpp"
+#include "app/init/guess.hpp"
+
+namespace modebank::app {
+
+/// A key with its value and why; without a value a comment alone.
+struct ProposedKey {
+  std::string key, value, why;
+};
+
+/// What the [data] section is to say, key by key.
+struct Proposal {
+  std::vector<ProposedKey> keys;
+  std::vector<std::string> doubts;  ///< what the user should look at before anything else
+};
+
+/// `surveyed`: the first file of each set.
+Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
+                 const std::string& config_folder);
+
+/// The configuration as text, and all channels as a table for people.
+std::string configuration_text(const Proposal& proposal, const std::string& command);
+std::string survey_text(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed);
+
+}  // namespace modebank::app

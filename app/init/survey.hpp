@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ident/check/stream_check.hpp"
+#include "io/import/options.hpp"
+
+namespace modebank::app {
+
+/// One channel of a file, looked at.
+struct SurveyedChannel {
+  std::string name, unit, type;
+  ChannelCheck check = {};
+  Eigen::VectorXd values = {};  ///< one per row, NaN where missing; empty for text
+
+  bool is_number() const { return values.size() > 0; }
+  bool moves() const { return is_number() && check.largest > check.least; }
+};
+
+/// One table of a file with its times, as data.time and data.run would take them.
+struct SurveyedTable {
+  std::string name, type;
+  std::vector<SurveyedChannel> channels = {};
+  std::vector<std::string> time = {};  ///< data.time; empty: none was found
+  std::string run = {};                ///< a column whose value separates runs; empty: none is needed
+  Eigen::VectorXd time_s = {};         ///< of the rows, from their first; the row's number where there is no time
+  std::int64_t origin_ns = 0;
+  SamplingCheck sampling = {};  ///< of one run
+
+  const SurveyedChannel* find(const std::string& channel) const;
+};
+
+struct SurveyedFile {
+  std::filesystem::path path;
+  std::vector<SurveyedTable> tables;
+  std::vector<std::string> notes;  ///< what its reader says of it
+};
+
+/// Reads all tables of a file that hold numbers. Throws as open_table and TableReader::read do, but for columns that
+/// are no numbers, which are text then.
+SurveyedFile survey_file(const std::filesystem::path& path);
+
+/// All columns of a file by name, without reading it: files of one kind have the same.
+std::vector<std::string> all_columns(const std::filesystem::path& path);
+
+}  // namespace modebank::app

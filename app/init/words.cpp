@@ -1,0 +1,163 @@
+#include "app/init/words.hpp"
+
+#include <array>
+#include <cctype>
+
+namespace modebank::app {
+namespace {
+
+bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
+bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Points for words that follow one another in a name.
+struct Word {
+  std::string_view words;  ///< with blanks around
+  int points;
+};
+
+/// The best word of a list counts, so that "angular velocity z" is not paid for each of its words.
+template <std::size_t size>
+int best(const std::array<Word, size>& list, std::string_view words) {
+  int points = 0;
+  for (const Word& word : list)
+    if (words.find(word.words) != std::string_view::npos && word.points > points) points = word.points;
+  return points;
+}
+
+constexpr std::array state_words{
+    Word{" wz ", 6},          Word{" omega z ", 6}, Word{" yaw rate ", 6},
+    Word{" yawrate ", 6},     Word{" gyro z ", 6},  Word{" angular velocity z ", 6},
+    Word{" angular z ", 5},   Word{" gyro ", 3},    Word{" level ", 5},
+    Word{" temperature ", 5}, Word{" temp ", 4},    Word{" output ", 5},
+    Word{" y ", 3},           Word{" y1 ", 5},      Word{" y 1 ", 4},
+    Word{" response ", 5},    Word{" x ", 2},       Word{" measured ", 4},
+    Word{" meas ", 4},        Word{" sensor ", 3},  Word{" vx ", 4},
+    Word{" linear x ", 4},    Word{" speed ", 3},   Word{" velocity ", 3},
+    Word{" vel ", 3},         Word{" rate ", 2},    Word{" acceleration ", 2},
+    Word{" state ", 3},       Word{" angle ", 2},   Word{" position ", 1},
+    Word{" pressure ", 4},    Word{" flow ", 3},
+};
+
+constexpr std::array input_words{
+    Word{" cmd ", 8},       Word{" command ", 8},  Word{" commanded ", 8}, Word{" setpoint ", 8},
+    Word{" set point ", 8}, Word{" desired ", 7},  Word{" target ", 7},    Word{" demand ", 7},
+    Word{" reference ", 6}, Word{" ref ", 6},      Word{" throttle ", 7},  Word{" steer ", 7},
+    Word{" steering ", 7},  Word{" brake ", 7},    Word{" pedal ", 7},     Word{" pwm ", 7},
+    Word{" duty ", 7},      Word{" voltage ", 6},  Word{" torque ", 6},    Word{" effort ", 5},
+    Word{" pump ", 6},      Word{" valve ", 6},    Word{" heater ", 6},    Word{" control ", 6},
+    Word{" input ", 6},     Word{" u ", 6},        Word{" u1 ", 6},        Word{" u2 ", 6},
+    Word{" u 1 ", 6},       Word{" u 2 ", 6},      Word{" wheel ", 5},     Word{" vel l ", 5},
+    Word{" vel r ", 5},     Word{" v l ", 5},      Word{" v r ", 5},       Word{" left ", 4},
+    Word{" right ", 4},     Word{" motor ", 4},    Word{" joy ", 5},       Word{" cur ", 2},
+    Word{" current ", 2},   Word{" linear x ", 2}, Word{" angular z ", 2}, Word{" speed ", 2},
+    Word{" vx ", 2},
+};
+
+/// What the table's name adds to all its channels.
+constexpr std::array measuring_tables{Word{" imu ", 3}, Word{" gyro ", 3}, Word{" vicon ", 1}, Word{" odom ", 1},
+                                      Word{" odometry ", 1}};
+constexpr std::array acting_tables{
+    Word{" cmd ", 8},      Word{" command ", 8}, Word{" commands ", 8}, Word{" joy ", 3},     Word{" odom ", 2},
+    Word{" odometry ", 2}, Word{" joint ", 2},   Word{" wheel ", 4},    Word{" encoder ", 4}, Word{" encoders ", 4}};
+
+constexpr std::array ignored_words{
+    " covariance ", " seq ",       " frame id ",     " status ", " stamp ", " secs ",    " nsecs ",    " sec ",
+    " nanosec ",    " timestamp ", " receive time ", " row ",    " index ", " id ",      " latitude ", " longitude ",
+    " altitude ",   " lat ",       " lon ",          " alt ",    " label ", " mode ",    " qx ",       " qy ",
+    " qz ",         " qw ",        " orientation ",  " step ",   " count ", " counter ", " steady ",   " window ",
+    " friction ",   " ground ",    " true ",         " truth ",  " gt ",    " flag ",    " jump ",     " header ",
+};
+
+constexpr std::array time_names{" time ",    " t ",       " stamp ",   " timestamp ",     " tout ",
+                                " secs ",    " seconds ", " sec ",     " sampling time ", " zeit ",
+                                " clock ",   " time s ",  " t s ",     " header stamp ",  " time ns ",
+                                " time ms ", " time us ", " t block ", " stamp ns ",      " header stamp secs "};
+constexpr std::array run_names{" run ",     " run id ",   " block ", " trial ",   " episode ", " experiment ",
+                               " segment ", " sequence ", " file ",  " session ", " lap "};
+
+template <std::size_t size>
+bool any_of(const std::array<const char*, size>& list, std::string_view words) {
+  for (const std::string_view word : list)
+    if (words.find(word) != std::string_view::npos) return true;
+  return false;
+}
+
+template <std::size_t size>
+bool ends_with_any(const std::array<const char*, size>& list, std::string_view words) {
+  for (const std::string_view word : list)
+    if (words.ends_with(word)) return true;
+  return false;
+}
+
+/// The last letter of a name that says which axis.
+bool has_axis(std::string_view words, Axis axis, std::string_view before) {
+  constexpr std::array letters{"x", "y", "z"};
+  const std::string joint = std::string(before) + letters[static_cast<std::size_t>(axis)] + " ";
+  return words.ends_with(joint);
+}
+
+}  // namespace
+
+std::string words_of_name(std::string_view name) {
+  std::string words = " ";
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const char c = name[i], before = i > 0 ? name[i - 1] : '\0';
+    const bool starts =
+        (is_upper(c) && is_lower(before)) || (is_digit(c) && (is_lower(before) || is_upper(before)) && i > 1 &&
+                                              (is_lower(name[i - 2]) || is_upper(name[i - 2])));
+    const bool letter = is_upper(c) || is_lower(c) || is_digit(c);
+    if ((starts || !letter) && words.back() != ' ') words += ' ';
+    if (letter) words += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  if (words.back() != ' ') words += ' ';
+  return words;
+}
+
+NameScore score_name(std::string_view name, std::string_view type) {
+  const std::string words = words_of_name(name), kind = words_of_name(type);
+  NameScore score;
+  score.ignored = any_of(ignored_words, words) || names_time(name);
+  score.state = best(state_words, words);
+  score.input = best(input_words, words);
+  if (score.state > 0) score.state += std::max(best(measuring_tables, words), best(measuring_tables, kind));
+  if (score.input > 0) score.input += best(acting_tables, words);
+  if (score.input >= 10) score.state = 0;  // a command, whatever it commands
+  return score;
+}
+
+bool names_time(std::string_view name) { return ends_with_any(time_names, words_of_name(name)); }
+bool names_run(std::string_view name) { return ends_with_any(run_names, words_of_name(name)); }
+
+bool names_nanoseconds(std::string_view name) {
+  constexpr std::array names{" nsecs ", " nsec ", " nanosec ", " nanosecs ", " nanoseconds ", " ns "};
+  return ends_with_any(names, words_of_name(name));
+}
+
+std::string usual_unit(std::string_view name) {
+  for (const Axis axis : {Axis::x, Axis::y, Axis::z}) {
+    if (names_angular_rate(name, axis)) return "rad/s";
+    if (names_acceleration(name, axis)) return "m/s^2";
+  }
+  constexpr std::array rates{" yaw rate ", " yawrate "};
+  constexpr std::array speeds{" linear x ", " linear y ", " vx ", " vel l ", " vel r ", " speed "};
+  const std::string words = words_of_name(name);
+  if (ends_with_any(rates, words)) return "rad/s";
+  return ends_with_any(speeds, words) ? "m/s" : "";
+}
+
+bool names_angular_rate(std::string_view name, Axis axis) {
+  const std::string words = words_of_name(name);
+  for (const char* before : {" w", " gyro ", " angular velocity ", " angular ", " omega ", " gyro"})
+    if (has_axis(words, axis, before)) return true;
+  return false;
+}
+
+bool names_acceleration(std::string_view name, Axis axis) {
+  const std::string words = words_of_name(name);
+  for (const char* before : {" a", " acc ", " linear acceleration ", " accel ", " acceleration "})
+    if (has_axis(words, axis, before)) return true;
+  return false;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,206 @@
+#include "io/arrays/array_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <map>
+
+#include "ident/base/not_a_number.hpp"
+#include "io/arrays/stored_columns.hpp"
+#include "io/table/stamp_column.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+constexpr std::string_view nanoseconds_type = "datetime64[ns]";
+
+/// Columns, by position in the store, that share their rows.
+struct Block {
+  std::string group;
+  std::uint64_t rows = 0;
+  bool timed = false;
+  std::vector<std::size_t> columns;
+};
+
+bool is_time(const StoredColumn& column) {
+  return column.type == nanoseconds_type || (!column.text && is_time_name(column.name));
+}
+
+std::vector<Block> blocks_of(const std::vector<StoredColumn>& columns) {
+  std::vector<Block> blocks;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto same = [&](const Block& b) { return b.group == columns[i].group && b.rows == columns[i].rows; };
+    auto block = std::find_if(blocks.begin(), blocks.end(), same);
+    if (block == blocks.end()) block = blocks.insert(blocks.end(), {columns[i].group, columns[i].rows, false, {}});
+    block->columns.push_back(i);
+    block->timed = block->timed || is_time(columns[i]);
+  }
+  return blocks;
+}
+
+bool is_above(const std::string& group, const std::string& below) {
+  return group.empty() ? !below.empty() : below.starts_with(group + ".") || below.starts_with(group + "[");
+}
+
+/// Blocks without times join the nearest group above that has some of that length.
+std::vector<Block> joined(std::vector<Block> blocks) {
+  std::vector<Block> result;
+  for (const Block& block : blocks)
+    if (block.timed) result.push_back(block);
+  for (const Block& block : blocks) {
+    if (block.timed) continue;
+    Block* nearest = nullptr;
+    for (Block& above : result)
+      if (above.timed && above.rows == block.rows && is_above(above.group, block.group) &&
+          (nearest == nullptr || above.group.size() > nearest->group.size()))
+        nearest = &above;
+    if (nearest == nullptr)
+      result.push_back(block);
+    else
+      nearest->columns.insert(nearest->columns.end(), block.columns.begin(), block.columns.end());
+  }
+  return result;
+}
+
+class ArrayReader : public TableReader {
+ public:
+  ArrayReader(const std::filesystem::path& path, std::unique_ptr<ColumnStore> store)
+      : path_(path), store_(std::move(store)), blocks_(joined(blocks_of(store_->columns()))) {
+    for (std::size_t b = 0; b < blocks_.size(); ++b) tables_.push_back(table_of(b));
+  }
+
+  std::vector<TableInfo> tables() const override { return tables_; }
+
+  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const override {
+    file = describe_file(path_);
+    std::vector<Table> result;
+    for (const TableRequest& request : requests) result.push_back(read_table(request));
+    return result;
+  }
+
+ private:
+  std::filesystem::path path_;
+  std::unique_ptr<ColumnStore> store_;
+  std::vector<Block> blocks_;
+  std::vector<TableInfo> tables_;
+
+  /// A group's table has its name; of several lengths in it each but the first says its own.
+  TableInfo table_of(std::size_t b) const {
+    const Block& block = blocks_[b];
+    TableInfo table;
+    table.name = block.group;
+    for (std::size_t earlier = 0; earlier < b; ++earlier)
+      if (blocks_[earlier].group == block.group) table.name = fmt::format("{}[{} rows]", block.group, block.rows);
+    table.rows = block.rows;
+    for (const std::size_t i : block.columns) {
+      const StoredColumn& column = store_->columns()[i];
+      table.columns.push_back({column.path(), column.unit, is_time(column) ? "time" : column.type});
+    }
+    return table;
+  }
+
+  std::size_t stored(const TableRequest& request, const std::string& name) const {
+    const TableInfo& table = tables_.at(request.table);
+    return blocks_[request.table].columns[column_position(path_.string(), column_names(table), name)];
+  }
+
+  Table read_table(const TableRequest& request) const {
+    Table table;
+    const auto rows = static_cast<std::size_t>(tables_.at(request.table).rows);
+    table.line.resize(rows);
+    for (std::size_t k = 0; k < rows; ++k) table.line[k] = k + 1;
+    for (std::size_t i = 0; i < request.numbers.size(); ++i)
+      table.numbers.push_back(
+          numbers(stored(request, request.numbers[i]), i < request.may_miss.size() && request.may_miss[i]));
+    if (!request.text.empty()) table.text = texts(stored(request, request.text));
+    if (!request.time.column.empty()) times(request, table);
+    return table;
+  }
+
+  std::vector<double> numbers(std::size_t column, bool may_miss) const {
+    const StoredColumn& stored = store_->columns()[column];
+    if (stored.text) throw DataError(fmt::format("{}: column {} is text, not numbers", path_.string(), stored.path()));
+    std::vector<double> values = store_->numbers(column);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (std::isfinite(values[k])) continue;
+      if (!may_miss)
+        throw DataError(
+            fmt::format("{}:{}: column {}: missing value ({})", path_.string(), k + 1, stored.path(), values[k]));
+      values[k] = not_a_number;
+    }
+    return values;
+  }
+
+  std::vector<std::string> texts(std::size_t column) const {
+    const StoredColumn& stored = store_->columns()[column];
+    if (stored.text) return store_->texts(column);
+    std::vector<std::string> result;
+    if (stored.whole)
+      for (const std::int64_t value : store_->whole_numbers(column)) result.push_back(fmt::format("{}", value));
+    else
+      for (const double value : store_->numbers(column)) result.push_back(fmt::format("{}", value));
+    return result;
+  }
+
+  void times(const TableRequest& request, Table& table) const {
+    const std::size_t column = stored(request, request.time.column);
+    const StoredColumn& seconds = store_->columns()[column];
+    StampColumn stamps(request.time, seconds.type == nanoseconds_type ? "ns" : std::string_view(seconds.unit));
+    stamps.reserve(table.rows());
+    if (seconds.text) throw DataError(fmt::format("{}: column {} is text", path_.string(), seconds.path()));
+    std::vector<std::string> fine;
+    if (!request.time.nanoseconds.empty()) fine = texts(stored(request, request.time.nanoseconds));
+    const std::vector<std::int64_t> whole = seconds.whole ? store_->whole_numbers(column) : std::vector<std::int64_t>();
+    const std::vector<double> values = seconds.whole ? std::vector<double>() : store_->numbers(column);
+    for (std::size_t k = 0; k < table.rows(); ++k) {
+      const bool known = seconds.whole || std::isfinite(values[k]);
+      if (!known && !request.time.may_miss)
+        throw DataError(fmt::format("{}:{}: column {}: missing value", path_.string(), k + 1, seconds.path()));
+      if (seconds.whole)
+        stamps.add(whole[k]);
+      else
+        stamps.add(values[k]);
+      if (known && !fine.empty() && !stamps.add_nanoseconds(fine[k]))
+        throw DataError(fmt::format("{}:{}: column {}: {} is no number of nanoseconds", path_.string(), k + 1,
+                                    request.time.nanoseconds, fine[k]));
+    }
+    stamps.finish(path_.string(), table);
+  }
+};
+
+}  // namespace
+
+bool is_hdf5(std::string_view first) {
+  constexpr std::string_view magic = "\x89HDF\r\n\x1A\n";
+  for (const std::size_t at : {0U, 512U, 1024U, 2048U})
+    if (first.size() >= at + magic.size() && first.substr(at, magic.size()) == magic) return true;
+  return false;
+}
+
+bool is_mat(const std::filesystem::path& path, std::string_view first) {
+  return first.starts_with("MATLAB 5.0 MAT-file") || (path.extension() == ".mat" && !is_hdf5(first));
+}
+
+bool is_time_name(std::string_view name) {
+  std::string lower(name.substr(name.rfind('.') + 1));
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::array names{"t",    "time", "tout",    "stamp",   "timestamp", "time_s",  "t_s",
+                             "secs", "sec",  "seconds", "time_ns", "time_ms",   "time_us", "stamp_ns"};
+  return std::find(names.begin(), names.end(), lower) != names.end();
+}
+
+std::shared_ptr<const TableReader> open_hdf5_tables(const std::filesystem::path& path) {
+  return std::make_shared<ArrayReader>(path, open_hdf5_columns(path));
+}
+
+std::shared_ptr<const TableReader> open_mat_tables(const std::filesystem::path& path) {
+  return std::make_shared<ArrayReader>(path, open_mat_columns(path));
+}
+
+}  // namespace modebank

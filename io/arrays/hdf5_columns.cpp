@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "io/arrays/hdf5_objects.hpp"
+#include "io/arrays/hdf5_walk.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+using hdf5::Handle;
+
+class Hdf5Columns : public ColumnStore {
+  template <class Read>
+  auto at_column(std::size_t column, Read&& read) const {
+    const hdf5::Quiet quiet;
+    const Hdf5Place& place = places_.at(column);
+    try {
+      const Handle file = hdf5::open_file(path_);
+      const Handle data(H5Dopen2(file.id(), place.object.c_str(), H5P_DEFAULT), H5Dclose, "open the dataset");
+      hdf5_check_readable(data.id());
+      return read(data.id(), place);
+    } catch (const DataError& error) {
+      throw DataError(fmt::format("{}: column {}: {}", path_, columns_[column].path(), error.what()));
+    }
+  }
+
+ public:
+  explicit Hdf5Columns(const std::filesystem::path& path) : path_(path.string()) {
+    const hdf5::Quiet quiet;
+    H5PLset_loading_state(0);  // no file names code of ours
+    Hdf5Walk walk;
+    try {
+      const Handle file = hdf5::open_file(path_);
+      const Handle root = hdf5::open_group(file.id(), "/");
+      refuse_archive(root.id());
+      walk.group(root.id(), "", "", 0);
+    } catch (const DataError& error) {
+      throw DataError(fmt::format("{}: {}", path_, error.what()));
+    }
+    walk.turn_matrices();
+    name_signals(walk.columns, walk.labels);
+    if (walk.columns.empty()) fail_empty(walk);
+    columns_ = std::move(walk.columns);
+    places_ = std::move(walk.places);
+    if (walk.tables == 1) leave_out_only_group();
+  }
+
+  const std::vector<StoredColumn>& columns() const override { return columns_; }
+  std::vector<double> numbers(std::size_t column) const override { return read<double>(column, H5T_NATIVE_DOUBLE); }
+  std::vector<std::int64_t> whole_numbers(std::size_t column) const override {
+    return read<std::int64_t>(column, H5T_NATIVE_INT64);
+  }
+  std::vector<std::string> texts(std::size_t column) const override {
+    return at_column(column, [&](hid_t data, const Hdf5Place& place) { return hdf5_read_texts(data, place.member); });
+  }
+
+ private:
+  std::string path_;
+  std::vector<StoredColumn> columns_;
+  std::vector<Hdf5Place> places_;
+
+  void refuse_archive(hid_t root) const {
+    if (hdf5_text_attribute(root, "format").starts_with("modebank"))
+      throw ConfigurationError(
+          fmt::format("{} is an archive of modebank, not a log: `modebank show` and `modebank report` read it, and "
+                      "--archive.input takes its stages",
+                      path_));
+  }
+
+  [[noreturn]] void fail_empty(const Hdf5Walk& walk) const {
+    std::string why;
+    for (const std::string& object : walk.objects) why += "; " + object;
+    if (!walk.foreign.empty())
+      why += fmt::format("; {} lies in another file, which is not followed", fmt::join(walk.foreign, ", "));
+    throw ConfigurationError(fmt::format("{}: no column of numbers of two rows or more{}", path_, why));
+  }
+
+  /// The columns of a file that holds one table alone need not say which.
+  void leave_out_only_group() {
+    const std::string group = columns_.front().group;
+    for (const StoredColumn& column : columns_)
+      if (column.group != group) return;
+    for (StoredColumn& column : columns_) column.group.clear();
+  }
+
+  template <class T>
+  std::vector<T> read(std::size_t column, hid_t memory) const {
+    return at_column(column, [&](hid_t data, const Hdf5Place& place) {
+      const auto rows = static_cast<std::size_t>(columns_[column].rows);
+      if (!place.member.empty()) return hdf5_read_member<T>(data, place.member, place.element, memory, rows);
+      return hdf5_read_line<T>(data, place.rows_along, place.element, memory, rows);
+    });
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<ColumnStore> open_hdf5_columns(const std::filesystem::path& path) {
+  return std::make_unique<Hdf5Columns>(path);
+}
+
+}  // namespace modebank

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "io/arrays/stored_columns.hpp"
+#include "io/hdf5/array.hpp"
+
+namespace modebank {
+
+/// Where a column lies: a line of a dataset of one or two dimensions, or an element of a member of a table's rows.
+struct Hdf5Place {
+  std::string object;      ///< the dataset's path in HDF5
+  std::string member;      ///< of a compound type; empty: the dataset is of numbers or texts itself
+  hsize_t element = 0;     ///< of a member that is an array; else which line of a matrix
+  hsize_t rows_along = 0;  ///< the dimension along which rows run
+};
+
+/// Walks through a file and lists its columns.
+class Hdf5Walk {
+ public:
+  std::vector<StoredColumn> columns;
+  std::vector<Hdf5Place> places;
+  std::map<std::string, std::string> labels;
+  std::vector<std::string> objects;  ///< MATLAB's, with the line that converts each
+  std::vector<std::string> foreign;  ///< what lies outside the file
+  int tables = 0;                    ///< of pandas or of compound rows
+
+  void group(hid_t id, const std::string& path, const std::string& name, int depth);
+
+  /// Rows of a matrix run along the dimension that a vector of the file has, else as its maker's habit is.
+  void turn_matrices();
+
+ private:
+  static constexpr std::size_t most_objects = 100'000;
+  struct Matrix {
+    StoredColumn column;
+    std::string object;
+    hdf5::Shape shape;
+    hsize_t habit;
+  };
+  std::vector<Matrix> matrices_;
+  std::set<haddr_t> seen_;
+
+  void add(StoredColumn column, Hdf5Place place);
+
+  static bool is_object(hid_t id, const std::string& made);
+
+  void note_object(const std::string& made, const std::string& name);
+
+  void link(hid_t parent, const std::string& member, const std::string& path, const std::string& group_name, int depth);
+
+  void dataset(hid_t id, const std::string& path, const std::string& group_name, const std::string& name, int depth);
+
+  void plain(StoredColumn column, const std::string& path, const hdf5::Shape& shape, hsize_t habit);
+
+  /// Members of a table's rows; `names`: of a member's elements.
+  void compound(hid_t type, const hdf5::Shape& shape, const std::string& path, const std::string& group_name,
+                const std::map<std::string, std::vector<std::string>>& names);
+
+  /// Each field of MATLAB's array of structs is a dataset of references, one per struct.
+  void struct_array(hid_t id, hid_t type, const hdf5::Shape& shape, const std::string& group_name,
+                    const std::string& name, int depth);
+
+  void note_label(hid_t id, const std::string& full, const hdf5::Shape& shape);
+
+  void fixed_frame(hid_t id, const std::string& path, const std::string& name);
+
+  void fixed_block(hid_t id, const std::string& path, const std::string& name, int block);
+
+  void table_frame(hid_t id, const std::string& path, const std::string& name);
+};
+
+}  // namespace modebank

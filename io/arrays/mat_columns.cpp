@@ -1,0 +1,242 @@
+#include <fmt/format.h>
+#include <matio.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "io/arrays/stored_columns.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+struct CloseFile {
+  void operator()(mat_t* file) const { Mat_Close(file); }
+};
+struct FreeVariable {
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
+using MatFile = std::unique_ptr<mat_t, CloseFile>;
+using Variable = std::unique_ptr<matvar_t, FreeVariable>;
+
+void be_silent(int, char*) {}
+
+MatFile open_mat(const std::string& path) {
+  Mat_LogInitFunc("modebank", be_silent);
+  MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  if (!file) throw DataError(fmt::format("{}: no MATLAB file that could be read, or a damaged one", path));
+  return file;
+}
+
+bool is_number(const matvar_t& v) {
+  return v.class_type >= MAT_C_DOUBLE && v.class_type <= MAT_C_UINT64 && v.isComplex == 0;
+}
+
+std::string type_name(const matvar_t& v) {
+  constexpr const char* names[]{"double", "single", "int8",   "uint8", "int16",
+                                "uint16", "int32",  "uint32", "int64", "uint64"};
+  return v.isLogical ? "logical" : names[v.class_type - MAT_C_DOUBLE];
+}
+
+/// The product of the extents; as many as fit where it overflows.
+std::uint64_t elements(const matvar_t& v) {
+  std::uint64_t product = v.rank > 0 ? 1 : 0;
+  for (int i = 0; i < v.rank; ++i)
+    if (__builtin_mul_overflow(product, v.dims[i], &product)) return ~std::uint64_t{0};
+  return product;
+}
+
+/// From a variable to one of its parts: fields of structs, each with the element of a struct array.
+struct MatStep {
+  std::string field;
+  std::size_t element = 0;
+};
+
+struct MatPlace {
+  std::string variable;
+  std::vector<MatStep> steps;
+  std::size_t first = 0;  ///< of the values, which follow one another down a column
+};
+
+matvar_t* follow(matvar_t* v, const std::vector<MatStep>& steps) {
+  for (const MatStep& step : steps) {
+    if (!v || v->class_type != MAT_C_STRUCT) return nullptr;
+    v = Mat_VarGetStructFieldByName(v, step.field.c_str(), step.element);
+  }
+  return v;
+}
+
+/// Walks through the variables' headers and lists their columns.
+class MatWalk {
+ public:
+  explicit MatWalk(std::uint64_t file_bytes) : most_bytes_((file_bytes + 4096) * most_expansion) {}
+
+  std::vector<StoredColumn> columns;
+  std::vector<MatPlace> places;
+  std::map<std::string, MatPlace> label_places;
+  std::vector<std::string> objects;
+
+  void variable(const matvar_t& v) {
+    if (!v.name) return;
+    part(v, "", v.name, {v.name, {}}, 0);
+  }
+
+ private:
+  std::uint64_t most_bytes_, bytes_ = 0;
+
+  void part(const matvar_t& v, const std::string& group, const std::string& name, const MatPlace& place, int depth) {
+    const std::string path = group.empty() ? name : group + "." + name;
+    if (v.class_type == MAT_C_STRUCT) return fields(v, path, place, depth);
+    if (v.class_type == MAT_C_OBJECT || v.class_type == MAT_C_OPAQUE || v.class_type == MAT_C_FUNCTION)
+      return objects.push_back(path);
+    if (v.class_type == MAT_C_CHAR && name == "label") label_places[path] = place;
+    if (!is_number(v)) return;
+    check_size(v, path);
+    if (v.rank != 2 || elements(v) < 2) return;
+    const std::size_t rows = v.dims[0], wide = v.dims[1];
+    const bool vector = rows == 1 || wide == 1;
+    const std::size_t length = vector ? rows * wide : rows,
+                      count = vector ? 1 : std::min(wide, std::size_t{most_columns});
+    for (std::size_t j = 0; j < count; ++j) {
+      StoredColumn column{group, vector ? name : fmt::format("{}[{}]", name, j), type_name(v), "", length};
+      column.whole = v.class_type >= MAT_C_INT8 && !v.isLogical;
+      columns.push_back(std::move(column));
+      places.push_back(place);
+      places.back().first = j * length;
+    }
+  }
+
+  void fields(const matvar_t& v, const std::string& path, const MatPlace& place, int depth) {
+    const std::uint64_t count = elements(v);
+    const unsigned field_count = Mat_VarGetNumberOfFields(const_cast<matvar_t*>(&v));
+    if (depth > deepest_group || count == 0 || count > most_columns || field_count > most_columns) return;
+    char* const* names = Mat_VarGetStructFieldnames(&v);
+    for (std::size_t e = 0; e < count; ++e)
+      for (unsigned f = 0; f < field_count; ++f) {
+        const matvar_t* field = Mat_VarGetStructFieldByIndex(const_cast<matvar_t*>(&v), f, e);
+        if (!field) continue;
+        MatPlace inner = place;
+        inner.steps.push_back({names[f], e});
+        part(*field, count == 1 ? path : fmt::format("{}[{}]", path, e), names[f], inner, depth + 1);
+      }
+  }
+
+  void check_size(const matvar_t& v, const std::string& path) {
+    const std::uint64_t count = elements(v);
+    if (count > most_bytes_ || (bytes_ += count) > most_bytes_)
+      throw DataError(fmt::format("{} declares more content than the file holds", path));
+  }
+};
+
+class MatColumns : public ColumnStore {
+ public:
+  explicit MatColumns(const std::filesystem::path& path) : path_(path.string()) {
+    const MatFile file = open_mat(path_);
+    MatWalk walk(std::filesystem::file_size(path));
+    try {
+      for (Variable v(Mat_VarReadNextInfo(file.get())); v; v.reset(Mat_VarReadNextInfo(file.get()))) walk.variable(*v);
+    } catch (const DataError& error) {
+      throw DataError(fmt::format("{}: {}", path_, error.what()));
+    }
+    std::map<std::string, std::string> labels;
+    for (const auto& [name, place] : walk.label_places) labels[name] = text_at(place);
+    name_signals(walk.columns, labels);
+    columns_ = std::move(walk.columns);
+    places_ = std::move(walk.places);
+    if (columns_.empty()) fail_empty(walk.objects);
+  }
+
+  const std::vector<StoredColumn>& columns() const override { return columns_; }
+
+  std::vector<double> numbers(std::size_t column) const override { return read<double>(column); }
+  std::vector<std::int64_t> whole_numbers(std::size_t column) const override { return read<std::int64_t>(column); }
+  std::vector<std::string> texts(std::size_t column) const override {
+    throw DataError(fmt::format("{}: column {} is no text", path_, columns_.at(column).path()));
+  }
+
+ private:
+  std::string path_;
+  std::vector<StoredColumn> columns_;
+  std::vector<MatPlace> places_;
+
+  [[noreturn]] void fail_empty(const std::vector<std::string>& objects) const {
+    std::string why;
+    for (const std::string& object : objects)
+      why += fmt::format(
+          "; {0} is an object, of which these files say too little. Convert it in MATLAB, a timeseries with {1}   a "
+          "table with {2}   a timetable with {3}   a datetime with {4}",
+          object, matlab_conversion("timeseries", object), matlab_conversion("table", object),
+          matlab_conversion("timetable", object), matlab_conversion("datetime", object));
+    throw ConfigurationError(fmt::format("{}: no column of numbers of two rows or more{}", path_, why));
+  }
+
+  std::string text_at(const MatPlace& place) const {
+    const MatFile file = open_mat(path_);
+    const Variable v(Mat_VarRead(file.get(), place.variable.c_str()));
+    const matvar_t* part = v ? follow(v.get(), place.steps) : nullptr;
+    std::string text;
+    constexpr std::uint64_t longest = 200;
+    if (!part || !part->data || elements(*part) > longest) return text;
+    for (std::uint64_t i = 0; i < elements(*part); ++i) {
+      const auto* bytes = static_cast<const unsigned char*>(part->data) + i * static_cast<std::size_t>(part->data_size);
+      text += bytes[0] >= 32 && bytes[0] < 127 ? static_cast<char>(bytes[0]) : '_';
+    }
+    return text;
+  }
+
+  template <class T>
+  std::vector<T> read(std::size_t column) const {
+    const MatPlace& place = places_.at(column);
+    const MatFile file = open_mat(path_);
+    const Variable v(Mat_VarRead(file.get(), place.variable.c_str()));
+    const matvar_t* part = v ? follow(v.get(), place.steps) : nullptr;
+    const auto rows = static_cast<std::size_t>(columns_[column].rows);
+    if (!part || !part->data || !is_number(*part) || elements(*part) < place.first + rows ||
+        part->nbytes < (place.first + rows) * static_cast<std::size_t>(part->data_size))
+      throw DataError(fmt::format("{}: column {} cannot be read: the file is damaged", path_, columns_[column].path()));
+    return converted<T>(*part, place.first, rows);
+  }
+
+  template <class T, class Stored>
+  static std::vector<T> cast(const matvar_t& v, std::size_t first, std::size_t rows) {
+    const auto* values = static_cast<const Stored*>(v.data) + first;
+    std::vector<T> result(rows);
+    std::transform(values, values + rows, result.begin(), [](Stored value) { return static_cast<T>(value); });
+    return result;
+  }
+
+  template <class T>
+  static std::vector<T> converted(const matvar_t& v, std::size_t first, std::size_t rows) {
+    switch (v.class_type) {
+      case MAT_C_DOUBLE:
+        return cast<T, double>(v, first, rows);
+      case MAT_C_SINGLE:
+        return cast<T, float>(v, first, rows);
+      case MAT_C_INT8:
+        return cast<T, std::int8_t>(v, first, rows);
+      case MAT_C_UINT8:
+        return cast<T, std::uint8_t>(v, first, rows);
+      case MAT_C_INT16:
+        return cast<T, std::int16_t>(v, first, rows);
+      case MAT_C_UINT16:
+        return cast<T, std::uint16_t>(v, first, rows);
+      case MAT_C_INT32:
+        return cast<T, std::int32_t>(v, first, rows);
+      case MAT_C_UINT32:
+        return cast<T, std::uint32_t>(v, first, rows);
+      case MAT_C_INT64:
+        return cast<T, std::int64_t>(v, first, rows);
+      default:
+        return cast<T, std::uint64_t>(v, first, rows);
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<ColumnStore> open_mat_columns(const std::filesystem::path& path) {
+  return std::make_unique<MatColumns>(path);
+}
+
+}  // namespace modebank

@@ -1,0 +1,312 @@
+#include "io/import/expression.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "ident/base/nearest_name.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "io/import/expression_functions.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+struct ExpressionToken {
+  enum class Kind { number, channel, function, constant, symbol };
+  Kind kind = Kind::symbol;
+  std::string text;    ///< of a number its value as muParser reads it, of a channel its name
+  std::size_t at = 0;  ///< in the user's text, from 0
+};
+
+namespace {
+
+constexpr std::size_t longest_text = 2000, deepest = 50;
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_space(char c) { return c == ' ' || c == '\t'; }
+
+/// The operator at the start of a text, or nothing.
+std::string_view symbol_at(std::string_view text) {
+  for (const std::string_view two : {"==", "!=", "<=", ">=", "&&", "||"})
+    if (text.starts_with(two)) return text.substr(0, 2);
+  constexpr std::string_view ones = "+-*/^<>?:(),";
+  return ones.find(text.front()) == std::string_view::npos ? std::string_view() : text.substr(0, 1);
+}
+
+double diff_per_second(double before, double after, double seconds) { return (after - before) / seconds; }
+
+void differentiate(std::vector<double>& column, std::span<const double> time_s) {
+  for (std::size_t k = column.size(); k-- > 1;)
+    column[k] = diff_per_second(column[k - 1], column[k], time_s[k] - time_s[k - 1]);
+  if (!column.empty()) column[0] = column.size() > 1 ? column[1] : not_a_number;
+}
+
+/// Turns are counted from the last row that is known.
+void unwrap(std::vector<double>& column) {
+  constexpr double turn = 2.0 * std::numbers::pi;
+  double before = not_a_number;
+  for (double& angle : column) {
+    if (std::isnan(angle)) continue;
+    if (!std::isnan(before)) angle = before + std::remainder(angle - before, turn);
+    before = angle;
+  }
+}
+
+bool any_missing(const std::vector<std::span<const double>>& columns, std::size_t row) {
+  return std::any_of(columns.begin(), columns.end(), [row](const auto& column) { return std::isnan(column[row]); });
+}
+
+/// Binds a program's columns to variables that it reads.
+class Program {
+ public:
+  Program(const std::string& text, std::size_t columns) : values_(columns, 1.0) {
+    define_functions(parser_);
+    for (std::size_t i = 0; i < columns; ++i) parser_.DefineVar(fmt::format("c{}", i), &values_[i]);
+    parser_.SetExpr(text);
+  }
+  double operator()() { return parser_.Eval(); }
+  std::vector<double>& values() { return values_; }
+
+ private:
+  std::vector<double> values_;
+  mu::Parser parser_;
+};
+
+}  // namespace
+
+std::string take_channel_name(std::string_view& text) {
+  std::string name;
+  if (text.empty()) return name;
+  if (text.front() == '\'') {
+    std::size_t i = 1;
+    for (; i < text.size(); ++i) {
+      const bool quote = text[i] == '\'';
+      if (quote && !(i + 1 < text.size() && text[i + 1] == '\'')) break;
+      if (quote) ++i;
+      name += text[i];
+    }
+    if (i >= text.size()) return {};
+    text.remove_prefix(i + 1);
+    return name;
+  }
+  if (!is_letter(text.front())) return name;
+  std::size_t end = 1;
+  while (end < text.size() && (is_letter(text[end]) || is_digit(text[end]) || text[end] == '.')) ++end;
+  name = text.substr(0, end);
+  text.remove_prefix(end);
+  return name;
+}
+
+/// Turns text into tokens and tokens into steps: an argument of diff or unwrap is a column of its own.
+class ExpressionParser {
+ public:
+  ExpressionParser(Expression& result, std::string_view text) : result_(result), text_(text) {}
+
+  void parse() {
+    if (text_.size() > longest_text)
+      throw ConfigurationError(fmt::format("{}: {} characters, but at most {} are allowed", result_.key_.substr(0, 60),
+                                           text_.size(), longest_text));
+    tokenise();
+    if (tokens_.empty()) fail(text_.size(), "there is no expression");
+    check_parentheses();
+    compile(0, tokens_.size(), Expression::Step::Then::nothing);
+  }
+
+ private:
+  using Token = ExpressionToken;
+  using Kind = Token::Kind;
+  static constexpr const char* only_in_functions = "a comma separates arguments of functions alone";
+
+  [[noreturn]] void fail(std::size_t at, const std::string& what) const {
+    throw ConfigurationError(fmt::format("{}: at character {} (\"{}\"): {}", result_.key_, at + 1,
+                                         at < text_.size() ? text_.substr(at, 20) : "end", what));
+  }
+
+  void tokenise() {
+    for (std::size_t at = 0; at < text_.size();) {
+      if (is_space(text_[at])) {
+        ++at;
+        continue;
+      }
+      std::string_view rest = text_.substr(at);
+      tokens_.push_back(token_at(at, rest));
+      at = text_.size() - rest.size();
+    }
+  }
+
+  /// Takes one token off `rest`.
+  Token token_at(std::size_t at, std::string_view& rest) {
+    if (rest.front() == '\'' || is_letter(rest.front())) return name_at(at, rest);
+    if (is_digit(rest.front()) || (rest.front() == '.' && rest.size() > 1 && is_digit(rest[1])))
+      return number_at(at, rest);
+    const std::string_view symbol = symbol_at(rest);
+    if (symbol.empty())
+      fail(at, rest.front() == '=' ? "a comparison is ==" : "neither number, channel, function nor operator");
+    rest.remove_prefix(symbol.size());
+    return {Kind::symbol, std::string(symbol), at};
+  }
+
+  Token name_at(std::size_t at, std::string_view& rest) {
+    const bool quoted = rest.front() == '\'';
+    std::string name = take_channel_name(rest);
+    if (name.empty()) fail(at, "a quoted name that is empty or does not end");
+    const bool called = !quoted && rest.find_first_not_of(" \t") != std::string_view::npos &&
+                        rest[rest.find_first_not_of(" \t")] == '(';
+    const auto& functions = function_names();
+    if (called && std::find(functions.begin(), functions.end(), name) == functions.end())
+      fail(at, fmt::format("no function {}{}", name, did_you_mean(name, functions)));
+    if (called) return {Kind::function, std::move(name), at};
+    if (!quoted && name == "pi") return {Kind::constant, std::move(name), at};
+    auto& channels = result_.channels_;
+    if (std::find(channels.begin(), channels.end(), name) == channels.end()) channels.push_back(name);
+    return {Kind::channel, std::move(name), at};
+  }
+
+  Token number_at(std::size_t at, std::string_view& rest) {
+    double value = 0.0;
+    const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    if (error != std::errc()) fail(at, "no number that fits a double");
+    rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()));
+    if (!rest.empty() && (is_letter(rest.front()) || rest.front() == '.'))
+      fail(at, "a number must end before this name");
+    return {Kind::number, fmt::format("{:.17g}", value), at};
+  }
+
+  void check_parentheses() const {
+    std::size_t depth = 0;
+    for (const Token& token : tokens_) {
+      if (token.kind != Kind::symbol) continue;
+      if (token.text == "(" && ++depth > deepest)
+        fail(token.at, fmt::format("more than {} parentheses in each other", deepest));
+      if (token.text == ")" && depth-- == 0) fail(token.at, "closes a parenthesis that is not open");
+    }
+    if (depth > 0) fail(text_.size(), "a parenthesis is not closed");
+  }
+
+  /// Position after the parenthesis that closes the one at `open`.
+  std::size_t after_closing(std::size_t open) const {
+    std::size_t depth = 0, i = open;
+    do {
+      if (tokens_[i].kind == Kind::symbol) depth += tokens_[i].text == "(" ? 1 : 0;
+      if (tokens_[i].kind == Kind::symbol) depth -= tokens_[i].text == ")" ? 1 : 0;
+      ++i;
+    } while (depth > 0);
+    return i;
+  }
+
+  std::size_t channel_position(const std::string& name) const {
+    const auto& channels = result_.channels_;
+    return static_cast<std::size_t>(std::find(channels.begin(), channels.end(), name) - channels.begin());
+  }
+
+  /// The column of a step that computes tokens `first` to `end`.
+  std::size_t compile(std::size_t first, std::size_t end, Expression::Step::Then then) {
+    Expression::Step step;
+    step.then = then;
+    std::vector<std::pair<std::size_t, std::size_t>> places;  // in the program, in the user's text
+    const auto name_of = [&step](std::size_t column) {
+      const auto known = std::find(step.columns.begin(), step.columns.end(), column);
+      const auto position = static_cast<std::size_t>(known - step.columns.begin());
+      if (known == step.columns.end()) step.columns.push_back(column);
+      return fmt::format("c{}", position);
+    };
+    int depth = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      const Token& token = tokens_[i];
+      places.emplace_back(step.program.size(), token.at);
+      if (token.text == "(" && token.kind == Kind::symbol) ++depth;
+      if (token.text == ")" && token.kind == Kind::symbol) --depth;
+      if (token.text == "," && token.kind == Kind::symbol && depth == 0) fail(token.at, only_in_functions);
+      const bool of_column = token.kind == Kind::function && (token.text == "diff" || token.text == "unwrap");
+      if (of_column) {
+        const std::size_t after = after_closing(i + 1);
+        if (after == i + 3) fail(tokens_[i + 2].at, token.text + " needs an argument");
+        using Then = Expression::Step::Then;
+        step.program += name_of(compile(i + 2, after - 1, token.text == "diff" ? Then::diff : Then::unwrap));
+        i = after - 1;
+      } else {
+        step.program += token.kind == Kind::channel ? name_of(channel_position(token.text)) : token.text;
+      }
+      if (token.kind != Kind::function || of_column) step.program += ' ';  // muParser wants none before (
+    }
+    try_out(step, places, end < tokens_.size() ? tokens_[end].at : text_.size());
+    result_.steps_.push_back(std::move(step));
+    return result_.channels_.size() + result_.steps_.size() - 1;
+  }
+
+  /// muParser finds errors when it evaluates first.
+  void try_out(const Expression::Step& step, const std::vector<std::pair<std::size_t, std::size_t>>& places,
+               std::size_t end) const {
+    try {
+      Program program(step.program, step.columns.size());
+      program();
+    } catch (const mu::ParserError& error) {
+      std::size_t at = end;
+      for (const auto& [place, source] : places)
+        if (static_cast<std::size_t>(error.GetPos()) >= place && error.GetCode() != mu::ecUNEXPECTED_EOF) at = source;
+      fail(at, reason(error.GetCode()));
+    }
+  }
+
+  static std::string reason(mu::EErrorCodes code) {
+    switch (code) {
+      case mu::ecTOO_MANY_PARAMS:
+        return "too many arguments";
+      case mu::ecTOO_FEW_PARAMS:
+        return "too few arguments";
+      case mu::ecMISSING_ELSE_CLAUSE:
+        return "CONDITION ? A : B lacks its : B";
+      case mu::ecUNEXPECTED_EOF:
+        return "the expression ends too early";
+      case mu::ecUNEXPECTED_VAL:
+      case mu::ecUNEXPECTED_VAR:
+        return "an operator is missing before this";
+      case mu::ecUNEXPECTED_ARG_SEP:
+        return only_in_functions;
+      default:
+        return "not expected here";
+    }
+  }
+
+  Expression& result_;
+  std::string_view text_;
+  std::vector<Token> tokens_;
+};
+
+Expression::Expression(std::string key, std::string_view text) : key_(std::move(key)) {
+  try {
+    ExpressionParser(*this, text).parse();
+  } catch (const mu::ParserError& error) {
+    throw ConfigurationError(fmt::format("{}: {}", key_, error.GetMsg()));
+  }
+}
+
+std::vector<double> Expression::evaluate(const std::vector<std::span<const double>>& operands,
+                                         std::span<const double> time_s) const {
+  std::vector<std::vector<double>> computed;
+  computed.reserve(steps_.size());
+  for (const Step& step : steps_) {
+    std::vector<std::span<const double>> columns;
+    for (const std::size_t column : step.columns)
+      columns.push_back(column < operands.size() ? operands[column] : computed[column - operands.size()]);
+    Program program(step.program, columns.size());
+    std::vector<double> result(time_s.size(), not_a_number);
+    for (std::size_t row = 0; row < result.size(); ++row) {
+      if (any_missing(columns, row)) continue;
+      for (std::size_t i = 0; i < columns.size(); ++i) program.values()[i] = columns[i][row];
+      result[row] = program();
+    }
+    if (step.then == Step::Then::diff) differentiate(result, time_s);
+    if (step.then == Step::Then::unwrap) unwrap(result);
+    for (double& value : result)
+      if (!std::isfinite(value)) value = not_a_number;
+    computed.push_back(std::move(result));
+  }
+  return std::move(computed.back());
+}
+
+}  // namespace modebank

@@ -1,0 +1,276 @@
+#include "io/arrays/stored_columns.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <fstream>
+
+#include "modebank/base/error.hpp"
+#include "tests/io/arrays/mat_writer.hpp"
+#include "tests/io/import/expect_error.hpp"
+#include "tests/support/golden.hpp"
+#include "tests/support/paths.hpp"
+
+namespace modebank {
+namespace {
+
+using test::MatWriter;
+using test::message_of;
+using test::TemporaryFolder;
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
+
+std::vector<std::string> paths(const ColumnStore& store) {
+  std::vector<std::string> names;
+  for (const StoredColumn& column : store.columns()) names.push_back(column.path());
+  return names;
+}
+
+std::size_t position(const ColumnStore& store, const std::string& path) {
+  const std::vector<std::string> names = paths(store);
+  const auto found = std::find(names.begin(), names.end(), path);
+  if (found == names.end()) ADD_FAILURE() << "no column " << path;
+  return static_cast<std::size_t>(found - names.begin()) % names.size();
+}
+
+std::vector<double> numbers(const ColumnStore& store, const std::string& path) {
+  return store.numbers(position(store, path));
+}
+
+/// Which version, and whether values are compressed.
+class MatFiles : public ::testing::TestWithParam<std::pair<mat_ft, matio_compression>> {
+ protected:
+  MatWriter writer() const { return {file, GetParam().first, GetParam().second}; }
+  std::unique_ptr<ColumnStore> open() const {
+    return GetParam().first == MAT_FT_MAT73 ? open_hdf5_columns(file) : open_mat_columns(file);
+  }
+
+  TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "log.mat";
+};
+
+INSTANTIATE_TEST_SUITE_P(Versions, MatFiles,
+                         ::testing::Values(std::pair(MAT_FT_MAT5, MAT_COMPRESSION_NONE),
+                                           std::pair(MAT_FT_MAT5, MAT_COMPRESSION_ZLIB),
+                                           std::pair(MAT_FT_MAT73, MAT_COMPRESSION_NONE),
+                                           std::pair(MAT_FT_MAT73, MAT_COMPRESSION_ZLIB)));
+
+TEST_P(MatFiles, GiveVectorsMatricesAndNestedStructs) {
+  writer().write(MatWriter::matrix("t", {0.0, 0.5, 1.0}, 1));  // closed before the next opens
+  {
+    MatWriter all = writer();
+    all.write(MatWriter::matrix("t", {0.0, 0.5, 1.0}, 1));
+    all.write(MatWriter::matrix("pose", {1, 2, 3, 4, 5, 6}, 3));
+    all.write(MatWriter::matrix("mass", {7.0}, 1));
+    all.write(MatWriter::whole("stamp", {1'700'000'000'000'000'001, 1'700'000'000'000'000'002}));
+    matvar_t* imu = MatWriter::structure("imu", {"wz"}, {{MatWriter::matrix("wz", {0.1, 0.2, 0.3}, 3)}});
+    all.write(MatWriter::structure("log", {"imu", "v"}, {{imu, MatWriter::matrix("v", {4, 5, 6}, 3)}}));
+  }
+  const auto store = open();
+  EXPECT_THAT(paths(*store), UnorderedElementsAre("t", "pose[0]", "pose[1]", "stamp", "log.imu.wz", "log.v"));
+  EXPECT_THAT(numbers(*store, "t"), ElementsAre(0.0, 0.5, 1.0));
+  EXPECT_THAT(numbers(*store, "pose[1]"), ElementsAre(4, 5, 6));
+  EXPECT_THAT(numbers(*store, "log.imu.wz"), ElementsAre(0.1, 0.2, 0.3));
+  EXPECT_THAT(store->whole_numbers(position(*store, "stamp")),
+              ElementsAre(1'700'000'000'000'000'001, 1'700'000'000'000'000'002));
+  EXPECT_EQ(store->columns()[position(*store, "log.imu.wz")].group, "log.imu");
+}
+
+/// As `out.ScopeData` of To Workspace and Scope blocks: time, and signals with values and a label each.
+TEST_P(MatFiles, NameSignalsOfSimulinksStructureWithTime) {
+  const auto signal = [](const char* label, std::vector<double> values, std::size_t rows) {
+    return std::vector<matvar_t*>{MatWriter::matrix("values", std::move(values), rows),
+                                  MatWriter::text("label", label)};
+  };
+  {
+    MatWriter all = writer();
+    matvar_t* signals = MatWriter::structure(
+        "signals", {"values", "label"}, {signal("wheel speed", {1, 2, 3}, 3), signal("pose", {1, 2, 3, 4, 5, 6}, 3)});
+    all.write(MatWriter::structure("scope", {"time", "signals"}, {{MatWriter::matrix("time", {0, 1, 2}, 3), signals}}));
+  }
+  const auto store = open();
+  EXPECT_THAT(paths(*store), UnorderedElementsAre("scope.time", "scope.wheel speed", "scope.pose[0]", "scope.pose[1]"));
+  EXPECT_THAT(numbers(*store, "scope.wheel speed"), ElementsAre(1, 2, 3));
+  EXPECT_THAT(numbers(*store, "scope.pose[1]"), ElementsAre(4, 5, 6));
+  for (const StoredColumn& column : store->columns()) EXPECT_EQ(column.group, "scope");
+}
+
+TEST_P(MatFiles, AreRefusedOrReadWholeWhenDamaged) {
+  {
+    MatWriter all = writer();
+    for (const char* name : {"t", "x"}) {
+      std::vector<double> values(200);
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i * i % 97);
+      all.write(MatWriter::matrix(name, values, 200));
+    }
+  }
+  std::ifstream in(file, std::ios::binary);
+  const std::string whole((std::istreambuf_iterator<char>(in)), {});
+  const auto try_all = [&](const std::string& content) {
+    test::write_file(file, content);
+    try {
+      const auto store = open();
+      for (std::size_t i = 0; i < store->columns().size(); ++i)
+        EXPECT_EQ(store->numbers(i).size(), store->columns()[i].rows);
+    } catch (const DataError&) {
+    } catch (const ConfigurationError&) {
+    }
+  };
+  for (std::size_t cut = 0; cut < whole.size(); cut += whole.size() / 40 + 1) try_all(whole.substr(0, cut));
+  for (std::size_t at = 4; at < whole.size(); at += whole.size() / 150 + 1) {
+    std::string flipped = whole;
+    flipped[at] = static_cast<char>(flipped[at] ^ 0x41);
+    try_all(flipped);
+  }
+}
+
+TEST(MatObjects, AreNamedWithTheLineThatConvertsThem) {
+  EXPECT_EQ(matlab_conversion("timeseries", "log.speed"),
+            "s = struct('t', log.speed.Time, 'x', log.speed.Data); save('log_plain.mat', '-struct', 's')");
+  EXPECT_EQ(matlab_conversion("table", "T"),
+            "s = table2struct(T, 'ToScalar', true); save('T_plain.mat', '-struct', 's')");
+  EXPECT_EQ(matlab_conversion("datetime", "d"), "s.t = posixtime(d); save('d_plain.mat', '-struct', 's')");
+  EXPECT_EQ(matlab_conversion("double", "x"), "");
+}
+
+class Hdf5Files : public ::testing::Test {
+ protected:
+  hid_t create() { return H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT); }
+
+  static void dataset(hid_t parent, const char* name, std::vector<hsize_t> shape, const std::vector<double>& values) {
+    const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+    const hid_t data = H5Dcreate2(parent, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Dclose(data);
+    H5Sclose(space);
+  }
+  static void text_attribute(hid_t object, const char* name, const std::string& value) {
+    const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
+    H5Tset_size(type, value.size());
+    const hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(attribute, type, value.data());
+    H5Aclose(attribute);
+    H5Sclose(space);
+    H5Tclose(type);
+  }
+
+  TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "log.h5";
+};
+
+TEST_F(Hdf5Files, GiveGroupsOfDatasets) {
+  const hid_t id = create(), group = H5Gcreate2(id, "imu", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  dataset(group, "t", {3}, {0, 1, 2});
+  dataset(group, "gyro", {3, 2}, {1, 2, 3, 4, 5, 6});
+  dataset(group, "across", {2, 3}, {1, 2, 3, 4, 5, 6});
+  dataset(group, "gain", {1}, {2.0});
+  H5Lcreate_hard(id, "/", group, "round", H5P_DEFAULT, H5P_DEFAULT);
+  H5Gclose(group);
+  H5Fclose(id);
+  const auto store = open_hdf5_columns(file);
+  EXPECT_THAT(paths(*store),
+              UnorderedElementsAre("imu.t", "imu.gyro[0]", "imu.gyro[1]", "imu.across[0]", "imu.across[1]"));
+  EXPECT_THAT(numbers(*store, "imu.gyro[1]"), ElementsAre(2, 4, 6));
+  EXPECT_THAT(numbers(*store, "imu.across[1]"), ElementsAre(4, 5, 6)) << "rows are as many as t has";
+}
+
+TEST_F(Hdf5Files, GiveUnits) {
+  const hid_t id = create();
+  dataset(id, "v", {2}, {0, 1});
+  const hid_t v = H5Dopen2(id, "v", H5P_DEFAULT);
+  text_attribute(v, "units", "m/s");
+  H5Dclose(v);
+  H5Fclose(id);
+  EXPECT_EQ(open_hdf5_columns(file)->columns()[0].unit, "m/s");
+}
+
+TEST_F(Hdf5Files, FollowNothingOutside) {
+  const hid_t other = H5Fcreate((folder.path() / "other.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  dataset(other, "secret", {2}, {1, 2});
+  H5Fclose(other);
+  const hid_t id = create();
+  H5Lcreate_external("other.h5", "/secret", id, "x", H5P_DEFAULT, H5P_DEFAULT);
+  const hsize_t shape = 2;
+  const hid_t space = H5Screate_simple(1, &shape, nullptr), made = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_external(made, "/etc/hostname", 0, H5F_UNLIMITED);
+  H5Dclose(H5Dcreate2(id, "y", H5T_NATIVE_INT8, space, H5P_DEFAULT, made, H5P_DEFAULT));
+  H5Pclose(made);
+  H5Sclose(space);
+  H5Fclose(id);
+  EXPECT_THAT(message_of<ConfigurationError>([&] { open_hdf5_columns(file); }),
+              HasSubstr("/x, /y lies in another file, which is not followed"));
+}
+
+TEST_F(Hdf5Files, BoundDeclaredSizes) {
+  const hid_t id = create();
+  dataset(id, "t", {2}, {0, 1});
+  const hsize_t shape = hsize_t{1} << 40, chunk = 1 << 10;
+  const hid_t space = H5Screate_simple(1, &shape, nullptr), made = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(made, 1, &chunk);
+  H5Pset_deflate(made, 9);
+  H5Dclose(H5Dcreate2(id, "x", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, made, H5P_DEFAULT));
+  H5Pclose(made);
+  H5Sclose(space);
+  H5Fclose(id);
+  const auto store = open_hdf5_columns(file);
+  EXPECT_THAT(message_of<DataError>([&] { numbers(*store, "x"); }), HasSubstr("column x: declares more content"));
+}
+
+TEST_F(Hdf5Files, OfOursAreRefused) {
+  const hid_t id = create();
+  text_attribute(id, "format", "modebank archive");
+  H5Fclose(id);
+  EXPECT_THAT(message_of<ConfigurationError>([&] { open_hdf5_columns(file); }), HasSubstr("modebank show"));
+}
+
+TEST_F(Hdf5Files, NameMatlabsObjects) {
+  const hid_t id = create();
+  dataset(id, "speed", {6}, {0, 1, 2, 3, 4, 5});
+  const hid_t speed = H5Dopen2(id, "speed", H5P_DEFAULT);
+  text_attribute(speed, "MATLAB_class", "timeseries");
+  H5Dclose(speed);
+  H5Fclose(id);
+  EXPECT_THAT(message_of<ConfigurationError>([&] { open_hdf5_columns(file); }),
+              HasSubstr("speed is a MATLAB timeseries: convert it in MATLAB with s = struct('t', speed.Time"));
+}
+
+/// tests/golden/generate/pandas_files.py
+TEST(PandasFiles, GiveTheirColumns) {
+  struct Case {
+    const char* name;
+    std::vector<std::string> columns;
+  };
+  for (const Case& c : {Case{"pandas_fixed.h5", {"time", "v", "steer", "gear"}},
+                        Case{"pandas_table.h5", {"index", "v", "steer", "gear", "name"}},
+                        Case{"pandas_columns.h5", {"index", "v", "steer", "gear"}},
+                        Case{"pandas_stamped.h5", {"stamp", "v", "steer", "gear"}}}) {
+    const auto store = open_hdf5_columns(test::golden_dir() / c.name);
+    EXPECT_THAT(paths(*store), ::testing::ElementsAreArray(c.columns)) << c.name;
+    EXPECT_THAT(numbers(*store, "v"), ElementsAre(0.0, 0.5, 1.0, 1.5)) << c.name;
+    EXPECT_THAT(numbers(*store, "steer"), ElementsAre(-0.2, -0.1, 0.0, DoubleNear(0.1, 1e-15))) << c.name;
+    EXPECT_THAT(store->whole_numbers(position(*store, "gear")), ElementsAre(0, 1, 2, 3)) << c.name;
+  }
+  EXPECT_THAT(open_hdf5_columns(test::golden_dir() / "pandas_table.h5")->texts(4), ElementsAre("a", "b", "c", "dd"));
+}
+
+TEST(PandasFiles, GiveDatesAsNanoseconds) {
+  for (const auto& [name, column] :
+       {std::pair("pandas_stamped.h5", "stamp"), std::pair("pandas_columns.h5", "index")}) {
+    const auto store = open_hdf5_columns(test::golden_dir() / name);
+    const std::size_t at = position(*store, column);
+    EXPECT_EQ(store->columns()[at].type, "datetime64[ns]");
+    EXPECT_THAT(store->whole_numbers(at), ElementsAre(1'700'000'000'000'000'000, 1'700'000'000'100'000'000,
+                                                      1'700'000'000'200'000'000, 1'700'000'000'300'000'000));
+  }
+}
+
+TEST(PandasFiles, OfAForeignFilterSayHowToWriteThem) {
+  const auto store = open_hdf5_columns(test::golden_dir() / "pandas_blosc.h5");
+  EXPECT_THAT(message_of<DataError>([&] { numbers(*store, "v"); }), HasSubstr("(blosc), which HDF5 does not bring"));
+}
+
+}  // namespace
+}  // namespace modebank
