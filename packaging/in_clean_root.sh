@@ -5,8 +5,8 @@ export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
 cd /packages
 useradd --create-home robot
 
-# Whoever is no root, in a folder of his own.
-as_user() { su robot -s /bin/sh -c "cd && $1"; }
+# Whoever is no root, in his own folder and with none of this environment.
+as_user() { su --login --shell /bin/sh robot -c "$1"; }
 install_packages() {
   apt-get install -q -y --no-install-recommends "$@" >/tmp/apt.log 2>&1 || { tail -n 20 /tmp/apt.log >&2; exit 1; }
   du -sxm / 2>/dev/null | awk -v what="$*" '{ print "installed " what ": the system has " $1 " MB" }'

@@ -24,9 +24,11 @@ set(maintainer "${MODEBANK_MAINTAINER}")
 if(NOT maintainer)
   ask_git(maintainer "%an <%ae>")
 endif()
-ask_git(date "%aD")
+ask_git(date "%cD")
+ask_git(date_s "%ct")
 if(NOT date)
   string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+  string(TIMESTAMP date_s "%s" UTC)
 endif()
 
 # The licence is the owner's to choose.
@@ -42,12 +44,22 @@ if(NOT licence)
 use, change or distribution, and none are made up here.\n")
 endif()
 
+# What others wrote and is compiled in, as headers, as a static library or, Plotly, as text: Debian's packages have its terms.
+set(others libboost-dev libceres-dev libeigen3-dev libfmt-dev libhwy-dev libspdlog-dev nlohmann-json3-dev python3-plotly)
+set(notices "")
+foreach(package IN LISTS others)
+  if(EXISTS /usr/share/doc/${package}/copyright)
+    file(READ /usr/share/doc/${package}/copyright text)
+    string(APPEND notices "\n==== ${package}\n\n${text}")
+  endif()
+endforeach()
+
 set(documents ${CMAKE_BINARY_DIR}/packaging)
 foreach(component IN LISTS components)
   set(package ${package_of_${component}})
   configure_file(${CMAKE_CURRENT_LIST_DIR}/copyright.in ${documents}/${package}/copyright @ONLY)
   configure_file(${CMAKE_CURRENT_LIST_DIR}/changelog.in ${documents}/${package}/changelog @ONLY)
-  # -n: no name and no time in it, so that the same tree makes the same package.
+  # -n: without the time of day.
   execute_process(COMMAND gzip -9nf changelog WORKING_DIRECTORY ${documents}/${package} COMMAND_ERROR_IS_FATAL ANY)
   install(FILES ${documents}/${package}/copyright ${documents}/${package}/changelog.gz DESTINATION share/doc/${package}
           COMPONENT ${component})
@@ -73,8 +85,10 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 
-set(what "A robot's logged runs become local linear models in sliding windows, their mixture, a bank of modes, and a
-multiple-model filter that is judged on runs it never saw. Every number has its uncertainty.")
+# Lines as Debian has them, of at most 79 letters.
+set(what "A robot's logged runs become local linear models in sliding windows, their
+mixture, a bank of modes, and a multiple-model filter that is judged on runs
+it never saw. Every number has its uncertainty.")
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME modebank)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
@@ -95,8 +109,9 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "cmake, g++, modebank")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "motion with changing character: libraries of modebank
 ${what}
 .
-This package has static libraries and headers for C++20: stepping a bank on a robot, judging, learning, loading archives;
-CMake finds them with find_package(modebank).")
+This package has static libraries and headers for C++20: stepping a bank on a
+robot, judging, learning, loading archives; CMake finds them with
+find_package(modebank).")
 
 if(MODEBANK_PYTHON)
   # A module is for the Python it was compiled for.
@@ -116,8 +131,9 @@ endif()
 
 include(CPack)
 
-# All that is packed, and nothing else that may be configured.
-add_custom_target(modebank_packages COMMAND ${CMAKE_CPACK_COMMAND} WORKING_DIRECTORY ${CMAKE_BINARY_DIR} USES_TERMINAL)
+# All that is packed, and nothing else that may be configured. Dated as the commit, so that one tree makes one package.
+add_custom_target(modebank_packages COMMAND ${CMAKE_COMMAND} -E env SOURCE_DATE_EPOCH=${date_s} ${CMAKE_CPACK_COMMAND}
+                  WORKING_DIRECTORY ${CMAKE_BINARY_DIR} USES_TERMINAL)
 list(TRANSFORM installed_libraries PREPEND modebank_ OUTPUT_VARIABLE packed)
 if(MODEBANK_BUILD_PROGRAM)
   list(APPEND packed modebank)
