@@ -2,12 +2,10 @@
 # cmake -DBUILD=... -DSOURCE=... -DWORK=... -P check_installed.cmake
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
-# The libraries that a program of ours asks for itself, beside those every C++ program does. (ldd lists theirs, too.)
+# The libraries that a program of ours asks for itself, beside those every C++ program does.
 function(needs_only program allowed)
-  run(readelf -d ${program})
-  string(REGEX MATCHALL "Shared library: \\[[^]]*" needed "${output}")
+  needed_libraries(${program} needed)
   foreach(library IN LISTS needed)
-    string(REPLACE "Shared library: [" "" library "${library}")
     if(NOT library MATCHES "^(lib(c|m|stdc\\+\\+|gcc_s|${allowed})|ld-linux.*)[.]so")
       message(FATAL_ERROR "${program} must not need ${library}: ${needed}")
     endif()
