@@ -9,7 +9,8 @@ useradd --create-home robot
 as_user() { su --login --shell /bin/sh robot -c "$1"; }
 install_packages() {
   apt-get install -q -y --no-install-recommends "$@" >/tmp/apt.log 2>&1 || { tail -n 20 /tmp/apt.log >&2; exit 1; }
-  du -sxm / 2>/dev/null | awk -v what="$*" '{ print "installed " what ": the system has " $1 " MB" }'
+  echo "installed $*, and what they need:"
+  grep -E "newly installed|Need to get|After this operation" /tmp/apt.log
 }
 seconds() { date +%s; }
 
