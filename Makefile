@@ -24,7 +24,7 @@ demo: build
 
 # Debian packages, build/packages/*.deb; and that they install and work on a bare Debian 12, which takes minutes.
 packages: packages-build packages-package build/build.ninja
-	cmake --preset release >/dev/null
+	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	rm -rf build/packages
 	cmake --build --preset release -j $(JOBS) --target modebank_packages
 

@@ -24,7 +24,7 @@ as_user 'modebank report modebank_demo/demo.h5 -o demo.html && test -s demo.html
 for module in ./python3-modebank_*.deb; do
   [ -e "$module" ] || continue
   install_packages "$module"
-  as_user 'python3 -c "import modebank; print(modebank.__doc__)"'
+  as_user 'python3 -c "import modebank; a = modebank.Archive(\"modebank_demo/demo.h5\"); print(a, modebank.Filter(a))"'
 done
 
 install_packages ./libmodebank-dev_*.deb

@@ -1,7 +1,7 @@
 # What goes into which Debian package, and what is written on it; `make packages` makes them: an install component each.
 #   program      modebank: the program, its configurations as examples
 #   development  libmodebank-dev: static libraries, public headers, what find_package finds, the examples of tests/examples
-#   python       python3-modebank, where MODEBANK_PYTHON is ON
+#   python       python3-modebank: the module, where MODEBANK_PYTHON is ON
 set(components program development)
 set(package_of_program modebank)
 set(package_of_development libmodebank-dev)
@@ -9,7 +9,7 @@ set(package_of_python python3-modebank)
 if(NOT MODEBANK_BUILD_PROGRAM)
   list(REMOVE_ITEM components program)
 endif()
-if(MODEBANK_PYTHON)
+if(TARGET modebank_python)
   list(APPEND components python)
 endif()
 
@@ -113,7 +113,7 @@ This package has static libraries and headers for C++20: stepping a bank on a
 robot, judging, learning, loading archives; CMake finds them with
 find_package(modebank).")
 
-if(MODEBANK_PYTHON)
+if(TARGET modebank_python)
   # A module is for the Python it was compiled for.
   find_package(Python 3 COMPONENTS Interpreter REQUIRED)
   math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
@@ -126,7 +126,8 @@ if(MODEBANK_PYTHON)
   set(CPACK_DEBIAN_PYTHON_DESCRIPTION "motion with changing character: modebank for Python 3
 ${what}
 .
-This package has the module modebank: numpy arrays and pandas frames in and out.")
+This package has the module modebank: numpy arrays and pandas frames in and
+out.")
 endif()
 
 include(CPack)
@@ -138,7 +139,7 @@ list(TRANSFORM installed_libraries PREPEND modebank_ OUTPUT_VARIABLE packed)
 if(MODEBANK_BUILD_PROGRAM)
   list(APPEND packed modebank)
 endif()
-if(MODEBANK_PYTHON)
+if(TARGET modebank_python)
   list(APPEND packed modebank_python)
 endif()
 add_dependencies(modebank_packages ${packed})
