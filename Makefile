@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
+.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
 
 all: build
 
@@ -19,10 +19,17 @@ packages-%:
 
 # Simulates a robot on ice and grip with known truth and takes the whole chain over its runs.
 demo: build
-	@rm -rf $(DEMO)/data && mkdir -p $(DEMO)
-	build/modebank simulate configs/simulate_ice.ini --simulate.output $(DEMO)/data
-	build/modebank run configs/demo.ini --data.root $(DEMO)/data --archive.output $(DEMO)/demo.h5
-	@echo "Look inside: build/modebank show $(DEMO)/demo.h5"
+	@rm -rf $(DEMO)
+	build/modebank demo -o $(DEMO)
+
+# Debian packages, build/packages/*.deb; and that they install and work on a bare Debian 12, which takes minutes.
+packages: packages-build packages-package build/build.ninja
+	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
+	rm -rf build/packages
+	cmake --build --preset release -j $(JOBS) --target modebank_packages
+
+package-test: packages packages-root
+	packaging/test_packages.sh build/packages build/clean_root
 
 test: packages-build packages-test build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null

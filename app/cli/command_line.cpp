@@ -31,6 +31,7 @@ po::options_description describe_options(CommandLine& line) {
   add("yes", po::bool_switch(&line.yes));
   add("form", po::value(&line.form));
   add("output,o", po::value(&line.output));
+  add("force", po::bool_switch(&line.force));
   add("words", po::value<std::vector<std::string>>());
   for (const auto& [word, key] : predict_words) add(word, po::value<std::string>());
   for (const Option& option : option_table())

@@ -21,7 +21,8 @@ struct CommandLine {
   bool force = false;              ///< init: overwrite the configuration
   bool yes = false;                ///< init: ask nothing (it never does)
   std::string form = "increment";  ///< of models that `show` prints: increment or full
-  std::string output;              ///< -o: the file that `report`, `predict` or `check --apply` writes
+  std::string output;              ///< -o: the file that `report`, `predict` or `check --apply` writes, demo's folder
+  bool force = false;              ///< write though something speaks against it (demo: what is in its folder)
   std::string typed;               ///< the whole line, for provenance
 };
 

@@ -28,6 +28,10 @@ constexpr Command commands[] = {
      "look into logs of any kind, list their channels and write a configuration to start from (-o FILE, --force)",
      run_init},
     {"run", "CONFIG", "the whole chain: import, windows, mixture, bank, evaluation, archive, summary", run_pipeline},
+    {"demo", "[-o FOLDER]",
+     "simulates a robot on ice and grip with known truth and runs the whole chain on it, in FOLDER (modebank_demo); "
+     "--force where that holds other files",
+     run_demo},
     {"identify", "CONFIG", "fit the windows and archive them", run_pipeline},
     {"cluster", "CONFIG", "cluster the windows (of --archive.input, if given)", run_pipeline},
     {"evaluate", "CONFIG", "learn the bank and score it (stages of --archive.input; or the bank of --archive.bank)",
@@ -61,8 +65,9 @@ std::string help_text() {
   for (const Command& command : commands)
     text += fmt::format("  {:<24} {}\n", fmt::format("{} {}", command.name, command.arguments), command.help);
   text +=
-      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report, predict, check), "
-      "--apply, --findings (check), --repair (verify).\n"
+      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report, predict, check; "
+      "demo: FOLDER), "
+      "--apply, --findings (check), --repair (verify), --force (demo).\n"
       "Every configuration key is an option too, and wins over the file. Exit status: 0 done; 2 usage, configuration "
       "or "
       "path; 1 content or run failure. `modebank help TERM` says what a word of the summary or a key means.\n";

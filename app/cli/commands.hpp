@@ -9,6 +9,7 @@ int run_command(const CommandLine& line);
 
 int run_pipeline(const CommandLine& line);  ///< run, identify, cluster, evaluate
 int run_init(const CommandLine& line);
+int run_demo(const CommandLine& line);
 int run_check(const CommandLine& line);
 int run_simulate(const CommandLine& line);
 int run_report(const CommandLine& line);

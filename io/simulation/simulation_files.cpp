@@ -13,6 +13,11 @@
 
 namespace modebank {
 
+bool is_run_file(const std::string& name) {
+  return (name.rfind("pro_", 0) == 0 || name.rfind("imu_", 0) == 0) && name.size() > 4 &&
+         name.substr(name.size() - 4) == ".csv";
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,11 +44,6 @@ std::vector<std::string> file_names(const char* kind, std::size_t runs) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < runs; ++i) names.push_back(fmt::format("{}_{:0{}}.csv", kind, i, digits));
   return names;
-}
-
-bool is_run_file(const std::string& name) {
-  return (name.rfind("pro_", 0) == 0 || name.rfind("imu_", 0) == 0) && name.size() > 4 &&
-         name.substr(name.size() - 4) == ".csv";
 }
 
 void refuse_other_runs(const fs::path& folder, const std::set<std::string>& ours) {

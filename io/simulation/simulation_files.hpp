@@ -24,6 +24,9 @@ struct SimulationTables {
 /// Throws ConfigurationError when a column's name is empty or there twice.
 void check_column_names(const std::vector<std::string>& names);
 
+/// Whether a file is named as those below are: pro_*.csv or imu_*.csv.
+bool is_run_file(const std::string& name);
+
 /// Writes pro_NN.csv and imu_NN.csv of `runs` runs, numbers in their shortest form that reads back exactly. All files
 /// or none: they are written to a folder beside the old ones and moved when all are complete. The folder is made if its
 /// parent exists. Throws ConfigurationError when it cannot be made, or holds pro_ or imu_ files that would stay,

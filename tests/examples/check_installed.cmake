@@ -1,19 +1,11 @@
 # Installs modebank into a folder of its own, builds the examples against it as a robot's makers would, and runs them:
 # cmake -DBUILD=... -DSOURCE=... -DWORK=... -P check_installed.cmake
-function(run)
-  execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT status EQUAL 0)
-    message(FATAL_ERROR "${ARGV}\nexit status ${status}\n${output}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
-# The libraries that a program of ours asks for itself, beside those every C++ program does. (ldd lists theirs, too.)
+# The libraries that a program of ours asks for itself, beside those every C++ program does.
 function(needs_only program allowed)
-  run(readelf -d ${program})
-  string(REGEX MATCHALL "Shared library: \\[[^]]*" needed "${output}")
+  needed_libraries(${program} needed)
   foreach(library IN LISTS needed)
-    string(REPLACE "Shared library: [" "" library "${library}")
     if(NOT library MATCHES "^(lib(c|m|stdc\\+\\+|gcc_s|${allowed})|ld-linux.*)[.]so")
       message(FATAL_ERROR "${program} must not need ${library}: ${needed}")
     endif()

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// Files of app/report/web, bundled, and of app/report/figures, embedded at build time.
+/// Files of app/report/web, bundled, of app/report/figures and of configs, embedded at build time.
 namespace modebank::app::assets {
 
 std::string_view page_html();  ///< the skeleton of every page, see html_page.hpp
@@ -24,5 +24,9 @@ std::string_view figure_nis();
 std::string_view figure_selection();
 std::string_view figure_pit();
 std::string_view figure_coverage();
+
+// Configurations of the demo.
+std::string_view simulate_ice_ini();
+std::string_view demo_ini();
 
 }  // namespace modebank::app::assets
