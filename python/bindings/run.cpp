@@ -1,0 +1,55 @@
+#include <string>
+
+#include "app/config/config_file.hpp"
+#include "app/pipeline/pipeline.hpp"
+#include "python/bindings/bindings.hpp"
+#include "python/bindings/keys.hpp"
+
+namespace modebank::python {
+
+namespace py = pybind11;
+
+namespace {
+
+/// Hands lines of progress and warnings to Python, and lets Ctrl-C end the run at each of them.
+class Callbacks : public app::Adviser {
+ public:
+  Callbacks(py::object progress, py::object warning) : progress_(std::move(progress)), warning_(std::move(warning)) {}
+
+  void progress(const std::string& line) const override { call(progress_, line); }
+  void warning(const std::string& line) const override { call(warning_, line); }
+  void done(Stage stage, const Archive& archive) const override {
+    Adviser::done(stage, archive);
+    call(py::none(), "");
+  }
+
+ private:
+  static void call(const py::object& function, const std::string& line) {
+    const py::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (!function.is_none()) function(line);
+  }
+
+  py::object progress_, warning_;
+};
+
+/// Returns where the archive is.
+std::string run_file(const std::string& file, const py::dict& keys, const py::object& progress,
+                     const py::object& warning) {
+  const app::Config config = app::load_config(file, key_values(keys, ""));
+  const Callbacks callbacks(progress, warning);
+  {
+    const py::gil_scoped_release unlocked;
+    app::check_request("run", config, file);
+    app::run_all(config, "modebank.run(" + file + ")", callbacks);
+  }
+  return config.archive.output;
+}
+
+}  // namespace
+
+void bind_run(py::module_& module) {
+  module.def("run_file", &run_file, py::arg("file"), py::arg("keys"), py::arg("progress"), py::arg("warning"));
+}
+
+}  // namespace modebank::python
