@@ -26,7 +26,8 @@ class Tracker {
       : config_(config),
         opened_(open_filter(archive, config)),
         judge_(bank_, config.track.level, config.track.alarm),
-        reader_({config.data.time, config.data.input, config.data.state}, config.track.format) {
+        reader_({config.data.time.empty() ? "time" : config.data.time.front(), config.data.input, config.data.state},
+                config.track.format) {
     check_columns(config, bank_, archive);
     const FilterOptions& options = opened_.options;
     identity_ = fmt::format("{} {} {} {} {} {}", archive_digest(archive), name_of(config.track.filter),

@@ -9,7 +9,7 @@
 
 #include "ident/base/not_a_number.hpp"
 #include "io/import/csv.hpp"
-#include "io/import/csv_number.hpp"
+#include "io/table/number.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -34,11 +35,12 @@ struct EnumNames<Role> {
 struct Trajectory {
   std::string run;  ///< name of the run
   Role role = Role::train;
-  Eigen::VectorXd time_s;  ///< N, strictly increasing
-  Eigen::MatrixXd state;   ///< n x N, as measured
-  Eigen::MatrixXd input;   ///< m x N
-  Eigen::MatrixXd truth;   ///< n x N true state, or empty
-  double lag_s = 0.0;      ///< lag that was applied to the inputs
+  Eigen::VectorXd time_s;           ///< N, strictly increasing
+  Eigen::MatrixXd state;            ///< n x N, as measured
+  Eigen::MatrixXd input;            ///< m x N
+  Eigen::MatrixXd truth;            ///< n x N true state, or empty
+  double lag_s = 0.0;               ///< lag that was applied to the inputs
+  std::int64_t time_origin_ns = 0;  ///< since 1970 where stamps were: what time_s counts from
   /// N or empty (all one). weight(k) belongs to the transition that ends in sample k, whose error it multiplies the
   /// loss of; weight(0) is unused. At least 0, finite; 0 leaves the transition out. Only ratios matter: every fit
   /// divides by the mean over its transitions.

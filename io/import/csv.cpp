@@ -1,14 +1,17 @@
 #include "io/import/csv.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "ident/base/not_a_number.hpp"
 #include "io/files/read_file.hpp"
-#include "io/import/csv_number.hpp"
+#include "io/files/sha256.hpp"
 #include "io/import/csv_pass.hpp"
+#include "io/table/number.hpp"
+#include "io/table/stamp_column.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -46,14 +49,19 @@ struct TableSink {
   static constexpr auto none = static_cast<std::size_t>(-1);
 
   std::vector<int> target;  // per column of the file: skipped or position in table.numbers
-  std::size_t text_column = none;
+  std::size_t text_column = none, time_column = none, nanoseconds_column = none;
   std::vector<std::string> header;
   Table table;
   std::vector<bool> may_miss;  // per position in table.numbers
+  StampColumn stamps;
+  bool time_may_miss;
+  std::string nanoseconds;  // of the row, where they have a column of their own
   bool header_seen = false, empty_line_seen = false;
   std::size_t fields = 0;
   std::uint64_t line = 1;
   std::string error;
+
+  explicit TableSink(const TimeRequest& time) : stamps(time, ""), time_may_miss(time.may_miss) {}
 
   bool done() const { return !error.empty(); }
 
@@ -63,6 +71,21 @@ struct TableSink {
     if (!header_seen || column >= target.size()) return;
     if (column == text_column) table.text.emplace_back(text);
     if (target[column] != skipped) number(column, text);
+    if (column == time_column) time(text);
+    if (column == nanoseconds_column) nanoseconds = text;
+  }
+
+  void time(std::string_view text) {
+    const NumberStatus status = stamps.add(text);
+    if (status == NumberStatus::ok) return;
+    if (status == NumberStatus::missing && time_may_miss)
+      stamps.add_missing();
+    else
+      error = status == NumberStatus::text ? fmt::format(
+                                                 "column {}: \"{}\" is no time (seconds, or as "
+                                                 "2024-05-01T10:00:00.25Z)",
+                                                 header[time_column], text.substr(0, shown_bytes))
+                                           : complaint(status, time_column, text);
   }
 
   void number(std::size_t column, std::string_view text) {
@@ -88,6 +111,9 @@ struct TableSink {
       header_seen = true;
     } else if (fields != target.size()) {
       error = fmt::format("{} field{}, but the header has {}", fields, fields == 1 ? "" : "s", target.size());
+    } else if (nanoseconds_column != none && !stamps.add_nanoseconds(nanoseconds)) {
+      error = fmt::format("column {}: \"{}\" is no number of nanoseconds below 1e9 beside whole seconds",
+                          header[nanoseconds_column], nanoseconds);
     } else {
       table.line.push_back(line);
     }
@@ -108,9 +134,15 @@ std::vector<std::string> header_of(std::string_view file, NextPiece&& next_piece
 
 TableSink make_sink(std::string_view file, std::vector<std::string> header, const TableRequest& request,
                     std::size_t rows) {
-  TableSink sink;
+  TableSink sink(request.time);
   sink.target.assign(header.size(), TableSink::skipped);
   if (!request.text.empty()) sink.text_column = column_position(file, header, request.text);
+  if (!request.time.column.empty()) {
+    sink.time_column = column_position(file, header, request.time.column);
+    sink.stamps.reserve(rows);
+  }
+  if (!request.time.nanoseconds.empty())
+    sink.nanoseconds_column = column_position(file, header, request.time.nanoseconds);
   for (std::size_t i = 0; i < request.numbers.size(); ++i)
     sink.target[column_position(file, header, request.numbers[i])] = static_cast<int>(i);
   sink.may_miss = request.may_miss;
@@ -141,7 +173,27 @@ Table parse_csv(std::string_view file, std::string_view content, const TableRequ
   CsvPass pass(file, sink);
   pass.feed(without_mark(content));
   pass.finish();
+  if (sink.time_column != TableSink::none) sink.stamps.finish(file, sink.table);
   return std::move(sink.table);
+}
+
+std::vector<TableInfo> CsvReader::tables() const {
+  TableInfo table;
+  for (std::string& name : read_csv_header(path_)) table.columns.push_back({std::move(name)});
+  return {std::move(table)};
+}
+
+std::vector<Table> CsvReader::read(const std::vector<TableRequest>& requests, InputFile& file) const {
+  const std::string content = read_file(path_);
+  std::vector<Table> tables(requests.size());
+  std::string sha256;
+  tbb::parallel_invoke([&] { sha256 = sha256_hex(content); },
+                       [&] {
+                         for (std::size_t i = 0; i < requests.size(); ++i)
+                           tables[i] = parse_csv(path_.string(), content, requests[i]);
+                       });
+  file = {path_.string(), content.size(), std::move(sha256)};
+  return tables;
 }
 
 }  // namespace modebank

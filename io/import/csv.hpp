@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/import/table_reader.hpp"
+#include "io/table/table_reader.hpp"
 
 namespace modebank {
 
@@ -21,5 +21,16 @@ std::vector<std::string> read_csv_header(const std::filesystem::path& path);
 /// Reads the wanted columns of `content`, the bytes of `file` (which is only named in messages). Throws as
 /// TableReader::read does.
 Table parse_csv(std::string_view file, std::string_view content, const TableRequest& request);
+
+/// A file of that kind: one table without a name.
+class CsvReader : public TableReader {
+ public:
+  explicit CsvReader(std::filesystem::path path) : path_(std::move(path)) {}
+  std::vector<TableInfo> tables() const override;
+  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const override;
+
+ private:
+  std::filesystem::path path_;
+};
 
 }  // namespace modebank

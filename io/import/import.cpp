@@ -23,16 +23,18 @@ namespace modebank {
 
 namespace {
 
-std::vector<Channel> make_channels(const char* key, const std::vector<std::string>& names,
-                                   const std::vector<std::string>& units) {
+/// Units as the options say them, else as the files do.
+void check_units(const char* key, const std::vector<std::string>& names, const std::vector<std::string>& units) {
   if (units.size() > 1 && units.size() != names.size())
     throw ConfigurationError(
         fmt::format("data.{0}_unit has {1} units, but data.{0} {2} columns: one each, one for all, "
                     "or none",
                     key, units.size(), names.size()));
-  std::vector<Channel> channels;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    channels.push_back({names[i], units.empty() ? "" : units[units.size() == 1 ? 0 : i]});
+}
+
+std::vector<Channel> with_units(std::vector<Channel> channels, const std::vector<std::string>& units) {
+  for (std::size_t i = 0; i < channels.size() && !units.empty(); ++i)
+    channels[i].unit = units[units.size() == 1 ? 0 : i];
   return channels;
 }
 
@@ -72,6 +74,9 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
     Outcome outcome = std::exchange(outcomes[plan], {});
     if (outcome.error) std::rethrow_exception(outcome.error);
     std::move(outcome.content.files.begin(), outcome.content.files.end(), std::back_inserter(data.files));
+    for (std::string& note : outcome.content.notes)
+      if (std::find(data.notes.begin(), data.notes.end(), note) == data.notes.end())
+        data.notes.push_back(std::move(note));
     std::move(outcome.content.runs.begin(), outcome.content.runs.end(), std::back_inserter(runs));
   };
   const auto in_flight = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
@@ -133,9 +138,12 @@ LagReport find_lags(const std::vector<RunStreams>& streams, const DataOptions& o
 
 ImportedData import_data(const DataOptions& options) {
   ImportedData data;
-  data.recording.states = make_channels("state", options.state, options.state_unit);
-  data.recording.inputs = make_channels("input", options.input, options.input_unit);
-  std::vector<RunStreams> streams = named_streams(plan_import(options), options, data, false);
+  check_units("state", options.state, options.state_unit);
+  check_units("input", options.input, options.input_unit);
+  const std::vector<FilePlan> plans = plan_import(options);
+  data.recording.states = with_units(plans.front().states, options.state_unit);
+  data.recording.inputs = with_units(plans.front().inputs, options.input_unit);
+  std::vector<RunStreams> streams = named_streams(plans, options, data, false);
   if (options.lag_auto) data.lag = find_lags(streams, options);
   auto& runs = data.recording.runs;
   Quanta quanta(options);
@@ -153,10 +161,15 @@ ImportedData import_data(const DataOptions& options) {
 
 std::vector<RunStreams> read_streams(const DataOptions& options) {
   ImportedData unused;
-  std::vector<FilePlan> plans = plan_import(options);
+  DataOptions lenient = options;
+  lenient.disorder = Disorder::sort;  // of streams that several tables make up; one table's stays as it is
+  std::vector<FilePlan> plans = plan_import(lenient);
   for (FilePlan& plan : plans)
-    for (TableRequest& request : plan.requests) request.may_miss.assign(request.numbers.size(), true);
-  return named_streams(plans, options, unused, true);
+    for (SourcePlan& source : plan.sources) {
+      source.request.may_miss.assign(source.request.numbers.size(), true);
+      source.request.time.may_miss = true;
+    }
+  return named_streams(plans, lenient, unused, true);
 }
 
 std::vector<std::filesystem::path> data_files(const DataOptions& options) {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "ident/base/nearest_name.hpp"
+#include "io/import/column_finder.hpp"
 #include "io/import/file_patterns.hpp"
 #include "io/import/run_roles.hpp"
 #include "modebank/base/error.hpp"
@@ -17,10 +17,6 @@ namespace modebank {
 namespace {
 
 using ColumnNames = std::vector<std::string>;
-
-bool contains(const ColumnNames& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 void check_names(const char* key, const ColumnNames& names) {
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -33,7 +29,11 @@ void check_names(const char* key, const ColumnNames& names) {
 void check_options(const DataOptions& options) {
   constexpr double highest_rate_hz = 1e6;
   if (options.state.empty()) throw ConfigurationError("data.state is not set: name the state columns");
-  if (options.time.empty()) throw ConfigurationError("data.time is not set: name the column of seconds");
+  if (options.time.empty() && options.rate_hz == 0.0)
+    throw ConfigurationError(
+        "data.time is not set: name the column of times, or, for rows without any, say data.rate_hz");
+  if (options.time.size() > 2)
+    throw ConfigurationError("data.time names more than two columns: one, or seconds and nanoseconds");
   check_names("state", options.state);
   check_names("input", options.input);
   check_names("truth", options.truth);
@@ -50,80 +50,42 @@ void check_options(const DataOptions& options) {
     throw ConfigurationError("data.lag_s = auto needs inputs (data.input): without one there is no lag");
 }
 
-/// Looks columns up in the headers of one plan's files and notes them in its requests.
-class ColumnFinder {
- public:
-  explicit ColumnFinder(FilePlan& plan) : plan_(plan) {
-    for (const auto& path : plan.paths) headers_.push_back(open_table(path)->columns());
-    plan.requests.resize(plan.paths.size());
-  }
-
-  /// The first of `files` that has the column.
-  ColumnRef number(const std::string& column, const std::vector<std::size_t>& files) {
-    const std::size_t file = file_of(column, files);
-    ColumnNames& requested = plan_.requests[file].numbers;
-    const auto found = std::find(requested.begin(), requested.end(), column);
-    const auto position = static_cast<std::size_t>(found - requested.begin());
-    if (found == requested.end()) requested.push_back(column);
-    return {file, position};
-  }
-
-  std::vector<ColumnRef> numbers(const ColumnNames& columns, const std::vector<std::size_t>& files) {
-    std::vector<ColumnRef> found;
-    for (const std::string& column : columns) found.push_back(number(column, files));
-    return found;
-  }
-
-  std::size_t text(const std::string& column, const std::vector<std::size_t>& files) {
-    if (column.empty()) return 0;
-    const std::size_t file = file_of(column, files);
-    plan_.requests[file].text = column;
-    return file;
-  }
-
- private:
-  std::size_t file_of(const std::string& column, const std::vector<std::size_t>& files) const {
-    for (const std::size_t file : files)
-      if (files.size() == 1 || contains(headers_[file], column)) {
-        column_position(plan_.paths[file].string(), headers_[file], column);  // throws unless it is there once
-        return file;
-      }
-    ColumnNames all;
-    std::string listing;
-    for (const std::size_t file : files) {
-      listing += fmt::format("; {} has {}", plan_.paths[file].string(), fmt::join(headers_[file], ", "));
-      all.insert(all.end(), headers_[file].begin(), headers_[file].end());
+/// The times of all sources, or where rows correspond of the one that is looked up first.
+void plan_times(FilePlan& plan, ColumnFinder& find, const DataOptions& options) {
+  if (options.join == Join::time) {
+    for (std::size_t source = 0; source < plan.sources.size(); ++source) {
+      find.time(source, options);
+      find.text(source, options.run);
     }
-    throw ConfigurationError(fmt::format("no column \"{}\"{}{}", column, did_you_mean(column, all), listing));
+    return;
   }
-
-  FilePlan& plan_;
-  std::vector<ColumnNames> headers_;
-};
+  const std::size_t timed = find.first_with_time({plan.states_clock, plan.inputs_clock}, options);
+  find.time(timed, options);
+  if (!options.run.empty()) {
+    plan.runs_source = find.first_with(options.run, {plan.states_clock, plan.inputs_clock});
+    find.text(plan.runs_source, options.run);
+  }
+  plan.states_clock = plan.inputs_clock = timed;
+}
 
 void plan_columns(FilePlan& plan, const DataOptions& options) {
-  ColumnFinder find(plan);
+  ColumnFinder find(plan, options.format);
   const std::size_t inputs = 0, states = plan.paths.size() - 1;
   const std::vector<std::size_t> states_first = states == inputs ? std::vector{inputs} : std::vector{states, inputs};
   plan.state = find.numbers(options.state, {states});
   plan.input = find.numbers(options.input, {inputs});
+  plan.states_clock = plan.state.front().source;
+  plan.inputs_clock =
+      plan.input.empty() ? find.source_without_column(inputs, plan.states_clock) : plan.input.front().source;
   plan.truth = find.numbers(options.truth, states_first);
   if (!options.weight.empty()) plan.weight = {find.number(options.weight, states_first)};
-  if (options.join == Join::row || states == inputs) {
-    plan.inputs_time = plan.states_time = find.number(options.time, states_first);
-    plan.inputs_runs = plan.states_runs = find.text(options.run, states_first);
-  } else {
-    plan.inputs_time = find.number(options.time, {inputs});
-    plan.states_time = find.number(options.time, {states});
-    plan.inputs_runs = find.text(options.run, {inputs});
-    plan.states_runs = find.text(options.run, {states});
-  }
+  plan_times(plan, find, options);
   // A sample without time has no place, and one without weight should not be guessed at.
-  for (TableRequest& request : plan.requests)
-    request.may_miss.assign(request.numbers.size(), options.missing != Missing::error);
-  for (const ColumnRef time : {plan.inputs_time, plan.states_time})
-    plan.requests[time.file].may_miss[time.column] = false;
-  for (const ColumnRef weight : plan.weight) plan.requests[weight.file].may_miss[weight.column] = false;
+  for (SourcePlan& source : plan.sources)
+    source.request.may_miss.assign(source.request.numbers.size(), options.missing != Missing::error);
+  for (const ColumnRef weight : plan.weight) plan.sources[weight.source].request.may_miss[weight.column] = false;
+  plan.states = find.channels(plan.state);
+  plan.inputs = find.channels(plan.input);
 }
 
 ColumnNames without_left_out(const ColumnNames& names, const DataOptions& options) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "io/table/table_reader.hpp"
 #include "modebank/base/names.hpp"
 
 namespace modebank {
@@ -46,7 +47,10 @@ struct DataOptions {
   /// Column of sample weights, at least 0 (Trajectory::weight); looked up as truth is: in the states file first. Empty:
   /// none.
   std::string weight;
-  std::string time = "time";  ///< column of seconds
+  /// Column of times (one, or seconds and nanoseconds). In a recording "time" means its messages' header stamps, or
+  /// where they have none when they were received; receive_time the latter. Empty: row k of a file is k / rate_hz.
+  std::vector<std::string> time{"time"};
+  TimeUnit time_unit = TimeUnit::automatic;
   Join join = Join::time;
   /// Column whose value separates runs inside one file: the run is named by it, after "<matched part>_" where inputs
   /// has a *. Join::time needs it in both files; else it is looked up in the states file first, as `time` is.
@@ -57,6 +61,7 @@ struct DataOptions {
   double lag_range_s = 2.5;     ///< lags that the estimate searches, either way
   std::vector<double> quantum;  ///< what states are multiples of, one each or one for all [state unit]; empty: none
   bool quantum_auto = false;    ///< found in the training runs (io/import/quanta.hpp)
+  FormatOptions format;         ///< what files say too little of themselves
   Missing missing = Missing::error;
   Disorder disorder = Disorder::error;
   std::vector<std::string> train;  ///< run names; empty: all not in test, or positions 0, 2, 4, ... in name order

@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
+#include "ident/base/not_a_number.hpp"
+#include "io/import/bring.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -15,92 +20,185 @@ using Eigen::VectorXd;
 using Rows = std::vector<std::size_t>;
 using RunRows = std::map<std::string, Rows>;  // sorted by run name, byte order
 
+constexpr std::int64_t large_origin_ns = 100'000'000'000'000'000;  // three years: smaller ones cost no precision
+
+/// One table per source of the plan.
 std::vector<Table> read_tables(const FilePlan& plan, FileContent& result) {
-  std::vector<Table> tables(plan.paths.size());
-  for (std::size_t f = 0; f < plan.paths.size(); ++f) {
-    const std::string path = plan.paths[f].string();
-    tables[f] = open_table(plan.paths[f])->read(plan.requests[f], result.files.emplace_back());
-    if (tables[f].rows() == 0) throw DataError(fmt::format("{}: a header, but no rows", path));
+  std::vector<Table> tables(plan.sources.size());
+  for (std::size_t path = 0; path < plan.paths.size(); ++path) {
+    std::vector<std::size_t> here;
+    std::vector<TableRequest> requests;
+    for (std::size_t source = 0; source < plan.sources.size(); ++source)
+      if (plan.sources[source].path == path) {
+        here.push_back(source);
+        requests.push_back(plan.sources[source].request);
+      }
+    std::vector<Table> read = plan.readers[path]->read(requests, result.files.emplace_back());
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      if (read[i].rows() == 0) throw DataError(fmt::format("{}: a header, but no rows", plan.paths[path].string()));
+      result.notes.insert(result.notes.end(), read[i].notes.begin(), read[i].notes.end());
+      tables[here[i]] = std::move(read[i]);
+    }
   }
   return tables;
 }
 
-/// One file's view of the runs: which rows belong to which, and the rows' times.
+/// The rows of one run, per source, and what its times count from.
+struct RunSlice {
+  std::vector<Rows> rows;
+  std::int64_t origin_ns = 0;
+};
+
+/// Tables' view of the runs: which rows belong to which, and their values.
 class RowReader {
  public:
-  RowReader(const FilePlan& plan, const std::vector<Table>& tables) : plan_(plan), tables_(tables) {}
+  RowReader(const FilePlan& plan, const std::vector<Table>& tables, const DataOptions& options)
+      : plan_(plan), tables_(tables), options_(options) {}
 
-  RunRows rows_by_run(std::size_t file, bool has_run_column) const {
-    const Table& table = tables_[file];
+  RunRows rows_by_run(std::size_t source) const {
+    const Table& table = tables_[source];
     RunRows runs;
-    if (!has_run_column) {
+    if (options_.run.empty()) {
       runs[""].resize(table.rows());
       std::iota(runs[""].begin(), runs[""].end(), std::size_t{0});
       return runs;
     }
     for (std::size_t row = 0; row < table.rows(); ++row) {
       if (table.text[row].empty())
-        throw DataError(fmt::format("{}: column {}: missing value", place(file, row), plan_.requests[file].text));
+        throw DataError(
+            fmt::format("{}: column {}: missing value", place(source, row), plan_.sources[source].request.text));
       runs[table.text[row]].push_back(row);
     }
     return runs;
   }
 
-  FileStream stream(ColumnRef time, const std::vector<ColumnRef>& refs, const Rows& rows) const {
-    FileStream result;
-    result.stream.time_s = column(time, rows);
-    result.stream.values.resize(static_cast<Index>(refs.size()), static_cast<Index>(rows.size()));
-    for (std::size_t i = 0; i < refs.size(); ++i)
-      result.stream.values.row(static_cast<Index>(i)) = column(refs[i], rows).transpose();
-    for (const std::size_t row : rows) result.line.push_back(tables_[time.file].line[row]);
-    result.file = plan_.paths[time.file].string();
-    result.time_column = plan_.requests[time.file].numbers[time.column];
+  /// What the run's times count from: nothing, or its first sample where that is long after.
+  std::int64_t origin_ns(const std::vector<Rows>& rows) const {
+    std::int64_t first = std::numeric_limits<std::int64_t>::max();
+    for (std::size_t source = 0; source < tables_.size(); ++source)
+      if (const auto& stamps = tables_[source].time_ns; !stamps.empty())
+        for (const std::size_t row : rows[source])
+          if (stamps[row] != missing_stamp) first = std::min(first, stamps[row]);
+    return first == std::numeric_limits<std::int64_t>::max() || std::abs(first) < large_origin_ns ? 0 : first;
+  }
+
+  /// The samples of `clock`, with the columns `refs` of whatever source; those of others are brought to its times.
+  FileStream stream(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run, Bring bring) const {
+    FileStream result = own_stream(clock, refs, run);
+    if (plan_.rows_correspond()) return result;
+    std::vector<std::size_t> others;
+    for (const ColumnRef ref : refs)
+      if (ref.source != clock && std::find(others.begin(), others.end(), ref.source) == others.end())
+        others.push_back(ref.source);
+    if (others.empty()) return result;
+    put_in_order(result, options_.disorder);
+    for (const std::size_t other : others) {
+      FileStream source = own_stream(other, refs, run);
+      put_in_order(source, options_.disorder);
+      std::vector<Index> theirs;
+      for (std::size_t i = 0; i < refs.size(); ++i)
+        if (refs[i].source == other) theirs.push_back(static_cast<Index>(i));
+      bring_to(result, source, theirs, bring);
+    }
     return result;
   }
 
   /// Weights, none negative.
-  VectorXd weights(ColumnRef ref, const Rows& rows) const {
-    const VectorXd values = column(ref, rows);
-    for (Index k = 0; k < values.size(); ++k)
-      if (values(k) < 0.0)
+  void check_weights(ColumnRef ref, const Rows& rows) const {
+    for (const std::size_t row : rows)
+      if (const double value = tables_[ref.source].numbers[ref.column][row]; value < 0.0)
         throw DataError(
             fmt::format("{}: column {}: {} is negative: a weight is at least 0, and 0 leaves the sample's "
                         "transition out",
-                        place(ref.file, rows[static_cast<std::size_t>(k)]),
-                        plan_.requests[ref.file].numbers[ref.column], values(k)));
-    return values;
+                        place(ref.source, row), plan_.sources[ref.source].request.numbers[ref.column], value));
+  }
+
+ private:
+  std::string place(std::size_t source, std::size_t row) const {
+    return fmt::format("{}:{}", plan_.paths[plan_.sources[source].path].string(), tables_[source].line[row]);
+  }
+
+  VectorXd times(std::size_t source, const RunSlice& run) const {
+    const Table& table = tables_[source];
+    const Rows& rows = run.rows[source];
+    VectorXd time_s(static_cast<Index>(rows.size()));
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const auto at = static_cast<Index>(k);
+      if (table.time_ns.empty())
+        time_s(at) = static_cast<double>(k) / options_.rate_hz;
+      else if (table.time_ns[rows[k]] == missing_stamp)
+        time_s(at) = not_a_number;
+      else if (run.origin_ns == 0 && !table.time_s.empty())
+        time_s(at) = table.time_s[rows[k]];
+      else
+        time_s(at) = static_cast<double>(table.time_ns[rows[k]] - run.origin_ns) / 1e9;
+    }
+    return time_s;
+  }
+
+  /// Times of a source and those of the columns that are its own; the others stay empty rows. Where rows correspond all
+  /// are its own.
+  FileStream own_stream(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run) const {
+    FileStream result;
+    result.stream.time_s = times(clock, run);
+    result.stream.values.setConstant(static_cast<Index>(refs.size()), result.stream.time_s.size(), not_a_number);
+    for (std::size_t i = 0; i < refs.size(); ++i)
+      if (refs[i].source == clock || plan_.rows_correspond())
+        result.stream.values.row(static_cast<Index>(i)) = column(refs[i], run.rows[clock]).transpose();
+    for (const std::size_t row : run.rows[clock]) result.line.push_back(tables_[clock].line[row]);
+    result.file = plan_.paths[plan_.sources[clock].path].string();
+    result.time_column = plan_.sources[clock].request.time.column;
+    result.origin_ns = run.origin_ns;
+    return result;
   }
 
   VectorXd column(ColumnRef ref, const Rows& rows) const {
-    const std::vector<double>& all = tables_[ref.file].numbers[ref.column];
+    const std::vector<double>& all = tables_[ref.source].numbers[ref.column];
     VectorXd values(static_cast<Index>(rows.size()));
     for (std::size_t k = 0; k < rows.size(); ++k) values(static_cast<Index>(k)) = all[rows[k]];
     return values;
   }
 
- private:
-  std::string place(std::size_t file, std::size_t row) const {
-    return fmt::format("{}:{}", plan_.paths[file].string(), tables_[file].line[row]);
-  }
-
   const FilePlan& plan_;
   const std::vector<Table>& tables_;
+  const DataOptions& options_;
 };
 
 void check_row_counts(const FilePlan& plan, const std::vector<Table>& tables) {
-  if (!plan.rows_correspond() || tables.front().rows() == tables.back().rows()) return;
-  throw DataError(fmt::format("data.join = row: {} has {} rows, but {} has {}", plan.paths.front().string(),
-                              tables.front().rows(), plan.paths.back().string(), tables.back().rows()));
+  if (!plan.rows_correspond()) return;
+  const auto name = [&](std::size_t source) { return plan.paths[plan.sources[source].path].string(); };
+  std::size_t first = 0;  // the inputs' file comes first
+  for (std::size_t source = 0; source < tables.size(); ++source)
+    if (plan.sources[source].path < plan.sources[first].path) first = source;
+  for (std::size_t source = 0; source < tables.size(); ++source)
+    if (tables[source].rows() != tables[first].rows())
+      throw DataError(fmt::format("data.join = row: {} has {} rows, but {} has {}", name(first), tables[first].rows(),
+                                  name(source), tables[source].rows()));
 }
 
-void check_same_runs(const FilePlan& plan, const RunRows& inputs, const RunRows& states) {
-  const auto require = [](const RunRows& here, const RunRows& there, const std::string& file,
-                          const std::string& other) {
-    for (const auto& [name, rows] : here)
-      if (there.count(name) == 0) throw DataError(fmt::format("run \"{}\" is in {}, but not in {}", name, file, other));
+/// The rows of every run in every source.
+std::map<std::string, RunSlice> slices_of(const FilePlan& plan, const RowReader& reader) {
+  std::vector<RunRows> by_source;
+  for (std::size_t source = 0; source < plan.sources.size(); ++source)
+    by_source.push_back(reader.rows_by_run(plan.rows_correspond() ? plan.runs_source : source));
+  const auto file = [&](std::size_t source) { return plan.paths[plan.sources[source].path].string(); };
+  const auto require = [&](std::size_t here, std::size_t there) {
+    for (const auto& [name, rows] : by_source[here])
+      if (by_source[there].count(name) == 0)
+        throw DataError(fmt::format("run \"{}\" is in {}, but not in {}", name, file(here), file(there)));
   };
-  require(inputs, states, plan.paths.front().string(), plan.paths.back().string());
-  require(states, inputs, plan.paths.back().string(), plan.paths.front().string());
+  const std::size_t first = plan.inputs_clock;
+  for (std::size_t source = 0; source < plan.sources.size(); ++source) {
+    require(first, source);
+    require(source, first);
+  }
+  std::map<std::string, RunSlice> slices;
+  for (const auto& [name, rows] : by_source[first]) {
+    RunSlice& slice = slices[name];
+    for (const RunRows& source : by_source) slice.rows.push_back(source.at(name));
+    slice.origin_ns = reader.origin_ns(slice.rows);
+  }
+  return slices;
 }
 
 std::string run_name(const FilePlan& plan, const std::string& value, const DataOptions& options) {
@@ -108,20 +206,39 @@ std::string run_name(const FilePlan& plan, const std::string& value, const DataO
   return plan.starred ? plan.name + "_" + value : value;
 }
 
-RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::string& name, const Rows& states_rows,
-                      const Rows& inputs_rows) {
+/// States, or inputs, with the companions that are sampled with them as further rows.
+struct Gathered {
+  std::vector<ColumnRef> refs;
+  std::vector<RunStreams::Companion*> companions;
+
+  FileStream split(FileStream all) const {
+    const auto channels = static_cast<Index>(refs.size() - companions.size());
+    for (std::size_t i = 0; i < companions.size(); ++i)
+      companions[i]->values = all.stream.values.row(channels + static_cast<Index>(i)).transpose();
+    all.stream.values.conservativeResize(channels, Eigen::NoChange);
+    return all;
+  }
+};
+
+RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::string& name, const RunSlice& slice) {
   RunStreams run;
   run.run = name;
-  run.states = reader.stream(plan.states_time, plan.state, states_rows);
-  run.inputs = reader.stream(plan.inputs_time, plan.input, inputs_rows);
-  for (const ColumnRef& truth : plan.truth) {
-    const bool with_states = plan.rows_correspond() || truth.file == plan.states_time.file;
-    run.truth.push_back({with_states, reader.column(truth, with_states ? states_rows : inputs_rows)});
-  }
-  for (const ColumnRef& ref : plan.weight) {
-    const bool with_states = plan.rows_correspond() || ref.file == plan.states_time.file;
-    run.weight.push_back({with_states, reader.weights(ref, with_states ? states_rows : inputs_rows)});
-  }
+  run.truth.resize(plan.truth.size());
+  run.weight.resize(plan.weight.size());
+  Gathered states{plan.state, {}}, inputs{plan.input, {}};
+  const auto gather = [&](const std::vector<ColumnRef>& refs, std::vector<RunStreams::Companion>& companions) {
+    for (std::size_t i = 0; i < refs.size(); ++i) {
+      companions[i].with_states = plan.rows_correspond() || refs[i].source != plan.inputs_clock;
+      Gathered& with = companions[i].with_states ? states : inputs;
+      with.refs.push_back(refs[i]);
+      with.companions.push_back(&companions[i]);
+    }
+  };
+  for (const ColumnRef ref : plan.weight) reader.check_weights(ref, slice.rows[ref.source]);
+  gather(plan.truth, run.truth);
+  gather(plan.weight, run.weight);
+  run.states = states.split(reader.stream(plan.states_clock, states.refs, slice, Bring::interpolated));
+  run.inputs = inputs.split(reader.stream(plan.inputs_clock, inputs.refs, slice, Bring::held));
   return run;
 }
 
@@ -129,15 +246,12 @@ RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::
 
 FileContent read_runs(const FilePlan& plan, const DataOptions& options) {
   FileContent result;
+  result.notes = plan.notes;
   const std::vector<Table> tables = read_tables(plan, result);
   check_row_counts(plan, tables);
-  const RowReader reader(plan, tables);
-  const bool has_run_column = !options.run.empty();
-  const RunRows inputs = reader.rows_by_run(plan.rows_correspond() ? plan.inputs_runs : 0, has_run_column);
-  const RunRows states = plan.rows_correspond() ? inputs : reader.rows_by_run(plan.paths.size() - 1, has_run_column);
-  check_same_runs(plan, inputs, states);
-  for (const auto& [value, inputs_rows] : inputs)
-    result.runs.push_back(streams_of(plan, reader, run_name(plan, value, options), states.at(value), inputs_rows));
+  const RowReader reader(plan, tables, options);
+  for (const auto& [value, slice] : slices_of(plan, reader))
+    result.runs.push_back(streams_of(plan, reader, run_name(plan, value, options), slice));
   return result;
 }
 

@@ -14,9 +14,12 @@ namespace modebank {
 struct FileContent {
   std::vector<RunStreams> runs;  ///< sorted by name; roles not yet set, samples not yet in order
   std::vector<InputFile> files;  ///< inputs before states
+  std::vector<std::string> notes;
 };
 
-/// Reads one plan's files into streams, run by run. Throws DataError (io/import/import.hpp).
+/// Reads one plan's files into streams, run by run. Where a run's states (or inputs) come from several tables, the
+/// first one's table gives the times: other states are interpolated onto them, other inputs held; these streams are put
+/// in order as options.disorder says. Throws DataError (io/import/import.hpp).
 FileContent read_runs(const FilePlan& plan, const DataOptions& options);
 
 }  // namespace modebank

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "io/table/stamp.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -13,15 +15,17 @@ namespace {
 
 using Eigen::VectorXd;
 
-std::string span(const VectorXd& time_s) { return fmt::format("{} to {} s", time_s(0), time_s(time_s.size() - 1)); }
+std::string span(const FileStream& source) {
+  return fmt::format("{} to {} s", source.time_text(0), source.time_text(source.stream.time_s.size() - 1));
+}
 
 void check_order(const FileStream& source) {
   const VectorXd& time_s = source.stream.time_s;
   for (Index k = 1; k < time_s.size(); ++k)
     if (!(time_s(k) > time_s(k - 1)))
       throw DataError(fmt::format("{}:{}: column {}: {} after {}: time going backwards or repeated", source.file,
-                                  source.line[static_cast<std::size_t>(k)], source.time_column, time_s(k),
-                                  time_s(k - 1)));
+                                  source.line[static_cast<std::size_t>(k)], source.time_column, source.time_text(k),
+                                  source.time_text(k - 1)));
 }
 
 /// Positions of the samples in order of time; of those that share a time the first in the file.
@@ -46,12 +50,23 @@ void check_samples(const RunStreams& run, Index samples, const DataOptions& opti
   const double lag_s = options.lag_auto ? clock.lag_s : options.lag_s;
   const std::string lag = lag_s == 0.0 ? "" : fmt::format(", lag {} s", lag_s);
   throw DataError(fmt::format("run \"{}\" has {} sample{}, but needs at least two: states {} ({}), inputs {} ({}){}{}",
-                              run.run, samples, samples == 1 ? "" : "s", span(run.states.stream.time_s),
-                              run.states.file, span(run.inputs.stream.time_s), run.inputs.file, lag,
+                              run.run, samples, samples == 1 ? "" : "s", span(run.states), run.states.file,
+                              span(run.inputs), run.inputs.file, lag,
                               samples == 0 ? ": the streams do not overlap" : ""));
 }
 
 }  // namespace
+
+std::string FileStream::time_text(Index k) const {
+  const double time_s = stream.time_s(k);
+  if (origin_ns == 0 || std::isnan(time_s)) return fmt::format("{}", time_s);
+  return seconds_text(origin_ns + std::llround(time_s * 1e9));
+}
+
+void put_in_order(FileStream& source, Disorder disorder) {
+  if (disorder == Disorder::error) return check_order(source);
+  reorder(source, order_of(source.stream.time_s));
+}
 
 void put_in_order(RunStreams& run, Disorder disorder) {
   if (disorder == Disorder::error) {
@@ -75,6 +90,7 @@ Trajectory join_run(const RunStreams& run, const DataOptions& options, const Inp
   joined.run = run.run;
   joined.role = run.role;
   joined.lag_s = applied.lag_s;
+  joined.time_origin_ns = run.states.origin_ns;
   joined.time_s =
       joint_times(states.time_s, inputs.time_s, {options.rate_hz, applied.lag_s, applied.drift, applied.reference_s});
   check_samples(run, joined.time_s.size(), options, clock);

@@ -15,7 +15,15 @@ struct FileStream {
   Stream stream;                    ///< times may repeat or go backwards until put_in_order
   std::vector<std::uint64_t> line;  ///< per sample, of the file
   std::string file, time_column;
+  std::int64_t origin_ns = 0;  ///< of the times, which are seconds since then
+
+  /// Time of a sample as the file has it.
+  std::string time_text(Index k) const;
 };
+
+/// Sorts by time and keeps the first of the samples that share one (Disorder::sort), or throws DataError, naming file
+/// and line, where time repeats or goes backwards (Disorder::error).
+void put_in_order(FileStream& source, Disorder disorder);
 
 /// The streams of one run, not yet joined. Under Join::row, and where states and inputs are columns of one file, both
 /// have the same times.
@@ -32,8 +40,7 @@ struct RunStreams {
   std::vector<Companion> weight;  ///< one, or none
 };
 
-/// Sorts both streams by time and keeps the first of the samples that share one (Disorder::sort), or throws DataError,
-/// naming file and line, where time repeats or goes backwards (Disorder::error).
+/// Both streams, and what is sampled with them.
 void put_in_order(RunStreams& run, Disorder disorder);
 
 /// The run as identification sees it: states interpolated, inputs held and delayed by the constant options.lag_s, or by

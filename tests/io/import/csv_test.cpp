@@ -1,6 +1,6 @@
 #include "io/import/csv.hpp"
 
-#include "io/import/csv_number.hpp"
+#include "io/table/number.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/io/import/expect_error.hpp"
 #include "tests/support/paths.hpp"
@@ -13,11 +13,11 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-Table parse(std::string_view content, const TableRequest& request = {{"a", "b"}, ""}) {
+Table parse(std::string_view content, const TableRequest& request = {0, {"a", "b"}, ""}) {
   return parse_csv("f.csv", content, request);
 }
 
-std::string data_error(std::string_view content, const TableRequest& request = {{"a", "b"}, ""}) {
+std::string data_error(std::string_view content, const TableRequest& request = {0, {"a", "b"}, ""}) {
   return message_of<DataError>([&] { parse(content, request); });
 }
 
@@ -38,13 +38,13 @@ TEST(Csv, OtherColumnsMayHoldAnything) {
 }
 
 TEST(Csv, ReadsTextAndNumbersOfOneColumn) {
-  const Table table = parse("a,b\n 07 ,1\n\"8\",2\n", {{"a"}, "a"});
+  const Table table = parse("a,b\n 07 ,1\n\"8\",2\n", {0, {"a"}, "a"});
   EXPECT_THAT(table.numbers[0], ElementsAre(7, 8));
   EXPECT_THAT(table.text, ElementsAre("07", "8"));
 }
 
 TEST(Csv, KeepsQuotedTextAsItIs) {
-  EXPECT_THAT(parse("a,t\n1,\"x, \"\"y\"\"\"\n", {{"a"}, "t"}).text, ElementsAre("x, \"y\""));
+  EXPECT_THAT(parse("a,t\n1,\"x, \"\"y\"\"\"\n", {0, {"a"}, "t"}).text, ElementsAre("x, \"y\""));
 }
 
 TEST(Csv, AcceptsMarkCrlfBlanksAndQuotedNames) {
@@ -140,11 +140,11 @@ TEST(Csv, EmptyFile) {
 
 TEST(Csv, MissingAndRepeatedColumns) {
   EXPECT_EQ(message_of<ConfigurationError>([] {
-              parse("time,velL,velR\n", {{"vellL"}, ""});
+              parse("time,velL,velR\n", {0, {"vellL"}, ""});
             }),
             "f.csv has no column \"vellL\", did you mean velL?; columns: time, velL, velR");
   EXPECT_EQ(message_of<ConfigurationError>([] {
-              parse("time,VelL\n", {{"velL"}, ""});
+              parse("time,VelL\n", {0, {"velL"}, ""});
             }),
             "f.csv has no column \"velL\", did you mean VelL?; columns: time, VelL")
       << "case matters";

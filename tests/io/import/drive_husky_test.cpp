@@ -20,7 +20,7 @@ DataOptions drive_options(std::vector<std::string> states) {
   options.root = test::shared_data_dir().string();
   options.inputs = "drive_husky/husky_samples.csv";
   options.run = "block";
-  options.time = "t_block";
+  options.time = {"t_block"};
   options.state = std::move(states);
   options.input = {"wheel_left", "wheel_right"};
   return options;

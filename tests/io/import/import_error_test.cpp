@@ -27,7 +27,7 @@ TEST_F(ImportError, MissingColumnOfTwoFiles) {
             "no column \"true_x\"; " + path("imu_1.csv") + " has time, x; " + path("pro_1.csv") + " has time, u");
   options.truth.clear();
   options.join = Join::row;
-  options.time = "stamp";
+  options.time = {"stamp"};
   EXPECT_THAT(error<ConfigurationError>(), HasSubstr("no column \"stamp\""));
 }
 

@@ -39,7 +39,7 @@ TEST(ImportRealData, IceAgreesWithNumpy) {
   const std::string path = (test::golden_dir() / "ice_import.csv").string();
   const Table golden =
       parse_csv(path, read_file(path),
-                {{"samples", "first", "last", "mean_wz", "mean_wz_squared", "mean_velL", "mean_velR"}, "run"});
+                {0, {"samples", "first", "last", "mean_wz", "mean_wz_squared", "mean_velL", "mean_velR"}, "run"});
   const Recording recording = import_data(ice_options()).recording;
   ASSERT_EQ(recording.runs.size(), golden.rows());
   for (std::size_t i = 0; i < golden.rows(); ++i) {
@@ -63,7 +63,7 @@ TEST(ImportRealData, DriveBlocksAreRuns) {
   options.state = {"gyro_z"};
   options.input = {"wheel_left", "wheel_right"};
   options.truth = {"icp_yawrate_fit"};
-  options.time = "t_block";
+  options.time = {"t_block"};
   options.run = "block";
   const Recording recording = import_data(options).recording;
   ASSERT_EQ(recording.runs.size(), 201);   // the data's README: 201 blocks of 3 x 40 samples at 20 Hz

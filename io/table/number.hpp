@@ -11,6 +11,9 @@ struct ParsedNumber {
   NumberStatus status = NumberStatus::ok;
 };
 
+/// Without blanks, tabs and line breaks around it.
+std::string_view without_blanks(std::string_view field);
+
 /// A decimal number with blanks around it and a leading '+' tolerated. Empty, NaN and infinity are `missing`; what is
 /// too small for a double becomes zero.
 ParsedNumber parse_number(std::string_view field);

@@ -1,4 +1,4 @@
-#include "io/import/csv_number.hpp"
+#include "io/table/number.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -7,13 +7,6 @@
 namespace modebank {
 
 namespace {
-
-std::string_view trimmed(std::string_view field) {
-  constexpr std::string_view blanks = " \t\r\n";
-  const std::size_t first = field.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return field.substr(first, field.find_last_not_of(blanks) - first + 1);
-}
 
 /// from_chars reports underflow and overflow alike; the wider type tells them apart (strtod would obey the locale).
 ParsedNumber parse_extreme(std::string_view number) {
@@ -31,10 +24,17 @@ bool parse_plain(std::string_view field, double& value) {
 
 }  // namespace
 
+std::string_view without_blanks(std::string_view field) {
+  constexpr std::string_view blanks = " \t\r\n";
+  const std::size_t first = field.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return field.substr(first, field.find_last_not_of(blanks) - first + 1);
+}
+
 ParsedNumber parse_number(std::string_view field) {
   ParsedNumber parsed;
   if (parse_plain(field, parsed.value)) return parsed;
-  std::string_view number = trimmed(field);
+  std::string_view number = without_blanks(field);
   if (number.empty()) return {0.0, NumberStatus::missing};
   if (number.size() > 1 && number[0] == '+' && number[1] != '-') number.remove_prefix(1);
   const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), parsed.value);

@@ -1,0 +1,95 @@
+#include "io/import/open_table.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "io/files/read_file.hpp"
+#include "io/import/csv.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Path = std::filesystem::path;
+using namespace std::string_view_literals;
+
+constexpr std::size_t probed_bytes = 4096;
+
+/// A format that is read: whether a file (its first bytes; none of a folder) is of it, and its reader.
+struct Format {
+  bool (*probe)(const Path& path, std::string_view first);
+  std::shared_ptr<const TableReader> (*open)(const Path& path, const FormatOptions& options);
+};
+
+/// In the order in which they are tried; what none takes is text.
+constexpr std::array formats{
+    Format{[](const Path&, std::string_view) { return true; },
+           [](const Path& path, const FormatOptions&) -> std::shared_ptr<const TableReader> {
+             return std::make_shared<CsvReader>(path);
+           }},
+};
+
+/// A format that is not read, by the bytes it begins with.
+struct Foreign {
+  std::string_view magic, name, advice;
+};
+
+constexpr std::array foreign{
+    Foreign{"PAR1"sv, "an Apache Parquet file",
+            "python3 -c \"import pandas; pandas.read_parquet('{0}').to_csv('{0}.csv')\""},
+    Foreign{"ARROW1"sv, "an Apache Arrow file",
+            "python3 -c \"import pandas; pandas.read_feather('{0}').to_csv('{0}.csv')\""},
+    Foreign{"FEA1"sv, "an Apache Arrow file",
+            "python3 -c \"import pandas; pandas.read_feather('{0}').to_csv('{0}.csv')\""},
+    Foreign{"\x80\x02"sv, "a Python pickle, which runs code when it is read", "write to_csv() where it was written"},
+    Foreign{"\x80\x03"sv, "a Python pickle, which runs code when it is read", "write to_csv() where it was written"},
+    Foreign{"\x80\x04"sv, "a Python pickle, which runs code when it is read", "write to_csv() where it was written"},
+    Foreign{"\x80\x05"sv, "a Python pickle, which runs code when it is read", "write to_csv() where it was written"},
+    Foreign{"PK\x03\x04"sv, "a zip archive (or an Excel workbook, or a NumPy .npz)",
+            "unzip it, or save the table as CSV"},
+    Foreign{"\xD0\xCF\x11\xE0"sv, "an old Excel workbook", "save the table as CSV"},
+    Foreign{"\x93NUMPY"sv, "a NumPy array",
+            "python3 -c \"import numpy; numpy.savetxt('{0}.csv', numpy.load('{0}'), delimiter=',')\""},
+    Foreign{"\x1F\x8B"sv, "compressed by gzip", "gunzip -k '{0}'"},
+    Foreign{"BZh"sv, "compressed by bzip2", "bunzip2 -k '{0}'"},
+    Foreign{"\x28\xB5\x2F\xFD"sv, "compressed by Zstandard", "unzstd '{0}'"},
+    Foreign{"\x04\x22\x4D\x18"sv, "compressed by LZ4", "unlz4 '{0}'"},
+    Foreign{"\xFD\x37zXZ"sv, "compressed by xz", "unxz -k '{0}'"},
+    Foreign{"ULog\x01\x12\x35"sv, "a PX4 log", "ulog2csv '{0}' writes one CSV per topic"},
+    Foreign{"\xA3\x95"sv, "an ArduPilot log", "mavlogdump.py --format csv '{0}'"},
+    Foreign{"MDF     "sv, "an ASAM MDF measurement", "asammdf's export to CSV reads it"},
+    Foreign{"TDSm"sv, "a National Instruments TDMS file", "nptdms's tdmsinfo and as_dataframe().to_csv() read it"},
+    Foreign{"%PDF"sv, "a PDF document", "export the table as CSV"},
+    Foreign{"\x7F"
+            "ELF"sv,
+            "a program", "name the data"},
+};
+
+std::string first_bytes(const Path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return {};
+  std::ifstream stream = open_file(path);
+  std::string first(probed_bytes, '\0');
+  stream.read(first.data(), static_cast<std::streamsize>(first.size()));
+  first.resize(static_cast<std::size_t>(stream.gcount()));
+  return first;
+}
+
+}  // namespace
+
+std::shared_ptr<const TableReader> open_table(const Path& path, const FormatOptions& options) {
+  const std::string first = first_bytes(path);
+  for (const Foreign& other : foreign)
+    if (first.starts_with(other.magic))
+      throw ConfigurationError(fmt::format("{} is {}, which is not read here; {}", path.string(), other.name,
+                                           fmt::format(fmt::runtime(other.advice), path.string())));
+  for (const Format& format : formats)
+    if (format.probe(path, first)) return format.open(path, options);
+  throw ConfigurationError(fmt::format("{} is of no known format", path.string()));
+}
+
+}  // namespace modebank

@@ -1,0 +1,151 @@
+#include "io/table/stamp.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <cmath>
+
+#include "io/table/number.hpp"
+
+namespace modebank {
+
+namespace {
+
+constexpr std::int64_t billion = 1'000'000'000;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Takes digits off the front of `text`, at least one.
+std::optional<std::string_view> take_digits(std::string_view& text) {
+  std::size_t count = 0;
+  while (count < text.size() && is_digit(text[count])) ++count;
+  if (count == 0) return std::nullopt;
+  const std::string_view digits = text.substr(0, count);
+  text.remove_prefix(count);
+  return digits;
+}
+
+/// Takes a number of exactly `width` digits.
+std::optional<int> take_number(std::string_view& text, std::size_t width) {
+  if (text.size() < width) return std::nullopt;
+  int value = 0;
+  for (std::size_t i = 0; i < width; ++i) {
+    if (!is_digit(text[i])) return std::nullopt;
+    value = 10 * value + (text[i] - '0');
+  }
+  text.remove_prefix(width);
+  return value;
+}
+
+bool take(std::string_view& text, std::string_view any_of) {
+  if (text.empty() || any_of.find(text.front()) == std::string_view::npos) return false;
+  text.remove_prefix(1);
+  return true;
+}
+
+/// The fraction's digits as billionths, rounded: one billion at most.
+std::int64_t billionths_of(std::string_view digits) {
+  std::int64_t value = 0;
+  for (std::size_t i = 0; i < 9; ++i) value = 10 * value + (i < digits.size() ? digits[i] - '0' : 0);
+  return value + (digits.size() > 9 && digits[9] >= '5' ? 1 : 0);
+}
+
+Stamp normalised(std::int64_t whole, std::int64_t billionths) {
+  if (billionths >= billion) return {whole + 1, static_cast<std::int32_t>(billionths - billion)};
+  if (billionths < 0) return {whole - 1, static_cast<std::int32_t>(billionths + billion)};
+  return {whole, static_cast<std::int32_t>(billionths)};
+}
+
+/// What follows the time of day: seconds east of Greenwich. Nothing means none.
+std::optional<std::int64_t> parse_zone(std::string_view text) {
+  if (text.empty() || text == "Z" || text == "z") return 0;
+  const std::int64_t sign = text.front() == '-' ? -1 : 1;
+  if (!take(text, "+-")) return std::nullopt;
+  const std::optional<int> hours = take_number(text, 2);
+  take(text, ":");
+  const std::optional<int> minutes = text.empty() ? 0 : take_number(text, 2);
+  if (!hours || !minutes || !text.empty() || *hours > 23 || *minutes > 59) return std::nullopt;
+  return sign * (3600 * *hours + 60 * *minutes);
+}
+
+std::optional<std::int64_t> take_day(std::string_view& text) {
+  const std::optional<int> year = take_number(text, 4);
+  if (!year || !take(text, "-/")) return std::nullopt;
+  const std::optional<int> month = take_number(text, 2);
+  if (!month || !take(text, "-/")) return std::nullopt;
+  const std::optional<int> day = take_number(text, 2);
+  if (!day) return std::nullopt;
+  const std::chrono::year_month_day date{std::chrono::year(*year), std::chrono::month(static_cast<unsigned>(*month)),
+                                         std::chrono::day(static_cast<unsigned>(*day))};
+  if (!date.ok()) return std::nullopt;
+  return std::chrono::sys_days(date).time_since_epoch().count();
+}
+
+}  // namespace
+
+std::optional<Stamp> parse_decimal_stamp(std::string_view text) {
+  text = without_blanks(text);
+  const bool negative = !text.empty() && text.front() == '-';
+  take(text, "+-");
+  std::string_view whole, fraction;
+  if (const auto digits = take_digits(text)) whole = *digits;
+  if (take(text, "."))
+    if (const auto digits = take_digits(text)) fraction = *digits;
+  constexpr std::size_t most_digits = 19;
+  if (!text.empty() || (whole.empty() && fraction.empty()) || whole.size() > most_digits) return std::nullopt;
+  std::int64_t value = 0;
+  if (!whole.empty() && std::from_chars(whole.data(), whole.data() + whole.size(), value).ec != std::errc())
+    return std::nullopt;
+  const std::int64_t billionths = billionths_of(fraction);
+  return negative ? normalised(-value, -billionths) : normalised(value, billionths);
+}
+
+Stamp stamp_of(double value) {
+  const double whole = std::floor(value);
+  return normalised(static_cast<std::int64_t>(whole), std::llround((value - whole) * static_cast<double>(billion)));
+}
+
+std::optional<Stamp> parse_iso_time(std::string_view text) {
+  text = without_blanks(text);
+  const std::optional<std::int64_t> day = take_day(text);
+  if (!day || !take(text, "Tt ")) return std::nullopt;
+  const std::optional<int> hour = take_number(text, 2);
+  if (!hour || !take(text, ":")) return std::nullopt;
+  const std::optional<int> minute = take_number(text, 2);
+  std::optional<int> second = 0;
+  std::int64_t billionths = 0;
+  if (minute && take(text, ":")) {
+    second = take_number(text, 2);
+    if (second && take(text, ".,")) {
+      const auto digits = take_digits(text);
+      if (!digits) return std::nullopt;
+      billionths = billionths_of(*digits);
+    }
+  }
+  const std::optional<std::int64_t> zone = parse_zone(without_blanks(text));
+  constexpr int leap_second = 60;
+  if (!minute || !second || !zone || *hour > 23 || *minute > 59 || *second > leap_second) return std::nullopt;
+  return normalised(86400 * *day + 3600 * *hour + 60 * *minute + *second - *zone, billionths);
+}
+
+std::string seconds_text(std::int64_t time_ns) {
+  const std::int64_t whole = time_ns / billion, rest = time_ns % billion;
+  std::string text = fmt::format("{}{}.{:09}", time_ns < 0 && whole == 0 ? "-" : "", whole, std::abs(rest));
+  while (text.back() == '0') text.pop_back();
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+std::string iso_text(std::int64_t time_ns) {
+  using namespace std::chrono;
+  const sys_time<nanoseconds> time{nanoseconds(time_ns)};
+  const auto day = floor<days>(time);
+  const year_month_day date(day);
+  const hh_mm_ss clock(floor<milliseconds>(time - day));
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}Z", static_cast<int>(date.year()),
+                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), clock.hours().count(),
+                     clock.minutes().count(), clock.seconds().count(), clock.subseconds().count());
+}
+
+}  // namespace modebank

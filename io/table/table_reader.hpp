@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/files/input_file.hpp"
+#include "io/table/time_unit.hpp"
+
+namespace modebank {
+
+/// A column of a table. `name` is unique within the file: a CSV header's, or "/imu/data.angular_velocity.z" of a
+/// recording.
+struct ColumnInfo {
+  std::string name;
+  std::string unit = {};  ///< where the format says so
+  std::string type = {};  ///< the format's word for it; "time": stamps, to be asked for as TableRequest::time
+};
+
+/// One table of a file: rows that share their times. A recording has one per topic.
+struct TableInfo {
+  std::string name;  ///< empty: the file is one table
+  std::string type;  ///< the format's word for a row, as "sensor_msgs/Imu"; may be empty
+  std::vector<ColumnInfo> columns;
+  std::uint64_t rows = 0;  ///< 0: not known without reading
+};
+
+/// The column of times; an empty one asks for none. Stamps in two columns have their nanoseconds in the second.
+struct TimeRequest {
+  std::string column = {};
+  std::string nanoseconds = {};
+  TimeUnit unit = TimeUnit::automatic;
+  bool may_miss = false;  ///< whether a missing stamp becomes missing_stamp; else it is an error
+};
+
+/// Which columns of a table are wanted; the others are skipped unread and may hold anything.
+struct TableRequest {
+  std::size_t table = 0;             ///< position in TableReader::tables
+  std::vector<std::string> numbers;  ///< columns of finite numbers, each once
+  std::string text = {};             ///< one column of text, or empty
+  std::vector<bool> may_miss = {};   ///< per number: whether missing values become NaN; empty: they are errors
+  TimeRequest time = {};
+};
+
+inline constexpr std::int64_t missing_stamp = std::numeric_limits<std::int64_t>::min();
+
+struct Table {
+  std::vector<std::vector<double>> numbers;  ///< one vector per requested column, one value per row
+  std::vector<std::string> text;             ///< per row, without blanks around; empty when no column was requested
+  std::vector<std::uint64_t> line;           ///< per row, where it stands (messages say file:line): line or message
+  std::vector<std::int64_t> time_ns;         ///< per row, exact; empty when no time was requested
+  /// The same times as they were written, where that is seconds in text, which may be finer; else empty.
+  std::vector<double> time_s;
+  std::vector<std::string> notes;  ///< what the reader found out and the user should know; without the file's name, so
+                                   ///< that many files say it once
+
+  std::size_t rows() const { return line.size(); }
+};
+
+/// What users say about formats that say too little themselves; "auto": the reader finds out.
+struct FormatOptions {
+  std::string separator = "auto";  ///< of CSV: auto, comma, semicolon, tab or blank
+  std::string decimal = "auto";    ///< of CSV: auto, point or comma
+  std::string header = "auto";     ///< of CSV: auto, true or false
+};
+
+/// The one seam between files and runs: how a format tells its tables and gives their values. Everything behind it
+/// (plans, joining, lags, gaps, roles) knows tables alone. A new format derives a class and is named in open_table.
+class TableReader {
+ public:
+  virtual ~TableReader() = default;
+
+  /// The tables and their columns, read only as far as needed. Throws ConfigurationError when the file cannot be read
+  /// or has no columns, DataError when they are malformed.
+  virtual std::vector<TableInfo> tables() const = 0;
+
+  /// Reads what is wanted, one table per request, in one pass over the file; says in `file` what was read. Throws as
+  /// column_position does, and DataError, naming file, line and column, for text where a number is wanted, a missing
+  /// value (empty, NaN or infinite) in a column that may not miss any and a malformed row.
+  virtual std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const = 0;
+};
+
+std::vector<std::string> column_names(const TableInfo& table);
+
+/// Position of a column. Throws ConfigurationError, naming `file`, when it is missing (listing those that exist and the
+/// nearest name) or there twice.
+std::size_t column_position(std::string_view file, const std::vector<std::string>& columns, const std::string& column);
+
+}  // namespace modebank
