@@ -25,7 +25,7 @@ demo: build
 	@echo "Look inside: build/modebank show $(DEMO)/demo.h5"
 
 test: packages-build packages-test build/build.ninja
-	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
+	cmake --preset release -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset release -j $(JOBS)
 
@@ -108,7 +108,7 @@ arm64: packages-build packages-arm64
 
 # The release build with warnings as errors, as CI builds it; `sanitize` has them so anyway.
 strict: packages-build packages-test packages-bench
-	cmake --preset release -DMODEBANK_WARNINGS_AS_ERRORS=ON -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_BUILD_BENCHMARKS=ON >/dev/null
+	cmake --preset release -DMODEBANK_WARNINGS_AS_ERRORS=ON -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_BUILD_BENCHMARKS=ON -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS)
 
 # Recovery of known systems over many seeds.

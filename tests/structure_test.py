@@ -42,6 +42,7 @@ MAY_INCLUDE = {
     "app/study": BELOW_APP + ["app/chain", "app/config"],
     "app/report": BELOW_APP + ["app/chain", "app/config", "app/text", "app/study"],
     "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("chain", "check", "config", "text", "pipeline", "study", "report")],
+    "python/bindings": BELOW_APP + [f"app/{folder}" for folder in ("chain", "config", "text", "pipeline")],
 }
 # Whose the installed headers <modebank/NAME/...> are.
 PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge",

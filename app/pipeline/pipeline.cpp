@@ -27,7 +27,7 @@ void check_usage(const std::string& command, const Config& config) {
 }
 
 /// An archive must not take the place of what it was made from.
-void check_output(const Config& config, const std::filesystem::path& configuration) {
+void check_output(const Config& config, const std::filesystem::path& configuration, const MemoryTables* memory) {
   if (!std::filesystem::exists(config.archive.output)) return;
   const auto require_other = [&](const std::filesystem::path& file) {
     std::error_code absent;
@@ -37,7 +37,7 @@ void check_output(const Config& config, const std::filesystem::path& configurati
   if (!configuration.empty()) require_other(configuration);
   for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture_start})
     if (!file.empty()) require_other(file);
-  if (!config.archive.input.empty()) return;
+  if (!config.archive.input.empty() || memory != nullptr) return;
   for (const std::filesystem::path& file : data_files(config.data)) require_other(file);
 }
 
@@ -59,17 +59,18 @@ void Adviser::warn_of_windows(const WindowFits& windows, const WindowCounts& cou
   for (const std::string& text : window_warnings(windows, counts)) warning("windows: " + text);
 }
 
-void check_request(const std::string& command, const Config& config, const std::filesystem::path& file) {
+void check_request(const std::string& command, const Config& config, const std::filesystem::path& file,
+                   const MemoryTables* memory) {
   check_usage(command, config);
   validate(config);
   check_writable(config.archive.output);
-  check_output(config, file);
+  check_output(config, file, memory);
 }
 
-void run_all(const Config& config, const std::string& typed, const Listener& listener) {
+void run_all(const Config& config, const std::string& typed, const Listener& listener, const MemoryTables* memory) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   StageSource computed;
-  Chain chain(computed, listener);
+  Chain chain(computed, listener, memory);
   const Archive& archive = chain.run(chain_options(config), Stage::bank_scores,
                                      {resolved_text(config), make_provenance(config_hash(config), typed)});
   write_archive(config.archive.output, archive);

@@ -20,9 +20,12 @@ class Adviser : public Listener {
 /// Throws ConfigurationError, before anything is read, for keys that the command does not have, values that do not fit
 /// each other, files that do not exist, and an archive that cannot be written or would take the place of what it is
 /// made from. `file`: of the configuration; empty: there is none.
-void check_request(const std::string& command, const Config& config, const std::filesystem::path& file);
+void check_request(const std::string& command, const Config& config, const std::filesystem::path& file,
+                   const MemoryTables* memory = nullptr);
 
-/// All stages, computed, written to archive.output. `typed`: for provenance. Throws what the stages throw.
-void run_all(const Config& config, const std::string& typed, const Listener& listener);
+/// All stages, computed, written to archive.output. `typed`: for provenance; `memory`: runs in place of files. Throws
+/// what the stages throw.
+void run_all(const Config& config, const std::string& typed, const Listener& listener,
+             const MemoryTables* memory = nullptr);
 
 }  // namespace modebank::app

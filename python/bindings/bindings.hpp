@@ -10,6 +10,7 @@ void bind_bank(pybind11::module_& module);
 void bind_filter(pybind11::module_& module);
 void bind_free_run(pybind11::module_& module);
 void bind_mixture(pybind11::module_& module);
+void bind_tables(pybind11::module_& module);
 void bind_run(pybind11::module_& module);
 void bind_windows(pybind11::module_& module);
 

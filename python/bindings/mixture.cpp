@@ -31,7 +31,7 @@ Selection fit_mixture(const Samples& points, const std::vector<Index>& runs, dou
   return select(PointSet(values), {effective_samples, runs}, options, seed);
 }
 
-py::list candidates(const Selection& selection) {
+py::object candidates(const Selection& selection) {
   py::list rows;
   for (const Candidate& candidate : selection.candidates) {
     py::dict row;
@@ -47,7 +47,7 @@ py::list candidates(const Selection& selection) {
     row["selected"] = candidate.selected;
     rows.append(row);
   }
-  return rows;
+  return py::module_::import("pandas").attr("DataFrame")(rows);
 }
 
 py::array_t<double> responsibilities_of(const Selection& selection, const Samples& points) {
@@ -75,7 +75,8 @@ void bind_mixture(py::module_& module) {
       .def_property_readonly(
           "covariances", [](const Selection& selection) { return covariances(selection.mixture); },
           "(K, F, F) [feature unit^2]")
-      .def_property_readonly("candidate_rows", &candidates)
+      .def_property_readonly("candidates", &candidates,
+                             "a pandas table: every number of components and what speaks for it")
       .def("responsibilities", &responsibilities_of, py::arg("points"),
            "(N, K) posterior probability of each component at points (N, F).")
       .def("log_density", &log_densities, py::arg("points"), "(N,) log density at points (N, F) [nats].");

@@ -2,8 +2,10 @@
 
 #include "app/config/config_file.hpp"
 #include "app/pipeline/pipeline.hpp"
+#include "modebank/base/error.hpp"
 #include "python/bindings/bindings.hpp"
 #include "python/bindings/keys.hpp"
+#include "python/bindings/tables.hpp"
 
 namespace modebank::python {
 
@@ -46,10 +48,28 @@ std::string run_file(const std::string& file, const py::dict& keys, const py::ob
   return config.archive.output;
 }
 
+/// The same of runs in memory; archive.output must be among the keys.
+std::string run_tables(const py::dict& tables, const py::dict& keys, const py::object& progress,
+                       const py::object& warning) {
+  app::Config config = config_of(keys, "");
+  config.data.inputs = "*";  // every run that is there
+  const MemoryTables memory = memory_tables(tables);
+  if (memory.empty()) throw ConfigurationError("there are no runs");
+  if (memory.begin()->second.size() > 1) config.data.states = "* (states)";
+  const Callbacks callbacks(progress, warning);
+  {
+    const py::gil_scoped_release unlocked;
+    app::check_request("run", config, "", &memory);
+    app::run_all(config, "modebank.run(frames)", callbacks, &memory);
+  }
+  return config.archive.output;
+}
+
 }  // namespace
 
 void bind_run(py::module_& module) {
   module.def("run_file", &run_file, py::arg("file"), py::arg("keys"), py::arg("progress"), py::arg("warning"));
+  module.def("run_tables", &run_tables, py::arg("tables"), py::arg("keys"), py::arg("progress"), py::arg("warning"));
 }
 
 }  // namespace modebank::python

@@ -31,8 +31,8 @@ std::vector<Channel> channels(const std::vector<std::string>& names, Index count
   return result;
 }
 
-/// A run that stays where it is.
-Trajectory borrowed_run(std::size_t number, const Samples& states, const Samples& inputs, double dt_s) {
+/// A run, with `in_place` where it is.
+Trajectory run_of(std::size_t number, const Samples& states, const Samples& inputs, double dt_s, bool in_place) {
   require_samples("states", states);
   require_samples("inputs", inputs);
   if (inputs.shape(0) != states.shape(0))
@@ -41,8 +41,10 @@ Trajectory borrowed_run(std::size_t number, const Samples& states, const Samples
   const auto x = columns(states), u = columns(inputs);
   Trajectory run;
   run.run = std::to_string(number + 1);
-  run.state = x;
-  run.input = u;
+  if (in_place)
+    run.kept = {x.data(), u.data(), x.rows(), u.rows(), x.cols()};
+  else
+    run.state = x, run.input = u;
   run.time_s = Eigen::VectorXd::LinSpaced(x.cols(), 0.0, dt_s * static_cast<double>(x.cols() - 1));
   return run;
 }
@@ -56,14 +58,16 @@ Windows identify(const std::vector<Samples>& states, const std::vector<Samples>&
   app::Config config = config_of(keys, "window.");
   if (config.automatic_lags.any())
     throw ConfigurationError("window.state_lags and window.input_lags = auto are found by run; give numbers here");
+  const bool in_place = is_linear(config.window) && config.window.residual == ResidualKind::one_step;
   Recording recording;
-  for (std::size_t i = 0; i < states.size(); ++i) recording.runs.push_back(borrowed_run(i, states[i], inputs[i], dt_s));
+  for (std::size_t i = 0; i < states.size(); ++i)
+    recording.runs.push_back(run_of(i, states[i], inputs[i], dt_s, in_place));
   const Trajectory& first = recording.runs.front();
   for (const Trajectory& run : recording.runs)
-    if (run.state.rows() != first.state.rows() || run.input.rows() != first.input.rows())
+    if (run.states().rows() != first.states().rows() || run.inputs().rows() != first.inputs().rows())
       throw std::invalid_argument("all runs must have the same signals");
-  recording.states = channels(state_names, first.state.rows(), "x");
-  recording.inputs = channels(input_names, first.input.rows(), "u");
+  recording.states = channels(state_names, first.states().rows(), "x");
+  recording.inputs = channels(input_names, first.inputs().rows(), "u");
   const py::gil_scoped_release unlocked;
   Windows windows;
   windows.fits = in_section("window", [&] { return fit_windows(recording, config.window); });

@@ -9,15 +9,25 @@
 
 Arrays have one sample, window or mode per row. Nothing is computed in Python.
 """
+from __future__ import annotations
+
 import os
+import shutil
 import tempfile
 import warnings as _warnings
+import weakref
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Union
 
 import numpy as np
+import pandas
 
 from . import _modebank
 from ._archive import Archive, Array
 from ._modebank import Bank, ConfigurationError, DataError, Estimate, Filter, FreeRun, Mixture, Windows, __version__
+
+Path = Union[str, os.PathLike]
+Frames = Mapping[str, Union[pandas.DataFrame, Sequence[pandas.DataFrame]]]
 
 __all__ = ["Archive", "Array", "Bank", "ConfigurationError", "DataError", "Estimate", "Filter", "FreeRun", "Mixture",
            "Windows", "fit_mixture", "identify", "read", "run", "simulate"]
@@ -38,7 +48,8 @@ def _warn(line):
     _warnings.warn(line, stacklevel=3)
 
 
-def run(data, *, state=None, input=None, time=None, progress=None, **keys):
+def run(data: Path | Frames, *, state: str | Sequence[str] | None = None, input: str | Sequence[str] | None = None,
+        time: str | Sequence[str] | None = None, progress: Callable[[str], Any] | None = None, **keys: Any) -> Archive:
     """Takes the whole chain over runs and returns its Archive, as `modebank run` does.
 
     data: a configuration file, or {name: DataFrame} of one run each, or {name: (inputs, states)} of two frames with
@@ -56,7 +67,71 @@ def run(data, *, state=None, input=None, time=None, progress=None, **keys):
     return Archive(_modebank.run_file(os.fspath(data), keys, progress, _warn))
 
 
-def identify(states, inputs=None, dt=1.0, *, state_names=(), input_names=(), **options):
+def _columns(name, frame, time):
+    """A frame's columns as arrays in place, where they are contiguous; the index is the column of times unless named."""
+    columns = {}
+    if time is None and "time" not in frame.columns:
+        index = frame.index
+        columns["time"] = index.tz_convert(None) if getattr(index, "tz", None) is not None else index
+    for label in frame.columns:
+        columns[str(label)] = frame[label]
+    return {label: _values(name, label, column) for label, column in columns.items()}
+
+
+def _values(name, label, column):
+    values = column.to_numpy()
+    kind = values.dtype.kind
+    if kind == "M":
+        return np.ascontiguousarray(values, dtype="datetime64[ns]")
+    if kind == "i":
+        return np.ascontiguousarray(values, dtype=np.int64)
+    if kind in "fbu":
+        return np.ascontiguousarray(values, dtype=np.float64)
+    if kind in "OSU":
+        missing = column.isna()
+        return ["" if gone else str(value) for value, gone in zip(values, missing)]
+    raise ConfigurationError(f"{name}: column {label} holds {values.dtype}, which are neither numbers, texts nor times")
+
+
+def _run_frames(data, state, input, time, progress, keys):
+    tables = {}
+    for name, frames in data.items():
+        frames = frames if isinstance(frames, (list, tuple)) else (frames,)
+        tables[str(name)] = tuple(_columns(name, frame, time) for frame in frames)
+    if state is not None:
+        keys["data.state"] = state
+    if input is not None:
+        keys["data.input"] = input
+    if time is not None:
+        keys["data.time"] = time
+    if keys.get("archive.output"):
+        return Archive(_modebank.run_tables(tables, keys, progress, _warn))
+    folder = tempfile.mkdtemp(prefix="modebank-")
+    try:
+        keys["archive.output"] = os.path.join(folder, "archive.h5")
+        archive = Archive(_modebank.run_tables(tables, keys, progress, _warn))
+    except BaseException:
+        shutil.rmtree(folder)
+        raise
+    weakref.finalize(archive, shutil.rmtree, folder, ignore_errors=True)
+    return archive
+
+
+def read(log: Path, **options: Any) -> dict[str, pandas.DataFrame]:
+    """The tables of any readable log as {name: DataFrame}; the one table of a CSV file is called "".
+
+    options: keys of the configuration's [data] section that say how a file is to be read, as separator="semicolon".
+    Units, where the format says them, are in frame.attrs["units"] by column."""
+    frames = {}
+    for name, (columns, units) in _modebank.read_log(os.fspath(log), options).items():
+        frames[name] = pandas.DataFrame(columns)
+        frames[name].attrs["units"] = {column: unit for column, unit in units.items() if unit}
+    return frames
+
+
+def identify(states: np.ndarray | Sequence[np.ndarray], inputs: np.ndarray | Sequence[np.ndarray] | None = None,
+             dt: float = 1.0, *, state_names: Sequence[str] = (), input_names: Sequence[str] = (),
+             **options: Any) -> Windows:
     """Fits a local model to every window of a run and returns Windows.
 
     states: (N, n), or (N,) of one state, or a list of such arrays, one per run; inputs likewise (N, m), or None; dt:
@@ -69,7 +144,8 @@ def identify(states, inputs=None, dt=1.0, *, state_names=(), input_names=(), **o
     return _modebank.identify(runs, inputs, dt, list(state_names), list(input_names), options)
 
 
-def simulate(bank, states, inputs, dt=None, *, times=None, samples=1, horizon=0, **options):
+def simulate(bank: Archive | Bank | Path, states: np.ndarray, inputs: np.ndarray, dt: float | None = None, *,
+             times: np.ndarray | None = None, samples: int = 1, horizon: int = 0, **options: Any) -> FreeRun:
     """A free run: predicts the run after its first samples, from these and the inputs alone. Returns FreeRun.
 
     bank: an Archive, its path or a Bank; states: (N, n), of which the first `samples` are used (the others may be NaN;
@@ -83,7 +159,8 @@ def simulate(bank, states, inputs, dt=None, *, times=None, samples=1, horizon=0,
     return _modebank.simulate(bank, times, states, inputs, keys)
 
 
-def fit_mixture(points, components="1..12", *, runs=(), effective_samples=0.0, seed=1, **options):
+def fit_mixture(points: np.ndarray, components: int | str | Sequence[int] = "1..12", *, runs: Sequence[int] = (),
+                effective_samples: float = 0.0, seed: int = 1, **options: Any) -> Mixture:
     """Fits Gaussian mixtures to points (N, F) and returns the best Mixture by the criterion (BIC unless told).
 
     components: a number, a list, or a range as "1..12"; runs: (N,) the run each point is from, for held-out scores and

@@ -1,4 +1,6 @@
 """An archive's content as numpy and pandas have it. What is read, and how, is the library's: its hash is checked first."""
+from __future__ import annotations
+
 import os
 
 import numpy as np
@@ -45,11 +47,10 @@ class Archive:
     """What one execution produced. archive["/evaluation/summary"] is a pandas table, archive["/bank/A"] an Array,
     archive["/config"] text, archive["/bank"] the names of a group's members."""
 
-    def __init__(self, path, _keep=None):
+    def __init__(self, path: str | os.PathLike):
         """Throws DataError for a file that is no archive, is damaged (its hash does not match) or of a newer schema."""
         self.path = os.fspath(path)
         self._file = _modebank.ArchiveFile(self.path)
-        self._keep = _keep  # the temporary folder that it lies in
 
     def __repr__(self):
         return f"modebank.Archive({self.path!r})"
@@ -57,14 +58,14 @@ class Archive:
     def __str__(self):
         return self.screen()
 
-    def __contains__(self, path):
+    def __contains__(self, path: str) -> bool:
         try:
             self._file.attributes(path)
         except KeyError:
             return False
         return True
 
-    def __getitem__(self, path):
+    def __getitem__(self, path: str) -> pandas.DataFrame | Array | list[str] | str:
         values = self._file.read(path)
         if isinstance(values, list):
             return values
@@ -75,7 +76,7 @@ class Archive:
         units = self.attributes(path).get("units")
         return Array(values, self._names(path, values.ndim), units)
 
-    def attributes(self, path="/"):
+    def attributes(self, path: str = "/") -> dict:
         """Of a group or dataset, by name: texts, lists of texts, numbers."""
         return {name: _text(value) for name, value in self._file.attributes(path).items()}
 
@@ -105,87 +106,87 @@ class Archive:
         return tuple(names.get(axis) for axis in axes)
 
     @property
-    def state_names(self):
+    def state_names(self) -> list[str]:
         """n names."""
         return self.attributes("/data").get("state_names", []) if "/data" in self else []
 
     @property
-    def input_names(self):
+    def input_names(self) -> list[str]:
         """m names."""
         return self.attributes("/data").get("input_names", []) if "/data" in self else []
 
     @property
-    def runs(self):
+    def runs(self) -> list[str]:
         """Names of the runs."""
         return self.attributes("/data")["runs"]
 
     @property
-    def modes(self):
+    def modes(self) -> int:
         """K, how many modes the bank has."""
         return len(self["/bank/weight"])
 
     @property
-    def A(self):
+    def A(self) -> Array:
         """(K, n, n) of the increment: the full form is I + A."""
         return self["/bank/A"]
 
     @property
-    def B(self):
+    def B(self) -> Array:
         """(K, n, m)."""
         return self["/bank/B"]
 
     @property
-    def c(self):
+    def c(self) -> Array:
         """(K, n) [state unit]."""
         return self["/bank/c"]
 
     @property
-    def Q(self):
+    def Q(self) -> Array:
         """(K, n, n) covariance of the process noise per step [state unit^2]."""
         return self["/bank/Q"]
 
     @property
-    def C(self):
+    def C(self) -> Array:
         """(n_y, n)."""
         return self["/bank/C"]
 
     @property
-    def R(self):
+    def R(self) -> Array:
         """(n_y, n_y) covariance of the measurement noise [state unit^2]."""
         return self["/bank/R"]
 
     @property
-    def T(self):
+    def T(self) -> Array:
         """(K, K), row i: probabilities of the mode that follows mode i."""
         return self["/bank/transition"]
 
     @property
-    def weights(self):
+    def weights(self) -> Array:
         """(K,) shares of the windows."""
         return self["/bank/weight"]
 
     @property
-    def dt(self):
+    def dt(self) -> float:
         """Sample period that one step of the bank stands for [s]."""
         return self.attributes("/bank")["dt_s"]
 
     @property
-    def bank(self):
+    def bank(self) -> _modebank.Bank:
         """The bank, for Filter and simulate."""
         return _modebank.Bank.load(self.path, "bank")
 
     @property
-    def summary(self):
+    def summary(self) -> pandas.DataFrame:
         """Scores of every filter by role and run."""
         return self["/evaluation/summary"]
 
     @property
-    def evidence(self):
+    def evidence(self) -> dict:
         """What was found, in words (answer, text) and in the numbers that decided."""
         return self.attributes("/evaluation/evidence")
 
     @property
-    def verdict(self):
+    def verdict(self) -> str:
         """The verdict on the bank's stated uncertainty on judged runs: calibrated, overconfident, ..."""
         table = self["/evaluation/diagnostics"]
         rows = table[(table["filter"] == "bank") & (table["mode"] == -1)]
@@ -193,14 +194,14 @@ class Archive:
         return (held_out if len(held_out) else rows)["verdict"].iloc[0]
 
     @property
-    def config(self):
+    def config(self) -> str:
         """The resolved configuration, itself a valid configuration file."""
         return self["/config"]
 
-    def screen(self, width=100):
+    def screen(self, width: int = 100) -> str:
         """The answer on one screen, as `modebank show` begins."""
         return _modebank.screen(self.path, width)
 
-    def text(self, width=0):
+    def text(self, width: int = 0) -> str:
         """The summary as `modebank show` prints it."""
         return _modebank.summary(self.path, width)
