@@ -8,6 +8,7 @@
 #include "app/text/summary_text.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/open_archive.hpp"
+#include "io/hdf5/array.hpp"
 #include "modebank/base/error.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"

@@ -27,7 +27,10 @@ std::string text_of(py::handle value) {
 
 app::KeyValues key_values(const py::dict& keys, const std::string& section) {
   app::KeyValues result;
-  for (const auto& [key, value] : keys) result.emplace_back(section + std::string(py::str(key)), text_of(value));
+  for (const auto& [key, value] : keys) {
+    const std::string name = py::str(key);
+    result.emplace_back(name.find('.') == std::string::npos ? section + name : name, text_of(value));
+  }
   return result;
 }
 

@@ -68,17 +68,19 @@ def run(data: Path | Frames, *, state: str | Sequence[str] | None = None, input:
 
 
 def _columns(name, frame, time):
-    """A frame's columns as arrays in place, where they are contiguous; the index is the column of times unless named."""
-    columns = {}
-    if time is None and "time" not in frame.columns:
-        index = frame.index
-        columns["time"] = index.tz_convert(None) if getattr(index, "tz", None) is not None else index
-    for label in frame.columns:
-        columns[str(label)] = frame[label]
+    """A frame's columns as arrays, in place where they are contiguous; its index is one, that of times unless one is."""
+    columns = {str(label): frame[label] for label in frame.columns}
+    index = frame.index
+    if time is None and "time" not in columns and not isinstance(index, pandas.RangeIndex):
+        columns["time"] = index
+    elif index.name is not None:
+        columns.setdefault(str(index.name), index)
     return {label: _values(name, label, column) for label, column in columns.items()}
 
 
 def _values(name, label, column):
+    if isinstance(column.dtype, pandas.DatetimeTZDtype):
+        column = column.tz_convert(None) if isinstance(column, pandas.Index) else column.dt.tz_convert(None)
     values = column.to_numpy()
     kind = values.dtype.kind
     if kind == "M":
