@@ -7,6 +7,7 @@
 #include "app/text/first_screen.hpp"
 #include "app/text/summary_text.hpp"
 #include "io/archive/archive.hpp"
+#include "io/archive/bank/load_bank.hpp"
 #include "io/archive/bank/open_archive.hpp"
 #include "io/hdf5/array.hpp"
 #include "modebank/base/error.hpp"
@@ -70,19 +71,15 @@ py::array values_of(const hdf5::StoredArray& stored) {
   return array;
 }
 
-/// An archive that is open for reading; its hash was checked.
+/// An archive whose hash was checked. It is opened for each look at it: open, it would keep h5py in the same process
+/// from opening it.
 class ArchiveFile {
  public:
   explicit ArchiveFile(const std::string& path) : path_(path) {
     const hdf5::Quiet quiet;
-    file_ = open_archive(path, HashCheck::before);
+    open_archive(path, HashCheck::before);
+    digest_ = archive_digest(path);
   }
-  ~ArchiveFile() {
-    const hdf5::Quiet quiet;
-    file_.reset();
-  }
-  ArchiveFile(const ArchiveFile&) = delete;
-  ArchiveFile& operator=(const ArchiveFile&) = delete;
 
   /// Of a dataset its values, of a group the names of its members.
   py::object read(const std::string& path) const {
@@ -105,7 +102,8 @@ class ArchiveFile {
   template <class Body>
   py::object at(const std::string& path, Body body) const {
     const hdf5::Quiet quiet;
-    const hdf5::Handle root = open_root(file_);
+    if (archive_digest(path_) != digest_) throw DataError(path_ + ": is another archive now");
+    const hdf5::Handle file = open_archive(path_, HashCheck::unchecked), root = open_root(file);
     const std::string relative = path.substr(std::min(path.find_first_not_of('/'), path.size()));
     if (relative.empty()) return body(root, root, ".");
     for (std::size_t end = relative.find('/');; end = relative.find('/', end + 1)) {
@@ -121,8 +119,7 @@ class ArchiveFile {
     }
   }
 
-  std::string path_;
-  hdf5::Handle file_;
+  std::string path_, digest_;
 };
 
 std::string screen(const std::string& path, int width) {
@@ -140,7 +137,7 @@ std::string summary(const std::string& path, int width) {
 }  // namespace
 
 void bind_archive_file(py::module_& module) {
-  py::class_<ArchiveFile>(module, "ArchiveFile", "An archive open for reading; its hash was checked.")
+  py::class_<ArchiveFile>(module, "ArchiveFile", "An archive whose hash was checked.")
       .def(py::init<const std::string&>(), py::arg("path"))
       .def("read", &ArchiveFile::read, py::arg("path"))
       .def("attributes", &ArchiveFile::attributes, py::arg("path"));

@@ -63,7 +63,8 @@ filter::Bank make_bank(const Samples& A, const Samples& B, const Samples& Q, con
   }
   all.transition = matrix_of("transition", transition);
   if (C) all.C = matrix_of("C", *C);
-  if (R) all.R = matrix_of("R", *R);
+  const std::ptrdiff_t measured = C ? all.C.rows : all.modes.front().A.rows;
+  all.R = R ? matrix_of("R", *R) : Matrix(measured, measured);
   all.inputs = all.modes.front().B.cols;
   all.intercept = c.has_value();
   all.dt_s = dt;
@@ -97,7 +98,8 @@ void bind_bank(py::module_& module) {
           py::init(&make_bank), py::arg("A"), py::arg("B"), py::arg("Q"), py::arg("transition"),
           py::arg("c") = py::none(), py::arg("C") = py::none(), py::arg("R") = py::none(), py::arg("dt") = 0.0,
           "A (K, n, n) of the increment, B (K, n, m), Q (K, n, n) [state unit^2], transition (K, K) with rows that sum "
-          "to one, c (K, n), C (n_y, n), R (n_y, n_y); dt: sample period [s], 0: whatever comes.")
+          "to one, c (K, n), C (n_y, n), None: the state is measured; R (n_y, n_y), None: exactly; dt: sample period "
+          "[s], 0: whatever comes.")
       .def_static(
           "load", [](const std::string& path, const std::string& which) { return archive::load_bank(path, which); },
           py::arg("path"), py::arg("which") = "bank", py::call_guard<py::gil_scoped_release>(),
