@@ -32,7 +32,7 @@ package-test: packages packages-root
 	packaging/test_packages.sh build/packages build/clean_root
 
 test: packages-build packages-test build/build.ninja
-	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
+	cmake --preset release -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset release -j $(JOBS)
 
@@ -115,7 +115,7 @@ arm64: packages-build packages-arm64
 
 # The release build with warnings as errors, as CI builds it; `sanitize` has them so anyway.
 strict: packages-build packages-test packages-bench
-	cmake --preset release -DMODEBANK_WARNINGS_AS_ERRORS=ON -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_BUILD_BENCHMARKS=ON >/dev/null
+	cmake --preset release -DMODEBANK_WARNINGS_AS_ERRORS=ON -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_BUILD_BENCHMARKS=ON -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS)
 
 # Recovery of known systems over many seeds.

@@ -40,10 +40,12 @@ MAY_INCLUDE = {
     "app/check": BELOW_APP + ["app/chain"],
     "app/config": BELOW_APP + ["app/chain"],
     "app/text": BELOW_APP + ["app/chain"],
+    "app/pipeline": BELOW_APP + ["app/chain", "app/config", "app/text"],
     "app/study": BELOW_APP + ["app/chain", "app/config"],
     "app/report": BELOW_APP + ["app/chain", "app/config", "app/text", "app/study"],
     "app/init": BELOW_APP,
-    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("init", "chain", "check", "config", "text", "study", "report")],
+    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("init", "chain", "check", "config", "text", "pipeline", "study", "report")],
+    "python/bindings": BELOW_APP + [f"app/{folder}" for folder in ("chain", "config", "text", "pipeline")],
 }
 # Whose the installed headers <modebank/NAME/...> are.
 PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge",

@@ -50,7 +50,7 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
 void Chain::import(const DataInputs& inputs) {
   const auto compute = [&] {
     const Stopwatch watch;
-    data_ = import_data(inputs.data);
+    data_ = import_data(inputs.data, memory_);
     for (const std::string& note : data_.notes) listener_.warning(note);
     archive_.recording = std::move(data_.recording);
     archive_.lag = std::move(data_.lag);

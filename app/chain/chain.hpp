@@ -50,8 +50,9 @@ struct Execution {
 /// stages: a stage whose key is that of the last run is left as it is.
 class Chain {
  public:
-  /// Both must outlive the chain.
-  Chain(StageSource& source, const Listener& listener) : source_(source), listener_(listener) {}
+  /// All must outlive the chain. `memory`: runs that are in memory; null: they are files.
+  Chain(StageSource& source, const Listener& listener, const MemoryTables* memory = nullptr)
+      : source_(source), listener_(listener), memory_(memory) {}
 
   /// The archive after the stage `last` (bank_scores: all), which must not be earlier than in the run before. Throws
   /// what the stages throw; what then is there is not used again.
@@ -87,6 +88,7 @@ class Chain {
 
   StageSource& source_;
   const Listener& listener_;
+  const MemoryTables* memory_;
   Archive archive_;
   ImportedData data_;                     ///< what is said of the recording: files and hash
   std::vector<InputFile> mixture_files_;  ///< that the mixture started from

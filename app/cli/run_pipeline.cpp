@@ -9,14 +9,13 @@
 #include "app/chain/provenance.hpp"
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
+#include "app/pipeline/pipeline.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
 #include "app/text/summary_text.hpp"
 #include "app/text/terminal.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/archive.hpp"
-#include "io/import/import.hpp"
-#include "mixture/criteria.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -53,53 +52,11 @@ StoredStages earlier_stages(const Config& config, const std::string& command) {
   return source;
 }
 
-void check_usage(const CommandLine& line, const Config& config) {
-  if (line.command == "run" && !config.archive.input.empty())
-    throw ConfigurationError(
-        "archive.input: run starts from the data; identify, cluster and evaluate take earlier stages");
-  if (line.command != "evaluate" && !config.archive.bank.empty())
-    throw ConfigurationError("archive.bank: only evaluate runs a stored bank");
-  if (!config.archive.bank.empty() && !config.archive.input.empty())
-    throw ConfigurationError("archive.bank and archive.input: give one of them");
-  for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture_start})
-    if (!file.empty() && !std::filesystem::exists(file))
-      throw ConfigurationError(fmt::format("{}: no such file", file));
-}
-
-/// An archive must not take the place of what it was made from.
-void check_output(const CommandLine& line, const Config& config) {
-  if (!std::filesystem::exists(config.archive.output)) return;
-  const auto require_other = [&](const std::filesystem::path& file) {
-    std::error_code absent;
-    if (std::filesystem::equivalent(file, config.archive.output, absent))
-      throw ConfigurationError(fmt::format("archive.output: {} is read by this run; name another file", file.string()));
-  };
-  require_other(line.files.front());
-  for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture_start})
-    if (!file.empty()) require_other(file);
-  if (!config.archive.input.empty()) return;
-  for (const std::filesystem::path& file : data_files(config.data)) require_other(file);
-}
-
 /// Writes to the log.
-class Log : public Listener {
+class Log : public Adviser {
  public:
   void progress(const std::string& line) const override { spdlog::info("{}", line); }
   void warning(const std::string& line) const override { spdlog::warn("{}", line); }
-  void done(Stage stage, const Archive& archive) const override {
-    if (stage == Stage::windows) {
-      WindowCounts counts;
-      counts.add(*archive.windows);
-      warn_of_windows(*archive.windows, counts);
-    }
-    if (stage == Stage::mixture)
-      for (const std::string& text : selection_warnings(archive.mixture->candidates)) warning("mixture: " + text);
-    if (const std::string text = refinement_warning(archive.measured_fit); stage == Stage::bank && !text.empty())
-      warning("refine: " + text);
-  }
-  void warn_of_windows(const WindowFits& windows, const WindowCounts& counts) const {
-    for (const std::string& text : window_warnings(windows, counts)) warning("windows: " + text);
-  }
 };
 
 std::string archive_line(const Config& config) { return fmt::format("\narchive   {}\n", config.archive.output); }
@@ -149,10 +106,7 @@ int run_pipeline(const CommandLine& line) {
     throw ConfigurationError(
         fmt::format("{} needs one configuration file: modebank {} CONFIG", line.command, line.command));
   const Config config = load_config(line.files.front(), line.overrides);
-  check_usage(line, config);
-  validate(config);
-  check_writable(config.archive.output);
-  check_output(line, config);
+  check_request(line.command, config, line.files.front());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   std::string summary;
   if (config.archive.input.empty()) {

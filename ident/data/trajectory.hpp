@@ -45,8 +45,25 @@ struct Trajectory {
   /// loss of; weight(0) is unused. At least 0, finite; 0 leaves the transition out. Only ratios matter: every fit
   /// divides by the mean over its transitions.
   Eigen::VectorXd weight;
+  /// Signals that a program keeps where they are, n and m rows of N columns: in place of `state` and `input`, which
+  /// then are empty. Windows of linear models with one-step residuals read them through states() and inputs(); nothing
+  /// else may be handed such a run.
+  struct Kept {
+    const double *state = nullptr, *input = nullptr;
+    Index states = 0, inputs = 0, samples = 0;
+  };
+  Kept kept = {};
 
-  Index samples() const { return state.cols(); }
+  using Signals = Eigen::Map<const Eigen::MatrixXd>;
+  Signals states() const {
+    return kept.state ? Signals(kept.state, kept.states, kept.samples)
+                      : Signals(state.data(), state.rows(), state.cols());
+  }
+  Signals inputs() const {
+    return kept.state ? Signals(kept.input, kept.inputs, kept.samples)
+                      : Signals(input.data(), input.rows(), input.cols());
+  }
+  Index samples() const { return kept.state ? kept.samples : state.cols(); }
   /// Transition k leads from sample k to sample k + 1.
   Index transitions() const { return samples() > 0 ? samples() - 1 : 0; }
 };

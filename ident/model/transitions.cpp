@@ -15,7 +15,7 @@ namespace modebank {
 namespace {
 
 /// Samples first .. first + count - 1 of one signal, one per row; NaN before the run.
-void copy_signal(const Eigen::MatrixXd& signals, Index signal, Index first, Index count, double* out) {
+void copy_signal(const Trajectory::Signals& signals, Index signal, Index first, Index count, double* out) {
   const double* const samples = signals.data() + signal;
   const Index stride = signals.rows(), outside = std::clamp(-first, Index{0}, count);
   std::fill_n(out, outside, not_a_number);
@@ -30,20 +30,21 @@ void copy_signal(const Eigen::MatrixXd& signals, Index signal, Index first, Inde
 /// column.
 void fill_rows(const Trajectory& run, Index start, Index count, const LinearStructure& s, Index first,
                Transitions& transitions) {
+  const Trajectory::Signals state = run.states(), input = run.inputs();
   const auto column = [first](Eigen::MatrixXd& matrix, Index j) { return matrix.col(j).data() + first; };
   for (Index i = 0; i < s.state_lags; ++i)
     for (Index j = 0; j < s.states; ++j)
-      copy_signal(run.state, j, start - i, count, column(transitions.regressors, i * s.states + j));
+      copy_signal(state, j, start - i, count, column(transitions.regressors, i * s.states + j));
   for (Index i = 0; i < s.input_lags; ++i)
     for (Index j = 0; j < s.inputs; ++j)
-      copy_signal(run.input, j, start + 1 - s.input_delay - i, count,
+      copy_signal(input, j, start + 1 - s.input_delay - i, count,
                   column(transitions.regressors, s.dimension() + i * s.inputs + j));
   if (s.intercept) transitions.regressors.col(s.regressors() - 1).segment(first, count).setOnes();
   for (Index j = 0; j < s.states; ++j) {
     double* const increment = column(transitions.increments, j);
-    copy_signal(run.state, j, start + 1, count, increment);
-    const double* const samples = run.state.data() + j;
-    for (Index k = 0; k < count; ++k) increment[k] -= samples[(start + k) * run.state.rows()];
+    copy_signal(state, j, start + 1, count, increment);
+    const double* const samples = state.data() + j;
+    for (Index k = 0; k < count; ++k) increment[k] -= samples[(start + k) * state.rows()];
   }
 }
 

@@ -61,10 +61,10 @@ std::string listing(const std::vector<TableInfo>& tables) {
 
 ColumnFinder::ColumnFinder(FilePlan& plan, std::shared_ptr<const DerivedChannels> derived, const FormatOptions& options)
     : plan_(plan), derived_(std::move(derived)) {
-  for (const auto& path : plan.paths) {
-    plan.readers.push_back(open_table(path, options));
-    names_.push_back(path.string());
-    tables_.push_back(plan.readers.back()->tables());
+  for (std::size_t i = 0; i < plan.paths.size(); ++i) {
+    if (i == plan.readers.size()) plan.readers.push_back(open_table(plan.paths[i], options));
+    names_.push_back(plan.paths[i].string());
+    tables_.push_back(plan.readers[i]->tables());
   }
 }
 

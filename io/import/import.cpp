@@ -154,11 +154,11 @@ LagReport find_lags(const std::vector<RunStreams>& streams, const DataOptions& o
 
 }  // namespace
 
-ImportedData import_data(const DataOptions& options) {
+ImportedData import_data(const DataOptions& options, const MemoryTables* memory) {
   ImportedData data;
   check_units("state", options.state, options.state_unit);
   check_units("input", options.input, options.input_unit);
-  const std::vector<FilePlan> plans = plan_import(options);
+  const std::vector<FilePlan> plans = plan_import(options, memory);
   data.recording.states = with_units(plans.front().states, options.state_unit);
   data.recording.inputs = with_units(plans.front().inputs, options.input_unit);
   std::vector<RunStreams> streams = named_streams(plans, options, data, false);

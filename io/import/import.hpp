@@ -8,6 +8,7 @@
 #include "ident/data/trajectory.hpp"
 #include "ident/lag/report.hpp"
 #include "io/files/input_file.hpp"
+#include "io/import/memory_tables.hpp"
 #include "io/import/options.hpp"
 #include "io/import/run_streams.hpp"
 
@@ -25,7 +26,8 @@ struct ImportedData {
 /// without a match, a run without its states file, empty file, missing column: lists those that exist, unknown run
 /// name) and DataError, naming file and line, for content (text in a number, NaN, time not increasing, too few samples,
 /// streams that do not overlap, row counts that differ under Join::row).
-ImportedData import_data(const DataOptions& options);
+/// With `memory` the runs are those tables: data.root, data.inputs and data.states do not count.
+ImportedData import_data(const DataOptions& options, const MemoryTables* memory = nullptr);
 
 /// All runs' streams as they stand in the files, for advice on them: nothing is sorted, missing values are NaN (missing
 /// times too), roles are set, runs are sorted by name. Throws as import_data does, but for what data.missing and

@@ -100,14 +100,14 @@ ColumnNames without_left_out(const ColumnNames& names, const DataOptions& option
   return kept;
 }
 
-}  // namespace
+ColumnNames with_roles(const ColumnNames& names, const DataOptions& options) {
+  const bool runs_are_files = options.run.empty() && options.split.kind == SplitKind::none;
+  return runs_are_files ? without_left_out(names, options) : names;
+}
 
-std::vector<FilePlan> plan_import(const DataOptions& options) {
-  check_options(options);
-  const auto derived = std::make_shared<const DerivedChannels>(options);
+std::vector<FilePlan> plan_files(const DataOptions& options) {
   const FilePattern inputs("data.inputs", options.root, options.inputs);
-  ColumnNames names = inputs.runs();
-  if (options.run.empty() && options.split.kind == SplitKind::none) names = without_left_out(names, options);
+  const ColumnNames names = with_roles(inputs.runs(), options);
   std::vector<FilePlan> plans;
   for (const std::string& name : names) {
     FilePlan& plan = plans.emplace_back();
@@ -119,6 +119,30 @@ std::vector<FilePlan> plan_import(const DataOptions& options) {
     const auto partners = find_partners(inputs, {"data.states", options.root, options.states}, names);
     for (std::size_t i = 0; i < plans.size(); ++i) plans[i].paths.push_back(partners[i]);
   }
+  return plans;
+}
+
+std::vector<FilePlan> plan_memory(const DataOptions& options, const MemoryTables& memory) {
+  ColumnNames names;
+  for (const auto& [name, tables] : memory) names.push_back(name);
+  std::vector<FilePlan> plans;
+  for (const std::string& name : with_roles(names, options)) {
+    FilePlan& plan = plans.emplace_back();
+    plan.name = name;
+    plan.starred = memory.size() > 1;
+    plan.readers = memory.at(name);
+    plan.paths.emplace_back(name);
+    if (plan.readers.size() > 1) plan.paths.emplace_back(name + " (states)");
+  }
+  return plans;
+}
+
+}  // namespace
+
+std::vector<FilePlan> plan_import(const DataOptions& options, const MemoryTables* memory) {
+  check_options(options);
+  std::vector<FilePlan> plans = memory ? plan_memory(options, *memory) : plan_files(options);
+  const auto derived = std::make_shared<const DerivedChannels>(options);
   for (FilePlan& plan : plans) plan_columns(plan, options, derived);
   return plans;
 }

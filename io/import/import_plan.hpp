@@ -7,6 +7,7 @@
 
 #include "ident/data/trajectory.hpp"
 #include "io/import/derived.hpp"
+#include "io/import/memory_tables.hpp"
 #include "io/import/options.hpp"
 #include "io/table/table_reader.hpp"
 
@@ -57,6 +58,7 @@ struct FilePlan {
 
 /// Checks options, finds the files and reads their headers, in order of `name`. Runs that neither data.train nor
 /// data.test names are left out, unless a column names the runs. Throws ConfigurationError (io/import/import.hpp).
-std::vector<FilePlan> plan_import(const DataOptions& options);
+/// With `memory` the runs are those tables, and no file is looked for.
+std::vector<FilePlan> plan_import(const DataOptions& options, const MemoryTables* memory = nullptr);
 
 }  // namespace modebank

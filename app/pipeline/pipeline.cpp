@@ -1,0 +1,79 @@
+#include "app/pipeline/pipeline.hpp"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include "app/chain/provenance.hpp"
+#include "app/config/config_file.hpp"
+#include "io/import/import.hpp"
+#include "mixture/criteria.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+
+namespace {
+
+void check_usage(const std::string& command, const Config& config) {
+  if (command == "run" && !config.archive.input.empty())
+    throw ConfigurationError(
+        "archive.input: run starts from the data; identify, cluster and evaluate take earlier stages");
+  if (command != "evaluate" && !config.archive.bank.empty())
+    throw ConfigurationError("archive.bank: only evaluate runs a stored bank");
+  if (!config.archive.bank.empty() && !config.archive.input.empty())
+    throw ConfigurationError("archive.bank and archive.input: give one of them");
+  for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture_start})
+    if (!file.empty() && !std::filesystem::exists(file))
+      throw ConfigurationError(fmt::format("{}: no such file", file));
+}
+
+/// An archive must not take the place of what it was made from.
+void check_output(const Config& config, const std::filesystem::path& configuration, const MemoryTables* memory) {
+  if (!std::filesystem::exists(config.archive.output)) return;
+  const auto require_other = [&](const std::filesystem::path& file) {
+    std::error_code absent;
+    if (std::filesystem::equivalent(file, config.archive.output, absent))
+      throw ConfigurationError(fmt::format("archive.output: {} is read by this run; name another file", file.string()));
+  };
+  if (!configuration.empty()) require_other(configuration);
+  for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture_start})
+    if (!file.empty()) require_other(file);
+  if (!config.archive.input.empty() || memory != nullptr) return;
+  for (const std::filesystem::path& file : data_files(config.data)) require_other(file);
+}
+
+}  // namespace
+
+void Adviser::done(Stage stage, const Archive& archive) const {
+  if (stage == Stage::windows) {
+    WindowCounts counts;
+    counts.add(*archive.windows);
+    warn_of_windows(*archive.windows, counts);
+  }
+  if (stage == Stage::mixture)
+    for (const std::string& text : selection_warnings(archive.mixture->candidates)) warning("mixture: " + text);
+  if (const std::string text = refinement_warning(archive.measured_fit); stage == Stage::bank && !text.empty())
+    warning("refine: " + text);
+}
+
+void Adviser::warn_of_windows(const WindowFits& windows, const WindowCounts& counts) const {
+  for (const std::string& text : window_warnings(windows, counts)) warning("windows: " + text);
+}
+
+void check_request(const std::string& command, const Config& config, const std::filesystem::path& file,
+                   const MemoryTables* memory) {
+  check_usage(command, config);
+  validate(config);
+  check_writable(config.archive.output);
+  check_output(config, file, memory);
+}
+
+void run_all(const Config& config, const std::string& typed, const Listener& listener, const MemoryTables* memory) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
+  StageSource computed;
+  Chain chain(computed, listener, memory);
+  const Archive& archive = chain.run(chain_options(config), Stage::bank_scores,
+                                     {resolved_text(config), make_provenance(config_hash(config), typed)});
+  write_archive(config.archive.output, archive);
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "io/table/table_reader.hpp"
+
+namespace modebank {
+
+/// A column of numbers that someone else keeps, or of texts.
+struct MemoryColumn {
+  ColumnInfo info;
+  std::variant<std::span<const double>, std::span<const std::int64_t>, std::vector<std::string>> values;
+};
+
+/// A table that is in memory: what a program hands over in place of a file. Its hash is that of the columns that are
+/// read, their names and values; messages say name:row, from 0.
+class MemoryTable final : public TableReader {
+ public:
+  /// Throws std::invalid_argument unless all columns have as many rows.
+  MemoryTable(std::string name, std::vector<MemoryColumn> columns);
+
+  std::vector<TableInfo> tables() const override;
+  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const override;
+
+ private:
+  const MemoryColumn& column(const std::string& name) const;
+  Table read_one(const TableRequest& request) const;
+  std::vector<double> numbers(const std::string& name, bool may_miss) const;
+  void stamps(const TimeRequest& request, Table& table) const;
+  [[noreturn]] void fail(std::size_t row, const std::string& column, const std::string& what) const;
+
+  std::string name_;
+  std::vector<MemoryColumn> columns_;
+  std::size_t rows_ = 0;
+};
+
+}  // namespace modebank

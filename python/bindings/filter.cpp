@@ -1,0 +1,138 @@
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "app/chain/stage_inputs.hpp"
+#include "io/archive/bank/load_bank.hpp"
+#include "modebank/archive/load_bank.hpp"
+#include "modebank/filter/bank_filter.hpp"
+#include "python/bindings/arrays.hpp"
+#include "python/bindings/bindings.hpp"
+#include "python/bindings/keys.hpp"
+
+namespace modebank::python {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Numbers of a sample as Python has them, written into a vector that keeps its size. The usual ways are taken without
+/// making an array: a step is a matter of microseconds.
+void take(const char* name, py::handle given, std::vector<double>& numbers) {
+  const auto size = static_cast<py::ssize_t>(numbers.size());
+  const auto require_size = [&](py::ssize_t found) {
+    if (found != size)
+      throw std::invalid_argument(std::string(name) + " has " + std::to_string(found) + " numbers, the bank " +
+                                  std::to_string(size));
+  };
+  if (given.is_none()) {
+    numbers.assign(numbers.size(), nan);
+  } else if (PyFloat_Check(given.ptr()) != 0) {
+    require_size(1);
+    numbers[0] = PyFloat_AS_DOUBLE(given.ptr());
+  } else if (PyTuple_Check(given.ptr()) != 0 || PyList_Check(given.ptr()) != 0) {
+    require_size(PySequence_Fast_GET_SIZE(given.ptr()));
+    for (py::ssize_t i = 0; i < size; ++i) {
+      numbers[static_cast<std::size_t>(i)] = PyFloat_AsDouble(PySequence_Fast_GET_ITEM(given.ptr(), i));
+      if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+    }
+  } else {
+    const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+    if (!array) throw py::error_already_set();
+    require_size(array.size());
+    std::copy_n(array.data(), size, numbers.begin());
+  }
+}
+
+/// A bank at work.
+class Filter {
+ public:
+  Filter(const filter::Bank& bank, const FilterOptions& options)
+      : filter_(bank, options),
+        input_(static_cast<std::size_t>(bank.inputs())),
+        measurement_(static_cast<std::size_t>(bank.measurements())) {}
+
+  filter::Estimate step(py::handle time_s, py::handle input, py::handle measurement) {
+    const double time = time_s.is_none() ? nan : PyFloat_AsDouble(time_s.ptr());
+    if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+    take("u", input, input_);
+    take("y", measurement, measurement_);
+    return filter_.step(time, input_, measurement_);
+  }
+  filter::Estimate estimate() const { return filter_.estimate(); }
+  void restart() { filter_.restart(); }
+  bool started() const { return filter_.started(); }
+
+ private:
+  filter::BankFilter filter_;
+  std::vector<double> input_, measurement_;
+};
+
+/// Of a Bank with the keys' options, or of an archive as its own evaluation stepped, but for what the keys say.
+Filter make_filter(const py::object& bank, const std::string& which, const py::kwargs& keys) {
+  if (py::isinstance<filter::Bank>(bank)) return {bank.cast<const filter::Bank&>(), config_of(keys, "filter.").filter};
+  const std::string path = path_of(bank);
+  const FilterOptions of_bank = app::stored_config(load_configuration(path), key_values(keys, "filter.")).filter;
+  const bool single = which == "bank" && of_bank.variant == FilterVariant::kf;  // the global model, whatever the bank
+  const FilterOptions options = which == "bank" ? of_bank : competitor_filter(which, of_bank);
+  return {archive::load_bank(path, single ? "baseline" : which), options};
+}
+
+#define MODEBANK_ESTIMATE_VECTOR(name, text)                                         \
+  .def_property_readonly(                                                            \
+      #name,                                                                         \
+      [](const py::object& self) {                                                   \
+        const auto& values = self.cast<const filter::Estimate&>().name;              \
+        return view(values.data(), {static_cast<py::ssize_t>(values.size())}, self); \
+      },                                                                             \
+      text)
+// Covariances are symmetric: by rows and by columns they are the same.
+#define MODEBANK_ESTIMATE_MATRIX(name, text)                                 \
+  .def_property_readonly(                                                    \
+      #name,                                                                 \
+      [](const py::object& self) {                                           \
+        const Matrix& matrix = self.cast<const filter::Estimate&>().name;    \
+        return view(matrix.values.data(), {matrix.rows, matrix.cols}, self); \
+      },                                                                     \
+      text)
+
+}  // namespace
+
+void bind_filter(py::module_& module) {
+  using filter::Estimate;
+  py::class_<Estimate>(
+      module, "Estimate",
+      "What a filter says about one sample; n states, n_y measurements, K modes. Before the start, and "
+      "where a measurement is missing, numbers that there are none of are NaN.")
+      MODEBANK_ESTIMATE_VECTOR(prediction, "(n,) of the state before the measurement, all modes combined [state unit]")
+          MODEBANK_ESTIMATE_VECTOR(innovation, "(n_y,) measurement minus prediction [state unit]")
+              MODEBANK_ESTIMATE_MATRIX(innovation_covariance, "(n_y, n_y) of the combined prediction [state unit^2]")
+                  MODEBANK_ESTIMATE_VECTOR(state, "(n,) after the measurement [state unit]") MODEBANK_ESTIMATE_MATRIX(
+                      covariance, "(n, n) after the measurement [state unit^2]")
+                      MODEBANK_ESTIMATE_VECTOR(pit, "(n_y,) probability integral transform of the measurement, 0 to 1")
+                          MODEBANK_ESTIMATE_VECTOR(mode_probability_predicted, "(K,) before the measurement")
+                              MODEBANK_ESTIMATE_VECTOR(mode_probability, "(K,) after the measurement")
+                                  .def_readonly("nis", &Estimate::nis,
+                                                "normalised innovation squared of the signals that are there")
+                                  .def_readonly("log_density", &Estimate::log_density,
+                                                "of the measurement as predicted [nats]")
+                                  .def_readonly("spread_share", &Estimate::spread_share,
+                                                "of the modes' differences in the innovation covariance's trace")
+                                  .def_readonly("steps", &Estimate::steps,
+                                                "model steps since the sample before; 0: (re)started here");
+  py::class_<Filter>(module, "Filter",
+                     "A bank at work, sample by sample; one object per stream. Filter(archive) steps as the archive's "
+                     "evaluation did, Filter(bank) by the defaults.")
+      .def(py::init(&make_filter), py::arg("bank"), py::kw_only(), py::arg("which") = "bank",
+           "bank: an Archive, its path, or a Bank; which: the archive's bank, or a competitor's name (baseline, "
+           "noise_only, one_motion). Options are the keys of the [filter] section, as noise='adaptive'.")
+      .def("step", &Filter::step, py::arg("t"), py::arg("u"), py::arg("y"),
+           "The next sample in the order of time: t [s] (None or NaN: one step after the last), u: the inputs recorded "
+           "at it (NaN: the last known one), y: the measurement (NaN where missing; None: nothing was measured). The "
+           "first whole measurement is the start. Returns an Estimate that later steps do not change.")
+      .def_property_readonly("estimate", &Filter::estimate, "what the last step said")
+      .def("restart", &Filter::restart, "Forgets everything; the next whole measurement is a start.")
+      .def_property_readonly("started", &Filter::started, "whether it has had a start");
+}
+
+}  // namespace modebank::python

@@ -1,0 +1,75 @@
+#include <string>
+
+#include "app/config/config_file.hpp"
+#include "app/pipeline/pipeline.hpp"
+#include "modebank/base/error.hpp"
+#include "python/bindings/bindings.hpp"
+#include "python/bindings/keys.hpp"
+#include "python/bindings/tables.hpp"
+
+namespace modebank::python {
+
+namespace py = pybind11;
+
+namespace {
+
+/// Hands lines of progress and warnings to Python, and lets Ctrl-C end the run at each of them.
+class Callbacks : public app::Adviser {
+ public:
+  Callbacks(py::object progress, py::object warning) : progress_(std::move(progress)), warning_(std::move(warning)) {}
+
+  void progress(const std::string& line) const override { call(progress_, line); }
+  void warning(const std::string& line) const override { call(warning_, line); }
+  void done(Stage stage, const Archive& archive) const override {
+    Adviser::done(stage, archive);
+    call(py::none(), "");
+  }
+
+ private:
+  static void call(const py::object& function, const std::string& line) {
+    const py::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (!function.is_none()) function(line);
+  }
+
+  py::object progress_, warning_;
+};
+
+/// Returns where the archive is.
+std::string run_file(const std::string& file, const py::dict& keys, const py::object& progress,
+                     const py::object& warning) {
+  const app::Config config = app::load_config(file, key_values(keys, ""));
+  const Callbacks callbacks(progress, warning);
+  {
+    const py::gil_scoped_release unlocked;
+    app::check_request("run", config, file);
+    app::run_all(config, "modebank.run(" + file + ")", callbacks);
+  }
+  return config.archive.output;
+}
+
+/// The same of runs in memory; archive.output must be among the keys.
+std::string run_tables(const py::dict& tables, const py::dict& keys, const py::object& progress,
+                       const py::object& warning) {
+  app::Config config = config_of(keys, "");
+  config.data.inputs = "*";  // every run that is there
+  const MemoryTables memory = memory_tables(tables);
+  if (memory.empty()) throw ConfigurationError("there are no runs");
+  if (memory.begin()->second.size() > 1) config.data.states = "* (states)";
+  const Callbacks callbacks(progress, warning);
+  {
+    const py::gil_scoped_release unlocked;
+    app::check_request("run", config, "", &memory);
+    app::run_all(config, "modebank.run(frames)", callbacks, &memory);
+  }
+  return config.archive.output;
+}
+
+}  // namespace
+
+void bind_run(py::module_& module) {
+  module.def("run_file", &run_file, py::arg("file"), py::arg("keys"), py::arg("progress"), py::arg("warning"));
+  module.def("run_tables", &run_tables, py::arg("tables"), py::arg("keys"), py::arg("progress"), py::arg("warning"));
+}
+
+}  // namespace modebank::python

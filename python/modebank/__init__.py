@@ -1,0 +1,174 @@
+"""Identifies motion with changing character from recorded runs: windows, mixtures, filter banks.
+
+    import modebank
+    archive = modebank.run("robot.ini")     # or {name: DataFrame, ...}: what `modebank run` does
+    print(archive)                          # the answer on one screen
+    archive.A, archive.summary              # arrays with names, pandas tables
+    f = modebank.Filter(archive)            # the filter at work
+    f.step(t, u, y).prediction
+
+Arrays have one sample, window or mode per row. Nothing is computed in Python.
+"""
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import warnings as _warnings
+import weakref
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Union
+
+import numpy as np
+import pandas
+
+from . import _modebank
+from ._archive import Archive, Array
+from ._modebank import Bank, ConfigurationError, DataError, Estimate, Filter, FreeRun, Mixture, Windows, __version__
+
+Path = Union[str, os.PathLike]
+Frames = Mapping[str, Union[pandas.DataFrame, Sequence[pandas.DataFrame]]]
+
+__all__ = ["Archive", "Array", "Bank", "ConfigurationError", "DataError", "Estimate", "Filter", "FreeRun", "Mixture",
+           "Windows", "fit_mixture", "identify", "read", "run", "simulate"]
+
+
+def _flat(keys):
+    """Keys by their full names: window={"length": 30} is the same as **{"window.length": 30}."""
+    flat = {}
+    for key, value in keys.items():
+        if isinstance(value, dict):
+            flat.update({f"{key}.{name}": inner for name, inner in value.items()})
+        else:
+            flat[key] = value
+    return flat
+
+
+def _warn(line):
+    _warnings.warn(line, stacklevel=3)
+
+
+def run(data: Path | Frames, *, state: str | Sequence[str] | None = None, input: str | Sequence[str] | None = None,
+        time: str | Sequence[str] | None = None, progress: Callable[[str], Any] | None = None, **keys: Any) -> Archive:
+    """Takes the whole chain over runs and returns its Archive, as `modebank run` does.
+
+    data: a configuration file, or {name: DataFrame} of one run each, or {name: (inputs, states)} of two frames with
+    times of their own. Of frames, state and input name the columns, and time that of seconds (None: the index).
+    progress: is called with each line of progress. Further keys are those of the configuration, by
+    **{"window.length": 30} or window={"length": 30}; archive.output says where the archive is kept (of frames it is
+    temporary otherwise). Warnings are Python's. The interpreter lock is released meanwhile; Ctrl-C ends it at the next
+    line of progress."""
+    keys = _flat(keys)
+    if isinstance(data, dict):
+        return _run_frames(data, state, input, time, progress, keys)
+    for name, value in (("data.state", state), ("data.input", input), ("data.time", time)):
+        if value is not None:
+            keys[name] = value
+    return Archive(_modebank.run_file(os.fspath(data), keys, progress, _warn))
+
+
+def _columns(name, frame, time):
+    """A frame's columns as arrays, in place where they are contiguous; its index is one, that of times unless one is."""
+    columns = {str(label): frame[label] for label in frame.columns}
+    index = frame.index
+    if time is None and "time" not in columns and not isinstance(index, pandas.RangeIndex):
+        columns["time"] = index
+    elif index.name is not None:
+        columns.setdefault(str(index.name), index)
+    return {label: _values(name, label, column) for label, column in columns.items()}
+
+
+def _values(name, label, column):
+    if isinstance(column.dtype, pandas.DatetimeTZDtype):
+        column = column.tz_convert(None) if isinstance(column, pandas.Index) else column.dt.tz_convert(None)
+    values = column.to_numpy()
+    kind = values.dtype.kind
+    if kind == "M":
+        return np.ascontiguousarray(values, dtype="datetime64[ns]")
+    if kind == "i":
+        return np.ascontiguousarray(values, dtype=np.int64)
+    if kind in "fbu":
+        return np.ascontiguousarray(values, dtype=np.float64)
+    if kind in "OSU":
+        missing = column.isna()
+        return ["" if gone else str(value) for value, gone in zip(values, missing)]
+    raise ConfigurationError(f"{name}: column {label} holds {values.dtype}, which are neither numbers, texts nor times")
+
+
+def _run_frames(data, state, input, time, progress, keys):
+    tables = {}
+    for name, frames in data.items():
+        frames = frames if isinstance(frames, (list, tuple)) else (frames,)
+        tables[str(name)] = tuple(_columns(name, frame, time) for frame in frames)
+    if state is not None:
+        keys["data.state"] = state
+    if input is not None:
+        keys["data.input"] = input
+    if time is not None:
+        keys["data.time"] = time
+    if keys.get("archive.output"):
+        return Archive(_modebank.run_tables(tables, keys, progress, _warn))
+    folder = tempfile.mkdtemp(prefix="modebank-")
+    try:
+        keys["archive.output"] = os.path.join(folder, "archive.h5")
+        archive = Archive(_modebank.run_tables(tables, keys, progress, _warn))
+    except BaseException:
+        shutil.rmtree(folder)
+        raise
+    weakref.finalize(archive, shutil.rmtree, folder, ignore_errors=True)
+    return archive
+
+
+def read(log: Path, **options: Any) -> dict[str, pandas.DataFrame]:
+    """The tables of any readable log as {name: DataFrame}; the one table of a CSV file is called "".
+
+    options: keys of the configuration's [data] section that say how a file is to be read, as separator="semicolon".
+    Units, where the format says them, are in frame.attrs["units"] by column."""
+    frames = {}
+    for name, (columns, units) in _modebank.read_log(os.fspath(log), options).items():
+        frames[name] = pandas.DataFrame(columns)
+        frames[name].attrs["units"] = {column: unit for column, unit in units.items() if unit}
+    return frames
+
+
+def identify(states: np.ndarray | Sequence[np.ndarray], inputs: np.ndarray | Sequence[np.ndarray] | None = None,
+             dt: float = 1.0, *, state_names: Sequence[str] = (), input_names: Sequence[str] = (),
+             **options: Any) -> Windows:
+    """Fits a local model to every window of a run and returns Windows.
+
+    states: (N, n), or (N,) of one state, or a list of such arrays, one per run; inputs likewise (N, m), or None; dt:
+    sample period [s]. options: the keys of the configuration's [window] section, as length=30, step=5, prior="none".
+    Row-major arrays of doubles are read where they are, without a copy. Releases the interpreter lock."""
+    runs = list(states) if isinstance(states, (list, tuple)) else [states]
+    if inputs is None:
+        inputs = [np.empty((len(run), 0)) for run in runs]
+    inputs = list(inputs) if isinstance(inputs, (list, tuple)) else [inputs]
+    return _modebank.identify(runs, inputs, dt, list(state_names), list(input_names), options)
+
+
+def simulate(bank: Archive | Bank | Path, states: np.ndarray, inputs: np.ndarray, dt: float | None = None, *,
+             times: np.ndarray | None = None, samples: int = 1, horizon: int = 0, **options: Any) -> FreeRun:
+    """A free run: predicts the run after its first samples, from these and the inputs alone. Returns FreeRun.
+
+    bank: an Archive, its path or a Bank; states: (N, n), of which the first `samples` are used (the others may be NaN;
+    where they are known, log_density is of them); inputs: (N, m); dt: sample period [s] (None: the bank's), or times:
+    (N,) [s]; horizon: samples to predict, 0: all. options: further keys of the [filter] section."""
+    states = np.asarray(states, dtype=float)
+    keys = {"simulate": samples, "simulate_horizon": horizon, **options}
+    if times is None:
+        of = bank if isinstance(bank, Bank) else Bank.load(os.fspath(getattr(bank, "path", bank)))
+        times = np.arange(len(states)) * (dt or of.dt or 1.0)
+    return _modebank.simulate(bank, times, states, inputs, keys)
+
+
+def fit_mixture(points: np.ndarray, components: int | str | Sequence[int] = "1..12", *, runs: Sequence[int] = (),
+                effective_samples: float = 0.0, seed: int = 1, **options: Any) -> Mixture:
+    """Fits Gaussian mixtures to points (N, F) and returns the best Mixture by the criterion (BIC unless told).
+
+    components: a number, a list, or a range as "1..12"; runs: (N,) the run each point is from, for held-out scores and
+    the bootstrap; effective_samples: independent samples that the points are worth, 0: all. options: further keys of
+    the configuration's [mixture] section, as criterion="icl". Releases the interpreter lock."""
+    if isinstance(components, range):
+        components = list(components)
+    return _modebank.fit_mixture(points, [int(run) for run in runs], effective_samples, seed,
+                                 {"components": components, **options})

@@ -1,0 +1,151 @@
+"""Frames are what files are: the same data, roles, resampling, lags and missing values give the same archive."""
+import os
+import tempfile
+import unittest
+import warnings
+
+import h5py
+import numpy as np
+import pandas
+
+import modebank
+from simulated import COLUMNS, QUICK, folder, frames
+
+
+def content(archive):
+    """Every array, but for where it comes from."""
+    found = {}
+    with h5py.File(archive.path) as file:
+        file.visititems(lambda path, item: found.update({path: np.asarray(item[()])})
+                        if isinstance(item, h5py.Dataset) and path != "config" and not path.startswith("provenance")
+                        else None)
+    return found
+
+
+class Frames(unittest.TestCase):
+    def same(self, ours, theirs):
+        """Bit by bit: NaN is NaN, in tables too."""
+        self.assertEqual(set(ours), set(theirs))
+        for path, values in theirs.items():
+            self.assertEqual(ours[path].dtype, values.dtype, path)
+            self.assertEqual(ours[path].shape, values.shape, path)
+            self.assertEqual(ours[path].tobytes(), values.tobytes(), path)
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.scratch = scratch.name
+
+    def from_files(self, keys, root=None):
+        ini = os.path.join(self.scratch, "files.ini")
+        with open(ini, "w", encoding="utf-8") as file:
+            file.write("[data]\ninputs = pro_*.csv\nstates = imu_*.csv\nstate = wz\ninput = cmd_velL, cmd_velR\n")
+        return modebank.run(ini, **{**QUICK, "data.root": root or folder(),
+                                    "archive.output": os.path.join(self.scratch, "files.h5"), **keys})
+
+    def compare(self, keys, runs=None, root=None):
+        ours = content(modebank.run(runs or frames(), **COLUMNS, **{**QUICK, **keys}))
+        theirs = content(self.from_files(keys, root))
+        self.same(ours, theirs)
+
+    def test_as_they_stand(self):
+        self.compare({})
+
+    def test_roles_rate_lag_and_units(self):
+        self.compare({"data.train": ["02", "03"], "data.test": "00", "data.rate_hz": 5, "data.lag_s": 0.1,
+                      "data.state_unit": "rad/s"})
+
+    def test_missing_values(self):
+        runs = frames()
+        for inputs, states in runs.values():
+            states.loc[200:230, "wz"] = np.nan
+        for name, (inputs, states) in runs.items():
+            inputs.to_csv(os.path.join(self.scratch, f"pro_{name}.csv"), index=False)
+            states.to_csv(os.path.join(self.scratch, f"imu_{name}.csv"), index=False)
+        self.compare({"data.missing": "predict"}, runs, self.scratch)
+        with self.assertRaisesRegex(modebank.DataError, r"00 \(states\):200: column wz: missing value"):
+            modebank.run(runs, **COLUMNS, **QUICK)
+
+    def test_one_frame_per_run_with_times_as_index(self):
+        joined = {}
+        for name, (inputs, states) in frames().items():
+            both = inputs[["time", "cmd_velL", "cmd_velR"]].copy()
+            both["wz"] = np.interp(both.time, states.time, states.wz)
+            joined[name] = both
+        by_column = modebank.run(joined, **COLUMNS, **QUICK)
+        by_index = modebank.run({name: run.set_index("time") for name, run in joined.items()}, **COLUMNS, **QUICK)
+        by_other_name = modebank.run({name: run.rename(columns={"time": "t"}) for name, run in joined.items()},
+                                     time="t", **COLUMNS, **QUICK)
+        dated = {name: run.set_index(pandas.to_datetime((run.time * 1e9).round().astype("int64"))).drop(columns="time")
+                 for name, run in joined.items()}
+        by_date = modebank.run(dated, **COLUMNS, **QUICK)
+        expected = content(by_column)
+        for archive in (by_index, by_other_name):
+            self.same(content(archive), expected)
+        np.testing.assert_allclose(by_date["/data/01/time"], expected["data/01/time"], atol=1e-9)
+        self.assertEqual(by_column.attributes()["data_hash"], by_index.attributes()["data_hash"])
+
+    def test_runs_in_one_frame(self):
+        parts = []
+        for name, (inputs, states) in frames().items():
+            part = inputs[["time", "cmd_velL", "cmd_velR"]].copy()
+            part["wz"] = np.interp(part.time, states.time, states.wz)
+            part["drive"] = "drive_" + name
+            parts.append(part)
+        archive = modebank.run({"all": pandas.concat(parts)}, **COLUMNS, **{**QUICK, "data.run": "drive"})
+        self.assertEqual(archive.runs, ["drive_00", "drive_01", "drive_02", "drive_03"])
+
+    def test_the_hash_is_of_the_content(self):
+        runs = frames()
+        columns = {**COLUMNS, **QUICK}
+        first = modebank.run(runs, **columns).attributes()["data_hash"]
+        self.assertEqual(modebank.run(runs, **columns).attributes()["data_hash"], first)
+        runs["00"][1].loc[5, "wz"] += 1e-9
+        self.assertNotEqual(modebank.run(runs, **columns).attributes()["data_hash"], first)
+
+    def test_mistakes(self):
+        with self.assertRaisesRegex(modebank.ConfigurationError, 'no column "wy", did you mean wz'):
+            modebank.run(frames(), state="wy", input=["cmd_velL"])
+        with self.assertRaisesRegex(modebank.ConfigurationError, "no runs"):
+            modebank.run({}, **COLUMNS)
+
+    def test_a_temporary_archive_goes_with_its_object(self):
+        archive = modebank.run(frames(), **COLUMNS, **QUICK)
+        path = archive.path
+        self.assertTrue(os.path.exists(path))
+        del archive
+        self.assertFalse(os.path.exists(path))
+
+    def test_warnings_are_pythons(self):
+        with warnings.catch_warnings(record=True) as heard:
+            warnings.simplefilter("always")
+            runs = frames()
+            for inputs, states in runs.values():
+                states.loc[200:230, "wz"] = np.nan
+            modebank.run(runs, **COLUMNS, **{**QUICK, "data.missing": "gap"})
+        self.assertTrue(any("has gaps" in str(warning.message) for warning in heard))
+
+
+class Logs(unittest.TestCase):
+    def test_a_csv_is_one_frame(self):
+        tables = modebank.read(folder() / "imu_00.csv")
+        self.assertEqual(list(tables), [""])
+        pandas.testing.assert_frame_equal(tables[""], frames()["00"][1], check_dtype=False)
+
+    def test_text_columns_are_text(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            path = os.path.join(scratch, "mixed.csv")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("time,ground,v\n0,ice,1\n1,grip,\n")
+            frame = modebank.read(path)[""]
+        self.assertEqual(frame["ground"].tolist(), ["ice", "grip"])
+        np.testing.assert_array_equal(frame["v"], [1.0, np.nan])
+
+    def test_what_is_no_log_is_an_error(self):
+        with self.assertRaises(modebank.ConfigurationError):
+            modebank.read("no_such_file.csv")
+
+
+if __name__ == "__main__":
+    warnings.simplefilter("ignore", UserWarning)  # of candidates so few
+    unittest.main()
