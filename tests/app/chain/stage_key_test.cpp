@@ -112,6 +112,7 @@ const std::map<std::string, std::vector<std::string>> texts{
     {"data.input", {"left"}},
     {"data.truth", {"other"}},
     {"data.weight", {"weight"}},
+    {"data.label", {"block"}},
     {"data.state_unit", {"rad/s"}},
     {"data.input_unit", {"m/s"}},
     {"data.time", {"clock"}},

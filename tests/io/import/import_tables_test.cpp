@@ -61,6 +61,43 @@ TEST(BringTo, NoOverlapIsAnError) {
               HasSubstr("do not overlap in time"));
 }
 
+class ImportLabel : public test::ImportFixture {
+ protected:
+  ImportLabel() { options.label = "ground"; }
+  static std::vector<std::string> words(const ImportedData& data, std::size_t run) {
+    std::vector<std::string> result;
+    for (const int label : data.labels->of_runs.at(run))
+      result.push_back(label < 0 ? "?" : data.labels->names.at(static_cast<std::size_t>(label)));
+    return result;
+  }
+};
+
+TEST_F(ImportLabel, TheLastOneHoldsThroughGapsAndRates) {
+  options.missing = Missing::gap;
+  write("pro_1.csv", "time,u\n0,1\n1,2\n2,3\n3,4\n4,5\n5,6\n");
+  write("imu_1.csv", "time,x,ground\n0,1,\n0.5,2,ice\n1.5,3,ice\n2,4,grit\n3,,grit\n4,6,\n5,7,7\n");
+  const ImportedData data = import();
+  EXPECT_THAT(names(data), ElementsAre("1.1", "1.2"));
+  EXPECT_THAT(data.labels->names, ElementsAre("7", "grit", "ice"));
+  EXPECT_THAT(words(data, 0), ElementsAre("?", "ice", "grit"));
+  EXPECT_THAT(words(data, 1), ElementsAre("grit", "7"));
+}
+
+TEST_F(ImportLabel, OfTheInputsFileAndOfRunsInOneFile) {
+  options.inputs = "all.csv";
+  options.states.clear();
+  options.run = "lap";
+  write("all.csv", "lap,time,x,u,ground\na,0,1,1,ice\nb,0,1,1,grit\na,1,1,1,grit\nb,1,2,2,ice\n");
+  const ImportedData data = import();
+  EXPECT_THAT(words(data, 0), ElementsAre("ice", "grit"));
+  EXPECT_THAT(words(data, 1), ElementsAre("grit", "ice"));
+}
+
+TEST_F(ImportLabel, MustBeThere) {
+  write_run("1");
+  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("no column \"ground\""));
+}
+
 class ImportSplit : public test::ImportFixture {
  protected:
   ImportSplit() {
