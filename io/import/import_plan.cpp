@@ -69,7 +69,10 @@ void plan_times(FilePlan& plan, ColumnFinder& find, const DataOptions& options) 
 }
 
 void plan_columns(FilePlan& plan, const DataOptions& options) {
-  ColumnFinder find(plan, options.format);
+  FormatOptions format = options.format;
+  if (!format.definitions.empty())
+    format.definitions = (std::filesystem::path(options.root) / format.definitions).string();
+  ColumnFinder find(plan, format);
   const std::size_t inputs = 0, states = plan.paths.size() - 1;
   const std::vector<std::size_t> states_first = states == inputs ? std::vector{inputs} : std::vector{states, inputs};
   plan.state = find.numbers(options.state, {states});
@@ -102,7 +105,7 @@ std::vector<FilePlan> plan_import(const DataOptions& options) {
   check_options(options);
   const FilePattern inputs("data.inputs", options.root, options.inputs);
   ColumnNames names = inputs.runs();
-  if (options.run.empty()) names = without_left_out(names, options);
+  if (options.run.empty() && options.split.kind == SplitKind::none) names = without_left_out(names, options);
   std::vector<FilePlan> plans;
   for (const std::string& name : names) {
     FilePlan& plan = plans.emplace_back();

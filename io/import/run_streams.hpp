@@ -38,7 +38,13 @@ struct RunStreams {
   };
   std::vector<Companion> truth;
   std::vector<Companion> weight;  ///< one, or none
+
+  /// All of them.
+  std::vector<std::vector<Companion>*> companions() { return {&truth, &weight}; }
 };
+
+/// Keeps the samples at these positions.
+void take(FileStream& source, const std::vector<Index>& positions);
 
 /// Both streams, and what is sampled with them.
 void put_in_order(RunStreams& run, Disorder disorder);

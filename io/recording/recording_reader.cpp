@@ -30,6 +30,13 @@ LogRequest log_request(const TableRequest& request) {
   return wanted;
 }
 
+const std::filesystem::path& checked(const std::filesystem::path& definitions) {
+  std::error_code error;
+  if (!definitions.empty() && !std::filesystem::is_directory(definitions, error))
+    throw ConfigurationError(fmt::format("data.definitions: {} is no folder", definitions.string()));
+  return definitions;
+}
+
 [[noreturn]] void fail(const std::string& file, std::uint64_t message, const std::string& column, const char* why) {
   throw DataError(fmt::format("{}:{}: column {}: {}", file, message, column, why));
 }
@@ -89,7 +96,7 @@ InputFile describe(const std::filesystem::path& path, const std::vector<std::fil
 }  // namespace
 
 RecordingReader::RecordingReader(const std::filesystem::path& path, const std::filesystem::path& definitions)
-    : path_(path), log_(path, KnownDefinitions(definitions)) {}
+    : path_(path), log_(path, KnownDefinitions(checked(definitions))) {}
 
 std::vector<TableInfo> RecordingReader::tables() const {
   std::vector<TableInfo> tables;

@@ -11,8 +11,8 @@ class SameDrive : public ::testing::Test {
   static void SetUpTestSuite() {
     if (shared_data_dir().empty() || !has_rosbag()) return;
     folder_ = std::make_unique<TemporaryFolder>();
-    run_recordings_script(
-        {"convert", (shared_data_dir() / "bags" / "husky_outdoor_test1.bag").string(), "60", folder_->path().string()});
+    run_recordings_script({"convert", (shared_data_dir() / "bags" / "husky_outdoor_test1.bag").string(), "0", "60",
+                           folder_->path().string()});
   }
   static void TearDownTestSuite() { folder_.reset(); }
 
