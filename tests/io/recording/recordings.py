@@ -5,6 +5,7 @@ Usage: recordings.py reference BAG OUT.json       every column of every topic, a
        recordings.py convert BAG BEGIN END FOLDER   these seconds of the bag as bag, MCAP and db3, each compression
        recordings.py compare A.h5 B.h5 ...        whether archives hold the same from /data to /evaluation
 """
+import io
 import json
 import pathlib
 import re
@@ -48,6 +49,12 @@ def ros2_definition(text):
     return re.sub(r"^Header ", "std_msgs/Header ", text, flags=re.MULTILINE)
 
 
+def ros1(message):
+    out = io.BytesIO()
+    message.serialize(out)
+    return out.getvalue()
+
+
 def convert(bag_path, begin, end, folder):
     folder = pathlib.Path(folder)
     messages, types = [], {}
@@ -71,6 +78,9 @@ def convert(bag_path, begin, end, folder):
         ros2_writers.write_mcap(folder / f"drive_{compression or 'none'}.mcap", topics, written, compression)
     ros2_writers.write_mcap(folder / "drive_no_summary.mcap", topics, written, "zstd", summary=False)
     ros2_writers.write_mcap(folder / "drive_no_chunks.mcap", topics, written, chunked=False)
+    ros1_topics = [(name, kind, text) for name, (kind, text) in sorted(types.items())]
+    ros1_written = [(number[topic], time.to_nsec(), ros1(message)) for topic, message, time in messages]
+    ros2_writers.write_mcap(folder / "drive_ros1.mcap", ros1_topics, ros1_written, "lz4", encoding="ros1", definition_form="ros1msg")
     ros2_writers.write_db3(folder / "drive.db3", topics, written)
     ros2_writers.write_db3(folder / "drive_zstd.db3", topics, written, compressed=True)
     split = folder / "drive_split"

@@ -40,10 +40,10 @@ TEST_F(SameDrive, IsTheSameInEveryContainerAndCompression) {
   }
 }
 
-TEST_F(SameDrive, IsTheSameInEachBag) {
+TEST_F(SameDrive, IsTheSameAsRos1WritesIt) {
   MODEBANK_NEEDS_DRIVE();
   const RosLog reference(file("drive_none.mcap"), KnownDefinitions());
-  for (const char* name : {"drive_none.bag", "drive_bz2.bag", "drive_lz4.bag"}) {
+  for (const char* name : {"drive_none.bag", "drive_bz2.bag", "drive_lz4.bag", "drive_ros1.mcap"}) {
     SCOPED_TRACE(name);
     const RosLog log(file(name), KnownDefinitions());
     EXPECT_TRUE(log.notes().empty());
