@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/table/number.hpp"
 #include "io/table/stamp_column.hpp"
 #include "modebank/base/error.hpp"
 
@@ -130,7 +131,10 @@ std::vector<Table> RecordingReader::read(const std::vector<TableRequest>& reques
     auto column = rows[r].columns.begin();
     for (std::size_t i = 0; i < request.numbers.size(); ++i) table.numbers.push_back(std::move((column++)->numbers));
     check_numbers(path_.string(), request, table);
-    if (!request.text.empty()) table.text = std::move((column++)->text);
+    if (!request.text.empty()) {
+      table.text = std::move((column++)->text);
+      for (std::string& text : table.text) text = std::string(without_blanks(text));
+    }
     if (request.time.column.empty()) continue;
     LogColumn& time = *column++;
     const auto& known = log_.topics()[request.table].columns;

@@ -54,8 +54,12 @@ TEST(DamagedRecordings, NeverCrashAndNeverGrow) {
   }
   EXPECT_GT(refused, 0u);
   EXPECT_GT(read, 0u);
+#ifndef __SANITIZE_ADDRESS__  // which keeps what is freed
   // Sizes that damage makes up are never believed.
   EXPECT_LT(resident_kilobytes() - before, 100'000);
+#else
+  static_cast<void>(before);
+#endif
 }
 
 TEST(DamagedRecordings, AreNamed) {
