@@ -48,6 +48,7 @@ void turn_to_new_files(const CommandLine& line, DataOptions& data) {
   if (!given(line, "data.missing")) data.missing = Missing::predict;
   data.truth.clear();
   data.weight.clear();
+  if (!given(line, "data.split")) data.split = {};
   if (data.lag_auto && !given(line, "data.lag_s")) take_lag(archive, data);
 }
 
@@ -107,7 +108,7 @@ int run_predict(const CommandLine& line) {
     throw ConfigurationError("predict needs one archive: modebank predict ARCHIVE --data.inputs FILES --samples N");
   const Config config = predict_config(line);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
-  const ImportedData data = import_data(config.data);
+  const ImportedData data = import_data(data_options_of(config));
   for (const std::string& note : data.notes) spdlog::warn("{}", note);
   const std::vector<FreeRun> predicted = predict_all(line.files.front(), config, data.recording);
   for (const std::string& remark : remarks("bank", data.recording.runs, predicted)) spdlog::warn("{}", remark);

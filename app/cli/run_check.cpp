@@ -101,7 +101,7 @@ int run_check(const CommandLine& line) {
   validate(config);
   check_target(line, config);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
-  const DataCheck check = check_data({config.data, config.window.length, config.window.intercept});
+  const DataCheck check = check_data({data_options_of(config), config.window.length, config.window.intercept});
   const Suggestions suggestions = tell(line, config, check);
   if (!line.apply) return 0;
   replace_file(line.output, {applied_text(suggestions, config, line.files.front(), line.overrides, line.output)});

@@ -86,6 +86,9 @@ struct Config {
 /// What of it decides the numbers of a run.
 ChainOptions chain_options(const Config& config);
 
+/// The data section with what it takes from others: how much of a window lies between the blocks of data.split.
+DataOptions data_options_of(const Config& config);
+
 /// Checks values against each other, before any file of data is opened. Throws ConfigurationError naming the keys.
 void validate(const Config& config);
 

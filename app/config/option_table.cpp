@@ -6,8 +6,19 @@
 
 namespace modebank::app {
 
+DataOptions data_options_of(const Config& c) {
+  DataOptions data = c.data;
+  if (data.split.kind == SplitKind::none) return data;
+  const Index automatic = most_automatic_lags;
+  const Index states = c.automatic_lags.state ? automatic : c.window.state_lags;
+  const Index inputs = c.automatic_lags.input ? automatic : c.window.input_lags;
+  data.split.gap_samples = c.window.length + std::max(states, inputs + c.window.input_delay);
+  return data;
+}
+
 ChainOptions chain_options(const Config& c) {
-  return {c.data, c.window, c.mixture, c.mixture_start, c.bank, c.filter, c.scoring, c.job.seed, c.automatic_lags};
+  return {data_options_of(c), c.window,  c.mixture,  c.mixture_start, c.bank,
+          c.filter,           c.scoring, c.job.seed, c.automatic_lags};
 }
 
 const std::vector<Option>& option_table() {

@@ -61,6 +61,7 @@ void exchange_recording(Io& io, R& recording) {
     io.group(run.run, known, [&](auto& member) {
       member.attribute("role", run.role);
       member.attribute("lag_s", run.lag_s);
+      member.attribute_unless(std::int64_t{0}, "time_origin_ns", run.time_origin_ns);
       member.field("time", run.time_s, {"N"}, {"s"});
       member.field("state", run.state, {"N", "n"}, units.states());
       member.field("input", run.input, {"N", "m"}, units.inputs());

@@ -51,6 +51,10 @@ class GroupReader {
   void optional_attribute(const std::string& name, T& value) {
     if (hdf5::has_attribute(group_.id(), name)) attribute(name, value);
   }
+  template <class T>
+  void attribute_unless(const T& /*absent*/, const std::string& name, T& value) {
+    optional_attribute(name, value);
+  }
   void constant_attribute(const std::string& name, const std::string& expected);
   void attribute_texts(const std::string& name, std::vector<std::string>& texts);
   /// All attributes, in name order.

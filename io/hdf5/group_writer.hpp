@@ -49,6 +49,11 @@ class GroupWriter {
   void optional_attribute(const std::string& name, const T& value) {
     attribute(name, value);
   }
+  /// What is left out where it says nothing.
+  template <class T>
+  void attribute_unless(const T& absent, const std::string& name, const T& value) {
+    if (value != absent) attribute(name, value);
+  }
   template <class T>
   void constant_attribute(const std::string& name, const T& value) {
     attribute(name, value);

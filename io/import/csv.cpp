@@ -9,7 +9,9 @@
 #include "ident/base/not_a_number.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
+#include "io/import/csv_dialect.hpp"
 #include "io/import/csv_pass.hpp"
+#include "io/import/csv_text.hpp"
 #include "io/table/number.hpp"
 #include "io/table/stamp_column.hpp"
 #include "modebank/base/error.hpp"
@@ -18,29 +20,24 @@ namespace modebank {
 
 namespace {
 
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-constexpr std::size_t header_bytes = 1 << 14;  // read at a time while looking for the header
+constexpr std::size_t probed_bytes = 1 << 16;  // of a file, at first, to find its dialect and header
 constexpr std::size_t shown_bytes = 60;        // of an offending field in a message
 
-std::string_view without_mark(std::string_view content) {
-  if (content.substr(0, byte_order_mark.size()) == byte_order_mark) content.remove_prefix(byte_order_mark.size());
-  return content;
-}
-
-/// Collects the first row that is not empty.
+/// Collects the first rows that are not empty.
 struct HeaderSink {
-  std::vector<std::string> names;
-  bool complete = false;
+  std::size_t wanted = 1;
+  std::vector<std::vector<std::string>> rows = {};
+  std::size_t complete = 0;
   std::size_t fields = 0;
   std::uint64_t line = 1;
   std::string error;
 
-  bool done() const { return complete; }
+  bool done() const { return complete == wanted; }
   void field(std::string_view text) {
-    names.emplace_back(text);
-    ++fields;
+    if (fields++ == 0) rows.emplace_back();
+    rows.back().emplace_back(text);
   }
-  void row() { complete = fields > 0; }
+  void row() { complete += fields > 0 ? 1 : 0; }
 };
 
 /// Collects the wanted columns of all rows after the header.
@@ -55,8 +52,11 @@ struct TableSink {
   std::vector<bool> may_miss;  // per position in table.numbers
   StampColumn stamps;
   bool time_may_miss;
-  std::string nanoseconds;  // of the row, where they have a column of their own
-  bool header_seen = false, empty_line_seen = false;
+  std::string nanoseconds;      // of the row, where they have a column of their own
+  std::size_t header_rows = 1;  // yet to come
+  bool decimal_comma = false, rows_seen = false, empty_line_seen = false;
+  std::vector<std::uint64_t> comment_lines;  // empty ones that stand for a comment
+  std::size_t next_comment = 0;
   std::size_t fields = 0;
   std::uint64_t line = 1;
   std::string error;
@@ -68,7 +68,7 @@ struct TableSink {
   void field(std::string_view text) {
     if (fields == 0 && empty_line_seen) error = "empty line before this row";
     const std::size_t column = fields++;
-    if (!header_seen || column >= target.size()) return;
+    if (header_rows > 0 || column >= target.size()) return;
     if (column == text_column) table.text.emplace_back(text);
     if (target[column] != skipped) number(column, text);
     if (column == time_column) time(text);
@@ -76,7 +76,7 @@ struct TableSink {
   }
 
   void time(std::string_view text) {
-    const NumberStatus status = stamps.add(text);
+    const NumberStatus status = decimal_comma ? stamps.add(with_decimal_point(text)) : stamps.add(text);
     if (status == NumberStatus::ok) return;
     if (status == NumberStatus::missing && time_may_miss)
       stamps.add_missing();
@@ -89,7 +89,7 @@ struct TableSink {
   }
 
   void number(std::size_t column, std::string_view text) {
-    const ParsedNumber parsed = parse_number(text);
+    const ParsedNumber parsed = decimal_comma ? parse_number(with_decimal_point(text)) : parse_number(text);
     const bool tolerated = parsed.status == NumberStatus::missing && may_miss[target[column]];
     table.numbers[target[column]].push_back(tolerated ? not_a_number : parsed.value);
     if (parsed.status != NumberStatus::ok && !tolerated) error = complaint(parsed.status, column, text);
@@ -106,9 +106,11 @@ struct TableSink {
 
   void row() {
     if (fields == 0) {
-      empty_line_seen = header_seen;
-    } else if (!header_seen) {
-      header_seen = true;
+      if (is_comment_line()) return;
+      empty_line_seen = header_rows == 0 && rows_seen;
+    } else if (header_rows > 0) {
+      --header_rows;
+      rows_seen = true;
     } else if (fields != target.size()) {
       error = fmt::format("{} field{}, but the header has {}", fields, fields == 1 ? "" : "s", target.size());
     } else if (nanoseconds_column != none && !stamps.add_nanoseconds(nanoseconds)) {
@@ -116,20 +118,44 @@ struct TableSink {
                           header[nanoseconds_column], nanoseconds);
     } else {
       table.line.push_back(line);
+      rows_seen = true;
     }
+  }
+
+  bool is_comment_line() {
+    while (next_comment < comment_lines.size() && comment_lines[next_comment] < line) ++next_comment;
+    return next_comment < comment_lines.size() && comment_lines[next_comment] == line;
   }
 };
 
-/// The first row that is not empty; `next_piece` yields the file piece by piece, an empty one at its end.
-template <class NextPiece>
-std::vector<std::string> header_of(std::string_view file, NextPiece&& next_piece) {
-  HeaderSink sink;
-  CsvPass pass(file, sink);
-  std::string_view piece = without_mark(next_piece());
-  for (; !piece.empty() && !sink.done(); piece = next_piece()) pass.feed(piece);
-  pass.finish();
-  if (sink.names.empty()) throw ConfigurationError(fmt::format("{} is empty: no header", file));
-  return sink.names;
+/// What the first rows say: how the text is written, and its columns.
+struct Head {
+  CsvDialect dialect;
+  std::vector<std::string> names, units;
+};
+
+/// Of a text, or (unless `complete`) of its beginning.
+Head read_head(std::string_view file, std::string_view text, bool complete, const FormatOptions& options) {
+  Head head;
+  head.dialect = find_dialect(text, complete, options);
+  head.names = head.dialect.names;
+  if (head.dialect.header_rows > 0) {
+    HeaderSink sink;
+    sink.wanted = head.dialect.header_rows;
+    CsvPass pass(file, sink, head.dialect.delimiter());
+    std::string prepared;
+    if (head.dialect.rewritten()) {
+      prepared = prepare_text(text, head.dialect.separator == Separator::blank).text;
+      text = prepared;
+    }
+    pass.feed(text);
+    if (complete) pass.finish();
+    if (sink.rows.empty()) throw ConfigurationError(fmt::format("{} is empty: no header", file));
+    head.names = sink.rows.front();
+    if (sink.rows.size() > 1 && head.dialect.header_rows > 1) head.units = sink.rows[1];
+  }
+  if (head.names.empty()) throw ConfigurationError(fmt::format("{} is empty: no header", file));
+  return head;
 }
 
 TableSink make_sink(std::string_view file, std::vector<std::string> header, const TableRequest& request,
@@ -154,44 +180,84 @@ TableSink make_sink(std::string_view file, std::vector<std::string> header, cons
   return sink;
 }
 
-}  // namespace
-
-std::vector<std::string> read_csv_header(const std::filesystem::path& path) {
-  std::ifstream stream = open_file(path);
-  std::string buffer(header_bytes, '\0');
-  return header_of(path.string(), [&]() -> std::string_view {
-    stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    return {buffer.data(), static_cast<std::size_t>(stream.gcount())};
-  });
+/// Of "[rad/s]", "(rad/s)" and "rad/s" the last.
+std::string bare_unit(std::string_view unit) {
+  unit = without_blanks(unit);
+  const bool in_brackets =
+      unit.size() > 1 && ((unit.front() == '[' && unit.back() == ']') || (unit.front() == '(' && unit.back() == ')'));
+  return std::string(in_brackets ? unit.substr(1, unit.size() - 2) : unit);
 }
 
-Table parse_csv(std::string_view file, std::string_view content, const TableRequest& request) {
-  std::vector<std::string> header =
-      header_of(file, [rest = content]() mutable { return std::exchange(rest, std::string_view()); });
-  const auto rows_at_most = static_cast<std::size_t>(std::count(content.begin(), content.end(), '\n'));
-  TableSink sink = make_sink(file, std::move(header), request, rows_at_most);
-  CsvPass pass(file, sink);
-  pass.feed(without_mark(content));
+Head head_of_file(const std::filesystem::path& path, const FormatOptions& options) {
+  std::ifstream stream = open_file(path);
+  std::string content;
+  for (std::size_t wanted = probed_bytes;; wanted *= 4) {
+    const std::size_t had = content.size();
+    content.resize(wanted);
+    stream.read(content.data() + had, static_cast<std::streamsize>(wanted - had));
+    content.resize(had + static_cast<std::size_t>(stream.gcount()));
+    const bool complete = content.size() < wanted;
+    std::string storage;
+    const std::string_view text = as_utf8(content, storage);
+    constexpr std::size_t enough = 4;  // rows, of which a file of long ones gives no more at first
+    if (complete || first_records(text, false, enough).size() == enough)
+      return read_head(path.string(), text, complete, options);
+  }
+}
+
+/// One request, of a text whose head is known.
+Table parse_rows(std::string_view file, std::string_view text, const Head& head, const TableRequest& request) {
+  const auto rows_at_most = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  TableSink sink = make_sink(file, head.names, request, rows_at_most);
+  sink.header_rows = head.dialect.header_rows;
+  sink.decimal_comma = head.dialect.decimal_comma;
+  PreparedText prepared;
+  if (head.dialect.rewritten() || text.find("\n#") != std::string_view::npos) {
+    prepared = prepare_text(text, head.dialect.separator == Separator::blank);
+    sink.comment_lines = std::move(prepared.comment_lines);
+    text = prepared.text;
+  }
+  CsvPass pass(file, sink, head.dialect.delimiter());
+  pass.feed(text);
   pass.finish();
   if (sink.time_column != TableSink::none) sink.stamps.finish(file, sink.table);
+  if (!head.dialect.note.empty()) sink.table.notes.push_back(head.dialect.note);
   return std::move(sink.table);
 }
 
+std::vector<Table> parse_all(std::string_view file, std::string_view content, const std::vector<TableRequest>& requests,
+                             const FormatOptions& options) {
+  std::string storage;
+  const std::string_view text = as_utf8(content, storage);
+  const Head head = read_head(file, text, true, options);
+  std::vector<Table> tables;
+  for (const TableRequest& request : requests) tables.push_back(parse_rows(file, text, head, request));
+  return tables;
+}
+
+}  // namespace
+
+std::vector<std::string> read_csv_header(const std::filesystem::path& path) { return head_of_file(path, {}).names; }
+
+Table parse_csv(std::string_view file, std::string_view content, const TableRequest& request,
+                const FormatOptions& options) {
+  return std::move(parse_all(file, content, {request}, options).front());
+}
+
 std::vector<TableInfo> CsvReader::tables() const {
+  Head head = head_of_file(path_, options_);
   TableInfo table;
-  for (std::string& name : read_csv_header(path_)) table.columns.push_back({std::move(name)});
+  for (std::size_t i = 0; i < head.names.size(); ++i)
+    table.columns.push_back({std::move(head.names[i]), i < head.units.size() ? bare_unit(head.units[i]) : ""});
   return {std::move(table)};
 }
 
 std::vector<Table> CsvReader::read(const std::vector<TableRequest>& requests, InputFile& file) const {
   const std::string content = read_file(path_);
-  std::vector<Table> tables(requests.size());
+  std::vector<Table> tables;
   std::string sha256;
   tbb::parallel_invoke([&] { sha256 = sha256_hex(content); },
-                       [&] {
-                         for (std::size_t i = 0; i < requests.size(); ++i)
-                           tables[i] = parse_csv(path_.string(), content, requests[i]);
-                       });
+                       [&] { tables = parse_all(path_.string(), content, requests, options_); });
   file = {path_.string(), content.size(), std::move(sha256)};
   return tables;
 }

@@ -9,10 +9,11 @@
 
 namespace modebank {
 
-/// Comma-separated values (RFC 4180, read by libcsv): a header row names the columns, in any order and with exact case.
-/// Fields may be quoted ("" is a quote; commas and line breaks are text there). A byte-order mark, CRLF, blanks around
-/// fields, a missing last line break and empty lines before the header or after the last row are accepted; malformed
-/// quotes, rows of another width than the header and empty lines between rows are not.
+/// Comma-separated values (RFC 4180, read by libcsv) and their relatives (io/import/csv_dialect.hpp): a header row
+/// names the columns, in any order and with exact case. Fields may be quoted ("" is a quote; separators and line breaks
+/// are text there). UTF-16, a byte-order mark, CRLF, blanks around fields, a missing last line break and empty lines
+/// before the header or after the last row are accepted; malformed quotes, rows of another width than the header and
+/// empty lines between rows are not.
 
 /// Column names of the file, which is read only as far as needed. Throws ConfigurationError when it cannot be read or
 /// has no header, DataError when the header's quotes are malformed.
@@ -20,17 +21,19 @@ std::vector<std::string> read_csv_header(const std::filesystem::path& path);
 
 /// Reads the wanted columns of `content`, the bytes of `file` (which is only named in messages). Throws as
 /// TableReader::read does.
-Table parse_csv(std::string_view file, std::string_view content, const TableRequest& request);
+Table parse_csv(std::string_view file, std::string_view content, const TableRequest& request,
+                const FormatOptions& options = {});
 
 /// A file of that kind: one table without a name.
 class CsvReader : public TableReader {
  public:
-  explicit CsvReader(std::filesystem::path path) : path_(std::move(path)) {}
+  CsvReader(std::filesystem::path path, const FormatOptions& options) : path_(std::move(path)), options_(options) {}
   std::vector<TableInfo> tables() const override;
   std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const override;
 
  private:
   std::filesystem::path path_;
+  FormatOptions options_;
 };
 
 }  // namespace modebank

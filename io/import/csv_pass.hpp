@@ -19,8 +19,9 @@ namespace modebank {
 template <class Sink>
 class CsvPass {
  public:
-  CsvPass(std::string_view file, Sink& sink) : file_(file), sink_(sink) {
+  CsvPass(std::string_view file, Sink& sink, char delimiter) : file_(file), sink_(sink) {
     csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI | CSV_REPALL_NL);
+    csv_set_delim(&parser_, static_cast<unsigned char>(delimiter));
   }
   ~CsvPass() { csv_free(&parser_); }
   CsvPass(const CsvPass&) = delete;
@@ -78,7 +79,7 @@ class CsvPass {
   [[noreturn]] void fail_parser() {
     if (csv_error(&parser_) == CSV_ENOMEM) throw std::bad_alloc();
     throw DataError(
-        fmt::format("{}:{}: malformed quotes (a quoted field must end before the next comma)", file_, line_));
+        fmt::format("{}:{}: malformed quotes (a quoted field must end before the next separator)", file_, line_));
   }
 
   static constexpr std::size_t chunk_bytes = 1 << 18;  // parsed between two looks at whether the sink is done

@@ -17,6 +17,7 @@
 #include "io/import/quanta.hpp"
 #include "io/import/read_runs.hpp"
 #include "io/import/run_roles.hpp"
+#include "io/import/split.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -104,6 +105,19 @@ void set_roles(std::vector<RunStreams>& runs, const DataOptions& options) {
   runs = std::move(kept);
 }
 
+/// Every run as its blocks, which have roles of their own unless data.train or data.test names some.
+void split_runs(std::vector<RunStreams>& runs, const DataOptions& options, std::vector<std::string>& notes) {
+  std::vector<RunStreams> blocks;
+  for (const RunStreams& run : runs) {
+    std::vector<RunStreams> parts = split_run(run, options.split, options.rate_hz);
+    notes.push_back(split_note(run, parts, options.split));
+    std::move(parts.begin(), parts.end(), std::back_inserter(blocks));
+  }
+  runs = std::move(blocks);
+  sort_by_name(runs);
+  check_run_names(run_names(runs));
+}
+
 /// After the roles are set: data.train and data.test name whole runs.
 void treat_missing_values(std::vector<Trajectory>& runs, const std::vector<std::vector<bool>>& kept, Missing missing,
                           std::vector<std::string>& notes) {
@@ -126,7 +140,9 @@ std::vector<RunStreams> named_streams(const std::vector<FilePlan>& plans, const 
   std::vector<RunStreams> runs = read_all(plans, options, data, as_they_stand);
   sort_by_name(runs);
   check_run_names(run_names(runs));
-  set_roles(runs, options);
+  const bool split = options.split.kind != SplitKind::none;
+  if (split) split_runs(runs, options, data.notes);
+  if (!split || !options.train.empty() || !options.test.empty()) set_roles(runs, options);
   return runs;
 }
 

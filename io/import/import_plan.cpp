@@ -107,7 +107,7 @@ std::vector<FilePlan> plan_import(const DataOptions& options) {
   const auto derived = std::make_shared<const DerivedChannels>(options);
   const FilePattern inputs("data.inputs", options.root, options.inputs);
   ColumnNames names = inputs.runs();
-  if (options.run.empty()) names = without_left_out(names, options);
+  if (options.run.empty() && options.split.kind == SplitKind::none) names = without_left_out(names, options);
   std::vector<FilePlan> plans;
   for (const std::string& name : names) {
     FilePlan& plan = plans.emplace_back();

@@ -18,7 +18,7 @@ namespace {
 using Path = std::filesystem::path;
 using namespace std::string_view_literals;
 
-constexpr std::size_t probed_bytes = 4096;
+constexpr std::size_t magic_bytes = 4096;
 
 /// A format that is read: whether a file (its first bytes; none of a folder) is of it, and its reader.
 struct Format {
@@ -33,8 +33,8 @@ constexpr std::array formats{
     Format{[](const Path& path, std::string_view first) { return is_mat(path, first); },
            [](const Path& path, const FormatOptions&) { return open_mat_tables(path); }},
     Format{[](const Path&, std::string_view) { return true; },
-           [](const Path& path, const FormatOptions&) -> std::shared_ptr<const TableReader> {
-             return std::make_shared<CsvReader>(path);
+           [](const Path& path, const FormatOptions& options) -> std::shared_ptr<const TableReader> {
+             return std::make_shared<CsvReader>(path, options);
            }},
 };
 
@@ -78,7 +78,7 @@ std::string first_bytes(const Path& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return {};
   std::ifstream stream = open_file(path);
-  std::string first(probed_bytes, '\0');
+  std::string first(magic_bytes, '\0');
   stream.read(first.data(), static_cast<std::streamsize>(first.size()));
   first.resize(static_cast<std::size_t>(stream.gcount()));
   return first;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,17 @@ struct EnumNames<Disorder> {
   static constexpr Names<2> values{"error", "sort"};
 };
 
+/// How each run becomes runs of its own that train and test in turn (io/import/split.hpp).
+enum class SplitKind { none, blocks, last };
+
+struct SplitOptions {
+  SplitKind kind = SplitKind::none;
+  int blocks = 0;             ///< of kind blocks
+  double last_percent = 0.0;  ///< of kind last
+  /// Dropped between blocks: a window and the lags of what is fitted there. Set by who knows them; 0 without a split.
+  std::ptrdiff_t gap_samples = 0;
+};
+
 /// What to read and how: the [data] section.
 struct DataOptions {
   std::string root;    ///< absolute prefix of relative patterns
@@ -66,6 +78,7 @@ struct DataOptions {
   FormatOptions format;         ///< what files say too little of themselves
   Missing missing = Missing::error;
   Disorder disorder = Disorder::error;
+  SplitOptions split;
   std::vector<std::string> train;  ///< run names; empty: all not in test, or positions 0, 2, 4, ... in name order
   std::vector<std::string> test;   ///< run names; empty: all that are not train
 };

@@ -7,9 +7,12 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "ident/base/not_a_number.hpp"
 #include "io/import/bring.hpp"
+#include "io/import/stamp_check.hpp"
+#include "io/table/stamp.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -100,6 +103,27 @@ class RowReader {
       values.row(static_cast<Index>(i)) = derived(refs[i], read, from).transpose();
     result.stream.values = std::move(values);
     return result;
+  }
+
+  /// Throws DataError for stamps of the run that are out by orders of magnitude.
+  void check_stamps(const RunSlice& run) const {
+    for (std::size_t source = 0; source < tables_.size(); ++source) {
+      const auto& all = tables_[source].time_ns;
+      Rows rows;
+      std::vector<std::int64_t> stamps;
+      for (const std::size_t row : all.empty() ? Rows() : run.rows[source]) {
+        if (all[row] == missing_stamp) continue;
+        rows.push_back(row);
+        stamps.push_back(all[row]);
+      }
+      const std::optional<std::size_t> out = stamp_far_out(stamps);
+      if (!out) continue;
+      const std::size_t other = *out == 0 ? 1 : *out - 1;
+      throw DataError(fmt::format("{}: column {}: {} s {} {} s: a stamp out by orders of magnitude",
+                                  place(source, rows[*out]), plan_.sources[source].request.time.column,
+                                  seconds_text(stamps[*out]), *out == 0 ? "before" : "after",
+                                  seconds_text(stamps[other])));
+    }
   }
 
   /// Weights, none negative.
@@ -242,6 +266,7 @@ std::map<std::string, RunSlice> slices_of(const FilePlan& plan, const RowReader&
     RunSlice& slice = slices[name];
     for (const RunRows& source : by_source) slice.rows.push_back(source.at(name));
     slice.origin_ns = reader.origin_ns(slice.rows);
+    reader.check_stamps(slice);
   }
   return slices;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "io/import/stamp_check.hpp"
 #include "io/table/stamp.hpp"
 #include "modebank/base/error.hpp"
 
@@ -23,9 +24,9 @@ void check_order(const FileStream& source) {
   const VectorXd& time_s = source.stream.time_s;
   for (Index k = 1; k < time_s.size(); ++k)
     if (!(time_s(k) > time_s(k - 1)))
-      throw DataError(fmt::format("{}:{}: column {}: {} after {}: time going backwards or repeated", source.file,
+      throw DataError(fmt::format("{}:{}: column {}: {} after {}: time going backwards or repeated{}", source.file,
                                   source.line[static_cast<std::size_t>(k)], source.time_column, source.time_text(k),
-                                  source.time_text(k - 1)));
+                                  source.time_text(k - 1), disorder_hint(source, k)));
 }
 
 /// Positions of the samples in order of time; of those that share a time the first in the file.
@@ -36,13 +37,6 @@ std::vector<Index> order_of(const VectorXd& time_s) {
   order.erase(std::unique(order.begin(), order.end(), [&](Index a, Index b) { return time_s(a) == time_s(b); }),
               order.end());
   return order;
-}
-
-void reorder(FileStream& source, const std::vector<Index>& order) {
-  source.stream = {source.stream.time_s(order), source.stream.values(Eigen::all, order)};
-  std::vector<std::uint64_t> line;
-  for (const Index k : order) line.push_back(source.line[static_cast<std::size_t>(k)]);
-  source.line = std::move(line);
 }
 
 void check_samples(const RunStreams& run, Index samples, const DataOptions& options, const InputClock& clock) {
@@ -57,6 +51,13 @@ void check_samples(const RunStreams& run, Index samples, const DataOptions& opti
 
 }  // namespace
 
+void take(FileStream& source, const std::vector<Index>& positions) {
+  source.stream = {source.stream.time_s(positions), source.stream.values(Eigen::all, positions)};
+  std::vector<std::uint64_t> line;
+  for (const Index k : positions) line.push_back(source.line[static_cast<std::size_t>(k)]);
+  source.line = std::move(line);
+}
+
 std::string FileStream::time_text(Index k) const {
   const double time_s = stream.time_s(k);
   if (origin_ns == 0 || std::isnan(time_s)) return fmt::format("{}", time_s);
@@ -65,7 +66,7 @@ std::string FileStream::time_text(Index k) const {
 
 void put_in_order(FileStream& source, Disorder disorder) {
   if (disorder == Disorder::error) return check_order(source);
-  reorder(source, order_of(source.stream.time_s));
+  take(source, order_of(source.stream.time_s));
 }
 
 void put_in_order(RunStreams& run, Disorder disorder) {
@@ -75,9 +76,9 @@ void put_in_order(RunStreams& run, Disorder disorder) {
     return;
   }
   const std::vector<Index> states = order_of(run.states.stream.time_s), inputs = order_of(run.inputs.stream.time_s);
-  reorder(run.states, states);
-  reorder(run.inputs, inputs);
-  for (std::vector<RunStreams::Companion>* columns : {&run.truth, &run.weight, &run.where})
+  take(run.states, states);
+  take(run.inputs, inputs);
+  for (std::vector<RunStreams::Companion>* columns : run.companions())
     for (RunStreams::Companion& column : *columns)
       column.values = VectorXd(column.values(column.with_states ? states : inputs));
 }

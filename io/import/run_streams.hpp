@@ -39,11 +39,17 @@ struct RunStreams {
   std::vector<Companion> truth;
   std::vector<Companion> weight;  ///< one, or none
   std::vector<Companion> where;   ///< one, or none: 1 where data.where is true, else 0
+
+  /// All of them.
+  std::vector<std::vector<Companion>*> companions() { return {&truth, &weight, &where}; }
 };
 
 /// Per sample of the joined run whether data.where is true there: of the states' samples on both sides, or of the
 /// inputs in force; empty without it.
 std::vector<bool> kept_samples(const RunStreams& run, const Trajectory& joined);
+
+/// Keeps the samples at these positions.
+void take(FileStream& source, const std::vector<Index>& positions);
 
 /// Both streams, and what is sampled with them.
 void put_in_order(RunStreams& run, Disorder disorder);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/files/input_file.hpp"
+#include "io/table/format_options.hpp"
 #include "io/table/time_unit.hpp"
 
 namespace modebank {
@@ -57,13 +58,6 @@ struct Table {
                                    ///< that many files say it once
 
   std::size_t rows() const { return line.size(); }
-};
-
-/// What users say about formats that say too little themselves; "auto": the reader finds out.
-struct FormatOptions {
-  std::string separator = "auto";  ///< of CSV: auto, comma, semicolon, tab or blank
-  std::string decimal = "auto";    ///< of CSV: auto, point or comma
-  std::string header = "auto";     ///< of CSV: auto, true or false
 };
 
 /// The one seam between files and runs: how a format tells its tables and gives their values. Everything behind it

@@ -1,3 +1,6 @@
+#include <cmath>
+#include <sstream>
+
 #include "app/config/option_builders.hpp"
 #include "app/config/options/sections.hpp"
 #include "io/import/derived.hpp"
@@ -53,6 +56,42 @@ void check_derived(const std::string& line) {
   }
 }
 
+/// none, blocks N, or last P %.
+Option split_option() {
+  Option result;
+  result.key = "data.split";
+  result.range = "none, blocks N (2 to 1000) or last P % (1 to 99)";
+  result.help =
+      "every run becomes runs of its own: N blocks, of which the 1st, 3rd, ... train and the others are held out, or "
+      "what "
+      "comes before and the last P %, held out; a window and its lags are dropped in between";
+  result.set = [](Config& config, const std::string& text) {
+    std::istringstream words(text);
+    std::string kind, rest;
+    double number = 0.0;
+    words >> kind;
+    SplitOptions& split = config.data.split;
+    if (kind == "none" && !(words >> rest)) return void(split = {});
+    if (!(words >> number) || (kind != "blocks" && kind != "last")) throw std::invalid_argument("is no way to split");
+    const bool percent = bool(words >> rest);
+    const bool blocks = kind == "blocks";
+    if (words >> rest || (percent && (blocks || rest != "%"))) throw std::invalid_argument("is no way to split");
+    if (blocks ? !(number >= 2 && number <= 1000 && number == std::floor(number)) : !(number >= 1 && number <= 99))
+      throw std::invalid_argument("is out of range");
+    split = {};
+    split.kind = blocks ? SplitKind::blocks : SplitKind::last;
+    split.last_percent = blocks ? 0.0 : number;
+    split.blocks = blocks ? static_cast<int>(number) : 0;
+  };
+  result.get = [](const Config& config) -> std::string {
+    const SplitOptions& split = config.data.split;
+    if (split.kind == SplitKind::none) return "none";
+    return split.kind == SplitKind::blocks ? fmt::format("blocks {}", split.blocks)
+                                           : fmt::format("last {:g} %", split.last_percent);
+  };
+  return result;
+}
+
 }  // namespace
 
 std::vector<Option> data_options() {
@@ -65,12 +104,11 @@ std::vector<Option> data_options() {
            "the runs' states files; empty: states are columns of the inputs files", MODEBANK_FIELD(data.states)),
       text("data.state", "column names", "measured states", MODEBANK_FIELD(data.state)),
       text("data.input", "column names", "inputs", MODEBANK_FIELD(data.input)),
-      lines(
-          "data.derive", "NAME [unit] = EXPRESSION",
-          "a channel computed of others: + - * / ^, comparisons, && ||, A ? B : C, sin ... atan2 sqrt abs min max, "
-          "diff (per second), unwrap, yaw(x, y, z, w), rotate_x, _y, _z(roll, pitch, yaw, x, y, z); names that are "
-          "no identifiers in 'single quotes'",
-          check_derived, MODEBANK_FIELD(data.derive)),
+      lines("data.derive", "NAME [unit] = EXPRESSION",
+            "a channel computed of others: + - * / ^, comparisons, && ||, A ? B : C, sin ... atan2 sqrt abs min max, "
+            "diff (per second), unwrap, yaw(x, y, z, w), rotate_x, _y, _z(roll, pitch, yaw, x, y, z); names that are "
+            "no identifiers in 'single quotes'",
+            check_derived, MODEBANK_FIELD(data.derive)),
       text("data.where", "an expression",
            "samples at which it is false or missing are left out: a gap that splits the run; empty: none",
            MODEBANK_FIELD(data.where)),
@@ -82,7 +120,22 @@ std::vector<Option> data_options() {
       text("data.state_unit", "units", "one per state, or one for all; written to the archive and the plots",
            MODEBANK_FIELD(data.state_unit)),
       text("data.input_unit", "units", "one per input, or one for all", MODEBANK_FIELD(data.input_unit)),
-      text("data.time", "a column name", "time in seconds", MODEBANK_FIELD(data.time)),
+      text(
+          "data.time", "one column name, or those of seconds and nanoseconds",
+          "times: numbers or ISO 8601. Of a recording: time is the header's stamp or, where there is none, when it was "
+          "received; receive_time the latter. Empty: row k is at k / rate_hz",
+          MODEBANK_FIELD(data.time)),
+      words("data.time_unit",
+            "what times count; auto: as their name, their size or how far apart they are shows, else seconds",
+            MODEBANK_FIELD(data.time_unit)),
+      words("data.separator", "what is between the fields of text files; auto: what their first rows show",
+            MODEBANK_FIELD(data.format.separator)),
+      words("data.decimal", "the decimal mark of text files; auto: as their first rows show",
+            MODEBANK_FIELD(data.format.decimal)),
+      words("data.header",
+            "whether text files' first row names the columns; if not they are c1, c2, ...; auto: whether it holds "
+            "numbers",
+            MODEBANK_FIELD(data.format.header)),
       words("data.join", "how states join the inputs: interpolated at the inputs' times, or row by row",
             MODEBANK_FIELD(data.join)),
       text("data.run", "a column name", "column whose value separates runs inside one file; empty: one run per file",
@@ -101,6 +154,7 @@ std::vector<Option> data_options() {
       words("data.disorder",
             "time going backwards or repeated: an error, or sort the rows and keep the first of each time",
             MODEBANK_FIELD(data.disorder)),
+      split_option(),
       text("data.train", "run names", "training runs; empty: positions 0, 2, 4, ... in name order",
            MODEBANK_FIELD(data.train)),
       text("data.test", "run names", "held-out runs; empty: all that do not train", MODEBANK_FIELD(data.test)),

@@ -1,0 +1,169 @@
+#include "io/import/csv_dialect.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "io/import/csv_text.hpp"
+#include "io/table/number.hpp"
+#include "io/table/stamp.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Fields = std::vector<std::string>;
+
+constexpr std::size_t looked_at = 30;  // rows
+
+char delimiter_of(Separator separator) {
+  switch (separator) {
+    case Separator::semicolon:
+      return ';';
+    case Separator::tab:
+      return '\t';
+    case Separator::pipe:
+      return '|';
+    case Separator::blank:
+      return ' ';
+    default:
+      return ',';
+  }
+}
+
+bool is_number(const std::string& field) { return parse_number(field).status == NumberStatus::ok; }
+
+/// 1,5 and -0,25e3, which no point makes clear.
+bool is_comma_number(const std::string& field) {
+  return std::count(field.begin(), field.end(), ',') == 1 && field.find('.') == std::string::npos &&
+         is_number(with_decimal_point(field));
+}
+
+bool is_value(const std::string& field) {
+  return !field.empty() && (is_number(field) || is_comma_number(field) || parse_iso_time(field) ||
+                            parse_number(field).status == NumberStatus::missing);
+}
+
+std::vector<Fields> split(const std::vector<TextRecord>& records, Separator separator) {
+  std::vector<Fields> rows;
+  for (const TextRecord& record : records) rows.push_back(fields_of(record.text, delimiter_of(separator)));
+  return rows;
+}
+
+/// How well a separator explains the rows: the share that has the commonest width, and of values among their fields.
+double score(const std::vector<Fields>& rows) {
+  std::map<std::size_t, std::size_t> widths;
+  for (const Fields& row : rows) ++widths[row.size()];
+  const auto common =
+      std::max_element(widths.begin(), widths.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (common == widths.end() || common->first < 2) return 0.0;
+  std::size_t values = 0, fields = 0;
+  for (const Fields& row : rows)
+    for (const std::string& field : row) {
+      ++fields;
+      values += is_value(field) ? 1 : 0;
+    }
+  return static_cast<double>(common->second) / static_cast<double>(rows.size()) +
+         static_cast<double>(values) / static_cast<double>(fields);
+}
+
+Separator find_separator(const std::vector<TextRecord>& records) {
+  Separator best = Separator::comma;
+  double best_score = 0.0;
+  for (const Separator candidate :
+       {Separator::comma, Separator::semicolon, Separator::tab, Separator::pipe, Separator::blank})
+    if (const double found = score(split(records, candidate)); found > best_score) {
+      best = candidate;
+      best_score = found;
+    }
+  return best;
+}
+
+bool has_decimal_commas(const std::vector<Fields>& rows) {
+  bool commas = false;
+  for (const Fields& row : rows)
+    for (const std::string& field : row) {
+      commas = commas || is_comma_number(field);
+      if (field.find('.') != std::string::npos && is_number(field)) return false;
+    }
+  return commas;
+}
+
+bool any_value(const Fields& row) { return std::any_of(row.begin(), row.end(), is_value); }
+
+/// Whether the first row is one like the second: values where that has values, and at least one.
+bool is_headless(const std::vector<Fields>& rows) {
+  if (rows.empty() || !any_value(rows[0])) return false;
+  if (rows.size() < 2) return true;
+  for (std::size_t i = 0; i < std::min(rows[0].size(), rows[1].size()); ++i)
+    if (is_value(rows[0][i]) != is_value(rows[1][i]) && !rows[0][i].empty() && !rows[1][i].empty()) return false;
+  return true;
+}
+
+bool has_units_row(const std::vector<Fields>& rows) {
+  return rows.size() > 2 && rows[1].size() == rows[0].size() && !any_value(rows[0]) && !any_value(rows[1]) &&
+         any_value(rows[2]);
+}
+
+/// Names in the last comment before the rows, as numpy.savetxt writes them; none if it has another number of fields.
+Fields commented_names(const std::vector<TextRecord>& records, Separator separator, std::size_t width) {
+  std::string_view last;
+  for (const TextRecord& record : records) {
+    if (!is_comment(record.text)) break;
+    last = record.text;
+  }
+  while (!last.empty() && (is_comment(last) || last.front() == ' ')) last.remove_prefix(1);
+  Fields names = fields_of(last, delimiter_of(separator));
+  return names.size() == width && !last.empty() ? names : Fields();
+}
+
+}  // namespace
+
+char CsvDialect::delimiter() const { return separator == Separator::blank ? blank_separator : delimiter_of(separator); }
+
+std::string with_decimal_point(std::string_view number) {
+  std::string text(number);
+  std::replace(text.begin(), text.end(), ',', '.');
+  return text;
+}
+
+CsvDialect find_dialect(std::string_view text, bool complete, const FormatOptions& options) {
+  const std::vector<TextRecord> all = first_records(text, complete, looked_at);
+  std::vector<TextRecord> records;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(records),
+               [](const TextRecord& record) { return !is_comment(record.text); });
+  CsvDialect dialect;
+  dialect.comments = records.size() < all.size();
+  dialect.separator = options.separator == Separator::automatic ? find_separator(records) : options.separator;
+  const std::vector<Fields> rows = split(records, dialect.separator);
+  dialect.decimal_comma =
+      options.decimal == DecimalMark::comma ||
+      (options.decimal == DecimalMark::automatic && dialect.separator != Separator::comma && has_decimal_commas(rows));
+  const bool headless =
+      options.header == HeaderRow::no || (options.header == HeaderRow::automatic && is_headless(rows));
+  std::vector<std::string> said;
+  if (dialect.separator != Separator::comma)
+    said.push_back(fmt::format("separated by {}s", name_of(dialect.separator)));
+  if (dialect.decimal_comma) said.emplace_back("with decimal commas");
+  if (headless) {
+    dialect.header_rows = 0;
+    const std::size_t width = rows.empty() ? 0 : rows[0].size();
+    dialect.names = commented_names(all, dialect.separator, width);
+    if (!dialect.names.empty()) said.emplace_back("with the columns' names in a comment");
+    for (std::size_t i = dialect.names.size(); i < width; ++i) dialect.names.push_back(fmt::format("c{}", i + 1));
+    if (said.empty() || said.back().find("names") == std::string::npos)
+      said.push_back(fmt::format("without a header: columns c1 to c{}", width));
+  } else if (has_units_row(rows)) {
+    dialect.header_rows = 2;
+    said.emplace_back("with units in the second row");
+  }
+  if (!said.empty())
+    dialect.note = fmt::format("text files are read as {} (data.separator, data.decimal and data.header say otherwise)",
+                               fmt::join(said, ", "));
+  return dialect;
+}
+
+}  // namespace modebank

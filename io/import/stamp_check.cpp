@@ -1,0 +1,84 @@
+#include "io/import/stamp_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace modebank {
+
+namespace {
+
+/// Smallest to largest of stamps, from either end up to a position.
+std::vector<double> spans(const std::vector<double>& times, bool from_the_end) {
+  std::vector<double> result(times.size());
+  double least = 0.0, largest = 0.0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const std::size_t k = from_the_end ? times.size() - 1 - i : i;
+    least = i == 0 ? times[k] : std::min(least, times[k]);
+    largest = i == 0 ? times[k] : std::max(largest, times[k]);
+    result[k] = largest - least;
+  }
+  return result;
+}
+
+double median_step(const std::vector<double>& times) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < times.size(); ++k)
+    if (times[k] > times[k - 1]) steps.push_back(times[k] - times[k - 1]);
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+/// header.stamp.secs -> header.stamp.nsecs, stamp.sec -> stamp.nanosec (ROS 2).
+std::string nanoseconds_beside(const std::string& seconds) {
+  const auto ends = [&](std::string_view word) { return seconds.ends_with(word); };
+  if (ends("secs")) return seconds.substr(0, seconds.size() - 4) + "nsecs";
+  if (ends("sec")) return seconds.substr(0, seconds.size() - 3) + "nanosec";
+  return "NANOSECONDS";
+}
+
+}  // namespace
+
+std::optional<std::size_t> stamp_far_out(const std::vector<std::int64_t>& stamps_ns) {
+  constexpr double far = 1e3, far_in_spans = 1e5;
+  constexpr std::size_t fewest = 4;
+  const std::size_t N = stamps_ns.size();
+  if (N < fewest) return std::nullopt;
+  const std::vector<double> times(stamps_ns.begin(), stamps_ns.end());  // to 256 ns, which is no matter here
+  const std::vector<double> before = spans(times, false), after = spans(times, true);
+  const double period = median_step(times);
+  const auto apart = [&](std::size_t a, std::size_t b) { return std::abs(times[a] - times[b]); };
+  if (apart(0, 1) > far * std::max(after[1], period)) return 0;
+  for (std::size_t k = 1; k + 1 < N; ++k)
+    if (std::min(apart(k, k - 1), apart(k, k + 1)) > far * std::max(apart(k - 1, k + 1), period)) return k;
+  if (apart(N - 1, N - 2) > far * std::max(before[N - 2], period)) return N - 1;
+  for (std::size_t k = 1; k < N; ++k)
+    if (apart(k, k - 1) > far_in_spans * std::max({before[k - 1], after[k], period})) return k;
+  return std::nullopt;
+}
+
+std::string disorder_hint(const FileStream& source, Index k) {
+  const Eigen::VectorXd& time_s = source.stream.time_s;
+  const Index N = time_s.size();
+  constexpr Index fewest = 3;
+  if (k < fewest) return {};
+  if (source.time_column.ends_with(".header.stamp") && time_s(k) == time_s(k - 1))
+    return " (data.time = receive_time takes the recorder's times)";
+  Index repeats = 0;
+  for (Index i = 1; i < N; ++i) repeats += time_s(i) == time_s(i - 1) ? 1 : 0;
+  const bool whole = (time_s.array() == time_s.array().round()).all();
+  if (whole && 2 * repeats > N)
+    return fmt::format(" (seconds without their nanoseconds? data.time = {}, {})", source.time_column,
+                       nanoseconds_beside(source.time_column));
+  const double span = time_s(k - 1) - time_s(0);
+  constexpr double near_start = 0.02;
+  if (span > 0.0 && std::abs(time_s(k) - time_s(0)) <= near_start * span)
+    return fmt::format(" ({} s back, to where it started: several runs in one file? data.run = COLUMN names them)",
+                       time_s(k - 1) - time_s(k));
+  return {};
+}
+
+}  // namespace modebank

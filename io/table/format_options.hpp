@@ -1,0 +1,37 @@
+#pragma once
+
+#include "modebank/base/names.hpp"
+
+namespace modebank {
+
+/// What is between the fields of a row. blank: any number of blanks and tabs.
+enum class Separator { automatic, comma, semicolon, tab, pipe, blank };
+
+template <>
+struct EnumNames<Separator> {
+  static constexpr Names<6> values{"auto", "comma", "semicolon", "tab", "pipe", "blank"};
+};
+
+enum class DecimalMark { automatic, point, comma };
+
+template <>
+struct EnumNames<DecimalMark> {
+  static constexpr Names<3> values{"auto", "point", "comma"};
+};
+
+/// Whether the first row names the columns; without, they are c1, c2, ...
+enum class HeaderRow { automatic, yes, no };
+
+template <>
+struct EnumNames<HeaderRow> {
+  static constexpr Names<3> values{"auto", "true", "false"};
+};
+
+/// What users say about text files, which say too little themselves; automatic: it is found out.
+struct FormatOptions {
+  Separator separator = Separator::automatic;
+  DecimalMark decimal = DecimalMark::automatic;
+  HeaderRow header = HeaderRow::automatic;
+};
+
+}  // namespace modebank
