@@ -2,12 +2,25 @@
 
 #include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
 InputFile describe_file(const std::filesystem::path& path) {
-  const std::string content = read_file(path);
-  return {std::filesystem::absolute(path).string(), content.size(), sha256_hex(content)};
+  constexpr std::size_t block_bytes = 1 << 18;
+  std::ifstream stream = open_file(path);
+  stream.rdbuf()->pubsetbuf(nullptr, 0);
+  std::vector<char> block(block_bytes);
+  InputFile file{std::filesystem::absolute(path).string(), 0, {}};
+  Sha256 hash;
+  while (stream) {
+    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+    hash.update(block.data(), static_cast<std::size_t>(stream.gcount()));
+    file.bytes += static_cast<std::uint64_t>(stream.gcount());
+  }
+  if (stream.bad()) throw ConfigurationError("cannot read " + path.string());
+  file.sha256 = hash.hex();
+  return file;
 }
 
 std::string data_hash(const std::vector<InputFile>& files) {

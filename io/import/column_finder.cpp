@@ -85,6 +85,8 @@ void ColumnFinder::fail(const std::string& column, const std::vector<std::size_t
   Texts all;
   std::string each;
   for (const std::size_t file : files) {
+    if (const std::string why = plan_.readers[file]->why_without(column); !why.empty())
+      throw ConfigurationError(fmt::format("{} has no column \"{}\": {}", names_[file], column, why));
     each += fmt::format("; {} has {}", names_[file], listing(tables_[file]));
     for (const TableInfo& table : tables_[file])
       for (const ColumnInfo& known : table.columns) all.push_back(known.name);

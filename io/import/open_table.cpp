@@ -9,6 +9,7 @@
 #include "io/arrays/array_reader.hpp"
 #include "io/files/read_file.hpp"
 #include "io/import/csv.hpp"
+#include "io/recording/recording_reader.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -32,6 +33,10 @@ constexpr std::array formats{
            [](const Path& path, const FormatOptions&) { return open_hdf5_tables(path); }},
     Format{[](const Path& path, std::string_view first) { return is_mat(path, first); },
            [](const Path& path, const FormatOptions&) { return open_mat_tables(path); }},
+    Format{is_ros_log,
+           [](const Path& path, const FormatOptions& options) -> std::shared_ptr<const TableReader> {
+             return std::make_shared<RecordingReader>(path, options.definitions);
+           }},
     Format{[](const Path&, std::string_view) { return true; },
            [](const Path& path, const FormatOptions& options) -> std::shared_ptr<const TableReader> {
              return std::make_shared<CsvReader>(path, options);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "modebank/base/names.hpp"
 
 namespace modebank {
@@ -32,6 +34,7 @@ struct FormatOptions {
   Separator separator = Separator::automatic;
   DecimalMark decimal = DecimalMark::automatic;
   HeaderRow header = HeaderRow::automatic;
+  std::string definitions;  ///< folder of .msg files, of recordings whose types nobody else defines; empty: none
 };
 
 }  // namespace modebank

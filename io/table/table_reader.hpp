@@ -74,6 +74,9 @@ class TableReader {
   /// column_position does, and DataError, naming file, line and column, for text where a number is wanted, a missing
   /// value (empty, NaN or infinite) in a column that may not miss any and a malformed row.
   virtual std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const = 0;
+
+  /// Why a column that a user may expect is not there; empty when there is nothing to say.
+  virtual std::string why_without(const std::string& /*column*/) const { return {}; }
 };
 
 std::vector<std::string> column_names(const TableInfo& table);

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "io/recording/connections.hpp"
+
+namespace modebank {
+
+/// Opens a ROS 1 bag (format 2.0). Throws DataError for what is no such bag, is encrypted or holds nothing whole.
+std::unique_ptr<Container> open_bag(const std::filesystem::path& path);
+
+}  // namespace modebank

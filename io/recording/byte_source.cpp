@@ -1,0 +1,75 @@
+#include "io/recording/byte_source.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& path, int error) {
+  throw ConfigurationError("cannot read " + path.string() + ": " +
+                           std::error_code(error, std::generic_category()).message());
+}
+
+constexpr std::size_t window_bytes = 1 << 16;  // of a file of images a sixteenth is read
+
+}  // namespace
+
+FileBytes::FileBytes(std::filesystem::path path) : path_(std::move(path)) { open(); }
+
+FileBytes::~FileBytes() { close(); }
+
+void FileBytes::open() {
+  if (file_ >= 0) return;
+  file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file_ < 0) fail(path_, errno);
+  struct stat status {};
+  int error = fstat(file_, &status) == 0 ? 0 : errno;
+  if (error == 0 && S_ISDIR(status.st_mode)) error = EISDIR;
+  if (error != 0) {
+    close();
+    fail(path_, error);
+  }
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+void FileBytes::close() {
+  if (file_ >= 0) ::close(file_);
+  file_ = -1;
+  window_bytes_ = 0;
+  window_ = {};
+}
+
+std::size_t FileBytes::read(std::uint64_t at, std::size_t bytes, char* to) const {
+  std::size_t done = 0;
+  while (done < bytes) {
+    const ssize_t got = ::pread(file_, to + done, bytes - done, static_cast<off_t>(at + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw Damage(at + done, std::error_code(errno, std::generic_category()).message());
+    if (got == 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  return done;
+}
+
+std::string_view FileBytes::viewed(std::uint64_t at, std::size_t bytes) {
+  if (at < window_at_ || at + bytes > window_at_ + window_bytes_) {
+    const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(std::max(bytes, window_bytes), size_ - at));
+    window_bytes_ = 0;
+    if (window_.size() < wanted) window_.resize(wanted);
+    window_at_ = at;
+    window_bytes_ = read(at, wanted, window_.data());
+    if (window_bytes_ < bytes) throw Damage(at, "it became shorter while it was read");
+  }
+  return {window_.data() + (at - window_at_), bytes};
+}
+
+}  // namespace modebank

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace modebank {
+
+/// Where a recording stops making sense: what is before `at` can be used.
+struct Damage : std::runtime_error {
+  Damage(std::uint64_t at_byte, const std::string& what) : std::runtime_error(what), at(at_byte) {}
+  std::uint64_t at = 0;
+};
+
+/// The little-endian number at the front of `bytes`, which has at least sizeof(T) of them.
+template <class T>
+T little_endian(std::string_view bytes) {
+  static_assert(std::is_unsigned_v<T>);
+  T value = 0;
+  for (std::size_t i = sizeof(T); i-- > 0;)
+    value = static_cast<T>(static_cast<T>(value << (sizeof(T) > 1 ? 8 : 0)) | static_cast<unsigned char>(bytes[i]));
+  return value;
+}
+
+/// Bytes that are looked at piece by piece: a file, or a chunk in memory.
+class ByteSource {
+ public:
+  virtual ~ByteSource() = default;
+  virtual std::uint64_t size() const = 0;
+  /// The bytes from `at`, valid until the next call. Throws Damage when they end before.
+  std::string_view view(std::uint64_t at, std::uint64_t bytes) {
+    if (at > size() || bytes > size() - at) throw Damage(at, "it ends within a record");
+    return viewed(at, static_cast<std::size_t>(bytes));
+  }
+
+ private:
+  virtual std::string_view viewed(std::uint64_t at, std::size_t bytes) = 0;
+};
+
+class MemoryBytes : public ByteSource {
+ public:
+  explicit MemoryBytes(std::string_view bytes) : bytes_(bytes) {}
+  std::uint64_t size() const override { return bytes_.size(); }
+
+ private:
+  std::string_view viewed(std::uint64_t at, std::size_t bytes) override { return bytes_.substr(at, bytes); }
+  std::string_view bytes_;
+};
+
+/// A file behind a window: what is skipped is not read.
+class FileBytes : public ByteSource {
+ public:
+  /// Opens it. Throws ConfigurationError, naming path and reason, when the file cannot be read.
+  explicit FileBytes(std::filesystem::path path);
+  ~FileBytes() override;
+  FileBytes(const FileBytes&) = delete;
+  FileBytes& operator=(const FileBytes&) = delete;
+
+  std::uint64_t size() const override { return size_; }
+  /// Closes the file until `open`: a pattern may name thousands.
+  void close();
+  void open();
+  /// Copies bytes without touching the window (threads may do so at once); those that are there.
+  std::size_t read(std::uint64_t at, std::size_t bytes, char* to) const;
+
+ private:
+  std::string_view viewed(std::uint64_t at, std::size_t bytes) override;
+
+  std::filesystem::path path_;
+  int file_ = -1;
+  std::uint64_t size_ = 0;
+  std::uint64_t window_at_ = 0;
+  std::size_t window_bytes_ = 0;
+  std::vector<char> window_;
+};
+
+/// Reads a record's content field by field.
+class FieldReader {
+ public:
+  /// `at`: where the bytes are, for messages.
+  explicit FieldReader(std::string_view bytes, std::uint64_t at = 0) : bytes_(bytes), at_(at) {}
+
+  bool done() const { return bytes_.empty(); }
+  std::string_view take(std::uint64_t bytes) {
+    if (bytes > bytes_.size()) throw Damage(at_, "a record's field is longer than the record");
+    const std::string_view taken = bytes_.substr(0, static_cast<std::size_t>(bytes));
+    bytes_.remove_prefix(taken.size());
+    at_ += taken.size();
+    return taken;
+  }
+  template <class T>
+  T number() {
+    return little_endian<T>(take(sizeof(T)));
+  }
+  /// Text after its length in four bytes.
+  std::string_view text() { return take(number<std::uint32_t>()); }
+
+ private:
+  std::string_view bytes_;
+  std::uint64_t at_ = 0;
+};
+
+}  // namespace modebank

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace modebank {
+
+/// One stream of messages in a recording; several may have one topic.
+struct Connection {
+  std::string topic;
+  std::string type;
+  enum class Encoding { ros1, cdr, unknown };
+  Encoding encoding = Encoding::unknown;
+  std::string encoding_name;    ///< as the recording calls it
+  std::string definition;       ///< text, or empty
+  std::string definition_form;  ///< "ros1msg", "ros2msg", or what else the recording says of it
+  std::uint64_t messages = 0;
+};
+
+struct RecordedMessage {
+  std::size_t connection = 0;
+  std::int64_t receive_ns = 0;
+  std::string_view payload;  ///< valid during the call
+};
+
+using MessageSink = std::function<void(const RecordedMessage&)>;
+
+/// A file of messages, whatever its form. What is damaged is given up to the damage.
+class Container {
+ public:
+  virtual ~Container() = default;
+
+  const std::vector<Connection>& connections() const { return connections_; }
+  /// What was found on opening that a user should know: damage, a missing index.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+  /// All messages of the wanted connections, in the file's order. Returns what stopped it early, or nothing.
+  virtual std::string visit(const std::vector<bool>& wanted, const MessageSink& sink) = 0;
+  /// At least the first and the last message of every connection, in the file's order.
+  virtual std::string sample(const MessageSink& sink) = 0;
+  /// Lets go of the file until the next visit.
+  virtual void close() = 0;
+
+ protected:
+  std::vector<Connection> connections_;
+  std::vector<std::string> notes_;
+};
+
+/// No message and no definition is larger: what says so is damaged.
+inline constexpr std::uint64_t most_message_bytes = std::uint64_t{256} << 20;
+inline constexpr std::uint64_t most_definition_bytes = std::uint64_t{1} << 20;
+/// No chunk holds more, packed or not.
+inline constexpr std::uint64_t most_chunk_bytes = std::uint64_t{256} << 20;
+inline constexpr std::size_t most_connections = 65536;
+
+}  // namespace modebank

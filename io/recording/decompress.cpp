@@ -1,0 +1,149 @@
+#include "io/recording/decompress.hpp"
+
+#include <bzlib.h>
+#include <fmt/format.h>
+#include <lz4frame.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <new>
+
+namespace modebank {
+
+namespace {
+
+/// One call's part in a stream: how far it got, and whether that was the end.
+struct Step {
+  std::size_t taken = 0, made = 0;
+  bool ended = false;
+  std::string failure;
+};
+
+class Bz2Stream {
+ public:
+  Bz2Stream() {
+    if (BZ2_bzDecompressInit(&stream_, 0, 0) != BZ_OK) throw std::bad_alloc();
+  }
+  ~Bz2Stream() { BZ2_bzDecompressEnd(&stream_); }
+  Bz2Stream(const Bz2Stream&) = delete;
+  Bz2Stream& operator=(const Bz2Stream&) = delete;
+
+  Step step(std::string_view packed, char* to, std::size_t room) {
+    constexpr std::size_t most = std::numeric_limits<unsigned>::max();
+    stream_.next_in = const_cast<char*>(packed.data());  // NOLINT: the library's interface is older than const
+    stream_.avail_in = static_cast<unsigned>(std::min(packed.size(), most));
+    stream_.next_out = to;
+    stream_.avail_out = static_cast<unsigned>(std::min(room, most));
+    const unsigned given = stream_.avail_in, offered = stream_.avail_out;
+    const int status = BZ2_bzDecompress(&stream_);
+    Step step{given - stream_.avail_in, offered - stream_.avail_out, status == BZ_STREAM_END, {}};
+    if (status == BZ_MEM_ERROR) throw std::bad_alloc();
+    if (status != BZ_OK && status != BZ_STREAM_END) step.failure = fmt::format("bzip2 error {}", status);
+    return step;
+  }
+
+ private:
+  bz_stream stream_{};
+};
+
+class Lz4Stream {
+ public:
+  Lz4Stream() {
+    if (LZ4F_isError(LZ4F_createDecompressionContext(&context_, LZ4F_VERSION))) throw std::bad_alloc();
+  }
+  ~Lz4Stream() { LZ4F_freeDecompressionContext(context_); }
+  Lz4Stream(const Lz4Stream&) = delete;
+  Lz4Stream& operator=(const Lz4Stream&) = delete;
+
+  Step step(std::string_view packed, char* to, std::size_t room) {
+    std::size_t taken = packed.size(), made = room;
+    const std::size_t status = LZ4F_decompress(context_, to, &made, packed.data(), &taken, nullptr);
+    if (LZ4F_isError(status)) return {0, 0, false, LZ4F_getErrorName(status)};
+    return {taken, made, status == 0, {}};
+  }
+
+ private:
+  LZ4F_dctx* context_ = nullptr;
+};
+
+class ZstdStream {
+ public:
+  ZstdStream() : context_(ZSTD_createDCtx()) {
+    if (context_ == nullptr) throw std::bad_alloc();
+  }
+  ~ZstdStream() { ZSTD_freeDCtx(context_); }
+  ZstdStream(const ZstdStream&) = delete;
+  ZstdStream& operator=(const ZstdStream&) = delete;
+
+  Step step(std::string_view packed, char* to, std::size_t room) {
+    ZSTD_inBuffer in{packed.data(), packed.size(), 0};
+    ZSTD_outBuffer out{to, room, 0};
+    const std::size_t status = ZSTD_decompressStream(context_, &out, &in);
+    if (ZSTD_isError(status)) return {in.pos, out.pos, false, ZSTD_getErrorName(status)};
+    return {in.pos, out.pos, status == 0, {}};
+  }
+
+ private:
+  ZSTD_DCtx* context_ = nullptr;
+};
+
+template <class Stream>
+Unpacked unpack_stream(std::string_view packed, std::size_t declared, Buffer& buffer) {
+  // Images shrink by less than this; more comes out in further rounds.
+  constexpr std::size_t usual_ratio = 8, least = 1 << 16;
+  Stream stream;
+  std::size_t made = 0;
+  std::size_t room = std::min(declared + 1, std::max({least, usual_ratio * packed.size(), buffer.capacity()}));
+  buffer.reserve(room, 0);
+  for (;;) {
+    const Step step = stream.step(packed, buffer.data() + made, room - made);
+    packed.remove_prefix(step.taken);
+    made += step.made;
+    const std::string_view bytes{buffer.data(), std::min(made, declared)};
+    if (made > declared) return {bytes, fmt::format("more comes out of it than the {} bytes it declares", declared)};
+    if (!step.failure.empty()) return {bytes, step.failure};
+    if (step.ended && packed.empty())
+      return {bytes,
+              made == declared ? "" : fmt::format("{} bytes come out of it, but it declares {}", made, declared)};
+    if (step.ended) return {bytes, "bytes follow what is compressed"};
+    if (made < room && step.taken == 0 && step.made == 0) return {bytes, "what is compressed is cut off"};
+    if (made == room) {
+      room = std::min(declared + 1, 2 * room);
+      buffer.reserve(room, made);
+    }
+  }
+}
+
+}  // namespace
+
+char* Buffer::reserve(std::size_t bytes, std::size_t kept) {
+  if (bytes <= capacity_) return data();
+  auto larger = std::make_unique_for_overwrite<char[]>(bytes);
+  if (kept > 0) std::memcpy(larger.get(), bytes_.get(), kept);
+  bytes_ = std::move(larger);
+  capacity_ = bytes;
+  return data();
+}
+
+Unpacked unpack(Compression compression, std::string_view packed, std::uint64_t declared, Buffer& buffer) {
+  const auto size = static_cast<std::size_t>(declared);
+  switch (compression) {
+    case Compression::bz2:
+      return unpack_stream<Bz2Stream>(packed, size, buffer);
+    case Compression::lz4:
+      return unpack_stream<Lz4Stream>(packed, size, buffer);
+    case Compression::zstd:
+      return unpack_stream<ZstdStream>(packed, size, buffer);
+    case Compression::none:
+      break;
+  }
+  return {packed, packed.size() == size ? "" : "its size is not the one it declares"};
+}
+
+std::uint64_t zstd_content_bytes(std::string_view packed) {
+  return ZSTD_getFrameContentSize(packed.data(), packed.size());  // its two errors are the largest numbers there are
+}
+
+}  // namespace modebank

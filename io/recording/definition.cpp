@@ -1,0 +1,197 @@
+#include "io/recording/definition.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <limits>
+#include <utility>
+
+namespace modebank {
+
+namespace {
+
+constexpr int deepest_nesting = 32;
+constexpr std::size_t most_fields = 4096;  // of one type
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r";
+  const std::size_t first = text.find_first_not_of(blanks);
+  return first == std::string_view::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// Takes the first line off, without its end.
+std::string_view next_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
+std::string_view next_word(std::string_view& text) {
+  text = trimmed(text);
+  const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
+  const std::string_view word = text.substr(0, end);
+  text = trimmed(text.substr(end));
+  return word;
+}
+
+bool is_identifier(std::string_view name) {
+  constexpr std::size_t longest = 256;
+  return !name.empty() && name.size() <= longest && std::all_of(name.begin(), name.end(), [](char c) {
+    return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  });
+}
+
+std::optional<Kind> primitive(std::string_view name, Dialect dialect) {
+  constexpr std::array<std::pair<std::string_view, Kind>, 14> common{{{"bool", Kind::boolean},
+                                                                      {"int8", Kind::int8},
+                                                                      {"uint8", Kind::uint8},
+                                                                      {"int16", Kind::int16},
+                                                                      {"uint16", Kind::uint16},
+                                                                      {"int32", Kind::int32},
+                                                                      {"uint32", Kind::uint32},
+                                                                      {"int64", Kind::int64},
+                                                                      {"uint64", Kind::uint64},
+                                                                      {"float32", Kind::float32},
+                                                                      {"float64", Kind::float64},
+                                                                      {"string", Kind::string},
+                                                                      {"wstring", Kind::wstring},
+                                                                      {"char", Kind::uint8}}};
+  for (const auto& [word, kind] : common)
+    if (word == name) return kind;
+  const bool ros1 = dialect == Dialect::ros1;
+  if (name == "byte") return ros1 ? Kind::int8 : Kind::uint8;
+  if (name == (ros1 ? "time" : "builtin_interfaces/Time")) return Kind::time;
+  if (name == (ros1 ? "duration" : "builtin_interfaces/Duration")) return Kind::duration;
+  return {};
+}
+
+std::uint64_t saturated_product(std::uint64_t a, std::uint64_t b) {
+  constexpr auto most = std::numeric_limits<std::uint64_t>::max() / 2;
+  return b != 0 && a > most / b ? most : a * b;
+}
+
+std::uint64_t least_bytes(const Field& field) {
+  if (field.many == Many::sequence) return 4;
+  const bool text = field.kind == Kind::string || field.kind == Kind::wstring;
+  const std::uint64_t one = field.kind == Kind::message ? field.type->least_bytes : text ? 4 : bytes_of(field.kind);
+  return saturated_product(one, field.count);
+}
+
+/// "T[3]", "T[]", "T[<=3]": cuts the brackets off.
+void parse_array(std::string_view& type, Field& field) {
+  const std::size_t open = type.find('[');
+  if (open == std::string_view::npos) return;
+  std::string_view count = type.substr(open + 1);
+  if (count.empty() || count.back() != ']') throw DefinitionError(fmt::format("\"{}\" is no type", type));
+  count.remove_suffix(1);
+  type = type.substr(0, open);
+  field.many = Many::sequence;
+  if (count.empty() || count.substr(0, 2) == "<=") return;
+  field.many = Many::fixed;
+  const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), field.count);
+  if (error != std::errc() || end != count.data() + count.size() || field.count > std::uint64_t{1} << 32)
+    throw DefinitionError(fmt::format("[{}] is no array's size", count));
+}
+
+/// What the type is called where definitions are looked up.
+std::string full_name(std::string_view type, const std::string& package, Dialect dialect) {
+  if (type.find('/') != std::string_view::npos) return short_type(type);
+  if (type == "Header" && dialect == Dialect::ros1) return "std_msgs/Header";
+  return fmt::format("{}/{}", package, type);
+}
+
+}  // namespace
+
+std::uint64_t bytes_of(Kind kind) {
+  constexpr std::array<std::uint8_t, 16> bytes{1, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8, 0, 0, 8, 8, 0};
+  return bytes[static_cast<std::size_t>(kind)];
+}
+
+std::string short_type(std::string_view type) {
+  const std::size_t first = type.find('/'), last = type.rfind('/');
+  if (first == last) return std::string(type);
+  return fmt::format("{}{}", type.substr(0, first), type.substr(last));
+}
+
+std::map<std::string, std::string_view> split_definitions(const std::string& root, std::string_view text) {
+  std::map<std::string, std::string_view> parts;
+  std::string name = root;
+  const char* begin = text.data();
+  const auto close = [&](const char* end) {
+    if (!name.empty()) parts.emplace(name, std::string_view(begin, static_cast<std::size_t>(end - begin)));
+  };
+  while (!text.empty()) {
+    const char* line_begin = text.data();
+    const std::string_view line = trimmed(next_line(text));
+    if (line.substr(0, 4) != "MSG:" && line.substr(0, 3) != "===") continue;
+    close(line_begin);
+    name = line.front() == '=' ? "" : short_type(trimmed(line.substr(4)));
+    begin = text.data();
+  }
+  close(text.data());
+  return parts;
+}
+
+Schema::Schema(const std::string& root, Dialect dialect, const Lookup& lookup) : dialect_(dialect) {
+  root_ = resolve(short_type(root), lookup, 0);
+}
+
+Field Schema::parse_field(std::string_view type, std::string_view name, const std::string& package,
+                          const Lookup& lookup, int depth) {
+  Field field;
+  field.name = name;
+  parse_array(type, field);
+  const std::size_t bound = type.find("<=");  // of a string's length
+  if (bound != std::string_view::npos) type = type.substr(0, bound);
+  if (const auto kind = primitive(type, dialect_)) {
+    field.kind = *kind;
+  } else {
+    const std::string full = full_name(type, package, dialect_);
+    // A message of ROS 2 that MCAP describes may name its own package's Time alone.
+    if (const auto known = primitive(full, dialect_))
+      field.kind = *known;
+    else
+      field.type = resolve(full, lookup, depth + 1);
+  }
+  has_wide_strings_ |= field.kind == Kind::wstring;
+  return field;
+}
+
+const MessageType* Schema::resolve(const std::string& type, const Lookup& lookup, int depth) {
+  if (depth > deepest_nesting)
+    throw DefinitionError(fmt::format("types are nested more than {} deep", deepest_nesting));
+  if (const auto known = types_.find(type); known != types_.end()) {
+    if (!known->second) throw DefinitionError(fmt::format("{} contains itself", type));
+    return known->second.get();
+  }
+  std::optional<std::string_view> text = lookup(type);
+  if (!text) throw DefinitionError(fmt::format("there is no definition of {}", type));
+  types_[type] = nullptr;
+  auto message = std::make_unique<MessageType>();
+  message->name = type;
+  const std::string package = type.substr(0, type.find('/'));
+  while (!text->empty()) {
+    std::string_view line = next_line(*text);
+    line = trimmed(line.substr(0, line.find('#')));
+    if (line.empty()) continue;
+    const std::string_view written = line, word = next_word(line);
+    const std::string_view name = line.substr(0, std::min(line.find_first_of(" \t="), line.size()));
+    if (!is_identifier(name)) throw DefinitionError(fmt::format("{}: \"{}\" is no field", type, written));
+    const std::string_view rest = trimmed(line.substr(name.size()));
+    if (!rest.empty() && rest.front() == '=') continue;  // a constant; what else follows a name is its default
+    if (message->fields.size() == most_fields)
+      throw DefinitionError(fmt::format("{} has more than {} fields", type, most_fields));
+    Field field = parse_field(word, name, package, lookup, depth);
+    const std::uint64_t bytes = least_bytes(field);
+    if (bytes == 0) continue;  // nothing of it is in a message: whoever walks through one need not stop here
+    message->fields.push_back(std::move(field));
+    message->least_bytes = std::min(message->least_bytes + bytes, std::numeric_limits<std::uint64_t>::max() / 2);
+  }
+  if (dialect_ == Dialect::ros2 && message->fields.empty()) message->least_bytes = 1;
+  return (types_[type] = std::move(message)).get();
+}
+
+}  // namespace modebank

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/recording/message_reader.hpp"
+#include "io/recording/ros_log.hpp"
+
+namespace modebank {
+
+/// Collects the rows of one requested topic, from all of its connections.
+class RowCollector {
+ public:
+  RowCollector(const LogTopic& topic, const LogRequest& request);
+
+  /// A way to read messages of a connection with this decoder; `take` names it by the number returned. Throws
+  /// DataError when there is no definition and ConfigurationError when it lacks a requested column.
+  std::size_t add_reader(const TopicDecoder& decoder);
+
+  /// Throws DataError for a message that its definition does not fit.
+  void take(std::size_t reader, const RecordedMessage& message, const std::string& file);
+
+  /// The rows in order of receive time.
+  LogRows finish(std::vector<std::string>& notes);
+
+ private:
+  struct Reader {
+    MessageReader messages;
+    std::vector<std::size_t> slots;  ///< per requested column
+  };
+
+  void append(LogColumn& column, const LogWant& want, const Value& value, const std::string& file);
+
+  const LogTopic& topic_;
+  const LogRequest& request_;
+  std::vector<Reader> readers_;
+  std::vector<Value> row_;
+  std::vector<std::int64_t> receive_ns_;
+  std::vector<std::size_t> rounded_;  ///< per requested column, values that a double does not hold
+  LogRows rows_;
+};
+
+}  // namespace modebank

@@ -1,0 +1,199 @@
+#include "io/recording/mcap.hpp"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include "io/recording/mcap_records.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::mcap {
+
+namespace {
+
+class Mcap : public PieceFile {
+ public:
+  explicit Mcap(const std::filesystem::path& path) : PieceFile(path) {
+    try {
+      if (file_.size() < magic.size() || file_.view(0, magic.size()) != magic)
+        throw DataError(fmt::format("{}: no MCAP file (it does not begin with \"\\x89MCAP0\")", path_.string()));
+      if (!try_summary()) scan();
+    } catch (const Damage& damage) {
+      throw DataError(damage_text(damage.at, damage.what()));
+    }
+  }
+
+ private:
+  RecordHead head_at(ByteSource& bytes, std::uint64_t at, std::uint64_t end) const override {
+    return read_head(bytes, at, end);
+  }
+
+  /// Schemas and channels, which stand before their first message and again in the summary.
+  void learn(const RecordHead& head, ByteSource& bytes) override {
+    constexpr std::uint64_t front_bytes = 9;
+    const Record record = read_record(bytes, head.payload_at - front_bytes, head.end);
+    if (record.op == Op::schema) {
+      const auto number = little_endian<std::uint16_t>(bytes.view(record.content_at, 2));
+      if (schemas_.count(number) == 0) schemas_.insert(read_schema(bytes, record));
+      return;
+    }
+    if (knows(little_endian<std::uint16_t>(bytes.view(record.content_at, 2)))) return;
+    const Channel channel = read_channel(bytes, record);
+    Connection connection;
+    connection.topic = channel.topic;
+    connection.encoding_name = channel.encoding;
+    if (channel.encoding == "cdr") connection.encoding = Connection::Encoding::cdr;
+    if (channel.encoding == "ros1") connection.encoding = Connection::Encoding::ros1;
+    if (const auto schema = schemas_.find(channel.schema); schema != schemas_.end()) {
+      connection.type = schema->second.name;
+      connection.definition = schema->second.text;
+      connection.definition_form = schema->second.encoding;
+    }
+    add_connection(channel.number, std::move(connection), record.at);
+  }
+
+  struct Footer {
+    std::uint64_t at = 0, summary_at = 0, summary_end = 0;
+    std::uint32_t crc = 0;
+  };
+
+  /// Where the summary is, by the footer at the end. Throws Damage when there is none.
+  Footer read_footer() {
+    constexpr std::uint64_t footer_bytes = 9 + 20;
+    if (file_.size() < footer_bytes + 2 * magic.size()) throw Damage(file_.size(), "it ends too soon");
+    Footer footer;
+    footer.at = file_.size() - magic.size() - footer_bytes;
+    if (file_.view(footer.at + footer_bytes, magic.size()) != magic)
+      throw Damage(footer.at, "it does not end as MCAP does");
+    const Record record = read_record(file_, footer.at, footer.at + footer_bytes);
+    if (record.op != Op::footer || record.content_bytes != 20) throw Damage(footer.at, "there is no footer");
+    FieldReader fields(file_.view(record.content_at, 20), record.content_at);
+    footer.summary_at = fields.number<std::uint64_t>();
+    const auto offsets_at = fields.number<std::uint64_t>();
+    footer.crc = fields.number<std::uint32_t>();
+    footer.summary_end = offsets_at == 0 ? footer.at : offsets_at;
+    if (footer.summary_at < magic.size() || footer.summary_at > footer.summary_end || footer.summary_end > footer.at)
+      throw Damage(footer.at, "there is no summary");
+    return footer;
+  }
+
+  void check_crc(const Footer& footer) {
+    if (footer.crc == 0) return;
+    constexpr std::uint64_t block_bytes = 1 << 16, crc_bytes = 4;
+    const std::uint64_t end = footer.at + 9 + 20 - crc_bytes;
+    uLong crc = 0;
+    for (std::uint64_t at = footer.summary_at; at < end; at += block_bytes) {
+      const std::string_view block = file_.view(at, std::min(block_bytes, end - at));
+      crc = crc32(crc, reinterpret_cast<const Bytef*>(block.data()), static_cast<uInt>(block.size()));
+    }
+    if (crc != footer.crc) throw Damage(footer.at, "the summary has another checksum");
+  }
+
+  /// The summary, where it tells of every message: all are in chunks, and each chunk's channels are indexed.
+  bool try_summary() {
+    try {
+      const Footer footer = read_footer();
+      check_crc(footer);
+      std::vector<Record> chunks;
+      std::optional<std::uint64_t> messages;
+      for (std::uint64_t at = footer.summary_at; at < footer.summary_end;) {
+        const Record record = read_record(file_, at, footer.summary_end);
+        if (record.op == Op::schema || record.op == Op::channel) learn(read_head(file_, at, record.end()), file_);
+        if (record.op == Op::chunk_index) chunks.push_back(record);
+        if (record.op == Op::statistics) messages = read_message_count(file_, record);
+        at = record.end();
+      }
+      std::uint64_t found = 0, least_at = 0;
+      for (const Record& record : chunks) least_at = add_chunk(read_chunk_index(file_, record), least_at, found);
+      if (messages == found) return true;
+    } catch (const Damage&) {
+    }
+    forget_all();
+    schemas_.clear();
+    return false;
+  }
+
+  /// Adds a chunk as its index entry has it; returns where it ends.
+  std::uint64_t add_chunk(const ChunkIndex& index, std::uint64_t least_at, std::uint64_t& found) {
+    if (index.chunk_at < least_at) throw Damage(index.chunk_at, "chunks are not in order");
+    if (index.chunk_at >= file_.size()) throw Damage(index.chunk_at, "a chunk is beyond the end");
+    const Record chunk = read_record(file_, index.chunk_at, file_.size());
+    if (chunk.op != Op::chunk || chunk.end() - chunk.at != index.chunk_bytes)
+      throw Damage(index.chunk_at, "there is no such chunk");
+    Piece piece = read_chunk(file_, chunk);
+    for (const auto& [channel, at] : index.message_indexes) {
+      if (at >= file_.size()) throw Damage(index.chunk_at, "a message index is beyond the end");
+      const Record record = read_record(file_, at, file_.size());
+      if (record.op != Op::message_index || record.content_bytes < 6) throw Damage(at, "there is no message index");
+      FieldReader fields(file_.view(record.content_at, 6), record.content_at);
+      const auto connection = fields.number<std::uint16_t>() == channel ? position(channel) : std::nullopt;
+      if (!connection) throw Damage(at, "there is another message index");
+      constexpr std::uint32_t entry_bytes = 16;
+      const std::uint64_t messages = fields.number<std::uint32_t>() / entry_bytes;
+      piece.messages[*connection] = messages;
+      connections_[*connection].messages += messages;
+      found += messages;
+    }
+    add_piece(std::move(piece));
+    return chunk.end();
+  }
+
+  /// Without a summary that tells everything every record is looked at.
+  void scan() {
+    std::uint64_t at = magic.size();
+    Piece loose;  // messages outside chunks
+    const auto close = [&] {
+      if (loose.end > loose.begin) add_piece(loose);
+      loose = {at, at, Compression::none, 0, 0, {}};
+    };
+    try {
+      bool ended = false;
+      close();
+      while (!ended && at < file_.size()) {
+        const Record record = read_record(file_, at, file_.size());
+        if (record.op == Op::chunk) {
+          close();
+          scan_piece(read_chunk(file_, record));
+          at = record.end();
+          close();
+          continue;
+        }
+        count(loose, read_head(file_, at, file_.size()), file_);
+        at = loose.end = record.end();
+        constexpr std::uint64_t stretch_bytes = 16 << 20;
+        if (loose.end - loose.begin > stretch_bytes) close();
+        ended = record.op == Op::data_end || record.op == Op::footer;
+      }
+      close();
+      if (!ended) throw Damage(file_.size(), "it ends before its data do (the recording was cut off)");
+    } catch (const Damage& damage) {
+      if (loose.end > loose.begin) add_piece(loose);
+      scan_cut_chunk(at);
+      if (connections_.empty()) throw;
+      note_damage(damage);
+    }
+    if (connections_.empty()) throw Damage(at, "no message and no channel is whole");
+  }
+
+  /// The chunk that the end of the file cuts off still holds whole messages.
+  void scan_cut_chunk(std::uint64_t at) try {
+    constexpr std::uint64_t front_bytes = 9;
+    if (at >= file_.size() || file_.size() - at < front_bytes) return;
+    const std::string_view front = file_.view(at, front_bytes);
+    const auto declared = little_endian<std::uint64_t>(front.substr(1));
+    if (static_cast<Op>(front[0]) != Op::chunk || declared <= file_.size() - at - front_bytes) return;
+    scan_piece(read_cut_chunk(file_, at + front_bytes));
+  } catch (const Damage&) {
+  }
+
+  std::map<std::uint16_t, Schema> schemas_;
+};
+
+}  // namespace
+
+}  // namespace modebank::mcap
+
+namespace modebank {
+
+std::unique_ptr<Container> open_mcap(const std::filesystem::path& path) { return std::make_unique<mcap::Mcap>(path); }
+
+}  // namespace modebank

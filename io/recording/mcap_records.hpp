@@ -1,0 +1,62 @@
+#pragma once
+
+#include "io/recording/pieces.hpp"
+
+namespace modebank::mcap {
+
+inline constexpr std::string_view magic{"\x89MCAP0\r\n", 8};
+
+enum class Op : std::uint8_t {
+  header = 0x01,
+  footer = 0x02,
+  schema = 0x03,
+  channel = 0x04,
+  message = 0x05,
+  chunk = 0x06,
+  message_index = 0x07,
+  chunk_index = 0x08,
+  statistics = 0x0b,
+  data_end = 0x0f
+};
+
+/// A record: what it is, its length in eight bytes, its content.
+struct Record {
+  Op op{};
+  std::uint64_t at = 0, content_at = 0, content_bytes = 0;
+  std::uint64_t end() const { return content_at + content_bytes; }
+};
+
+/// The record at `at`. Throws Damage when it does not end by `end`.
+Record read_record(ByteSource& bytes, std::uint64_t at, std::uint64_t end);
+
+RecordHead read_head(ByteSource& bytes, std::uint64_t at, std::uint64_t end);
+
+/// The content of a chunk, from the fields before it. Throws Damage for a compression that is not read and sizes that
+/// no chunk has.
+Piece read_chunk(ByteSource& bytes, const Record& record);
+
+/// The same of a chunk whose content the end of the file cuts off.
+Piece read_cut_chunk(ByteSource& bytes, std::uint64_t content_at);
+
+struct Schema {
+  std::string name, encoding, text;
+};
+
+struct Channel {
+  std::uint16_t number = 0, schema = 0;
+  std::string topic, encoding;
+};
+
+struct ChunkIndex {
+  std::uint64_t chunk_at = 0, chunk_bytes = 0;
+  std::map<std::uint16_t, std::uint64_t> message_indexes;  ///< where each channel's is
+};
+
+/// The number of a schema, and what it says.
+std::pair<std::uint16_t, Schema> read_schema(ByteSource& bytes, const Record& record);
+Channel read_channel(ByteSource& bytes, const Record& record);
+ChunkIndex read_chunk_index(ByteSource& bytes, const Record& record);
+/// Messages in the whole file, from its statistics.
+std::uint64_t read_message_count(ByteSource& bytes, const Record& record);
+
+}  // namespace modebank::mcap

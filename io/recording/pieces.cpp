@@ -1,0 +1,167 @@
+#include "io/recording/pieces.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <set>
+
+namespace modebank {
+
+bool PieceFile::add_connection(std::uint32_t number, Connection connection, std::uint64_t at) {
+  if (connections_.size() == most_connections)
+    throw Damage(at, fmt::format("it has more than {} connections", most_connections));
+  if (!by_number_.emplace(number, connections_.size()).second) return false;
+  connections_.push_back(std::move(connection));
+  return true;
+}
+
+std::optional<std::size_t> PieceFile::position(std::uint32_t number) const {
+  const auto found = by_number_.find(number);
+  return found == by_number_.end() ? std::nullopt : std::optional(found->second);
+}
+
+void PieceFile::forget_all() {
+  pieces_.clear();
+  connections_.clear();
+  by_number_.clear();
+}
+
+std::string PieceFile::damage_text(std::uint64_t at, const std::string& what) const {
+  return fmt::format("{}: damaged at byte {}: {}", path_.string(), at, what);
+}
+
+void PieceFile::note_damage(const Damage& damage) {
+  damage_noted_ = true;
+  note(damage_text(damage.at, damage.what()) + "; what is before that is read");
+}
+
+void PieceFile::walk(ByteSource& bytes, std::uint64_t begin, std::uint64_t end, const HeadSink& sink) const {
+  for (std::uint64_t at = begin; at < end;) {
+    const RecordHead head = head_at(bytes, at, end);
+    sink(head, bytes);
+    at = head.end;
+  }
+}
+
+void PieceFile::unpack_piece(const Piece& piece, Unpacking& unpacking) const {
+  const auto bytes = static_cast<std::size_t>(piece.end - piece.begin);
+  unpacking.packed.reserve(bytes, 0);
+  const std::size_t got = file_.read(piece.begin, bytes, unpacking.packed.data());
+  unpacking.result = unpack(piece.compression, {unpacking.packed.data(), got}, piece.unpacked_bytes, unpacking.content);
+  if (!unpacking.result.failure.empty() || piece.crc == 0) return;
+  const std::string_view content = unpacking.result.bytes;
+  const auto crc = crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()));
+  if (crc != piece.crc) unpacking.result = {{}, "its content has another checksum than it says"};
+}
+
+void PieceFile::walk_unpacked(const Piece& piece, const Unpacked& unpacked, const HeadSink& sink) const {
+  MemoryBytes memory(unpacked.bytes);
+  try {
+    walk(memory, 0, memory.size(), sink);
+  } catch (const Damage& damage) {
+    const std::string& why = unpacked.failure.empty() ? damage.what() : unpacked.failure;
+    throw Damage(piece.begin, fmt::format("{} (byte {} of what is unpacked from there)", why, damage.at));
+  }
+  if (!unpacked.failure.empty()) throw Damage(piece.begin, unpacked.failure);
+}
+
+void PieceFile::add_piece(Piece piece) {
+  constexpr std::size_t most_pieces = 1 << 20;
+  if (pieces_.size() == most_pieces) throw Damage(piece.begin, fmt::format("it has more than {} chunks", most_pieces));
+  pieces_.push_back(std::move(piece));
+}
+
+void PieceFile::count(Piece& piece, const RecordHead& head, ByteSource& bytes) {
+  if (head.kind == RecordHead::Kind::connection) learn(head, bytes);
+  if (head.kind != RecordHead::Kind::message) return;
+  const auto connection = position(head.connection);
+  if (!connection) throw Damage(head.payload_at, fmt::format("connection {} is not described", head.connection));
+  ++piece.messages[*connection];
+  ++connections_[*connection].messages;
+}
+
+void PieceFile::scan_piece(Piece piece) {
+  add_piece(std::move(piece));
+  Piece& added = pieces_.back();
+  const HeadSink sink = [&](const RecordHead& head, ByteSource& bytes) { count(added, head, bytes); };
+  if (added.compression == Compression::none) return walk(file_, added.begin, added.end, sink);
+  Unpacking unpacking;
+  unpack_piece(added, unpacking);
+  walk_unpacked(added, unpacking.result, sink);
+}
+
+std::string PieceFile::visit_pieces(const std::vector<const Piece*>& pieces, const HeadSink& sink) {
+  // Packed pieces are unpacked side by side as long as they fit; what comes out of them is looked at in order.
+  constexpr std::uint64_t batch_bytes = 16 << 20;
+  constexpr std::size_t batch_pieces = 8;
+  std::vector<Unpacking> unpackings(batch_pieces);
+  file_.open();
+  try {
+    for (std::size_t first = 0; first < pieces.size();) {
+      if (pieces[first]->compression == Compression::none) {
+        const Piece& piece = *pieces[first++];
+        walk(file_, piece.begin, piece.end, sink);
+        continue;
+      }
+      std::size_t count = 0;
+      for (std::uint64_t bytes = 0; first + count < pieces.size() && count < batch_pieces; ++count) {
+        const Piece& piece = *pieces[first + count];
+        bytes += piece.end - piece.begin + piece.unpacked_bytes;
+        if (piece.compression == Compression::none || (count > 0 && bytes > batch_bytes)) break;
+      }
+      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { unpack_piece(*pieces[first + i], unpackings[i]); });
+      for (std::size_t i = 0; i < count; ++i) walk_unpacked(*pieces[first + i], unpackings[i].result, sink);
+      first += count;
+    }
+  } catch (const Damage& damage) {
+    return damage_noted_ ? "" : damage_text(damage.at, damage.what());
+  }
+  return {};
+}
+
+PieceFile::HeadSink PieceFile::message_sink(const std::function<bool(std::size_t)>& wanted, const MessageSink& sink) {
+  return [this, wanted, sink](const RecordHead& head, ByteSource& bytes) {
+    if (head.kind != RecordHead::Kind::message) return;
+    const auto connection = position(head.connection);
+    if (!connection) throw Damage(head.payload_at, fmt::format("connection {} is not described", head.connection));
+    if (!wanted(*connection)) return;
+    if (head.payload_bytes > most_message_bytes)
+      throw Damage(head.payload_at,
+                   fmt::format("a message of {} bytes is larger than {}", head.payload_bytes, most_message_bytes));
+    sink({*connection, head.receive_ns, bytes.view(head.payload_at, head.payload_bytes)});
+  };
+}
+
+std::string PieceFile::visit(const std::vector<bool>& wanted, const MessageSink& sink) {
+  std::vector<const Piece*> pieces;
+  for (const Piece& piece : pieces_)
+    if (std::any_of(piece.messages.begin(), piece.messages.end(), [&](const auto& m) { return wanted[m.first]; }))
+      pieces.push_back(&piece);
+  return visit_pieces(pieces, message_sink([&](std::size_t connection) { return wanted[connection]; }, sink));
+}
+
+std::string PieceFile::sample(const MessageSink& sink) {
+  // Which pieces hold a connection's first and last message.
+  std::vector<std::size_t> first(connections_.size(), pieces_.size()), last(connections_.size(), pieces_.size());
+  for (std::size_t p = 0; p < pieces_.size(); ++p)
+    for (const auto& [connection, messages] : pieces_[p].messages) {
+      if (first[connection] == pieces_.size()) first[connection] = p;
+      last[connection] = p;
+    }
+  std::map<std::size_t, std::set<std::size_t>> connections;
+  for (std::size_t c = 0; c < connections_.size(); ++c) {
+    connections[first[c]].insert(c);
+    connections[last[c]].insert(c);
+  }
+  connections.erase(pieces_.size());
+  for (const auto& [piece, here] : connections) {
+    const auto wanted = [&, &chosen = here](std::size_t connection) { return chosen.count(connection) > 0; };
+    if (std::string failure = visit_pieces({&pieces_[piece]}, message_sink(wanted, sink)); !failure.empty())
+      return failure;
+  }
+  return {};
+}
+
+}  // namespace modebank

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <unordered_map>
+
+#include "io/recording/byte_source.hpp"
+#include "io/recording/connections.hpp"
+#include "io/recording/decompress.hpp"
+
+namespace modebank {
+
+/// A stretch of a file that holds records: a chunk, or records that stand outside chunks.
+struct Piece {
+  std::uint64_t begin = 0, end = 0;  ///< of the content, as it lies in the file
+  Compression compression = Compression::none;
+  std::uint64_t unpacked_bytes = 0;
+  std::uint32_t crc = 0;                          ///< of what is unpacked; 0: none
+  std::map<std::size_t, std::uint64_t> messages;  ///< by connection
+};
+
+/// One record of a piece.
+struct RecordHead {
+  enum class Kind { message, connection, other };
+  Kind kind = Kind::other;
+  std::uint32_t connection = 0;  ///< as the file numbers it
+  std::int64_t receive_ns = 0;
+  std::uint64_t payload_at = 0, payload_bytes = 0;  ///< of a message, or of a connection's description
+  std::uint64_t end = 0;
+};
+
+/// A bag or MCAP file: pieces of records, and an index that tells them where it is sound.
+class PieceFile : public Container {
+ public:
+  std::string visit(const std::vector<bool>& wanted, const MessageSink& sink) override;
+  std::string sample(const MessageSink& sink) override;
+  void close() override { file_.close(); }
+
+ protected:
+  explicit PieceFile(const std::filesystem::path& path) : path_(path), file_(path) {}
+
+  /// The record at `at`, at most to `end`. Throws Damage.
+  virtual RecordHead head_at(ByteSource& bytes, std::uint64_t at, std::uint64_t end) const = 0;
+  /// Takes in what a record of Kind::connection says; a connection that is known is not looked at again.
+  virtual void learn(const RecordHead& head, ByteSource& bytes) = 0;
+
+  /// Makes a connection known by the file's number; false: it was.
+  bool add_connection(std::uint32_t number, Connection connection, std::uint64_t at);
+  bool knows(std::uint32_t number) const { return by_number_.count(number) > 0; }
+  std::optional<std::size_t> position(std::uint32_t number) const;
+
+  /// Reads the piece to learn its connections and count its messages; adds it, as far as it is whole. Throws Damage
+  /// after that.
+  void scan_piece(Piece piece);
+  /// The same for one record of a piece that is being read.
+  void count(Piece& piece, const RecordHead& head, ByteSource& bytes);
+  /// Adds a piece whose messages are known. Throws Damage when there are too many.
+  void add_piece(Piece piece);
+  void forget_all();
+
+  void note(std::string text) { notes_.push_back(std::move(text)); }
+  /// Notes where the file stops making sense: whoever visits it stops there without saying so again.
+  void note_damage(const Damage& damage);
+  std::string damage_text(std::uint64_t at, const std::string& what) const;
+
+  std::filesystem::path path_;
+  FileBytes file_;
+
+ private:
+  using HeadSink = std::function<void(const RecordHead&, ByteSource&)>;
+  struct Unpacking {
+    Buffer packed, content;
+    Unpacked result;
+  };
+
+  void walk(ByteSource& bytes, std::uint64_t begin, std::uint64_t end, const HeadSink& sink) const;
+  void unpack_piece(const Piece& piece, Unpacking& unpacking) const;
+  void walk_unpacked(const Piece& piece, const Unpacked& unpacked, const HeadSink& sink) const;
+  std::string visit_pieces(const std::vector<const Piece*>& pieces, const HeadSink& sink);
+  HeadSink message_sink(const std::function<bool(std::size_t)>& wanted, const MessageSink& sink);
+
+  std::vector<Piece> pieces_;
+  bool damage_noted_ = false;
+  std::unordered_map<std::uint32_t, std::size_t> by_number_;
+};
+
+}  // namespace modebank

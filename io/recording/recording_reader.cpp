@@ -1,0 +1,140 @@
+#include "io/recording/recording_reader.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "io/table/stamp_column.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Form = LogWant::Form;
+
+std::string type_name(MessageColumn::Form form) {
+  return form == MessageColumn::Form::time ? "time" : form == MessageColumn::Form::text ? "text" : "number";
+}
+
+/// Numbers, then text, then stamps and their nanoseconds.
+LogRequest log_request(const TableRequest& request) {
+  LogRequest wanted{request.table, {}};
+  for (const std::string& number : request.numbers) wanted.columns.push_back({number, Form::number});
+  if (!request.text.empty()) wanted.columns.push_back({request.text, Form::text});
+  if (!request.time.column.empty()) wanted.columns.push_back({request.time.column, Form::exact});
+  if (!request.time.nanoseconds.empty()) wanted.columns.push_back({request.time.nanoseconds, Form::exact});
+  return wanted;
+}
+
+[[noreturn]] void fail(const std::string& file, std::uint64_t message, const std::string& column, const char* why) {
+  throw DataError(fmt::format("{}:{}: column {}: {}", file, message, column, why));
+}
+
+/// Values that are no numbers become NaN, or are errors.
+void check_numbers(const std::string& file, const TableRequest& request, Table& table) {
+  for (std::size_t i = 0; i < table.numbers.size(); ++i) {
+    const bool may_miss = !request.may_miss.empty() && request.may_miss[i];
+    for (std::size_t k = 0; k < table.numbers[i].size(); ++k) {
+      double& value = table.numbers[i][k];
+      if (std::isfinite(value)) continue;
+      if (!may_miss) fail(file, table.line[k], request.numbers[i], "missing value");
+      value = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+}
+
+/// Stamps are exact; other columns count what TimeRequest::unit says, or what is found as for any file.
+void set_times(const std::string& file, const TimeRequest& request, bool is_stamp, LogColumn& column,
+               const LogColumn* nanoseconds, Table& table) {
+  if (!request.may_miss) {
+    const bool none =
+        std::find(column.exact.begin(), column.exact.end(), no_exact_value) != column.exact.end() ||
+        std::any_of(column.numbers.begin(), column.numbers.end(), [](double v) { return !std::isfinite(v); });
+    if (none) throw DataError(fmt::format("{}: column {}: missing value", file, request.column));
+  }
+  if (is_stamp) {
+    table.time_ns = std::move(column.exact);
+    return;
+  }
+  StampColumn stamps(request, "");
+  stamps.reserve(table.rows());
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    if (!column.numbers.empty())
+      stamps.add(column.numbers[k]);
+    else if (column.exact[k] == no_exact_value)
+      stamps.add_missing();
+    else
+      stamps.add(column.exact[k]);
+    if (nanoseconds &&
+        (nanoseconds->exact.empty() || !stamps.add_nanoseconds(fmt::format("{}", nanoseconds->exact[k]))))
+      fail(file, table.line[k], request.nanoseconds, "no number of nanoseconds (0 to 999999999)");
+  }
+  stamps.finish(file, table);
+}
+
+/// The parts of a split recording as one file: its hash is of theirs.
+InputFile describe(const std::filesystem::path& path, const std::vector<std::filesystem::path>& parts) {
+  if (parts.size() == 1 && parts.front() == path) return describe_file(path);
+  std::vector<InputFile> files;
+  for (const auto& part : parts) files.push_back(describe_file(part));
+  InputFile whole{std::filesystem::absolute(path).string(), 0, data_hash(files)};
+  for (const InputFile& file : files) whole.bytes += file.bytes;
+  return whole;
+}
+
+}  // namespace
+
+RecordingReader::RecordingReader(const std::filesystem::path& path, const std::filesystem::path& definitions)
+    : path_(path), log_(path, KnownDefinitions(definitions)) {}
+
+std::vector<TableInfo> RecordingReader::tables() const {
+  std::vector<TableInfo> tables;
+  for (const LogTopic& topic : log_.topics()) {
+    TableInfo& table = tables.emplace_back(TableInfo{topic.name, topic.type, {}, topic.messages});
+    for (const MessageColumn& column : topic.columns)
+      table.columns.push_back({column.path, "", type_name(column.form)});
+  }
+  return tables;
+}
+
+std::string RecordingReader::why_without(const std::string& column) const {
+  for (const LogTopic& topic : log_.topics())
+    if (!topic.problem.empty() && column.starts_with(topic.name + "."))
+      return fmt::format("topic {} ({}) cannot be read: {} (data.definitions = FOLDER names .msg files)", topic.name,
+                         topic.type, topic.problem);
+  return {};
+}
+
+std::vector<Table> RecordingReader::read(const std::vector<TableRequest>& requests, InputFile& file) const {
+  std::vector<LogRequest> wanted;
+  for (const TableRequest& request : requests) wanted.push_back(log_request(request));
+  std::vector<std::string> notes = log_.notes();
+  std::vector<LogRows> rows;
+  tbb::parallel_invoke([&] { file = describe(path_, log_.files()); }, [&] { rows = log_.read(wanted, notes); });
+  std::vector<Table> tables;
+  for (std::size_t r = 0; r < requests.size(); ++r) {
+    const TableRequest& request = requests[r];
+    Table& table = tables.emplace_back();
+    table.line = std::move(rows[r].message);
+    auto column = rows[r].columns.begin();
+    for (std::size_t i = 0; i < request.numbers.size(); ++i) table.numbers.push_back(std::move((column++)->numbers));
+    check_numbers(path_.string(), request, table);
+    if (!request.text.empty()) table.text = std::move((column++)->text);
+    if (request.time.column.empty()) continue;
+    LogColumn& time = *column++;
+    const auto& known = log_.topics()[request.table].columns;
+    const bool is_stamp = std::any_of(known.begin(), known.end(), [&](const MessageColumn& c) {
+      return c.path == request.time.column && c.form == MessageColumn::Form::time;
+    });
+    set_times(path_.string(), request.time, is_stamp, time, request.time.nanoseconds.empty() ? nullptr : &*column,
+              table);
+  }
+  if (!tables.empty()) tables.front().notes.insert(tables.front().notes.begin(), notes.begin(), notes.end());
+  return tables;
+}
+
+}  // namespace modebank

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "io/recording/ros_log.hpp"
+#include "io/table/table_reader.hpp"
+
+namespace modebank {
+
+/// Recordings of ROS behind the seam: one table per topic, lines are messages of it.
+class RecordingReader : public TableReader {
+ public:
+  /// `definitions`: a folder of .msg files for types that neither the recording nor the library defines; empty: none.
+  RecordingReader(const std::filesystem::path& path, const std::filesystem::path& definitions);
+
+  std::vector<TableInfo> tables() const override;
+  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const override;
+  std::string why_without(const std::string& column) const override;
+
+ private:
+  std::filesystem::path path_;
+  RosLog log_;
+};
+
+}  // namespace modebank

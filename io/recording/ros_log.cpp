@@ -1,0 +1,139 @@
+#include "io/recording/ros_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "io/recording/bag.hpp"
+#include "io/recording/byte_source.hpp"
+#include "io/recording/db3.hpp"
+#include "io/recording/log_rows.hpp"
+#include "io/recording/mcap.hpp"
+#include "io/recording/split_recording.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Opener = std::unique_ptr<Container> (*)(const std::filesystem::path&);
+
+/// What reads a file that begins so, or nothing.
+Opener opener_of(std::string_view first_bytes) {
+  struct Magic {
+    std::string_view bytes;
+    Opener open;
+  };
+  static constexpr std::array<Magic, 3> forms{{{"#ROSBAG V", &open_bag},
+                                               {std::string_view{"\x89MCAP", 5}, &open_mcap},
+                                               {std::string_view{"SQLite format 3\0", 16}, &open_db3}}};
+  for (const Magic& form : forms)
+    if (first_bytes.starts_with(form.bytes)) return form.open;
+  return nullptr;
+}
+
+std::unique_ptr<Container> open_container(const std::filesystem::path& path) {
+  constexpr std::uint64_t probed_bytes = 64;
+  FileBytes file(path);
+  const std::string_view first = file.view(0, std::min(file.size(), probed_bytes));
+  if (const Opener open = opener_of(first)) return open(path);
+  if (first.starts_with("\x28\xb5\x2f\xfd"))
+    throw DataError(fmt::format("{0}: the whole file is compressed: `zstd -d {0}` unpacks it", path.string()));
+  throw DataError(fmt::format("{}: no recording of ROS (.bag, .mcap or .db3)", path.string()));
+}
+
+/// The first and the last message of each connection.
+std::vector<std::vector<std::string>> take_samples(Container& container, std::vector<std::string>& notes) {
+  std::vector<std::vector<std::string>> samples(container.connections().size());
+  std::string failure = container.sample([&](const RecordedMessage& message) {
+    auto& own = samples[message.connection];
+    if (own.size() == 2)
+      own.back().assign(message.payload);
+    else
+      own.emplace_back(message.payload);
+  });
+  if (!failure.empty()) notes.push_back(std::move(failure));
+  return samples;
+}
+
+}  // namespace
+
+RosLog::RosLog(const std::filesystem::path& path, const KnownDefinitions& known) : files_(recording_files(path)) {
+  for (const std::filesystem::path& file : files_) open_part(file, known);
+}
+
+RosLog::~RosLog() = default;
+
+void RosLog::open_part(const std::filesystem::path& path, const KnownDefinitions& known) {
+  Part part;
+  part.container = open_container(path);
+  notes_.insert(notes_.end(), part.container->notes().begin(), part.container->notes().end());
+  const auto samples = take_samples(*part.container, notes_);
+  for (std::size_t c = 0; c < samples.size(); ++c) {
+    const Connection& connection = part.container->connections()[c];
+    add_connection(part, connection, choose_decoder(connection, known, samples[c]));
+  }
+  part.container->close();
+  parts_.push_back(std::move(part));
+}
+
+void RosLog::add_connection(Part& part, const Connection& connection, TopicDecoder decoder) {
+  auto topic =
+      std::find_if(topics_.begin(), topics_.end(), [&](const LogTopic& t) { return t.name == connection.topic; });
+  if (topic == topics_.end()) {
+    LogTopic added{connection.topic, connection.type, {}, 0, {}};
+    added.columns.push_back({connection.topic + ".receive_time", MessageColumn::Form::time});
+    topic = topics_.insert(topics_.end(), std::move(added));
+  } else if (topic->type != connection.type) {
+    notes_.push_back(fmt::format("topic {} has messages of {} and of {}: only the former are read", connection.topic,
+                                 topic->type, connection.type));
+    part.topic.push_back(no_topic);
+    part.decoders.push_back({});
+    return;
+  }
+  topic->messages += connection.messages;
+  if (!decoder.schema && topic->problem.empty()) topic->problem = decoder.problem;
+  std::vector<MessageColumn> columns;
+  for (MessageColumn& column : decoder.columns)
+    if (column.path != "receive_time") columns.push_back({topic->name + "." + column.path, column.form});
+  merge_columns(topic->columns, columns);
+  part.topic.push_back(static_cast<std::size_t>(topic - topics_.begin()));
+  part.decoders.push_back(std::move(decoder));
+}
+
+std::vector<LogRows> RosLog::read(const std::vector<LogRequest>& requests, std::vector<std::string>& notes) const {
+  std::vector<RowCollector> collectors;
+  for (const LogRequest& request : requests) collectors.emplace_back(topics_[request.topic], request);
+  struct Route {
+    std::size_t collector, reader;
+  };
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const Part& part = parts_[p];
+    std::vector<bool> wanted(part.topic.size());
+    std::vector<std::vector<Route>> routes(part.topic.size());
+    for (std::size_t c = 0; c < part.topic.size(); ++c)
+      for (std::size_t r = 0; r < requests.size(); ++r)
+        if (requests[r].topic == part.topic[c] && part.container->connections()[c].messages > 0) {
+          wanted[c] = true;
+          routes[c].push_back({r, collectors[r].add_reader(part.decoders[c])});
+        }
+    const std::string file = files_[p].string();
+    std::string failure = part.container->visit(wanted, [&](const RecordedMessage& message) {
+      for (const Route& route : routes[message.connection])
+        collectors[route.collector].take(route.reader, message, file);
+    });
+    part.container->close();
+    if (!failure.empty()) notes.push_back(std::move(failure) + "; what is before that is read");
+  }
+  std::vector<LogRows> rows;
+  for (RowCollector& collector : collectors) rows.push_back(collector.finish(notes));
+  return rows;
+}
+
+bool is_ros_log(const std::filesystem::path& path, std::string_view first_bytes) {
+  std::error_code error;
+  return opener_of(first_bytes) != nullptr || std::filesystem::is_directory(path, error);
+}
+
+}  // namespace modebank

@@ -1,0 +1,99 @@
+#include "io/recording/split_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+
+#include "io/files/read_file.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Path = std::filesystem::path;
+
+std::string unquoted(std::string text) {
+  if (text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front())
+    text = text.substr(1, text.size() - 2);
+  return text;
+}
+
+/// The entries of `relative_file_paths` in the YAML that rosbag2 writes: lines "- NAME" below the key.
+std::vector<Path> listed_files(const Path& folder, const Path& list) {
+  std::istringstream lines(read_file(list));
+  std::vector<Path> files;
+  bool listing = false;
+  for (std::string line; std::getline(lines, line);) {
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+    const std::size_t first = line.find_first_not_of(' ');
+    if (first == std::string::npos) continue;
+    if (line.compare(first, 20, "relative_file_paths:") == 0) {
+      listing = true;
+    } else if (listing && line.compare(first, 2, "- ") == 0) {
+      const Path name = unquoted(line.substr(first + 2));
+      if (name.filename() != name || name == "." || name == "..")
+        throw ConfigurationError(fmt::format("{}: {} is no file of its folder", list.string(), name.string()));
+      files.push_back(folder / name);
+    } else {
+      listing = false;
+    }
+  }
+  if (files.empty())
+    throw ConfigurationError(fmt::format("{}: it lists no files (relative_file_paths)", list.string()));
+  return files;
+}
+
+/// Order of names in which _10 follows _9.
+bool natural_less(const std::string& a, const std::string& b) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (digit(a[i]) && digit(b[j])) {
+      const std::size_t i_end = std::min(a.find_first_not_of("0123456789", i), a.size());
+      const std::size_t j_end = std::min(b.find_first_not_of("0123456789", j), b.size());
+      const std::size_t i_first = std::min(a.find_first_not_of('0', i), i_end),
+                        j_first = std::min(b.find_first_not_of('0', j), j_end);
+      if (i_end - i_first != j_end - j_first) return i_end - i_first < j_end - j_first;
+      if (const int order = a.compare(i_first, i_end - i_first, b, j_first, j_end - j_first); order != 0)
+        return order < 0;
+      i = i_end, j = j_end;
+    } else if (a[i] != b[j]) {
+      return a[i] < b[j];
+    } else {
+      ++i, ++j;
+    }
+  }
+  return a.size() - i < b.size() - j || (a.size() - i == b.size() - j && a < b);
+}
+
+}  // namespace
+
+std::vector<Path> recording_files(const Path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(path, error)) return {path};
+  if (const Path list = path / "metadata.yaml"; std::filesystem::is_regular_file(list, error))
+    return listed_files(path, list);
+  std::vector<Path> files;
+  std::string ending;
+  for (const auto& entry : std::filesystem::directory_iterator(path)) {
+    const std::string own = entry.path().extension().string();
+    if (own != ".bag" && own != ".mcap" && own != ".db3") continue;
+    if (!ending.empty() && own != ending)
+      throw ConfigurationError(
+          fmt::format("{}: it holds both {} and {} files, and no metadata.yaml that lists one recording", path.string(),
+                      std::min(own, ending), std::max(own, ending)));
+    ending = own;
+    files.push_back(entry.path());
+  }
+  if (files.empty())
+    throw ConfigurationError(
+        fmt::format("{}: a folder without metadata.yaml and without .bag, .mcap or .db3 files", path.string()));
+  std::sort(files.begin(), files.end(),
+            [](const Path& a, const Path& b) { return natural_less(a.string(), b.string()); });
+  return files;
+}
+
+}  // namespace modebank

@@ -1,0 +1,112 @@
+#include <sys/resource.h>
+
+#include "io/files/read_file.hpp"
+#include "tests/io/recording/mutate.hpp"
+#include "tests/io/recording/recording_fixture.hpp"
+
+namespace modebank::test {
+
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string error_of(const std::filesystem::path& path) {
+  return message_of<DataError>([&] { RosLog(path, KnownDefinitions()); });
+}
+
+long resident_kilobytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+/// Small recordings of every container and compression.
+std::vector<std::filesystem::path> seeds(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const char* name : {"cdr_test_0.db3", "cdr_test_0.mcap", "talker.mcap", "wbag_0.mcap"})
+    files.push_back(shared_data_dir() / "ros2" / name);
+  run_recordings_script(
+      {"convert", (shared_data_dir() / "bags" / "husky_outdoor_test1.bag").string(), "0.4", folder.string()});
+  for (const char* name : {"drive_none.bag", "drive_bz2.bag", "drive_lz4.bag", "drive_none.mcap", "drive_lz4.mcap",
+                           "drive_zstd.mcap", "drive_no_chunks.mcap", "drive_zstd.db3"})
+    files.push_back(folder / name);
+  return files;
+}
+
+}  // namespace
+
+TEST(DamagedRecordings, NeverCrashAndNeverGrow) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  MODEBANK_NEEDS_ROSBAG();
+  const TemporaryFolder folder;
+  const auto files = seeds(folder.path());
+  const long before = resident_kilobytes();
+  constexpr std::uint64_t mutations = 300;  // of each
+  std::uint64_t refused = 0, read = 0;
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    const std::string content = read_file(files[f]);
+    ASSERT_GT(read_everything(files[f]).rows, 0u) << files[f];
+    for (std::uint64_t i = 0; i < mutations; ++i) {
+      SCOPED_TRACE(files[f].string() + ", mutation " + std::to_string(i));
+      const ReadOutcome outcome = read_bytes_as_recording(mutated(content, 1000 * f + i), folder.path() / "mutated");
+      ++(outcome.refused ? refused : read);
+    }
+  }
+  EXPECT_GT(refused, 0u);
+  EXPECT_GT(read, 0u);
+  // Sizes that damage makes up are never believed.
+  EXPECT_LT(resident_kilobytes() - before, 100'000);
+}
+
+TEST(DamagedRecordings, AreNamed) {
+  const TemporaryFolder folder;
+  const auto written = [&](const std::string& name, const std::string& content) {
+    write_file(folder.path() / name, content);
+    return folder.path() / name;
+  };
+  EXPECT_THAT(error_of(written("a.bag", "#ROSBAG V1.2\nabc")),
+              HasSubstr("a bag of format 1.2, of which only 2.0 is read"));
+  EXPECT_THAT(error_of(written("b.bag", "#ROSBAG V2.0\n")), HasSubstr("damaged at byte 13"));
+  EXPECT_THAT(error_of(written("c.mcap", "\x89MCAP0\r\n")), HasSubstr("damaged at byte"));
+  EXPECT_THAT(error_of(written("d.mcap", "time,x\n0,1\n")), HasSubstr("no recording of ROS"));
+  EXPECT_THAT(error_of(written("e.db3", std::string("SQLite format 3\0", 16) + "abc")), HasSubstr("SQLite: "));
+  EXPECT_THAT(error_of(written("f.db3.zstd", "\x28\xb5\x2f\xfd abc")), HasSubstr("`zstd -d "));
+  const std::string op{"op=\x03", 4}, encryptor = "encryptor=rosbag/AesCbcEncryptor";
+  const auto field = [](const std::string& text) {
+    return std::string{static_cast<char>(text.size()), 0, 0, 0} + text;
+  };
+  const std::string header = field(op) + field(encryptor);
+  EXPECT_THAT(error_of(written("g.bag", "#ROSBAG V2.0\n" + field(header) + std::string(4, '\0'))),
+              HasSubstr("encrypted (rosbag/AesCbcEncryptor)"));
+}
+
+/// A database whose tables are views could compute for ever, or call what its maker likes.
+TEST(DamagedRecordings, DatabasesOfOtherTablesAreRefused) {
+  const TemporaryFolder folder;
+  const auto database = [&](const std::string& name, const std::string& sql) {
+    const std::string path = (folder.path() / name).string();
+    const ProgramResult made = run_program(
+        {python, "-c",
+         "import sqlite3, sys; d = sqlite3.connect(sys.argv[1]); d.executescript(sys.argv[2]); d.commit()", path, sql});
+    EXPECT_EQ(made.status, 0) << made.err;
+    return path;
+  };
+  EXPECT_THAT(error_of(database("a.db3", "CREATE TABLE x(y)")),
+              HasSubstr("no recording of rosbag2 (it has no table topics)"));
+  const std::string topics =
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format, offered_qos_profiles);";
+  EXPECT_THAT(error_of(database(
+                  "b.db3", topics + "CREATE VIEW messages AS WITH RECURSIVE r(id) AS (SELECT 1 UNION ALL "
+                                    "SELECT id + 1 FROM r) SELECT id, 1 topic_id, 0 timestamp, x'00' data FROM r")),
+              HasSubstr("no table messages"));
+}
+
+TEST(SplitRecordings, AreListedByTheirFolder) {
+  const TemporaryFolder folder;
+  const auto error = [&] { return message_of<ConfigurationError>([&] { RosLog(folder.path(), KnownDefinitions()); }); };
+  EXPECT_THAT(error(), HasSubstr("a folder without metadata.yaml and without .bag, .mcap or .db3 files"));
+  write_file(folder.path() / "metadata.yaml", "a:\n  relative_file_paths:\n    - ../../etc/passwd\n");
+  EXPECT_THAT(error(), HasSubstr("is no file of its folder"));
+}
+
+}  // namespace modebank::test
