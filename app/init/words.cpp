@@ -55,8 +55,7 @@ constexpr std::array input_words{
 };
 
 /// What the table's name adds to all its channels.
-constexpr std::array measuring_tables{Word{" imu ", 3}, Word{" gyro ", 3}, Word{" vicon ", 1}, Word{" odom ", 1},
-                                      Word{" odometry ", 1}};
+constexpr std::array measuring_tables{Word{" imu ", 3}, Word{" gyro ", 3}, Word{" odom ", 1}, Word{" odometry ", 1}};
 constexpr std::array acting_tables{
     Word{" cmd ", 8},      Word{" command ", 8}, Word{" commands ", 8}, Word{" joy ", 3},     Word{" odom ", 2},
     Word{" odometry ", 2}, Word{" joint ", 2},   Word{" wheel ", 4},    Word{" encoder ", 4}, Word{" encoders ", 4}};
@@ -66,7 +65,8 @@ constexpr std::array ignored_words{
     " nanosec ",    " timestamp ", " receive time ", " row ",    " index ", " id ",      " latitude ", " longitude ",
     " altitude ",   " lat ",       " lon ",          " alt ",    " label ", " mode ",    " qx ",       " qy ",
     " qz ",         " qw ",        " orientation ",  " step ",   " count ", " counter ", " steady ",   " window ",
-    " friction ",   " ground ",    " true ",         " truth ",  " gt ",    " flag ",    " jump ",     " header ",
+    " friction ",   " ground ",    " true ",         " truth ",  " gt ",    " vicon ",   " mocap ",    " optitrack ",
+    " icp ",        " flag ",      " jump ",         " header ",
 };
 
 constexpr std::array time_names{" time ",    " t ",       " stamp ",   " timestamp ",     " tout ",
