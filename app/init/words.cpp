@@ -50,8 +50,8 @@ constexpr std::array input_words{
     Word{" u 1 ", 6},       Word{" u 2 ", 6},      Word{" wheel ", 5},     Word{" vel l ", 5},
     Word{" vel r ", 5},     Word{" v l ", 5},      Word{" v r ", 5},       Word{" left ", 4},
     Word{" right ", 4},     Word{" motor ", 4},    Word{" joy ", 5},       Word{" cur ", 2},
-    Word{" current ", 2},   Word{" linear x ", 2}, Word{" angular z ", 2}, Word{" speed ", 2},
-    Word{" vx ", 2},
+    Word{" current ", 2},   Word{" linear x ", 2}, Word{" angular z ", 2}, Word{" wz ", 2},
+    Word{" speed ", 2},     Word{" vx ", 2},
 };
 
 /// What the table's name adds to all its channels.
