@@ -35,6 +35,9 @@ class ColumnFinder {
   void time(std::size_t source, const DataOptions& options);
   void text(std::size_t source, const std::string& column);
 
+  /// The source whose table has the column; the first of `files` that has it.
+  std::size_t source_with(const std::string& column, const std::vector<std::size_t>& files);
+
   /// Names and units of the columns.
   std::vector<Channel> channels(const std::vector<ColumnRef>& refs) const;
 
@@ -45,7 +48,6 @@ class ColumnFinder {
   ColumnRef derive(const DerivedChannel& channel, const std::vector<std::size_t>& files);
   ColumnRef derived_of_table(std::shared_ptr<const DerivedChannel> channel, std::size_t source,
                              const std::vector<ColumnRef>& operands);
-  std::size_t source_with(const std::string& column, const std::vector<std::size_t>& files);
   [[noreturn]] void fail(const std::string& column, const std::vector<std::size_t>& files) const;
 
   FilePlan& plan_;
