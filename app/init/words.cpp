@@ -1,5 +1,6 @@
 #include "app/init/words.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 
@@ -121,7 +122,7 @@ NameScore score_name(std::string_view name, std::string_view type) {
   score.state = best(state_words, words);
   score.input = best(input_words, words);
   if (score.state > 0) score.state += std::max(best(measuring_tables, words), best(measuring_tables, kind));
-  if (score.input > 0) score.input += best(acting_tables, words);
+  if (score.input > 0) score.input += std::max(best(acting_tables, words), best(acting_tables, kind));
   if (score.input >= 10) score.state = 0;  // a command, whatever it commands
   return score;
 }

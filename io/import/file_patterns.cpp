@@ -38,6 +38,7 @@ FilePattern::FilePattern(std::string key, const std::string& root, const std::st
   const Path start = root.empty() ? std::filesystem::current_path() : std::filesystem::absolute(root);
   if (!has_star_) {
     folder_ = (start / pattern).lexically_normal();
+    if (!folder_.has_filename()) folder_ = folder_.parent_path();  // "drive/" is the recording "drive"
     return;
   }
   bool after_star = false;

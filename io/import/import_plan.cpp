@@ -69,7 +69,10 @@ void plan_times(FilePlan& plan, ColumnFinder& find, const DataOptions& options) 
 }
 
 void plan_columns(FilePlan& plan, const DataOptions& options, const std::shared_ptr<const DerivedChannels>& derived) {
-  ColumnFinder find(plan, derived, options.format);
+  FormatOptions format = options.format;
+  if (!format.definitions.empty())
+    format.definitions = (std::filesystem::path(options.root) / format.definitions).string();
+  ColumnFinder find(plan, derived, format);
   const std::size_t inputs = 0, states = plan.paths.size() - 1;
   const std::vector<std::size_t> states_first = states == inputs ? std::vector{inputs} : std::vector{states, inputs};
   plan.state = find.numbers(options.state, {states});

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/table/number.hpp"
 #include "io/table/stamp_column.hpp"
 #include "modebank/base/error.hpp"
 
@@ -28,6 +29,13 @@ LogRequest log_request(const TableRequest& request) {
   if (!request.time.column.empty()) wanted.columns.push_back({request.time.column, Form::exact});
   if (!request.time.nanoseconds.empty()) wanted.columns.push_back({request.time.nanoseconds, Form::exact});
   return wanted;
+}
+
+const std::filesystem::path& checked(const std::filesystem::path& definitions) {
+  std::error_code error;
+  if (!definitions.empty() && !std::filesystem::is_directory(definitions, error))
+    throw ConfigurationError(fmt::format("data.definitions: {} is no folder", definitions.string()));
+  return definitions;
 }
 
 [[noreturn]] void fail(const std::string& file, std::uint64_t message, const std::string& column, const char* why) {
@@ -89,7 +97,7 @@ InputFile describe(const std::filesystem::path& path, const std::vector<std::fil
 }  // namespace
 
 RecordingReader::RecordingReader(const std::filesystem::path& path, const std::filesystem::path& definitions)
-    : path_(path), log_(path, KnownDefinitions(definitions)) {}
+    : path_(path), log_(path, KnownDefinitions(checked(definitions))) {}
 
 std::vector<TableInfo> RecordingReader::tables() const {
   std::vector<TableInfo> tables;
@@ -123,7 +131,10 @@ std::vector<Table> RecordingReader::read(const std::vector<TableRequest>& reques
     auto column = rows[r].columns.begin();
     for (std::size_t i = 0; i < request.numbers.size(); ++i) table.numbers.push_back(std::move((column++)->numbers));
     check_numbers(path_.string(), request, table);
-    if (!request.text.empty()) table.text = std::move((column++)->text);
+    if (!request.text.empty()) {
+      table.text = std::move((column++)->text);
+      for (std::string& text : table.text) text = std::string(without_blanks(text));
+    }
     if (request.time.column.empty()) continue;
     LogColumn& time = *column++;
     const auto& known = log_.topics()[request.table].columns;

@@ -29,12 +29,12 @@ struct EnumNames<HeaderRow> {
   static constexpr Names<3> values{"auto", "true", "false"};
 };
 
-/// What users say about text files, which say too little themselves; automatic: it is found out.
+/// What users say about files that say too little themselves: text files (automatic: it is found out) and recordings.
 struct FormatOptions {
   Separator separator = Separator::automatic;
   DecimalMark decimal = DecimalMark::automatic;
   HeaderRow header = HeaderRow::automatic;
-  std::string definitions;  ///< folder of .msg files, of recordings whose types nobody else defines; empty: none
+  std::string definitions = {};  ///< folder of .msg files, for types that a recording leaves undefined; empty: none
 };
 
 }  // namespace modebank

@@ -140,6 +140,10 @@ std::vector<Option> data_options() {
             "whether text files' first row names the columns; if not they are c1, c2, ...; auto: whether it holds "
             "numbers",
             MODEBANK_FIELD(data.format.header)),
+      text("data.definitions", "a folder",
+           "of .msg files, for messages of ROS 2 whose types neither the recording nor this program defines; empty: "
+           "none",
+           MODEBANK_FIELD(data.format.definitions)),
       words("data.join", "how states join the inputs: interpolated at the inputs' times, or row by row",
             MODEBANK_FIELD(data.join)),
       text("data.run", "a column name", "column whose value separates runs inside one file; empty: one run per file",

@@ -26,7 +26,7 @@ std::vector<std::filesystem::path> seeds(const std::filesystem::path& folder) {
   for (const char* name : {"cdr_test_0.db3", "cdr_test_0.mcap", "talker.mcap", "wbag_0.mcap"})
     files.push_back(shared_data_dir() / "ros2" / name);
   run_recordings_script(
-      {"convert", (shared_data_dir() / "bags" / "husky_outdoor_test1.bag").string(), "0.4", folder.string()});
+      {"convert", (shared_data_dir() / "bags" / "husky_outdoor_test1.bag").string(), "0", "0.4", folder.string()});
   for (const char* name : {"drive_none.bag", "drive_bz2.bag", "drive_lz4.bag", "drive_none.mcap", "drive_lz4.mcap",
                            "drive_zstd.mcap", "drive_no_chunks.mcap", "drive_zstd.db3"})
     files.push_back(folder / name);
@@ -54,8 +54,12 @@ TEST(DamagedRecordings, NeverCrashAndNeverGrow) {
   }
   EXPECT_GT(refused, 0u);
   EXPECT_GT(read, 0u);
+#ifndef __SANITIZE_ADDRESS__  // which keeps what is freed
   // Sizes that damage makes up are never believed.
   EXPECT_LT(resident_kilobytes() - before, 100'000);
+#else
+  static_cast<void>(before);
+#endif
 }
 
 TEST(DamagedRecordings, AreNamed) {

@@ -2,8 +2,10 @@
 """Recordings for tests, from a ROS 1 bag that python3-rosbag reads.
 
 Usage: recordings.py reference BAG OUT.json       every column of every topic, as python3-rosbag reads them
-       recordings.py convert BAG SECONDS FOLDER   the beginning of the bag as bag, MCAP and db3, each compression
+       recordings.py convert BAG BEGIN END FOLDER   these seconds of the bag as bag, MCAP and db3, each compression
+       recordings.py compare A.h5 B.h5 ...        whether archives hold the same from /data to /evaluation
 """
+import io
 import json
 import pathlib
 import re
@@ -47,14 +49,22 @@ def ros2_definition(text):
     return re.sub(r"^Header ", "std_msgs/Header ", text, flags=re.MULTILINE)
 
 
-def convert(bag_path, seconds, folder):
+def ros1(message):
+    out = io.BytesIO()
+    message.serialize(out)
+    return out.getvalue()
+
+
+def convert(bag_path, begin, end, folder):
     folder = pathlib.Path(folder)
     messages, types = [], {}
     with rosbag.Bag(bag_path) as bag:
         start = bag.get_start_time()
         for topic, message, time in bag.read_messages():
-            if time.to_sec() - start > float(seconds):
+            if time.to_sec() - start > float(end):
                 break
+            if time.to_sec() - start < float(begin):
+                continue
             messages.append((topic, message, time))
             types[topic] = (type(message)._type, type(message)._full_text)
     for compression in ("none", "bz2", "lz4"):
@@ -68,6 +78,9 @@ def convert(bag_path, seconds, folder):
         ros2_writers.write_mcap(folder / f"drive_{compression or 'none'}.mcap", topics, written, compression)
     ros2_writers.write_mcap(folder / "drive_no_summary.mcap", topics, written, "zstd", summary=False)
     ros2_writers.write_mcap(folder / "drive_no_chunks.mcap", topics, written, chunked=False)
+    ros1_topics = [(name, kind, text) for name, (kind, text) in sorted(types.items())]
+    ros1_written = [(number[topic], time.to_nsec(), ros1(message)) for topic, message, time in messages]
+    ros2_writers.write_mcap(folder / "drive_ros1.mcap", ros1_topics, ros1_written, "lz4", encoding="ros1", definition_form="ros1msg")
     ros2_writers.write_db3(folder / "drive.db3", topics, written)
     ros2_writers.write_db3(folder / "drive_zstd.db3", topics, written, compressed=True)
     split = folder / "drive_split"
@@ -81,5 +94,25 @@ def convert(bag_path, seconds, folder):
     (split / "metadata.yaml").write_text(f"rosbag2_bagfile_information:\n  version: 5\n  relative_file_paths:\n{listing}  duration:\n    nanoseconds: 1\n")
 
 
+def compare(first, *others):
+    import h5py
+    stages = ("data", "windows", "modes", "mixture", "bank", "evaluation")
+
+    def contents(path):
+        found = {}
+        with h5py.File(path) as archive:
+            for stage in (name for name in archive if name in stages):
+                archive[stage].visititems(lambda name, item: found.__setitem__(f"{stage}/{name}", item[()].tobytes() if item.dtype.kind != "O" else repr(item[()].tolist()))
+                                          if isinstance(item, h5py.Dataset) else None)
+        return found
+
+    reference = contents(first)
+    assert {"data", "bank", "evaluation"} <= {name.split("/")[0] for name in reference}, sorted(reference)[:20]
+    for other in others:
+        own = contents(other)
+        differing = sorted(name for name in reference.keys() | own.keys() if reference.get(name) != own.get(name))
+        assert not differing, f"{other}: {differing[:20]}"
+
+
 if __name__ == "__main__":
-    {"reference": reference, "convert": convert}[sys.argv[1]](*sys.argv[2:])
+    {"reference": reference, "convert": convert, "compare": compare}[sys.argv[1]](*sys.argv[2:])

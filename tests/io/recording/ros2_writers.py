@@ -91,11 +91,11 @@ def record(op, content):
     return struct.pack("<BQ", op, len(content)) + content
 
 
-def write_mcap(path, topics, messages, compression="", summary=True, chunked=True, chunk_bytes=65536):
+def write_mcap(path, topics, messages, compression="", summary=True, chunked=True, chunk_bytes=65536, encoding="cdr", definition_form="ros2msg"):
     """topics: [(name, type, definition)]; messages: [(topic's position, receive time [ns], payload)]."""
-    schemas = [record(0x03, struct.pack("<H", i + 1) + text(kind) + text("ros2msg") + text(definition))
+    schemas = [record(0x03, struct.pack("<H", i + 1) + text(kind) + text(definition_form) + text(definition))
                for i, (_, kind, definition) in enumerate(topics)]
-    channels = [record(0x04, struct.pack("<HH", i, i + 1) + text(name) + text("cdr") + text(b""))
+    channels = [record(0x04, struct.pack("<HH", i, i + 1) + text(name) + text(encoding) + text(b""))
                 for i, (name, _, _) in enumerate(topics)]
     with open(path, "wb") as out:
         out.write(MAGIC + record(0x01, text("ros2") + text("test")))

@@ -11,8 +11,8 @@ class SameDrive : public ::testing::Test {
   static void SetUpTestSuite() {
     if (shared_data_dir().empty() || !has_rosbag()) return;
     folder_ = std::make_unique<TemporaryFolder>();
-    run_recordings_script(
-        {"convert", (shared_data_dir() / "bags" / "husky_outdoor_test1.bag").string(), "60", folder_->path().string()});
+    run_recordings_script({"convert", (shared_data_dir() / "bags" / "husky_outdoor_test1.bag").string(), "0", "60",
+                           folder_->path().string()});
   }
   static void TearDownTestSuite() { folder_.reset(); }
 
@@ -40,10 +40,10 @@ TEST_F(SameDrive, IsTheSameInEveryContainerAndCompression) {
   }
 }
 
-TEST_F(SameDrive, IsTheSameInEachBag) {
+TEST_F(SameDrive, IsTheSameAsRos1WritesIt) {
   MODEBANK_NEEDS_DRIVE();
   const RosLog reference(file("drive_none.mcap"), KnownDefinitions());
-  for (const char* name : {"drive_none.bag", "drive_bz2.bag", "drive_lz4.bag"}) {
+  for (const char* name : {"drive_none.bag", "drive_bz2.bag", "drive_lz4.bag", "drive_ros1.mcap"}) {
     SCOPED_TRACE(name);
     const RosLog log(file(name), KnownDefinitions());
     EXPECT_TRUE(log.notes().empty());
