@@ -113,8 +113,27 @@ std::string nearest_key_hint(const std::string& key) {
   return did_you_mean(boost::trim_left_copy_if(key, boost::is_any_of("-")), keys);
 }
 
+namespace {
+
+/// A log by its name, or because it holds bytes that no text has.
+bool looks_like_log(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  boost::to_lower(ending);
+  for (const char* of_logs : {".csv", ".tsv", ".dat", ".bag", ".mcap", ".db3", ".mat", ".hdf5"})
+    if (ending == of_logs) return true;
+  std::ifstream stream(path, std::ios::binary);
+  std::string first(512, ' ');
+  stream.read(first.data(), static_cast<std::streamsize>(first.size()));
+  return first.find('\0') != std::string::npos;
+}
+
+}  // namespace
+
 Config load_config(const std::filesystem::path& path, const KeyValues& overrides) {
   std::ifstream stream(path);
+  if (stream && looks_like_log(path))
+    throw ConfigurationError(fmt::format(
+        "{0} is no configuration. If it is a log, `modebank init {0}` looks into it and writes one", path.string()));
   if (!stream || std::filesystem::is_directory(path))
     throw ConfigurationError(fmt::format("{}: cannot read this configuration file", path.string()));
   Config config;

@@ -173,12 +173,20 @@ class Proposer {
     return places.empty() ? 0.0 : least;
   }
 
+  /// The usual rate within 15 %, else two digits.
+  static double round_rate(double rate_hz) {
+    for (const double usual : {1.0, 2.0, 4.0, 5.0, 10.0, 20.0, 25.0, 30.0, 40.0, 50.0, 100.0})
+      if (std::abs(rate_hz - usual) < 0.15 * usual) return usual;
+    const double digit = std::pow(10.0, std::floor(std::log10(rate_hz)) - 1.0);
+    return digit * std::round(rate_hz / digit);
+  }
+
   void sampling() {
     const SamplingCheck& rows = table(input()).sampling;
     const double stale = repeated(guess_.states);
     if (stale > most_repeated && rows.rate_hz > 0.0 && !table(input()).time.empty()) {
       const double fresh = rows.rate_hz * (1.0 - stale);
-      const double rate = fresh > 2.0 ? std::round(fresh) : std::round(fresh * 10.0) / 10.0;
+      const double rate = round_rate(fresh);
       add("rate_hz", fmt::format("{:g}", rate),
           fmt::format("of {:.4g} rows a second {:.0f} % only repeat the state before", rows.rate_hz, 100.0 * stale));
     }
@@ -213,7 +221,9 @@ Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFil
 }
 
 std::string configuration_text(const Proposal& proposal, const std::string& command) {
-  std::string text = fmt::format("# Written by {}: a start, to be looked at.\n", command);
+  constexpr std::size_t longest = 100;
+  const std::string shown = command.size() > longest ? command.substr(0, longest) + " ..." : command;
+  std::string text = fmt::format("# Written by {}: a start, to be looked at.\n", shown);
   for (const std::string& doubt : proposal.doubts) text += fmt::format("# ! {}\n", doubt);
   text += "\n[data]\n";
   for (const ProposedKey& key : proposal.keys) {
@@ -235,6 +245,7 @@ namespace {
 
 std::string row_text(const SurveyedChannel& channel) {
   if (!channel.is_number()) return fmt::format("  {:<44} text\n", channel.name);
+  if (channel.type == "time") return fmt::format("  {:<44} times\n", channel.name);
   std::string notes;
   if (channel.check.missing > 0) notes += fmt::format("  {} missing", channel.check.missing);
   if (channel.check.quantum > 0.0) notes += fmt::format("  by {:.4g}", channel.check.quantum);
@@ -244,6 +255,29 @@ std::string row_text(const SurveyedChannel& channel) {
                                 ? fmt::format("{:.5g} to {:.5g}", channel.check.least, channel.check.largest)
                                 : fmt::format("constant {:.5g}", channel.check.least);
   return fmt::format("  {:<44} {:<8} {}{}\n", channel.name, channel.unit, range, notes);
+}
+
+/// The name of an array's element without its position: covariance[3].
+std::string array_of(const std::string& name) {
+  return name.ends_with("]") ? name.substr(0, name.rfind('[')) : std::string();
+}
+
+/// Elements of an array that all stand still share a line.
+std::string rows_text(const std::vector<SurveyedChannel>& channels) {
+  std::string text;
+  for (std::size_t first = 0; first < channels.size();) {
+    const std::string array = array_of(channels[first].name);
+    std::size_t end = first;
+    while (!array.empty() && end < channels.size() && array_of(channels[end].name) == array &&
+           channels[end].is_number() && !channels[end].moves())
+      ++end;
+    if (end > first + 1)
+      text += fmt::format("  {:<44} {:<8} {} constants\n", array + "[]", channels[first].unit, end - first);
+    else
+      text += row_text(channels[first]);
+    first = std::max(end, first + 1);
+  }
+  return text;
 }
 
 }  // namespace
@@ -265,7 +299,7 @@ std::string survey_text(const std::vector<FileSet>& sets, const std::vector<Surv
                                                                 rows.gaps, rows.gaps == 1 ? "" : "s");
       text += fmt::format(" {}{} rows, {}{}\n", name, table.time_s.size(), time,
                           table.run.empty() ? "" : fmt::format(", runs by {}", table.run));
-      for (const SurveyedChannel& channel : table.channels) text += row_text(channel);
+      text += rows_text(table.channels);
     }
   }
   return text;

@@ -98,9 +98,26 @@ class TableSurvey {
     return typed;
   }
 
+  struct Times {
+    std::vector<std::string> names;
+    Eigen::VectorXd time_s;
+    std::int64_t origin_ns;
+  };
+
+  static Eigen::Index jumps_back(const Eigen::VectorXd& time_s) {
+    Eigen::Index count = 0;
+    for (Eigen::Index k = 1; k < time_s.size(); ++k) count += jumps_back(time_s, k);
+    return count;
+  }
+  static Eigen::Index stands_still(const Eigen::VectorXd& time_s) {
+    Eigen::Index count = 0;
+    for (Eigen::Index k = 1; k < time_s.size(); ++k) count += time_s(k) == time_s(k - 1);
+    return count;
+  }
+
   /// The first candidate that advances; one that jumps back now and then may be many runs' time.
   void find_time(SurveyedTable& table) {
-    std::optional<SurveyedTable> jumping;
+    std::optional<Times> jumping;
     for (const std::vector<std::string>& candidate : time_candidates(table)) {
       TableRequest request;
       request.table = position_;
@@ -111,18 +128,13 @@ class TableSurvey {
       if (!read || read->time_ns.size() < 2) continue;
       take_times(table, *read);
       table.time = candidate;
-      const SamplingCheck check = check_sampling({table.time_s, Eigen::MatrixXd(1, table.time_s.size())});
-      if (check.rate_hz > 0.0 && check.backward_times == 0 && check.repeated_times < table.time_s.size() / 2) return;
-      if (check.rate_hz > 0.0 && check.backward_times > 0 && check.repeated_times < table.time_s.size() / 2 &&
-          check.backward_times < table.time_s.size() / 10 && !jumping) {
-        jumping.emplace();
-        jumping->time = candidate;
-        jumping->time_s = table.time_s;
-        jumping->origin_ns = table.origin_ns;
-      }
+      const Eigen::Index jumps = jumps_back(table.time_s), stands = stands_still(table.time_s);
+      if (stands > table.time_s.size() / 2) continue;
+      if (jumps == 0) return;
+      if (jumps < table.time_s.size() / 10 && !jumping) jumping = Times{candidate, table.time_s, table.origin_ns};
     }
     if (jumping) {
-      table.time = jumping->time;
+      table.time = jumping->names;
       table.time_s = jumping->time_s;
       table.origin_ns = jumping->origin_ns;
       return;

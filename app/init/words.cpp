@@ -1,5 +1,6 @@
 #include "app/init/words.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 
@@ -50,13 +51,12 @@ constexpr std::array input_words{
     Word{" u 1 ", 6},       Word{" u 2 ", 6},      Word{" wheel ", 5},     Word{" vel l ", 5},
     Word{" vel r ", 5},     Word{" v l ", 5},      Word{" v r ", 5},       Word{" left ", 4},
     Word{" right ", 4},     Word{" motor ", 4},    Word{" joy ", 5},       Word{" cur ", 2},
-    Word{" current ", 2},   Word{" linear x ", 2}, Word{" angular z ", 2}, Word{" speed ", 2},
-    Word{" vx ", 2},
+    Word{" current ", 2},   Word{" linear x ", 2}, Word{" angular z ", 2}, Word{" wz ", 2},
+    Word{" speed ", 2},     Word{" vx ", 2},
 };
 
 /// What the table's name adds to all its channels.
-constexpr std::array measuring_tables{Word{" imu ", 3}, Word{" gyro ", 3}, Word{" vicon ", 1}, Word{" odom ", 1},
-                                      Word{" odometry ", 1}};
+constexpr std::array measuring_tables{Word{" imu ", 3}, Word{" gyro ", 3}, Word{" odom ", 1}, Word{" odometry ", 1}};
 constexpr std::array acting_tables{
     Word{" cmd ", 8},      Word{" command ", 8}, Word{" commands ", 8}, Word{" joy ", 3},     Word{" odom ", 2},
     Word{" odometry ", 2}, Word{" joint ", 2},   Word{" wheel ", 4},    Word{" encoder ", 4}, Word{" encoders ", 4}};
@@ -66,7 +66,8 @@ constexpr std::array ignored_words{
     " nanosec ",    " timestamp ", " receive time ", " row ",    " index ", " id ",      " latitude ", " longitude ",
     " altitude ",   " lat ",       " lon ",          " alt ",    " label ", " mode ",    " qx ",       " qy ",
     " qz ",         " qw ",        " orientation ",  " step ",   " count ", " counter ", " steady ",   " window ",
-    " friction ",   " ground ",    " true ",         " truth ",  " gt ",    " flag ",    " jump ",     " header ",
+    " friction ",   " ground ",    " true ",         " truth ",  " gt ",    " vicon ",   " mocap ",    " optitrack ",
+    " icp ",        " flag ",      " jump ",         " header ",
 };
 
 constexpr std::array time_names{" time ",    " t ",       " stamp ",   " timestamp ",     " tout ",
@@ -121,7 +122,7 @@ NameScore score_name(std::string_view name, std::string_view type) {
   score.state = best(state_words, words);
   score.input = best(input_words, words);
   if (score.state > 0) score.state += std::max(best(measuring_tables, words), best(measuring_tables, kind));
-  if (score.input > 0) score.input += best(acting_tables, words);
+  if (score.input > 0) score.input += std::max(best(acting_tables, words), best(acting_tables, kind));
   if (score.input >= 10) score.state = 0;  // a command, whatever it commands
   return score;
 }

@@ -27,7 +27,6 @@ constexpr std::size_t longest_text = 2000, deepest = 50;
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_space(char c) { return c == ' ' || c == '\t'; }
 
 /// The operator at the start of a text, or nothing.
 std::string_view symbol_at(std::string_view text) {
@@ -128,7 +127,7 @@ class ExpressionParser {
 
   void tokenise() {
     for (std::size_t at = 0; at < text_.size();) {
-      if (is_space(text_[at])) {
+      if (text_[at] == ' ' || text_[at] == '\t') {
         ++at;
         continue;
       }

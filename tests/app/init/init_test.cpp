@@ -1,0 +1,202 @@
+// What modebank init finds in logs of all kinds, and that its configurations can be read as they stand.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "app/config/config.hpp"
+#include "app/config/config_file.hpp"
+#include "app/init/mounting.hpp"
+#include "app/init/proposal.hpp"
+#include "io/import/import.hpp"
+#include "tests/support/paths.hpp"
+
+namespace modebank::app {
+namespace {
+
+using test::TemporaryFolder;
+using test::write_file;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST(NameWords, AreSplitWhereNamesChange) {
+  EXPECT_EQ(words_of_name("/imu/data.angular_velocity.z"), " imu data angular velocity z ");
+  EXPECT_EQ(words_of_name("cmd_velL"), " cmd vel l ");
+  EXPECT_EQ(words_of_name("yawRate"), " yaw rate ");
+  EXPECT_EQ(words_of_name("wz"), " wz ");
+}
+
+TEST(NameWords, TellStatesFromInputs) {
+  for (const char* name : {"wz", "gyro_z", "yaw_rate", "/imu/data.angular_velocity.z", "level", "y", "output"})
+    EXPECT_GT(score_name(name).state, score_name(name).input) << name;
+  for (const char* name : {"cmd_velL", "throttle", "steering", "wheel_left", "/cmd_vel.linear.x", "/cmd_vel.angular.z",
+                           "pump", "u", "target_speed"})
+    EXPECT_GT(score_name(name).input, score_name(name).state) << name;
+  for (const char* name : {"header.seq", "orientation_covariance[3]", "time", "/fix.latitude", "run_id", "stamp"})
+    EXPECT_TRUE(score_name(name).ignored) << name;
+  EXPECT_GT(score_name("/imu/data.angular_velocity.z").state, score_name("/odom.twist.twist.angular.z").state);
+}
+
+TEST(NameWords, KnowAxes) {
+  EXPECT_TRUE(names_angular_rate("wz", Axis::z));
+  EXPECT_TRUE(names_angular_rate("/imu.angular_velocity.y", Axis::y));
+  EXPECT_FALSE(names_angular_rate("qz", Axis::z));
+  EXPECT_TRUE(names_acceleration("ay", Axis::y));
+  EXPECT_TRUE(names_acceleration("/imu.linear_acceleration.x", Axis::x));
+  EXPECT_FALSE(names_acceleration("yaw", Axis::x));
+}
+
+TEST(CommonPattern, EndsWhereWordsEnd) {
+  EXPECT_EQ(common_pattern({"pro_00.csv", "pro_01.csv"}), "pro_*.csv");
+  EXPECT_EQ(common_pattern({"ram_01.csv", "rub_03.csv"}), "*.csv");
+  EXPECT_EQ(common_pattern({"a1_imu.csv", "b1_imu.csv"}), "*_imu.csv");
+  EXPECT_EQ(common_pattern({"log", "data"}), "");
+}
+
+/// A configuration as init writes it, and what it reads.
+class Init : public ::testing::Test {
+ protected:
+  std::string write(const std::vector<std::string>& files) {
+    const std::vector<FileSet> sets = file_sets(files);
+    std::vector<SurveyedFile> surveyed;
+    for (const FileSet& set : sets) surveyed.push_back(survey_file(set.files.front()));
+    listing = survey_text(sets, surveyed);
+    const Proposal proposal = propose(sets, surveyed, guess_roles(surveyed), folder.path().string());
+    const std::string text = configuration_text(proposal, "modebank init");
+    write_file(folder.path() / "log.ini", text);
+    config = load_config(folder.path() / "log.ini", {});
+    validate(config);
+    return text;
+  }
+  std::vector<std::string> shared(const std::string& path, const std::string& ending = "") {
+    const std::filesystem::path at = test::shared_data_dir() / path;
+    std::vector<std::string> files;
+    if (!std::filesystem::is_directory(at)) return {at.string()};
+    for (const auto& entry : std::filesystem::directory_iterator(at))
+      if (entry.path().extension() == ending) files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end());
+    return files;
+  }
+  std::string path(const std::string& name) const { return (folder.path() / name).string(); }
+
+  TemporaryFolder folder;
+  Config config;
+  std::string listing;
+};
+
+/// 60 s at 50 Hz of a gyro on its side: its y axis points up or down.
+std::string sideways(double gravity) {
+  std::string text = "time,wx,wy,wz,ax,ay,az,cmd_left,cmd_right\n";
+  for (int k = 0; k < 3000; ++k) {
+    const double t = 0.02 * k, rate = std::sin(0.7 * t) + 0.3 * std::sin(2.1 * t);
+    text += fmt::format("{},{},{},{},{},{},{},{},{}\n", t, 0.01 * std::sin(9 * t), gravity > 0 ? rate : -rate,
+                        0.02 * std::cos(7 * t), 0.3 * std::sin(5 * t), gravity + 0.2 * std::cos(11 * t),
+                        0.1 * std::sin(t), -std::sin(0.7 * t), std::sin(0.7 * t));
+  }
+  return text;
+}
+
+TEST_F(Init, FindsAGyroMountedSideways) {
+  write_file(folder.path() / "log.csv", sideways(9.8));
+  const std::string text = write({path("log.csv")});
+  EXPECT_THAT(text,
+              HasSubstr("gravity lies along +y of this instrument (9.80 m/s^2): it is mounted on its side, and the "
+                        "yaw rate is wy, not wz"));
+  EXPECT_THAT(config.data.state, ElementsAre("wy"));
+  EXPECT_THAT(config.data.input, ElementsAre("cmd_left", "cmd_right"));
+  EXPECT_NO_THROW(import_data(config.data));
+}
+
+TEST_F(Init, TurnsAGyroThatHangsUpsideDown) {
+  write_file(folder.path() / "log.csv", sideways(-9.8));
+  write({path("log.csv")});
+  EXPECT_THAT(config.data.state, ElementsAre("yaw_rate"));
+  const ImportedData data = import_data(config.data);
+  const Trajectory& run = data.recording.runs.front();
+  for (Index k = 0; k < run.samples(); k += 100)
+    EXPECT_NEAR(run.state(0, k), std::sin(0.7 * run.time_s(k)) + 0.3 * std::sin(2.1 * run.time_s(k)), 1e-9);
+}
+
+TEST_F(Init, PairsFilesAndNamesRuns) {
+  for (const char* run : {"00", "01", "02"}) {
+    std::string pro = "time,cmd_velL,cmd_velR\n", imu = "time,wz\n";
+    for (int k = 0; k < 100; ++k) {
+      pro += fmt::format("{},{},{}\n", 0.1 * k, std::sin(k), std::cos(k));
+      imu += fmt::format("{},{}\n", 0.1 * k, std::sin(0.3 * k));
+    }
+    write_file(folder.path() / (std::string("pro_") + run + ".csv"), pro);
+    write_file(folder.path() / (std::string("imu_") + run + ".csv"), imu);
+  }
+  write({path("pro_00.csv"), path("imu_00.csv"), path("pro_01.csv"), path("imu_01.csv"), path("imu_02.csv"),
+         path("pro_02.csv")});
+  EXPECT_EQ(config.data.inputs, "pro_*.csv");
+  EXPECT_EQ(config.data.states, "imu_*.csv");
+  EXPECT_THAT(config.data.state, ElementsAre("wz"));
+  EXPECT_THAT(config.data.input, ElementsAre("cmd_velL", "cmd_velR"));
+  config.data.lag_auto = false;
+  EXPECT_EQ(import_data(config.data).recording.runs.size(), 3U);
+}
+
+TEST_F(Init, KnowsHuskysBag) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  const std::string text = write(shared("bags/husky_outdoor_test1.bag"));
+  EXPECT_THAT(text, HasSubstr("gravity lies along +y of this instrument (9.79 m/s^2)"));
+  EXPECT_THAT(text, HasSubstr("split = blocks 10"));
+  EXPECT_THAT(config.data.state, ElementsAre("/imu/data.angular_velocity.y"));
+  EXPECT_THAT(config.data.input, ElementsAre("/husky_velocity_controller/odom.twist.twist.linear.x",
+                                             "/husky_velocity_controller/odom.twist.twist.angular.z"));
+  EXPECT_TRUE(config.data.lag_auto);
+  EXPECT_THAT(listing, HasSubstr("/imu/data (sensor_msgs/Imu): 11865 rows, 30.01 Hz"));
+  EXPECT_EQ(import_data(config.data).recording.runs.size(), 10U);
+}
+
+TEST_F(Init, KnowsTheBagsExtracts) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  std::vector<std::string> files = shared("bags/husky_outdoor_test1_odom.csv");
+  files.push_back(shared("bags/husky_outdoor_test1_imu.csv").front());
+  write(files);
+  EXPECT_THAT(config.data.state, ElementsAre("wy"));
+  EXPECT_THAT(config.data.input, ElementsAre("vx", "wz"));
+  EXPECT_THAT(config.data.time, ElementsAre("t"));
+  EXPECT_NO_THROW(import_data(config.data));
+}
+
+TEST_F(Init, KnowsIceDriveDartAndTanks) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  write(shared("borealtc/ICE", ".csv"));
+  EXPECT_EQ(config.data.inputs, "pro_*.csv");
+  EXPECT_EQ(config.data.states, "imu_*.csv");
+  EXPECT_THAT(config.data.state, ElementsAre("wz"));
+  EXPECT_THAT(config.data.input, ElementsAre("velL", "velR"));
+  write(shared("drive_husky/husky_samples.csv"));
+  EXPECT_THAT(config.data.state, ElementsAre("gyro_z"));
+  EXPECT_THAT(config.data.input, ElementsAre("cmd_left", "cmd_right"));
+  EXPECT_THAT(config.data.time, ElementsAre("t_block"));
+  EXPECT_EQ(config.data.run, "block");
+  EXPECT_EQ(import_data(config.data).recording.runs.size(), 201U);
+  write(shared("dart", ".csv"));
+  EXPECT_EQ(config.data.inputs, "*.csv");
+  EXPECT_THAT(config.data.state, ElementsAre("yaw_rate"));
+  EXPECT_THAT(config.data.input, ElementsAre("steering", "throttle"));
+  EXPECT_EQ(config.data.rate_hz, 10.0);
+  write(shared("cascaded_tanks/est.csv"));
+  EXPECT_THAT(config.data.state, ElementsAre("level"));
+  EXPECT_THAT(config.data.input, ElementsAre("pump"));
+}
+
+TEST_F(Init, NamesAPlaceWhereNamesSayNothing) {
+  std::string text = "c1,c2\n";
+  for (int k = 0; k < 50; ++k) text += fmt::format("{},{}\n", std::sin(k), std::cos(2 * k));
+  write_file(folder.path() / "log.csv", text);
+  EXPECT_THAT(write({path("log.csv")}), HasSubstr("names say nothing"));
+  EXPECT_THAT(config.data.state, ElementsAre("c2"));
+  EXPECT_THAT(config.data.input, ElementsAre("c1"));
+  EXPECT_EQ(config.data.rate_hz, 1.0);
+  EXPECT_TRUE(config.data.time.empty());
+  EXPECT_NO_THROW(import_data(config.data));
+}
+
+}  // namespace
+}  // namespace modebank::app
