@@ -37,9 +37,10 @@ MAY_INCLUDE = {
     "app/check": BELOW_APP + ["app/chain"],
     "app/config": BELOW_APP + ["app/chain"],
     "app/text": BELOW_APP + ["app/chain"],
+    "app/export": BELOW_APP + ["app/chain", "app/text"],
     "app/study": BELOW_APP + ["app/chain", "app/config"],
     "app/report": BELOW_APP + ["app/chain", "app/config", "app/text", "app/study"],
-    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("chain", "check", "config", "text", "study", "report")],
+    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("chain", "check", "config", "text", "export", "study", "report")],
 }
 # Whose the installed headers <modebank/NAME/...> are.
 PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge",

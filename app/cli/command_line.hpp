@@ -6,6 +6,14 @@
 
 namespace modebank::app {
 
+/// Options of `export`.
+struct ExportLine {
+  std::string to;     ///< form
+  std::string table;  ///< of form csv: its path in the archive
+  bool force = false, single_precision = false;
+  double wheel_separation_m = 0.0, wheel_radius_m = 0.0;  ///< of form ros2; 0: not given
+};
+
 /// What the user typed, split but not yet interpreted.
 struct CommandLine {
   std::string command;                                         ///< empty: none given
@@ -19,7 +27,8 @@ struct CommandLine {
   bool findings = false;           ///< check: what it finds, without settings to try
   bool apply = false;              ///< check: write what it suggests
   std::string form = "increment";  ///< of models that `show` prints: increment or full
-  std::string output;              ///< -o: the file that `report`, `predict` or `check --apply` writes
+  std::string output;              ///< -o: the file that `report`, `predict`, `export` or `check --apply` writes
+  ExportLine exported;             ///< of `export` alone
   std::string typed;               ///< the whole line, for provenance
 };
 

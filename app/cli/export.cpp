@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <system_error>
+
+#include "app/cli/commands.hpp"
+#include "app/cli/live_filter.hpp"
+#include "app/config/config_file.hpp"
+#include "app/export/forms.hpp"
+#include "app/export/names.hpp"
+#include "io/archive/bank/load_bank.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+using std::filesystem::path;
+
+void print_or_write(const std::string& text, const std::string& output) {
+  if (output.empty())
+    fmt::print("{}", text);
+  else
+    replace_file(output, {text});
+}
+
+/// How much earlier than recorded the inputs were taken that the bank was learned from.
+double input_lag_of(const Archive& archive, const Config& config) {
+  if (!config.data.lag_auto) return config.data.lag_s;
+  return archive.lag && archive.lag->correction != LagCorrection::none ? archive.lag->lag.mean : 0.0;
+}
+
+/// The filter as the archive ran it: other options would be another filter than the one that was judged.
+ExportedBank read_bank(const CommandLine& line) {
+  for (const auto& [key, value] : line.overrides)
+    if (key != "track.filter")
+      throw ConfigurationError(
+          fmt::format("export takes the filter as the archive has it: --{} cannot change it (run does)", key));
+  const std::string& file = line.files.front();
+  const Config config = stored_config(load_configuration(file), line.overrides);
+  if (config.track.filter == TrackedFilter::drifting)
+    throw ConfigurationError("track.filter = drifting: a model whose coefficients learn in every run is no bank");
+  const Archive archive = read_archive(file);
+  ExportedBank bank =
+      exported_bank(archive, file, tracked_bank(config), tracked_options(config), input_lag_of(archive, config));
+  if (!bank.may_be_trusted() && !line.exported.force)
+    throw DataError(
+        fmt::format("{}: the verdict on {} is {}. What takes its uncertainty for true would be misled; --force exports "
+                    "it all the same, the verdict on top",
+                    file, bank.filter, bank.verdict_text()));
+  return bank;
+}
+
+void export_json(const CommandLine& line) { print_or_write(to_json(read_bank(line)), line.output); }
+
+void export_csv(const CommandLine& line) {
+  const std::string& table = line.exported.table;
+  if (table.empty())
+    throw ConfigurationError(
+        "export --to csv needs --table PATH, such as /evaluation/summary (modebank show ARCHIVE /)");
+  print_or_write(to_csv(inspect(line.files.front(), table), table), line.output);
+}
+
+const std::map<std::string, void (*)(const CommandLine&)> forms{{"csv", export_csv}, {"json", export_json}};
+
+}  // namespace
+
+int run_export(const CommandLine& line) {
+  const auto form = forms.find(line.exported.to);
+  if (line.files.size() != 1 || form == forms.end())
+    throw ConfigurationError(
+        fmt::format("export needs one archive and one of the forms json, mat, c, casadi, ros2 and csv{}: modebank "
+                    "export ARCHIVE --to FORM",
+                    line.exported.to.empty() || form != forms.end() ? "" : ", not " + line.exported.to));
+  form->second(line);
+  return 0;
+}
+
+}  // namespace modebank::app
