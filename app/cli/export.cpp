@@ -53,6 +53,12 @@ ExportedBank read_bank(const CommandLine& line) {
   return bank;
 }
 
+/// -o, else the archive's name with another ending in the current folder.
+path output_of(const CommandLine& line, const std::string& ending) {
+  if (!line.output.empty()) return line.output;
+  return file_stem(path(line.files.front()).stem().string()) + ending;
+}
+
 void export_json(const CommandLine& line) { print_or_write(to_json(read_bank(line)), line.output); }
 
 void export_csv(const CommandLine& line) {
@@ -63,7 +69,29 @@ void export_csv(const CommandLine& line) {
   print_or_write(to_csv(inspect(line.files.front(), table), table), line.output);
 }
 
-const std::map<std::string, void (*)(const CommandLine&)> forms{{"csv", export_csv}, {"json", export_json}};
+void export_mat(const CommandLine& line) {
+  const ExportedBank bank = read_bank(line);
+  replace_file(output_of(line, ".mat"), [&](const path& temporary) { write_mat(bank, temporary); });
+}
+
+/// Both files are made before either is written.
+void export_c(const CommandLine& line) {
+  path source = output_of(line, ".c");
+  if (std::filesystem::is_directory(source)) source /= file_stem(path(line.files.front()).stem().string()) + ".c";
+  if (source.extension() != ".c")
+    throw ConfigurationError(
+        fmt::format("-o {}: a name that ends in .c (the header goes beside it), or a folder", source.string()));
+  const std::string stem = source.stem().string();
+  if (stem != file_stem(stem))
+    throw ConfigurationError(fmt::format("-o {}: of letters, digits, '_' and '-' alone", source.string()));
+  const CFiles files = to_c(read_bank(line), stem, line.exported.single_precision);
+  check_writable(source);
+  replace_file(path(source).replace_extension(".h"), {files.header});
+  replace_file(source, {files.source});
+}
+
+const std::map<std::string, void (*)(const CommandLine&)> forms{
+    {"c", export_c}, {"csv", export_csv}, {"json", export_json}, {"mat", export_mat}};
 
 }  // namespace
 

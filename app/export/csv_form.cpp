@@ -58,6 +58,8 @@ std::string to_csv(const json& object, const std::string& path) {
     if (!object.contains("columns")) append(name, row, names, fields);
     text += line_of(fields);
   }
+  for (const json& column : rows.empty() ? object.value("columns", json::array()) : json::array())
+    header.push_back(csv_field(column.get<std::string>()));
   return line_of(header) + text;
 }
 

@@ -83,7 +83,7 @@ std::string comment_text(std::string_view text) {
   return result;
 }
 
-std::string quoted(std::string_view text) {
+std::string quoted_scalar(std::string_view text) {
   std::string result = ascii_json(text);
   boost::algorithm::replace_all(result, "\x7f", "\\u007f");  // YAML's readers refuse it
   return result;

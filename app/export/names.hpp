@@ -18,7 +18,7 @@ std::vector<std::string> identifiers(const std::vector<std::string>& names, Lang
 std::string comment_text(std::string_view text);
 
 /// A double-quoted scalar of YAML, which is one of JSON, too, and a string of Python: ASCII.
-std::string quoted(std::string_view text);
+std::string quoted_scalar(std::string_view text);
 
 /// A field of CSV: quoted where it must be, and what a spreadsheet would take for a formula begins with an apostrophe.
 std::string csv_field(std::string_view text);
