@@ -60,6 +60,7 @@ path output_of(const CommandLine& line, const std::string& ending) {
 }
 
 void export_json(const CommandLine& line) { print_or_write(to_json(read_bank(line)), line.output); }
+void export_casadi(const CommandLine& line) { print_or_write(to_casadi(read_bank(line)), line.output); }
 
 void export_csv(const CommandLine& line) {
   const std::string& table = line.exported.table;
@@ -90,8 +91,21 @@ void export_c(const CommandLine& line) {
   replace_file(source, {files.source});
 }
 
-const std::map<std::string, void (*)(const CommandLine&)> forms{
-    {"c", export_c}, {"csv", export_csv}, {"json", export_json}, {"mat", export_mat}};
+void export_ros2(const CommandLine& line) {
+  const RobotSizes sizes{line.exported.wheel_separation_m, line.exported.wheel_radius_m};
+  if (!(sizes.wheel_separation_m >= 0.0 && sizes.wheel_radius_m >= 0.0))
+    throw ConfigurationError("--wheel_separation_m and --wheel_radius_m are lengths above 0");
+  const auto files = to_ros2(read_bank(line), sizes);
+  const path folder = output_of(line, "_ros2");
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw ConfigurationError(fmt::format("-o {}: {}", folder.string(), error.message()));
+  for (const auto& [name, text] : files) replace_file(folder / name, {text});
+}
+
+const std::map<std::string, void (*)(const CommandLine&)> forms{{"c", export_c},     {"casadi", export_casadi},
+                                                                {"csv", export_csv}, {"json", export_json},
+                                                                {"mat", export_mat}, {"ros2", export_ros2}};
 
 }  // namespace
 
