@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
@@ -45,6 +45,44 @@ TEST(Names, StayWithinCommentsQuotesAndFields) {
   EXPECT_EQ(csv_field("a,\"b\""), "\"a,\"\"b\"\"\"");
   EXPECT_EQ(csv_field("\tx"), "'\tx");
   EXPECT_EQ(csv_field("-1"), "'-1");
+}
+
+/// A table whose columns and texts are hostile, read by Python's reader of CSV: no cell is a formula.
+TEST(Names, AreNoFormulasInTables) {
+  nlohmann::json table = {{"columns", nlohmann::json::array()}, {"value", {nlohmann::json::object()}}};
+  for (const std::string& name : hostile_names()) {
+    if (name.find('\xff') != std::string::npos) continue;
+    table["columns"].push_back(name);
+    table["value"][0][name] = name;
+  }
+  const modebank::test::TemporaryFolder folder;
+  const std::string file = (folder.path() / "table.csv").string();
+  modebank::test::write_file(file, to_csv(table, "/table"));
+  const auto result = modebank::test::run_program(
+      {"/usr/bin/python3", "-c",
+       "import csv, json, sys; print(json.dumps(list(csv.reader(open(sys.argv[1], newline='', encoding='utf-8')))))",
+       file});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json rows = nlohmann::json::parse(result.out);
+  ASSERT_EQ(rows.size(), 2u);
+  for (const nlohmann::json& row : rows) {
+    ASSERT_EQ(row.size(), table["columns"].size());
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string cell = row[i].get<std::string>(), name = table["columns"][i].get<std::string>();
+      EXPECT_EQ(std::string("=+-@\t\r").find(cell.front()), std::string::npos) << cell;
+      EXPECT_TRUE(cell == name || cell == "'" + name) << cell;
+    }
+  }
+}
+
+/// Of bytes that are not UTF-8, too, JSON stays JSON.
+TEST(Names, StayWithinJson) {
+  ExportedBank exported = as_exported(modebank::test::example_bank(1, 1, 1));
+  for (const std::string& name : hostile_names()) {
+    exported.states[0] = exported.inputs[0] = exported.measurements[0] = {name, name};
+    exported.archive = exported.finding = exported.mode_names[0] = exported.parameter_names[0] = name;
+    EXPECT_NO_THROW(nlohmann::json::parse(to_json(exported))) << name;
+  }
 }
 
 TEST(Names, DoNotReachTheCompiler) {
