@@ -19,11 +19,12 @@ namespace {
 
 using std::filesystem::path;
 
-void print_or_write(const std::string& text, const std::string& output) {
-  if (output.empty())
-    fmt::print("{}", text);
-  else
-    replace_file(output, {text});
+/// Throws ConfigurationError where no such file can be written, or it is the archive.
+void check_output(const CommandLine& line, const path& output) {
+  check_writable(output);
+  std::error_code error;
+  if (std::filesystem::equivalent(output, line.files.front(), error) && !error)
+    throw ConfigurationError(fmt::format("-o {}: that is the archive", output.string()));
 }
 
 /// How much earlier than recorded the inputs were taken that the bank was learned from.
@@ -59,20 +60,38 @@ path output_of(const CommandLine& line, const std::string& ending) {
   return file_stem(path(line.files.front()).stem().string()) + ending;
 }
 
-void export_json(const CommandLine& line) { print_or_write(to_json(read_bank(line)), line.output); }
-void export_casadi(const CommandLine& line) { print_or_write(to_casadi(read_bank(line)), line.output); }
+/// A form that is one text: to standard output without -o.
+template <class Make>
+void write_text(const CommandLine& line, Make make) {
+  if (!line.output.empty()) check_output(line, line.output);
+  const std::string text = make();
+  if (line.output.empty())
+    fmt::print("{}", text);
+  else
+    replace_file(line.output, {text});
+}
+
+void export_json(const CommandLine& line) {
+  write_text(line, [&] { return to_json(read_bank(line)); });
+}
+
+void export_casadi(const CommandLine& line) {
+  write_text(line, [&] { return to_casadi(read_bank(line)); });
+}
 
 void export_csv(const CommandLine& line) {
   const std::string& table = line.exported.table;
   if (table.empty())
     throw ConfigurationError(
         "export --to csv needs --table PATH, such as /evaluation/summary (modebank show ARCHIVE /)");
-  print_or_write(to_csv(inspect(line.files.front(), table), table), line.output);
+  write_text(line, [&] { return to_csv(inspect(line.files.front(), table), table); });
 }
 
 void export_mat(const CommandLine& line) {
+  const path output = output_of(line, ".mat");
+  check_output(line, output);
   const ExportedBank bank = read_bank(line);
-  replace_file(output_of(line, ".mat"), [&](const path& temporary) { write_mat(bank, temporary); });
+  replace_file(output, [&](const path& temporary) { write_mat(bank, temporary); });
 }
 
 /// Both files are made before either is written.
@@ -85,9 +104,10 @@ void export_c(const CommandLine& line) {
   const std::string stem = source.stem().string();
   if (stem != file_stem(stem))
     throw ConfigurationError(fmt::format("-o {}: of letters, digits, '_' and '-' alone", source.string()));
+  const path header = path(source).replace_extension(".h");
+  for (const path& file : {source, header}) check_output(line, file);
   const CFiles files = to_c(read_bank(line), stem, line.exported.single_precision);
-  check_writable(source);
-  replace_file(path(source).replace_extension(".h"), {files.header});
+  replace_file(header, {files.header});
   replace_file(source, {files.source});
 }
 

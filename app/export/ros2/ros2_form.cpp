@@ -34,20 +34,21 @@ std::string missing_text(const RobotChannels& channels) {
 
 /// A list of six, what the bank does not determine at the release's default of 0.
 std::string twist_covariance(const RobotNumbers& numbers) {
-  const bool forward = std::isfinite(numbers.forward_variance), yaw = std::isfinite(numbers.yaw_variance);
-  if (!forward && !yaw)
+  const Estimate &forward = numbers.forward_variance, &yaw = numbers.yaw_variance;
+  if (!forward.known() && !yaw.known())
     return "    # twist_covariance_diagonal: not determined: neither speed is a state that settles\n";
-  return fmt::format(
-      "    # Of vx, vy, vz, wx, wy, wz about their steady values: P = A P A' + Q. {}\n"
-      "    twist_covariance_diagonal: [{}, 0.0, 0.0, 0.0, 0.0, {}]  # [(m/s)^2] and [(rad/s)^2]\n",
-      forward && yaw ? "The others stay at the default, 0."
-                     : fmt::format("The others stay at the default, 0: the {} is not among the states.",
-                                   forward ? "yaw rate" : "forward speed"),
-      yaml_number(forward ? numbers.forward_variance : 0.0), yaml_number(yaw ? numbers.yaw_variance : 0.0));
+  std::string text = "    # Of vx, vy, vz, wx, wy, wz about their steady values, P = A P A' + Q:";
+  if (forward.known()) text += fmt::format(" vx [(m/s)^2] {};", error_text(forward));
+  if (yaw.known()) text += fmt::format(" wz [(rad/s)^2] {};", error_text(yaw));
+  text += "\n    # the others stay at the default, 0";
+  if (!forward.known()) text += ": the forward speed is not among the states";
+  if (!yaw.known()) text += ": the yaw rate is not among the states";
+  return text + fmt::format("\n    twist_covariance_diagonal: [{}, 0.0, 0.0, 0.0, 0.0, {}]\n",
+                            yaml_number(forward.known() ? forward.value : 0.0),
+                            yaml_number(yaw.known() ? yaw.value : 0.0));
 }
 
-std::string diff_drive(const ExportedBank&, const RobotNumbers& numbers, const RobotChannels& channels,
-                       const RobotSizes& sizes) {
+std::string diff_drive(const RobotNumbers& numbers, const RobotChannels& channels, const RobotSizes& sizes) {
   const std::string missing = missing_text(channels);
   std::string text =
       "# ros2_controllers of ROS 2 Humble to Jazzy, diff_drive_controller. Gains at steady state, C (I - A)^-1 B: G of "
@@ -129,8 +130,7 @@ std::string process_noise(const ExportedBank& exported, Index mode, const RobotC
 
 std::string model_delays(const RobotNumbers& numbers, const RobotChannels& channels) {
   const auto line = [&](const char* key, const Estimate& delay) {
-    std::string text = "  " + key_line(key, delay, " s", missing_text(channels));
-    return text;
+    return "  " + key_line(key, delay, " s", missing_text(channels));
   };
   return "# Nav2 of ROS 2 Lyrical (nav2_mppi_controller has these keys since June 2026), under your plugin's name. "
          "Mean "
@@ -170,7 +170,7 @@ std::vector<std::pair<std::string, std::string>> to_ros2(const ExportedBank& exp
     const auto at = static_cast<std::size_t>(k);
     const RobotNumbers numbers = robot_numbers(exported, k, channels, sizes);
     const std::string opening = fmt::format(
-        "# Verdict: {}\n# {}, used by {:.1f} % of the windows, of a bank made by modebank {} of {},\n# SHA-256 {}, "
+        "# Verdict: {}\n# {}, {:.1f} % of the windows, of a bank made by modebank {} of {},\n# SHA-256 {}, "
         "filter "
         "{}.\n# {}\n# dt_s = {} s. {}.\n# Keys are those that the bank determines; what it does not is a comment that "
         "says "
@@ -179,8 +179,7 @@ std::vector<std::pair<std::string, std::string>> to_ros2(const ExportedBank& exp
         100.0 * exported.bank.modes[at].weight, comment_text(exported.provenance.modebank_version),
         comment_text(exported.archive), exported.sha256, exported.filter, exported_equation,
         yaml_number(exported.bank.dt_s), transition_meaning);
-    files.emplace_back(names[at] + ".yaml", opening +
-                                                without_empty_mappings(diff_drive(exported, numbers, channels, sizes)) +
+    files.emplace_back(names[at] + ".yaml", opening + without_empty_mappings(diff_drive(numbers, channels, sizes)) +
                                                 without_empty_mappings(process_noise(exported, k, channels)) +
                                                 without_empty_mappings(model_delays(numbers, channels)));
   }

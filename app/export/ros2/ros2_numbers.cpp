@@ -122,6 +122,32 @@ MatrixXd stationary_covariance(MatrixXd F, MatrixXd P) {
   return P;
 }
 
+/// Variances of the measured states about their steady values, P = A P A' + Q; NaN where the mode is not stable.
+VectorXd stationary_variances(const ExportedBank& exported, const LinearModel& model, const MatrixXd& Q) {
+  const MatrixXd& C = exported.bank.C;
+  const MatrixXd P = stationary_covariance(model.full_form(), Q);
+  if (P.size() == 0) return VectorXd::Constant(C.rows(), not_a_number);
+  return (C * P * C.transpose()).diagonal();
+}
+
+/// The same with standard errors: of theta by the delta method, of Q, which is linear in it, entry by entry.
+DerivedNumbers variances_of(const ExportedBank& exported, Index mode) {
+  const Mode& of = exported.bank.modes[static_cast<std::size_t>(mode)];
+  DerivedNumbers result = derived_numbers(
+      exported.bank, mode, [&](const LinearModel& model) { return stationary_variances(exported, model, of.Q); });
+  VectorXd squares = result.errors.array().square();
+  if (of.Q_standard_error.size() == 0) squares.setConstant(not_a_number);
+  for (Index i = 0; i < of.Q_standard_error.rows(); ++i)
+    for (Index j = 0; j <= i; ++j) {
+      if (of.Q_standard_error(i, j) == 0.0) continue;
+      MatrixXd unit = MatrixXd::Zero(of.Q.rows(), of.Q.cols());
+      unit(i, j) = unit(j, i) = of.Q_standard_error(i, j);
+      squares.array() += stationary_variances(exported, of.model, unit).array().square();
+    }
+  result.errors = squares.cwiseSqrt();
+  return result;
+}
+
 }  // namespace
 
 bool Estimate::known() const { return std::isfinite(value); }
@@ -142,16 +168,16 @@ RobotNumbers robot_numbers(const ExportedBank& exported, Index mode, const Robot
                            const RobotSizes& sizes) {
   const DerivedNumbers derived = derived_numbers(
       exported.bank, mode, [&](const LinearModel& model) { return wheel_numbers(exported, model, channels, sizes); });
-  const MatrixXd P = stationary_covariance(exported.A(mode), exported.bank.modes[static_cast<std::size_t>(mode)].Q);
-  const MatrixXd measured = P.size() > 0 ? MatrixXd(exported.bank.C * P * exported.bank.C.transpose()) : MatrixXd();
+  const DerivedNumbers variances = variances_of(exported, mode);
   const auto variance = [&](Index state) {
-    return state < 0 || measured.size() == 0 ? not_a_number : measured(state, state);
+    return state < 0 ? Estimate{not_a_number, not_a_number}
+                     : Estimate{variances.values(state), variances.errors(state)};
   };
   const auto at = [&](Index i) { return Estimate{derived.values(i), derived.errors(i)}; };
   RobotNumbers numbers{
       at(0), at(1), at(2), at(3), at(4), variance(channels.yaw_rate), variance(channels.forward_speed)};
   // Of a mode that does not settle no gain means anything; of one that turns the other way no separation.
-  const bool settles = measured.size() > 0;
+  const bool settles = variances.values.allFinite();
   for (Estimate* estimate : {&numbers.separation_m, &numbers.left_multiplier, &numbers.right_multiplier})
     if (!settles || !(numbers.left_multiplier.value > 0.0 && numbers.right_multiplier.value > 0.0))
       *estimate = {not_a_number, not_a_number};

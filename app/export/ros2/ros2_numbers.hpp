@@ -32,7 +32,7 @@ struct Estimate {
 struct RobotNumbers {
   Estimate separation_m, left_multiplier, right_multiplier;  ///< multipliers of the radius
   Estimate yaw_delay_s, forward_delay_s;
-  double yaw_variance, forward_variance;  ///< of the state about its steady value, without end
+  Estimate yaw_variance, forward_variance;  ///< of the state about its steady value
 };
 RobotNumbers robot_numbers(const ExportedBank& bank, Index mode, const RobotChannels& channels,
                            const RobotSizes& sizes);
