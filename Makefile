@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
+.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
 
 all: build
 
@@ -83,6 +83,12 @@ systems: build
 # Bias and stated uncertainty on rounded outputs, by their intervals and as they stand.
 quantised: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_quantised.py build/modebank
+
+# How often robots of known width, delays and noise lie within two standard errors of what `export --to ros2` says of them.
+export-recovery: packages-build packages-test build/build.ninja
+	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
+	cmake --build --preset release -j $(JOBS) --target test_export_recovery
+	MODEBANK_EXPORT_SEEDS=1000 build/test_export_recovery
 
 # Everything CI runs beside `make test`.
 check: format lint shellcheck api tidy-changed seeds sanitize

@@ -41,10 +41,11 @@ MAY_INCLUDE = {
     "app/config": BELOW_APP + ["app/chain"],
     "app/text": BELOW_APP + ["app/chain"],
     "app/pipeline": BELOW_APP + ["app/chain", "app/config", "app/text"],
+    "app/export": BELOW_APP + ["app/chain", "app/text"],
     "app/study": BELOW_APP + ["app/chain", "app/config"],
     "app/report": BELOW_APP + ["app/chain", "app/config", "app/text", "app/study"],
     "app/init": BELOW_APP,
-    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("init", "chain", "check", "config", "text", "pipeline", "study", "report")],
+    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("init", "chain", "check", "config", "text", "pipeline", "export", "study", "report")],
     "python/bindings": BELOW_APP + [f"app/{folder}" for folder in ("chain", "config", "text", "pipeline")],
 }
 # Whose the installed headers <modebank/NAME/...> are.

@@ -31,7 +31,11 @@ po::options_description describe_options(CommandLine& line) {
   add("yes", po::bool_switch(&line.yes));
   add("form", po::value(&line.form));
   add("output,o", po::value(&line.output));
-  add("force", po::bool_switch(&line.force));
+  add("to", po::value(&line.exported.to));
+  add("table", po::value(&line.exported.table));
+  add("float", po::bool_switch(&line.exported.single_precision));
+  add("wheel_separation_m", po::value(&line.exported.wheel_separation_m));
+  add("wheel_radius_m", po::value(&line.exported.wheel_radius_m));
   add("words", po::value<std::vector<std::string>>());
   for (const auto& [word, key] : predict_words) add(word, po::value<std::string>());
   for (const Option& option : option_table())
@@ -95,6 +99,9 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
       throw ConfigurationError(fmt::format("--{} is an option of predict; elsewhere it is --{}", word, key));
     line.overrides.emplace_back(key, values[word].as<std::string>());
   }
+  for (const char* word : {"to", "table", "float", "wheel_separation_m", "wheel_radius_m"})
+    if (line.command != "export" && values.count(word) && !values[word].defaulted())
+      throw ConfigurationError(fmt::format("--{} is an option of export", word));
   if (line.form != "increment" && line.form != "full")
     throw ConfigurationError(fmt::format("--form {}: allowed are increment and full", line.form));
   return line;

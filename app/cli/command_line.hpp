@@ -6,6 +6,14 @@
 
 namespace modebank::app {
 
+/// Options of `export`.
+struct ExportLine {
+  std::string to;     ///< form
+  std::string table;  ///< of form csv: its path in the archive
+  bool single_precision = false;
+  double wheel_separation_m = 0.0, wheel_radius_m = 0.0;  ///< of form ros2; 0: not given
+};
+
 /// What the user typed, split but not yet interpreted.
 struct CommandLine {
   std::string command;                                         ///< empty: none given
@@ -18,12 +26,13 @@ struct CommandLine {
   bool repair = false;             ///< verify: remove what is broken in study folders
   bool findings = false;           ///< check: what it finds, without settings to try
   bool apply = false;              ///< check: write what it suggests
-  bool force = false;              ///< init: overwrite the configuration
+  bool force = false;              ///< write though something speaks against it (init, demo, export)
   bool yes = false;                ///< init: ask nothing (it never does)
   std::string form = "increment";  ///< of models that `show` prints: increment or full
-  std::string output;              ///< -o: the file that `report`, `predict` or `check --apply` writes, demo's folder
-  bool force = false;              ///< write though something speaks against it (demo: what is in its folder)
-  std::string typed;               ///< the whole line, for provenance
+  std::string
+      output;  ///< -o: the file that `report`, `predict`, `init`, `export` or `check --apply` writes, demo's folder
+  ExportLine exported;  ///< of `export` alone
+  std::string typed;    ///< the whole line, for provenance
 };
 
 /// Throws ConfigurationError for an unknown option (naming the nearest known one) or one without its value.

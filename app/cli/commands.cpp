@@ -51,6 +51,11 @@ constexpr Command commands[] = {
      "free run on new inputs (--data.inputs FILES --samples N [--horizon H] [--filter NAME]): CSV on standard output, "
      "or -o FILE",
      run_predict},
+    {"export", "ARCHIVE --to FORM",
+     "the bank for other programs: json, mat, c [--float], casadi, ros2 [--wheel_separation_m W --wheel_radius_m R], "
+     "or "
+     "csv --table PATH; -o FILE or folder; --force where its verdict is overconfident or underconfident",
+     run_export},
     {"report", "ARCHIVE|STUDY [ARCHIVE]",
      "an interactive page that opens offline in a browser (-o page.html): of a run, a study, or two runs", run_report},
     {"verify", "ARCHIVE...",
@@ -65,9 +70,9 @@ std::string help_text() {
   for (const Command& command : commands)
     text += fmt::format("  {:<24} {}\n", fmt::format("{} {}", command.name, command.arguments), command.help);
   text +=
-      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report, predict, check; "
-      "demo: FOLDER), "
-      "--apply, --findings (check), --repair (verify), --force (demo).\n"
+      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report, predict, init, "
+      "export, "
+      "check; demo: FOLDER), --apply, --findings (check), --repair (verify), --force (init, demo, export).\n"
       "Every configuration key is an option too, and wins over the file. Exit status: 0 done; 2 usage, configuration "
       "or "
       "path; 1 content or run failure. `modebank help TERM` says what a word of the summary or a key means.\n";

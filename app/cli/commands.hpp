@@ -17,6 +17,7 @@ int run_study(const CommandLine& line);
 int run_show(const CommandLine& line);
 int run_track(const CommandLine& line);
 int run_predict(const CommandLine& line);
+int run_export(const CommandLine& line);
 int run_verify(const CommandLine& line);
 
 /// The help text: commands, then every option with range, unit, default and meaning.

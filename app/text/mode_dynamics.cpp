@@ -71,16 +71,18 @@ Eigen::MatrixXd covariance_of(const Mode& mode, Eigen::Index parameters) {
   return scale.asDiagonal() * mode.spread * scale.asDiagonal();
 }
 
-/// Derivatives of numbers_of by theta; NaN where a step changes how many there are, as where two roots meet.
-Eigen::MatrixXd derivatives(const Bank& bank, const Eigen::VectorXd& theta, Eigen::Index count) {
+using NumbersOf = std::function<Eigen::VectorXd(const LinearModel&)>;
+
+/// Derivatives of `numbers` by theta; NaN where a step changes how many there are, as where two roots meet.
+Eigen::MatrixXd derivatives(const Bank& bank, const Eigen::VectorXd& theta, Eigen::Index count,
+                            const NumbersOf& numbers) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Constant(count, theta.size(), not_a_number);
   for (Eigen::Index j = 0; j < theta.size(); ++j) {
     const double step = difference_step * std::max(std::abs(theta(j)), 1e-3);
     Eigen::VectorXd above = theta, below = theta;
     above(j) += step;
     below(j) -= step;
-    const Eigen::VectorXd up = numbers_of(dynamics_of(bank, unpack(bank.structure, above))),
-                          down = numbers_of(dynamics_of(bank, unpack(bank.structure, below)));
+    const Eigen::VectorXd up = numbers(unpack(bank.structure, above)), down = numbers(unpack(bank.structure, below));
     if (up.size() == count && down.size() == count) jacobian.col(j) = (up - down) / (above(j) - below(j));
   }
   return jacobian;
@@ -88,16 +90,22 @@ Eigen::MatrixXd derivatives(const Bank& bank, const Eigen::VectorXd& theta, Eige
 
 }  // namespace
 
+DerivedNumbers derived_numbers(const Bank& bank, Eigen::Index mode, const NumbersOf& numbers) {
+  const Mode& chosen = bank.modes.at(static_cast<std::size_t>(mode));
+  const Eigen::VectorXd values = numbers(chosen.model);
+  const Eigen::MatrixXd covariance = covariance_of(chosen, bank.structure.parameters());
+  if (covariance.size() == 0) return {values, Eigen::VectorXd::Constant(values.size(), not_a_number)};
+  const Eigen::MatrixXd J = derivatives(bank, bank.theta(mode), values.size(), numbers);
+  return {values, (J * covariance * J.transpose()).diagonal().cwiseSqrt()};
+}
+
 ModeDynamics mode_dynamics(const Bank& bank, Eigen::Index mode) {
   const Mode& chosen = bank.modes.at(static_cast<std::size_t>(mode));
   ModeDynamics dynamics = dynamics_of(bank, chosen.model);
-  const Eigen::MatrixXd covariance = covariance_of(chosen, bank.structure.parameters());
   const Eigen::Index gains = dynamics.gain.size(), decays = static_cast<Eigen::Index>(dynamics.decays.size());
-  Eigen::VectorXd errors = Eigen::VectorXd::Constant(decays + gains, not_a_number);
-  if (covariance.size() > 0) {
-    const Eigen::MatrixXd J = derivatives(bank, bank.theta(mode), decays + gains);
-    errors = (J * covariance * J.transpose()).diagonal().cwiseSqrt();
-  }
+  const Eigen::VectorXd errors = derived_numbers(bank, mode, [&](const LinearModel& model) {
+                                   return numbers_of(dynamics_of(bank, model));
+                                 }).errors;
   for (Eigen::Index i = 0; i < decays; ++i)
     dynamics.decays[static_cast<std::size_t>(i)].time_constant_error_s = errors(i);
   dynamics.gain_error = errors.tail(gains).reshaped(dynamics.gain.rows(), dynamics.gain.cols());

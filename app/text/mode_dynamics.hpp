@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "filter/step/bank.hpp"
@@ -26,5 +27,13 @@ struct ModeDynamics {
 /// by the delta method from the mode's standard errors of theta, with the correlations of its spread (of refined banks
 /// the two are one covariance; of others the windows' correlations stand in for those of their mean).
 ModeDynamics mode_dynamics(const Bank& bank, Eigen::Index mode);
+
+/// What follows from a mode's model, and its standard errors by the same delta method: NaN where they are not known,
+/// which is so, too, where a small step of theta changes how many numbers there are.
+struct DerivedNumbers {
+  Eigen::VectorXd values, errors;
+};
+DerivedNumbers derived_numbers(const Bank& bank, Eigen::Index mode,
+                               const std::function<Eigen::VectorXd(const LinearModel&)>& numbers);
 
 }  // namespace modebank

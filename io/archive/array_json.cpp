@@ -58,15 +58,19 @@ json text_at(hid_t type, const char* bytes) {
   return text_json(text);
 }
 
+std::string column_name(hid_t type, unsigned i) {
+  char* name = H5Tget_member_name(type, i);
+  const std::string key = name ? name : "";
+  H5free_memory(name);
+  return text_json(key).get<std::string>();
+}
+
 json row_at(hid_t type, const char* bytes) {
   json row = json::object();
   const int members = H5Tget_nmembers(type);
   for (unsigned i = 0; static_cast<int>(i) < members; ++i) {
     const Handle member(H5Tget_member_type(type, i), H5Tclose, "read a column's type");
-    char* name = H5Tget_member_name(type, i);
-    const std::string key = name ? name : "";
-    H5free_memory(name);
-    row[text_json(key).get<std::string>()] = value_at(member.id(), bytes + H5Tget_member_offset(type, i));
+    row[column_name(type, i)] = value_at(member.id(), bytes + H5Tget_member_offset(type, i));
   }
   return row;
 }
@@ -134,6 +138,13 @@ class Reclaim {
 
 json text_json(const std::string& text) {
   return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+std::vector<std::string> column_names(const StoredArray& table) {
+  std::vector<std::string> names;
+  const int members = H5Tget_nmembers(table.type());
+  for (unsigned i = 0; static_cast<int>(i) < members; ++i) names.push_back(column_name(table.type(), i));
+  return names;
 }
 
 json to_json(const StoredArray& array) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "io/hdf5/array.hpp"
 
@@ -9,6 +11,9 @@ namespace modebank::hdf5 {
 /// Every value of an array, nested as its shape; a table is a list of row objects. Integers stay exact, what JSON
 /// cannot hold (NaN, infinities, references, opaque bytes) becomes null, text that is not UTF-8 is repaired.
 nlohmann::json to_json(const StoredArray& array);
+
+/// A table's columns in their order, as the row objects name them.
+std::vector<std::string> column_names(const StoredArray& table);
 
 /// Text as JSON, with U+FFFD for bytes that are not UTF-8.
 nlohmann::json text_json(const std::string& text);

@@ -66,7 +66,10 @@ json members_of(const hdf5::Handle& group, int levels) {
 
 json dataset_json(const hdf5::Handle& group, const std::string& name) {
   const hdf5::StoredArray array(group.id(), hdf5::Place::dataset, name);
-  return {{"attributes", attributes_of(array.object())}, {"shape", array.shape()}, {"value", hdf5::to_json(array)}};
+  json dataset = {
+      {"attributes", attributes_of(array.object())}, {"shape", array.shape()}, {"value", hdf5::to_json(array)}};
+  if (array.type_class() == H5T_COMPOUND) dataset["columns"] = hdf5::column_names(array);
+  return dataset;
 }
 
 json group_json(const hdf5::Handle& group) {

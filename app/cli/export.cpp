@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <system_error>
+
+#include "app/cli/commands.hpp"
+#include "app/cli/live_filter.hpp"
+#include "app/config/config_file.hpp"
+#include "app/export/forms.hpp"
+#include "app/export/names.hpp"
+#include "io/archive/bank/load_bank.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+using std::filesystem::path;
+
+/// Throws ConfigurationError where no such file can be written, or it is the archive.
+void check_output(const CommandLine& line, const path& output) {
+  check_writable(output);
+  std::error_code error;
+  if (std::filesystem::equivalent(output, line.files.front(), error) && !error)
+    throw ConfigurationError(fmt::format("-o {}: that is the archive", output.string()));
+}
+
+/// How much earlier than recorded the inputs were taken that the bank was learned from.
+double input_lag_of(const Archive& archive, const Config& config) {
+  if (!config.data.lag_auto) return config.data.lag_s;
+  return archive.lag && archive.lag->correction != LagCorrection::none ? archive.lag->lag.mean : 0.0;
+}
+
+/// The filter as the archive ran it: other options would be another filter than the one that was judged.
+ExportedBank read_bank(const CommandLine& line) {
+  for (const auto& [key, value] : line.overrides)
+    if (key != "track.filter")
+      throw ConfigurationError(
+          fmt::format("export takes the filter as the archive has it: --{} cannot change it (run does)", key));
+  const std::string& file = line.files.front();
+  const Config config = stored_config(load_configuration(file), line.overrides);
+  if (config.track.filter == TrackedFilter::drifting)
+    throw ConfigurationError("track.filter = drifting: a model whose coefficients learn in every run is no bank");
+  const Archive archive = read_archive(file);
+  ExportedBank bank =
+      exported_bank(archive, file, tracked_bank(config), tracked_options(config), input_lag_of(archive, config));
+  if (!bank.may_be_trusted() && !line.force)
+    throw DataError(
+        fmt::format("{}: the verdict on {} is {}. What takes its uncertainty for true would be misled; --force exports "
+                    "it all the same, the verdict on top",
+                    file, bank.filter, bank.verdict_text()));
+  return bank;
+}
+
+/// -o, else the archive's name with another ending in the current folder.
+path output_of(const CommandLine& line, const std::string& ending) {
+  if (!line.output.empty()) return line.output;
+  return file_stem(path(line.files.front()).stem().string()) + ending;
+}
+
+/// A form that is one text: to standard output without -o.
+template <class Make>
+void write_text(const CommandLine& line, Make make) {
+  if (!line.output.empty()) check_output(line, line.output);
+  const std::string text = make();
+  if (line.output.empty())
+    fmt::print("{}", text);
+  else
+    replace_file(line.output, {text});
+}
+
+void export_json(const CommandLine& line) {
+  write_text(line, [&] { return to_json(read_bank(line)); });
+}
+
+void export_casadi(const CommandLine& line) {
+  write_text(line, [&] { return to_casadi(read_bank(line)); });
+}
+
+void export_csv(const CommandLine& line) {
+  const std::string& table = line.exported.table;
+  if (table.empty())
+    throw ConfigurationError(
+        "export --to csv needs --table PATH, such as /evaluation/summary (modebank show ARCHIVE /)");
+  write_text(line, [&] { return to_csv(inspect(line.files.front(), table), table); });
+}
+
+void export_mat(const CommandLine& line) {
+  const path output = output_of(line, ".mat");
+  check_output(line, output);
+  const ExportedBank bank = read_bank(line);
+  replace_file(output, [&](const path& temporary) { write_mat(bank, temporary); });
+}
+
+/// Both files are made before either is written.
+void export_c(const CommandLine& line) {
+  path source = output_of(line, ".c");
+  if (std::filesystem::is_directory(source)) source /= file_stem(path(line.files.front()).stem().string()) + ".c";
+  if (source.extension() != ".c")
+    throw ConfigurationError(
+        fmt::format("-o {}: a name that ends in .c (the header goes beside it), or a folder", source.string()));
+  const std::string stem = source.stem().string();
+  if (stem != file_stem(stem))
+    throw ConfigurationError(fmt::format("-o {}: of letters, digits, '_' and '-' alone", source.string()));
+  const path header = path(source).replace_extension(".h");
+  for (const path& file : {source, header}) check_output(line, file);
+  const CFiles files = to_c(read_bank(line), stem, line.exported.single_precision);
+  replace_file(header, {files.header});
+  replace_file(source, {files.source});
+}
+
+void export_ros2(const CommandLine& line) {
+  const RobotSizes sizes{line.exported.wheel_separation_m, line.exported.wheel_radius_m};
+  if (!(sizes.wheel_separation_m >= 0.0 && sizes.wheel_radius_m >= 0.0))
+    throw ConfigurationError("--wheel_separation_m and --wheel_radius_m are lengths above 0");
+  const auto files = to_ros2(read_bank(line), sizes);
+  const path folder = output_of(line, "_ros2");
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw ConfigurationError(fmt::format("-o {}: {}", folder.string(), error.message()));
+  for (const auto& [name, text] : files) replace_file(folder / name, {text});
+}
+
+const std::map<std::string, void (*)(const CommandLine&)> forms{{"c", export_c},     {"casadi", export_casadi},
+                                                                {"csv", export_csv}, {"json", export_json},
+                                                                {"mat", export_mat}, {"ros2", export_ros2}};
+
+}  // namespace
+
+int run_export(const CommandLine& line) {
+  const auto form = forms.find(line.exported.to);
+  if (line.files.size() != 1 || form == forms.end())
+    throw ConfigurationError(
+        fmt::format("export needs one archive and one of the forms json, mat, c, casadi, ros2 and csv{}: modebank "
+                    "export ARCHIVE --to FORM",
+                    line.exported.to.empty() || form != forms.end() ? "" : ", not " + line.exported.to));
+  form->second(line);
+  return 0;
+}
+
+}  // namespace modebank::app

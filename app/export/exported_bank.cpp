@@ -1,0 +1,96 @@
+#include "app/export/exported_bank.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/chain/judged_runs.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/model/parameter_labels.hpp"
+#include "io/archive/bank/load_bank.hpp"
+#include "io/archive/bank/units.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+std::vector<Channel> with_units(const std::vector<std::string>& names, const Unit& units) {
+  std::vector<Channel> channels;
+  for (std::size_t i = 0; i < names.size(); ++i) channels.push_back({names[i], i < units.size() ? units[i] : ""});
+  return channels;
+}
+
+/// As pack orders theta; companion rows shift samples and are no estimates.
+ModeErrors errors_of(const Bank& bank, const Mode& mode) {
+  const LinearStructure& s = bank.structure;
+  const Eigen::Index n = s.dimension(), m = s.acting_inputs(), r = s.regressors();
+  ModeErrors errors{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, m), Eigen::VectorXd::Zero(n)};
+  const bool known = mode.standard_error.size() == s.parameters();
+  const Eigen::VectorXd theta =
+      known ? mode.standard_error : Eigen::VectorXd(Eigen::VectorXd::Constant(s.parameters(), not_a_number));
+  for (Eigen::Index i = 0; i < s.states; ++i) {
+    errors.A.row(i) = theta.segment(i * r, n).transpose();
+    errors.B.row(i) = theta.segment(i * r + n, m).transpose();
+    if (s.intercept) errors.c(i) = theta(i * r + r - 1);
+  }
+  return errors;
+}
+
+void add_verdict(const Archive& archive, ExportedBank& exported) {
+  const Role role = judged_role(archive);
+  const DiagnosticsRow* row = diagnosis(archive, exported.filter, role);
+  if (archive.finding && exported.filter == "bank") exported.finding = archive.finding->text;
+  if (!row) return;
+  exported.verdict = row->verdict;
+  exported.judged_on = words_for(role);
+  exported.coverage_95 = row->coverage_95;
+}
+
+void add_channels(const Recording& recording, ExportedBank& exported) {
+  const Units units(recording);
+  const Bank& bank = exported.bank;
+  exported.states = with_units(bank.state_names, units.states(bank.state_names));
+  exported.inputs = with_units(bank.input_names, units.inputs(bank.input_names));
+  exported.recorded_inputs = recording.inputs;
+  exported.measurements = recording.states;
+  exported.parameter_names = parameter_labels(bank.structure, bank.state_names, bank.input_names);
+  exported.parameter_units = parameter_units(bank.structure, units.states(), units.inputs());
+  // A bank from elsewhere may have other channels than the archive's runs.
+  for (Index i = std::ssize(exported.measurements); i < bank.C.rows(); ++i)
+    exported.measurements.push_back({fmt::format("y{}", i + 1), ""});
+  exported.measurements.resize(static_cast<std::size_t>(bank.C.rows()));
+  for (Index i = std::ssize(exported.recorded_inputs); i < bank.structure.inputs; ++i)
+    exported.recorded_inputs.push_back({fmt::format("u{}", i + 1), ""});
+  exported.recorded_inputs.resize(static_cast<std::size_t>(bank.structure.inputs));
+}
+
+}  // namespace
+
+std::string ExportedBank::verdict_text() const {
+  if (judged_on.empty()) return "not judged: no run was scored";
+  return fmt::format("{}: {:.1f} % of the {} samples lie in the 95 % band", name_of(verdict), 100.0 * coverage_95,
+                     judged_on);
+}
+
+ExportedBank exported_bank(const Archive& archive, const std::string& file, const std::string& filter,
+                           const FilterOptions& options, double input_lag_s) {
+  const std::optional<Bank> bank = archive.bank_of(filter);
+  if (!bank) throw DataError(fmt::format("{}: holds no {}", file, filter));
+  ExportedBank exported;
+  exported.filter = filter;
+  exported.archive = std::filesystem::path(file).filename().string();
+  exported.sha256 = archive_digest(file);
+  exported.provenance = archive.provenance;
+  exported.options = options;
+  exported.bank = *bank;
+  exported.input_lag_s = input_lag_s;
+  add_verdict(archive, exported);
+  add_channels(archive.recording.value_or(Recording()), exported);
+  for (std::size_t j = 0; j < bank->modes.size(); ++j) {
+    exported.mode_names.push_back(fmt::format("mode {}", j));
+    exported.errors.push_back(errors_of(*bank, bank->modes[j]));
+  }
+  return exported;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/export/exported_bank.hpp"
+#include "io/archive/inspect.hpp"
+
+/// One function per form of `modebank export`; docs/export.md has their schemas.
+namespace modebank::app {
+
+/// Of the JSON page; its minor part grows with members, its major part with changes of what there is.
+inline constexpr const char* export_schema_version = "1.0";
+
+std::string to_json(const ExportedBank& bank);
+
+/// MATLAB's MAT-file of version 5, written under this name. Throws DataError where it cannot be.
+void write_mat(const ExportedBank& bank, const std::filesystem::path& file);
+
+/// C99: what a header declares, the source defines. `stem`: of the files' names; identifiers begin with it.
+struct CFiles {
+  std::string header, source;
+};
+/// Throws DataError naming what of the filter C does not have.
+CFiles to_c(const ExportedBank& bank, const std::string& stem, bool single_precision);
+
+/// A module of Python that needs casadi alone.
+std::string to_casadi(const ExportedBank& bank);
+
+/// What of a robot the archive does not hold; 0: not known.
+struct RobotSizes {
+  double wheel_separation_m = 0.0, wheel_radius_m = 0.0;
+};
+/// Parameter files of ROS 2, one per mode: name and text.
+std::vector<std::pair<std::string, std::string>> to_ros2(const ExportedBank& bank, const RobotSizes& sizes);
+
+/// A table or array of an archive, as inspect gives it. Throws ConfigurationError for what is neither. `path`: for
+/// messages.
+std::string to_csv(const nlohmann::json& object, const std::string& path);
+
+}  // namespace modebank::app

@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/export/forms.hpp"
+#include "io/archive/bank/units.hpp"
+
+namespace modebank::app {
+namespace {
+
+using ordered = nlohmann::ordered_json;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// What is not known (NaN) becomes null.
+ordered vector_json(const VectorXd& v) {
+  ordered list = ordered::array();
+  for (const double value : v) list.push_back(value);
+  return list;
+}
+
+ordered matrix_json(const MatrixXd& M) {
+  ordered rows = ordered::array();
+  for (Index i = 0; i < M.rows(); ++i) rows.push_back(vector_json(M.row(i).transpose()));
+  return rows;
+}
+
+Unit units_of(const std::vector<Channel>& channels) {
+  Unit units;
+  for (const Channel& channel : channels) units.push_back(channel.unit);
+  return units;
+}
+
+ordered rows_of(const Unit& units, Index rows, Index cols) {
+  ordered list = ordered::array();
+  for (Index i = 0; i < rows; ++i) {
+    ordered row = ordered::array();
+    for (Index j = 0; j < cols; ++j) row.push_back(units[static_cast<std::size_t>(i * cols + j)]);
+    list.push_back(row);
+  }
+  return list;
+}
+
+/// A matrix, its standard errors where there are any, and what its entries are measured in (empty: nobody stated it).
+ordered quantity(const MatrixXd& value, const MatrixXd& error, const Unit& units) {
+  ordered result = {{"value", matrix_json(value)}};
+  result["standard_error"] = error.size() == value.size() ? matrix_json(error) : ordered(nullptr);
+  result["unit"] = rows_of(units, value.rows(), value.cols());
+  return result;
+}
+
+ordered channels_json(const std::vector<Channel>& channels) {
+  ordered list = ordered::array();
+  for (const Channel& channel : channels) list.push_back({{"name", channel.name}, {"unit", channel.unit}});
+  return list;
+}
+
+ordered verdict_json(const ExportedBank& bank) {
+  const bool judged = !bank.judged_on.empty();
+  return {{"answer", judged ? ordered(name_of(bank.verdict)) : ordered("not judged")},
+          {"judged_on", judged ? ordered(bank.judged_on) : ordered(nullptr)},
+          {"share_in_95_band", judged ? ordered(bank.coverage_95) : ordered(nullptr)},
+          {"text", bank.verdict_text()},
+          {"finding", bank.finding}};
+}
+
+ordered source_json(const ExportedBank& bank) {
+  return {{"archive", bank.archive},
+          {"sha256", bank.sha256},
+          {"filter", bank.filter},
+          {"created", bank.provenance.created},
+          {"modebank_version", bank.provenance.modebank_version},
+          {"config_hash", bank.provenance.config_hash},
+          {"data_hash", bank.provenance.data_hash}};
+}
+
+ordered parameters_json(const VectorXd& values, const VectorXd& errors, const std::vector<std::string>& names,
+                        const std::vector<std::string>& units) {
+  ordered list = ordered::array();
+  for (Index i = 0; i < values.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    list.push_back({{"name", names[at]},
+                    {"value", values(i)},
+                    {"standard_error", errors.size() == values.size() ? ordered(errors(i)) : ordered(nullptr)},
+                    {"unit", at < units.size() ? units[at] : ""}});
+  }
+  return list;
+}
+
+ordered mode_json(const ExportedBank& exported, Index k) {
+  const auto at = static_cast<std::size_t>(k);
+  const Mode& mode = exported.bank.modes[at];
+  const ModeErrors& errors = exported.errors[at];
+  const Unit states = units_of(exported.states), inputs = units_of(exported.inputs);
+  ordered result = {{"index", k}, {"name", exported.mode_names[at]}, {"share_of_windows", mode.weight}};
+  result["A"] = quantity(exported.A(k), errors.A, ratios(states, states));
+  result["B"] = quantity(mode.model.B, errors.B, ratios(states, inputs));
+  result["c"] = quantity(mode.model.c, errors.c, states);
+  result["Q"] = quantity(mode.Q, mode.Q_standard_error, outer(states));
+  result["parameters"] =
+      parameters_json(exported.bank.theta(k), mode.standard_error, exported.parameter_names, exported.parameter_units);
+  if (mode.motion_theta.size() == 0) return result;
+  std::vector<std::string> names, units;
+  for (const ModelParameter& parameter : exported.bank.motion_parameters) {
+    names.push_back(parameter.name);
+    units.push_back(parameter.unit);
+  }
+  result["motion_parameters"] = parameters_json(mode.motion_theta, mode.motion_standard_error, names, units);
+  return result;
+}
+
+ordered transition_json(const ExportedBank& exported) {
+  const Bank& bank = exported.bank;
+  ordered result = {
+      {"meaning", transition_meaning},
+      {"T", matrix_json(bank.transition.matrix())},
+      {"standard_error",
+       bank.transition_standard_error.size() > 0 ? matrix_json(bank.transition_standard_error) : ordered(nullptr)},
+      {"initial_probability", vector_json(bank.initial_probability)}};
+  if (bank.transition_logit.empty()) {
+    result["logit"] = nullptr;
+    return result;
+  }
+  ordered features = ordered::array();
+  for (const auto* channels : {&exported.states, &exported.inputs})
+    for (const Channel& channel : *channels) features.push_back(channel.name);
+  result["logit"] = {
+      {"meaning",
+       "P(mode j next | mode i now, z) is proportional to T[i][j] exp(w[j] . (z - reference)), z = (x, u) of the step"},
+      {"features", features},
+      {"weights", matrix_json(bank.transition_logit.weights)},
+      {"standard_error",
+       bank.transition_weight_error.size() > 0 ? matrix_json(bank.transition_weight_error) : ordered(nullptr)},
+      {"reference", vector_json(bank.transition_logit.reference)}};
+  return result;
+}
+
+ordered filter_json(const ExportedBank& exported) {
+  const Bank& bank = exported.bank;
+  ordered result = {{"variant", name_of(exported.options.variant)},
+                    {"noise", name_of(exported.options.noise)},
+                    {"noise_forgetting", bank.noise_adaptation.forgetting},
+                    {"noise_prior_samples", bank.noise_adaptation.prior_samples},
+                    {"parameter_noise", exported.options.parameter_noise},
+                    {"time_steps", name_of(exported.options.time_steps)}};
+  result["quantum"] = bank.quantum.size() > 0 ? vector_json(bank.quantum) : ordered(nullptr);
+  result["drift"] = nullptr;
+  if (!bank.drift.empty())
+    result["drift"] = {{"q", bank.drift.rates.q},
+                       {"p0", bank.drift.rates.p0},
+                       {"leak", bank.drift.rates.leak},
+                       {"regressor_scale", vector_json(bank.drift.scale)}};
+  return result;
+}
+
+}  // namespace
+
+std::string to_json(const ExportedBank& exported) {
+  const Bank& bank = exported.bank;
+  const LinearStructure& s = bank.structure;
+  const Unit outputs = units_of(exported.measurements);
+  ordered page = {{"format", "modebank export"}, {"schema_version", export_schema_version}};
+  page["verdict"] = verdict_json(exported);
+  page["source"] = source_json(exported);
+  page["equation"] = exported_equation;
+  page["dt_s"] = bank.dt_s;
+  page["model"] = bank.model;
+  page["input_lag_s"] = exported.input_lag_s;
+  page["lags"] = {{"state_lags", s.state_lags}, {"input_lags", s.input_lags}, {"input_delay", s.input_delay}};
+  page["states"] = channels_json(exported.states);
+  page["inputs"] = channels_json(exported.inputs);
+  page["measurements"] = channels_json(exported.measurements);
+  page["C"] =
+      quantity(bank.C, MatrixXd::Zero(bank.C.rows(), bank.C.cols()), ratios(outputs, units_of(exported.states)));
+  page["R"] = quantity(bank.R, bank.R_standard_error, outer(outputs));
+  page["transition"] = transition_json(exported);
+  page["filter"] = filter_json(exported);
+  page["modes"] = ordered::array();
+  for (Index k = 0; k < bank.mode_count(); ++k) page["modes"].push_back(mode_json(exported, k));
+  return page.dump(1, ' ', false, ordered::error_handler_t::replace) + "\n";
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,107 @@
+#include "app/export/names.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/algorithm/string.hpp>
+#include <cctype>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace modebank::app {
+namespace {
+
+/// Of C up to C23 and of C++: a header may be included from either.
+constexpr const char* c_words =
+    "alignas alignof and and_eq asm atomic_cancel atomic_commit atomic_noexcept auto bitand bitor bool break case "
+    "catch "
+    "char char16_t char32_t char8_t class co_await co_return co_yield compl concept const const_cast consteval "
+    "constexpr constinit continue decltype default delete do double dynamic_cast else enum explicit export extern "
+    "false float for friend goto if inline int long mutable namespace new noexcept not not_eq nullptr operator or "
+    "or_eq private protected public reflexpr register reinterpret_cast requires restrict return short signed sizeof "
+    "static static_assert static_cast struct switch synchronized template this thread_local throw true try typedef "
+    "typeid typename typeof typeof_unqual union unsigned using virtual void volatile wchar_t while xor xor_eq";
+constexpr const char* python_words =
+    "False None True and as assert async await break case class continue def del elif else except finally for from "
+    "global if import in is lambda match nonlocal not or pass raise return try type while with yield";
+
+std::set<std::string> words_of(Language language) {
+  std::set<std::string> words;
+  boost::algorithm::split(words, language == Language::c ? c_words : python_words, boost::algorithm::is_space());
+  return words;
+}
+
+// Not std::isalnum, which asks the locale.
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// With a single '_' for a stretch of other characters: names that begin with two are the compiler's.
+std::string identifier(const std::string& name) {
+  std::string result;
+  for (const char c : name) {
+    if (is_letter(c) || is_digit(c))
+      result += c;
+    else if (result.empty() || result.back() != '_')
+      result += '_';
+  }
+  while (result.size() > 1 && result.back() == '_') result.pop_back();
+  if (result.empty() || result == "_") return "unnamed";
+  if (result.front() == '_') result.erase(0, 1);
+  return is_digit(result.front()) ? "n" + result : result;
+}
+
+/// As JSON replaces what is not UTF-8, and with everything else than ASCII as \uXXXX.
+std::string ascii_json(std::string_view text) {
+  return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::vector<std::string> identifiers(const std::vector<std::string>& names, Language language) {
+  std::set<std::string> taken = words_of(language);
+  std::vector<std::string> result;
+  for (const std::string& name : names) {
+    const std::string base = identifier(name);
+    std::string candidate = base;
+    for (int i = 2; !taken.insert(candidate).second; ++i) candidate = fmt::format("{}_{}", base, i);
+    result.push_back(candidate);
+  }
+  return result;
+}
+
+std::string comment_text(std::string_view text) {
+  std::string result = nlohmann::json::parse(ascii_json(text)).get<std::string>();
+  for (char& c : result)
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f' || c == '\\') c = ' ';
+  // Line breaks that are none of ASCII: NEL, LINE SEPARATOR and PARAGRAPH SEPARATOR, which YAML and others honour.
+  for (const char* breaks : {"\xc2\x85", "\xe2\x80\xa8", "\xe2\x80\xa9"})
+    boost::algorithm::replace_all(result, breaks, " ");
+  boost::algorithm::replace_all(result, "*/", "* /");
+  boost::algorithm::replace_all(result, "/*", "/ *");
+  boost::algorithm::replace_all(result, "?\?/", "? ?/");  // a trigraph is a backslash
+  return result;
+}
+
+std::string quoted_scalar(std::string_view text) {
+  std::string result = ascii_json(text);
+  boost::algorithm::replace_all(result, "\x7f", "\\u007f");  // YAML's readers refuse it
+  return result;
+}
+
+std::string csv_field(std::string_view text) {
+  std::string field(text);
+  if (!field.empty() && std::string_view("=+-@\t\r").find(field.front()) != std::string_view::npos)
+    field.insert(0, 1, '\'');
+  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  boost::algorithm::replace_all(field, "\"", "\"\"");
+  return '"' + field + '"';
+}
+
+std::string file_stem(std::string_view text) {
+  std::string stem;
+  for (const char c : text) stem += is_letter(c) || is_digit(c) || c == '-' ? c : '_';
+  return stem.empty() ? "modebank" : stem;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,189 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "app/export/names.hpp"
+#include "app/export/ros2/ros2_numbers.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// ROS takes 1 for an integer, and refuses it where a double is declared.
+std::string yaml_number(double value) {
+  const std::string text = fmt::format("{}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+std::string error_text(const Estimate& estimate) {
+  return std::isfinite(estimate.error) ? fmt::format("+- {:.2g}", estimate.error) : "standard error not known";
+}
+
+/// A key where the bank determines its value, else a comment with the reason.
+std::string key_line(const char* key, const Estimate& estimate, const std::string& unit, const std::string& reason) {
+  if (!estimate.known()) return fmt::format("    # {}: not determined: {}\n", key, comment_text(reason));
+  return fmt::format("    {}: {}  # {}{}\n", key, yaml_number(estimate.value), error_text(estimate), unit);
+}
+
+std::string missing_text(const RobotChannels& channels) {
+  std::string text;
+  for (const std::string& missing : channels.missing) text += (text.empty() ? "" : "; ") + missing;
+  return text.empty() ? "this mode does not settle, or turns against its wheels" : text;
+}
+
+/// A list of six, what the bank does not determine at the release's default of 0.
+std::string twist_covariance(const RobotNumbers& numbers) {
+  const Estimate &forward = numbers.forward_variance, &yaw = numbers.yaw_variance;
+  if (!forward.known() && !yaw.known())
+    return "    # twist_covariance_diagonal: not determined: neither speed is a state that settles\n";
+  std::string text = "    # Of vx, vy, vz, wx, wy, wz about their steady values, P = A P A' + Q:";
+  if (forward.known()) text += fmt::format(" vx [(m/s)^2] {};", error_text(forward));
+  if (yaw.known()) text += fmt::format(" wz [(rad/s)^2] {};", error_text(yaw));
+  text += "\n    # the others stay at the default, 0";
+  if (!forward.known()) text += ": the forward speed is not among the states";
+  if (!yaw.known()) text += ": the yaw rate is not among the states";
+  return text + fmt::format("\n    twist_covariance_diagonal: [{}, 0.0, 0.0, 0.0, 0.0, {}]\n",
+                            yaml_number(forward.known() ? forward.value : 0.0),
+                            yaml_number(yaw.known() ? yaw.value : 0.0));
+}
+
+std::string diff_drive(const RobotNumbers& numbers, const RobotChannels& channels, const RobotSizes& sizes) {
+  const std::string missing = missing_text(channels);
+  std::string text =
+      "# ros2_controllers of ROS 2 Humble to Jazzy, diff_drive_controller. Gains at steady state, C (I - A)^-1 B: G of "
+      "the yaw rate\n# and H of the forward speed per left (L) and right (R) wheel speed, r the wheel radius (1 for "
+      "speeds "
+      "in m/s).\n# Standard errors by the delta method from those of the mode's parameters.\n"
+      "diff_drive_controller:\n  ros__parameters:\n";
+  text +=
+      channels.forward_speed >= 0
+          ? "    # separation = 2 (H_L + H_R) / (G_R - G_L), multipliers 2 H_L / r and 2 H_R / r\n"
+          : "    # separation = 2 r / (G_R - G_L), multipliers -2 G_L / (G_R - G_L) and 2 G_R / (G_R - G_L): without a "
+            "forward\n    # speed among the states their mean is taken as one\n";
+  const Estimate& separation = numbers.separation_m;
+  const bool lacks_radius = channels.wheels_in_rad_s && sizes.wheel_radius_m == 0.0;
+  if (separation.known() && sizes.wheel_separation_m > 0.0) {
+    const double nominal = sizes.wheel_separation_m;
+    text += key_line("wheel_separation_multiplier", {separation.value / nominal, separation.error / nominal},
+                     fmt::format(" of wheel_separation = {} m", nominal), "");
+  } else if (separation.known()) {
+    text += fmt::format(
+        "    # wheel_separation_multiplier: {:.6g} m {} m over your wheel_separation (give it as "
+        "--wheel_separation_m)\n",
+        separation.value, error_text(separation));
+  } else {
+    text += key_line("wheel_separation_multiplier", separation, "",
+                     lacks_radius ? "wheel speeds are rad/s: give --wheel_radius_m" : missing);
+  }
+  const std::string reason = lacks_radius ? "wheel speeds are rad/s: give --wheel_radius_m" : missing;
+  text += key_line("left_wheel_radius_multiplier", numbers.left_multiplier, "", reason);
+  text += key_line("right_wheel_radius_multiplier", numbers.right_multiplier, "", reason);
+  return text + twist_covariance(numbers) + "\n";
+}
+
+constexpr Index filter_states = 15;
+/// robot_localization's own, of x y z roll pitch yaw, their velocities and ax ay az.
+constexpr std::array<double, filter_states> default_noise{0.05, 0.05, 0.06, 0.03, 0.03, 0.06, 0.025, 0.025,
+                                                          0.04, 0.01, 0.01, 0.02, 0.01, 0.01, 0.015};
+constexpr Index filter_vx = 6, filter_vyaw = 11;
+
+std::string noise_rows(const Eigen::MatrixXd& noise) {
+  std::string text;
+  for (Index i = 0; i < filter_states; ++i) {
+    text += "      ";
+    for (Index j = 0; j < filter_states; ++j)
+      text += yaml_number(noise(i, j)) + (j + 1 < filter_states ? ", " : i + 1 < filter_states ? ",\n" : "]\n");
+  }
+  return text;
+}
+
+std::string process_noise(const ExportedBank& exported, Index mode, const RobotChannels& channels) {
+  std::string text =
+      "# robot_localization of ROS 2 Humble to Jazzy, ekf_node and ukf_node.\nekf_filter_node:\n  ros__parameters:\n";
+  if (channels.yaw_rate < 0 && channels.forward_speed < 0)
+    return text + fmt::format("    # process_noise_covariance: not determined: {}\n\n", missing_text(channels));
+  const Mode& of = exported.bank.modes[static_cast<std::size_t>(mode)];
+  const Eigen::MatrixXd Q = exported.bank.C * of.Q * exported.bank.C.transpose();
+  const bool errors = of.Q_standard_error.size() > 0;
+  Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(filter_states, filter_states);
+  for (Index i = 0; i < filter_states; ++i) noise(i, i) = default_noise[static_cast<std::size_t>(i)];
+  text +=
+      "    # It adds process_noise_covariance times the time between two predictions; the bank's Q is per step of "
+      "dt_s:\n"
+      "    # process_noise_covariance = Q / dt_s. Q is what the bank's model leaves unexplained, wheel speeds known; a "
+      "filter\n    # that takes velocities for constant needs more where they change. All else is the project's "
+      "default.\n";
+  const auto set = [&](Index a, Index b, Index of_a, Index of_b, const char* name) {
+    if (of_a < 0 || of_b < 0) return;
+    noise(a, b) = noise(b, a) = Q(of_a, of_b) / exported.bank.dt_s;
+    const std::string error = errors ? fmt::format("+- {:.2g}", of.Q_standard_error(of_a, of_b) / exported.bank.dt_s)
+                                     : "standard error not known";
+    text += fmt::format("    # {}: Q {:.6g} / dt_s {:.6g} s = {:.6g} {}\n", name, Q(of_a, of_b), exported.bank.dt_s,
+                        noise(a, b), error);
+  };
+  set(filter_vyaw, filter_vyaw, channels.yaw_rate, channels.yaw_rate, "vyaw [(rad/s)^2/s]");
+  set(filter_vx, filter_vx, channels.forward_speed, channels.forward_speed, "vx [(m/s)^2/s]");
+  set(filter_vx, filter_vyaw, channels.forward_speed, channels.yaw_rate, "vx and vyaw [(m/s)(rad/s)/s]");
+  return text + "    process_noise_covariance: [\n" + noise_rows(noise) + "\n";
+}
+
+std::string model_delays(const RobotNumbers& numbers, const RobotChannels& channels) {
+  const auto line = [&](const char* key, const Estimate& delay) {
+    return "  " + key_line(key, delay, " s", missing_text(channels));
+  };
+  return "# Nav2 of ROS 2 Lyrical (nav2_mppi_controller has these keys since June 2026), under your plugin's name. "
+         "Mean "
+         "delay of\n# the response to wheel speeds: the first moment of the impulse response, dead time and time "
+         "constants "
+         "together.\ncontroller_server:\n  ros__parameters:\n    FollowPath:\n" +
+         line("model_delay_vx", numbers.forward_delay_s) + line("model_delay_wz", numbers.yaw_delay_s);
+}
+
+/// A mapping of comments alone would be null, which ROS refuses: its key goes to the comments, too.
+std::string without_empty_mappings(const std::string& block) {
+  std::string text;
+  bool any = false;
+  for (std::size_t begin = 0; begin < block.size();) {
+    const std::size_t end = std::min(block.find('\n', begin), block.size() - 1);
+    const std::string line = block.substr(begin, end + 1 - begin);
+    const std::size_t first = line.find_first_not_of(" \n");
+    any = any || (first != std::string::npos && line[first] != '#' && line.find(": ") != std::string::npos);
+    begin = end + 1;
+  }
+  for (std::size_t begin = 0; begin < block.size();) {
+    const std::size_t end = std::min(block.find('\n', begin), block.size() - 1);
+    const std::string line = block.substr(begin, end + 1 - begin);
+    text += (any || line == "\n" || line.front() == '#' ? "" : "# ") + line;
+    begin = end + 1;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> to_ros2(const ExportedBank& exported, const RobotSizes& sizes) {
+  const RobotChannels channels = robot_channels(exported);
+  std::vector<std::pair<std::string, std::string>> files;
+  const std::vector<std::string> names = identifiers(exported.mode_names, Language::c);
+  for (Index k = 0; k < exported.bank.mode_count(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const RobotNumbers numbers = robot_numbers(exported, k, channels, sizes);
+    const std::string opening = fmt::format(
+        "# Verdict: {}\n# {}, {:.1f} % of the windows, of a bank made by modebank {} of {},\n# SHA-256 {}, "
+        "filter "
+        "{}.\n# {}\n# dt_s = {} s. {}.\n# Keys are those that the bank determines; what it does not is a comment that "
+        "says "
+        "why.\n\n",
+        comment_text(exported.verdict_text()), comment_text(exported.mode_names[at]),
+        100.0 * exported.bank.modes[at].weight, comment_text(exported.provenance.modebank_version),
+        comment_text(exported.archive), exported.sha256, exported.filter, exported_equation,
+        yaml_number(exported.bank.dt_s), transition_meaning);
+    files.emplace_back(names[at] + ".yaml", opening + without_empty_mappings(diff_drive(numbers, channels, sizes)) +
+                                                without_empty_mappings(process_noise(exported, k, channels)) +
+                                                without_empty_mappings(model_delays(numbers, channels)));
+  }
+  return files;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,190 @@
+#include "app/export/ros2/ros2_numbers.hpp"
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+#include <cmath>
+
+#include "app/text/mode_dynamics.hpp"
+#include "ident/base/linalg.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank::app {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+bool holds_any(const std::string& name, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(),
+                     [&](const char* word) { return boost::algorithm::icontains(name, word); });
+}
+
+/// The only channel of that unit; of several the only one of such a name. -1: none, or nobody can tell which.
+Index find_channel(const std::vector<Channel>& channels, const char* unit, std::initializer_list<const char*> words) {
+  std::vector<Index> by_unit, by_name;
+  for (Index i = 0; i < std::ssize(channels); ++i) {
+    const Channel& channel = channels[static_cast<std::size_t>(i)];
+    if (channel.unit != unit) continue;
+    by_unit.push_back(i);
+    if (holds_any(channel.name, words)) by_name.push_back(i);
+  }
+  const std::vector<Index>& found = by_unit.size() == 1 ? by_unit : by_name;
+  return found.size() == 1 ? found.front() : -1;
+}
+
+/// "left", "wheel_left", "velL", "vel_l".
+bool is_side(const std::string& name, const char* word, char letter) {
+  return holds_any(name, {word}) || boost::algorithm::ends_with(name, std::string("_") + letter) ||
+         boost::algorithm::ends_with(name, std::string(1, static_cast<char>(letter - 'a' + 'A')));
+}
+
+void find_wheels(const std::vector<Channel>& inputs, RobotChannels& channels) {
+  for (Index i = 0; i < std::ssize(inputs); ++i) {
+    const std::string& name = inputs[static_cast<std::size_t>(i)].name;
+    const bool left = is_side(name, "left", 'l'), right = is_side(name, "right", 'r');
+    if (left && !right && channels.left < 0) channels.left = i;
+    if (right && !left && channels.right < 0) channels.right = i;
+  }
+  if (channels.left < 0 || channels.right < 0) {
+    channels.missing.push_back("no two inputs named as left and right wheel speeds");
+  } else {
+    const std::string& unit = inputs[static_cast<std::size_t>(channels.left)].unit;
+    channels.wheels_in_rad_s = unit == "rad/s";
+    const bool alike = unit == inputs[static_cast<std::size_t>(channels.right)].unit;
+    if (alike && (unit == "rad/s" || unit == "m/s")) return;
+    channels.missing.push_back("wheel speeds need data.input_unit = m/s or rad/s");
+  }
+  channels.left = channels.right = -1;
+}
+
+/// Steady gains per recorded input, and minus the derivative at z = 1 of the transfer function: C x samples later.
+struct Response {
+  MatrixXd gain, delay_gain;  ///< n_y x inputs
+};
+
+Response response_of(const Bank& bank, const LinearModel& model) {
+  const LinearStructure& s = bank.structure;
+  MatrixXd held = MatrixXd::Zero(s.dimension(), s.inputs), late = held;
+  for (Index lag = 0; lag < s.input_lags; ++lag) {
+    const auto B = model.B.middleCols(lag * s.inputs, s.inputs);
+    held += B;
+    late += static_cast<double>(s.input_delay - 1 + lag) * B;
+  }
+  const PivotedLu lu(-model.A);
+  const MatrixXd unknown = MatrixXd::Constant(bank.C.rows(), s.inputs, not_a_number);
+  if (!lu.invertible()) return {unknown, unknown};
+  const MatrixXd once = lu.solve(held);
+  return {bank.C * once, bank.C * (lu.solve(once) + lu.solve(late))};
+}
+
+/// The mean delay of a response [s]: first moment of the impulse response over its sum, counted from the middle of the
+/// sample that an input is held for.
+double mean_delay_s(double gain, double delay_gain, double dt_s, double input_lag_s) {
+  return dt_s * (delay_gain / gain - 0.5) + input_lag_s;
+}
+
+/// separation, left and right multiplier, delay of the yaw rate and of the forward speed.
+VectorXd wheel_numbers(const ExportedBank& exported, const LinearModel& model, const RobotChannels& at,
+                       const RobotSizes& sizes) {
+  VectorXd numbers = VectorXd::Constant(5, not_a_number);
+  if (at.left < 0 || at.yaw_rate < 0) return numbers;
+  const Response response = response_of(exported.bank, model);
+  const double radius = !at.wheels_in_rad_s ? 1.0 : sizes.wheel_radius_m > 0.0 ? sizes.wheel_radius_m : not_a_number;
+  const double G_L = response.gain(at.yaw_rate, at.left), G_R = response.gain(at.yaw_rate, at.right);
+  const auto delay = [&](Index state, double sign) {
+    return mean_delay_s(response.gain(state, at.right) + sign * response.gain(state, at.left),
+                        response.delay_gain(state, at.right) + sign * response.delay_gain(state, at.left),
+                        exported.bank.dt_s, exported.input_lag_s);
+  };
+  numbers(3) = delay(at.yaw_rate, -1.0);
+  if (at.forward_speed < 0) {
+    numbers(0) = 2.0 * radius / (G_R - G_L);
+    numbers(1) = -2.0 * G_L / (G_R - G_L);
+    numbers(2) = 2.0 * G_R / (G_R - G_L);
+    return numbers;
+  }
+  const double H_L = response.gain(at.forward_speed, at.left), H_R = response.gain(at.forward_speed, at.right);
+  numbers(0) = 2.0 * (H_L + H_R) / (G_R - G_L);
+  numbers(1) = 2.0 * H_L / radius;
+  numbers(2) = 2.0 * H_R / radius;
+  numbers(4) = delay(at.forward_speed, 1.0);
+  return numbers;
+}
+
+/// P = F P F' + Q by doubling; empty where the mode is not stable.
+MatrixXd stationary_covariance(MatrixXd F, MatrixXd P) {
+  constexpr int doublings = 60;
+  if (eigenvalues(F).cwiseAbs().maxCoeff() >= 1.0) return {};
+  for (int i = 0; i < doublings; ++i) {
+    P += (F * P * F.transpose()).eval();
+    F = (F * F).eval();
+  }
+  return P;
+}
+
+/// Variances of the measured states about their steady values, P = A P A' + Q; NaN where the mode is not stable.
+VectorXd stationary_variances(const ExportedBank& exported, const LinearModel& model, const MatrixXd& Q) {
+  const MatrixXd& C = exported.bank.C;
+  const MatrixXd P = stationary_covariance(model.full_form(), Q);
+  if (P.size() == 0) return VectorXd::Constant(C.rows(), not_a_number);
+  return (C * P * C.transpose()).diagonal();
+}
+
+/// The same with standard errors: of theta by the delta method, of Q, which is linear in it, entry by entry.
+DerivedNumbers variances_of(const ExportedBank& exported, Index mode) {
+  const Mode& of = exported.bank.modes[static_cast<std::size_t>(mode)];
+  DerivedNumbers result = derived_numbers(
+      exported.bank, mode, [&](const LinearModel& model) { return stationary_variances(exported, model, of.Q); });
+  VectorXd squares = result.errors.array().square();
+  if (of.Q_standard_error.size() == 0) squares.setConstant(not_a_number);
+  for (Index i = 0; i < of.Q_standard_error.rows(); ++i)
+    for (Index j = 0; j <= i; ++j) {
+      if (of.Q_standard_error(i, j) == 0.0) continue;
+      MatrixXd unit = MatrixXd::Zero(of.Q.rows(), of.Q.cols());
+      unit(i, j) = unit(j, i) = of.Q_standard_error(i, j);
+      squares.array() += stationary_variances(exported, of.model, unit).array().square();
+    }
+  result.errors = squares.cwiseSqrt();
+  return result;
+}
+
+}  // namespace
+
+bool Estimate::known() const { return std::isfinite(value); }
+
+RobotChannels robot_channels(const ExportedBank& exported) {
+  RobotChannels channels;
+  channels.yaw_rate = find_channel(exported.measurements, "rad/s", {"wz", "yaw", "gyro_z", "angular.z", "omega_z"});
+  channels.forward_speed = find_channel(exported.measurements, "m/s", {"vx", "forward", "linear.x", "speed", "surge"});
+  if (channels.yaw_rate < 0)
+    channels.missing.push_back("no state is known to be the yaw rate (data.state_unit = rad/s)");
+  if (channels.forward_speed < 0)
+    channels.missing.push_back("no state is known to be the forward speed (data.state_unit = m/s)");
+  find_wheels(exported.recorded_inputs, channels);
+  return channels;
+}
+
+RobotNumbers robot_numbers(const ExportedBank& exported, Index mode, const RobotChannels& channels,
+                           const RobotSizes& sizes) {
+  const DerivedNumbers derived = derived_numbers(
+      exported.bank, mode, [&](const LinearModel& model) { return wheel_numbers(exported, model, channels, sizes); });
+  const DerivedNumbers variances = variances_of(exported, mode);
+  const auto variance = [&](Index state) {
+    return state < 0 ? Estimate{not_a_number, not_a_number}
+                     : Estimate{variances.values(state), variances.errors(state)};
+  };
+  const auto at = [&](Index i) { return Estimate{derived.values(i), derived.errors(i)}; };
+  RobotNumbers numbers{
+      at(0), at(1), at(2), at(3), at(4), variance(channels.yaw_rate), variance(channels.forward_speed)};
+  // Of a mode that does not settle no gain means anything; of one that turns the other way no separation.
+  const bool settles = variances.values.allFinite();
+  for (Estimate* estimate : {&numbers.separation_m, &numbers.left_multiplier, &numbers.right_multiplier})
+    if (!settles || !(numbers.left_multiplier.value > 0.0 && numbers.right_multiplier.value > 0.0))
+      *estimate = {not_a_number, not_a_number};
+  if (!(numbers.separation_m.value > 0.0)) numbers.separation_m = {not_a_number, not_a_number};
+  for (Estimate* delay : {&numbers.yaw_delay_s, &numbers.forward_delay_s})
+    if (!settles || !(delay->value >= 0.0)) *delay = {not_a_number, not_a_number};
+  return numbers;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,146 @@
+// The exported C against the filter itself, on banks and runs that reach every part of it.
+#include <gmock/gmock.h>
+
+#include "app/export/forms.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/app/export/exported.hpp"
+#include "tests/filter/filter_test_support.hpp"
+
+namespace modebank::app::test {
+namespace {
+
+using modebank::test::example_bank;
+using ::testing::HasSubstr;
+
+constexpr Index samples = 400;
+constexpr double dt_s = 0.1;
+
+/// A run whatever the bank: its own numbers do not matter, only that both filters get the same.
+Trajectory run_for(const Bank& bank, std::uint64_t seed) {
+  Bank source = example_bank(bank.C.rows(), bank.structure.inputs, 2, 1e-3);
+  return disturbed(modebank::test::simulate_bank(source, samples, seed), dt_s);
+}
+
+/// `float_tolerance`: single precision loses what a start with states that nothing measures asks of it, variances that
+/// differ by ten thousand.
+void expect_same(const Bank& bank, const FilterOptions& options, double float_tolerance = 1e-3) {
+  for (const bool single_precision : {false, true}) {
+    const Differences worst =
+        differences_of_c(as_exported(bank, options), {run_for(bank, 1), run_for(bank, 2)}, single_precision);
+    const double tolerance = single_precision ? float_tolerance : 1e-9;
+    EXPECT_LE(worst.mean, tolerance) << single_precision;
+    EXPECT_LE(worst.probability, tolerance) << single_precision;
+    EXPECT_LE(worst.covariance, tolerance) << single_precision;
+    EXPECT_LE(worst.log_density, tolerance) << single_precision;
+    EXPECT_LE(worst.ahead, tolerance) << single_precision;
+    EXPECT_GT(worst.compared, 2 * samples - 40);
+  }
+}
+
+Bank with_clock(Bank bank) {
+  bank.dt_s = dt_s;
+  bank.quantum = {};
+  return bank;
+}
+
+/// z and v of two states, three lags of the state, two of the inputs.
+Bank lagged_bank(Index input_delay) {
+  Bank bank = example_bank(2, 2, 2, 1e-4);
+  bank.structure = {2, 2, true, 3, 2, input_delay};
+  const Index p = bank.structure.parameters(), n = bank.structure.dimension();
+  for (std::size_t j = 0; j < bank.modes.size(); ++j) {
+    Mode& mode = bank.modes[j];
+    const Eigen::MatrixXd Q = mode.Q;
+    const Eigen::VectorXd theta = Eigen::VectorXd::LinSpaced(p, -0.2, 0.15 - 0.1 * static_cast<double>(j));
+    mode.model = unpack(bank.structure, theta);
+    mode.Q = Eigen::MatrixXd::Zero(n, n);
+    mode.Q.topLeftCorner(2, 2) = Q;
+    mode.spread.resize(0, 0);
+  }
+  bank.C = Eigen::MatrixXd::Identity(2, n);
+  return bank;
+}
+
+FilterOptions adaptive(FilterVariant variant = FilterVariant::imm) {
+  FilterOptions options;
+  options.variant = variant;
+  options.noise = FilterNoise::adaptive;
+  return options;
+}
+
+TEST(ExportedC, IsTheImm) {
+  expect_same(with_clock(example_bank(1, 2, 3)), {});
+  expect_same(with_clock(example_bank(2, 2, 4)), {});
+}
+
+TEST(ExportedC, FollowsTheNoiseOfARun) {
+  expect_same(with_clock(example_bank(1, 2, 3)), adaptive());
+  expect_same(with_clock(example_bank(3, 1, 2)), adaptive());
+  Bank exact = example_bank(2, 2, 3, 0.0);
+  exact.noise_adaptation = {0.95, 12.0};
+  expect_same(with_clock(exact), adaptive());
+}
+
+TEST(ExportedC, HasLags) {
+  for (const Index delay : {0, 1, 2}) expect_same(with_clock(lagged_bank(delay)), adaptive());
+}
+
+TEST(ExportedC, SwitchesByStateAndInput) {
+  Bank bank = example_bank(2, 1, 3);
+  bank.transition_logit.weights.resize(3, 3);
+  bank.transition_logit.weights << 0.0, 0.0, 0.0, 2.0, -1.0, 3.0, -300.0, 1.0, 0.5;
+  bank.transition_logit.reference = Eigen::Vector3d(0.1, -0.05, 0.2);
+  expect_same(with_clock(bank), adaptive());
+}
+
+TEST(ExportedC, HasOneModeOrUnmixedOrCommonOnes) {
+  FilterOptions kf;
+  kf.variant = FilterVariant::kf;
+  expect_same(with_clock(example_bank(2, 2, 1)), kf);
+  expect_same(with_clock(example_bank(2, 2, 3)), adaptive(FilterVariant::mmae));
+  expect_same(with_clock(example_bank(2, 2, 3)), adaptive(FilterVariant::gpb1));
+}
+
+TEST(ExportedC, NeedsNeitherInputsNorAllStatesNorAClock) {
+  expect_same(with_clock(example_bank(2, 0, 2)), {});
+  Bank partly = example_bank(3, 2, 2);
+  partly.C = Eigen::MatrixXd(2, 3);
+  partly.C << 1.0, 0.0, 0.5, 0.0, 1.0, -0.3;
+  partly.R = Eigen::Matrix2d{{2e-4, 5e-5}, {5e-5, 1e-4}};
+  expect_same(with_clock(partly), adaptive(), 0.1);
+  FilterOptions single = adaptive();
+  single.time_steps = TimeSteps::single;
+  expect_same(with_clock(example_bank(1, 1, 2)), single);
+}
+
+TEST(ExportedC, KeepsModesThatTheMatrixForbids) {
+  Bank bank = example_bank(1, 1, 3);
+  bank.transition = TransitionMatrix(Eigen::Matrix3d{{0.9, 0.1, 0.0}, {0.2, 0.8, 0.0}, {0.5, 0.5, 0.0}});
+  expect_same(with_clock(bank), adaptive());
+}
+
+TEST(ExportedC, RefusesByNameWhatItDoesNotHave) {
+  const auto refusal = [](const Bank& bank, const FilterOptions& options) -> std::string {
+    try {
+      to_c(as_exported(bank, options), "robot", false);
+    } catch (const DataError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  FilterOptions options;
+  options.variant = FilterVariant::gpb2;
+  EXPECT_THAT(refusal(example_bank(1, 1, 2), options), HasSubstr("filter.variant = gpb2"));
+  options = {};
+  options.parameter_noise = true;
+  EXPECT_THAT(refusal(example_bank(1, 1, 2), options), HasSubstr("filter.parameter_noise"));
+  Bank coarse = example_bank(1, 1, 2);
+  coarse.quantum = Eigen::VectorXd::Constant(1, 0.01);
+  EXPECT_THAT(refusal(coarse, {}), HasSubstr("data.quantum"));
+  Bank drifting = example_bank(1, 1, 2, 0.0);
+  drifting.drift = {{1e-4, 1e-2, 1.0}, Eigen::VectorXd::Ones(3)};
+  EXPECT_THAT(refusal(drifting, {}), HasSubstr("bank.drift"));
+}
+
+}  // namespace
+}  // namespace modebank::app::test

@@ -1,0 +1,74 @@
+// The exported C over all held-out samples of the demo and of real robots, with the configurations as they stand.
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "app/cli/live_filter.hpp"
+#include "app/config/config_file.hpp"
+#include "tests/app/cli_fixture.hpp"
+#include "tests/app/export/exported.hpp"
+
+namespace modebank::test {
+namespace {
+
+using app::test::Differences;
+
+class ExportedCOfRobots : public CliTest {
+ protected:
+  void learn(const std::string& configuration, const std::vector<std::string>& options) const {
+    std::vector<std::string> words{"run", (project_dir() / "configs" / configuration).string(), "--archive.output",
+                                   archive()};
+    words.insert(words.end(), options.begin(), options.end());
+    const ProgramResult result = modebank(words);
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+
+  void expect_same() const {
+    const Archive stored = read_archive(archive());
+    const app::Config config = app::stored_config(stored.config, {});
+    const app::ExportedBank exported = app::exported_bank(stored, archive(), "bank", app::tracked_options(config), 0.0);
+    std::vector<Trajectory> held_out;
+    Index samples = 0;
+    for (const Trajectory& run : stored.recording->runs)
+      if (run.role == Role::test) {
+        held_out.push_back(run);
+        samples += run.transitions();
+      }
+    for (const bool single_precision : {false, true}) {
+      const Differences worst = app::test::differences_of_c(exported, held_out, single_precision);
+      const double tolerance = single_precision ? 1e-3 : 1e-9;
+      EXPECT_LE(worst.mean, tolerance);
+      EXPECT_LE(worst.probability, tolerance);
+      EXPECT_LE(worst.ahead, tolerance);
+      EXPECT_GT(worst.compared, samples - 20 * std::ssize(held_out));
+      const std::string kind = single_precision ? "float_" : "double_";
+      RecordProperty(kind + "mean", std::to_string(worst.mean / tolerance));
+      fmt::print("{}: {} samples, means within {:.2g} predicted standard deviations, probabilities within {:.2g}\n",
+                 kind, worst.compared, worst.mean, worst.probability);
+    }
+  }
+};
+
+TEST_F(ExportedCOfRobots, Demo) {
+  ASSERT_EQ(modebank({"simulate", (project_dir() / "configs/simulate_ice.ini").string(), "--simulate.output",
+                      file("data").string()})
+                .status,
+            0);
+  learn("demo.ini", {"--data.root", file("data").string()});
+  expect_same();
+}
+
+TEST_F(ExportedCOfRobots, Ice) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  learn("husky_ice.ini", {"--data.root", shared_data_dir().string()});
+  expect_same();
+}
+
+TEST_F(ExportedCOfRobots, Drive) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  learn("drive_husky.ini", {"--data.root", shared_data_dir().string()});
+  expect_same();
+}
+
+}  // namespace
+}  // namespace modebank::test

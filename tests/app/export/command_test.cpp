@@ -1,0 +1,137 @@
+// modebank export from outside.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "io/archive/archive.hpp"
+#include "io/archive/inspect.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+class Export : public CliTest {
+ protected:
+  void SetUp() override { ASSERT_EQ(run({"--data.state_unit", "rad/s", "--data.input_unit", "m/s"}).status, 0); }
+
+  std::string text_of(const std::filesystem::path& name) const {
+    std::ifstream stream(name);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  ProgramResult exported(const std::string& form, const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> words{"export", archive(), "--to", form};
+    words.insert(words.end(), options.begin(), options.end());
+    return modebank(words);
+  }
+  /// As if the bank had been judged so.
+  void judge(Verdict verdict) const {
+    Archive stored = read_archive(archive());
+    for (DiagnosticsRow& row : stored.diagnostics) row.verdict = verdict;
+    write_archive(archive(), stored);
+  }
+};
+
+TEST_F(Export, JsonIsTheArchivesBank) {
+  judge(Verdict::calibrated);
+  const ProgramResult result = exported("json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json page = json::parse(result.out);
+  const Archive stored = read_archive(archive());
+  EXPECT_EQ(page.at("format"), "modebank export");
+  EXPECT_EQ(page.at("schema_version"), "1.0");
+  EXPECT_EQ(page.at("verdict").at("answer"), "calibrated");
+  EXPECT_LT(result.out.find("\"verdict\""), result.out.find("\"modes\""));
+  EXPECT_EQ(page.at("dt_s"), stored.bank->dt_s);
+  ASSERT_EQ(std::ssize(page.at("modes")), stored.bank->mode_count());
+  for (std::size_t k = 0; k < stored.bank->modes.size(); ++k) {
+    const Mode& mode = stored.bank->modes[k];
+    const json& said = page.at("modes").at(k);
+    EXPECT_EQ(said.at("A").at("value").at(0).at(0), 1.0 + mode.model.A(0, 0));
+    EXPECT_EQ(said.at("B").at("value").at(0).at(1), mode.model.B(0, 1));
+    EXPECT_EQ(said.at("B").at("unit").at(0).at(1), "(rad/s)/(m/s)");
+    EXPECT_EQ(said.at("B").at("standard_error").at(0).at(1), mode.standard_error(2));
+    EXPECT_EQ(said.at("Q").at("value").at(0).at(0), mode.Q(0, 0));
+    EXPECT_EQ(said.at("Q").at("unit").at(0).at(0), "(rad/s)^2");
+    for (Index j = 0; j < stored.bank->mode_count(); ++j)
+      EXPECT_EQ(page.at("transition").at("T").at(k).at(static_cast<std::size_t>(j)),
+                stored.bank->transition.matrix()(static_cast<Index>(k), j));
+  }
+  EXPECT_EQ(page.at("filter").at("noise"), "gaussian");
+}
+
+TEST_F(Export, CsvIsAnyTableAsItStands) {
+  const ProgramResult result = exported("csv", {"--table", "/evaluation/summary"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::istringstream lines(result.out);
+  std::string header, line;
+  std::getline(lines, header);
+  EXPECT_EQ(header.rfind("filter,role,run,samples,log_score,rmse[0],", 0), 0u) << header;
+  const json rows = inspect(archive(), "/evaluation/summary").at("value");
+  for (const json& row : rows) {
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_EQ(line.rfind(row.at("filter").get<std::string>() + "," + row.at("role").get<std::string>(), 0), 0u) << line;
+  }
+  EXPECT_FALSE(std::getline(lines, line));
+  EXPECT_EQ(exported("csv").status, 2);
+  const ProgramResult group = exported("csv", {"--table", "/evaluation"});
+  EXPECT_EQ(group.status, 2);
+  EXPECT_THAT(group.err, HasSubstr("it holds: bank"));
+}
+
+TEST_F(Export, WritesFilesWholeOrNotAtAll) {
+  judge(Verdict::calibrated);
+  ASSERT_EQ(exported("c", {"-o", file("robot.c").string()}).status, 0);
+  EXPECT_THAT(text_of(file("robot.h")), HasSubstr("typedef double robot_real;"));
+  ASSERT_EQ(exported("c", {"-o", file("robot.c").string(), "--float"}).status, 0);
+  EXPECT_THAT(text_of(file("robot.h")), HasSubstr("typedef float robot_real;"));
+  ASSERT_EQ(exported("mat", {"-o", file("robot.mat").string()}).status, 0);
+  EXPECT_EQ(text_of(file("robot.mat")).rfind("MATLAB 5.0 MAT-file", 0), 0u);
+  ASSERT_EQ(exported("casadi", {"-o", file("robot.py").string()}).status, 0);
+  EXPECT_EQ(text_of(file("robot.py")).rfind("# Verdict: calibrated", 0), 0u);
+  ASSERT_EQ(exported("ros2", {"-o", file("ros2").string(), "--wheel_separation_m", "0.5"}).status, 0);
+  EXPECT_EQ(text_of(file("ros2") / "mode_0.yaml").rfind("# Verdict: calibrated", 0), 0u);
+  EXPECT_THAT(left_behind(), ::testing::ElementsAre("out.h5", "robot.c", "robot.h", "robot.mat", "robot.py", "ros2"));
+  EXPECT_EQ(exported("json", {"-o", file("none/robot.json").string()}).status, 2);
+  EXPECT_THAT(exported("json", {"-o", archive()}).err, HasSubstr("that is the archive"));
+  EXPECT_EQ(exported("c", {"-o", file("robot.txt").string()}).status, 2);
+  EXPECT_EQ(exported("c", {"-o", file("a b.c").string()}).status, 2);
+  EXPECT_EQ(left_behind().size(), 6u);
+}
+
+TEST_F(Export, RefusesABankWhoseUncertaintyIsFoundFalse) {
+  for (const Verdict verdict : {Verdict::overconfident, Verdict::underconfident}) {
+    judge(verdict);
+    for (const std::string form : {"json", "mat", "c", "casadi", "ros2"}) {
+      const ProgramResult result = exported(form, {"-o", file("refused.c").string()});
+      EXPECT_EQ(result.status, 1) << form;
+      EXPECT_THAT(result.err, HasSubstr(std::string(name_of(verdict))));
+      EXPECT_THAT(result.err, HasSubstr("--force"));
+      EXPECT_FALSE(std::filesystem::exists(file("refused.c")));
+    }
+    const ProgramResult forced = exported("json", {"--force"});
+    EXPECT_EQ(forced.status, 0);
+    EXPECT_EQ(json::parse(forced.out).at("verdict").at("answer"), name_of(verdict));
+    EXPECT_EQ(exported("csv", {"--table", "/bank/A"}).status, 0);
+  }
+}
+
+TEST_F(Export, TakesTheFilterAsItWasJudged) {
+  judge(Verdict::calibrated);
+  EXPECT_THAT(exported("json", {"--filter.noise", "adaptive"}).err, HasSubstr("--filter.noise cannot change it"));
+  const ProgramResult baseline = exported("json", {"--track.filter", "baseline"});
+  ASSERT_EQ(baseline.status, 0) << baseline.err;
+  EXPECT_EQ(json::parse(baseline.out).at("source").at("filter"), "baseline");
+  EXPECT_EQ(json::parse(baseline.out).at("filter").at("variant"), "kf");
+  EXPECT_EQ(exported("json", {"--track.filter", "drifting"}).status, 2);
+  EXPECT_EQ(exported("pdf").status, 2);
+  EXPECT_EQ(modebank({"export", archive()}).status, 2);
+  EXPECT_EQ(modebank({"show", archive(), "--to", "json"}).status, 2);
+}
+
+}  // namespace
+}  // namespace modebank::test

@@ -1,0 +1,155 @@
+// Robots without slip, of known width, wheels, delays and noise: how often the exported numbers lie within two of their
+// standard errors. MODEBANK_EXPORT_SEEDS says how many robots (make export-recovery: 1000).
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+
+#include "app/export/ros2/ros2_numbers.hpp"
+#include "filter/learn/learn.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "tests/app/export/exported.hpp"
+
+namespace modebank::app::test {
+namespace {
+
+constexpr std::array<const char*, 7> names{"separation",  "left wheel",  "right wheel", "delay of wz",
+                                           "delay of vx", "noise of wz", "noise of vx"};
+using Truth = std::array<double, names.size()>;
+
+/// Drawn anew for every seed.
+struct Robot {
+  double separation_m, left, right, yaw_time_s, forward_time_s, yaw_variance, forward_variance, dt_s = 0.1;
+
+  explicit Robot(std::mt19937_64& generator) {
+    boost::random::uniform_01<double> uniform;
+    separation_m = 0.4 + 0.6 * uniform(generator);
+    left = 0.9 + 0.2 * uniform(generator);
+    right = 0.9 + 0.2 * uniform(generator);
+    yaw_time_s = 0.1 + 0.3 * uniform(generator);
+    forward_time_s = 0.1 + 0.3 * uniform(generator);
+    yaw_variance = 1e-4 + 1e-3 * uniform(generator);
+    forward_variance = 1e-4 + 1e-3 * uniform(generator);
+  }
+  Truth truth() const {
+    const double half = 0.5 * dt_s;
+    return {separation_m,
+            left,
+            right,
+            half / std::tanh(half / yaw_time_s),
+            half / std::tanh(half / forward_time_s),
+            yaw_variance / dt_s,
+            forward_variance / dt_s};
+  }
+};
+
+Trajectory drive(const Robot& robot, Index samples, std::mt19937_64& generator) {
+  boost::random::normal_distribution<double> normal;
+  boost::random::uniform_01<double> uniform;
+  Trajectory run;
+  run.time_s = robot.dt_s * Eigen::VectorXd::LinSpaced(samples, 0.0, static_cast<double>(samples - 1));
+  run.state.setZero(2, samples);
+  run.input.resize(2, samples);
+  Eigen::Vector2d speeds = Eigen::Vector2d::Zero();
+  const double f = std::exp(-robot.dt_s / robot.yaw_time_s), g = std::exp(-robot.dt_s / robot.forward_time_s);
+  for (Index k = 0; k < samples; ++k) {
+    if (k % 8 == 0) speeds = Eigen::Vector2d(uniform(generator) - 0.3, uniform(generator) - 0.3);
+    run.input.col(k) = speeds;
+    if (k + 1 == samples) break;
+    const double left = robot.left * speeds(0), right = robot.right * speeds(1);
+    run.state(0, k + 1) = f * run.state(0, k) + (1.0 - f) * (right - left) / robot.separation_m +
+                          std::sqrt(robot.yaw_variance) * normal(generator);
+    run.state(1, k + 1) =
+        g * run.state(1, k) + (1.0 - g) * 0.5 * (right + left) + std::sqrt(robot.forward_variance) * normal(generator);
+  }
+  return run;
+}
+
+/// A bank of one mode, as the chain learns it.
+Bank learned(const Recording& recording) {
+  const WindowFits fits = fit_windows(recording, {});
+  ClusterOptions mixture;
+  mixture.selection.components = {1};
+  BankOptions bank;
+  bank.em.restarts = 0;
+  const FeatureCloud cloud = make_features(fits, recording.states, mixture);
+  const MixtureResult one = select_mixture(fits, cloud, mixture.selection, 1);
+  const Baseline baseline = learn_baseline(recording, fits.global, fits.structure);
+  return learn_as_asked(recording, fits, one, bank, baseline.bank.R, FilterOptions(), nullptr).bank;
+}
+
+/// Whether each lies within two standard errors.
+std::array<bool, names.size()> within(int seed) {
+  std::mt19937_64 generator(static_cast<std::uint64_t>(seed));
+  const Robot robot(generator);
+  Recording recording;
+  recording.states = {{"wz", "rad/s"}, {"vx", "m/s"}};
+  recording.inputs = {{"left", "m/s"}, {"right", "m/s"}};
+  for (int i = 0; i < 4; ++i) {
+    recording.runs.push_back(drive(robot, 300, generator));
+    recording.runs.back().run = fmt::format("{:02}", i);
+  }
+  ExportedBank exported = as_exported(learned(recording));
+  exported.measurements = recording.states;
+  exported.recorded_inputs = recording.inputs;
+  const RobotNumbers said = robot_numbers(exported, 0, robot_channels(exported), {});
+  const Mode& mode = exported.bank.modes[0];
+  const double dt_s = exported.bank.dt_s;
+  const std::array<Estimate, names.size()> estimates{said.separation_m,
+                                                     said.left_multiplier,
+                                                     said.right_multiplier,
+                                                     said.yaw_delay_s,
+                                                     said.forward_delay_s,
+                                                     Estimate{mode.Q(0, 0) / dt_s, mode.Q_standard_error(0, 0) / dt_s},
+                                                     Estimate{mode.Q(1, 1) / dt_s, mode.Q_standard_error(1, 1) / dt_s}};
+  std::array<bool, names.size()> inside{};
+  const Truth truth = robot.truth();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    inside[i] = std::abs(estimates[i].value - truth[i]) <= 2.0 * estimates[i].error;
+  return inside;
+}
+
+using Inside = std::array<bool, names.size()>;
+
+long count_inside(const std::vector<Inside>& inside, std::size_t quantity) {
+  return std::count_if(inside.begin(), inside.end(), [&](const Inside& seed) { return seed[quantity]; });
+}
+
+/// Of the seeds so far: many take long.
+void print_counts(const std::vector<Inside>& inside, int seeds) {
+  fmt::print("{} seeds, within two standard errors:", seeds);
+  for (std::size_t i = 0; i < names.size(); ++i) fmt::print(" {} {},", names[i], count_inside(inside, i));
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
+TEST(ExportedRos2, IsWithinTwoStandardErrorsOfRobotsWithoutSlip) {
+  const char* asked = std::getenv("MODEBANK_EXPORT_SEEDS");
+  const int seeds = asked ? std::atoi(asked) : 50;
+  std::vector<Inside> inside(static_cast<std::size_t>(seeds));
+  constexpr int at_once = 100;
+  for (int first = 0; first < seeds; first += at_once) {
+    tbb::parallel_for(first, std::min(first + at_once, seeds),
+                      [&](int i) { inside[static_cast<std::size_t>(i)] = within(i + 1); });
+    if (asked) print_counts(inside, std::min(first + at_once, seeds));
+  }
+  print_counts(inside, seeds);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const long count = count_inside(inside, i);
+    // 93 to 98 %, and what fewer seeds allow at 1 %.
+    const double share = static_cast<double>(count) / seeds, slack = seeds >= 1000 ? 0.0 : 0.57 / std::sqrt(seeds);
+    EXPECT_GE(share, 0.93 - slack) << names[i];
+    EXPECT_LE(share, 0.98 + slack) << names[i];
+  }
+}
+
+}  // namespace
+}  // namespace modebank::app::test

@@ -1,0 +1,158 @@
+// Parameter files of ROS 2: what a robot of known width, wheels, delay and noise must give, read back as YAML.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/export/forms.hpp"
+#include "tests/app/export/exported.hpp"
+#include "tests/app/export/hostile_names.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace modebank::app::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// As a reader of YAML sees a text.
+json read_yaml(const std::string& text) {
+  const modebank::test::TemporaryFolder folder;
+  modebank::test::write_file(folder.path() / "file.yaml", text);
+  const auto result = modebank::test::run_program(
+      {"/usr/bin/python3", "-c",
+       "import json, sys, yaml; print(json.dumps(yaml.safe_load(open(sys.argv[1], encoding='utf-8'))))",
+       (folder.path() / "file.yaml").string()});
+  EXPECT_EQ(result.status, 0) << result.err << text;
+  return result.status == 0 ? json::parse(result.out) : json();
+}
+
+/// A robot whose speeds follow those of its wheels with one time constant each.
+struct Robot {
+  double separation_m = 0.55, left = 1.02, right = 0.97;  ///< multipliers of the radius
+  double yaw_time_s = 0.3, forward_time_s = 0.2, dt_s = 0.05;
+  double yaw_noise = 4e-4, forward_noise = 9e-4, shared_noise = 1e-4;
+};
+
+/// [yaw rate, forward speed] or the yaw rate alone from [left, right] speeds; `radius_m` turns rad/s into m/s.
+ExportedBank bank_of(const Robot& robot, bool forward, double radius_m = 1.0) {
+  const Index n = forward ? 2 : 1;
+  Bank bank = modebank::test::example_bank(n, 2, 1, 0.0);
+  bank.dt_s = robot.dt_s;
+  Mode& mode = bank.modes[0];
+  const double yaw = 1.0 - std::exp(-robot.dt_s / robot.yaw_time_s),
+               speed = 1.0 - std::exp(-robot.dt_s / robot.forward_time_s);
+  mode.model.A = -Eigen::Vector2d(yaw, speed).head(n).asDiagonal().toDenseMatrix();
+  mode.model.B.resize(n, 2);
+  mode.model.B.row(0) << -yaw * robot.left * radius_m / robot.separation_m,
+      yaw * robot.right * radius_m / robot.separation_m;
+  if (forward) mode.model.B.row(1) << speed * robot.left * radius_m / 2.0, speed * robot.right * radius_m / 2.0;
+  mode.Q =
+      Eigen::Matrix2d{{robot.yaw_noise, robot.shared_noise}, {robot.shared_noise, robot.forward_noise}}.topLeftCorner(
+          n, n);
+  mode.model.c.setZero();
+  mode.standard_error = Eigen::VectorXd::Constant(bank.structure.parameters(), 1e-3);
+  mode.spread.resize(0, 0);
+  ExportedBank exported = as_exported(bank);
+  exported.measurements[0] = {"wz", "rad/s"};
+  if (forward) exported.measurements[1] = {"vx", "m/s"};
+  const std::string unit = radius_m == 1.0 ? "m/s" : "rad/s";
+  exported.recorded_inputs = {{"velL", unit}, {"velR", unit}};
+  return exported;
+}
+
+json parameters(const ExportedBank& exported, const RobotSizes& sizes, const std::string& node) {
+  return read_yaml(to_ros2(exported, sizes).at(0).second).at(node).at("ros__parameters");
+}
+
+TEST(ExportedRos2, GivesTheRobotBack) {
+  const Robot robot;
+  for (const double radius_m : {1.0, 0.165}) {
+    const ExportedBank exported = bank_of(robot, true, radius_m);
+    const RobotSizes sizes{0.5, radius_m == 1.0 ? 0.0 : radius_m};
+    const json drive = parameters(exported, sizes, "diff_drive_controller");
+    EXPECT_NEAR(drive.at("wheel_separation_multiplier"), robot.separation_m / 0.5, 1e-9);
+    EXPECT_NEAR(drive.at("left_wheel_radius_multiplier"), robot.left, 1e-9);
+    EXPECT_NEAR(drive.at("right_wheel_radius_multiplier"), robot.right, 1e-9);
+    const double f = std::exp(-robot.dt_s / robot.yaw_time_s), g = std::exp(-robot.dt_s / robot.forward_time_s);
+    EXPECT_NEAR(drive.at("twist_covariance_diagonal").at(5), robot.yaw_noise / (1.0 - f * f), 1e-12);
+    EXPECT_NEAR(drive.at("twist_covariance_diagonal").at(0), robot.forward_noise / (1.0 - g * g), 1e-12);
+    const json noise = parameters(exported, sizes, "ekf_filter_node").at("process_noise_covariance");
+    ASSERT_EQ(noise.size(), 225u);
+    EXPECT_NEAR(noise[11 * 15 + 11], robot.yaw_noise / robot.dt_s, 1e-12);
+    EXPECT_NEAR(noise[6 * 15 + 6], robot.forward_noise / robot.dt_s, 1e-12);
+    EXPECT_NEAR(noise[6 * 15 + 11], robot.shared_noise / robot.dt_s, 1e-12);
+    EXPECT_EQ(noise[11 * 15 + 6], noise[6 * 15 + 11]);
+    const json plan = parameters(exported, sizes, "controller_server").at("FollowPath");
+    // A first-order lag sampled with its input held: dt / 2 coth(dt / 2 tau), tau but for the hold.
+    const double half = 0.5 * robot.dt_s;
+    EXPECT_NEAR(plan.at("model_delay_wz"), half / std::tanh(half / robot.yaw_time_s), 1e-9);
+    EXPECT_NEAR(plan.at("model_delay_vx"), half / std::tanh(half / robot.forward_time_s), 1e-9);
+    EXPECT_NEAR(plan.at("model_delay_wz"), robot.yaw_time_s, 0.01 * robot.yaw_time_s);
+  }
+}
+
+TEST(ExportedRos2, CountsDeadTimeAndLags) {
+  ExportedBank exported = bank_of(Robot(), false);
+  const double without = parameters(exported, {0.5, 0.0}, "controller_server").at("FollowPath").at("model_delay_wz");
+  exported.input_lag_s = 0.12;
+  exported.bank.structure.input_delay = 3;
+  const double later = parameters(exported, {0.5, 0.0}, "controller_server").at("FollowPath").at("model_delay_wz");
+  EXPECT_NEAR(later - without, 0.12 + 2.0 * Robot().dt_s, 1e-9);
+}
+
+/// Without a forward speed the wheels' mean is taken as one; what is missing is said.
+TEST(ExportedRos2, SaysWhatIsMissing) {
+  Robot robot;
+  const ExportedBank exported = bank_of(robot, false);
+  const std::string text = to_ros2(exported, {}).at(0).second;
+  EXPECT_THAT(text, HasSubstr("# wheel_separation_multiplier: "));
+  EXPECT_THAT(text, HasSubstr("--wheel_separation_m"));
+  EXPECT_THAT(text, HasSubstr("model_delay_vx: not determined: no state is known to be the forward speed"));
+  EXPECT_EQ(text.rfind("# Verdict: calibrated", 0), 0u);
+  const json drive = read_yaml(text).at("diff_drive_controller").at("ros__parameters");
+  EXPECT_FALSE(drive.contains("wheel_separation_multiplier"));
+  EXPECT_NEAR(
+      drive.at("right_wheel_radius_multiplier").get<double>() + drive.at("left_wheel_radius_multiplier").get<double>(),
+      2.0, 1e-12);
+  EXPECT_NEAR(
+      drive.at("right_wheel_radius_multiplier").get<double>() / drive.at("left_wheel_radius_multiplier").get<double>(),
+      robot.right / robot.left, 1e-9);
+  ExportedBank nothing = exported;
+  nothing.measurements[0] = {"temperature", "K"};
+  const std::string empty = to_ros2(nothing, {}).at(0).second;
+  EXPECT_TRUE(read_yaml(empty).is_null()) << empty;
+  EXPECT_THAT(empty, HasSubstr("no state is known to be the yaw rate"));
+  const std::string spinning = to_ros2(bank_of(robot, false, 0.165), {}).at(0).second;
+  EXPECT_THAT(spinning, HasSubstr("give --wheel_radius_m"));
+}
+
+/// sd(separation) = separation^2 / 2 sd(G_R - G_L) where B alone is uncertain.
+TEST(ExportedRos2, StatesErrorsByTheDeltaMethod) {
+  const Robot robot;
+  ExportedBank exported = bank_of(robot, false);
+  exported.bank.modes[0].standard_error << 0.0, 1e-3, 1e-3, 0.0;
+  const double yaw = 1.0 - std::exp(-robot.dt_s / robot.yaw_time_s);
+  const double difference = (robot.left + robot.right) / robot.separation_m;
+  const double expected = 2.0 / (difference * difference) * std::sqrt(2.0) * 1e-3 / yaw;
+  const std::string text = to_ros2(exported, {1.0, 0.0}).at(0).second;
+  EXPECT_THAT(text, HasSubstr(fmt::format("# +- {:.2g} of wheel_separation = 1 m", expected)));
+}
+
+TEST(ExportedRos2, HoldsHostileNames) {
+  ExportedBank exported = bank_of(Robot(), true);
+  for (const std::string& name : hostile_names()) {
+    exported.archive = exported.mode_names[0] = exported.provenance.modebank_version = name;
+    const auto files = to_ros2(exported, {0.5, 0.0});
+    EXPECT_THAT(files[0].first, Not(HasSubstr("/")));
+    const json file = read_yaml(files[0].second);
+    ASSERT_TRUE(file.is_object()) << name;
+    EXPECT_EQ(file.size(), 3u) << name;
+  }
+}
+
+}  // namespace
+}  // namespace modebank::app::test
