@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <utility>
+
 namespace modebank {
 
 /// A standard normal variable that is known to lie in an interval.
@@ -9,6 +12,26 @@ struct TruncatedNormal {
   double variance = 0.0;             ///< in (0, 1]
   double third = 0.0, fourth = 0.0;  ///< moments about the mean
 };
+
+/// What the scalar and the vector computation have in common.
+namespace truncated {
+
+// Differences of the error function lose digits where the interval is narrow or far out: quadrature takes over.
+inline constexpr double least_width = 0.25;
+inline constexpr double largest_start = 4.0;
+inline constexpr double furthest = 1e100;
+inline constexpr double negligible_exponent = 40.0;  ///< exp of minus this is not looked for
+inline constexpr double most_per_panel = 4.0;        ///< change of the integrand's logarithm
+
+/// Gauss-Legendre, 12 points: abscissas above zero and their weights.
+inline constexpr std::array<std::pair<double, double>, 6> gauss{{{0.12523340851146891547, 0.24914704581340278500},
+                                                                 {0.36783149899818019375, 0.23349253653835480876},
+                                                                 {0.58731795428661744730, 0.20316742672306592175},
+                                                                 {0.76990267419430468704, 0.16007832854334622633},
+                                                                 {0.90411725637047485668, 0.10693932599531843096},
+                                                                 {0.98156063424671925069, 0.04717533638651182720}}};
+
+}  // namespace truncated
 
 /// Of [low, high], low <= high: however narrow (a point counts as of the least mass that is a number), and however far
 /// out in a tail, to about twelve digits (the mass to fourteen). Bounds beyond 1e100 count as that.

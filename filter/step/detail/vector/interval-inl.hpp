@@ -8,23 +8,22 @@
 #endif
 
 #include "filter/step/detail/vector/correct-inl.hpp"
-#include "filter/step/truncated_normal.hpp"
+#include "filter/step/detail/vector/truncated-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// What is known of signal i of the modes of register r, whose innovation and variance stand in their rows. Lane by
-/// lane: what it takes differs from mode to mode, and of the padding's nothing is asked.
+/// What is known of signal i of the modes of register r, whose innovation and variance stand in their rows.
 template <std::size_t NY>
 HWY_NOINLINE void look_at_signal(const ModeRows& p, double quantum, std::size_t i, std::size_t r) {
-  const std::size_t end = HWY_MIN(p.modes, r + hn::Lanes(D()));
-  for (std::size_t j = r; j < end; ++j) {
-    const SignalLikelihood said = signal_likelihood(p.decorrelated[i * p.stride + j], p.D[i * p.stride + j], quantum);
-    double* to = p.signal + i * p.stride + j;
-    for (const double number : {said.log_density, said.mean, said.variance, said.third, said.fourth}) {
-      *to = number;
-      to += NY * p.stride;
-    }
+  const M there = hn::FirstN(D(), p.modes > r ? p.modes - r : 0);  // of the padding something that costs little
+  const V e = hn::IfThenElseZero(there, load(p.decorrelated + i * p.stride + r));
+  const V s = hn::IfThenElse(there, load(p.D + i * p.stride + r), splat(quantum > 0.0 ? quantum * quantum : 1.0));
+  const Signals said = signal_likelihood(e, s, quantum);
+  double* to = p.signal + i * p.stride + r;
+  for (const V number : {said.log_density, said.mean, said.variance, said.third, said.fourth}) {
+    store(number, to);
+    to += NY * p.stride;
   }
 }
 
