@@ -100,7 +100,8 @@ void tell_of(const Refinement& refined, const Listener& listener) {
                                                                           : ", so R is not known to be none"));
   if (measured.starts > 0)
     listener.progress(fmt::format("refine: measurement noise looked for from {} starts, in {:.2f} s{}", measured.starts,
-                                  measured.seconds, std::isnan(measured.score) ? ": none that pays" : ""));
+                                  measured.seconds,
+                                  refined.bank.R_standard_error.size() == 0 ? ": none that pays" : ""));
   if (!std::isnan(measured.score))
     listener.progress(fmt::format("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
                                   measured.iterations, measured.score_before, measured.score));

@@ -26,7 +26,7 @@ struct Baseline {
 Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure);
 
 /// The competitor that switches noise only: one Huber theta, eight log-spaced noise scales, `stay` chosen on the
-/// training runs.
+/// training runs. Of rounded states theta and the scales go on from there to where their intervals are most likely.
 Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R);
 
 /// The same with another number of noise scales.

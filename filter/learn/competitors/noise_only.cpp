@@ -7,6 +7,7 @@
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/learn.hpp"
+#include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/robust_regression.hpp"
@@ -80,8 +81,23 @@ Bank learn_noise_levels(const Recording& recording, const LinearStructure& struc
   return bank;
 }
 
+namespace {
+
+/// From residuals of rounded values, which hold the rounding, to the most likely theta and noise levels by intervals.
+Bank by_intervals(Bank bank, const Recording& recording) {
+  Recording unweighted = training_part(recording);
+  for (Trajectory& run : unweighted.runs) run.weight.resize(0);
+  FreeParameters free;
+  free.theta_unit = bank.modes.front().standard_error.unaryExpr(&positive_variance);
+  free.transition = false;
+  return maximise_likelihood({unweighted, FilterOptions{}, std::nullopt, true}, free, bank, {60, 1e-6}).bank;
+}
+
+}  // namespace
+
 Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R) {
-  return learn_noise_levels(recording, structure, R, noise_only_levels);
+  Bank bank = learn_noise_levels(recording, structure, R, noise_only_levels);
+  return bank.is_quantised() ? by_intervals(std::move(bank), recording) : bank;
 }
 
 }  // namespace modebank

@@ -73,18 +73,12 @@ std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const Re
   return std::move(end.bank);
 }
 
-/// Whether R is estimated. Of rounded states it is held: what they differ by from the states is in the likelihood of
-/// their intervals already.
-bool estimates_R(const RefineInput& in, const Bank& bank) {
-  return in.options.measurement_noise && !bank.is_quantised();
-}
-
-/// Theta, Q, T and (where it is to be estimated) R of a bank together, from there to the maximum on these runs.
+/// Theta, Q, T and (`with_R`) R of a bank together, from there to the maximum on these runs.
 LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const RefineInput& in,
-                                      const TrainingTransitions& transitions, const Bank& bank) {
+                                      const TrainingTransitions& transitions, const Bank& bank, bool with_R) {
   const SwitchingSums sums =
       sum_transitions(transitions, smooth_modes(transitions, switching_model(bank)), *target.prior);
-  const FreeParameters free = all_parameters(bank, sums, *target.prior, in.options.one_theta, estimates_R(in, bank),
+  const FreeParameters free = all_parameters(bank, sums, *target.prior, in.options.one_theta, with_R,
                                              least_measurement_noise(in.fits, in.options.tuning));
   return maximise_likelihood(target, free, bank, {in.options.max_iterations, in.options.tolerance});
 }
@@ -114,7 +108,7 @@ class MeasuredSplits {
     });
   }
 
-  void maximise() {
+  void maximise(bool with_R) {
     for_each([&](const SplitData& split, Bank& bank) {
       SwitchingPrior exact = prior_of_split(in_, split, chosen_.noise_transitions);
       exact = towards_one_motion(std::move(exact), split.transitions, switching_model(bank), chosen_.theta_transitions,
@@ -122,7 +116,7 @@ class MeasuredSplits {
       if (chosen_.weight_width > 0.0) exact = with_weights(std::move(exact), split.transitions, chosen_.weight_width);
       const LikelihoodTarget target{split.runs.training, learning_filter(in_.filter),
                                     prior_with_states_unknown(exact, bank, in_.options.tuning), in_.options.one_theta};
-      bank = maximise_everything(target, in_, split.transitions, bank).bank;
+      bank = maximise_everything(target, in_, split.transitions, bank, with_R).bank;
     });
   }
 
@@ -181,47 +175,62 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
 
 namespace {
 
+/// R where the data ask for some and the runs left out do not lose by it: of the bank and of the splits.
+bool take_R(const RefineInput& in, const SwitchingPrior& prior, std::optional<MeasuredSplits>& splits,
+            MeasuredBank& fit) {
+  const RefineTuning& tuning = in.options.tuning;
+  const LikelihoodTarget target{in.recording, in.filter, std::nullopt};
+  MeasurementNoise noise = estimate_measurement_noise(target, fit.bank, tuning);
+  fit.stage.starts = noise.starts;
+  fit.stage.failed_starts = noise.failed_starts;
+  if (!noise.bank) noise.bank = estimate_with_theta(target, in, in.transitions, prior, fit.bank);
+  if (!noise.bank) return false;
+  if (splits) {
+    MeasuredSplits with_R(*splits);
+    with_R.estimate_R();
+    if (with_R.score() < splits->score() - tuning.least_gain) return false;
+    splits.emplace(std::move(with_R));
+  }
+  fit.bank = std::move(*noise.bank);
+  fit.R_estimated = true;
+  return true;
+}
+
+/// On to the maximum, bank and splits, unless the runs left out lose by it.
+void go_on(const RefineInput& in, const SwitchingPrior& prior, std::optional<MeasuredSplits>& splits,
+           MeasuredBank& fit) {
+  MeasurementStage& stage = fit.stage;
+  fit.prior = prior_with_states_unknown(prior, fit.bank, in.options.tuning);
+  if (splits) {
+    MeasuredSplits further(*splits);
+    further.maximise(fit.R_estimated);
+    const double before = splits->score(), after = further.score();
+    if (std::isnan(stage.score)) stage.score_before = stage.score = before;
+    if (after < before - in.options.tuning.least_gain) return;
+    stage.score = after;
+    splits.emplace(std::move(further));
+  }
+  const LikelihoodTarget target{in.recording, learning_filter(in.filter), fit.prior, in.options.one_theta};
+  LikelihoodMaximum maximum = maximise_everything(target, in, in.transitions, fit.bank, fit.R_estimated);
+  stage.iterations += maximum.iterations;
+  stage.end = maximum.end;
+  fit.bank = std::move(maximum.bank);
+}
+
 MeasuredBank fit_untimed(const RefineInput& in, const CrossValidation& validation, const ChosenFit& chosen,
                          const SwitchingPrior& prior, const Bank& bank) {
-  const RefineTuning& tuning = in.options.tuning;
-  MeasuredBank result{bank, {}, prior};
-  MeasurementStage& stage = result.stage;
+  MeasuredBank fit{bank, {}, prior};
   std::optional<MeasuredSplits> splits;
   if (validation.possible()) splits.emplace(in, validation, chosen, bank.noise_adaptation);
-  if (estimates_R(in, bank)) {
-    MeasurementNoise noise = estimate_measurement_noise({in.recording, in.filter, std::nullopt}, bank, tuning);
-    stage.starts = noise.starts;
-    stage.failed_starts = noise.failed_starts;
-    if (!noise.bank)
-      noise.bank = estimate_with_theta({in.recording, in.filter, std::nullopt}, in, in.transitions, prior, bank);
-    if (!noise.bank) return result;
-    if (splits) {
-      const double without_R = splits->score();
-      splits->estimate_R();
-      if (splits->score() < without_R - tuning.least_gain) return result;
-    }
-    result.bank = std::move(*noise.bank);
-    result.R_estimated = true;
-  } else if (!bank.is_quantised() &&
-             !(bank.R.diagonal().array() > least_measurement_noise(in.fits, tuning).array()).any()) {
-    return result;
-  }
-  result.prior = prior_with_states_unknown(prior, result.bank, tuning);
-  if (splits) {
-    stage.score_before = splits->score();
-    splits->maximise();
-    stage.score = splits->score();
-    if (stage.score < stage.score_before - tuning.least_gain) {
-      stage.score = stage.score_before;
-      return result;
-    }
-  }
-  const LikelihoodTarget target{in.recording, learning_filter(in.filter), result.prior, in.options.one_theta};
-  LikelihoodMaximum maximum = maximise_everything(target, in, in.transitions, result.bank);
-  stage.iterations = maximum.iterations;
-  stage.end = maximum.end;
-  result.bank = std::move(maximum.bank);
-  return result;
+  const bool with_R = in.options.measurement_noise;
+  const bool quantised = bank.is_quantised();
+  if (with_R && !quantised && !take_R(in, prior, splits, fit)) return fit;
+  if (with_R || quantised ||
+      (bank.R.diagonal().array() > least_measurement_noise(in.fits, in.options.tuning).array()).any())
+    go_on(in, prior, splits, fit);
+  // Rounding stands in the Q of states taken as exact: only beside a fit by intervals is R told from it.
+  if (with_R && quantised && take_R(in, prior, splits, fit)) go_on(in, prior, splits, fit);
+  return fit;
 }
 
 }  // namespace

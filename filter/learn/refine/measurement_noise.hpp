@@ -49,7 +49,8 @@ struct ChosenFit {
 /// the runs left out more than least_gain, or as given), the fit goes on with the states unknown, theta, Q, R and T
 /// together, to the maximum of the filter's likelihood; that is kept if it pays on the runs left out, each scored by a
 /// fit that has not seen it: its R, its prior and all else are those of the other runs. Rounded states are unknown
-/// whatever R is: their fit goes on so in any case, R held as it stands.
+/// whatever R is: their fit goes on so in any case, and R is looked for afterwards, what rounding alone explains being
+/// in the likelihood by then.
 MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation,
                                         const ChosenFit& chosen, const SwitchingPrior& prior, const Bank& bank);
 

@@ -18,24 +18,6 @@
 /// volume 2, chapter 12), as every later step takes it. A signal of quantum zero is measured as it stands.
 namespace modebank {
 
-/// Log of the mean density of the interval's signal, log(mass / q): what a density is in the limit of q = 0, so that
-/// scores of coarser and finer data have one unit. Between models of the same data it differs as the log of the mass.
-struct SignalLikelihood {
-  double log_density = 0.0;
-  double mean = 0.0;      ///< of the standardised innovation given the measurement
-  double variance = 0.0;  ///< of it
-};
-
-/// Of innovation `e` of variance `s` > 0.
-inline SignalLikelihood signal_likelihood(double e, double s, double quantum) {
-  constexpr double half_log_two_pi = 0.91893853320467274178;
-  const double deviation = std::sqrt(s), z = e / deviation;
-  if (quantum == 0.0) return {-half_log_two_pi - std::log(deviation) - 0.5 * z * z, z, 0.0};
-  const double half = 0.5 * quantum;
-  const TruncatedNormal within = truncated_normal((e - half) / deviation, (e + half) / deviation);
-  return {within.log_mass - std::log(quantum), within.mean, within.variance};
-}
-
 /// Observes and corrects in one (kalman.hpp), after expect. `sensor` has C, diagonal R and quantum. Leaves the signals'
 /// innovations given the signals before them in `decorrelated` and their variances in `cholesky.D`, which is all that
 /// is left of the factor.

@@ -99,35 +99,53 @@ void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd&
   }
 }
 
+/// A mode's innovation of a signal given those before it, its variance and the signal's log density.
+struct ModeSignal {
+  double e = 0.0, s = 0.0, log_density = 0.0;
+};
+
 /// Of quantised measurements: component i of the transform lies between the predictive distribution function at the
 /// lower end of the interval of y_i and that at its upper end, given the intervals of y_1 .. y_(i-1). `pit`: the middle
-/// of the two, `width`: their difference, 0 for a continuous signal or a missing one. Otherwise as
-/// probability_transform.
-template <int N, int NY, class Y, class Pit, class Width>
-void interval_transform(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights,
-                        Pit&& pit, Width&& width) {
-  weights = step.hypothesis_probability();
+/// of the two, `width`: their difference, 0 for a continuous signal or a missing one. `signal`(i, j): ModeSignal of
+/// hypothesis j. `weights`: the hypotheses' probabilities before the measurement, overwritten, as is `log_likelihood`.
+template <class Quantum, class Y, class Signal, class Pit, class Width>
+void interval_transform(const Quantum& quantum, const Y& y, Signal signal, Eigen::VectorXd& weights,
+                        Eigen::VectorXd& log_likelihood, Pit&& pit, Width&& width) {
   width.setZero();
   for (Eigen::Index i = 0; i < pit.size(); ++i) {
     if (is_missing(y(i))) {
       pit(i) = std::numeric_limits<double>::quiet_NaN();
       continue;
     }
-    const double half = 0.5 * model.quantum(i);
+    const double half = 0.5 * quantum(i);
     double low = 0.0, high = 0.0;
     for (Eigen::Index j = 0; j < weights.size(); ++j) {
-      const KalmanStep<N, NY>& kalman = step.kalman[static_cast<std::size_t>(j)];
-      const double e = kalman.decorrelated(i), deviation = std::sqrt(kalman.cholesky.D(i));
+      const ModeSignal of_mode = signal(i, j);
+      const double e = of_mode.e, deviation = std::sqrt(of_mode.s);
       low += weights(j) * normal_cdf((e - half) / deviation);
       high += weights(j) * normal_cdf((e + half) / deviation);
-      step.log_likelihood(j) = kalman.signal_log_density(i);
+      log_likelihood(j) = of_mode.log_density;
     }
     high = std::min(high, 1.0);
     low = std::min(low, high);
     pit(i) = 0.5 * (low + high);
     width(i) = high - low;
-    if (i + 1 < pit.size()) bayes(weights, step.log_likelihood, weights);
+    if (i + 1 < pit.size()) bayes(weights, log_likelihood, weights);
   }
+}
+
+/// After the general steps have taken y in.
+template <int N, int NY, class Y, class Pit, class Width>
+void interval_transform(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights,
+                        Pit&& pit, Width&& width) {
+  weights = step.hypothesis_probability();
+  interval_transform(
+      model.quantum, y,
+      [&](Eigen::Index i, Eigen::Index j) {
+        const KalmanStep<N, NY>& kalman = step.kalman[static_cast<std::size_t>(j)];
+        return ModeSignal{kalman.decorrelated(i), kalman.cholesky.D(i), kalman.signal_log_density(i)};
+      },
+      weights, step.log_likelihood, pit, width);
 }
 
 }  // namespace modebank

@@ -55,22 +55,8 @@ Bank bank_of(const Recording& recording, const Eigen::MatrixXd& theta, const Eig
   return bank;
 }
 
-class RefineMeasured : public testing::TestWithParam<Index> {};
-
-/// folds 1: to convergence; more: stopped by cross-validation.
-TEST_P(RefineMeasured, RecoversEverythingWithinThreeStandardErrors) {
-  const SystemTruth truth;
-  const Recording recording = measured_runs(truth, 6, 600, 11);
-  const WindowFits fits = test::windows_of(recording, 25, 1);
-  RefineOptions options;
-  options.restarts = 0;
-  options.folds = GetParam();
-  const Eigen::MatrixXd theta = truth.theta + Eigen::MatrixXd{{-0.1, 0.1}, {0.05, -0.1}};
-  const Refinement refined =
-      refine_bank(recording, fits, {bank_of(recording, theta, Eigen::Vector2d(0.03, 0.06), 1e-9)}, options, {});
-  const Bank& bank = refined.bank;
+void expect_recovery(const Bank& bank, const SystemTruth& truth) {
   ASSERT_EQ(bank.mode_count(), 2);
-  EXPECT_GT(refined.measurement.iterations, 0);
   for (Index j = 0; j < 2; ++j) {
     const Mode& mode = bank.modes[static_cast<std::size_t>(j)];
     for (Index a = 0; a < 2; ++a)
@@ -85,6 +71,62 @@ TEST_P(RefineMeasured, RecoversEverythingWithinThreeStandardErrors) {
   const Eigen::MatrixXd error = bank.transition.matrix() - truth.T;
   EXPECT_TRUE((error.array().abs() < 3.0 * bank.transition_standard_error.array()).all()) << error;
   EXPECT_LT(bank.transition_standard_error.maxCoeff(), 0.03);
+}
+
+void round_states(Recording& recording, double quantum) {
+  for (Trajectory& run : recording.runs) run.state = ((run.state / quantum).array().round() * quantum).matrix();
+  recording.quantum.setConstant(1, quantum);
+}
+
+Bank disturbed_start(const Recording& recording, const SystemTruth& truth) {
+  const Eigen::MatrixXd theta = truth.theta + Eigen::MatrixXd{{-0.1, 0.1}, {0.05, -0.1}};
+  return bank_of(recording, theta, Eigen::Vector2d(0.03, 0.06), 1e-9);
+}
+
+class RefineMeasured : public testing::TestWithParam<Index> {};
+
+/// folds 1: to convergence; more: stopped by cross-validation.
+TEST_P(RefineMeasured, RecoversEverythingWithinThreeStandardErrors) {
+  const SystemTruth truth;
+  const Recording recording = measured_runs(truth, 6, 600, 11);
+  const WindowFits fits = test::windows_of(recording, 25, 1);
+  RefineOptions options;
+  options.restarts = 0;
+  options.folds = GetParam();
+  const Refinement refined = refine_bank(recording, fits, {disturbed_start(recording, truth)}, options, {});
+  EXPECT_GT(refined.measurement.iterations, 0);
+  expect_recovery(refined.bank, truth);
+}
+
+/// Noise and rounding of one size: R is that of the noise alone.
+TEST_P(RefineMeasured, TellsNoiseFromRounding) {
+  const SystemTruth truth;
+  Recording recording = measured_runs(truth, 6, 600, 11);
+  const double quantum = 0.3;
+  round_states(recording, quantum);
+  RefineOptions options;
+  options.restarts = 0;
+  options.folds = GetParam();
+  const Refinement refined =
+      refine_bank(recording, test::windows_of(recording, 25, 1), {disturbed_start(recording, truth)}, options, {});
+  expect_recovery(refined.bank, truth);
+}
+
+/// Rounding alone asks for none.
+TEST_P(RefineMeasured, TakesRoundingForNoNoise) {
+  SystemTruth truth;
+  truth.R = 0.0;
+  Recording recording = measured_runs(truth, 6, 600, 12);
+  const double quantum = 0.2;
+  round_states(recording, quantum);
+  RefineOptions options;
+  options.restarts = 0;
+  options.folds = GetParam();
+  const Refinement refined =
+      refine_bank(recording, test::windows_of(recording, 25, 1), {disturbed_start(recording, truth)}, options, {});
+  EXPECT_GT(refined.measurement.starts, 0);
+  EXPECT_GT(refined.measurement.iterations, 0);
+  EXPECT_LT(refined.bank.R(0, 0), 0.1 * quantum * quantum / 12.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Folds, RefineMeasured, testing::Values(1, 3));

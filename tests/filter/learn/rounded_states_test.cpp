@@ -44,6 +44,21 @@ TEST(RoundedStates, TheBaselineFindsWhatLeastSquaresMiss) {
   EXPECT_EQ(fit.bank.quantum, recording.quantum);
 }
 
+TEST(RoundedStates, NoiseOnlyFindsWhatLeastSquaresMiss) {
+  const double quantum = 0.2;
+  Recording recording = rounded_recording(quantum);
+  const LinearStructure structure = test::structure_of(recording);
+  const Eigen::MatrixXd R = Eigen::MatrixXd::Zero(1, 1);
+  const double error = fit_global(recording, structure).covariance.diagonal().cwiseSqrt()(0);
+  EXPECT_GT(std::abs(learn_noise_only(recording, structure, R).theta(0)(0) + 0.3), 3.0 * error);
+  recording.quantum.setConstant(1, quantum);
+  const Bank bank = learn_noise_only(recording, structure, R);
+  ASSERT_EQ(bank.mode_count(), 8);
+  for (Index j = 0; j < 8; ++j) EXPECT_LT(std::abs(bank.theta(j)(0) + 0.3), 3.0 * error);
+  EXPECT_EQ(bank.theta(0), bank.theta(7));
+  EXPECT_EQ(bank.R, R);
+}
+
 TEST(RoundedStates, WithoutAQuantumTheBaselineKeepsLeastSquares) {
   const Recording recording = rounded_recording(0.2);
   const LinearStructure structure = test::structure_of(recording);

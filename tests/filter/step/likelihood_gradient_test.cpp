@@ -46,7 +46,7 @@ std::vector<std::pair<std::string, Change>> all_changes(const Bank& bank) {
       });
   const double R_scale = bank.R(0, 0);
   for (Index i = 0; i < bank.R.rows(); ++i)
-    for (Index k = 0; k <= i; ++k)
+    for (Index k = bank.is_quantised() ? i : 0; k <= i; ++k)
       changes.emplace_back("R", [=](Bank& to, double h) {
         to.R(i, k) += R_scale * h;
         if (i != k) to.R(k, i) += R_scale * h;
@@ -142,6 +142,50 @@ TEST(LikelihoodGradient, CountsSamplesByTheirWeight) {
   const Trajectory run = test::simulate_bank(bank, 50, 7);
   const Eigen::VectorXd weight = Eigen::VectorXd::LinSpaced(50, 0.0, 2.0);
   expect_gradient(bank, run, {}, weight);
+}
+
+/// As bank_of, its signals multiples of a quantum, R diagonal.
+Bank quantised_bank(Index n, Index K, double r, double quantum) {
+  Bank bank = bank_of(n, K, r);
+  bank.R = Eigen::MatrixXd(bank.R.diagonal().asDiagonal());
+  bank.quantum.setConstant(n, quantum);
+  return bank;
+}
+
+Trajectory rounded_run(const Bank& bank, Index samples, std::uint64_t seed) {
+  Trajectory run = test::simulate_bank(bank, samples, seed);
+  for (Index i = 0; i < run.state.rows(); ++i)
+    if (const double q = bank.quantum(i); q > 0.0)
+      run.state.row(i) = ((run.state.row(i) / q).array().round() * q).matrix();
+  return run;
+}
+
+/// Quanta from next to nothing to many standard deviations (the modes' are 0.01 to 0.1), missing signals, and values
+/// far out in every mode's tail.
+TEST(LikelihoodGradient, IsThatOfIntervals) {
+  for (const FilterNoise noise : {FilterNoise::gaussian, FilterNoise::adaptive})
+    for (const Index n : {1, 2, 3})
+      for (const double quantum : {1e-7, 1e-3, 0.03, 0.5}) {
+        SCOPED_TRACE(testing::Message() << "n " << n << ", quantum " << quantum << ' ' << name_of(noise));
+        const Bank bank = quantised_bank(n, 3, 1e-5, quantum);
+        Trajectory run = rounded_run(bank, 60, 8);
+        run.state(0, 20) = std::nan("");
+        run.state.col(35).array() += 2.0;
+        FilterOptions options;
+        options.noise = noise;
+        expect_gradient(bank, run, options);
+      }
+}
+
+TEST(LikelihoodGradient, IsThatOfIntervalsOfSomeSignals) {
+  Bank bank = quantised_bank(3, 3, 1e-4, 0.02);
+  bank.quantum(1) = 0.0;
+  expect_gradient(bank, rounded_run(bank, 60, 9), {}, Eigen::VectorXd::LinSpaced(60, 0.0, 2.0));
+  Bank part = quantised_bank(2, 3, 1e-4, 0.02);
+  part.C = Eigen::MatrixXd{{1.0, 0.5}};
+  part.R = Eigen::MatrixXd{{1e-4}};
+  part.quantum.setConstant(1, 0.02);
+  expect_gradient(part, rounded_run(part, 60, 10), {});
 }
 
 TEST(LikelihoodGradient, IsNotThereWhereStepsHaveNoKernel) {

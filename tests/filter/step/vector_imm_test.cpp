@@ -30,7 +30,8 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
   Gaussian<any> estimate(n);
   VectorImm kernel(bank, options);
   kernel.start(run.state.col(0));
-  VectorXd mean(n), expected_mean(n), pit(n_y), width(n_y), expected_pit(n_y), weights(bank.mode_count());
+  VectorXd mean(n), expected_mean(n), pit(n_y), width = VectorXd::Zero(n_y), expected_pit(n_y), expected_width = width,
+                                                weights(bank.mode_count());
   MatrixXd covariance(n, n), S(n_y, n_y), expected_S(n_y, n_y);
   const auto same = [&](const MatrixXd& a, const MatrixXd& b) {
     return test::near(a, b, relative * std::max(1e-3, b.cwiseAbs().maxCoeff()));
@@ -53,7 +54,11 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
     ASSERT_EQ(std::isnan(log_density), std::isnan(expected));
     if (!std::isnan(expected)) {
       kernel.transform(run.state.col(k), pit, width);
-      probability_transform(run.state.col(k), step, weights, expected_pit);
+      if (model.quantised)
+        interval_transform(model, run.state.col(k), step, weights, expected_pit, expected_width);
+      else
+        probability_transform(run.state.col(k), step, weights, expected_pit);
+      ASSERT_TRUE(same(width, expected_width)) << "sample " << k;
       for (Index i = 0; i < n_y; ++i) {
         ASSERT_EQ(std::isnan(pit(i)), std::isnan(expected_pit(i)));
         if (std::isnan(pit(i))) continue;
@@ -105,6 +110,27 @@ TEST(VectorImm, SaysWhatTheGeneralStepsSay) {
       expect_agreement(bank, run, {}, 1e-11);
       expect_agreement(bank, run, adaptive(), 1e-11);
     }
+}
+
+/// Quanta of about a standard deviation, tiny ones, and one signal that has none.
+TEST(VectorImm, TakesIntervalsAsTheGeneralStepsDo) {
+  for (const Index n : {1, 2, 3})
+    for (const Index K : {2, 8, 9})
+      for (const double quantum : {3e-2, 1e-6}) {
+        Bank bank = many_modes(n, K);
+        bank.quantum.setConstant(n, quantum);
+        if (n == 3) bank.quantum(1) = 0.0;
+        Trajectory run = test::simulate_bank(bank, 70, 51);
+        for (Index i = 0; i < n; ++i)
+          if (bank.quantum(i) > 0.0)
+            run.state.row(i) = ((run.state.row(i) / quantum).array().round() * quantum).matrix();
+        run.state(0, 30) = std::nan("");
+        run.state.col(40).setConstant(std::nan(""));
+        run.state(n - 1, 60) += 3.0;  // far out in a tail
+        SCOPED_TRACE(testing::Message() << n << " states, " << K << " modes, quantum " << quantum);
+        expect_agreement(bank, run, {}, 1e-9);
+        expect_agreement(bank, run, adaptive(), 1e-9);
+      }
 }
 
 /// Whatever kernels a stretch goes through, whether or not something is missing in it.

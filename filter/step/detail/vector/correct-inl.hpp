@@ -27,6 +27,32 @@ HWY_INLINE void solve(const V (&L)[packed_size(NY)], const V (&inverse)[NY], V (
   }
 }
 
+/// As bound_variances of kalman.hpp does, where a variance is negative.
+template <std::size_t N>
+HWY_INLINE void bound_variances(M negative, const Moments<N>& predicted, Moments<N>& posterior) {
+  for (std::size_t a = 0; a < N; ++a)
+    for (std::size_t b = 0; b <= a; ++b) {
+      V& P = posterior.P[packed(a, b)];
+      const V bounded = a == b ? hn::Max(zero(), hn::Min(P, predicted.P[packed(a, a)])) : zero();
+      P = hn::IfThenElse(negative, bounded, P);
+    }
+}
+
+/// The estimate after the measurement; an overflowing correction is no information.
+template <std::size_t N>
+HWY_INLINE Moments<N> usable(const Moments<N>& predicted, Moments<N> result) {
+  V check = result.x[0], least = result.P[0];
+  for (std::size_t a = 1; a < N; ++a) check = hn::Add(check, result.x[a]);
+  for (const V P : result.P) check = hn::Add(check, P);
+  for (std::size_t a = 1; a < N; ++a) least = hn::Min(least, result.P[packed(a, a)]);
+  const M sound = hn::Lt(hn::Abs(check), splat(far)), negative = hn::Lt(least, zero());
+  if (HWY_LIKELY(hn::AllTrue(D(), hn::AndNot(negative, sound)))) return result;
+  for (std::size_t a = 0; a < N; ++a) result.x[a] = hn::IfThenElse(sound, result.x[a], predicted.x[a]);
+  for (std::size_t k = 0; k < packed_size(N); ++k) result.P[k] = hn::IfThenElse(sound, result.P[k], predicted.P[k]);
+  bound_variances<N>(hn::And(sound, negative), predicted, result);
+  return result;
+}
+
 /// One register of modes taking a measurement in.
 template <std::size_t N, std::size_t NY>
 struct Correction {
@@ -93,38 +119,17 @@ struct Correction {
     return result;
   }
 
-  /// The estimate after the measurement; an overflowing correction is no information.
   HWY_INLINE Moments<N> posterior(const Sensor& sensor) const {
     V gain[N][NY];
     gain_of(sensor, gain);
-    Moments<N> result = joseph(sensor, gain);
-    V check = result.x[0], least = result.P[0];
-    for (std::size_t a = 1; a < N; ++a) check = hn::Add(check, result.x[a]);
-    for (const V P : result.P) check = hn::Add(check, P);
-    for (std::size_t a = 1; a < N; ++a) least = hn::Min(least, result.P[packed(a, a)]);
-    const M sound = hn::Lt(hn::Abs(check), splat(far)), negative = hn::Lt(least, zero());
-    if (HWY_LIKELY(hn::AllTrue(D(), hn::AndNot(negative, sound)))) return result;
-    for (std::size_t a = 0; a < N; ++a) result.x[a] = hn::IfThenElse(sound, result.x[a], m.x[a]);
-    for (std::size_t k = 0; k < packed_size(N); ++k) result.P[k] = hn::IfThenElse(sound, result.P[k], m.P[k]);
-    bound_variances(hn::And(sound, negative), result);
-    return result;
-  }
-
-  /// As bound_variances of kalman.hpp does, where a variance is negative.
-  HWY_INLINE void bound_variances(M negative, Moments<N>& posterior) const {
-    for (std::size_t a = 0; a < N; ++a)
-      for (std::size_t b = 0; b <= a; ++b) {
-        V& P = posterior.P[packed(a, b)];
-        const V bounded = a == b ? hn::Max(zero(), hn::Min(P, m.P[packed(a, a)])) : zero();
-        P = hn::IfThenElse(negative, bounded, P);
-      }
+    return usable<N>(m, joseph(sensor, gain));
   }
 };
 
 /// tr(S^-1 C s Q C') and e' S^-1 C s Q C' S^-1 e of the modes r .., the latter with e' S^-1 e cut (noise_scale.hpp).
 template <std::size_t N, std::size_t NY>
-HWY_INLINE void explained(const ModeRows& p, const Sensor& sensor, const double* y, std::size_t r, V& share,
-                          V& square) {
+HWY_INLINE void explained_by_values(const ModeRows& p, const Sensor& sensor, const double* y, std::size_t r, V& share,
+                                    V& square) {
   const Correction<N, NY> c(load_prediction<N, NY>(p, r), y);
   V Q[packed_size(N)], QCt[N * NY];
   load_rows(p.Q + r, p.stride, Q);

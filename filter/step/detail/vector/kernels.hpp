@@ -25,12 +25,19 @@ struct ModeRows {
   double *L = nullptr, *D = nullptr, *D_inverse = nullptr;            ///< packed n_y; n_y: S = L D L'
   double* decorrelated = nullptr;                                     ///< n_y: L^-1 (y - C x)
   double *exponent = nullptr, *weight = nullptr;  ///< 1: -e' S^-1 e / (2 log 2); unnormalised posterior
+  /// Of quantised measurements alone: SignalLikelihood's numbers, n_y rows of each, of every signal given those before
+  /// it, of which decorrelated and D then have the innovation and its variance.
+  double* signal = nullptr;
 };
 
-/// C (n_y x n) and R (n_y x n_y), row-major, and how many of the n_y signals are there.
+inline constexpr std::size_t signal_numbers = 5;
+
+/// C (n_y x n) and R (n_y x n_y), row-major, and how many of the n_y signals are there. `quantum`: n_y, zero of a
+/// continuous signal (interval.hpp); null: all are.
 struct Sensor {
   const double *C = nullptr, *R = nullptr;
   double signals = 0.0;
+  const double* quantum = nullptr;
 };
 
 /// What an update finds.

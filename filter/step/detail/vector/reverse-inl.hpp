@@ -8,6 +8,7 @@
 #endif
 
 #include "filter/step/detail/vector/correct-inl.hpp"
+#include "filter/step/detail/vector/interval_reverse-inl.hpp"
 #include "filter/step/detail/vector/mixing-inl.hpp"
 #include "filter/step/detail/vector/reverse.hpp"
 
@@ -295,9 +296,31 @@ HWY_INLINE V unfloor(const ModeRows& p, const ReverseStep& step, const ReverseRo
   return splat(sum_of(mean));
 }
 
+/// From derivatives by the corrected moments of register r to those by the predicted ones, R and Q. `by_log`: by the
+/// mode's log density, mu: its probability after the measurement.
+template <std::size_t N, std::size_t NY>
+HWY_INLINE void back_to_predicted(const ModeRows& p, const ReverseStep& step, const ReverseRows& d, std::size_t r,
+                                  V by_log, V mu, Moments<N>& by, V (&by_Q)[packed_size(N)]) {
+  const V scaled = hn::Mul(mu, splat(step.noise_scale));
+  const V share = hn::Mul(scaled, splat(step.by_share)), square = hn::Mul(scaled, splat(step.by_square));
+  V Q[packed_size(N)];
+  load_rows(p.Q + r, p.stride, Q);
+  if (step.sensor.quantum)
+    return IntervalUncorrection<N, NY>(p, step.sensor, r).back(by_log, share, square, Q, by, by_Q, d.R);
+  const Uncorrection<N, NY> back(load_prediction<N, NY>(p, r), step.measured);
+  V by_e[NY], by_S[packed_size(NY)];
+  for (V& value : by_e) value = zero();
+  back.log_density(by_log, by_S);
+  if (step.adaptive) back.explained(step.sensor, Q, share, square, by_e, by_S, by_Q);
+  back.back(step.sensor, by_log, by_e, by_S, by, d.R);
+}
+
 template <std::size_t N, std::size_t NY>
 double reverse(const ModeRows& p, const ReverseStep& step, const ReverseRows& d) {
   const std::size_t stride = p.stride;
+  if (step.measured && step.sensor.quantum)
+    for (std::size_t r = 0; r < stride; r += hn::Lanes(D()))
+      look_at<N, NY>(p, step.sensor, step.measured, r, load_prediction<N, NY>(p, r).m);
   const V mean = unfloor<N, NY>(p, step, d);
   V by_scale = zero();
   for (std::size_t r = 0; r < stride; r += hn::Lanes(D())) {
@@ -309,22 +332,10 @@ double reverse(const ModeRows& p, const ReverseStep& step, const ReverseRows& d)
     for (V& value : by_Q) value = zero();
     V by_prior = by_probability;
     if (step.measured) {
-      const Prediction<N, NY> q = load_prediction<N, NY>(p, r);
-      const Uncorrection<N, NY> back(q, step.measured);
       const V mu = load(step.probability_after + r);
       const V by_log = hn::Mul(mu, hn::Add(splat(step.weight), hn::Sub(by_probability, mean)));
-      V by_e[NY], by_S[packed_size(NY)];
-      for (V& value : by_e) value = zero();
-      back.log_density(by_log, by_S);
-      if (step.adaptive) {
-        const V scaled = hn::Mul(mu, splat(step.noise_scale));
-        V Q[packed_size(N)];
-        load_rows(p.Q + r, stride, Q);
-        back.explained(step.sensor, Q, hn::Mul(scaled, splat(step.by_share)), hn::Mul(scaled, splat(step.by_square)),
-                       by_e, by_S, by_Q);
-      }
-      back.back(step.sensor, by_log, by_e, by_S, by, d.R);
-      by_prior = hn::Div(by_log, hn::Max(q.prior, splat(impossible_probability)));
+      back_to_predicted<N, NY>(p, step, d, r, by_log, mu, by, by_Q);
+      by_prior = hn::Div(by_log, hn::Max(load(p.predicted_probability + r), splat(impossible_probability)));
     }
     store(by_prior, d.by_prior + r);
     by_scale = hn::Add(by_scale, back_to_mixed<N>(p, step, d, r, by, by_Q));

@@ -8,6 +8,7 @@
 #endif
 
 #include "filter/step/detail/vector/correct-inl.hpp"
+#include "filter/step/detail/vector/interval-inl.hpp"
 #include "filter/step/detail/vector/mixing-inl.hpp"
 #include "filter/step/detail/vector/predict-inl.hpp"
 
@@ -111,7 +112,8 @@ template <std::size_t N, std::size_t NY>
 UpdateResult update(const ModeRows& p, const Sensor& sensor, const double* y, double noise_scale) {
   Row<0> exponents(p.exponent), weights(p.weight);
   const auto predicted = [&](std::size_t b) { return load_prediction<N, NY>(p, b * hn::Lanes(D())); };
-  const V reference = correct<N, NY>(p, sensor, y, predicted, exponents, weights);
+  const V reference = sensor.quantum ? correct_intervals<N, NY>(p, sensor, y)
+                                     : correct<N, NY>(p, sensor, y, predicted, exponents, weights);
   center_modes<N>(p);
   const double sum = bayes(p, reference, exponents, weights);
   const hn::CappedTag<double, 1> one;

@@ -7,6 +7,7 @@
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/equations/imm.hpp"
 #include "filter/step/equations/noise_scale.hpp"
+#include "filter/step/equations/predicted_mixture.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -40,7 +41,7 @@ void VectorImm::Free::operator()(double* memory) const { std::free(memory); }
 bool VectorImm::can_step(const Bank& bank, const FilterOptions& options) {
   const auto has_spread = [](const Mode& mode) { return mode.spread.size() > 0; };
   return options.variant == FilterVariant::imm && bank.mode_count() > 1 && bank.transition_logit.empty() &&
-         !bank.is_quantised() && bank.drift.empty() &&
+         bank.drift.empty() &&
          !(options.parameter_noise && std::any_of(bank.modes.begin(), bank.modes.end(), has_spread)) &&
          vector_imm::kernels(count_of(bank.structure.dimension()), count_of(bank.C.rows())).predict != nullptr;
 }
@@ -50,15 +51,19 @@ VectorImm::VectorImm(const Bank& bank, const FilterOptions& options)
       n_y_(bank.C.rows()),
       K_(bank.mode_count()),
       adaptive_(options.noise == FilterNoise::adaptive),
+      quantum_(bank.is_quantised() ? bank.quantum : Eigen::VectorXd()),
+      partial_quantum_(quantum_),
       adaptation_(bank.noise_adaptation),
       kernels_(vector_imm::kernels(count_of(n_), count_of(n_y_))),
       C_(bank.C.transpose()),
       R_(bank.R.transpose()),
       partial_C_(C_),
       partial_R_(R_),
-      sensor_{C_.data(), R_.data(), static_cast<double>(n_y_)},
+      sensor_{C_.data(), R_.data(), static_cast<double>(n_y_), quantum_.size() > 0 ? quantum_.data() : nullptr},
       y_(n_y_),
       packed_(std::max(packed_size(n_), packed_size(n_y_))),
+      weights_(quantum_.size() > 0 ? K_ : 0),
+      log_likelihood_(weights_.size()),
       first_(start_moments(bank)),
       initial_probability_(bank.initial_probability),
       start_(n_) {
@@ -76,7 +81,8 @@ VectorImm::VectorImm(const Bank& bank, const FilterOptions& options)
 void VectorImm::lay_out() {
   const Index m = static_cast<Index>(rows_.inputs), p = packed_size(n_), q = packed_size(n_y_);
   const Index bank_rows = n_ * n_ + n_ * m + n_ + p + K_, step_rows = 3 * (n_ + p) + 3 + 5 * n_y_ + 2 * q + 2;
-  const std::size_t numbers = count_of(bank_rows + step_rows) * rows_.stride;
+  const Index signal_rows = static_cast<Index>(vector_imm::signal_numbers) * quantum_.size();
+  const std::size_t numbers = count_of(bank_rows + step_rows + signal_rows) * rows_.stride;
   auto* memory = static_cast<double*>(std::aligned_alloc(register_bytes, numbers * sizeof(double)));
   if (memory == nullptr) throw std::bad_alloc();
   std::fill_n(memory, numbers, 0.0);
@@ -107,6 +113,7 @@ void VectorImm::lay_out() {
   rows_.decorrelated = take(n_y_);
   rows_.exponent = take(1);
   rows_.weight = take(1);
+  if (signal_rows > 0) rows_.signal = take(signal_rows);
 }
 
 void VectorImm::fill(const Bank& bank) {
@@ -152,6 +159,7 @@ void VectorImm::predict(const Vector& v) { kernels_.predict(rows_, sensor_, v.da
 vector_imm::Sensor VectorImm::detach_missing(const Vector& y, Index missing) {
   partial_C_ = C_;
   partial_R_ = R_;
+  partial_quantum_ = quantum_;
   y_ = y;
   for (Index i = 0; i < n_y_; ++i) {
     if (!is_missing(y(i))) continue;
@@ -159,9 +167,11 @@ vector_imm::Sensor VectorImm::detach_missing(const Vector& y, Index missing) {
     partial_R_.row(i).setZero();
     partial_R_.col(i).setZero();
     partial_R_(i, i) = 1.0;
+    if (quantum_.size() > 0) partial_quantum_(i) = 0.0;
     y_(i) = 0.0;
   }
-  return {partial_C_.data(), partial_R_.data(), static_cast<double>(n_y_ - missing)};
+  return {partial_C_.data(), partial_R_.data(), static_cast<double>(n_y_ - missing),
+          quantum_.size() > 0 ? partial_quantum_.data() : nullptr};
 }
 
 double VectorImm::update(const Vector& y) {
@@ -184,7 +194,7 @@ void VectorImm::follow(const Columns& inputs, const Columns& measurements, Eigen
   const Index samples = measurements.cols();
   for (Index k = 0; k < samples;) {
     Index end = k;  // of the whole samples from k on
-    while (!adaptive_ && end < samples && missing_entries(measurements.col(end)) == 0) ++end;
+    while (!adaptive_ && !sensor_.quantum && end < samples && missing_entries(measurements.col(end)) == 0) ++end;
     if (end > k) {
       kernels_.follow(rows_, sensor_,
                       {inputs.col(k).data(), measurements.col(k).data(), count_of(end - k), log_density.data() + k});
@@ -201,11 +211,21 @@ double VectorImm::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::M
   vector_imm::CombinedExpectation to{state.data(), packed_.data()};
   kernels_.combine(rows_, sensor_, to);
   unpack_symmetric(packed_, innovation_covariance);
+  if (sensor_.quantum) innovation_covariance.diagonal().array() += quantum_.array().square() / 12.0;
   const double total = innovation_covariance.diagonal().sum();
   return total > 0.0 ? std::min(1.0, to.spread / total) : 0.0;
 }
 
-void VectorImm::transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> /*width*/) {
+void VectorImm::transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) {
+  if (sensor_.quantum) {
+    weights_ = predicted_probability();
+    return interval_transform(
+        quantum_, y,
+        [this](Index i, Index j) {
+          return ModeSignal{decorrelated(i, j), variance(i, j), rows_.signal[at(i, j)]};
+        },
+        weights_, log_likelihood_, pit, width);
+  }
   kernels_.transform(rows_, y.data(), pit.data());
 }
 

@@ -49,6 +49,7 @@ class VectorImm final : public Stepper {
 
   Eigen::Index n_, n_y_, K_;
   bool adaptive_;
+  Eigen::VectorXd quantum_, partial_quantum_;  // empty: nothing is quantised
   NoiseAdaptation adaptation_;
   double noise_scale_ = 1.0, noise_samples_ = 0.0;  // of FilterMemory
   vector_imm::UpdateResult last_;                   // update's
@@ -59,6 +60,7 @@ class VectorImm final : public Stepper {
   Eigen::MatrixXd partial_C_, partial_R_;  // of the signals that are there
   vector_imm::Sensor sensor_;              // C_ and R_
   Eigen::VectorXd y_, packed_;
+  Eigen::VectorXd weights_, log_likelihood_;  // workspace of quantised signals' transform
   StartMoments first_;
   Eigen::VectorXd initial_probability_, start_;
 
