@@ -54,6 +54,7 @@ void Chain::import(const DataInputs& inputs) {
     for (const std::string& note : data_.notes) listener_.warning(note);
     archive_.recording = std::move(data_.recording);
     archive_.lag = std::move(data_.lag);
+    archive_.labels = std::move(data_.labels);
     listener_.progress(fmt::format("import: {} runs, {} training and {} test transitions in {:.2f} s",
                                    archive_.recording->runs.size(), archive_.recording->transitions(Role::train),
                                    archive_.recording->transitions(Role::test), watch.seconds()));
@@ -62,6 +63,7 @@ void Chain::import(const DataInputs& inputs) {
     Archive part;
     part.recording = archive_.recording;
     part.lag = archive_.lag;
+    part.labels = archive_.labels;
     part.provenance.inputs = data_.files;
     part.provenance.data_hash = data_.data_hash;
     return part;
@@ -69,6 +71,7 @@ void Chain::import(const DataInputs& inputs) {
   const auto take = [&](Archive&& part) {
     archive_.recording = std::move(part.recording);
     archive_.lag = std::move(part.lag);
+    archive_.labels = std::move(part.labels);
     data_.files = std::move(part.provenance.inputs);
     data_.data_hash = std::move(part.provenance.data_hash);
   };
@@ -200,6 +203,7 @@ void Chain::judge(const ChainInputs& inputs) {
   const auto copy = [&] { return scores_of({"bank"}, archive_); };
   provide(Stage::bank_scores, {score_bank, copy, [&](Archive&& part) { put_scores(std::move(part)); }});
   archive_.finding = find_modes(archive_);
+  archive_.confusion = confusion_of(archive_);
   listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
 }
 
@@ -221,6 +225,7 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   score("bank", options.filter, scoring);
   for (const char* filter : competitor_names) score(filter, competitor_filter(filter, options.filter), scoring);
   archive_.finding = find_modes(archive_);
+  archive_.confusion = confusion_of(archive_);
   listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
   describe(execution, {describe_file(banks)});
   return archive_;

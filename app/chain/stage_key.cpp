@@ -60,7 +60,7 @@ class KeyText {
 
 MODEBANK_KEY_FIELDS(FormatOptions, separator, decimal, header, definitions)
 MODEBANK_KEY_FIELDS(SplitOptions, kind, blocks, last_percent, gap_samples)
-MODEBANK_KEY_FIELDS(DataOptions, root, inputs, states, state, input, truth, state_unit, input_unit, weight, time,
+MODEBANK_KEY_FIELDS(DataOptions, root, inputs, states, state, input, truth, state_unit, input_unit, weight, label, time,
                     time_unit, join, run, rate_hz, lag_s, lag_auto, lag_range_s, quantum, quantum_auto, format, missing,
                     disorder, split, train, test)
 MODEBANK_KEY_FIELDS(FitOptions, model, state_lags, input_lags, input_delay, wheel_radius_m, residual, length, step,

@@ -99,6 +99,9 @@ void check_free_run(const LinearStructure& structure, const FreeRunOptions& opti
 /// without a scored bank.
 std::optional<Finding> find_modes(const Archive& archive);
 
+/// Of the bank's most probable modes against the labels, on the judged runs; none without labels.
+std::vector<ConfusionRow> confusion_of(const Archive& archive);
+
 /// Residual tests on all runs: of the global model's one-step residuals, and of a filter's scores z.
 ResidualTestSet test_global(const Recording& recording, const WindowFits& windows, const FitOptions& window);
 ResidualTestSet test_filter(const Recording& recording, const FilterEvaluation& evaluation);

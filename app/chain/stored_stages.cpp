@@ -16,6 +16,7 @@ void StoredStages::provide(Stage stage, const std::string& /*key*/, const StageP
   if (stage == Stage::data) {
     result.recording = std::move(stored_.recording);
     result.lag = std::move(stored_.lag);
+    result.labels = std::move(stored_.labels);
     result.provenance = stored_.provenance;
   } else if (stage == Stage::lag_counts && stage <= until_) {
     result.lag_counts = std::move(stored_.lag_counts);

@@ -48,6 +48,7 @@ void turn_to_new_files(const CommandLine& line, DataOptions& data) {
   if (!given(line, "data.missing")) data.missing = Missing::predict;
   data.truth.clear();
   data.weight.clear();
+  data.label.clear();
   if (!given(line, "data.split")) data.split = {};
   if (data.lag_auto && !given(line, "data.lag_s")) take_lag(archive, data);
 }

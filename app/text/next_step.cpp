@@ -71,7 +71,10 @@ const Rule rules[] = {
               "which data.rate_hz leaves it out; of rounded values --data.quantum auto compares the intervals";
      }},
     {[](const Situation& s) { return !s.finding.held_out(); },
-     [](const Situation&) -> std::string {
+     [](const Situation& s) -> std::string {
+       if (s.archive.recording && s.archive.recording->runs.size() == 1)
+         return "hold a part of the run out, for only that can be evidence: repeat with --data.split 'blocks 10', of "
+                "which every other one is held out";
        return "hold runs out, for only they can be evidence: record another, or name some with --data.test";
      }},
     {[](const Situation& s) { return s.says(Answer::cannot_tell); },

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/chain/judged_runs.hpp"
+#include "app/text/confusion_text.hpp"
 #include "app/text/lag_counts_text.hpp"
 #include "app/text/lag_text.hpp"
 #include "app/text/number_text.hpp"
@@ -238,7 +239,8 @@ std::string summary_text(const Archive& archive, int width) {
   }
   text += residuals_text(archive);
   if (!archive.summary.empty())
-    text += "\n" + scores_text(archive, width) + verdicts_text(archive) + horizon_text(archive) + finding_text(archive);
+    text += "\n" + scores_text(archive, width) + verdicts_text(archive) + confusion_text(archive, width) +
+            horizon_text(archive) + finding_text(archive);
   return wrapped(text, width);
 }
 

@@ -16,6 +16,7 @@
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/step/bank.hpp"
 #include "filter/step/drifting.hpp"
+#include "ident/data/run_labels.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/lag_counts.hpp"
@@ -53,11 +54,22 @@ struct ResidualTestSet {
   std::vector<ResidualTests> runs;
 };
 
+/// How many samples that a label stands at had one mode of a filter as their most probable.
+struct ConfusionRow {
+  std::string filter;
+  Role role = Role::test;
+  std::string label;
+  Index mode = 0;
+  Index samples = 0;
+  double share = 0.0;  ///< of the label's samples
+};
+
 /// What one execution produced, stage by stage; absent stages did not run.
 struct Archive {
   Provenance provenance;
   std::string config;  ///< fully resolved, itself a valid configuration file
   std::optional<Recording> recording;
+  std::optional<RunLabels> labels;      ///< with data.label
   std::optional<LagReport> lag;         ///< with data.lag_s = auto
   std::optional<LagCounts> lag_counts;  ///< with window.state_lags = auto or window.input_lags = auto
   std::optional<WindowFits> windows;
@@ -74,9 +86,10 @@ struct Archive {
   std::vector<HorizonRow> horizons;  ///< with filter.horizon
   std::vector<DiagnosticsRow> diagnostics;
   std::vector<ResidualTestSet> residual_tests;
-  std::vector<MergingCost> merging = {};   ///< with bank.modes, where components were merged
-  std::vector<FreeRunRow> free_runs = {};  ///< with filter.simulate
-  std::optional<Finding> finding = {};     ///< where a bank was scored
+  std::vector<MergingCost> merging = {};     ///< with bank.modes, where components were merged
+  std::vector<FreeRunRow> free_runs = {};    ///< with filter.simulate
+  std::vector<ConfusionRow> confusion = {};  ///< with data.label, where a bank was scored
+  std::optional<Finding> finding = {};       ///< where a bank was scored
 
   /// By the name of its filter, where there is one; of drifting its fixed_bank, whose states and measurements are its.
   std::optional<Bank> bank_of(const std::string& filter) const;

@@ -36,8 +36,9 @@ void exchange_origin(Io& io, A& archive) {
   io.group("provenance", {}, [&](auto& member) { exchange_provenance(member, archive.provenance); });
 }
 
-template <class Io, class R>
-void exchange_recording(Io& io, R& recording) {
+/// `labels`: with data.label.
+template <class Io, class R, class L>
+void exchange_recording(Io& io, R& recording, L& labels) {
   const auto channels = [&](auto& list, const std::string& kind) {
     io.through(list, store_channels, restore_channels, [&](auto& stored) {
       io.attribute_texts(kind + "_names", stored.names);
@@ -56,8 +57,14 @@ void exchange_recording(Io& io, R& recording) {
   Sizes known;
   known.set("n", recording.states.size());
   known.set("m", recording.inputs.size());
+  std::vector<std::string> label_names = labels ? labels->names : std::vector<std::string>();
+  io.optional_attribute_texts("label_names", label_names);
+  if constexpr (Io::reads)
+    if (!label_names.empty()) labels = RunLabels{label_names, std::vector<Eigen::VectorXi>(recording.runs.size())};
   const Units units(recording);
-  for (auto& run : recording.runs)
+  for (std::size_t i = 0; i < recording.runs.size(); ++i) {
+    auto& run = recording.runs[i];
+    Eigen::VectorXi label = labels && !label_names.empty() ? labels->of_runs[i] : Eigen::VectorXi();
     io.group(run.run, known, [&](auto& member) {
       member.attribute("role", run.role);
       member.attribute("lag_s", run.lag_s);
@@ -68,7 +75,11 @@ void exchange_recording(Io& io, R& recording) {
       member.optional_field("truth", run.truth, {"N", "n"}, units.states());
       member.optional_field("weight", run.weight, {"N"});
       member.optional_field("quantum", recording.quantum, {"n"}, units.states());  // of all runs
+      member.optional_field("label", label, {"N"});                                // positions in label_names
     });
+    if constexpr (Io::reads)
+      if (labels) labels->of_runs[i] = label;
+  }
 }
 
 /// /lag: what data.lag_s = auto found.

@@ -151,6 +151,14 @@ void exchange_finding(Io& io, F& finding) {
                     column("rmse_bank", &BetterMean::rmse_bank), column("rmse", &BetterMean::rmse));
 }
 
+template <class Io, class R>
+void exchange_confusion(Io& io, R& rows) {
+  using Row = ConfusionRow;
+  io.optional_table("confusion", rows, column("filter", &Row::filter), column("role", &Row::role),
+                    column("label", &Row::label), column("mode", &Row::mode), column("samples", &Row::samples),
+                    column("share", &Row::share));
+}
+
 template <class Io, class A>
 void exchange_evaluation(Io& io, A& archive, const Recording& recording, const Units& units) {
   const auto names = [](const std::vector<FilterEvaluation>& list) {
@@ -171,6 +179,7 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
   exchange_horizon(io, archive.horizons, units.states());
   exchange_free_runs(io, archive.free_runs, units.states());
   exchange_diagnostics(io, archive.diagnostics, units.states());
+  exchange_confusion(io, archive.confusion);
   exchange_part(io, "evidence", archive.finding, {}, [](auto& member, auto& part) { exchange_finding(member, part); });
 }
 

@@ -57,6 +57,9 @@ class GroupReader {
   }
   void constant_attribute(const std::string& name, const std::string& expected);
   void attribute_texts(const std::string& name, std::vector<std::string>& texts);
+  void optional_attribute_texts(const std::string& name, std::vector<std::string>& texts) {
+    if (hdf5::has_attribute(group_.id(), name)) attribute_texts(name, texts);
+  }
   /// All attributes, in name order.
   void attributes(std::vector<std::pair<std::string, std::string>>& pairs);
 

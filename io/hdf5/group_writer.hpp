@@ -61,6 +61,9 @@ class GroupWriter {
   void attribute_texts(const std::string& name, const std::vector<std::string>& texts) {
     if (complete()) hdf5::write_texts(group_.id(), hdf5::Place::attribute, name, texts, {texts.size()});
   }
+  void optional_attribute_texts(const std::string& name, const std::vector<std::string>& texts) {
+    if (!texts.empty()) attribute_texts(name, texts);
+  }
   /// Every pair becomes an attribute.
   void attributes(const std::vector<std::pair<std::string, std::string>>& pairs) {
     for (const auto& [name, value] : pairs) attribute(name, value);

@@ -29,6 +29,9 @@ class ColumnFinder {
   void time(std::size_t source, const DataOptions& options);
   void text(std::size_t source, const std::string& column);
 
+  /// The source whose table has the column; the first of `files` that has it.
+  std::size_t source_with(const std::string& column, const std::vector<std::size_t>& files);
+
   /// Names and units of the columns.
   std::vector<Channel> channels(const std::vector<ColumnRef>& refs) const;
 
@@ -36,7 +39,6 @@ class ColumnFinder {
   const TableInfo& table_of(std::size_t source) const;
   const std::string& path_of(std::size_t source) const { return names_[plan_.sources[source].path]; }
   std::size_t source_of(std::size_t file, std::size_t table);
-  std::size_t source_with(const std::string& column, const std::vector<std::size_t>& files);
   [[noreturn]] void fail(const std::string& column, const std::vector<std::size_t>& files) const;
 
   FilePlan& plan_;

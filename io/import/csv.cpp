@@ -205,6 +205,13 @@ Head head_of_file(const std::filesystem::path& path, const FormatOptions& option
   }
 }
 
+/// Beyond the first rows.
+bool has_late_comment(std::string_view text) {
+  for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1))
+    if (at > 0 && text[at - 1] == '\n') return true;
+  return false;
+}
+
 /// One request, of a text whose head is known.
 Table parse_rows(std::string_view file, std::string_view text, const Head& head, const TableRequest& request) {
   const auto rows_at_most = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
@@ -212,7 +219,7 @@ Table parse_rows(std::string_view file, std::string_view text, const Head& head,
   sink.header_rows = head.dialect.header_rows;
   sink.decimal_comma = head.dialect.decimal_comma;
   PreparedText prepared;
-  if (head.dialect.rewritten() || text.find("\n#") != std::string_view::npos) {
+  if (head.dialect.rewritten() || has_late_comment(text)) {
     prepared = prepare_text(text, head.dialect.separator == Separator::blank);
     sink.comment_lines = std::move(prepared.comment_lines);
     text = prepared.text;

@@ -151,7 +151,7 @@ CsvDialect find_dialect(std::string_view text, bool complete, const FormatOption
   if (headless) {
     dialect.header_rows = 0;
     const std::size_t width = rows.empty() ? 0 : rows[0].size();
-    dialect.names = commented_names(all, dialect.separator, width);
+    if (options.header == HeaderRow::automatic) dialect.names = commented_names(all, dialect.separator, width);
     if (!dialect.names.empty()) said.emplace_back("with the columns' names in a comment");
     for (std::size_t i = dialect.names.size(); i < width; ++i) dialect.names.push_back(fmt::format("c{}", i + 1));
     if (said.empty() || said.back().find("names") == std::string::npos)

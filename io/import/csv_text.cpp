@@ -116,7 +116,10 @@ bool is_comment(std::string_view record) {
 }
 
 std::vector<std::string> fields_of(std::string_view record, char separator) {
-  record = without_blanks(record);
+  if (separator == '\t')  // which separates at the end, too
+    while (!record.empty() && (record.back() == '\r' || record.back() == '\n')) record.remove_suffix(1);
+  else
+    record = without_blanks(record);
   std::vector<std::string> fields(1);
   bool quoted = false, fresh = true;
   for (std::size_t i = 0; i < record.size(); ++i) {

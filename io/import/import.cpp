@@ -13,6 +13,7 @@
 #include "ident/lag/choice.hpp"
 #include "io/files/run_names.hpp"
 #include "io/import/import_plan.hpp"
+#include "io/import/label_streams.hpp"
 #include "io/import/missing_values.hpp"
 #include "io/import/quanta.hpp"
 #include "io/import/read_runs.hpp"
@@ -118,18 +119,15 @@ void split_runs(std::vector<RunStreams>& runs, const DataOptions& options, std::
   check_run_names(run_names(runs));
 }
 
-/// After the roles are set: data.train and data.test name whole runs.
-void treat_missing_values(std::vector<Trajectory>& runs, Missing missing, std::vector<std::string>& notes) {
+/// After the roles are set: data.train and data.test name whole runs, or blocks of them.
+std::vector<Trajectory> without_missing_values(const Trajectory& run, Missing missing,
+                                               std::vector<std::string>& notes) {
   const bool predict = missing == Missing::predict;
-  std::vector<Trajectory> treated;
-  for (const Trajectory& run : runs) {
-    std::vector<Trajectory> parts = split_at_gaps(predict ? hold_missing_inputs(run) : run, predict);
-    if (parts.size() > 1)
-      notes.push_back(fmt::format("run {} has gaps: it is taken as {} runs, {} to {}", run.run, parts.size(),
-                                  parts.front().run, parts.back().run));
-    std::move(parts.begin(), parts.end(), std::back_inserter(treated));
-  }
-  runs = std::move(treated);
+  std::vector<Trajectory> parts = split_at_gaps(predict ? hold_missing_inputs(run) : run, predict);
+  if (parts.size() > 1)
+    notes.push_back(fmt::format("run {} has gaps: it is taken as {} runs, {} to {}", run.run, parts.size(),
+                                parts.front().run, parts.back().run));
+  return parts;
 }
 
 /// All runs that have a role, in name order.
@@ -163,14 +161,18 @@ ImportedData import_data(const DataOptions& options) {
   if (options.lag_auto) data.lag = find_lags(streams, options);
   auto& runs = data.recording.runs;
   Quanta quanta(options);
+  LabelHolder labels;
   for (std::size_t i = 0; i < streams.size(); ++i) {
-    runs.push_back(join_run(streams[i], options, data.lag ? data.lag->runs[i].applied() : InputClock{}));
-    quanta.look_at(streams[i], runs.back());
+    const Trajectory run = join_run(streams[i], options, data.lag ? data.lag->runs[i].applied() : InputClock{});
+    quanta.look_at(streams[i], run);
+    std::vector<Trajectory> parts = without_missing_values(run, options.missing, data.notes);
+    if (!options.label.empty()) labels.hold(streams[i].label, parts);
+    std::move(parts.begin(), parts.end(), std::back_inserter(runs));
     streams[i] = {};
   }
-  treat_missing_values(runs, options.missing, data.notes);
   sort_by_name(runs);
   check_run_names(run_names(runs));
+  if (!options.label.empty()) data.labels = labels.of(runs);
   data.recording.quantum = quanta.decide(data.recording, data.notes);
   return data;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ident/data/run_labels.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/lag/report.hpp"
 #include "io/files/input_file.hpp"
@@ -14,11 +15,12 @@
 namespace modebank {
 
 struct ImportedData {
-  Recording recording;             ///< runs sorted by name (byte order), roles set
-  std::vector<InputFile> files;    ///< in run order, inputs before states
-  std::vector<std::string> notes;  ///< what the user should know of the data
-  std::optional<LagReport> lag;    ///< with DataOptions::lag_auto: what was found and applied
-  std::string data_hash;           ///< of files, see io/files/input_file.hpp
+  Recording recording;              ///< runs sorted by name (byte order), roles set
+  std::vector<InputFile> files;     ///< in run order, inputs before states
+  std::vector<std::string> notes;   ///< what the user should know of the data
+  std::optional<RunLabels> labels;  ///< with DataOptions::label
+  std::optional<LagReport> lag;     ///< with DataOptions::lag_auto: what was found and applied
+  std::string data_hash;            ///< of files, see io/files/input_file.hpp
 };
 
 /// Finds, checks and reads all runs. Throws ConfigurationError for what can be seen before any sample is read (pattern

@@ -82,6 +82,10 @@ void plan_columns(FilePlan& plan, const DataOptions& options) {
       plan.input.empty() ? find.source_without_column(inputs, plan.states_clock) : plan.input.front().source;
   plan.truth = find.numbers(options.truth, states_first);
   if (!options.weight.empty()) plan.weight = {find.number(options.weight, states_first)};
+  if (!options.label.empty()) {
+    plan.label = options.label;
+    plan.label_source = find.source_with(options.label, states_first);
+  }
   plan_times(plan, find, options);
   // A sample without time has no place, and one without weight should not be guessed at.
   for (SourcePlan& source : plan.sources)

@@ -37,6 +37,8 @@ struct FilePlan {
   /// another source is brought to these times.
   std::size_t states_clock = 0, inputs_clock = 0;
   std::size_t runs_source = 0;  ///< where rows correspond: whose text column holds the rows' run names, if any
+  std::string label;            ///< column of labels in the table of label_source; empty: none
+  std::size_t label_source = 0;
   std::vector<std::string> notes;
 
   /// Whether row i of every source belongs to row i of the others (one table, or Join::row).

@@ -59,6 +59,8 @@ struct DataOptions {
   /// Column of sample weights, at least 0 (Trajectory::weight); looked up as truth is: in the states file first. Empty:
   /// none.
   std::string weight;
+  /// Column of what is known of the ground or the like, text or whole numbers; the last one holds. Empty: none.
+  std::string label;
   /// Column of times (one, or seconds and nanoseconds). In a recording "time" means its messages' header stamps, or
   /// where they have none when they were received; receive_time the latter. Empty: row k of a file is k / rate_hz.
   std::vector<std::string> time{"time"};

@@ -25,9 +25,9 @@ using RunRows = std::map<std::string, Rows>;  // sorted by run name, byte order
 
 constexpr std::int64_t large_origin_ns = 100'000'000'000'000'000;  // three years: smaller ones cost no precision
 
-/// One table per source of the plan.
+/// One table per source of the plan, and one more of labels if there are any.
 std::vector<Table> read_tables(const FilePlan& plan, FileContent& result) {
-  std::vector<Table> tables(plan.sources.size());
+  std::vector<Table> tables(plan.sources.size() + (plan.label.empty() ? 0 : 1));
   for (std::size_t path = 0; path < plan.paths.size(); ++path) {
     std::vector<std::size_t> here;
     std::vector<TableRequest> requests;
@@ -36,6 +36,10 @@ std::vector<Table> read_tables(const FilePlan& plan, FileContent& result) {
         here.push_back(source);
         requests.push_back(plan.sources[source].request);
       }
+    if (!plan.label.empty() && plan.sources[plan.label_source].path == path) {
+      here.push_back(plan.sources.size());
+      requests.push_back({plan.sources[plan.label_source].request.table, {}, plan.label});
+    }
     std::vector<Table> read = plan.readers[path]->read(requests, result.files.emplace_back());
     for (std::size_t i = 0; i < here.size(); ++i) {
       if (read[i].rows() == 0) throw DataError(fmt::format("{}: a header, but no rows", plan.paths[path].string()));
@@ -78,7 +82,7 @@ class RowReader {
   /// What the run's times count from: nothing, or its first sample where that is long after.
   std::int64_t origin_ns(const std::vector<Rows>& rows) const {
     std::int64_t first = std::numeric_limits<std::int64_t>::max();
-    for (std::size_t source = 0; source < tables_.size(); ++source)
+    for (std::size_t source = 0; source < plan_.sources.size(); ++source)
       if (const auto& stamps = tables_[source].time_ns; !stamps.empty())
         for (const std::size_t row : rows[source])
           if (stamps[row] != missing_stamp) first = std::min(first, stamps[row]);
@@ -108,7 +112,7 @@ class RowReader {
 
   /// Throws DataError for stamps of the run that are out by orders of magnitude.
   void check_stamps(const RunSlice& run) const {
-    for (std::size_t source = 0; source < tables_.size(); ++source) {
+    for (std::size_t source = 0; source < plan_.sources.size(); ++source) {
       const auto& all = tables_[source].time_ns;
       Rows rows;
       std::vector<std::int64_t> stamps;
@@ -125,6 +129,15 @@ class RowReader {
                                   seconds_text(stamps[*out]), *out == 0 ? "before" : "after",
                                   seconds_text(stamps[other])));
     }
+  }
+
+  /// What is known of the run, at the times of the table that says it.
+  LabelStream labels(const RunSlice& run) const {
+    if (plan_.label.empty()) return {};
+    const std::size_t clock = plan_.rows_correspond() ? plan_.states_clock : plan_.label_source;
+    LabelStream result{times(clock, run), {}};
+    for (const std::size_t row : run.rows[clock]) result.text.push_back(tables_.back().text[row]);
+    return result;
   }
 
   /// Weights, none negative.
@@ -192,9 +205,9 @@ void check_row_counts(const FilePlan& plan, const std::vector<Table>& tables) {
   if (!plan.rows_correspond()) return;
   const auto name = [&](std::size_t source) { return plan.paths[plan.sources[source].path].string(); };
   std::size_t first = 0;  // the inputs' file comes first
-  for (std::size_t source = 0; source < tables.size(); ++source)
+  for (std::size_t source = 0; source < plan.sources.size(); ++source)
     if (plan.sources[source].path < plan.sources[first].path) first = source;
-  for (std::size_t source = 0; source < tables.size(); ++source)
+  for (std::size_t source = 0; source < plan.sources.size(); ++source)
     if (tables[source].rows() != tables[first].rows())
       throw DataError(fmt::format("data.join = row: {} has {} rows, but {} has {}", name(first), tables[first].rows(),
                                   name(source), tables[source].rows()));
@@ -260,6 +273,7 @@ RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::
     }
   };
   for (const ColumnRef ref : plan.weight) reader.check_weights(ref, slice.rows[ref.source]);
+  run.label = reader.labels(slice);
   gather(plan.truth, run.truth);
   gather(plan.weight, run.weight);
   run.states = states.split(reader.stream(plan.states_clock, states.refs, slice, Bring::interpolated));

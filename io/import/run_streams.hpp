@@ -25,6 +25,12 @@ struct FileStream {
 /// and line, where time repeats or goes backwards (Disorder::error).
 void put_in_order(FileStream& source, Disorder disorder);
 
+/// What is known of a run from outside, as recorded.
+struct LabelStream {
+  Eigen::VectorXd time_s;
+  std::vector<std::string> text;  ///< empty: not known
+};
+
 /// The streams of one run, not yet joined. Under Join::row, and where states and inputs are columns of one file, both
 /// have the same times.
 struct RunStreams {
@@ -39,7 +45,9 @@ struct RunStreams {
   std::vector<Companion> truth;
   std::vector<Companion> weight;  ///< one, or none
 
-  /// All of them.
+  LabelStream label;  ///< empty without one
+
+  /// All that is sampled with states or inputs.
   std::vector<std::vector<Companion>*> companions() { return {&truth, &weight}; }
 };
 

@@ -63,8 +63,8 @@ std::optional<std::size_t> stamp_far_out(const std::vector<std::int64_t>& stamps
 std::string disorder_hint(const FileStream& source, Index k) {
   const Eigen::VectorXd& time_s = source.stream.time_s;
   const Index N = time_s.size();
-  constexpr Index fewest = 3;
-  if (k < fewest) return {};
+  constexpr Index fewest = 4;
+  if (N < fewest) return {};
   if (source.time_column.ends_with(".header.stamp") && time_s(k) == time_s(k - 1))
     return " (data.time = receive_time takes the recorder's times)";
   Index repeats = 0;
@@ -75,7 +75,7 @@ std::string disorder_hint(const FileStream& source, Index k) {
                        nanoseconds_beside(source.time_column));
   const double span = time_s(k - 1) - time_s(0);
   constexpr double near_start = 0.02;
-  if (span > 0.0 && std::abs(time_s(k) - time_s(0)) <= near_start * span)
+  if (k + 1 >= fewest && span > 0.0 && std::abs(time_s(k) - time_s(0)) <= near_start * span)
     return fmt::format(" ({} s back, to where it started: several runs in one file? data.run = COLUMN names them)",
                        time_s(k - 1) - time_s(k));
   return {};

@@ -16,6 +16,8 @@ namespace modebank {
 namespace {
 
 constexpr double largest_whole = 9.2e18;  // that 64 bits hold
+constexpr double exact_below = 1e6;       // a double tells billionths of what is smaller
+constexpr std::size_t rows_for_unit = 4096;
 
 std::int64_t ns_per(TimeUnit unit) {
   switch (unit) {
@@ -101,7 +103,8 @@ NumberStatus StampColumn::add(std::string_view text) {
     const ParsedNumber number = parse_number(text);
     if (number.status == NumberStatus::ok && std::abs(number.value) < largest_whole) {
       kind_ = Kind::number;
-      const std::optional<Stamp> exact = parse_decimal_stamp(text);
+      const bool exact_anyway = std::abs(number.value) < exact_below;
+      const std::optional<Stamp> exact = exact_anyway ? std::nullopt : parse_decimal_stamp(text);
       push(exact ? *exact : stamp_of(number.value), number.value);
       return NumberStatus::ok;
     }
@@ -147,6 +150,7 @@ TimeUnit StampColumn::unit_of_numbers(std::vector<std::string>& notes) const {
   std::vector<double> known, spacings;
   for (const double value : as_written_) {
     if (std::isnan(value)) continue;
+    if (known.size() == rows_for_unit) break;
     if (!known.empty() && value > known.back()) spacings.push_back(value - known.back());
     known.push_back(value);
   }
@@ -172,7 +176,7 @@ TimeUnit StampColumn::found_unit(std::vector<std::string>& notes) const {
   return unit;
 }
 
-void StampColumn::finish(std::string_view file, Table& table) const {
+void StampColumn::finish(std::string_view file, Table& table) {
   const TimeUnit unit = found_unit(table.notes);
   const std::int64_t scale = ns_per(unit), most = std::numeric_limits<std::int64_t>::max() / scale - 1;
   table.time_ns.resize(stamps_.size());
@@ -185,7 +189,7 @@ void StampColumn::finish(std::string_view file, Table& table) const {
     table.time_ns[k] = missing ? missing_stamp : stamp.whole * scale + stamp.billionths / (1'000'000'000 / scale);
   }
   const bool plain = kind_ != Kind::iso && unit == TimeUnit::s && request_.nanoseconds.empty();
-  if (plain) table.time_s = as_written_;
+  if (plain) table.time_s = std::move(as_written_);
 }
 
 }  // namespace modebank

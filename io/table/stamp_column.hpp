@@ -29,8 +29,8 @@ class StampColumn {
   bool add_nanoseconds(std::string_view text);
 
   /// Decides on the unit and fills time_ns, time_s and notes of `table`, whose lines are there. Throws DataError,
-  /// naming `file`, for a stamp that no 64 bits of nanoseconds hold.
-  void finish(std::string_view file, Table& table) const;
+  /// naming `file`, for a stamp that no 64 bits of nanoseconds hold. Once, as the last call.
+  void finish(std::string_view file, Table& table);
 
  private:
   void push(Stamp stamp, double as_written);

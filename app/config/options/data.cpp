@@ -98,6 +98,10 @@ std::vector<Option> data_options() {
       text("data.weight", "a column name",
            "sample weights >= 0 of the transitions that end in each sample, 0 leaves one out; empty: all equal",
            MODEBANK_FIELD(data.weight)),
+      text("data.label", "a column name",
+           "what is known of each sample, as the ground: text or whole numbers, the last one holds; compared with the "
+           "modes, /evaluation/confusion. Empty: none",
+           MODEBANK_FIELD(data.label)),
       text("data.state_unit", "units", "one per state, or one for all; written to the archive and the plots",
            MODEBANK_FIELD(data.state_unit)),
       text("data.input_unit", "units", "one per input, or one for all", MODEBANK_FIELD(data.input_unit)),

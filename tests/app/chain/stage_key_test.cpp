@@ -112,10 +112,12 @@ const std::map<std::string, std::vector<std::string>> texts{
     {"data.input", {"left"}},
     {"data.truth", {"other"}},
     {"data.weight", {"weight"}},
+    {"data.label", {"block"}},
     {"data.state_unit", {"rad/s"}},
     {"data.input_unit", {"m/s"}},
     {"data.time", {"clock"}},
     {"data.run", {"block"}},
+    {"data.split", {"blocks 2", "last 40 %"}},
     {"data.train", {"01"}},
     {"data.test", {"00"}},
     {"data.lag_s", {"0.1", "auto"}},
@@ -168,6 +170,9 @@ struct RuledOut {
 };
 const std::vector<RuledOut> ruled_out{
     {"data.rate_hz", "no training run has the 10 transitions of a window"},
+    {"data.time_unit", "time going backwards or repeated"},
+    {"data.separator", "has no column"},
+    {"data.header", "has no column"},
     {"window.model", "it fits linear modes"},
     {"window.state_lags", "are those of model = varx"},
     {"window.input_lags", "are those of model = varx"},
@@ -190,6 +195,9 @@ const std::vector<RuledOut> ruled_out{
 /// Keys that change nothing on these data, so that this test says nothing about them.
 const std::map<std::string, std::string> without_effect{
     {"data.states", "the other value names the same files"},
+    {"data.separator", "commas separate, and nothing else can be read"},
+    {"data.decimal", "no number has a comma"},
+    {"data.header", "the first row names the columns, and without it none is found"},
     {"data.join", "there are no states files to join"},
     {"data.lag_range_s", "no lag is searched"},
     {"data.missing", "nothing is missing"},

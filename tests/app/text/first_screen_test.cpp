@@ -133,6 +133,8 @@ TEST_F(NextStep, AnswersHaveTheirs) {
   EXPECT_THAT(advice(), AllOf(HasSubstr("more held-out runs than 1"), HasSubstr("--data.test")));
   archive.finding->role = Role::train;
   EXPECT_THAT(advice(), HasSubstr("hold runs out"));
+  archive.recording.emplace().runs.resize(1);
+  EXPECT_THAT(advice(), HasSubstr("--data.split 'blocks 10'")) << "one run alone";
   archive.finding->role = Role::test;
   archive.finding->answer = Answer::no_evidence;
   archive.finding->better_description = "one_motion";

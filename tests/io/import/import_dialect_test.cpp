@@ -176,7 +176,7 @@ TEST_F(ImportDialect, DecimalCommas) {
   expect_plain(content);
   EXPECT_THAT(notes(content), Contains(AllOf(HasSubstr("semicolons"), HasSubstr("decimal commas"))));
   options.format.decimal = DecimalMark::point;
-  EXPECT_THAT(error<DataError>(), HasSubstr(":2: column x: \"0,0\"")) << "the option is believed";
+  EXPECT_THAT(error<DataError>(), HasSubstr(":2: column time: \"0,000000\" is no time")) << "the option is believed";
 }
 
 TEST_F(ImportDialect, UnitsRowAndComments) {
@@ -209,7 +209,7 @@ TEST_F(ImportDialect, NoHeader) {
   options.input = {"u"};
   expect_plain(table("# time,x,u\n", line));  // numpy.savetxt(header=...)
   options.format.header = HeaderRow::no;
-  EXPECT_THAT(error<ConfigurationError>(), testing::Not(IsEmpty())) << "a comment is no column's name then";
+  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("columns: c1, c2, c3"));
 }
 
 TEST_F(ImportDialect, RowsWithoutTimes) {

@@ -1,0 +1,53 @@
+// From one log as users have it (epoch nanoseconds, semicolons, decimal commas, the ground in words) to an archive.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "io/archive/inspect.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+class OwnLog : public CliTest {
+ protected:
+  OwnLog() {
+    std::istringstream rows(csv_run(400, 3));
+    std::string row, log = "stamp;wz;left;right;ground\n[ns];rad/s;m/s;m/s;\n";
+    std::getline(rows, row);
+    for (int k = 0; std::getline(rows, row); ++k) {
+      const std::string values = row.substr(row.find(',') + 1);
+      std::string line = fmt::format("{}", 1'714'557'600'000'000'000 + 100'000'000LL * k);
+      for (const char c : "," + values) line += c == ',' ? ';' : c == '.' ? ',' : c;
+      log += line + (k / 50 % 2 == 0 ? ";ice\n" : ";grit\n");
+    }
+    write("log.csv", log);
+  }
+};
+
+TEST_F(OwnLog, IsReadSplitAndComparedWithItsLabels) {
+  const ProgramResult result =
+      run({"--data.inputs", "log.csv", "--data.time", "stamp", "--data.split", "blocks 4", "--data.label", "ground"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* said :
+       {"semicolons", "decimal commas", "units in the second row", "counts nanoseconds", "log is split into 4 blocks"})
+    EXPECT_NE(result.err.find(said), std::string::npos) << said << " in\n" << result.err;
+  EXPECT_EQ(inspect(archive(), "/data").at("attributes").at("label_names"), nlohmann::json({"grit", "ice"}));
+  const nlohmann::json block = inspect(archive(), "/data/log.b2");
+  EXPECT_EQ(block.at("attributes").at("role"), "test");
+  EXPECT_EQ(block.at("attributes").at("time_origin_ns"), 1'714'557'600'000'000'000);
+  EXPECT_EQ(inspect(archive(), "/data/log.b2/label").at("shape"), inspect(archive(), "/data/log.b2/time").at("shape"));
+  const std::string shown = modebank({"show", archive()}).out;
+  EXPECT_NE(shown.find("most probable mode of each label's samples, held-out runs"), std::string::npos) << shown;
+  EXPECT_EQ(modebank({"verify", archive()}).status, 0);
+}
+
+TEST_F(OwnLog, AloneAndWholeProposesASplit) {
+  const ProgramResult result = run({"--data.inputs", "log.csv", "--data.time", "stamp"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("--data.split 'blocks 10'"), std::string::npos) << result.out;
+}
+
+}  // namespace
+}  // namespace modebank::test
