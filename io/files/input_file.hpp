@@ -14,7 +14,8 @@ struct InputFile {
   std::string sha256;  ///< lowercase hex of the content
 };
 
-/// Path, size and hash of any file. Throws ConfigurationError when it cannot be read.
+/// Path, size and hash of any file; of a folder (a recording in parts) the size of its files and the data_hash of them,
+/// in order of their names. Throws ConfigurationError when it cannot be read.
 InputFile describe_file(const std::filesystem::path& path);
 
 /// SHA-256 over the files' hex digests, in that order: the content, not where it lies.

@@ -84,16 +84,6 @@ void set_times(const std::string& file, const TimeRequest& request, bool is_stam
   stamps.finish(file, table);
 }
 
-/// The parts of a split recording as one file: its hash is of theirs.
-InputFile describe(const std::filesystem::path& path, const std::vector<std::filesystem::path>& parts) {
-  if (parts.size() == 1 && parts.front() == path) return describe_file(path);
-  std::vector<InputFile> files;
-  for (const auto& part : parts) files.push_back(describe_file(part));
-  InputFile whole{std::filesystem::absolute(path).string(), 0, data_hash(files)};
-  for (const InputFile& file : files) whole.bytes += file.bytes;
-  return whole;
-}
-
 }  // namespace
 
 RecordingReader::RecordingReader(const std::filesystem::path& path, const std::filesystem::path& definitions)
@@ -122,7 +112,7 @@ std::vector<Table> RecordingReader::read(const std::vector<TableRequest>& reques
   for (const TableRequest& request : requests) wanted.push_back(log_request(request));
   std::vector<std::string> notes = log_.notes();
   std::vector<LogRows> rows;
-  tbb::parallel_invoke([&] { file = describe(path_, log_.files()); }, [&] { rows = log_.read(wanted, notes); });
+  tbb::parallel_invoke([&] { file = describe_file(path_); }, [&] { rows = log_.read(wanted, notes); });
   std::vector<Table> tables;
   for (std::size_t r = 0; r < requests.size(); ++r) {
     const TableRequest& request = requests[r];
