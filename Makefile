@@ -50,6 +50,7 @@ bench: bench-programs
 	OMP_NUM_THREADS=1 build/compare_em 5
 	build/compare_em memory
 	-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 /usr/bin/python3 tests/bench/em_peers.py build/compare_em
+	-PYTHONPATH=build/python /usr/bin/python3 tests/bench/python_step.py
 
 # Other people's benchmarks, their data in MODEBANK_DATA: one table each, build/benchmarks/NAME.md; half an hour of a processor.
 BENCHMARKS := $(notdir $(basename $(shell grep -l '^def main' tests/bench/benchmarks/*.py)))

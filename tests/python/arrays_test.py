@@ -2,6 +2,8 @@
 import os
 import subprocess
 import sys
+import threading
+import time
 import unittest
 
 import numpy as np
@@ -106,6 +108,23 @@ print((after - before) * 1024 / (states.nbytes + inputs.nbytes))
         share = float(subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True,
                                      env=os.environ).stdout)
         self.assertLess(share, 0.5, "peak memory grew by this share of the arrays")
+
+
+    def test_other_threads_go_on_meanwhile(self):
+        states, inputs = linear_run(60_000, 0.1)
+        done, turns = threading.Event(), []
+
+        def fit():
+            modebank.identify(states, inputs, 0.1, length=30, step=1)
+            done.set()
+
+        worker = threading.Thread(target=fit)
+        worker.start()
+        while not done.is_set():  # with the interpreter lock held there would be a turn or two
+            turns.append(len(turns))
+            time.sleep(1e-4)
+        worker.join()
+        self.assertGreater(len(turns), 20)
 
 
 class Filters(unittest.TestCase):

@@ -1,6 +1,7 @@
 """The demo from Python: a configuration file's run, its archive as h5py reads it, and its filter at work."""
 import os
 import pathlib
+import signal
 import tempfile
 import unittest
 import warnings
@@ -120,6 +121,13 @@ class Demo(unittest.TestCase):
             modebank.run(SOURCE / "configs/demo.ini", **{"window.lenght": 3})
         with self.assertRaises(modebank.ConfigurationError):
             modebank.run("no_such_file.ini")
+
+    def test_ctrl_c_ends_the_run(self):
+        output = self.scratch.name + "/interrupted.h5"
+        with self.assertRaises(KeyboardInterrupt):
+            modebank.run(SOURCE / "configs/demo.ini", progress=lambda line: os.kill(os.getpid(), signal.SIGINT), **QUICK,
+                         **{"data.root": folder(), "archive.output": output})
+        self.assertFalse(os.path.exists(output))
 
     def test_what_a_callback_throws_ends_the_run(self):
         def stop(line):
