@@ -90,16 +90,10 @@ HeldNoise hold_at_bounds(const NoiseSearch& search, LikelihoodMaximum best, cons
   return result;
 }
 
-/// Every sample counts the same in the baseline: its likelihood is what other filters' scores are compared with.
-Recording unweighted_training_part(const Recording& recording) {
-  Recording training = training_part(recording);
-  for (Trajectory& run : training.runs) run.weight.resize(0);
-  return training;
-}
-
 }  // namespace
 
 Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
+  // Every sample counts the same: its likelihood is what other filters' scores are compared with.
   const Recording training = unweighted_training_part(recording);
   if (training.transitions(Role::train) == 0) throw DataError("no training run has a transition to learn from");
   const Index n = structure.states, p = structure.parameters();

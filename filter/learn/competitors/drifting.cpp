@@ -18,9 +18,7 @@
 namespace modebank {
 
 Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructure& structure) {
-  Recording training = training_part(recording);
-  for (Trajectory& run : training.runs) run.weight.resize(0);  // every sample counts the same
-  const Transitions transitions = stack_training(training, structure);
+  const Transitions transitions = stack_training(unweighted_training_part(recording), structure);
   if (transitions.count() == 0) throw DataError("no training run has a transition to learn from");
   const Eigen::VectorXd scale =
       (transitions.regressors.colwise().squaredNorm() / static_cast<double>(transitions.count())).cwiseSqrt();

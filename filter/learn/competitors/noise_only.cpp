@@ -1,15 +1,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "filter/learn/from_mixture/training_transitions.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "ident/fit/global_model.hpp"
 #include "ident/fit/robust_regression.hpp"
 #include "modebank/base/error.hpp"
 
@@ -49,6 +52,23 @@ Eigen::MatrixXd noise_scales_per_state(const Eigen::MatrixXd& residuals, Index l
   return variances;
 }
 
+/// q x n, as RobustRegression has them.
+struct Regression {
+  Eigen::MatrixXd coefficients, standard_error;
+};
+
+/// Huber's; of rounded states least squares: where values repeat, Huber's scale is nothing and "no change" an exact
+/// law.
+Regression regression(const Recording& recording, const LinearStructure& structure, const Transitions& transitions) {
+  if (recording.quantum.size() == 0) {
+    const RobustRegression fit = huber_regression(transitions);
+    return {fit.coefficients, fit.standard_error};
+  }
+  const GlobalModel fit = fit_global(unweighted_training_part(recording), structure);
+  const Index q = transitions.regressors.cols(), n = transitions.increments.cols();
+  return {fit.theta.reshaped(q, n), fit.covariance.diagonal().cwiseSqrt().reshaped(q, n)};
+}
+
 /// Gives the bank the `stay` that makes the training runs most likely, the smallest of equals.
 void choose_stay(Bank& bank, const Recording& recording) {
   Bank candidate = bank;
@@ -69,7 +89,7 @@ Bank learn_noise_levels(const Recording& recording, const LinearStructure& struc
   Bank bank = bank_frame(recording, structure, R);
   const Transitions transitions = unweighted(stack_training(recording, structure));
   if (transitions.count() == 0) throw DataError("no training run has a transition to learn from");
-  const RobustRegression fit = huber_regression(transitions);
+  const Regression fit = regression(recording, structure, transitions);
   const Eigen::MatrixXd variances =
       noise_scales_per_state(transitions.increments - transitions.regressors * fit.coefficients, levels);
   const Index p = structure.parameters();
@@ -85,8 +105,7 @@ namespace {
 
 /// From residuals of rounded values, which hold the rounding, to the most likely theta and noise levels by intervals.
 Bank by_intervals(Bank bank, const Recording& recording) {
-  Recording unweighted = training_part(recording);
-  for (Trajectory& run : unweighted.runs) run.weight.resize(0);
+  const Recording unweighted = unweighted_training_part(recording);
   FreeParameters free;
   free.theta_unit = bank.modes.front().standard_error.unaryExpr(&positive_variance);
   free.transition = false;

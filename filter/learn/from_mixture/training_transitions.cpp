@@ -90,4 +90,10 @@ Recording training_part(const Recording& recording) {
   return training;
 }
 
+Recording unweighted_training_part(const Recording& recording) {
+  Recording training = training_part(recording);
+  for (Trajectory& run : training.runs) run.weight.resize(0);
+  return training;
+}
+
 }  // namespace modebank

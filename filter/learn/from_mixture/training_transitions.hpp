@@ -58,5 +58,7 @@ inline Eigen::MatrixXd coefficients(const LinearStructure& s, const Eigen::Vecto
 
 /// Copy of the recording's channels, and the training runs alone.
 Recording training_part(const Recording& recording);
+/// The same where every sample counts as much as any other.
+Recording unweighted_training_part(const Recording& recording);
 
 }  // namespace modebank

@@ -59,6 +59,16 @@ TEST(RoundedStates, NoiseOnlyFindsWhatLeastSquaresMiss) {
   EXPECT_EQ(bank.R, R);
 }
 
+/// Most values are those before them: Huber's regression would take that for an exact law.
+TEST(RoundedStates, NoiseOnlyIsNotFooledByRepeats) {
+  Recording recording = rounded_recording(0.9);
+  const LinearStructure structure = test::structure_of(recording);
+  recording.quantum.setConstant(1, 0.9);
+  const Bank bank = learn_noise_only(recording, structure, Eigen::MatrixXd::Zero(1, 1));
+  EXPECT_NEAR(bank.theta(0)(0), -0.3, 0.1);
+  EXPECT_NEAR(bank.theta(0)(1), 0.5, 0.1);
+}
+
 TEST(RoundedStates, WithoutAQuantumTheBaselineKeepsLeastSquares) {
   const Recording recording = rounded_recording(0.2);
   const LinearStructure structure = test::structure_of(recording);
