@@ -2,7 +2,9 @@
 
 #include <pybind11/stl.h>
 
-#include <optional>
+#include <algorithm>
+#include <utility>
+#include <variant>
 
 #include "io/import/open_table.hpp"
 #include "io/table/memory_table.hpp"
@@ -34,51 +36,93 @@ std::shared_ptr<const TableReader> table_of(const std::string& name, const py::d
 /// One column of a file: numbers, else texts; nothing where it is neither. Stamps as nanoseconds since 1970.
 using FileColumn =
     std::variant<std::monostate, std::vector<double>, std::vector<std::string>, std::vector<std::int64_t>>;
+using FileColumns = std::vector<std::vector<FileColumn>>;  // of each table
 
-FileColumn read_column(const TableReader& reader, std::size_t table, const ColumnInfo& column) {
-  InputFile unused;
+/// What is asked of a table at once, and the columns that it gives.
+struct Piece {
   TableRequest request;
-  request.table = table;
-  if (column.type == "time") {
-    request.time.column = column.name;
-    request.time.may_miss = true;
-    return std::move(reader.read({request}, unused).front().time_ns);
+  std::vector<std::size_t> columns;
+
+  void into(Table&& table, FileColumns& result) const {
+    std::vector<FileColumn>& of_table = result[request.table];
+    for (std::size_t i = 0; i < request.numbers.size(); ++i) of_table[columns[i]] = std::move(table.numbers[i]);
+    if (!request.text.empty()) of_table[columns.front()] = std::move(table.text);
+    if (!request.time.column.empty()) of_table[columns.front()] = std::move(table.time_ns);
   }
-  try {
-    request.numbers = {column.name};
-    request.may_miss = {true};
-    return std::move(reader.read({request}, unused).front().numbers.front());
-  } catch (const DataError&) {
-    request.numbers.clear();
-    request.text = column.name;
-    try {
-      return std::move(reader.read({request}, unused).front().text);
-    } catch (const DataError&) {
-      return {};
+};
+
+Piece one_column(std::size_t table, std::size_t column) {
+  Piece piece;
+  piece.request.table = table;
+  piece.columns = {column};
+  return piece;
+}
+
+/// Stamps and what the format calls text one by one, all others as numbers together.
+std::vector<Piece> pieces_of(const std::vector<TableInfo>& tables) {
+  std::vector<Piece> pieces;
+  for (std::size_t t = 0; t < tables.size(); ++t) {
+    Piece numbers;
+    numbers.request.table = t;
+    for (std::size_t c = 0; c < tables[t].columns.size(); ++c) {
+      const ColumnInfo& column = tables[t].columns[c];
+      if (column.type == "time") {
+        Piece& stamps = pieces.emplace_back(one_column(t, c));
+        stamps.request.time.column = column.name;
+        stamps.request.time.may_miss = true;
+      } else if (column.type.find("string") != std::string::npos) {
+        pieces.emplace_back(one_column(t, c)).request.text = column.name;
+      } else {
+        numbers.request.numbers.push_back(column.name);
+        numbers.request.may_miss.push_back(true);
+        numbers.columns.push_back(c);
+      }
     }
+    if (!numbers.columns.empty()) pieces.push_back(std::move(numbers));
+  }
+  return pieces;
+}
+
+/// Whether the file has what the pieces ask for; `result` has it then.
+bool try_read(const TableReader& reader, const std::vector<Piece>& pieces, FileColumns& result) {
+  std::vector<TableRequest> requests;
+  for (const Piece& piece : pieces) requests.push_back(piece.request);
+  try {
+    InputFile unused;
+    std::vector<Table> tables = reader.read(requests, unused);
+    for (std::size_t i = 0; i < pieces.size(); ++i) pieces[i].into(std::move(tables[i]), result);
+    return true;
+  } catch (const DataError&) {
+    return false;
   }
 }
 
-/// All columns of a table: in one pass where all are numbers or stamps, else one by one.
-std::vector<FileColumn> read_columns(const TableReader& reader, std::size_t table, const TableInfo& info) {
-  TableRequest request;
-  request.table = table;
-  for (const ColumnInfo& column : info.columns)
-    if (column.type != "time") request.numbers.push_back(column.name);
-  request.may_miss.assign(request.numbers.size(), true);
-  std::vector<std::vector<double>> numbers;
-  try {
-    InputFile unused;
-    if (!request.numbers.empty()) numbers = std::move(reader.read({request}, unused).front().numbers);
-  } catch (const DataError&) {
-    numbers.clear();
+/// A piece whose numbers are not all numbers: column by column, as texts where they are none.
+void read_apart(const TableReader& reader, const Piece& piece, FileColumns& result) {
+  for (std::size_t i = 0; i < piece.request.numbers.size(); ++i) {
+    Piece single = one_column(piece.request.table, piece.columns[i]);
+    single.request.numbers = {piece.request.numbers[i]};
+    single.request.may_miss = {true};
+    if (try_read(reader, {single}, result)) continue;
+    single.request.text = std::exchange(single.request.numbers, {}).front();
+    try_read(reader, {single}, result);
   }
-  std::vector<FileColumn> columns;
-  std::size_t next = 0;
-  for (const ColumnInfo& column : info.columns)
-    columns.push_back(column.type != "time" && next < numbers.size() ? FileColumn(std::move(numbers[next++]))
-                                                                     : read_column(reader, table, column));
-  return columns;
+  const std::vector<FileColumn>& found = result[piece.request.table];
+  const auto unread = [&](std::size_t column) { return std::holds_alternative<std::monostate>(found[column]); };
+  if (!std::all_of(piece.columns.begin(), piece.columns.end(), unread)) return;
+  InputFile unused;
+  reader.read({piece.request}, unused);  // throws what is wrong with all of them
+}
+
+/// All columns, in one pass over the file where all are what the format says.
+FileColumns read_columns(const TableReader& reader, const std::vector<TableInfo>& tables) {
+  FileColumns result;
+  for (const TableInfo& table : tables) result.emplace_back(table.columns.size());
+  const std::vector<Piece> pieces = pieces_of(tables);
+  if (try_read(reader, pieces, result)) return result;
+  for (const Piece& piece : pieces)
+    if (!try_read(reader, {piece}, result)) read_apart(reader, piece, result);
+  return result;
 }
 
 py::object array_of(FileColumn&& column) {
@@ -92,12 +136,12 @@ py::object array_of(FileColumn&& column) {
 py::dict read_log(const std::string& path, const py::dict& keys) {
   const app::Config config = config_of(keys, "data.");
   std::vector<TableInfo> tables;
-  std::vector<std::vector<FileColumn>> columns;
+  FileColumns columns;
   {
     const py::gil_scoped_release unlocked;
     const std::shared_ptr<const TableReader> reader = open_table(path, config.data.format);
     tables = reader->tables();
-    for (std::size_t i = 0; i < tables.size(); ++i) columns.push_back(read_columns(*reader, i, tables[i]));
+    columns = read_columns(*reader, tables);
   }
   py::dict result;
   for (std::size_t i = 0; i < tables.size(); ++i) {

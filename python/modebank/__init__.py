@@ -44,8 +44,8 @@ def _flat(keys):
     return flat
 
 
-def _warn(line):
-    _warnings.warn(line, stacklevel=3)
+def _warn(line, callers=3):
+    _warnings.warn(line, stacklevel=callers)
 
 
 def run(data: Path | Frames, *, state: str | Sequence[str] | None = None, input: str | Sequence[str] | None = None,
@@ -96,6 +96,9 @@ def _values(name, label, column):
 
 
 def _run_frames(data, state, input, time, progress, keys):
+    def warn(line):
+        _warn(line, 5)  # the line that called run
+
     tables = {}
     for name, frames in data.items():
         frames = frames if isinstance(frames, (list, tuple)) else (frames,)
@@ -107,11 +110,11 @@ def _run_frames(data, state, input, time, progress, keys):
     if time is not None:
         keys["data.time"] = time
     if keys.get("archive.output"):
-        return Archive(_modebank.run_tables(tables, keys, progress, _warn))
+        return Archive(_modebank.run_tables(tables, keys, progress, warn))
     folder = tempfile.mkdtemp(prefix="modebank-")
     try:
         keys["archive.output"] = os.path.join(folder, "archive.h5")
-        archive = Archive(_modebank.run_tables(tables, keys, progress, _warn))
+        archive = Archive(_modebank.run_tables(tables, keys, progress, warn))
     except BaseException:
         shutil.rmtree(folder)
         raise

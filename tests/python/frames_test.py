@@ -141,6 +141,14 @@ class Logs(unittest.TestCase):
         self.assertEqual(frame["ground"].tolist(), ["ice", "grip"])
         np.testing.assert_array_equal(frame["v"], [1.0, np.nan])
 
+    def test_a_broken_row_is_an_error(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            path = os.path.join(scratch, "broken.csv")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("time,v\n0,1\n1,2,3\n")
+            with self.assertRaisesRegex(modebank.DataError, "broken.csv:3"):
+                modebank.read(path)
+
     def test_what_is_no_log_is_an_error(self):
         with self.assertRaises(modebank.ConfigurationError):
             modebank.read("no_such_file.csv")
