@@ -186,7 +186,9 @@ def linearised_function():
 }  // namespace
 
 std::string to_casadi(const ExportedBank& exported) {
-  return python_opening(exported) + python_bank(exported) +
+  std::string remarks;
+  for (const std::string& remark : exported.remarks()) remarks += "# " + comment_text(remark) + "\n";
+  return python_opening(exported) + remarks + python_bank(exported) +
          (exported.bank.transition_logit.empty() ? constant_transition : logit_transition) + functions;
 }
 

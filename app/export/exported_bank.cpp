@@ -72,6 +72,18 @@ std::string ExportedBank::verdict_text() const {
                      judged_on);
 }
 
+std::vector<std::string> ExportedBank::remarks() const {
+  std::vector<std::string> list;
+  if (!bank.drift.empty())
+    list.push_back("the filter lets the modes' coefficients drift within a run: A, B and c are where each run starts");
+  if (!bank.motion_parameters.empty())
+    list.push_back(
+        fmt::format("A, B and c linearise the motion model {} at each mode's mean state and input", bank.model));
+  if (bank.is_quantised())
+    list.push_back("measurements are rounded (data.quantum): the filter takes them for intervals");
+  return list;
+}
+
 ExportedBank exported_bank(const Archive& archive, const std::string& file, const std::string& filter,
                            const FilterOptions& options, double input_lag_s) {
   const std::optional<Bank> bank = archive.bank_of(filter);

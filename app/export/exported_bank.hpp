@@ -43,6 +43,8 @@ struct ExportedBank {
   bool may_be_trusted() const { return verdict != Verdict::overconfident && verdict != Verdict::underconfident; }
   /// The verdict in a sentence.
   std::string verdict_text() const;
+  /// What of the archive's bank A, B and c alone do not say; sentences, mostly none.
+  std::vector<std::string> remarks() const;
 };
 
 /// The equation that every form states, in one line of ASCII.

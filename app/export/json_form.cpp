@@ -163,6 +163,7 @@ std::string to_json(const ExportedBank& exported) {
   page["verdict"] = verdict_json(exported);
   page["source"] = source_json(exported);
   page["equation"] = exported_equation;
+  page["remarks"] = exported.remarks();
   page["dt_s"] = bank.dt_s;
   page["model"] = bank.model;
   page["input_lag_s"] = exported.input_lag_s;

@@ -115,6 +115,7 @@ void write_mat(const ExportedBank& exported, const std::filesystem::path& path) 
   MatFile file(path);
   file.text("verdict", exported.verdict_text());
   file.text("equation", exported_equation);
+  file.texts("remarks", exported.remarks());
   file.text("T_rows", transition_meaning);
   file.text("archive", exported.archive);
   file.text("sha256", exported.sha256);

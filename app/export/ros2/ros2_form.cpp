@@ -166,19 +166,20 @@ std::vector<std::pair<std::string, std::string>> to_ros2(const ExportedBank& exp
   const RobotChannels channels = robot_channels(exported);
   std::vector<std::pair<std::string, std::string>> files;
   const std::vector<std::string> names = identifiers(exported.mode_names, Language::c);
+  std::string remarks;
+  for (const std::string& remark : exported.remarks()) remarks += "# " + comment_text(remark) + "\n";
   for (Index k = 0; k < exported.bank.mode_count(); ++k) {
     const auto at = static_cast<std::size_t>(k);
     const RobotNumbers numbers = robot_numbers(exported, k, channels, sizes);
     const std::string opening = fmt::format(
-        "# Verdict: {}\n# {}, {:.1f} % of the windows, of a bank made by modebank {} of {},\n# SHA-256 {}, "
-        "filter "
-        "{}.\n# {}\n# dt_s = {} s. {}.\n# Keys are those that the bank determines; what it does not is a comment that "
+        "# Verdict: {}\n# {}, {:.1f} % of the windows, of a bank made by modebank {} of {},\n# SHA-256 {}, filter {}.\n"
+        "# {}\n# dt_s = {} s. {}.\n{}# Keys are those that the bank determines; what it does not is a comment that "
         "says "
         "why.\n\n",
         comment_text(exported.verdict_text()), comment_text(exported.mode_names[at]),
         100.0 * exported.bank.modes[at].weight, comment_text(exported.provenance.modebank_version),
         comment_text(exported.archive), exported.sha256, exported.filter, exported_equation,
-        yaml_number(exported.bank.dt_s), transition_meaning);
+        yaml_number(exported.bank.dt_s), transition_meaning, remarks);
     files.emplace_back(names[at] + ".yaml", opening + without_empty_mappings(diff_drive(numbers, channels, sizes)) +
                                                 without_empty_mappings(process_noise(exported, k, channels)) +
                                                 without_empty_mappings(model_delays(numbers, channels)));
