@@ -69,7 +69,8 @@ TEST_F(ImportError, MissingStatesFile) {
 TEST_F(ImportError, UnreadableFile) {
   std::filesystem::create_directory(folder.path() / "pro_2.csv");
   write("imu_2.csv", "time,x\n0,1\n1,2\n");
-  EXPECT_EQ(error<ConfigurationError>(), "cannot read " + path("pro_2.csv") + ": Is a directory");
+  EXPECT_EQ(error<ConfigurationError>(),
+            path("pro_2.csv") + ": a folder without metadata.yaml and without .bag, .mcap or .db3 files");
 }
 
 TEST_F(ImportError, TextMissingValueAndWidth) {
