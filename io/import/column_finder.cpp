@@ -53,6 +53,8 @@ std::string listing(const std::vector<TableInfo>& tables) {
     names.push_back(table.type.empty() ? table.name : fmt::format("{} ({})", table.name, table.type));
     for (const ColumnInfo& column : table.columns) columns.push_back(column.name);
   }
+  if (columns.size() == 1 && columns.front().find_first_of(",;|\t ") != std::string::npos)
+    return columns.front() + " (a single one: data.separator says what separates)";
   if (columns.size() <= most_columns || tables.size() == 1) return fmt::format("{}", fmt::join(columns, ", "));
   return fmt::format("{} in the tables {}", columns.size(), fmt::join(names, ", "));
 }

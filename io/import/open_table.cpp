@@ -1,14 +1,17 @@
 #include "io/import/open_table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/arrays/array_reader.hpp"
 #include "io/files/read_file.hpp"
 #include "io/import/csv.hpp"
+#include "io/import/csv_text.hpp"
 #include "io/recording/recording_reader.hpp"
 #include "modebank/base/error.hpp"
 
@@ -37,7 +40,9 @@ constexpr std::array formats{
            [](const Path& path, const FormatOptions&) { return open_hdf5_tables(path); }},
     Format{[](const Path& path, std::string_view first) { return is_mat(path, first); },
            [](const Path& path, const FormatOptions&) { return open_mat_tables(path); }},
-    Format{[](const Path&, std::string_view) { return true; },
+    Format{[](const Path&, std::string_view first) {
+             return is_utf16(first) || first.find('\0') == std::string_view::npos;
+           },
            [](const Path& path, const FormatOptions& options) -> std::shared_ptr<const TableReader> {
              return std::make_shared<CsvReader>(path, options);
            }},
@@ -89,6 +94,13 @@ std::string first_bytes(const Path& path) {
   return first;
 }
 
+std::vector<unsigned> bytes_of(std::string_view first) {
+  constexpr std::size_t shown = 8;
+  std::vector<unsigned> bytes;
+  for (const char c : first.substr(0, shown)) bytes.push_back(static_cast<unsigned char>(c));
+  return bytes;
+}
+
 }  // namespace
 
 std::shared_ptr<const TableReader> open_table(const Path& path, const FormatOptions& options) {
@@ -99,7 +111,8 @@ std::shared_ptr<const TableReader> open_table(const Path& path, const FormatOpti
                                            fmt::format(fmt::runtime(other.advice), path.string())));
   for (const Format& format : formats)
     if (format.probe(path, first)) return format.open(path, options);
-  throw ConfigurationError(fmt::format("{} is of no known format", path.string()));
+  throw ConfigurationError(fmt::format("{} is no text and of no known format: it begins with the bytes {:02X}",
+                                       path.string(), fmt::join(bytes_of(first), " ")));
 }
 
 }  // namespace modebank

@@ -260,6 +260,14 @@ TEST_F(ImportDialect, DisorderIsExplained) {
   EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("log.csv:22:"), HasSubstr("data.run = ")));
 }
 
+TEST_F(ImportDialect, BytesOfNoFormatAndAWrongSeparatorAreNamed) {
+  write("log.csv", std::string("\x01\x02\0\x04 time", 9));
+  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("no known format: it begins with the bytes 01 02 00 04"));
+  write("log.csv", plain());
+  options.format.separator = Separator::semicolon;
+  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("columns: time,x,u (a single one: data.separator"));
+}
+
 TEST_F(ImportDialect, FormatsThatAreKnownButNotRead) {
   for (const auto& [magic, name] : {std::pair{"PAR1....", "Parquet"},
                                     {"PK\x03\x04", "zip"},
