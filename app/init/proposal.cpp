@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "app/init/words.hpp"
+#include "io/import/split.hpp"
 #include "modebank/base/error.hpp"
+#include "modebank/ident/options.hpp"
 
 namespace modebank::app {
 namespace {
@@ -208,8 +210,12 @@ class Proposer {
       add("run", table(state()).run, "separates the runs in one file");
       return;
     }
-    if (sets_[input().file].files.size() == 1)
-      add("split", "blocks 10", "one long run: blocks 1, 3, ... train, the others test");
+    if (sets_[input().file].files.size() > 1) return;
+    const FitOptions defaults;
+    const std::string split = proposed_split(table(input()).time_s.size(), defaults.length + defaults.state_lags);
+    const bool in_blocks = split.starts_with("blocks");
+    add("split", split,
+        in_blocks ? "one long run: blocks 1, 3, ... train, the others test" : "one run: its end is held out");
   }
 };
 

@@ -7,6 +7,7 @@
 
 #include "app/chain/judged_runs.hpp"
 #include "app/text/warnings.hpp"
+#include "io/import/split.hpp"
 
 namespace modebank::app {
 namespace {
@@ -36,6 +37,13 @@ bool is_lost(const Situation& s) {
 }
 
 int state_lags(const Situation& s) { return std::atoi(s.setting("window.state_lags").c_str()); }
+
+/// What is dropped between blocks of a run.
+Index window_and_lags(const Situation& s) {
+  constexpr int most_lags = 4;  // that `auto` tries
+  const int lags = s.setting("window.state_lags") == "auto" ? most_lags : state_lags(s);
+  return std::atoi(s.setting("window.length").c_str()) + lags;
+}
 
 /// Beyond a few it is not lags that a model lacks.
 bool may_have_more_lags(const Situation& s) {
@@ -73,8 +81,8 @@ const Rule rules[] = {
     {[](const Situation& s) { return !s.finding.held_out(); },
      [](const Situation& s) -> std::string {
        if (s.archive.recording && s.archive.recording->runs.size() == 1)
-         return "hold a part of the run out, for only that can be evidence: repeat with --data.split 'blocks 10', of "
-                "which every other one is held out";
+         return fmt::format("hold a part of the run out, for only that can be evidence: repeat with --data.split '{}'",
+                            proposed_split(s.archive.recording->runs.front().samples(), window_and_lags(s)));
        return "hold runs out, for only they can be evidence: record another, or name some with --data.test";
      }},
     {[](const Situation& s) { return s.says(Answer::cannot_tell); },

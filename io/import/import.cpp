@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <iterator>
 #include <optional>
@@ -58,14 +59,18 @@ Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_
   return outcome;
 }
 
-/// Reads plans in parallel; results arrive in order, which the hash over all of them needs.
+/// Reads plans in parallel; results arrive in order, which the hash over all of them needs. After a failure no further
+/// plan is begun, but those under way end: an exception within the pipeline would cancel what readers do in parallel
+/// and hand on half of it.
 std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data,
                                  bool as_they_stand) {
   std::vector<RunStreams> runs;
-  std::vector<Outcome> outcomes(plans.size());  // the pipeline passes positions on: it would leak objects on an error
+  std::vector<Outcome> outcomes(plans.size());  // the pipeline passes positions on
   std::size_t next = 0;
+  std::exception_ptr error;
+  std::atomic<bool> failed = false;
   const auto take = [&](tbb::flow_control& flow) {
-    if (next == plans.size()) flow.stop();
+    if (next == plans.size() || failed) flow.stop();
     return next++;
   };
   const auto read = [&](std::size_t plan) {
@@ -74,11 +79,13 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
   };
   const auto collect = [&](std::size_t plan) {
     Outcome outcome = std::exchange(outcomes[plan], {});
-    if (outcome.error) std::rethrow_exception(outcome.error);
-    std::move(outcome.content.files.begin(), outcome.content.files.end(), std::back_inserter(data.files));
+    if (outcome.error && !error) error = outcome.error;
+    failed = error != nullptr;
+    if (failed) return;
     for (std::string& note : outcome.content.notes)
       if (std::find(data.notes.begin(), data.notes.end(), note) == data.notes.end())
         data.notes.push_back(std::move(note));
+    std::move(outcome.content.files.begin(), outcome.content.files.end(), std::back_inserter(data.files));
     std::move(outcome.content.runs.begin(), outcome.content.runs.end(), std::back_inserter(runs));
   };
   const auto in_flight = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
@@ -86,6 +93,7 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
   tbb::parallel_pipeline(in_flight, tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, take) &
                                         tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, read) &
                                         tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, collect));
+  if (error) std::rethrow_exception(error);
   data.data_hash = data_hash(data.files);
   return runs;
 }

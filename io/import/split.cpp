@@ -88,6 +88,12 @@ std::vector<RunStreams> split_run(const RunStreams& run, const SplitOptions& opt
   return blocks;
 }
 
+std::string proposed_split(Index samples, Index gap_samples) {
+  constexpr Index most_blocks = 10, fewest_blocks = 4, gaps_per_block = 4;
+  const Index blocks = std::min(most_blocks, samples / std::max<Index>(1, gaps_per_block * gap_samples) / 2 * 2);
+  return blocks < fewest_blocks ? std::string("last 30 %") : fmt::format("blocks {}", blocks);
+}
+
 std::string split_note(const RunStreams& run, const std::vector<RunStreams>& blocks, const SplitOptions& options) {
   const std::string rest =
       fmt::format("{} samples (a window and its lags) are dropped in between", options.gap_samples);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "io/import/run_streams.hpp"
@@ -11,6 +12,10 @@ namespace modebank {
 /// end of every block but the last, so that no window and no lag reaches from one into the next. Without a split the
 /// run itself. Throws DataError for blocks that the gap would use up.
 std::vector<RunStreams> split_run(const RunStreams& run, const SplitOptions& options, double rate_hz);
+
+/// What data.split may be for one run of so many samples, `gap_samples` of which are dropped between blocks: as many
+/// blocks, up to ten, as leave each four gaps long, else the last 30 %.
+std::string proposed_split(Index samples, Index gap_samples);
 
 /// What was done, for the user.
 std::string split_note(const RunStreams& run, const std::vector<RunStreams>& blocks, const SplitOptions& options);

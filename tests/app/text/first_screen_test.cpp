@@ -134,6 +134,7 @@ TEST_F(NextStep, AnswersHaveTheirs) {
   archive.finding->role = Role::train;
   EXPECT_THAT(advice(), HasSubstr("hold runs out"));
   archive.recording.emplace().runs.resize(1);
+  archive.recording->runs.front().state = Eigen::MatrixXd::Zero(1, 4000);
   EXPECT_THAT(advice(), HasSubstr("--data.split 'blocks 10'")) << "one run alone";
   archive.finding->role = Role::test;
   archive.finding->answer = Answer::no_evidence;
