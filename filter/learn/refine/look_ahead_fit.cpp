@@ -59,8 +59,8 @@ std::optional<Bank> fit_looking_ahead(const RefineInput& in, const CrossValidati
   stage.score_before = validation.score(banks);
   tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
     const SplitData& split = validation.splits()[s];
-    SwitchingPrior of_split = prior_of_split(
-        in, split, {"", switching_model(banks[s]), chosen.noise_transitions, chosen.theta_transitions});
+    SwitchingPrior of_split =
+        prior_of_split(in, split, {"", switching_model(banks[s]), chosen.noise_transitions, chosen.theta_transitions});
     if (chosen.weight_width > 0.0) of_split = with_weights(std::move(of_split), split.transitions, chosen.weight_width);
     banks[s] = taken_on({split.runs.training, filter, of_split, in.options.one_theta, in.options.look_ahead}, in,
                         R_estimated, banks[s]);

@@ -198,6 +198,7 @@ const std::vector<RuledOut> ruled_out{
 const std::map<std::string, std::string> without_effect{
     {"data.states", "the other value names the same files"},
     {"data.derive", "no base uses what is derived"},
+    {"data.definitions", "no file is a recording"},
     {"data.separator", "commas separate, and nothing else can be read"},
     {"data.decimal", "no number has a comma"},
     {"data.header", "the first row names the columns, and without it none is found"},
