@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <map>
 
 #include "app/init/words.hpp"
 #include "io/import/split.hpp"
@@ -18,6 +20,22 @@ using Path = std::filesystem::path;
 
 /// Repeated values of so many samples mean that an instrument is slower than the file's rows.
 constexpr double most_repeated = 0.5;
+
+/// The last two parts of a channel's name, as an identifier.
+std::string short_name(const std::string& name) {
+  std::size_t from = name.find_last_of("./");
+  if (from != std::string::npos && from > 0) from = name.find_last_of("./", from - 1);
+  std::string result;
+  for (const char c : name.substr(from == std::string::npos ? 0 : from + 1)) {
+    const bool letter = std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 128;
+    if (letter)
+      result += c;
+    else if (!result.empty() && result.back() != '_')
+      result += '_';
+  }
+  while (!result.empty() && result.back() == '_') result.pop_back();
+  return result.empty() || std::isdigit(static_cast<unsigned char>(result.front())) ? "channel_" + result : result;
+}
 
 /// One configuration from what was found.
 class Proposer {
@@ -40,7 +58,8 @@ class Proposer {
   const std::vector<SurveyedFile>& surveyed_;
   const Guess& guess_;
   Proposal proposal_;
-  std::string turned_;  // the name of a derived yaw rate
+  std::string turned_;                              // the name of a derived yaw rate
+  std::map<std::string, std::string> short_names_;  // of channels whose names are long
 
   const ChannelPlace& state() const { return guess_.states.front(); }
   const ChannelPlace& input() const { return guess_.inputs.empty() ? state() : guess_.inputs.front(); }
@@ -118,11 +137,35 @@ class Proposer {
     }
   }
 
+  bool is_yaw_rate(const ChannelPlace& place) const {
+    return guess_.mounting && channel(place).name == guess_.mounting->up_rate;
+  }
+
+  /// Topics make names that no table and no axis has room for: those get short ones.
+  void shorten(const std::vector<ChannelPlace>& places) {
+    constexpr std::size_t longest = 24;
+    for (const ChannelPlace& place : places) {
+      const std::string& name = channel(place).name;
+      if (name.size() <= longest || short_names_.count(name) > 0 || (is_yaw_rate(place) && !turned_.empty())) continue;
+      std::string alias = is_yaw_rate(place) ? "yaw_rate" : short_name(name);
+      while (std::any_of(short_names_.begin(), short_names_.end(), [&](const auto& n) { return n.second == alias; }))
+        alias += "_";
+      const std::string& own = channel(place).unit;
+      const std::string unit = own.empty() ? usual_unit(name) : own;
+      add("derive", fmt::format("{}{} = {}", alias, unit.empty() ? "" : " [" + unit + "]", quoted(name)), "");
+      short_names_[name] = alias;
+    }
+  }
+
+  std::string name_of(const ChannelPlace& place) const {
+    if (is_yaw_rate(place) && !turned_.empty()) return turned_;
+    const auto short_name = short_names_.find(channel(place).name);
+    return short_name == short_names_.end() ? channel(place).name : short_name->second;
+  }
+
   std::string names(const std::vector<ChannelPlace>& places) const {
     std::vector<std::string> all;
-    for (const ChannelPlace& place : places)
-      all.push_back(!turned_.empty() && channel(place).name == guess_.mounting->up_rate ? turned_
-                                                                                        : channel(place).name);
+    for (const ChannelPlace& place : places) all.push_back(name_of(place));
     return fmt::format("{}", fmt::join(all, ", "));
   }
 
@@ -132,7 +175,8 @@ class Proposer {
     bool said = true;
     for (const ChannelPlace& place : places) {
       const std::string& own = channel(place).unit;
-      said = said && !own.empty();
+      said =
+          said && (!own.empty() || (name_of(place) != channel(place).name && !usual_unit(channel(place).name).empty()));
       all.push_back(own.empty() ? usual_unit(channel(place).name) : own);
     }
     if (said || std::count(all.begin(), all.end(), "") > 0) return;
@@ -142,6 +186,8 @@ class Proposer {
 
   void channels() {
     for (const std::string& reason : guess_.reasons) doubt(reason);
+    shorten(guess_.states);
+    shorten(guess_.inputs);
     add("state", names(guess_.states), "measured: what the model predicts");
     if (!guess_.inputs.empty()) add("input", names(guess_.inputs), "what acts on it");
     units("state_unit", guess_.states);

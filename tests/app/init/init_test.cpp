@@ -144,9 +144,10 @@ TEST_F(Init, KnowsHuskysBag) {
   const std::string text = write(shared("bags/husky_outdoor_test1.bag"));
   EXPECT_THAT(text, HasSubstr("gravity lies along +y of this instrument (9.79 m/s^2)"));
   EXPECT_THAT(text, HasSubstr("split = blocks 10"));
-  EXPECT_THAT(config.data.state, ElementsAre("/imu/data.angular_velocity.y"));
-  EXPECT_THAT(config.data.input, ElementsAre("/husky_velocity_controller/odom.twist.twist.linear.x",
-                                             "/husky_velocity_controller/odom.twist.twist.angular.z"));
+  EXPECT_THAT(config.data.state, ElementsAre("yaw_rate"));
+  EXPECT_THAT(config.data.input, ElementsAre("linear_x", "angular_z"));
+  EXPECT_THAT(text, HasSubstr("derive = yaw_rate [rad/s] = '/imu/data.angular_velocity.y'"));
+  EXPECT_THAT(text, HasSubstr("derive = angular_z [rad/s] = '/husky_velocity_controller/odom.twist.twist.angular.z'"));
   EXPECT_TRUE(config.data.lag_auto);
   EXPECT_THAT(listing, HasSubstr("/imu/data (sensor_msgs/Imu): 11865 rows, 30.01 Hz"));
   EXPECT_EQ(import_data(config.data).recording.runs.size(), 10U);
