@@ -54,7 +54,7 @@ class Proposer {
   void doubt(std::string text) { proposal_.doubts.push_back(std::move(text)); }
 
   std::string runs_text(const FileSet& set) const {
-    if (set.files.size() == 1) return "one run";
+    if (set.files.size() == 1) return table(input()).run.empty() ? "one run" : "one file of several runs";
     return fmt::format("{} runs; * names them: {} to {}", set.runs.size(), set.runs.front(), set.runs.back());
   }
 
