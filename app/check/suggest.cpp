@@ -79,9 +79,10 @@ class Search {
     if (!random_starts) options.bank.em.restarts = 0;
     LeftOut left_out = predict_left_out(options, plan_, common_s_);
     listener_.progress(
-        fmt::format("check: rate {:g} Hz, lag {}, length {}, loss {} scored on {} training runs left out in {:.2f} s",
-                    settings.rate_hz, settings.lag_auto ? "auto" : fmt::format("{:g} s", settings.lag_s),
-                    settings.window_length, name_of(settings.loss), plan_.runs.size(), watch.seconds()));
+        fmt::format("check: rate {}, lag {}, length {}, loss {} scored on {} training runs left out in {:.2f} s",
+                    settings.rate_hz > 0.0 ? fmt::format("{:g} Hz", settings.rate_hz) : "as recorded",
+                    settings.lag_auto ? "auto" : fmt::format("{:g} s", settings.lag_s), settings.window_length,
+                    name_of(settings.loss), plan_.runs.size(), watch.seconds()));
     return left_out;
   }
 

@@ -159,7 +159,8 @@ std::string modes_section(const Archive& archive, int lines, int columns) {
                                      archive.recording ? archive.recording->inputs : std::vector<Channel>());
   std::string head = fmt::format("{} on {} runs", bank.mode_count(), words_for(judged_role(archive)));
   if (!gains.unit.empty()) head += fmt::format("; steady gains in {}", gains.unit);
-  if (modes.gains_left_out > 0) head += fmt::format("; `modebank show` has {} more", modes.gains_left_out);
+  if (modes.gains_left_out > 0)
+    head += fmt::format("; `modebank show` has {} more columns of gains", modes.gains_left_out);
   return section("modes", head, 1, columns) + narrowed(indent + table, columns) + "\n";
 }
 

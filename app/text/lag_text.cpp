@@ -60,8 +60,10 @@ std::string lag_text(const LagReport& report, bool done) {
   if (report.lag.count == 0)
     text += "no training run is excited enough to show one";
   else
-    text += fmt::format("inputs act {:+.3f} +- {:.3f} s later ({} training runs, which differ by {:.3f} s)",
-                        report.lag.mean, report.lag.standard_error, report.lag.count, report.lag.between_sd);
+    text += fmt::format(
+        "inputs act {:+.3f} +- {:.3f} s later ({} training runs, which differ by {})", report.lag.mean,
+        report.lag.standard_error, report.lag.count,
+        report.lag.between_sd > 0.0 ? fmt::format("{:.3f} s", report.lag.between_sd) : "no more than their errors");
   if (report.drift.count > 0)
     text += fmt::format("; clock drift {:+.2f} +- {:.2f} ms/s", per_mille * report.drift.mean,
                         per_mille * report.drift.standard_error);

@@ -106,10 +106,15 @@ std::string c_comment(const std::string& text) {
 std::string opening(const ExportedBank& exported, const char* what) {
   const LinearStructure& s = exported.structure();
   const std::string lag =
-      exported.input_lag_s == 0.0
-          ? ""
-          : fmt::format("\n * Inputs act {0:.17g} s late: at time t give it those recorded at t - {0:.17g} s.",
-                        exported.input_lag_s);
+      exported.input_lag_s == 0.0 ? ""
+      : exported.input_lag_s > 0.0
+          ? fmt::format("\n * Inputs act {0:.17g} s late: at time t give it those recorded at t - {0:.17g} s.",
+                        exported.input_lag_s)
+          : fmt::format(
+                "\n * Inputs act {0:.17g} s before they are recorded: at time t give it those recorded at t + {0:.17g} "
+                "s;"
+                "\n * live, measurements wait that long for them.",
+                -exported.input_lag_s);
   return fmt::format(
       "/* Verdict: {}\n *\n * {}, made by modebank {} of\n * {}, filter {}, SHA-256\n * {}\n * {}\n * dt_s = {:.17g} "
       "s; "
