@@ -29,7 +29,7 @@ json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors) {
 }
 
 /// Which modes the bank took each label's samples for; null without labels.
-json confusion_of(const Archive& archive) {
+json label_section(const Archive& archive) {
   if (archive.confusion.empty()) return nullptr;
   json rows = json::array();
   for (const ConfusionRow& row : archive.confusion) {
@@ -173,7 +173,7 @@ nlohmann::json bank_section(const Archive& archive) {
           {"transition", transition_of(bank)},
           {"switch_weights", switch_weights_of(bank)},
           {"guard", guard_of(archive)},
-          {"confusion", confusion_of(archive)},
+          {"confusion", label_section(archive)},
           {"screened", screened_of(bank)},
           {"merged", merging_of(archive, role)},
           {"refined", archive.unrefined.has_value()}};
