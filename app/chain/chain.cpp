@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/chain/mode_names.hpp"
 #include "app/chain/model_rows.hpp"
 #include "app/chain/stored_banks.hpp"
 #include "io/import/import.hpp"
@@ -43,6 +44,7 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
     judge(inputs);
   else if (archive_.windows)
     put(test_global(*archive_.recording, *archive_.windows, inputs.windows.window));
+  archive_.mode_names = mode_names_of(archive_, options.mode_names, listener_);
   describe(execution, mixture_files_);
   return archive_;
 }
@@ -226,6 +228,8 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   for (const char* filter : competitor_names) score(filter, competitor_filter(filter, options.filter), scoring);
   archive_.finding = find_modes(archive_);
   archive_.confusion = confusion_of(archive_);
+  archive_.mode_names =
+      mode_names_of(archive_, options.mode_names.empty() ? stored.mode_names : options.mode_names, listener_);
   listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
   describe(execution, {describe_file(banks)});
   return archive_;

@@ -43,6 +43,7 @@ struct ChainOptions {
   ScoringOptions scoring;
   std::uint64_t seed = 1;
   AutomaticLags automatic_lags = {};
+  std::vector<std::string> mode_names = {};  ///< of the bank; they change no number
 };
 
 }  // namespace modebank

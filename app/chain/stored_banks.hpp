@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/chain/listener.hpp"
 #include "io/archive/archive.hpp"
@@ -15,6 +16,7 @@ struct StoredBanks {
   std::optional<Bank> baseline, noise_only, one_motion, unrefined;
   std::optional<DriftingModel> drifting;
   MeasuredFit measured_fit = MeasuredFit::none;
+  std::vector<std::string> mode_names = {};
 };
 
 /// What is to be said where data are sampled at another period than the bank's steps take; empty where they are not.

@@ -31,7 +31,7 @@ void print_overview(const std::string& file, bool full_form) {
   if (const std::string strip = mode_strip_text(archive, terminal); !strip.empty()) fmt::print("\n{}", strip);
   if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(archive, width));
   if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture, width));
-  if (archive.bank) fmt::print("\nmodes\n{}", modes_text(*archive.bank, full_form, width));
+  if (archive.bank) fmt::print("\nmodes\n{}", modes_text(archive, full_form, width));
   fmt::print("{}{}", modes_in_words(archive, width), mode_diagnostics_text(archive, width));
 }
 

@@ -73,6 +73,7 @@ struct Config {
   AutomaticLags automatic_lags;
   std::string mixture_start;  ///< an archive as mixture.start; empty: none
   BankOptions bank;
+  std::vector<std::string> mode_names;
   FilterOptions filter;
   ScoringOptions scoring;  ///< of the [filter] section what is not about how a filter steps
   TrackConfig track;

@@ -17,8 +17,8 @@ DataOptions data_options_of(const Config& c) {
 }
 
 ChainOptions chain_options(const Config& c) {
-  return {data_options_of(c), c.window,  c.mixture,  c.mixture_start, c.bank,
-          c.filter,           c.scoring, c.job.seed, c.automatic_lags};
+  return {data_options_of(c), c.window,  c.mixture,  c.mixture_start,  c.bank,
+          c.filter,           c.scoring, c.job.seed, c.automatic_lags, c.mode_names};
 }
 
 const std::vector<Option>& option_table() {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "app/chain/judged_runs.hpp"
+#include "app/chain/mode_names.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/bank/load_bank.hpp"
@@ -99,7 +100,8 @@ ExportedBank exported_bank(const Archive& archive, const std::string& file, cons
   add_verdict(archive, exported);
   add_channels(archive.recording.value_or(Recording()), exported);
   for (std::size_t j = 0; j < bank->modes.size(); ++j) {
-    exported.mode_names.push_back(fmt::format("mode {}", j));
+    const std::string name = filter == "bank" ? name_of_mode(archive.mode_names, static_cast<Index>(j)) : "";
+    exported.mode_names.push_back(name.empty() ? fmt::format("mode {}", j) : name);
     exported.errors.push_back(errors_of(*bank, bank->modes[j]));
   }
   return exported;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/chain/judged_runs.hpp"
+#include "app/chain/mode_names.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/text_table.hpp"
@@ -33,6 +34,7 @@ std::string heading(const std::string& name) {
 struct Cells {
   bool all_decays;
   std::size_t gains;
+  const std::vector<std::string>& names;  // of modes
 };
 
 std::vector<std::string> cells_of(const UsedMode& used, const ModeDynamics& dynamics, const Cells& wanted) {
@@ -40,7 +42,7 @@ std::vector<std::string> cells_of(const UsedMode& used, const ModeDynamics& dyna
   if (!wanted.all_decays && decays.size() > 1) decays.resize(1);
   std::vector<std::string> times;
   for (const Decay& decay : decays) times.push_back(decay_words(decay));
-  std::vector<std::string> cells{std::to_string(used.mode), fmt::format("{:.1f} %", 100 * used.use),
+  std::vector<std::string> cells{heading(mode_cell(wanted.names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
                                  seconds(used.stay_s), per_sample_words(decays), boost::algorithm::join(times, "; ")};
   const Eigen::VectorXd gains = dynamics.gain.transpose().reshaped(),
                         errors = dynamics.gain_error.transpose().reshaped();
@@ -51,8 +53,9 @@ std::vector<std::string> cells_of(const UsedMode& used, const ModeDynamics& dyna
 
 std::string table_text(const Archive& archive, const std::vector<UsedMode>& modes, const GainNames& gains,
                        const Cells& wanted, int width) {
+  const auto align = wanted.names.empty() ? TextTable::Align::right : TextTable::Align::left;
   std::vector<TextTable::Column> columns{
-      {"mode", 0}, {"used", 0}, {"stay", 0}, {"decay/sample", 0}, {"time constant", 0}};
+      {"mode", 0, align}, {"used", 0}, {"stay", 0}, {"decay/sample", 0}, {"time constant", 0}};
   for (std::size_t i = 0; i < wanted.gains; ++i) columns.push_back({gains.names[i], 0});
   TextTable table(std::move(columns));
   for (const UsedMode& mode : modes) table.add(cells_of(mode, mode_dynamics(*archive.bank, mode.mode), wanted));
@@ -137,7 +140,7 @@ ShortModes short_modes(const Archive& archive, Index rows, int width) {
   for (Index i = shown; i < all; ++i) others += modes[static_cast<std::size_t>(i)].use;
   modes.resize(static_cast<std::size_t>(shown));
   const GainNames gains = gains_of(archive);
-  Cells cells{false, gains.names.size()};
+  Cells cells{false, gains.names.size(), archive.mode_names};
   ShortModes result{table_text(archive, modes, gains, cells, 0)};
   for (; widest_line(result.text) > width && cells.gains > 0; ++result.gains_left_out) {
     --cells.gains;
@@ -154,7 +157,7 @@ std::string modes_in_words(const Archive& archive, int width) {
   const GainNames gains = gains_of(archive);
   return fmt::format("\nmodes in words{}\n",
                      gains.unit.empty() ? "" : fmt::format("; steady gains in {}", gains.unit)) +
-         table_text(archive, used_modes(archive), gains, {true, gains.names.size()}, width);
+         table_text(archive, used_modes(archive), gains, {true, gains.names.size(), archive.mode_names}, width);
 }
 
 }  // namespace modebank::app

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/chain/judged_runs.hpp"
+#include "app/chain/mode_names.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/summary_text.hpp"
 #include "app/text/text_table.hpp"
@@ -19,6 +20,11 @@ std::string unit_suffix(const Archive& archive) {
   if (!archive.recording || archive.recording->states.size() != 1) return "";
   const std::string& unit = archive.recording->states.front().unit;
   return unit.empty() ? "" : " [" + unit + "]";
+}
+
+/// Of a column of modes: numbers, or numbers with names.
+TextTable::Align align_of(const std::vector<std::string>& mode_names) {
+  return mode_names.empty() ? TextTable::Align::right : TextTable::Align::left;
 }
 
 std::string share(double value) { return fmt::format("{:.2f} %", 100 * value); }
@@ -128,7 +134,7 @@ std::string window_parameters_text(const Archive& archive, int width) {
 
 std::string mode_diagnostics_text(const Archive& archive, int width) {
   const Role role = judged_role(archive);
-  TextTable table({{"mode", 4},
+  TextTable table({{"mode", 4, align_of(archive.mode_names)},
                    {"usage", 7},
                    {"expected", 8},
                    {"dwell", 8},
@@ -143,7 +149,7 @@ std::string mode_diagnostics_text(const Archive& archive, int width) {
   for (const DiagnosticsRow& row : archive.diagnostics) {
     if (row.filter != "bank" || row.role != role || row.mode < 0) continue;
     empty = false;
-    table.add({std::to_string(row.mode), fmt::format("{:.3f}", row.usage), std::to_string(row.samples),
+    table.add({mode_cell(archive.mode_names, row.mode), fmt::format("{:.3f}", row.usage), std::to_string(row.samples),
                fixed_or_short(row.dwell, 1), fixed_or_short(row.dwell_model, 1), share(row.coverage_95),
                tails(row.too_far, row.too_close), fixed_or_short(row.nis_mean, 3), fixed_or_short(row.nees_mean, 3),
                fmt::format("{:.2g}", row.whiteness_p), std::string(name_of(row.verdict))});
@@ -154,14 +160,14 @@ std::string mode_diagnostics_text(const Archive& archive, int width) {
 namespace {
 
 /// The modes in a motion model's own parameters; empty for linear models, whose table says all.
-std::string motion_parameters_text(const Bank& bank, int width) {
+std::string motion_parameters_text(const Bank& bank, const std::vector<std::string>& names, int width) {
   if (bank.motion_parameters.empty()) return "";
-  std::vector<TextTable::Column> columns{{"mode", 4}};
+  std::vector<TextTable::Column> columns{{"mode", 4, align_of(names)}};
   for (const ModelParameter& parameter : bank.motion_parameters) columns.push_back({parameter.name, 20});
   TextTable table(std::move(columns));
   for (Index k = 0; k < bank.mode_count(); ++k) {
     const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
-    std::vector<std::string> cells{std::to_string(k)};
+    std::vector<std::string> cells{mode_cell(names, k)};
     for (Index i = 0; i < mode.motion_theta.size(); ++i)
       cells.push_back(estimate(mode.motion_theta(i), mode.motion_standard_error(i)));
     table.add(std::move(cells));
@@ -172,15 +178,15 @@ std::string motion_parameters_text(const Bank& bank, int width) {
 }  // namespace
 
 /// The weights of switches that see state and input.
-std::string switches_text(const Bank& bank, int width) {
+std::string switches_text(const Bank& bank, const std::vector<std::string>& names, int width) {
   const TransitionLogit& logit = bank.transition_logit;
   if (logit.empty()) return "";
-  std::vector<TextTable::Column> columns{{"mode", 4}};
+  std::vector<TextTable::Column> columns{{"mode", 4, align_of(names)}};
   for (const std::string& label : regressor_labels(bank.structure, bank.state_names, bank.input_names))
     columns.push_back({label, 20});
   TextTable table(std::move(columns));
   for (Index k = 0; k < bank.mode_count(); ++k) {
-    std::vector<std::string> cells{std::to_string(k)};
+    std::vector<std::string> cells{mode_cell(names, k)};
     for (Index a = 0; a < logit.weights.cols(); ++a)
       cells.push_back(bank.transition_weight_error.allFinite() && bank.transition_weight_error.size() > 0
                           ? estimate(logit.weights(k, a), bank.transition_weight_error(k, a))
@@ -192,12 +198,14 @@ std::string switches_text(const Bank& bank, int width) {
          table.text(width);
 }
 
-std::string modes_text(const Bank& bank, bool full_form, int width) {
-  std::vector<TextTable::Column> columns{{"mode", 4}, {"weight", 7}};
+std::string modes_text(const Archive& archive, bool full_form, int width) {
+  const Bank& bank = *archive.bank;
+  const std::vector<std::string>& names = archive.mode_names;
+  std::vector<TextTable::Column> columns{{"mode", 4, align_of(names)}, {"weight", 7}};
   const std::vector<std::string> labels = parameter_labels(bank.structure, bank.state_names, bank.input_names),
-                                 names = bank.structure.parameter_names();
+                                 parameters = bank.structure.parameter_names();
   for (std::size_t i = 0; i < labels.size(); ++i)
-    columns.push_back({labels[i] + (full_form && names[i][0] == 'A' ? " (full)" : ""), 20});
+    columns.push_back({labels[i] + (full_form && parameters[i][0] == 'A' ? " (full)" : ""), 20});
   columns.push_back({"sqrt diag Q", 12});
   TextTable table(std::move(columns));
   for (Index k = 0; k < bank.mode_count(); ++k) {
@@ -205,12 +213,12 @@ std::string modes_text(const Bank& bank, bool full_form, int width) {
     LinearModel model = mode.model;
     if (full_form) model.A.diagonal().array() += 1.0;
     const Eigen::VectorXd theta = pack(bank.structure, model);
-    std::vector<std::string> cells{std::to_string(k), fmt::format("{:.3f}", mode.weight)};
+    std::vector<std::string> cells{mode_cell(names, k), fmt::format("{:.3f}", mode.weight)};
     for (Index i = 0; i < theta.size(); ++i) cells.push_back(estimate(theta(i), mode.standard_error(i)));
     cells.push_back(fmt::format("{:.4g}", fmt::join(mode.Q.diagonal().cwiseSqrt().eval(), " ")));
     table.add(std::move(cells));
   }
-  return table.text(width) + motion_parameters_text(bank, width) + switches_text(bank, width);
+  return table.text(width) + motion_parameters_text(bank, names, width) + switches_text(bank, names, width);
 }
 
 }  // namespace modebank::app

@@ -21,6 +21,6 @@ std::string window_parameters_text(const Archive& archive, int width = 0);
 std::string mode_diagnostics_text(const Archive& archive, int width = 0);
 
 /// One line per mode: parameters, noise, weight. `full_form` prints I + A instead of A.
-std::string modes_text(const Bank& bank, bool full_form, int width = 0);
+std::string modes_text(const Archive& archive, bool full_form, int width = 0);
 
 }  // namespace modebank::app

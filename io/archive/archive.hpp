@@ -75,7 +75,8 @@ struct Archive {
   std::optional<WindowFits> windows;
   std::optional<MixtureResult> mixture;
   std::optional<Bank> bank;
-  std::optional<Bank> unrefined;  ///< the bank that expectation-maximisation started from
+  std::vector<std::string> mode_names = {};  ///< of the bank, where modes have names; empty where one has none
+  std::optional<Bank> unrefined;             ///< the bank that expectation-maximisation started from
   MeasuredFit measured_fit = MeasuredFit::none;
   std::optional<Bank> baseline;
   std::optional<Bank> noise_only;

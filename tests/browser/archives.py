@@ -5,6 +5,7 @@ import random
 import subprocess
 
 HOSTILE_STATE = "<script>window.hostile=1</script>"
+HOSTILE_MODE = "<img src=x onerror='window.hostile=5'> %{y} &lt;"
 HOSTILE_INPUT = "\"><img src=x onerror='window.hostile=2'>&amp;"
 HOSTILE_RUN = "</script><b>run</b> 'é\"漢 ${x} {{data}}"
 HOSTILE_UNIT = "<i>rad</i>&s"
@@ -71,7 +72,7 @@ def hostile(modebank):
                 state += -0.4 * state - 0.2 * left + 0.2 * right + 0.01 * generator.uniform(-0.5, 0.5)
     config = folder / "hostile.ini"
     config.write_text(f"[data]\ninputs = log.csv\nstate = {HOSTILE_STATE}\ninput = {HOSTILE_INPUT}, right\nrun = trial\n"
-                      f"state_unit = {HOSTILE_UNIT}\n[mixture]\ncomponents = 1..2\n[bank]\nrefine = none\n", encoding="utf-8")
+                      f"state_unit = {HOSTILE_UNIT}\n[mixture]\ncomponents = 1..2\n[bank]\nrefine = none\nmode_names = {HOSTILE_MODE}\n", encoding="utf-8")
     return modebank.run("hostile", config, "--data.root", folder)
 
 

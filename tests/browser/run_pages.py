@@ -231,6 +231,7 @@ class RunPages(PageTest):
         text = session.browser.run("return document.body.textContent")
         self.assertIn(archives.HOSTILE_STATE, text)
         self.assertIn("漢 ${x} {{data}}", text)
+        self.assertIn("0 " + archives.HOSTILE_MODE, text)
         # Plotly draws texts of its own: they hold the name as well, as text.
         drawn = session.browser.run("return [...document.querySelectorAll('#data div.plot svg text')].map((t) => t.textContent).join(' | ')")
         self.assertIn(archives.HOSTILE_STATE, drawn)

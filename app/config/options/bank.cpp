@@ -7,6 +7,10 @@ std::vector<Option> bank_options() {
   return {
       words("bank.theta", "a mode's parameters: pooled least squares, or the component's mean",
             MODEBANK_FIELD(bank.theta)),
+      text("bank.mode_names", "names",
+           "one per mode in the bank's order, for people; empty, or where there are fewer: by data.label, the label "
+           "that holds 60 % of a mode's held-out samples",
+           MODEBANK_FIELD(mode_names)),
       words("bank.noise", "process noise Q", MODEBANK_FIELD(bank.noise)),
       words("bank.transition",
             "transition matrix from window labels, or bank.stay; logit: as from labels, and in a refined bank a "

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/chain/judged_runs.hpp"
+#include "app/chain/mode_names.hpp"
 #include "app/report/page/guard_map.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
@@ -25,6 +26,20 @@ json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors) {
   json cells = json::array();
   for (Index i = 0; i < values.size(); ++i) cells.push_back(estimate(values(i), i < errors.size() ? errors(i) : NAN));
   return cells;
+}
+
+/// Which modes the bank took each label's samples for; null without labels.
+json label_section(const Archive& archive) {
+  if (archive.confusion.empty()) return nullptr;
+  json rows = json::array();
+  for (const ConfusionRow& row : archive.confusion) {
+    if (rows.empty() || rows.back()["label"] != row.label)
+      rows.push_back({{"label", row.label}, {"samples", 0}, {"shares", json::array()}});
+    rows.back()["samples"] = rows.back()["samples"].get<Index>() + row.samples;
+    rows.back()["shares"].push_back(percent(row.share));
+  }
+  for (json& row : rows) row["samples"] = count(row["samples"].get<Index>());
+  return {{"role", name_of(archive.confusion.front().role)}, {"rows", rows}};
 }
 
 json mode_row(const Bank& bank, Index k) {
@@ -141,6 +156,7 @@ nlohmann::json bank_section(const Archive& archive) {
   json modes = json::array();
   for (Index k = 0; k < bank.mode_count(); ++k) {
     modes.push_back(mode_row(bank, k));
+    modes.back()["name"] = name_of_mode(archive.mode_names, k);
     if (const DiagnosticsRow* row = diagnosis(archive, "bank", role, k)) add_diagnosis(modes.back(), *row, bank.dt_s);
   }
   return {{"modes", modes},
@@ -157,6 +173,7 @@ nlohmann::json bank_section(const Archive& archive) {
           {"transition", transition_of(bank)},
           {"switch_weights", switch_weights_of(bank)},
           {"guard", guard_of(archive)},
+          {"confusion", label_section(archive)},
           {"screened", screened_of(bank)},
           {"merged", merging_of(archive, role)},
           {"refined", archive.unrefined.has_value()}};

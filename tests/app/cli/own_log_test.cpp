@@ -5,6 +5,7 @@
 #include <regex>
 #include <sstream>
 
+#include "io/archive/archive.hpp"
 #include "io/archive/inspect.hpp"
 #include "io/import/split.hpp"
 #include "tests/app/cli_fixture.hpp"
@@ -43,6 +44,27 @@ TEST_F(OwnLog, IsReadSplitAndComparedWithItsLabels) {
   const std::string shown = modebank({"show", archive()}).out;
   EXPECT_NE(shown.find("most probable mode of each label's samples, held-out runs"), std::string::npos) << shown;
   EXPECT_EQ(modebank({"verify", archive()}).status, 0);
+}
+
+TEST_F(OwnLog, ModesAreCalledAsTheUserSaysWhereverTheyAreListed) {
+  const std::vector<std::string> words{"--data.inputs",     "log.csv",
+                                       "--data.time",       "stamp",
+                                       "--data.split",      "blocks 4",
+                                       "--data.label",      "ground",
+                                       "--bank.mode_names", "glaze, snow, a, b, c, d, e, f, g, h"};
+  const ProgramResult result = run(words);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Archive stored = read_archive(archive());
+  const auto modes = static_cast<std::size_t>(stored.bank->mode_count());
+  EXPECT_NE(result.err.find(fmt::format("bank.mode_names has 10 names, but the bank has {} mode", modes)),
+            std::string::npos)
+      << result.err;
+  ASSERT_EQ(stored.mode_names.size(), modes);
+  EXPECT_EQ(stored.mode_names[0], "glaze");
+  EXPECT_NE(result.out.find("0 glaze"), std::string::npos) << result.out;
+  const std::string shown = modebank({"show", archive()}).out;
+  EXPECT_NE(shown.find("mode 0: glaze"), std::string::npos) << "of the confusion:\n" << shown;
+  EXPECT_EQ(inspect(archive(), "/bank").at("attributes").at("mode_names").at(0), "glaze");
 }
 
 TEST_F(OwnLog, AloneAndWholeProposesASplit) {

@@ -64,6 +64,17 @@ TEST_F(Export, JsonIsTheArchivesBank) {
   EXPECT_EQ(page.at("filter").at("noise"), "gaussian");
 }
 
+TEST_F(Export, ModesHaveTheirNames) {
+  judge(Verdict::calibrated);
+  Archive stored = read_archive(archive());
+  stored.mode_names.assign(static_cast<std::size_t>(stored.bank->mode_count()), "");
+  stored.mode_names[0] = "ice\n*/ \"grit\"";
+  write_archive(archive(), stored);
+  const json modes = json::parse(exported("json").out).at("modes");
+  EXPECT_EQ(modes.at(0).at("name"), "ice */ \"grit\"") << "on one line";
+  for (std::size_t k = 1; k < modes.size(); ++k) EXPECT_EQ(modes.at(k).at("name"), "mode " + std::to_string(k));
+}
+
 TEST_F(Export, CsvIsAnyTableAsItStands) {
   const ProgramResult result = exported("csv", {"--table", "/evaluation/summary"});
   ASSERT_EQ(result.status, 0) << result.err;

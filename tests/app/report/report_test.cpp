@@ -146,6 +146,30 @@ TEST_F(Report, PageHoldsTheArchivesNumbersAndReachesNowhere) {
   EXPECT_LE(html.size(), 64e6);
 }
 
+TEST_F(Report, NamesModesAndComparesThemWithLabels) {
+  ASSERT_EQ(run().status, 0);
+  Archive stored = read_archive(archive());
+  const std::string hostile = "</script><script>hostile()</script>";
+  stored.mode_names.assign(static_cast<std::size_t>(stored.bank->mode_count()), "");
+  stored.mode_names[0] = hostile;
+  stored.confusion.clear();
+  for (const auto* label : {"grip", hostile.c_str()})
+    for (Index k = 0; k < stored.bank->mode_count(); ++k)
+      stored.confusion.push_back({"bank", Role::test, label, k, k == 0 ? 3 : 1, k == 0 ? 0.75 : 0.25});
+  write_archive(archive(), stored);
+  ASSERT_EQ(modebank({"report", archive(), "-o", page()}).status, 0);
+  EXPECT_EQ(read_file(page()).find(hostile), std::string::npos);
+  const json bank = data_of_page()["bank"];
+  EXPECT_EQ(bank["modes"][0]["name"], hostile);
+  EXPECT_EQ(bank["confusion"]["role"], "test");
+  ASSERT_EQ(bank["confusion"]["rows"].size(), 2u);
+  const json& row = bank["confusion"]["rows"][1];
+  EXPECT_EQ(row["label"], hostile);
+  EXPECT_EQ(row["samples"]["v"], 3 + stored.bank->mode_count() - 1);
+  ASSERT_EQ(std::ssize(row["shares"]), stored.bank->mode_count());
+  EXPECT_EQ(row["shares"][0]["v"], 0.75);
+}
+
 /// Two modes: p0 T01 = p1 T10, T01 and T10 moved by the odds of the weights.
 TEST(ReportGuard, SharesAreThoseThatStandStill) {
   Bank bank;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 namespace modebank::test {
 
@@ -252,6 +253,24 @@ void expect_same(const MergingCost& actual, const MergingCost& expected) {
   EXPECT_EQ(actual.loss, expected.loss);
 }
 
+namespace {
+
+void expect_same_labels(const Archive& actual, const Archive& expected) {
+  ASSERT_EQ(actual.labels.has_value(), expected.labels.has_value());
+  if (actual.labels) {
+    EXPECT_EQ(actual.labels->names, expected.labels->names);
+    EXPECT_EQ(actual.labels->of_runs, expected.labels->of_runs);
+  }
+  const auto row = [](const ConfusionRow& r) {
+    return std::tuple(r.filter, r.role, r.label, r.mode, r.samples, r.share);
+  };
+  ASSERT_EQ(actual.confusion.size(), expected.confusion.size());
+  for (std::size_t i = 0; i < actual.confusion.size(); ++i)
+    EXPECT_EQ(row(actual.confusion[i]), row(expected.confusion[i]));
+}
+
+}  // namespace
+
 void expect_same(const Archive& actual, const Archive& expected) {
   expect_same(actual.provenance, expected.provenance);
   EXPECT_EQ(actual.config, expected.config);
@@ -261,6 +280,8 @@ void expect_same(const Archive& actual, const Archive& expected) {
   expect_same_part(actual.mixture, expected.mixture, "mixture");
   expect_same_part(actual.bank, expected.bank, "bank");
   EXPECT_EQ(actual.measured_fit, expected.measured_fit);
+  EXPECT_EQ(actual.mode_names, expected.mode_names);
+  expect_same_labels(actual, expected);
   expect_same_part(actual.unrefined, expected.unrefined, "unrefined");
   ASSERT_EQ(actual.merging.size(), expected.merging.size());
   for (std::size_t i = 0; i < actual.merging.size(); ++i) expect_same(actual.merging[i], expected.merging[i]);

@@ -52,6 +52,7 @@ void expect_same(const Recording& actual, const Recording& expected) {
     EXPECT_EQ(a.role, e.role);
     EXPECT_EQ(a.lag_s, e.lag_s);
     EXPECT_TRUE(same_bits(a.time_s, e.time_s));
+    EXPECT_EQ(a.time_origin_ns, e.time_origin_ns);
     EXPECT_TRUE(same_bits(a.state, e.state));
     EXPECT_TRUE(same_bits(a.input, e.input));
     EXPECT_TRUE(same_bits(a.truth, e.truth));

@@ -1,6 +1,7 @@
 // The two figures of a WindowCloud: rotatable in three parameters, flat in their three projections.
 import {appendWires, ellipsePath, surface} from './ellipsoid.js';
-import {axisTitle, figure, ink, modeColour, palette, translucent} from './plots.js';
+import {modeTitle} from './mode_names.js';
+import {axisTitle, figure, ink, modeColour, palette, plain, translucent} from './plots.js';
 import {usualRange} from './statistics.js';
 
 const many = 20000;      // windows that are drawn smaller and fainter
@@ -17,7 +18,8 @@ function windowPoints(cloud, axes, type) {
   return cloud.shownGroups(axes).map(({key, list}) => {
     const marker = {size: solid ? 2.2 : crowded ? 2.5 : 4, color: groupColour(key), line: {width: 0}};
     marker.opacity = key < 0 ? 0.3 : crowded ? 0.35 : 0.65;
-    const trace = {type, mode: 'markers', name: cloud.groupName(key), customdata: list, hoverinfo: 'none', marker};
+    const trace =
+        {type, mode: 'markers', name: plain(cloud.groupName(key)), customdata: list, hoverinfo: 'none', marker};
     axes.forEach((a, j) => {
       trace['xyz'[j]] = Float32Array.from(list, (i) => cloud.values[a][i]);
     });
@@ -32,7 +34,7 @@ function bankPoints(cloud, axes, type) {
     type,
     mode: 'markers',
     customdata: bank.map(() => -1),
-    hovertext: bank.map((_, k) => `mode ${k} of the bank`),
+    hovertext: bank.map((_, k) => `${plain(modeTitle(k))} of the bank`),
     hoverinfo: 'text',
     marker: {
       symbol: 'diamond',

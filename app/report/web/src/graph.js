@@ -1,5 +1,6 @@
 // The transition graph of a bank: modes on a circle, arrows by probability.
 import {s} from './elements.js';
+import {modeTitle} from './mode_names.js';
 import {modeColour} from './plots.js';
 
 const bend = 0.14;    // of an arrow's length
@@ -42,7 +43,7 @@ export function transitionGraph(transition, weights) {
   const labels = [];
   transition.forEach((row, i) => row.forEach((cell, j) => {
     if (i === j || !(cell.v >= least)) return;
-    const title = `from mode ${i} to mode ${j}: ${cell.t}`;
+    const title = `from ${modeTitle(i)} to ${modeTitle(j)}: ${cell.t}`;
     const edge = arrow(nodes[i], nodes[j], 1 + 7 * Math.sqrt(cell.v), modeColour(i), title);
     picture.append(edge.element);
     if (K <= 6) labels.push(s('text', {x: edge.at.x, y: edge.at.y, class: 'edge'}, cell.v.toPrecision(2)));
@@ -50,7 +51,7 @@ export function transitionGraph(transition, weights) {
   picture.append(
       ...nodes.map(
           (node, k) =>
-              s('g', {}, s('title', {}, `mode ${k} stays with probability ${transition[k][k].t}`),
+              s('g', {}, s('title', {}, `${modeTitle(k)} stays with probability ${transition[k][k].t}`),
                 s('circle', {cx: node.x, cy: node.y, r: node.r, fill: modeColour(k), stroke: 'var(--ink)'}),
                 s('text', {x: node.x, y: node.y, class: 'node'}, String(k)))),
       ...labels);

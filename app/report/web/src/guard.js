@@ -1,5 +1,6 @@
 // Which states and inputs belong to which mode, where switches see them.
-import {axisTitle, figure, modeColour} from './plots.js';
+import {modeTitle} from './mode_names.js';
+import {axisTitle, figure, modeColour, plain} from './plots.js';
 
 const shown = (share) => `${(100 * share).toFixed(0)} %`;
 
@@ -10,7 +11,7 @@ function sampleTraces(guard, count, x, y) {
     return {
       type: 'scatter',
       mode: 'markers',
-      name: `mode ${k}`,
+      name: plain(modeTitle(k)),
       x: own.map(x),
       y: own.map(y),
       hoverinfo: 'name+x+y',
@@ -38,7 +39,8 @@ function mapTrace(guard, count) {
     showscale: false,
     opacity: 0.35,
     hoverinfo: 'text',
-    text: guard.modes.map((row, i) => row.map((k, j) => `mode ${k}: ${shown(guard.shares[i][j])} of the time`)),
+    text: guard.modes.map(
+        (row, i) => row.map((k, j) => `${plain(modeTitle(k))}: ${shown(guard.shares[i][j])} of the time`)),
   };
 }
 
@@ -60,7 +62,7 @@ function lines(guard, count) {
   const traces = guard.lines.map((share, k) => ({
                                    type: 'scatter',
                                    mode: 'lines',
-                                   name: `mode ${k}`,
+                                   name: plain(modeTitle(k)),
                                    showlegend: false,
                                    x: guard.axes[0].values,
                                    y: share,

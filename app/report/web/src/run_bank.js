@@ -3,8 +3,9 @@ import {details, facts, h, note} from './elements.js';
 import {roleNames} from './filters.js';
 import {transitionGraph} from './graph.js';
 import {guardFigure} from './guard.js';
+import {modeCell, modeTitle} from './mode_names.js';
 import {section} from './page.js';
-import {figure, filterColour, modeColour} from './plots.js';
+import {figure, filterColour, modeColour, plain} from './plots.js';
 import {table} from './table.js';
 
 function modeColumns(bank) {
@@ -34,7 +35,7 @@ function dwellBars(bank, cells, name, hatched) {
   return {
     type: 'bar',
     name,
-    x: bank.modes.map((row) => `mode ${row.mode}`),
+    x: bank.modes.map((row) => plain(modeTitle(row.mode))),
     y: cells.map((cell) => (cell ? cell.v : null)),
     text: cells.map((cell) => `${name}: ${cell ? cell.t : '–'} samples`),
     textposition: 'none',
@@ -72,7 +73,7 @@ function dwellFigure(bank) {
 function dwellTable(bank) {
   return table(
       [
-        {name: 'Mode', text: true, of: (row) => String(row.mode), swatch: (row) => modeColour(row.mode)},
+        {name: 'Mode', text: true, of: (row) => modeCell(row.mode), swatch: (row) => modeColour(row.mode)},
         {name: 'Seen [samples]', of: (row) => row.dwell},
         {name: 'By T [samples]', of: (row) => row.dwell_model},
       ],
@@ -80,14 +81,14 @@ function dwellTable(bank) {
 }
 
 function transitionTable(transition) {
-  const first = {name: 'from \\ to', text: true, of: (row) => `mode ${row.k}`, swatch: (row) => modeColour(row.k)};
-  const columns = [first, ...transition.map((_, j) => ({name: String(j), of: (row) => row.cells[j]}))];
+  const first = {name: 'from \\ to', text: true, of: (row) => modeTitle(row.k), swatch: (row) => modeColour(row.k)};
+  const columns = [first, ...transition.map((_, j) => ({name: modeCell(j), of: (row) => row.cells[j]}))];
   const rows = transition.map((cells, k) => ({cells, k}));
   return table(columns, rows, {caption: 'Transition probabilities per sample'});
 }
 
 function transitionMap(transition) {
-  const names = transition.map((_, k) => `mode ${k}`), least = -4;
+  const names = transition.map((_, k) => plain(modeTitle(k))), least = -4;
   const trace = {
     type: 'heatmap',
     x: names,
@@ -120,7 +121,7 @@ function transitionMap(transition) {
 
 /** The weights of switches that see state and input. */
 function switchWeights(weights) {
-  const first = {name: 'to', text: true, of: (row) => `mode ${row.k}`, swatch: (row) => modeColour(row.k)};
+  const first = {name: 'to', text: true, of: (row) => modeTitle(row.k), swatch: (row) => modeColour(row.k)};
   const columns = [first, ...weights.names.map((name, i) => ({name, of: (row) => row.cells[i]}))];
   return [
     note(
@@ -180,12 +181,25 @@ function screenedTable(screened) {
       screened, {caption: 'Components that were left out of the bank'});
 }
 
+// Which modes each label's samples were taken for.
+function confusionTable(bank) {
+  const {confusion} = bank;
+  if (!confusion) return null;
+  const columns = [
+    {name: 'Label', text: true, of: (row) => row.label},
+    {name: 'Samples', of: (row) => row.samples},
+    ...bank.modes.map(({mode}) => ({name: modeTitle(mode), of: (row) => row.shares[mode]})),
+  ];
+  const caption = `Most probable mode of each label’s samples (${roleNames[confusion.role]})`;
+  return [h('h3', {}, 'Modes and labels'), table(columns, confusion.rows, {caption})];
+}
+
 export function drawBank(bank) {
   if (!bank) return section('bank', 'The bank', note('This archive holds no bank: no modes were learned.'));
-  const rows = bank.modes.map((row) => ({...row, name: String(row.mode), colour: modeColour(row.mode)}));
+  const rows = bank.modes.map((row) => ({...row, name: modeCell(row.mode), colour: modeColour(row.mode)}));
   if (bank.baseline) rows.push({...bank.baseline, name: 'baseline', colour: filterColour('baseline')});
   const caption = `Modes (± one standard error; usage and samples too far and too close on ${roleNames[bank.role]})`;
   return section(
       'bank', 'The bank', bankFacts(bank), table(modeColumns(bank), rows, {caption, sortable: true}),
-      screenedTable(bank.screened), switching(bank));
+      confusionTable(bank), screenedTable(bank.screened), switching(bank));
 }

@@ -2,6 +2,7 @@
 import {drawCloud} from './cloud.js';
 import {choiceIfAny, controls, copyButton, details, facts, h, legend, note, value} from './elements.js';
 import {filterNames} from './filters.js';
+import {modeTitle, nameModes} from './mode_names.js';
 import {draw, head, section} from './page.js';
 import {pageData} from './page_data.js';
 import {ink, lineColour, modeColour, palette} from './plots.js';
@@ -60,7 +61,7 @@ function drawVerdict(verdict) {
 }
 
 function modeLegend(count) {
-  return legend(Array.from({length: count}, (_, k) => [modeColour(k), `mode ${k}`]), 'Colours of modes');
+  return legend(Array.from({length: count}, (_, k) => [modeColour(k), modeTitle(k)]), 'Colours of modes');
 }
 
 // Drop-downs of run and filter, one pair per place, all of them of the same state.
@@ -145,6 +146,7 @@ function filterOptions(filters) {
 
 draw(async () => {
   const data = pageData(), runs = data.data;
+  nameModes(data.bank ? data.bank.modes.map((mode) => mode.name) : []);
   head(data.file, `Run of ${data.origin.created}`);
   drawOrigin(data.origin);
   drawVerdict(data.verdict);

@@ -1,6 +1,7 @@
 // The rows of plots over time: states with predictions, inputs, mode probabilities, innovations, NIS. What belongs to
 // one filter is drawn by a layer: {of: run => its filter or null, prefix: '', band, line: colours, stroke: more of its
 // lines, symbol}. A page of one run has one layer, a page that compares two runs has two.
+import {modeTitle} from './mode_names.js';
 import {array} from './page_data.js';
 import {axisTitle, dashedLine, ink, lineColour, modeColour, palette, plain, translucent} from './plots.js';
 import {band, bounds, line, share} from './signals.js';
@@ -105,7 +106,7 @@ export function probabilityRow(of, title = 'P(mode)') {
     const filter = of(run);
     if (!filter || !filter.probability) return [];
     return Promise.all(filter.probability.map(async (signal, k) => {
-      const curve = await share(signal, clock, shown), name = `mode ${k}`;
+      const curve = await share(signal, clock, shown), name = plain(modeTitle(k));
       return {
         ...curve,
         ...lines,
@@ -113,7 +114,7 @@ export function probabilityRow(of, title = 'P(mode)') {
         line: {width: 0, shape: shapeOf(curve.per)},
         fillcolor: modeColour(k),
         name,
-        hovertemplate: `${name}: %{y:.3f}<extra></extra>`,
+        hovertemplate: '%{fullData.name}: %{y:.3f}<extra></extra>',
       };
     }));
   };

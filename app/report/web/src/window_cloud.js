@@ -1,5 +1,6 @@
 // Local models as points of a cloud: their groups, the Gaussians behind those, what is shown of them. Draws nothing.
 import {part} from './ellipsoid.js';
+import {modeCell, modeTitle} from './mode_names.js';
 
 const few_shells = 6;
 
@@ -47,7 +48,7 @@ export class WindowCloud {
   }
 
   groupName(key) {
-    if (key >= 0) return `${this.by} ${key}`;
+    if (key >= 0) return this.by === 'mode' ? modeTitle(key) : `${this.by} ${key}`;
     return this.by === 'none' ? 'windows' : 'not clustered';
   }
 
@@ -118,9 +119,9 @@ export class WindowCloud {
       const error = known ? ` ± ${digits(Number(Math.sqrt(this.covarianceOf(i, a, a)).toPrecision(2)))}` : '';
       return `${axis.name} = ${digits(this.values[a][i])}${error}`;
     });
-    const group = (name, list) => (list ? `; ${name} ${list[i] < 0 ? 'none' : list[i]}` : '');
+    const group = (name, list, said = String) => (list ? `; ${name} ${list[i] < 0 ? 'none' : said(list[i])}` : '');
     return `Window in ${this.place(i)}: ${numbers.join(', ')}${group('component', this.label)}` +
-        group('mode of the filter', this.mode);
+        group('mode of the filter', this.mode, modeCell);
   }
 }
 

@@ -1,0 +1,12 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {modeCell, modeTitle, nameModes} from '../src/mode_names.js';
+
+test('a mode without a name is its number', () => {
+  assert.deepEqual([modeCell(0), modeTitle(3)], ['0', 'mode 3']);
+  nameModes(['', 'ice']);
+  assert.deepEqual([0, 1, 2].map(modeCell), ['0', '1 ice', '2']);
+  assert.deepEqual([0, 1, 2].map(modeTitle), ['mode 0', 'mode 1: ice', 'mode 2']);
+  nameModes([]);
+});
