@@ -21,6 +21,12 @@ struct Candidate {
   NameScore score;
 };
 
+/// Whether a line of a configuration can hold the name: no list mark, no comment, nothing that ends the line.
+bool may_be_named(const std::string& name) {
+  return std::none_of(name.begin(), name.end(),
+                      [](char c) { return c == ',' || c == '#' || (static_cast<unsigned char>(c) < ' '); });
+}
+
 std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
   std::vector<Candidate> all;
   for (std::size_t f = 0; f < files.size(); ++f)
@@ -30,8 +36,7 @@ std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
       const std::string from = table.name.empty() ? files[f].path.stem().string() + " " : "";
       for (std::size_t c = 0; c < table.channels.size(); ++c) {
         const SurveyedChannel& channel = table.channels[c];
-        if (!channel.moves() || channel.name == table.run || channel.name.find_first_of(",#") != std::string::npos)
-          continue;
+        if (!channel.moves() || channel.name == table.run || !may_be_named(channel.name)) continue;
         if (std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end()) continue;
         NameScore score = score_name(channel.name, from + table.type);
         if (!score.ignored) all.push_back({{f, t, c}, &table, &channel, score});

@@ -295,9 +295,18 @@ std::string configuration_text(const Proposal& proposal, const std::string& comm
 
 namespace {
 
-std::string row_text(const SurveyedChannel& channel) {
-  if (!channel.is_number()) return fmt::format("  {:<44} text\n", channel.name);
-  if (channel.type == "time") return fmt::format("  {:<44} times\n", channel.name);
+/// Names come from files: what would move the cursor is shown as a question mark.
+std::string shown_name(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }, '?');
+  return name;
+}
+
+std::string row_text(const SurveyedChannel& channel, const SurveyedTable& table) {
+  const std::string name = shown_name(channel.name);
+  const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
+  if (channel.type == "time" || is_time) return fmt::format("  {:<44} times\n", name);
+  if (!channel.is_number()) return fmt::format("  {:<44} text\n", name);
   std::string notes;
   if (channel.check.missing > 0) notes += fmt::format("  {} missing", channel.check.missing);
   if (channel.check.quantum > 0.0) notes += fmt::format("  by {:.4g}", channel.check.quantum);
@@ -306,7 +315,7 @@ std::string row_text(const SurveyedChannel& channel) {
   const std::string range = channel.moves()
                                 ? fmt::format("{:.5g} to {:.5g}", channel.check.least, channel.check.largest)
                                 : fmt::format("constant {:.5g}", channel.check.least);
-  return fmt::format("  {:<44} {:<8} {}{}\n", channel.name, channel.unit, range, notes);
+  return fmt::format("  {:<44} {:<8} {}{}\n", name, channel.unit, range, notes);
 }
 
 /// The name of an array's element without its position: covariance[3].
@@ -315,7 +324,8 @@ std::string array_of(const std::string& name) {
 }
 
 /// Elements of an array that all stand still share a line.
-std::string rows_text(const std::vector<SurveyedChannel>& channels) {
+std::string rows_text(const SurveyedTable& table) {
+  const std::vector<SurveyedChannel>& channels = table.channels;
   std::string text;
   for (std::size_t first = 0; first < channels.size();) {
     const std::string array = array_of(channels[first].name);
@@ -326,7 +336,7 @@ std::string rows_text(const std::vector<SurveyedChannel>& channels) {
     if (end > first + 1)
       text += fmt::format("  {:<44} {:<8} {} constants\n", array + "[]", channels[first].unit, end - first);
     else
-      text += row_text(channels[first]);
+      text += row_text(channels[first], table);
     first = std::max(end, first + 1);
   }
   return text;
@@ -351,7 +361,7 @@ std::string survey_text(const std::vector<FileSet>& sets, const std::vector<Surv
                                                                 rows.gaps, rows.gaps == 1 ? "" : "s");
       text += fmt::format(" {}{} rows, {}{}\n", name, table.time_s.size(), time,
                           table.run.empty() ? "" : fmt::format(", runs by {}", table.run));
-      text += rows_text(table.channels);
+      text += rows_text(table);
     }
   }
   return text;

@@ -101,6 +101,11 @@ bool has_axis(std::string_view words, Axis axis, std::string_view before) {
 }  // namespace
 
 std::string words_of_name(std::string_view name) {
+  // "wz [deg/s]" says its unit, which is no word of the name.
+  if (name.ends_with(']') || name.ends_with(')'))
+    if (const std::size_t unit = name.rfind(name.back() == ']' ? " [" : " (");
+        unit != std::string_view::npos && unit > 0)
+      name = name.substr(0, unit);
   std::string words = " ";
   for (std::size_t i = 0; i < name.size(); ++i) {
     const char c = name[i], before = i > 0 ? name[i - 1] : '\0';

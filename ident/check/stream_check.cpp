@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "ident/base/not_a_number.hpp"
@@ -76,9 +77,11 @@ double quantum_of(const std::vector<double>& levels) {
 
 /// Values that differ by more than rounding in the file, increasing.
 std::vector<double> levels_of(std::vector<double> values) {
-  constexpr double rounding = 1e-9;
+  constexpr double rounding = 1e-9, ulps = 4.0;  // of the range; of the values, which may be far from zero (stamps)
   std::sort(values.begin(), values.end());
-  const double same = rounding * std::max(std::abs(values.front()), std::abs(values.back()));
+  const double largest = std::max(std::abs(values.front()), std::abs(values.back()));
+  const double same =
+      std::max(rounding * (values.back() - values.front()), ulps * std::numeric_limits<double>::epsilon() * largest);
   std::vector<double> levels;
   for (const double value : values)
     if (levels.empty() || value - levels.back() > same) levels.push_back(value);

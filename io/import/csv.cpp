@@ -61,7 +61,8 @@ struct TableSink {
   std::uint64_t line = 1;
   std::string error;
 
-  explicit TableSink(const TimeRequest& time) : stamps(time, ""), time_may_miss(time.may_miss) {}
+  TableSink(const TimeRequest& time, std::string_view time_unit)
+      : stamps(time, time_unit), time_may_miss(time.may_miss) {}
 
   bool done() const { return !error.empty(); }
 
@@ -128,6 +129,22 @@ struct TableSink {
   }
 };
 
+/// Of "[rad/s]", "(rad/s)" and "rad/s" the last.
+std::string bare_unit(std::string_view unit) {
+  unit = without_blanks(unit);
+  const bool in_brackets =
+      unit.size() > 1 && ((unit.front() == '[' && unit.back() == ']') || (unit.front() == '(' && unit.back() == ')'));
+  return std::string(in_brackets ? unit.substr(1, unit.size() - 2) : unit);
+}
+
+/// Of "wz [deg/s]" or "t (ms)": what stands in brackets after a blank.
+std::string unit_in_name(std::string_view name) {
+  const char close = name.empty() ? '\0' : name.back();
+  if (close != ']' && close != ')') return {};
+  const std::size_t open = name.rfind(close == ']' ? " [" : " (");
+  return open == std::string_view::npos || open == 0 ? std::string() : bare_unit(name.substr(open));
+}
+
 /// What the first rows say: how the text is written, and its columns.
 struct Head {
   CsvDialect dialect;
@@ -155,12 +172,16 @@ Head read_head(std::string_view file, std::string_view text, bool complete, cons
     if (sink.rows.size() > 1 && head.dialect.header_rows > 1) head.units = sink.rows[1];
   }
   if (head.names.empty()) throw ConfigurationError(fmt::format("{} is empty: no header", file));
+  head.units.resize(head.names.size());
+  for (std::size_t i = 0; i < head.names.size(); ++i)
+    head.units[i] = head.units[i].empty() ? unit_in_name(head.names[i]) : bare_unit(head.units[i]);
   return head;
 }
 
-TableSink make_sink(std::string_view file, std::vector<std::string> header, const TableRequest& request,
-                    std::size_t rows) {
-  TableSink sink(request.time);
+TableSink make_sink(std::string_view file, const Head& head, const TableRequest& request, std::size_t rows) {
+  std::vector<std::string> header = head.names;
+  const auto time = std::find(header.begin(), header.end(), request.time.column);
+  TableSink sink(request.time, time == header.end() ? "" : head.units[static_cast<std::size_t>(time - header.begin())]);
   sink.target.assign(header.size(), TableSink::skipped);
   if (!request.text.empty()) sink.text_column = column_position(file, header, request.text);
   if (!request.time.column.empty()) {
@@ -178,14 +199,6 @@ TableSink make_sink(std::string_view file, std::vector<std::string> header, cons
   sink.table.line.reserve(rows);
   sink.header = std::move(header);
   return sink;
-}
-
-/// Of "[rad/s]", "(rad/s)" and "rad/s" the last.
-std::string bare_unit(std::string_view unit) {
-  unit = without_blanks(unit);
-  const bool in_brackets =
-      unit.size() > 1 && ((unit.front() == '[' && unit.back() == ']') || (unit.front() == '(' && unit.back() == ')'));
-  return std::string(in_brackets ? unit.substr(1, unit.size() - 2) : unit);
 }
 
 Head head_of_file(const std::filesystem::path& path, const FormatOptions& options) {
@@ -215,7 +228,7 @@ bool has_late_comment(std::string_view text) {
 /// One request, of a text whose head is known.
 Table parse_rows(std::string_view file, std::string_view text, const Head& head, const TableRequest& request) {
   const auto rows_at_most = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-  TableSink sink = make_sink(file, head.names, request, rows_at_most);
+  TableSink sink = make_sink(file, head, request, rows_at_most);
   sink.header_rows = head.dialect.header_rows;
   sink.decimal_comma = head.dialect.decimal_comma;
   PreparedText prepared;
@@ -255,7 +268,7 @@ std::vector<TableInfo> CsvReader::tables() const {
   Head head = head_of_file(path_, options_);
   TableInfo table;
   for (std::size_t i = 0; i < head.names.size(); ++i)
-    table.columns.push_back({std::move(head.names[i]), i < head.units.size() ? bare_unit(head.units[i]) : ""});
+    table.columns.push_back({std::move(head.names[i]), std::move(head.units[i])});
   return {std::move(table)};
 }
 

@@ -70,7 +70,7 @@ std::vector<Piece> pieces_of(const std::vector<TableInfo>& tables) {
         Piece& stamps = pieces.emplace_back(one_column(t, c));
         stamps.request.time.column = column.name;
         stamps.request.time.may_miss = true;
-      } else if (column.type.find("string") != std::string::npos) {
+      } else if (column.type == "text") {
         pieces.emplace_back(one_column(t, c)).request.text = column.name;
       } else {
         numbers.request.numbers.push_back(column.name);
