@@ -78,7 +78,10 @@ void exchange_recording(Io& io, R& recording, L& labels) {
       member.optional_field("label", label, {"N"});                                // positions in label_names
     });
     if constexpr (Io::reads)
-      if (labels) labels->of_runs[i] = label;
+      if (labels) {
+        check_label_positions(label, label_names.size(), run.run);
+        labels->of_runs[i] = label;
+      }
   }
 }
 

@@ -71,4 +71,9 @@ std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, 
   return covariances;
 }
 
+void check_label_positions(const Eigen::VectorXi& label, std::size_t names, const std::string& run) {
+  if (label.size() == 0 || (label.minCoeff() >= -1 && label.maxCoeff() < static_cast<int>(names))) return;
+  throw DataError("labels of run '" + run + "' reach beyond the " + std::to_string(names) + " label_names");
+}
+
 }  // namespace modebank

@@ -33,4 +33,7 @@ void restore_window_structure(WindowFits& fits, Index states, Index parameters);
 Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances);
 std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, Index features);
 
+/// Throws DataError for a label of the run that none of so many names belongs to; -1: nothing is known.
+void check_label_positions(const Eigen::VectorXi& label, std::size_t names, const std::string& run);
+
 }  // namespace modebank

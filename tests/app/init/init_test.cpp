@@ -139,6 +139,16 @@ TEST_F(Init, PairsFilesAndNamesRuns) {
   EXPECT_EQ(import_data(config.data).recording.runs.size(), 3U);
 }
 
+TEST_F(Init, NamesThatNoLineCanHoldAreNoSignals) {
+  std::string log = "\"cmd\nl\",\"cmd,r\",wz [deg/s],t [ms],throttle\n";
+  for (int k = 0; k < 200; ++k) log += fmt::format("{0},{0},{1},{2},{3}\n", k % 7, k % 11, 20 * k, k % 5);
+  write_file(folder.path() / "odd.csv", log);
+  const std::string text = write({path("odd.csv")});
+  EXPECT_THAT(config.data.state, ElementsAre("wz [deg/s]"));
+  EXPECT_THAT(config.data.input, ElementsAre("throttle"));
+  EXPECT_THAT(config.data.time, ElementsAre("t [ms]"));
+}
+
 TEST_F(Init, KnowsHuskysBag) {
   MODEBANK_NEEDS_SHARED_DATA();
   const std::string text = write(shared("bags/husky_outdoor_test1.bag"));

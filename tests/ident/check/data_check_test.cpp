@@ -38,6 +38,13 @@ TEST(CheckSampling, CountsWhatIsWrongWithTimes) {
   EXPECT_EQ(in_order(stream).time_s.size(), 99);
 }
 
+TEST(CheckChannel, FindsTheStepOfStampsFarFromZero) {
+  Eigen::VectorXd stamps(400);
+  for (Eigen::Index k = 0; k < stamps.size(); ++k) stamps(k) = 1.7e9 + 0.25 * static_cast<double>(k);
+  EXPECT_DOUBLE_EQ(check_channel(stamps).quantum, 0.25);
+  EXPECT_EQ(check_channel(stamps).levels, 400);
+}
+
 TEST(CheckChannel, FindsTheQuantumAlsoWhenNoTwoLevelsAreNeighbours) {
   const VectorXd smooth = noise(2000, 2);
   EXPECT_EQ(check_channel(smooth).quantum, 0.0);

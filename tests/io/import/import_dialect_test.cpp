@@ -251,6 +251,19 @@ TEST_F(ImportDialect, AStampFarOutIsNamed) {
   EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:14: column time")) << "a clock that was set on the way";
 }
 
+TEST_F(ImportDialect, UnitsStandInBracketsOfTheHeader) {
+  write("log.csv", table("t [ms],x [deg/s],u (m/s)\n", [&](int k) {
+          return fmt::format("{:.6f},{},{}", static_cast<double>(stamp_ns(k)) / 1e6, x_of(k), u_of(k));
+        }));
+  options.time = {"t [ms]"};
+  options.state = {"x [deg/s]"};
+  options.input = {"u (m/s)"};
+  const ImportedData data = import();
+  EXPECT_EQ(data.recording.states.front().unit, "deg/s");
+  EXPECT_EQ(data.recording.inputs.front().unit, "m/s");
+  EXPECT_NEAR(data.recording.runs.front().time_s(rows - 1), static_cast<double>(stamp_ns(rows - 1)) / 1e9, 1e-9);
+}
+
 TEST_F(ImportDialect, DisorderIsExplained) {
   write("log.csv", table("stamp.secs,x,u\n", [&](int k) { return fmt::format("{},{},{}", 100 + k / 10, 1, 2); }));
   options.time = {"stamp.secs"};
