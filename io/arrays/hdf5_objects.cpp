@@ -137,7 +137,8 @@ void hdf5_check_readable(hid_t dataset) {
   const hsize_t elements = hdf5::element_count(hdf5_shape(dataset)),
                 bytes = std::max<hsize_t>(H5Tget_size(type.id()), 1);
   const hsize_t stored = H5Dget_storage_size(dataset);
-  const bool packed = H5Pget_nfilters(made.id()) > 0;
+  // HDF5 copies compact content without looking at its size, and no filter unpacks any but chunks.
+  const bool packed = H5Pget_layout(made.id()) == H5D_CHUNKED && H5Pget_nfilters(made.id()) > 0;
   const hsize_t most = packed ? (stored + slack_bytes) * most_expansion : stored;
   if (elements > most / bytes) throw DataError("declares more content than the file holds");
   if (H5Pget_layout(made.id()) != H5D_CHUNKED) return;

@@ -36,6 +36,13 @@ void check_own_content(hid_t dataset, const std::string& what) {
   const H5D_layout_t layout = H5Pget_layout(creation.id());
   if (layout == H5D_VIRTUAL || H5Pget_external_count(creation.id()) != 0)
     throw DataError(what + " keeps its content in another file");
+  if (layout != H5D_COMPACT) return;
+  // HDF5 copies compact content without looking at its size.
+  const Handle space(H5Dget_space(dataset), H5Sclose, "read the shape of " + what);
+  const Handle type(H5Dget_type(dataset), H5Tclose, "read the type of " + what);
+  const auto elements = static_cast<hsize_t>(std::max<hssize_t>(H5Sget_simple_extent_npoints(space.id()), 0));
+  const hsize_t stored = H5Dget_storage_size(dataset), bytes = std::max<hsize_t>(H5Tget_size(type.id()), 1);
+  if (elements > stored / bytes) throw DataError(what + " declares more content than the file holds");
 }
 
 }  // namespace
