@@ -1,6 +1,7 @@
 #include "io/arrays/hdf5_objects.hpp"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 
@@ -126,6 +127,54 @@ void check_filters(hid_t made) {
   }
 }
 
+/// Bytes that zlib makes of `packed`, at most `most`.
+std::size_t inflated_bytes(const std::string& packed, std::size_t most) {
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) return 0;
+  std::string piece(1 << 16, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // NOLINT: zlib only reads it
+  stream.avail_in = static_cast<uInt>(packed.size());
+  int status = Z_OK;
+  while (status == Z_OK && stream.total_out < most) {
+    stream.next_out = reinterpret_cast<Bytef*>(piece.data());
+    stream.avail_out = static_cast<uInt>(piece.size());
+    status = inflate(&stream, Z_NO_FLUSH);
+  }
+  inflateEnd(&stream);
+  return stream.total_out;
+}
+
+/// HDF5 reads a chunk as long as it is declared, whatever its filters made of it.
+void check_chunks(hid_t dataset, hid_t made, const Shape& chunk, hsize_t element_bytes) {
+  const hsize_t declared = hdf5::element_count(chunk) * element_bytes;
+  const int filters = H5Pget_nfilters(made);
+  const Handle space(H5Dget_space(dataset), H5Sclose, "read a shape");
+  hsize_t count = 0;
+  hdf5::check(H5Dget_num_chunks(dataset, space.id(), &count), "count its chunks");
+  for (hsize_t i = 0; i < count; ++i) {
+    Shape offset(chunk.size());
+    unsigned mask = 0;
+    haddr_t at = 0;
+    hsize_t stored = 0;
+    hdf5::check(H5Dget_chunk_info(dataset, space.id(), i, offset.data(), &mask, &at, &stored), "look at a chunk");
+    std::size_t values = 0;
+    unsigned flags = 0, config = 0;
+    const H5Z_filter_t last = filters == 0 ? 0
+                                           : H5Pget_filter2(made, static_cast<unsigned>(filters - 1), &flags, &values,
+                                                            nullptr, 0, nullptr, &config);
+    hsize_t unpacked = stored;
+    if (mask == 0 && last == H5Z_FILTER_DEFLATE) {
+      std::string packed(stored, '\0');
+      unsigned unused = 0;
+      hdf5::check(H5Dread_chunk(dataset, H5P_DEFAULT, offset.data(), &unused, packed.data()), "read a chunk");
+      unpacked = inflated_bytes(packed, declared);
+    } else if (mask == 0 && filters > 0) {
+      continue;  // checksums and HDF5's own codes say their lengths
+    }
+    if (unpacked < declared) throw DataError("holds a chunk shorter than it declares");
+  }
+}
+
 }  // namespace
 
 void hdf5_check_readable(hid_t dataset) {
@@ -146,6 +195,7 @@ void hdf5_check_readable(hid_t dataset) {
   H5Pget_chunk(made.id(), static_cast<int>(chunk.size()), chunk.data());
   if (hdf5::element_count(chunk) > std::min<hsize_t>(most_chunk_bytes, (stored + slack_bytes) * most_expansion) / bytes)
     throw DataError("declares chunks larger than the file can fill");
+  check_chunks(dataset, made.id(), chunk, bytes);
 }
 
 std::vector<std::string> pickled_names(const std::string& pickle) {
