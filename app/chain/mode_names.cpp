@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <boost/algorithm/string/trim.hpp>
 
+#include "ident/base/characters.hpp"
+
 namespace modebank {
 namespace {
 
@@ -52,8 +54,7 @@ std::string name_of_mode(const std::vector<std::string>& names, Index mode) {
 }
 
 std::string one_line(std::string name) {
-  const auto controls = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
-  std::replace_if(name.begin(), name.end(), controls, ' ');  // what a terminal or a table would obey
+  std::replace_if(name.begin(), name.end(), is_control, ' ');
   boost::algorithm::trim(name);
   return name;
 }

@@ -6,6 +6,7 @@
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "app/init/proposal.hpp"
+#include "app/init/survey_text.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <boost/algorithm/string.hpp>
-#include <cctype>
 #include <nlohmann/json.hpp>
 #include <set>
+
+#include "ident/base/characters.hpp"
 
 namespace modebank::app {
 namespace {
@@ -32,22 +33,10 @@ std::set<std::string> words_of(Language language) {
   return words;
 }
 
-// Not std::isalnum, which asks the locale.
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/// With a single '_' for a stretch of other characters: names that begin with two are the compiler's.
+/// Names that begin with '_' are the compiler's.
 std::string identifier(const std::string& name) {
-  std::string result;
-  for (const char c : name) {
-    if (is_letter(c) || is_digit(c))
-      result += c;
-    else if (result.empty() || result.back() != '_')
-      result += '_';
-  }
-  while (result.size() > 1 && result.back() == '_') result.pop_back();
-  if (result.empty() || result == "_") return "unnamed";
-  if (result.front() == '_') result.erase(0, 1);
+  const std::string result = letters_and_digits(name);
+  if (result.empty()) return "unnamed";
   return is_digit(result.front()) ? "n" + result : result;
 }
 
@@ -73,7 +62,7 @@ std::vector<std::string> identifiers(const std::vector<std::string>& names, Lang
 std::string comment_text(std::string_view text) {
   std::string result = nlohmann::json::parse(ascii_json(text)).get<std::string>();
   for (char& c : result)
-    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f' || c == '\\') c = ' ';
+    if (is_control(c) || c == '\\') c = ' ';
   // Line breaks that are none of ASCII: NEL, LINE SEPARATOR and PARAGRAPH SEPARATOR, which YAML and others honour.
   for (const char* breaks : {"\xc2\x85", "\xe2\x80\xa8", "\xe2\x80\xa9"})
     boost::algorithm::replace_all(result, breaks, " ");

@@ -23,8 +23,7 @@ struct Proposal {
 Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
                  const std::string& config_folder);
 
-/// The configuration as text, and all channels as a table for people.
+/// The configuration as text.
 std::string configuration_text(const Proposal& proposal, const std::string& command);
-std::string survey_text(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed);
 
 }  // namespace modebank::app

@@ -9,6 +9,9 @@
 
 namespace modebank::app {
 
+/// Repeated values of so many samples mean that an instrument is slower than the file's rows.
+constexpr double most_repeated = 0.5;
+
 /// One channel of a file, looked at.
 struct SurveyedChannel {
   std::string name, unit, type;

@@ -4,12 +4,11 @@
 #include <array>
 #include <cctype>
 
+#include "ident/base/characters.hpp"
+#include "io/table/name_unit.hpp"
+
 namespace modebank::app {
 namespace {
-
-bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
-bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Points for words that follow one another in a name.
 struct Word {
@@ -101,18 +100,13 @@ bool has_axis(std::string_view words, Axis axis, std::string_view before) {
 }  // namespace
 
 std::string words_of_name(std::string_view name) {
-  // "wz [deg/s]" says its unit, which is no word of the name.
-  if (name.ends_with(']') || name.ends_with(')'))
-    if (const std::size_t unit = name.rfind(name.back() == ']' ? " [" : " (");
-        unit != std::string_view::npos && unit > 0)
-      name = name.substr(0, unit);
+  name = split_unit(name).name;  // a unit is no word of it
   std::string words = " ";
   for (std::size_t i = 0; i < name.size(); ++i) {
     const char c = name[i], before = i > 0 ? name[i - 1] : '\0';
     const bool starts =
-        (is_upper(c) && is_lower(before)) || (is_digit(c) && (is_lower(before) || is_upper(before)) && i > 1 &&
-                                              (is_lower(name[i - 2]) || is_upper(name[i - 2])));
-    const bool letter = is_upper(c) || is_lower(c) || is_digit(c);
+        (is_upper(c) && is_lower(before)) || (is_digit(c) && is_letter(before) && i > 1 && is_letter(name[i - 2]));
+    const bool letter = is_letter(c) || is_digit(c);
     if ((starts || !letter) && words.back() != ' ') words += ' ';
     if (letter) words += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }

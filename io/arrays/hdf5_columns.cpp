@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <set>
+
 #include "io/arrays/hdf5_objects.hpp"
 #include "io/arrays/hdf5_walk.hpp"
 #include "modebank/base/error.hpp"
@@ -19,7 +21,7 @@ class Hdf5Columns : public ColumnStore {
     try {
       const Handle file = hdf5::open_file(path_);
       const Handle data(H5Dopen2(file.id(), place.object.c_str(), H5P_DEFAULT), H5Dclose, "open the dataset");
-      hdf5_check_readable(data.id());
+      check_once(data.id(), place.object);
       return read(data.id(), place);
     } catch (const DataError& error) {
       throw DataError(fmt::format("{}: column {}: {}", path_, columns_[column].path(), error.what()));
@@ -60,6 +62,19 @@ class Hdf5Columns : public ColumnStore {
   std::string path_;
   std::vector<StoredColumn> columns_;
   std::vector<Hdf5Place> places_;
+  mutable std::filesystem::file_time_type written_;
+  mutable std::set<std::string> sound_;  // datasets that were looked at; changed under HDF5's lock (Quiet) alone
+
+  /// A table's columns share their dataset, which is unpacked to be looked at.
+  void check_once(hid_t data, const std::string& object) const {
+    std::error_code unknown;
+    const auto written = std::filesystem::last_write_time(path_, unknown);
+    if (unknown || written != written_) sound_.clear();
+    written_ = written;
+    if (sound_.count(object) > 0) return;
+    hdf5_check_readable(data);
+    sound_.insert(object);
+  }
 
   void refuse_archive(hid_t root) const {
     if (hdf5_text_attribute(root, "format").starts_with("modebank"))

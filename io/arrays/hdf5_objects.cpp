@@ -103,12 +103,6 @@ hsize_t hdf5_array_elements(hid_t array_type) {
   return hdf5::element_count(shape);
 }
 
-std::string hdf5_outside(hid_t dataset) {
-  const Handle made(H5Dget_create_plist(dataset), H5Pclose, "look at a dataset");
-  if (H5Pget_external_count(made.id()) > 0) return "another file";
-  return H5Pget_layout(made.id()) == H5D_VIRTUAL ? "other datasets" : "";
-}
-
 namespace {
 
 void check_filters(hid_t made) {
@@ -148,6 +142,11 @@ std::size_t inflated_bytes(const std::string& packed, std::size_t most) {
 void check_chunks(hid_t dataset, hid_t made, const Shape& chunk, hsize_t element_bytes) {
   const hsize_t declared = hdf5::element_count(chunk) * element_bytes;
   const int filters = H5Pget_nfilters(made);
+  std::size_t values = 0;
+  unsigned flags = 0, config = 0;
+  const H5Z_filter_t last = filters == 0 ? 0
+                                         : H5Pget_filter2(made, static_cast<unsigned>(filters - 1), &flags, &values,
+                                                          nullptr, 0, nullptr, &config);
   const Handle space(H5Dget_space(dataset), H5Sclose, "read a shape");
   hsize_t count = 0;
   hdf5::check(H5Dget_num_chunks(dataset, space.id(), &count), "count its chunks");
@@ -157,11 +156,6 @@ void check_chunks(hid_t dataset, hid_t made, const Shape& chunk, hsize_t element
     haddr_t at = 0;
     hsize_t stored = 0;
     hdf5::check(H5Dget_chunk_info(dataset, space.id(), i, offset.data(), &mask, &at, &stored), "look at a chunk");
-    std::size_t values = 0;
-    unsigned flags = 0, config = 0;
-    const H5Z_filter_t last = filters == 0 ? 0
-                                           : H5Pget_filter2(made, static_cast<unsigned>(filters - 1), &flags, &values,
-                                                            nullptr, 0, nullptr, &config);
     hsize_t unpacked = stored;
     if (mask == 0 && last == H5Z_FILTER_DEFLATE) {
       std::string packed(stored, '\0');
@@ -179,7 +173,7 @@ void check_chunks(hid_t dataset, hid_t made, const Shape& chunk, hsize_t element
 
 void hdf5_check_readable(hid_t dataset) {
   constexpr std::uint64_t slack_bytes = 1 << 16, most_chunk_bytes = 1 << 30;
-  if (!hdf5_outside(dataset).empty()) throw DataError("lies outside the file, which is not followed");
+  if (hdf5::lies_outside(dataset)) throw DataError("lies outside the file, which is not followed");
   const Handle made(H5Dget_create_plist(dataset), H5Pclose, "look at a dataset");
   check_filters(made.id());
   const Handle type(H5Dget_type(dataset), H5Tclose, "read a type");

@@ -25,10 +25,9 @@ std::string hdf5_type_name(hid_t type);
 std::string hdf5_member_name(hid_t compound, unsigned member);
 hsize_t hdf5_array_elements(hid_t array_type);
 
-/// Where a dataset's values lie if not in the file: "another file" or "other datasets"; else empty.
-std::string hdf5_outside(hid_t dataset);
-/// Throws DataError for a dataset that declares more than its stored bytes can unpack to, or that needs a filter that
-/// HDF5 does not bring.
+/// Throws DataError for a dataset whose values lie outside the file, that declares more than its stored bytes can
+/// unpack to, or that needs a filter that HDF5 does not bring. Unpacks what is compressed: once for a dataset is
+/// enough.
 void hdf5_check_readable(hid_t dataset);
 
 /// Texts of a list that Python pickled in its oldest, plain form (protocol 0), as PyTables does; empty for any other

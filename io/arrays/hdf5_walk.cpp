@@ -76,7 +76,7 @@ void Hdf5Walk::dataset(hid_t id, const std::string& path, const std::string& gro
   const std::string made = hdf5_text_attribute(id, "MATLAB_class");
   const std::string full = group_name.empty() ? name : group_name + "." + name;
   if (is_object(id, made)) return note_object(made, full);
-  if (const std::string outside = hdf5_outside(id); !outside.empty()) return foreign.push_back(path);
+  if (hdf5::lies_outside(id)) return foreign.push_back(path);
   const Handle type(H5Dget_type(id), H5Tclose, "read the type of '" + path + "'");
   const Shape shape = hdf5_shape(id);
   if (made == "char") return note_label(id, full, shape);

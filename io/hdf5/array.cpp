@@ -30,22 +30,18 @@ Handle make_space(const Shape& shape) {
   return {space, H5Sclose, "make a dataspace"};
 }
 
-/// Our own archives hold contiguous data only; a layout that points elsewhere must not make us read other files.
-void check_own_content(hid_t dataset, const std::string& what) {
-  const Handle creation(H5Dget_create_plist(dataset), H5Pclose, "read the layout of " + what);
-  const H5D_layout_t layout = H5Pget_layout(creation.id());
-  if (layout == H5D_VIRTUAL || H5Pget_external_count(creation.id()) != 0)
-    throw DataError(what + " keeps its content in another file");
-  if (layout != H5D_COMPACT) return;
-  // HDF5 copies compact content without looking at its size.
-  const Handle space(H5Dget_space(dataset), H5Sclose, "read the shape of " + what);
-  const Handle type(H5Dget_type(dataset), H5Tclose, "read the type of " + what);
-  const auto elements = static_cast<hsize_t>(std::max<hssize_t>(H5Sget_simple_extent_npoints(space.id()), 0));
-  const hsize_t stored = H5Dget_storage_size(dataset), bytes = std::max<hsize_t>(H5Tget_size(type.id()), 1);
-  if (elements > stored / bytes) throw DataError(what + " declares more content than the file holds");
+/// Compact content is as long as the dataset's header says, and HDF5 copies it without looking at that.
+bool is_compact(hid_t dataset) {
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose, "read a layout");
+  return H5Pget_layout(creation.id()) == H5D_COMPACT;
 }
 
 }  // namespace
+
+bool lies_outside(hid_t dataset) {
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose, "read a layout");
+  return H5Pget_external_count(creation.id()) != 0 || H5Pget_layout(creation.id()) == H5D_VIRTUAL;
+}
 
 Handle string_type(std::size_t bytes) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a string type");
@@ -153,7 +149,8 @@ StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : p
   Handle space;
   if (place == Place::dataset) {
     object_ = Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + what);
-    check_own_content(object(), what);
+    // Our own archives hold all their data; a layout that points elsewhere must not make us read other files.
+    if (lies_outside(object())) throw DataError(what + " keeps its content in another file");
     type_ = Handle(H5Dget_type(object()), H5Tclose, "read the type of " + what);
     space = Handle(H5Dget_space(object()), H5Sclose, "read the shape of " + what);
   } else {
@@ -173,9 +170,11 @@ void StoredArray::check_plausible() const {
   hsize_t file_bytes = 0;
   const Handle file(H5Iget_file_id(object()), H5Fclose, "find the file");
   check(H5Fget_filesize(file.id(), &file_bytes), "read the size of the file");
+  const hsize_t backing_bytes =
+      place_ == Place::dataset && is_compact(object()) ? H5Dget_storage_size(object()) : file_bytes;
   // An array without elements may still declare extents, which the readers take for counts.
   const hsize_t longest_extent = shape_.empty() ? 0 : *std::max_element(shape_.begin(), shape_.end());
-  if (saturating_product(elements_, H5Tget_size(type())) > file_bytes || longest_extent > file_bytes)
+  if (saturating_product(elements_, H5Tget_size(type())) > backing_bytes || longest_extent > file_bytes)
     throw DataError(quoted(place_, name_) + " declares more content than the file holds");
 }
 

@@ -45,6 +45,9 @@ std::vector<std::string> unpack_texts(const std::string& cells, std::size_t byte
 /// Number of elements; the largest hsize_t when the product does not fit.
 hsize_t element_count(const Shape& shape);
 
+/// Whether a dataset's values are in another file or in other datasets.
+bool lies_outside(hid_t dataset);
+
 /// Creates a dataset (contiguous, without time stamps) or attribute, writes it and hands it over open. An empty shape
 /// is a scalar.
 Handle write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,

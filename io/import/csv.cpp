@@ -12,6 +12,7 @@
 #include "io/import/csv_dialect.hpp"
 #include "io/import/csv_pass.hpp"
 #include "io/import/csv_text.hpp"
+#include "io/table/name_unit.hpp"
 #include "io/table/number.hpp"
 #include "io/table/stamp_column.hpp"
 #include "modebank/base/error.hpp"
@@ -129,22 +130,6 @@ struct TableSink {
   }
 };
 
-/// Of "[rad/s]", "(rad/s)" and "rad/s" the last.
-std::string bare_unit(std::string_view unit) {
-  unit = without_blanks(unit);
-  const bool in_brackets =
-      unit.size() > 1 && ((unit.front() == '[' && unit.back() == ']') || (unit.front() == '(' && unit.back() == ')'));
-  return std::string(in_brackets ? unit.substr(1, unit.size() - 2) : unit);
-}
-
-/// Of "wz [deg/s]" or "t (ms)": what stands in brackets after a blank.
-std::string unit_in_name(std::string_view name) {
-  const char close = name.empty() ? '\0' : name.back();
-  if (close != ']' && close != ')') return {};
-  const std::size_t open = name.rfind(close == ']' ? " [" : " (");
-  return open == std::string_view::npos || open == 0 ? std::string() : bare_unit(name.substr(open));
-}
-
 /// What the first rows say: how the text is written, and its columns.
 struct Head {
   CsvDialect dialect;
@@ -174,7 +159,7 @@ Head read_head(std::string_view file, std::string_view text, bool complete, cons
   if (head.names.empty()) throw ConfigurationError(fmt::format("{} is empty: no header", file));
   head.units.resize(head.names.size());
   for (std::size_t i = 0; i < head.names.size(); ++i)
-    head.units[i] = head.units[i].empty() ? unit_in_name(head.names[i]) : bare_unit(head.units[i]);
+    head.units[i] = head.units[i].empty() ? split_unit(head.names[i]).unit : bare_unit(head.units[i]);
   return head;
 }
 

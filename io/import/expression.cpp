@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "ident/base/characters.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "io/import/expression_functions.hpp"
@@ -25,8 +26,7 @@ namespace {
 
 constexpr std::size_t longest_text = 2000, deepest = 50;
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool begins_name(char c) { return is_letter(c) || c == '_'; }
 
 /// The operator at the start of a text, or nothing.
 std::string_view symbol_at(std::string_view text) {
@@ -92,9 +92,9 @@ std::string take_channel_name(std::string_view& text) {
     text.remove_prefix(i + 1);
     return name;
   }
-  if (!is_letter(text.front())) return name;
+  if (!begins_name(text.front())) return name;
   std::size_t end = 1;
-  while (end < text.size() && (is_letter(text[end]) || is_digit(text[end]) || text[end] == '.')) ++end;
+  while (end < text.size() && (begins_name(text[end]) || is_digit(text[end]) || text[end] == '.')) ++end;
   name = text.substr(0, end);
   text.remove_prefix(end);
   return name;

@@ -69,9 +69,10 @@ FileStream RowReader::stream(std::size_t clock, const std::vector<ColumnRef>& re
 void RowReader::check_stamps(const RunSlice& run) const {
   for (std::size_t source = 0; source < plan_.sources.size(); ++source) {
     const auto& all = tables_[source].time_ns;
+    if (all.empty()) continue;
     Rows rows;
     std::vector<std::int64_t> stamps;
-    for (const std::size_t row : all.empty() ? Rows() : run.rows[source]) {
+    for (const std::size_t row : run.rows[source]) {
       if (all[row] == missing_stamp) continue;
       rows.push_back(row);
       stamps.push_back(all[row]);

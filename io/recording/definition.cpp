@@ -8,18 +8,15 @@
 #include <limits>
 #include <utility>
 
+#include "ident/base/characters.hpp"
+#include "io/table/number.hpp"
+
 namespace modebank {
 
 namespace {
 
 constexpr int deepest_nesting = 32;
 constexpr std::size_t most_fields = 4096;  // of one type
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r";
-  const std::size_t first = text.find_first_not_of(blanks);
-  return first == std::string_view::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
 
 /// Takes the first line off, without its end.
 std::string_view next_line(std::string_view& text) {
@@ -30,18 +27,17 @@ std::string_view next_line(std::string_view& text) {
 }
 
 std::string_view next_word(std::string_view& text) {
-  text = trimmed(text);
+  text = without_blanks(text);
   const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
   const std::string_view word = text.substr(0, end);
-  text = trimmed(text.substr(end));
+  text = without_blanks(text.substr(end));
   return word;
 }
 
 bool is_identifier(std::string_view name) {
   constexpr std::size_t longest = 256;
-  return !name.empty() && name.size() <= longest && std::all_of(name.begin(), name.end(), [](char c) {
-    return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-  });
+  return !name.empty() && name.size() <= longest &&
+         std::all_of(name.begin(), name.end(), [](char c) { return c == '_' || is_digit(c) || is_letter(c); });
 }
 
 std::optional<Kind> primitive(std::string_view name, Dialect dialect) {
@@ -125,10 +121,10 @@ std::map<std::string, std::string_view> split_definitions(const std::string& roo
   };
   while (!text.empty()) {
     const char* line_begin = text.data();
-    const std::string_view line = trimmed(next_line(text));
+    const std::string_view line = without_blanks(next_line(text));
     if (line.substr(0, 4) != "MSG:" && line.substr(0, 3) != "===") continue;
     close(line_begin);
-    name = line.front() == '=' ? "" : short_type(trimmed(line.substr(4)));
+    name = line.front() == '=' ? "" : short_type(without_blanks(line.substr(4)));
     begin = text.data();
   }
   close(text.data());
@@ -175,12 +171,12 @@ const MessageType* Schema::resolve(const std::string& type, const Lookup& lookup
   const std::string package = type.substr(0, type.find('/'));
   while (!text->empty()) {
     std::string_view line = next_line(*text);
-    line = trimmed(line.substr(0, line.find('#')));
+    line = without_blanks(line.substr(0, line.find('#')));
     if (line.empty()) continue;
     const std::string_view written = line, word = next_word(line);
     const std::string_view name = line.substr(0, std::min(line.find_first_of(" \t="), line.size()));
     if (!is_identifier(name)) throw DefinitionError(fmt::format("{}: \"{}\" is no field", type, written));
-    const std::string_view rest = trimmed(line.substr(name.size()));
+    const std::string_view rest = without_blanks(line.substr(name.size()));
     if (!rest.empty() && rest.front() == '=') continue;  // a constant; what else follows a name is its default
     if (message->fields.size() == most_fields)
       throw DefinitionError(fmt::format("{} has more than {} fields", type, most_fields));

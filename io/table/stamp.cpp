@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "ident/base/characters.hpp"
 #include "io/table/number.hpp"
 
 namespace modebank {
@@ -13,8 +14,6 @@ namespace modebank {
 namespace {
 
 constexpr std::int64_t billion = 1'000'000'000;
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Takes digits off the front of `text`, at least one.
 std::optional<std::string_view> take_digits(std::string_view& text) {

@@ -10,6 +10,7 @@
 #include "app/config/config_file.hpp"
 #include "app/init/mounting.hpp"
 #include "app/init/proposal.hpp"
+#include "app/init/survey_text.hpp"
 #include "io/import/import.hpp"
 #include "tests/support/paths.hpp"
 

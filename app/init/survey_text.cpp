@@ -1,0 +1,84 @@
+#include "app/init/survey_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "ident/base/characters.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// Names come from files.
+std::string shown_name(std::string name) {
+  std::replace_if(name.begin(), name.end(), is_control, '?');
+  return name;
+}
+
+std::string row_text(const SurveyedChannel& channel, const SurveyedTable& table) {
+  const std::string name = shown_name(channel.name);
+  const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
+  if (channel.type == "time" || is_time) return fmt::format("  {:<44} times\n", name);
+  if (!channel.is_number()) return fmt::format("  {:<44} text\n", name);
+  std::string notes;
+  if (channel.check.missing > 0) notes += fmt::format("  {} missing", channel.check.missing);
+  if (channel.check.quantum > 0.0) notes += fmt::format("  by {:.4g}", channel.check.quantum);
+  if (channel.check.repeated > most_repeated && channel.moves())
+    notes += fmt::format("  {:.0f} % repeated", 100.0 * channel.check.repeated);
+  const std::string range = channel.moves()
+                                ? fmt::format("{:.5g} to {:.5g}", channel.check.least, channel.check.largest)
+                                : fmt::format("constant {:.5g}", channel.check.least);
+  return fmt::format("  {:<44} {:<8} {}{}\n", name, channel.unit, range, notes);
+}
+
+/// The name of an array's element without its position: covariance[3].
+std::string array_of(const std::string& name) {
+  return name.ends_with("]") ? name.substr(0, name.rfind('[')) : std::string();
+}
+
+/// Elements of an array that all stand still share a line.
+std::string rows_text(const SurveyedTable& table) {
+  const std::vector<SurveyedChannel>& channels = table.channels;
+  std::string text;
+  for (std::size_t first = 0; first < channels.size();) {
+    const std::string array = array_of(channels[first].name);
+    std::size_t end = first;
+    while (!array.empty() && end < channels.size() && array_of(channels[end].name) == array &&
+           channels[end].is_number() && !channels[end].moves())
+      ++end;
+    if (end > first + 1)
+      text += fmt::format("  {:<44} {:<8} {} constants\n", array + "[]", channels[first].unit, end - first);
+    else
+      text += row_text(channels[first], table);
+    first = std::max(end, first + 1);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string survey_text(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed) {
+  std::string text;
+  for (std::size_t i = 0; i < surveyed.size(); ++i) {
+    text += surveyed[i].path.string();
+    if (sets[i].files.size() > 1) text += fmt::format(" (the first of {} alike)", sets[i].files.size());
+    text += "\n";
+    for (const std::string& note : surveyed[i].notes) text += fmt::format("  {}\n", note);
+    for (const SurveyedTable& table : surveyed[i].tables) {
+      const SamplingCheck& rows = table.sampling;
+      const std::string name =
+          table.name.empty() ? "" : table.name + (table.type.empty() ? "" : " (" + table.type + ")") + ": ";
+      const std::string time = table.time.empty() ? "no times"
+                                                  : fmt::format("{:.4g} Hz by {}, {:.4g} s, {} gap{}", rows.rate_hz,
+                                                                fmt::join(table.time, " + "), rows.duration_s,
+                                                                rows.gaps, rows.gaps == 1 ? "" : "s");
+      text += fmt::format(" {}{} rows, {}{}\n", name, table.time_s.size(), time,
+                          table.run.empty() ? "" : fmt::format(", runs by {}", table.run));
+      text += rows_text(table);
+    }
+  }
+  return text;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string_view>
+
+namespace modebank {
+
+/// A channel's name that says its unit in brackets after a blank: "wz [deg/s]", "t (ms)".
+struct NameAndUnit {
+  std::string_view name;
+  std::string_view unit;  ///< empty: the name says none
+};
+NameAndUnit split_unit(std::string_view name);
+
+/// Of "[rad/s]", "(rad/s)" and "rad/s" the last.
+std::string_view bare_unit(std::string_view unit);
+
+}  // namespace modebank
