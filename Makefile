@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
+.PHONY: all api build demo packages package-test docs docs-examples test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean
 
 all: build
 
@@ -92,7 +92,7 @@ export-recovery: packages-build packages-test build/build.ninja
 	MODEBANK_EXPORT_SEEDS=1000 build/test_export_recovery
 
 # Everything CI runs beside `make test`.
-check: format lint shellcheck api tidy-changed seeds sanitize
+check: format lint shellcheck docs tidy-changed seeds sanitize
 
 format: packages-check
 	git ls-files '*.hpp' '*.cpp' '*.js' | xargs clang-format --dry-run --Werror
@@ -101,6 +101,13 @@ format: packages-check
 api: packages-check
 	@mkdir -p build/api
 	doxygen Doxyfile
+
+# The pages of docs/, build/docs/index.html: built offline, a warning is an error; and their spelling.
+docs: packages-docs build api
+	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
+	cmake --build --preset release -j $(JOBS) --target modebank_python
+	/usr/bin/python3 -m sphinx -q -W --keep-going -j auto -b html docs build/docs
+	/usr/bin/python3 docs/check_spelling.py README.md docs
 
 # The pages' scripts. Debian's eslint is told where Debian's modules are: another node does not know.
 lint: packages-check
@@ -146,11 +153,6 @@ picture: demo packages-picture
 	build/modebank report $(DEMO)/demo.h5 --report.figures $(DEMO)/figures --report.png true
 	cp $(DEMO)/figures/local_models.png app/report/readme_local_models.png
 	cp $(DEMO)/figures/estimates.png app/report/readme_estimates.png
-
-# README's table of keys is what the program prints.
-readme: build
-	@build/modebank help --markdown > build/options.md
-	@sed -i -e '/<!-- options -->/,/<!-- end of options -->/{//!d}' -e '/<!-- options -->/r build/options.md' README.md
 
 clean:
 	rm -rf build

@@ -1,0 +1,108 @@
+"""What the program says of itself, asked of it while the pages are built: keys, commands, terms.
+
+A page holds <!-- modebank: keys -->, commands or terms where they belong; nothing of it is written down twice.
+Roles: {confval}`window.length` leads to a key, {term}`evidence` to a term, {command}`run` to a command.
+"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("MODEBANK_BUILD", ROOT / "build"))
+
+SECTIONS = {
+    "data": "Which files, channels and times a run is made of, and which runs train. The only section that every configuration needs.",
+    "window": "The local model that is fitted in every window, its loss, prior and solver: [](../explanation/windows.md).",
+    "mixture": "How the windows' parameters are clustered: [](../explanation/mixture.md).",
+    "bank": "How a bank of modes is learned from the clusters and refined: [](../explanation/refinement.md).",
+    "filter": "How a bank is stepped, scored and smoothed: [](../explanation/filter.md).",
+    "archive": "Where results go and which earlier ones are taken up.",
+    "job": "Threads and seed.",
+    "study": "What a parameter study varies, and how its runs are made: [](../tutorials/first_study.md).",
+    "track": "The live filter: [](../howto/live_filter.md).",
+    "report": "Pages and figures: [](../howto/figures.md).",
+    "simulate": "Runs with known truth: [](../explanation/vehicle.md).",
+}
+
+
+def ask(*words):
+    return subprocess.run([str(BUILD / "modebank"), *words], check=True, capture_output=True, text=True).stdout
+
+
+def key_rows():
+    """(key, range, unit, default, help), in the program's order."""
+    for line in ask("help", "--markdown").splitlines()[2:]:
+        cells = [cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+        yield cells[0].strip("`"), *cells[1:3], cells[3].strip("`"), cells[4]
+
+
+def command_rows():
+    """(name, arguments, help), in the program's order."""
+    listed = ask("help").split("\nCommands\n", 1)[1].split("\n\n", 1)[0]
+    for name, arguments, text in re.findall(r"^  (\w+) ((?:(?:\[?--?\w+|\[?[A-Z][A-Z|.\]]+) )*) *(.+)$", listed, re.M):
+        yield name, arguments.strip(), text
+
+
+def terms():
+    return json.loads((ROOT / "app/report/web/terms.json").read_text(encoding="utf-8"))
+
+
+def plain(text):
+    """Text of the program as Markdown that shows it as it is."""
+    return re.sub(r"([\\*_<>\[\]#$`{}])", r"\\\1", text)
+
+
+def keys_page():
+    lines, section = [], None
+    for key, allowed, unit, default, text in key_rows():
+        if key.split(".")[0] != section:
+            section = key.split(".")[0]
+            lines += [f"## {section}", "", SECTIONS.get(section, ""), ""]
+        facts = f"allowed: {plain(allowed)}" + (f"; unit: {plain(unit)}" if unit else "")
+        facts += f"; default: `{default}`" if default else "; default: empty"
+        lines += [f"````{{confval}} {key}", plain(text[:1].upper() + text[1:]) + ".", "", f"*{facts}*", "````", ""]
+    return "\n".join(lines)
+
+
+def commands_page():
+    lines = []
+    for name, arguments, text in command_rows():
+        lines += [f"````{{command}} {name} {arguments}".rstrip(), plain(text[:1].upper() + text[1:]) + ".", "````", ""]
+    return "\n".join(lines)
+
+
+def terms_page():
+    lines = ["```{glossary}", ":sorted:", ""]
+    for entry in terms():
+        names = [entry["term"]]
+        for name in entry["also"]:
+            if name.lower() not in [known.lower() for known in names]:
+                names.append(name)
+        lines += [*names, f"  {entry['means']}", ""]
+    return "\n".join([*lines, "```", ""])
+
+
+PAGES = {"keys": keys_page, "commands": commands_page, "terms": terms_page}
+
+
+def fill_in(app, name, source):
+    for what, page in PAGES.items():
+        mark = f"<!-- modebank: {what} -->"
+        if mark in source[0]:
+            source[0] = source[0].replace(mark, page())
+
+
+def name_of(env, signature, node):
+    """A command is found by its first word."""
+    from sphinx import addnodes
+    node += addnodes.desc_name(signature, signature)
+    return signature.split(" ")[0]
+
+
+def setup(app):
+    app.add_object_type("confval", "confval", objname="key", indextemplate="pair: %s; key")
+    app.add_object_type("command", "command", objname="command", indextemplate="pair: %s; command", parse_node=name_of)
+    app.connect("source-read", fill_in)
+    return {"parallel_read_safe": True}
