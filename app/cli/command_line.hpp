@@ -21,7 +21,7 @@ struct CommandLine {
   std::vector<std::pair<std::string, std::string>> overrides;  ///< configuration keys given as options, in order
   bool help = false;
   bool version = false;
-  bool markdown = false;  ///< help: the table of keys as README holds it
+  bool markdown = false;  ///< help: the table of keys, for the pages of docs/
   bool json = false;
   bool repair = false;             ///< verify: remove what is broken in study folders
   bool findings = false;           ///< check: what it finds, without settings to try

@@ -1,6 +1,6 @@
 """What the program says of itself, asked of it while the pages are built: keys, commands, terms.
 
-A page holds <!-- modebank: keys -->, commands or terms where they belong; nothing of it is written down twice.
+A page holds <!-- modebank: keys -->, commands, terms or headers where they belong; nothing of it is written down twice.
 Roles: {confval}`window.length` leads to a key, {term}`evidence` to a term, {command}`run` to a command.
 """
 import json
@@ -88,7 +88,33 @@ def terms_page():
     return "\n".join([*lines, "```", ""])
 
 
-PAGES = {"keys": keys_page, "commands": commands_page, "terms": terms_page}
+def headers():
+    return sorted(path for include in ROOT.glob("*/include") for path in include.rglob("*.hpp"))
+
+
+def headers_page():
+    lines = []
+    for path in headers():
+        name = path.relative_to(next(parent for parent in path.parents if parent.name == "include"))
+        lines += [f"## {name}", "", f"```{{doxygenfile}} {path.relative_to(ROOT)}", ":sections: briefdescription detaileddescription innerclass enum func public-attrib public-func public-type", "```", ""]
+    return "\n".join(lines)
+
+
+PAGES = {"headers": headers_page, "keys": keys_page, "commands": commands_page, "terms": terms_page}
+
+
+def list_others(app, name, source):
+    """The line * of a section's table of contents stands for the pages that it does not name; there may be none."""
+    page = pathlib.Path(app.env.doc2path(name))
+    if page.name == "index.md" and page.parent != pathlib.Path(app.srcdir):
+        listed = source[0].splitlines()
+        others = sorted(other.stem for other in page.parent.glob("*.md") if other.stem not in [*listed, "index"])
+        source[0] = re.sub(r"^\*$", "\n".join(others), source[0], flags=re.M)
+
+
+def as_it_stands(app, what, name, thing, options, lines):
+    """Docstrings are plain text: what reStructuredText would take for its marks is not."""
+    lines[:] = [re.sub(r"([*`|\\])", r"\\\1", line) for line in lines]
 
 
 def fill_in(app, name, source):
@@ -130,5 +156,7 @@ def setup(app):
     app.add_directive("made", Made)
     app.add_object_type("confval", "confval", objname="key", indextemplate="pair: %s; key")
     app.add_object_type("command", "command", objname="command", indextemplate="pair: %s; command", parse_node=name_of)
+    app.connect("source-read", list_others)
     app.connect("source-read", fill_in)
+    app.connect("autodoc-process-docstring", as_it_stands)
     return {"parallel_read_safe": True}
