@@ -106,7 +106,7 @@ api: packages-check
 docs: packages-docs build api
 	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank_python
-	/usr/bin/python3 -m sphinx -q -W --keep-going -j auto -b html docs build/docs
+	/usr/bin/python3 -m sphinx -q -E -a -W --keep-going -b html docs build/docs
 	/usr/bin/python3 docs/check_spelling.py README.md docs
 	/usr/bin/python3 docs/check_results.py $(if $(wildcard $(DATA)/.),--data $(DATA)) docs/results/*.md
 

@@ -3,6 +3,7 @@
 import os
 import pathlib
 import re
+import subprocess
 import sys
 
 here = pathlib.Path(__file__).parent
@@ -44,3 +45,14 @@ mathjax_options = {}
 html_js_files = [("auto-render.js", {"defer": "defer"}), ("formulas.js", {"defer": "defer"})]
 html_copy_source = False
 html_show_sourcelink = False
+
+
+def bundle_furo(app, error):
+    """Debian's furo.js imports its neighbour, which browsers allow in modules alone and never from a file: esbuild joins the two."""
+    script = pathlib.Path(app.outdir) / "_static/scripts/furo.js"
+    if error is None and script.is_file() and "import " in script.read_text(encoding="utf-8")[:200]:
+        subprocess.run(["esbuild", "--bundle", "--minify", "--log-level=warning", "--allow-overwrite", f"--outfile={script}", str(script)], check=True)
+
+
+def setup(app):
+    app.connect("build-finished", bundle_furo)

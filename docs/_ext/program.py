@@ -8,6 +8,7 @@ import os
 import pathlib
 import re
 import subprocess
+from xml.etree import ElementTree
 
 from docutils import nodes
 from docutils.parsers.rst import directives
@@ -78,13 +79,15 @@ def commands_page():
 
 
 def terms_page():
+    """Other names that are words are terms, too; those of table columns stand behind the meaning."""
     lines = ["```{glossary}", ":sorted:", ""]
     for entry in terms():
-        names = [entry["term"]]
+        words, columns = [entry["term"]], []
         for name in entry["also"]:
-            if name.lower() not in [known.lower() for known in names]:
-                names.append(name)
-        lines += [*names, f"  {entry['means']}", ""]
+            if name.lower() not in [known.lower() for known in words]:
+                (words if re.fullmatch(r"[A-Za-z +-]+", name) and not name.startswith("in ") else columns).append(name)
+        also = f" Columns: {', '.join(f'`{name}`' for name in columns)}." if columns else ""
+        lines += [*words, f"  {entry['means']}{also}", ""]
     return "\n".join([*lines, "```", ""])
 
 
@@ -92,11 +95,41 @@ def headers():
     return sorted(path for include in ROOT.glob("*/include") for path in include.rglob("*.hpp"))
 
 
+def declared(header):
+    """(directive, name) of what a header declares, as Doxygen's XML has it."""
+    for file in sorted((BUILD / "api/xml").glob("*_8hpp.xml")):
+        compound = ElementTree.parse(file).getroot().find("compounddef")
+        if not compound.find("location").get("file").endswith(str(header)):
+            continue
+        for inner in compound.findall("innerclass"):
+            if "<" not in inner.text and inner.get("prot") == "public" and not is_nested(inner.get("refid")):
+                yield "doxygenclass" if inner.get("refid").startswith("class") else "doxygenstruct", inner.text
+    for space in sorted((BUILD / "api/xml").glob("namespacemodebank*.xml")):
+        for member in ElementTree.parse(space).getroot().iterfind(".//memberdef"):
+            if not member.find("location").get("file").endswith(str(header)):
+                continue
+            name = member.findtext("qualifiedname")
+            if member.get("kind") in ("enum", "typedef"):
+                yield f"doxygen{member.get('kind')}", name
+            elif member.get("kind") == "function":
+                types = ", ".join("".join(parameter.find("type").itertext()) for parameter in member.findall("param"))
+                yield "doxygenfunction", f"{name}({types})"
+
+
+def is_nested(refid):
+    """A class within another is described with that."""
+    outer = refid.rpartition("_1_1")[0]
+    return any((BUILD / "api/xml" / f"{kind}{outer.removeprefix('class').removeprefix('struct')}.xml").is_file() for kind in ("class", "struct"))
+
+
 def headers_page():
     lines = []
     for path in headers():
         name = path.relative_to(next(parent for parent in path.parents if parent.name == "include"))
-        lines += [f"## {name}", "", f"```{{doxygenfile}} {path.relative_to(ROOT)}", ":sections: briefdescription detaileddescription innerclass enum func public-attrib public-func public-type", "```", ""]
+        lines += [f"## {name}", "", f"`{path.relative_to(ROOT)}`", ""]
+        for directive, thing in declared(path.relative_to(ROOT)):
+            members = [":members:"] if directive in ("doxygenclass", "doxygenstruct") else []
+            lines += [f"```{{{directive}}} {thing}", *members, "```", ""]
     return "\n".join(lines)
 
 
