@@ -18,7 +18,7 @@ namespace {
 void print_help(const CommandLine& line) {
   // `run --help` and `help run` are the same.
   std::vector<std::string> names = line.files;
-  if (line.command != "help") names.assign(!line.command.empty(), line.command);
+  if (line.help) names.assign(!line.command.empty(), line.command);
   for (const std::string& name : names) fmt::print("{}", help_on(name));
   if (names.empty()) fmt::print("{}", line.markdown ? option_markdown() : help_overview());
 }
