@@ -7,6 +7,8 @@
 
 #include "app/cli/command_line.hpp"
 #include "app/cli/commands.hpp"
+#include "ident/base/printable.hpp"
+#include "io/files/standard_error.hpp"
 #include "modebank/base/error.hpp"
 
 namespace {
@@ -15,13 +17,14 @@ constexpr int usage_error = 2;
 constexpr int run_failure = 1;
 
 int fail(int status, const char* what) {
-  fmt::print(stderr, "modebank: {}\n", what);
+  modebank::say(fmt::format("modebank: {}\n", modebank::printable(what)));
   return status;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  modebank::occupy_standard_streams();
   spdlog::set_default_logger(spdlog::stderr_color_mt("modebank"));
   spdlog::set_pattern("%v");
   try {
