@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
+.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
 
 all: build
 
@@ -80,6 +80,10 @@ evidence: build
 # How much is lost against the filter with the true parameters, on systems that are known; about three hours of a processor.
 systems: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_systems.py build/modebank
+
+# A robot's day through `modebank track`, killed every ten minutes of the log; docs/results/track.md.
+track-day: demo
+	/usr/bin/python3 tests/bench/track_day.py build/modebank $(DEMO)/demo.h5
 
 # Bias and stated uncertainty on rounded outputs, by their intervals and as they stand.
 quantised: build

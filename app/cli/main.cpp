@@ -6,6 +6,8 @@
 #include "app/cli/command_line.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/log.hpp"
+#include "ident/base/printable.hpp"
+#include "io/files/standard_error.hpp"
 #include "modebank/base/error.hpp"
 
 namespace {
@@ -14,13 +16,14 @@ constexpr int usage_error = 2;
 constexpr int run_failure = 1;
 
 int fail(int status, const char* what) {
-  fmt::print(stderr, "modebank: {}\n", what);
+  modebank::say(fmt::format("modebank: {}\n", modebank::printable(what)));
   return status;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  modebank::occupy_standard_streams();
   modebank::app::set_up_log(modebank::app::Verbosity::normal);
   try {
     const int status = modebank::app::run_command(modebank::app::parse_command_line(argc, argv));
