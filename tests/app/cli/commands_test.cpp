@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -202,14 +201,6 @@ TEST_F(Commands, HelpSaysWhatATermOrAKeyMeans) {
   const auto unknown = modebank({"help", "wight"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_NE(unknown.err.find("no command, section, key or term"), std::string::npos) << unknown.err;
-}
-
-TEST_F(Commands, ReadmeHoldsTheTableOfKeysAsHelpPrintsIt) {
-  const ProgramResult result = modebank({"help", "--markdown"});
-  ASSERT_EQ(result.status, 0);
-  std::ifstream stream(project_dir() / "README.md");
-  const std::string readme{std::istreambuf_iterator<char>(stream), {}};
-  EXPECT_NE(readme.find(result.out), std::string::npos) << "run: make readme";
 }
 
 }  // namespace
