@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test docs docs-examples docs-update reference-ini test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean
+.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini
 
 all: build
 
@@ -81,6 +81,10 @@ evidence: build
 systems: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_systems.py build/modebank
 
+# A robot's day through `modebank track`, killed every ten minutes of the log; docs/results/track.md.
+track-day: demo
+	/usr/bin/python3 tests/bench/track_day.py build/modebank $(DEMO)/demo.h5
+
 # Bias and stated uncertainty on rounded outputs, by their intervals and as they stand.
 quantised: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_quantised.py build/modebank
@@ -151,6 +155,28 @@ sanitize: packages-build packages-test
 	cmake --preset sanitize >/dev/null
 	cmake --build --preset sanitize -j $(JOBS)
 	ctest --preset sanitize -j $(JOBS)
+
+# Every reader under mutated inputs, with sanitizers: ten minutes (FUZZ_SECONDS) with the day's seed. What it finds is kept in build/findings;
+# `sanitize` does the same for a minute.
+FUZZ_SECONDS ?= 600
+FUZZ_SEED ?= $(shell date +%Y%m%d)
+fuzz: fuzz-build
+	build/sanitize/fuzz all --seconds $(FUZZ_SECONDS) --seed $(FUZZ_SEED) --findings build/findings
+
+# As many inputs as docs/developing/fuzzing.md tells of, by number; hours.
+fuzz-campaign: fuzz-build
+	build/sanitize/fuzz all --part 1 --seed $(FUZZ_SEED) --findings build/findings
+
+fuzz-build: packages-build packages-test
+	cmake --preset sanitize >/dev/null
+	cmake --build --preset sanitize -j $(JOBS) --target fuzz
+	@mkdir -p build/findings
+
+# Every command on a disk that runs full at every one of its calls, of which `make test` takes a sample.
+faults: packages-build packages-test build/build.ninja
+	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
+	cmake --build --preset release -j $(JOBS) --target test_faults
+	MODEBANK_FAULTS=all build/test_faults
 
 coverage: packages-build packages-test
 	cmake --preset coverage >/dev/null

@@ -4,6 +4,7 @@
 
 #include <boost/program_options.hpp>
 
+#include "app/cli/command_table.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "modebank/base/error.hpp"
@@ -17,23 +18,29 @@ namespace {
 constexpr std::pair<const char*, const char*> predict_words[]{
     {"samples", "filter.simulate"}, {"horizon", "filter.simulate_horizon"}, {"filter", "track.filter"}};
 
+/// What holds an option's value; command_table says which commands have it and what it means.
 po::options_description describe_options(CommandLine& line) {
   po::options_description description;
   auto add = description.add_options();
-  add("help,h", po::bool_switch(&line.help));
-  add("version", po::bool_switch(&line.version));
-  add("markdown", po::bool_switch(&line.markdown));
-  add("json", po::bool_switch(&line.json));
-  add("repair", po::bool_switch(&line.repair));
-  add("findings", po::bool_switch(&line.findings));
-  add("apply", po::bool_switch(&line.apply));
-  add("force", po::bool_switch(&line.force));
-  add("yes", po::bool_switch(&line.yes));
+  const auto add_switch = [&add](const char* name, bool& value) { add(name, po::bool_switch(&value)); };
+  add_switch("help,h", line.help);
+  add_switch("version", line.version);
+  add_switch("quiet,q", line.quiet);
+  add_switch("verbose,v", line.verbose);
+  add_switch("dry-run", line.dry_run);
+  add_switch("schema", line.schema);
+  add_switch("markdown", line.markdown);
+  add_switch("json", line.json);
+  add_switch("repair", line.repair);
+  add_switch("findings", line.findings);
+  add_switch("apply", line.apply);
+  add_switch("force", line.force);
+  add_switch("yes", line.yes);
+  add_switch("float", line.exported.single_precision);
   add("form", po::value(&line.form));
   add("output,o", po::value(&line.output));
   add("to", po::value(&line.exported.to));
   add("table", po::value(&line.exported.table));
-  add("float", po::bool_switch(&line.exported.single_precision));
   add("wheel_separation_m", po::value(&line.exported.wheel_separation_m));
   add("wheel_radius_m", po::value(&line.exported.wheel_radius_m));
   add("words", po::value<std::vector<std::string>>());
@@ -80,6 +87,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     for (const po::option& option : parsed.options)
       if (option.string_key.find('.') != std::string::npos)
         line.overrides.emplace_back(option.string_key, option.value.at(0));
+      else if (option.position_key < 0)
+        line.given.push_back(option.string_key);
     po::store(parsed, values);
     po::notify(values);
   } catch (const po::unknown_option& error) {
@@ -93,15 +102,9 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     line.command = line.files.front();
     line.files.erase(line.files.begin());
   }
-  for (const auto& [word, key] : predict_words) {
-    if (!values.count(word)) continue;
-    if (line.command != "predict")
-      throw ConfigurationError(fmt::format("--{} is an option of predict; elsewhere it is --{}", word, key));
-    line.overrides.emplace_back(key, values[word].as<std::string>());
-  }
-  for (const char* word : {"to", "table", "float", "wheel_separation_m", "wheel_radius_m"})
-    if (line.command != "export" && values.count(word) && !values[word].defaulted())
-      throw ConfigurationError(fmt::format("--{} is an option of export", word));
+  if (const Command* command = find_command(line.command); command && !line.help) check_options(*command, line);
+  for (const auto& [word, key] : predict_words)
+    if (values.count(word)) line.overrides.emplace_back(key, values[word].as<std::string>());
   if (line.form != "increment" && line.form != "full")
     throw ConfigurationError(fmt::format("--form {}: allowed are increment and full", line.form));
   return line;

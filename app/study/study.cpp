@@ -56,10 +56,7 @@ void print_plan(const StudyCommand& command, const StudyPlan& plan) {
 /// Throws DataError when the study had to stop.
 RunResult run_share(const StudyCommand& command, const StudyPlan& plan) {
   const StudyConfig& study = command.config.study;
-  {
-    const FileLocks locks(command.store.lock_file());
-    command.store.remove_leftovers(locks);
-  }
+  command.store.remove_leftovers();
   const TrialGroups share = shard_of(group_trials(command.config, plan), study.shard_index, study.shard_count);
   StudyProgress progress(plan.table.varied_keys);
   const RunResult result = run_trials(worker_settings(command, plan), plan, share,

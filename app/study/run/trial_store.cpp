@@ -9,6 +9,7 @@
 #include "app/study/space/study_plan.hpp"
 #include "io/archive/bank/open_archive.hpp"
 #include "io/files/replace_file.hpp"
+#include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -53,17 +54,8 @@ void TrialStore::forget_failure(const std::string& key) const {
   fs::remove(failure_file(key), ignored);
 }
 
-void TrialStore::remove_leftovers(const FileLocks& locks) const {
-  for (const fs::path& part : {folder_, folder_ / "trials", cache()})
-    for (const fs::directory_entry& entry : fs::directory_iterator(part)) {
-      // .<name>.h5.<process>-<number>.tmp, as io/files/replace_file.cpp makes it
-      const std::string file = entry.path().filename().string();
-      const auto dot = file.find('.', 1);
-      if (entry.path().extension() != ".tmp" || file.front() != '.' || dot == std::string::npos) continue;
-      std::error_code ignored;
-      const std::string lock = part == folder_ ? plan_lock : file.substr(1, dot - 1);
-      if (const FileLocks::Hold free = locks.try_lock(lock); free) fs::remove(entry.path(), ignored);
-    }
+void TrialStore::remove_leftovers() const {
+  for (const fs::path& part : {folder_, folder_ / "trials", cache()}) modebank::remove_leftovers(part);
 }
 
 }  // namespace modebank::app

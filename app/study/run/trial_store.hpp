@@ -45,8 +45,8 @@ class TrialStore {
   void record_failure(const std::string& key, const std::string& message) const;
   void forget_failure(const std::string& key) const;
 
-  /// Removes what killed processes were writing; what a living one writes is locked.
-  void remove_leftovers(const FileLocks& locks) const;
+  /// Removes what killed processes of this machine were writing.
+  void remove_leftovers() const;
 
  private:
   std::filesystem::path failure_file(const std::string& key) const;

@@ -10,6 +10,7 @@
 #include "io/archive/study_file.hpp"
 #include "tests/app/cli_fixture.hpp"
 #include "tests/io/archive/archive_patch.hpp"
+#include "tests/support/leftover.hpp"
 
 namespace modebank::test {
 namespace {
@@ -168,7 +169,7 @@ TEST_F(StudyCommands, DamageIsFoundNamedAndRepaired) {
   };
   flip(trials()[1], 5000);
   flip(trials()[3], 70);  // in the user block
-  write("s/trials/." + trials()[0].stem().string() + ".h5.1-0.tmp", "half");
+  leave_behind(trials()[0]);
   const ProgramResult found = modebank({"verify", file("s").string()});
   EXPECT_EQ(found.status, 1);
   EXPECT_EQ(count(found.out, "to redo: mixture.components = "), 2u) << found.out;
@@ -176,10 +177,10 @@ TEST_F(StudyCommands, DamageIsFoundNamedAndRepaired) {
   modebank({"verify", file("s").string(), "--repair"});
   EXPECT_EQ(trials().size(), 4u);
   flip(trials()[0], 3000);  // resuming finds damage by itself
-  write("s/.study.h5.1-0.tmp", "half");
+  const std::filesystem::path left = leave_behind(file("s/study.h5"));
   ASSERT_EQ(study_six().status, 0);
   EXPECT_EQ(text("s/study.csv"), table);
-  EXPECT_FALSE(std::filesystem::exists(file("s/.study.h5.1-0.tmp")));
+  EXPECT_FALSE(std::filesystem::exists(left));
   EXPECT_EQ(modebank({"verify", file("s").string()}).status, 0);
 }
 
