@@ -44,10 +44,22 @@ def key_rows():
 
 
 def command_rows():
-    """(name, arguments, help), in the program's order."""
-    listed = ask("help").split("\nCommands\n", 1)[1].split("\n\n", 1)[0]
-    for name, arguments, text in re.findall(r"^  (\w+) ((?:(?:\[?--?\w+|\[?[A-Z][A-Z|.\]]+) )*) *(.+)$", listed, re.M):
-        yield name, arguments.strip(), text
+    """(group, name), in the program's order."""
+    group = ""
+    for line in ask("help").split("\nEvery command has\n", 1)[0].splitlines()[1:]:
+        if line and not line.startswith(" "):
+            group = line
+        elif named := re.match(r"  (\w+)  ", line):
+            yield group, named[1]
+
+
+def basic_keys():
+    """Keys that most users set: in the schema that editors are given."""
+    def marked(node):
+        return isinstance(node, dict) and (node.get("x-basic", False) or any(marked(part) for part in node.get("oneOf", [])))
+
+    sections = json.loads(ask("config", "--schema"))["properties"]
+    return {f"{section}.{name}" for section, content in sections.items() for name, key in content["properties"].items() if marked(key)}
 
 
 def terms():
@@ -60,21 +72,25 @@ def plain(text):
 
 
 def keys_page():
-    lines, section = [], None
+    lines, section, basic = [], None, basic_keys()
     for key, allowed, unit, default, text in key_rows():
         if key.split(".")[0] != section:
             section = key.split(".")[0]
             lines += [f"## {section}", "", SECTIONS.get(section, ""), ""]
         facts = f"allowed: {plain(allowed)}" + (f"; unit: {plain(unit)}" if unit else "")
         facts += f"; default: `{default}`" if default else "; default: empty"
+        facts += "; **basic**" if key in basic else ""
         lines += [f"````{{confval}} {key}", plain(text[:1].upper() + text[1:]) + ".", "", f"*{facts}*", "````", ""]
     return "\n".join(lines)
 
 
 def commands_page():
-    lines = []
-    for name, arguments, text in command_rows():
-        lines += [f"````{{command}} {name} {arguments}".rstrip(), plain(text[:1].upper() + text[1:]) + ".", "````", ""]
+    lines, heading = [], None
+    for group, name in command_rows():
+        if group != heading:
+            heading = group
+            lines += [f"## {group}", ""]
+        lines += [f"````{{command}} {name}", "```text", ask("help", name).rstrip(), "```", "````", ""]
     return "\n".join(lines)
 
 
