@@ -11,6 +11,7 @@
 #include "ident/lag/choice.hpp"
 #include "io/import/import.hpp"
 #include "io/import/missing_values.hpp"
+#include "io/import/value_check.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -217,6 +218,7 @@ DataCheck check_data(const CheckOptions& options) {
                         options.intercept};
   DataCheck check;
   check.window_length = options.window_length;
+  check.dominating = dominating_values(material.recorded, options.data);
   for (const RunStreams& run : material.recorded) {
     material.ordered.push_back({run.run, run.role, in_order(run.states.stream), in_order(run.inputs.stream)});
     RunReport& report = check.runs.emplace_back();

@@ -152,6 +152,7 @@ std::vector<std::string> findings_of(const DataCheck& check, const Config& confi
   std::vector<std::string> found;
   if (!check.unusable.empty()) found.push_back("UNUSABLE as configured: " + unusable_text(check));
   time_findings(check, config, found);
+  found.insert(found.end(), check.dominating.begin(), check.dominating.end());
   channel_findings(check, found);
   rest_findings(check, found);
   excitation_findings(check, found);

@@ -167,6 +167,7 @@ TEST_F(ClocksAndNumbers, Finding_D9_AZeroInputLeavesTheOthersTheirErrors) {
   EXPECT_THAT(shown.out, Not(HasSubstr("+- nan")));
   const ProgramResult checked = check();
   EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_THAT(checked.out, HasSubstr("left is constant: 0 in every sample"));
   EXPECT_THAT(checked.out + checked.err, Not(HasSubstr("nan")));
 }
 
@@ -216,6 +217,7 @@ TEST_F(ClocksAndNumbers, Finding_D16_OneOutlierThatOwnsTheGlobalModelIsNamed) {
   change("run_00.csv", [](int line, Row& row) { row[1] = line == 42 ? "1e5" : row[1]; });
   const char* said = "run_00.csv:42: run \"00\": wz = 100000 holds 100 % of the spread of wz in the training runs";
   EXPECT_THAT(run().err, HasSubstr(said));
+  EXPECT_THAT(check().out, HasSubstr("run_00.csv:42: run \"00\": wz = 100000"));
   // Held out it owns nothing; and where data.where leaves it out it is none of the data.
   change("run_00.csv", [](int, Row&) {});
   EXPECT_THAT(run().err, Not(HasSubstr("of the spread of")));
