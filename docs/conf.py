@@ -23,6 +23,9 @@ extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx.ext.autodoc", "sphinx
               "program"]
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 4
+highlight_language = "none"  # of blocks that name no language
+numfig = True  # equations by chapter of the explanation: (4.2)
+numfig_secnum_depth = 1
 bibtex_bibfiles = ["references.bib"]
 bibtex_reference_style = "author_year"
 breathe_projects = {"modebank": str(build / "api/xml")}
