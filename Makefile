@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini
+.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs
 
 all: build
 
@@ -94,6 +94,18 @@ export-recovery: packages-build packages-test build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target test_export_recovery
 	MODEBANK_EXPORT_SEEDS=1000 build/test_export_recovery
+
+# The how-to's commands and lost nodes on a real Slurm of three nodes (slurmctld, slurmd, munge), which the test starts and ends.
+slurm: packages-build packages-test build/build.ninja
+	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
+	cmake --build --preset release -j $(JOBS) --target test_study_survival
+	CI=true build/test_study_survival --gtest_filter='StudySlurm*'
+
+# Studies of several machines on a file system without locks, with caches and other clocks; 40 machines are lost. Root, for mounts.
+shared-fs: packages-build packages-test build/build.ninja
+	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
+	cmake --build --preset release -j $(JOBS) --target test_shared_fs
+	CI=true MODEBANK_SHARED_FS_ROUNDS=40 build/test_shared_fs
 
 # Everything CI runs beside `make test`.
 check: format lint shellcheck docs tidy-changed seeds sanitize

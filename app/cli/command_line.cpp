@@ -54,15 +54,41 @@ std::string shell_quoted(const std::string& word) {
   return word.find_first_of(" \t*|'\"#$&;()<>") == std::string::npos ? word : "'" + word + "'";
 }
 
-/// --key=value as two words, because Boost refuses the empty value of --key=.
-std::vector<std::string> split_at_equal_signs(int argc, const char* const* argv) {
+bool takes_a_value(const po::options_description& description, const std::string& word) {
+  if (word.rfind("--", 0) != 0) return false;
+  const po::option_description* option = description.find_nothrow(word.substr(2), false);
+  return option && option->semantic()->max_tokens() > 0;
+}
+
+/// Whether a word that follows a key is the next option, so that the key's value was forgotten. Values may look like
+/// options themselves: those of sbatch do.
+bool is_option(const po::options_description& description, const std::string& word) {
+  const std::string key = word.substr(0, word.find('='));
+  const std::string name = key.find('.') == std::string::npos ? word : key;
+  return name.rfind("--", 0) == 0 && description.find_nothrow(name.substr(2), false);
+}
+
+/// The words with each key and its value as Boost takes them for what they are, whatever the value holds: --key=value,
+/// or two words where the value is empty.
+std::vector<std::string> joined_values(int argc, const char* const* argv, const po::options_description& description) {
   std::vector<std::string> words;
+  const auto push = [&](const std::string& key, const std::string& value) {
+    if (value.empty())
+      words.insert(words.end(), {key, value});
+    else
+      words.push_back(key + "=" + value);
+  };
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const auto equal_sign = word.find('=');
-    const bool key_with_value = word.rfind("--", 0) == 0 && equal_sign != std::string::npos;
-    words.push_back(word.substr(0, key_with_value ? equal_sign : std::string::npos));
-    if (key_with_value) words.push_back(word.substr(equal_sign + 1));
+    if (word.rfind("--", 0) == 0 && equal_sign != std::string::npos)
+      push(word.substr(0, equal_sign), word.substr(equal_sign + 1));
+    else if (!takes_a_value(description, word))
+      words.push_back(word);
+    else if (i + 1 < argc && !is_option(description, argv[i + 1]))
+      push(word, argv[++i]);
+    else
+      throw ConfigurationError(fmt::format("the required argument for option '{}' is missing", word));
   }
   return words;
 }
@@ -79,7 +105,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   try {
     // No guessing: an abbreviated key would change its meaning when keys are added.
     const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
-    const po::parsed_options parsed = po::command_line_parser(split_at_equal_signs(argc, argv))
+    const po::parsed_options parsed = po::command_line_parser(joined_values(argc, argv, description))
                                           .options(description)
                                           .positional(positional)
                                           .style(style)

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <system_error>
 
 #include "app/cli/command_line.hpp"
 #include "app/cli/commands.hpp"
@@ -20,6 +23,10 @@ int fail(int status, const char* what) {
   return status;
 }
 
+int fail_to_print(const std::string& reason) {
+  return fail(run_failure, ("cannot write the results to standard output: " + reason).c_str());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -28,9 +35,11 @@ int main(int argc, char** argv) {
   try {
     const int status = modebank::app::run_command(modebank::app::parse_command_line(argc, argv));
     // A full disk or a closed pipe must not pass for success.
-    return std::fflush(stdout) == 0 ? status : fail(run_failure, "cannot write the results to standard output");
+    return std::fflush(stdout) == 0 ? status : fail_to_print(std::generic_category().message(errno));
   } catch (const modebank::ConfigurationError& error) {
     return fail(usage_error, error.what());
+  } catch (const std::system_error& error) {  // fmt's name no file
+    return std::ferror(stdout) ? fail_to_print(error.code().message()) : fail(run_failure, error.what());
   } catch (const std::exception& error) {
     return fail(run_failure, error.what());
   }

@@ -9,6 +9,7 @@
 #include "app/chain/provenance.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/dry_run.hpp"
+#include "app/cli/kept_stages.hpp"
 #include "app/config/config_file.hpp"
 #include "app/pipeline/pipeline.hpp"
 #include "app/text/first_screen.hpp"
@@ -113,8 +114,8 @@ int run_pipeline(const CommandLine& line) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   std::string summary;
   if (config.archive.input.empty()) {
-    StageSource computed;
-    summary = execute(line, config, computed);
+    KeptStages kept(config.archive.output);
+    summary = execute(line, config, kept);
   } else {
     StoredStages earlier = earlier_stages(config, line.command);
     summary = execute(line, config, earlier);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <stdexcept>
 
 #include "tests/fuzz/target.hpp"
 
@@ -255,6 +256,7 @@ std::string odd_number(Random& random) {
 
 std::string mutated_text(Random& random, const std::vector<std::string>& corpus,
                          const std::vector<std::string>& tokens) {
+  if (corpus.empty()) throw std::logic_error("there is no corpus to mutate");
   std::string text = random.pick(corpus);
   std::size_t changes = 1;
   while (changes < 16 && !random.one_in(3)) ++changes;
