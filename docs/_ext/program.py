@@ -10,10 +10,6 @@ import re
 import subprocess
 from xml.etree import ElementTree
 
-from docutils import nodes
-from docutils.parsers.rst import directives
-from sphinx.util.docutils import SphinxDirective
-
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("MODEBANK_BUILD", ROOT / "build"))
 
@@ -180,29 +176,7 @@ def name_of(env, signature, node):
     return signature.split(" ")[0]
 
 
-class Made(SphinxDirective):
-    """How a table was made; check_results.py says what stands in it."""
-
-    required_arguments = 1
-    final_argument_whitespace = True
-    has_content = False
-    option_spec = dict.fromkeys(("revision", "date", "machine", "reads", "data", "hash", "data_hash", "older"), directives.unchanged)
-
-    def run(self):
-        given = self.options
-        text = f"Made by ``{self.arguments[0]}``; revision {given['revision']}, {given['date']}, {given['machine']}"
-        text += f"; hash {given.get('hash', 'none')}" + (f", data {given['data_hash']}" if "data_hash" in given else "") + "."
-        line = nodes.paragraph("", "", classes=["made"])
-        for part, piece in enumerate(text.split("``")):
-            line += nodes.literal(piece, piece) if part % 2 else nodes.Text(piece)
-        if "older" in given:
-            note = f" Not of this version: {given['older']}."
-            line += nodes.emphasis(note, note)
-        return [line]
-
-
 def setup(app):
-    app.add_directive("made", Made)
     app.add_object_type("confval", "confval", objname="key", indextemplate="pair: %s; key")
     app.add_object_type("command", "command", objname="command", indextemplate="pair: %s; command", parse_node=name_of)
     app.connect("source-read", list_others)
