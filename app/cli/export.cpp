@@ -35,10 +35,6 @@ double input_lag_of(const Archive& archive, const Config& config) {
 
 /// The filter as the archive ran it: other options would be another filter than the one that was judged.
 ExportedBank read_bank(const CommandLine& line) {
-  for (const auto& [key, value] : line.overrides)
-    if (key != "track.filter")
-      throw ConfigurationError(
-          fmt::format("export takes the filter as the archive has it: --{} cannot change it (run does)", key));
   const std::string& file = line.files.front();
   const Config config = stored_config(load_configuration(file), line.overrides);
   if (config.track.filter == TrackedFilter::drifting)

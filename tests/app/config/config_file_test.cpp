@@ -45,7 +45,8 @@ TEST_F(ConfigFile, TheReferenceHoldsEveryKeyAtItsDefault) {
   const std::filesystem::path file = test::project_dir() / "configs/reference.ini";
   const Config read = load_config(file, {}), defaults{};
   for (const Option& option : option_table())
-    if (option.key != "data.root") {
+    // These follow from the file's place and name where they are empty.
+    if (option.key != "data.root" && option.key != "archive.output" && option.key != "study.output") {
       EXPECT_EQ(option.get(read), option.get(defaults)) << option.key;
     }
   std::ifstream stream(file);
