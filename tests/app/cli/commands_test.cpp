@@ -6,6 +6,7 @@
 
 #include "app/cli/command_table.hpp"
 #include "app/text/terminal.hpp"
+#include "app/text/warnings.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/inspect.hpp"
 #include "tests/app/cli_fixture.hpp"
@@ -114,16 +115,15 @@ TEST_F(Commands, SampleWeightsComeFromAColumn) {
   EXPECT_NE(negative.err.find("run_00.csv:"), std::string::npos) << negative.err;
 }
 
-TEST_F(Commands, WindowsWithoutAFiniteFitAreAWarning) {
-  std::string text = csv_run(60, 1);
-  const std::size_t row = text.find("\n", text.size() / 2) + 1;
-  const std::size_t state = text.find(',', row) + 1;
-  text.replace(state, text.find(',', state) - state, "1e200");
-  write("run_00.csv", text);
-  const ProgramResult result = modebank({"identify", config(), "--archive.output", archive()});
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.err.find("windows have no finite fit"), std::string::npos) << result.err;
-  EXPECT_NE(result.out.find("windows have no finite fit"), std::string::npos) << result.out;
+/// Import refuses values that have no square, so that none comes from a file.
+TEST(WindowWarnings, NameWindowsWithoutAFiniteFit) {
+  app::WindowCounts counts;
+  counts.status[static_cast<std::size_t>(FitStatus::converged)] = 5;
+  EXPECT_TRUE(app::window_warnings({}, counts).empty());
+  counts.status[static_cast<std::size_t>(FitStatus::failed)] = 3;
+  const std::vector<std::string> warnings = app::window_warnings({}, counts);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("3 of 8 windows have no finite fit"), std::string::npos) << warnings[0];
 }
 
 TEST_F(Commands, ShowBeginsWithTheSameScreenAndPrintsAnyObject) {
