@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "io/archive/archive.hpp"
+#include "io/files/temporary_file.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
@@ -164,6 +165,8 @@ class DiskFull : public CliTest {
     return std::any_of(report.failed.begin(), report.failed.end(), [&](const std::string& failed) {
       const std::string name = name_in(failed);
       if (text.find(name) != std::string::npos) return true;
+      const auto temporary = parse_temporary_name(name);
+      if (temporary && text.find(temporary->target) != std::string::npos) return true;
       return std::any_of(after_.begin(), after_.end(), [&](const auto& entry) {
         const std::string own = fs::path(entry.first).filename().string();
         return name.find(own) != std::string::npos && text.find(own) != std::string::npos;
