@@ -20,7 +20,6 @@ class KeptStages : public StageSource {
 
   void provide(Stage stage, const std::string& key, const StagePart& part) override;
 
-
  private:
   bool load(const std::filesystem::path& file, const StagePart& part) const;
   void store(const std::filesystem::path& file, const StagePart& part) const;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
-
 #include "modebank/base/error.hpp"
 #include "tests/io/arrays/mat_writer.hpp"
 #include "tests/io/import/expect_error.hpp"
