@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 
@@ -13,7 +14,7 @@ class KeptStages : public StageSource {
  public:
   /// From now on Ctrl-C says what is kept.
   explicit KeptStages(const std::filesystem::path& output);
-  /// Nothing is left of a run that ended, well or by an error.
+  /// Nothing is left of a run that ended, well or by an error; signals do what they did before.
   ~KeptStages() override;
   KeptStages(const KeptStages&) = delete;
   KeptStages& operator=(const KeptStages&) = delete;
@@ -25,6 +26,7 @@ class KeptStages : public StageSource {
   void store(const std::filesystem::path& file, const StagePart& part) const;
 
   std::filesystem::path folder_;
+  std::array<void (*)(int), 2> before_{};  ///< what SIGINT and SIGTERM did
 };
 
 }  // namespace modebank::app

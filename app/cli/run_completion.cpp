@@ -128,7 +128,12 @@ _modebank() {{
 {2}  esac
   _describe -t options option options
 }}
-compdef _modebank modebank
+# Loaded by its name at the first completion, or sourced.
+if [ "$funcstack[1]" = _modebank ]; then
+  _modebank "$@"
+else
+  compdef _modebank modebank
+fi
 )",
                      commands, value_branches("compadd -- {}"), options);
 }
