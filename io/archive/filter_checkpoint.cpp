@@ -43,6 +43,12 @@ Eigen::MatrixXd matrix_of(const json& stored) {
   return matrix;
 }
 
+Eigen::VectorXd vector_of(const json& stored) {
+  const Eigen::MatrixXd matrix = matrix_of(stored);
+  if (matrix.cols() != 1) throw std::invalid_argument("a vector has one column");
+  return matrix;
+}
+
 json to_json(const std::vector<Eigen::MatrixXd>& matrices) {
   json list = json::array();
   for (const Eigen::MatrixXd& matrix : matrices) list.push_back(to_json(matrix));
@@ -95,7 +101,7 @@ FilterSnapshot load_checkpoint(const std::filesystem::path& path, const std::str
     snapshot.started = stored.at("started").get<bool>();
     snapshot.means = matrix_of(stored.at("means"));
     snapshot.covariances = matrix_of(stored.at("covariances"));
-    snapshot.mode_probability = matrix_of(stored.at("mode_probability"));
+    snapshot.mode_probability = vector_of(stored.at("mode_probability"));
     snapshot.noise_scale = stored.at("noise_scale").get<double>();
     snapshot.noise_samples = stored.at("noise_samples").get<double>();
     snapshot.drift = drift_of(stored);

@@ -49,7 +49,8 @@ std::int64_t RowReader::origin_ns(const std::vector<Rows>& rows) const {
     if (const auto& stamps = tables_[source].time_ns; !stamps.empty())
       for (const std::size_t row : rows[source])
         if (stamps[row] != missing_stamp) first = std::min(first, stamps[row]);
-  return first == std::numeric_limits<std::int64_t>::max() || std::abs(first) < large_origin_ns ? 0 : first;
+  const bool is_small = first > -large_origin_ns && first < large_origin_ns;
+  return first == std::numeric_limits<std::int64_t>::max() || is_small ? 0 : first;
 }
 
 FileStream RowReader::stream(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run,
@@ -151,6 +152,19 @@ std::string RowReader::place(std::size_t source, std::size_t row) const {
   return fmt::format("{}:{}", plan_.paths[plan_.sources[source].path].string(), tables_[source].line[row]);
 }
 
+namespace {
+
+/// Also of stamps that are farther apart than their numbers reach: import names these later.
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
+  constexpr double ns_per_s = 1e9;
+  std::int64_t difference_ns = 0;
+  const bool too_far = __builtin_sub_overflow(to_ns, from_ns, &difference_ns);
+  return (too_far ? static_cast<double>(to_ns) - static_cast<double>(from_ns) : static_cast<double>(difference_ns)) /
+         ns_per_s;
+}
+
+}  // namespace
+
 VectorXd RowReader::times(std::size_t source, const RunSlice& run) const {
   const Table& table = tables_[source];
   const Rows& rows = run.rows[source];
@@ -164,7 +178,7 @@ VectorXd RowReader::times(std::size_t source, const RunSlice& run) const {
     else if (run.origin_ns == 0 && !table.time_s.empty())
       time_s(at) = table.time_s[rows[k]];
     else
-      time_s(at) = static_cast<double>(table.time_ns[rows[k]] - run.origin_ns) / 1e9;
+      time_s(at) = seconds_between(run.origin_ns, table.time_ns[rows[k]]);
   }
   return time_s;
 }
