@@ -21,11 +21,14 @@ struct Command {
   const char* arguments;
   const char* help;
   int (*run)(const CommandLine&);
+  const char* more = "";  ///< what `help COMMAND` adds
 };
 
 constexpr Command commands[] = {
     {"init", "FILE...",
-     "look into logs of any kind, list their channels and write a configuration to start from (-o FILE, --force)",
+     "look into logs of any kind, list their channels and write a configuration to start from (-o FILE, --force); asks "
+     "on a "
+     "terminal whether state and inputs are right, --yes never asks",
      run_init},
     {"run", "CONFIG", "the whole chain: import, windows, mixture, bank, evaluation, archive, summary", run_pipeline},
     {"demo", "[-o FOLDER]",
@@ -46,16 +49,38 @@ constexpr Command commands[] = {
      run_study},
     {"show", "ARCHIVE [PATH]", "provenance, candidates, modes, summary; or one object; --json; --form full", run_show},
     {"track", "ARCHIVE", "live filter: samples in on standard input, estimates out on standard output, line by line",
-     run_track},
+     run_track,
+     "  Lines in: a header with the time and the archive's states and inputs (or JSON objects of these names), then a\n"
+     "  sample per line; a state that was not measured stays empty. Lines out: the estimate with its 95 % interval, "
+     "the\n"
+     "  modes' probabilities, the prediction for the next sample and an alarm.\n"
+     "    modebank track my_robot.h5 < samples.csv > estimates.csv\n"
+     "  Keys: --track.filter (which of the archive's filters), --track.checkpoint and --track.resume (go on later).\n"},
     {"predict", "ARCHIVE",
      "free run on new inputs (--data.inputs FILES --samples N [--horizon H] [--filter NAME]): CSV on standard output, "
      "or -o FILE",
-     run_predict},
+     run_predict,
+     "  Predicts from the first N measured samples and the inputs alone; without --data.inputs the archive's own "
+     "runs.\n"
+     "    modebank predict my_robot.h5 --data.inputs new.csv --samples 3 --horizon 50 -o predicted.csv\n"
+     "  Files need the archive's columns; states after the first N samples may be missing. Lines out: per sample and\n"
+     "  state the prediction, its standard deviation and 95 % band, and the most probable mode. --filter drifting, or\n"
+     "  another of the archive's filters, takes the bank's place.\n"},
     {"export", "ARCHIVE --to FORM",
      "the bank for other programs: json, mat, c [--float], casadi, ros2 [--wheel_separation_m W --wheel_radius_m R], "
      "or "
      "csv --table PATH; -o FILE or folder; --force where its verdict is overconfident or underconfident",
-     run_export},
+     run_export,
+     "  json    one page, stable schema (standard output, or -o FILE)\n"
+     "  mat     A, B, c, C, Q, R, T for MATLAB and Octave (NAME.mat)\n"
+     "  c       C99 filter and prediction without heap or dependencies (NAME.c, NAME.h); --float for single precision\n"
+     "  casadi  Python text: step and linearised model for MPC (standard output, or -o FILE)\n"
+     "  ros2    parameter files, one per mode (folder NAME_ros2); --wheel_separation_m W --wheel_radius_m R say what\n"
+     "          the archive cannot know\n"
+     "  csv     any table: --table /evaluation/summary (modebank show ARCHIVE / lists them)\n"
+     "  Every form is x[k+1] = A x[k] + B u[k] + c; --track.filter says which of the archive's filters. "
+     "docs/export.md\n"
+     "  has the schemas.\n"},
     {"report", "ARCHIVE|STUDY [ARCHIVE]",
      "an interactive page that opens offline in a browser (-o page.html): of a run, a study, or two runs", run_report},
     {"verify", "ARCHIVE...",
@@ -79,13 +104,29 @@ std::string help_text() {
   return text + option_help();
 }
 
+namespace {
+
+/// What a command, a term or a key means.
+std::string help_of(const std::string& name) {
+  for (const Command& command : commands)
+    if (command.name == name)
+      return fmt::format("modebank {} {}\n  {}\n{}", command.name, command.arguments, command.help, command.more);
+  return meaning_of(name);
+}
+
+}  // namespace
+
 int run_command(const CommandLine& line) {
   if (line.version) {
     fmt::print("modebank {} ({})\n", build_info::version, build_info::git_revision);
     return 0;
   }
   if (line.help || line.command == "help") {
-    for (const std::string& name : line.files) fmt::print("{}", meaning_of(name));
+    if (line.help && !line.command.empty() && line.command != "help" && line.files.empty()) {
+      fmt::print("{}", help_of(line.command));
+      return 0;
+    }
+    for (const std::string& name : line.files) fmt::print("{}", help_of(name));
     if (line.files.empty()) fmt::print("{}", line.markdown ? option_markdown() : help_text());
     return 0;
   }

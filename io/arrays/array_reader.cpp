@@ -76,8 +76,10 @@ class ArrayReader : public TableReader {
 
   std::vector<TableInfo> tables() const override { return tables_; }
 
-  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const override {
-    file = describe_file(path_);
+  InputFile describe(const std::vector<TableRequest>&) const override { return describe_file(path_); }
+
+  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile* file) const override {
+    if (file != nullptr) *file = describe(requests);
     std::vector<Table> result;
     for (const TableRequest& request : requests) result.push_back(read_table(request));
     return result;
@@ -117,7 +119,7 @@ class ArrayReader : public TableReader {
     for (std::size_t i = 0; i < request.numbers.size(); ++i)
       table.numbers.push_back(
           numbers(stored(request, request.numbers[i]), i < request.may_miss.size() && request.may_miss[i]));
-    if (!request.text.empty()) table.text = texts(stored(request, request.text));
+    for (const std::string& name : request.texts) table.texts.push_back(texts(stored(request, name)));
     if (!request.time.column.empty()) times(request, table);
     return table;
   }
