@@ -35,10 +35,6 @@ double input_lag_of(const Archive& archive, const Config& config) {
 
 /// The filter as the archive ran it: other options would be another filter than the one that was judged.
 ExportedBank read_bank(const CommandLine& line) {
-  for (const auto& [key, value] : line.overrides)
-    if (key != "track.filter")
-      throw ConfigurationError(
-          fmt::format("export takes the filter as the archive has it: --{} cannot change it (run does)", key));
   const std::string& file = line.files.front();
   const Config config = stored_config(load_configuration(file), line.overrides);
   if (config.track.filter == TrackedFilter::drifting)
@@ -91,7 +87,7 @@ void export_mat(const CommandLine& line) {
   const path output = output_of(line, ".mat");
   check_output(line, output);
   const ExportedBank bank = read_bank(line);
-  replace_file(output, [&](const path& temporary) { write_mat(bank, temporary); });
+  write_mat(bank, output);
   fmt::print(
       "wrote {0}: in MATLAB or Octave, m = load('{0}'); A = m.A(:, :, 1) is mode 1 of {1} ...\n"
       "  x[k+1] = A x[k] + B u[k] + c every m.dt_s; m.ss_lines makes a system of it\n",
@@ -127,6 +123,7 @@ void export_ros2(const CommandLine& line) {
   const path folder = output_of(line, "_ros2");
   std::error_code error;
   std::filesystem::create_directories(folder, error);
+  if (is_disk_failure(error)) throw DataError(fmt::format("cannot write {}: {}", folder.string(), error.message()));
   if (error) throw ConfigurationError(fmt::format("-o {}: {}", folder.string(), error.message()));
   std::string names;
   for (const auto& [name, text] : files) {
