@@ -29,16 +29,17 @@ using Eigen::VectorXd;
 RunRows RowReader::rows_by_run(std::size_t source) const {
   const Table& table = tables_[source];
   RunRows runs;
-  if (options_.run.empty()) {
+  const SourcePlan& plan = plan_.sources[source];
+  if (!plan.run) {
     runs[""].resize(table.rows());
     std::iota(runs[""].begin(), runs[""].end(), std::size_t{0});
     return runs;
   }
+  const std::vector<std::string>& names = table.texts[*plan.run];
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (table.text[row].empty())
-      throw DataError(
-          fmt::format("{}: column {}: missing value", place(source, row), plan_.sources[source].request.text));
-    runs[table.text[row]].push_back(row);
+    if (names[row].empty())
+      throw DataError(fmt::format("{}: column {}: missing value", place(source, row), plan.request.texts[*plan.run]));
+    runs[names[row]].push_back(row);
   }
   return runs;
 }
@@ -89,10 +90,11 @@ void RowReader::check_stamps(const RunSlice& run) const {
 }
 
 LabelStream RowReader::labels(const RunSlice& run) const {
-  if (plan_.label.empty()) return {};
-  const std::size_t clock = plan_.rows_correspond() ? plan_.states_clock : plan_.label_source;
+  if (!plan_.label) return {};
+  const std::size_t clock = plan_.rows_correspond() ? plan_.states_clock : plan_.label->source;
   LabelStream result{times(clock, run), {}};
-  for (const std::size_t row : run.rows[clock]) result.text.push_back(tables_.back().text[row]);
+  for (const std::size_t row : run.rows[clock])
+    result.text.push_back(tables_[plan_.label->source].texts[plan_.label->column][row]);
   return result;
 }
 

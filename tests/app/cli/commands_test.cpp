@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -190,6 +192,31 @@ TEST_F(Commands, HelpNamesEveryCommand) {
   EXPECT_EQ(result.status, 0);
   for (const app::Command& command : app::command_table())
     EXPECT_NE(result.out.find("\n  " + command.name + " "), std::string::npos) << command.name;
+}
+
+TEST_F(Commands, HelpOfACommandShowsItsUse) {
+  for (const auto& [command, part] : {std::pair{"export", "--to FORM"},
+                                      {"export", "casadi"},
+                                      {"track", "log.csv"},
+                                      {"predict", "--horizon"},
+                                      {"verify", "verify ARCHIVE"}}) {
+    const ProgramResult result = modebank({"help", command});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find(part), std::string::npos) << result.out;
+    EXPECT_EQ(modebank({command, "--help"}).out, result.out);
+  }
+}
+
+/// What a user may copy has to run where he stands.
+TEST_F(Commands, NextCommandsNameTheProgramAsItWasCalled) {
+  const std::string path = std::getenv("PATH"), program = MODEBANK_PROGRAM;
+  const std::string log = file("run_00.csv").string();
+  const auto next = [&] { return modebank({"init", log, "-o", file("next.ini").string(), "--force", "--yes"}).out; };
+  EXPECT_NE(next().find("next: " + program + " run "), std::string::npos);
+  setenv("PATH", (std::filesystem::path(program).parent_path().string() + ":" + path).c_str(), 1);
+  const std::string by_name = next();
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_NE(by_name.find("next: modebank run "), std::string::npos) << by_name;
 }
 
 /// The one definition of a term, by any of its names; a key by its own.
