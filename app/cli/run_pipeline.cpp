@@ -10,7 +10,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/dry_run.hpp"
 #include "app/cli/kept_stages.hpp"
-#include "app/config/config_file.hpp"
+#include "app/config/valid_config.hpp"
 #include "app/pipeline/pipeline.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
@@ -109,7 +109,7 @@ int run_pipeline(const CommandLine& line) {
   if (line.files.size() != 1)
     throw ConfigurationError(
         fmt::format("{} needs one configuration file: modebank {} CONFIG", line.command, line.command));
-  const Config config = load_config(line.files.front(), line.overrides);
+  const Config config = load_valid_config(line.files.front(), line.overrides);
   check_request(line.command, config, line.files.front());
   if (line.dry_run) return print_dry_run(config, {config.archive.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
