@@ -171,10 +171,7 @@ class Campaign {
       std::fflush(nullptr);
       const pid_t child = fork();
       if (child < 0) throw std::runtime_error("fork failed");
-      if (child == 0) {
-        work(target_, known_, effort_, end, *board_.operator->());
-        std::exit(0);  // the address sanitizer looks for leaks
-      }
+      if (child == 0) serve(end);
       const int status = watch(child, *board_.operator->(), outcome_);
       if (WIFEXITED(status) && WEXITSTATUS(status) == 0) break;
       report(status);
@@ -189,6 +186,16 @@ class Campaign {
   }
 
  private:
+  /// The process under test, to its end: nothing of the parent's is undone here.
+  [[noreturn]] void serve(Clock::time_point end) {
+    try {
+      work(target_, known_, effort_, end, *board_.operator->());
+    } catch (const std::exception& error) {
+      give_up(*board_.operator->(), fmt::format("no input could be made: {}", error.what()));
+    }
+    std::exit(0);  // the address sanitizer looks for leaks
+  }
+
   void report(int status) {
     ++outcome_.findings;
     const std::uint64_t i = board_->next;
