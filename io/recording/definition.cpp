@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "ident/base/characters.hpp"
@@ -169,6 +170,7 @@ const MessageType* Schema::resolve(const std::string& type, const Lookup& lookup
   auto message = std::make_unique<MessageType>();
   message->name = type;
   const std::string package = type.substr(0, type.find('/'));
+  std::set<std::string_view> names;
   while (!text->empty()) {
     std::string_view line = next_line(*text);
     line = without_blanks(line.substr(0, line.find('#')));
@@ -180,6 +182,7 @@ const MessageType* Schema::resolve(const std::string& type, const Lookup& lookup
     if (!rest.empty() && rest.front() == '=') continue;  // a constant; what else follows a name is its default
     if (message->fields.size() == most_fields)
       throw DefinitionError(fmt::format("{} has more than {} fields", type, most_fields));
+    if (!names.insert(name).second) throw DefinitionError(fmt::format("{} has two fields \"{}\"", type, name));
     Field field = parse_field(word, name, package, lookup, depth);
     const std::uint64_t bytes = least_bytes(field);
     if (bytes == 0) continue;  // nothing of it is in a message: whoever walks through one need not stop here

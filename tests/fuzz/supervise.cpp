@@ -35,7 +35,8 @@ struct Board {
   std::atomic<std::uint64_t> next;     ///< input: first those of the corpus, then the made ones
   std::uint64_t taken, refused;
   double slowest_s, grown_megabytes;
-  char reason[1000];
+  char reason[1000];   ///< of a finding
+  char refusal[1000];  ///< what the last refused input was told
   std::size_t bytes;
   char input[most_input_bytes];
 };
@@ -73,6 +74,11 @@ double peak_megabytes() {
   _exit(finding_status);
 }
 
+void refuse(Board& board, const char* what) {
+  ++board.refused;
+  std::strncpy(board.refusal, what, sizeof board.refusal - 1);
+}
+
 /// Runs one input in this process; does not return from a finding that is an exception or too much memory.
 void run_one(const Target& target, std::string_view input, Board& board) {
   board.bytes = std::min(input.size(), most_input_bytes);
@@ -83,10 +89,10 @@ void run_one(const Target& target, std::string_view input, Board& board) {
   try {
     target.run(input);
     ++board.taken;
-  } catch (const ConfigurationError&) {
-    ++board.refused;
-  } catch (const DataError&) {
-    ++board.refused;
+  } catch (const ConfigurationError& error) {
+    refuse(board, error.what());
+  } catch (const DataError& error) {
+    refuse(board, error.what());
   } catch (const std::exception& error) {
     give_up(board, fmt::format("an exception escapes: {}", error.what()));
   } catch (...) {
@@ -182,6 +188,7 @@ class Campaign {
     outcome_.refused = board_->refused;
     outcome_.slowest_s = board_->slowest_s;
     outcome_.most_megabytes = board_->grown_megabytes;
+    outcome_.refusal = board_->refusal;
     return outcome_;
   }
 
@@ -227,7 +234,8 @@ bool replay(const Target& target, const std::string& input, const std::string& n
   effort.findings = std::filesystem::temp_directory_path();
   const Outcome outcome = Campaign(target, effort, {input}).run();
   const char* what = outcome.findings > 0 ? "FINDING" : outcome.taken > 0 ? "taken" : "refused";
-  fmt::print("{} {}: {}, {:.3f} s, {:.0f} MB\n", target.name, name, what, outcome.slowest_s, outcome.most_megabytes);
+  fmt::print("{} {}: {}, {:.3f} s, {:.0f} MB{}{}\n", target.name, name, what, outcome.slowest_s, outcome.most_megabytes,
+             outcome.refusal.empty() ? "" : ": ", outcome.refusal);
   return outcome.findings == 0;
 }
 

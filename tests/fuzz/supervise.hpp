@@ -24,6 +24,7 @@ struct Outcome {
   unsigned findings = 0;
   double processor_s = 0.0, slowest_s = 0.0;  ///< of the process under test; of one input
   double most_megabytes = 0.0;                ///< that the process grew
+  std::string refusal;                        ///< what the last refused input was told
 };
 
 /// What one input may cost.
