@@ -1,6 +1,4 @@
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -10,6 +8,9 @@
 
 #include "app/cli/command_line.hpp"
 #include "app/cli/commands.hpp"
+#include "app/cli/log.hpp"
+#include "ident/base/printable.hpp"
+#include "io/files/standard_error.hpp"
 #include "modebank/base/error.hpp"
 
 namespace {
@@ -18,7 +19,7 @@ constexpr int usage_error = 2;
 constexpr int run_failure = 1;
 
 int fail(int status, const char* what) {
-  fmt::print(stderr, "modebank: {}\n", what);
+  modebank::say(fmt::format("modebank: {}\n", modebank::printable(what)));
   return status;
 }
 
@@ -29,8 +30,8 @@ int fail_to_print(const std::string& reason) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  spdlog::set_default_logger(spdlog::stderr_color_mt("modebank"));
-  spdlog::set_pattern("%v");
+  modebank::occupy_standard_streams();
+  modebank::app::set_up_log(modebank::app::Verbosity::normal);
   try {
     const int status = modebank::app::run_command(modebank::app::parse_command_line(argc, argv));
     // A full disk or a closed pipe must not pass for success.

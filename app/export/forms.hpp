@@ -8,7 +8,7 @@
 #include "app/export/exported_bank.hpp"
 #include "io/archive/inspect.hpp"
 
-/// One function per form of `modebank export`; docs/export.md has their schemas.
+/// One function per form of `modebank export`; docs/reference/export.md has their schemas.
 namespace modebank::app {
 
 /// Of the JSON page; its minor part grows with members, its major part with changes of what there is.

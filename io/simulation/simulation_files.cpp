@@ -2,13 +2,13 @@
 
 #include <csv.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <iterator>
 #include <set>
 
 #include "io/files/replace_file.hpp"
+#include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -65,7 +65,8 @@ class StagingFolder {
     std::error_code error;
     made_target_ = fs::create_directory(target, error);  // no error when it exists
     if (!error && !fs::is_directory(target)) error = std::make_error_code(std::errc::not_a_directory);
-    path_ = target / fmt::format(".simulation.{}.tmp", ::getpid());
+    remove_leftovers(target);
+    path_ = temporary_path(target / "simulation");
     if (!error) fs::create_directory(path_, error);
     if (!error) return;
     remove();

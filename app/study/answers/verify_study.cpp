@@ -11,6 +11,7 @@
 #include "app/study/run/trial_store.hpp"
 #include "app/study/space/study_plan.hpp"
 #include "io/archive/study_file.hpp"
+#include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -82,8 +83,9 @@ void check_others(const TrialStore& store, const std::optional<StudyPlan>& plan,
     for (const TrialRow& row : plan->table.rows) planned[row.key + ".h5"] = true;
   for (const fs::directory_entry& entry : fs::directory_iterator(store.folder() / "trials")) {
     const fs::path& file = entry.path();
-    if (file.extension() == ".tmp")
-      result.problems.push_back({file, "was left by a process that was killed, unless it is being written", "", true});
+    if (const auto temporary = parse_temporary_name(file.filename().string());
+        temporary && state_of(temporary->owner) == ProcessState::gone)
+      result.problems.push_back({file, "was left by a process that was killed", "", true});
     if (file.extension() != ".h5" || planned.count(file.filename().string())) continue;
     for (const std::string& problem : store.problems(file.stem().string()))
       result.problems.push_back({file, problem, "", true});
@@ -107,8 +109,7 @@ StudyVerification verify_study(const fs::path& folder) {
 }
 
 void repair_study(const fs::path& folder, const StudyVerification& verification) {
-  const FileLocks locks(TrialStore(folder).lock_file());
-  TrialStore(folder).remove_leftovers(locks);
+  TrialStore(folder).remove_leftovers();
   for (const StudyProblem& problem : verification.problems)
     if (problem.removable && problem.file.extension() != ".tmp") fs::remove(problem.file);
 }

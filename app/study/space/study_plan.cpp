@@ -12,6 +12,7 @@
 #include "app/study/space/study_space.hpp"
 #include "ident/base/seed.hpp"
 #include "io/archive/study_file.hpp"
+#include "io/files/look_twice.hpp"
 #include "io/files/sha256.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
@@ -201,7 +202,7 @@ void write_plan(const std::filesystem::path& folder, const StudyPlan& plan) {
 }
 
 StudyPlan read_plan(const std::filesystem::path& folder) {
-  const StudyFile file = read_study_file(plan_file(folder), "plan");
+  const StudyFile file = look_twice([&] { return read_study_file(plan_file(folder), "plan"); });
   if (file.columns.size() < columns_before + columns_after)
     throw DataError(plan_file(folder).string() + ": not a plan");
   StudyPlan plan{file.config, file.provenance, {}};
