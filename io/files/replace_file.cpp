@@ -164,7 +164,10 @@ std::string write_obstacle(const fs::path& path) {
   return {};
 }
 
-void replace_file(const fs::path& path, const std::function<void(const fs::path&)>& fill) {
+namespace {
+
+/// `named`: what messages call it.
+void replace(const fs::path& path, const fs::path& named, const std::function<void(const fs::path&)>& fill) {
   try {
     const fs::path target = final_target(path);
     if (const std::string obstacle = seen_obstacle(target); !obstacle.empty()) throw DataError(obstacle);
@@ -173,16 +176,26 @@ void replace_file(const fs::path& path, const std::function<void(const fs::path&
     temporary.become(target);
     Descriptor(folder_of(target), O_RDONLY | O_DIRECTORY).sync();
   } catch (const DataError& error) {
-    throw DataError("cannot write " + path.string() + ": " + error.what());
+    throw DataError("cannot write " + named.string() + ": " + error.what());
   } catch (const fs::filesystem_error& error) {
-    throw DataError("cannot write " + path.string() + ": " + error.code().message());
+    throw DataError("cannot write " + named.string() + ": " + error.code().message());
   }
 }
 
+void append(const fs::path& path, std::string_view bytes) { Descriptor(path, O_WRONLY | O_APPEND).write(bytes); }
+
+}  // namespace
+
+void replace_file(const fs::path& path, const std::function<void(const fs::path&)>& fill) { replace(path, path, fill); }
+
 void replace_file(const fs::path& path, std::initializer_list<std::string_view> pieces) {
-  replace_file(path, [&](const fs::path& temporary) {
-    for (const std::string_view piece : pieces) Descriptor(temporary, O_WRONLY | O_APPEND).write(piece);
+  replace(path, path, [&](const fs::path& temporary) {
+    for (const std::string_view piece : pieces) append(temporary, piece);
   });
+}
+
+void write_staged(const fs::path& staged, const fs::path& place, std::string_view content) {
+  replace(staged, place, [&](const fs::path& temporary) { append(temporary, content); });
 }
 
 }  // namespace modebank

@@ -26,6 +26,9 @@ std::filesystem::path final_target(const std::filesystem::path& path);
 /// file that a process writes in a folder takes away what killed processes left there (remove_leftovers).
 void replace_file(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces);
 
+/// The same for a file that will be moved to its place with others: messages name that place.
+void write_staged(const std::filesystem::path& staged, const std::filesystem::path& place, std::string_view content);
+
 /// The same with a file that `fill` writes under its temporary name, which it is given.
 void replace_file(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& fill);
 

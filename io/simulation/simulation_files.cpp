@@ -122,16 +122,6 @@ void move_all(const fs::path& from, const fs::path& to, const std::vector<std::s
   }
 }
 
-/// A file of the staging folder, under the name it will have.
-void write_staged(const fs::path& staging, const fs::path& folder, const std::string& name, const std::string& text) {
-  try {
-    replace_file(staging / name, {text});
-  } catch (const DataError& error) {
-    const std::string why = error.what();
-    throw DataError(fmt::format("cannot write {}: {}", (folder / name).string(), why.substr(why.rfind(": ") + 2)));
-  }
-}
-
 }  // namespace
 
 void check_column_names(const std::vector<std::string>& names) {
@@ -150,8 +140,8 @@ void write_simulation_files(const fs::path& folder, std::size_t runs,
   check_targets(folder, all);
   for (std::size_t i = 0; i < runs; ++i) {
     const SimulationTables tables = tables_of(i);
-    write_staged(staging.path(), folder, inputs[i], csv_text(tables.inputs));
-    write_staged(staging.path(), folder, states[i], csv_text(tables.states));
+    write_staged(staging.path() / inputs[i], folder / inputs[i], csv_text(tables.inputs));
+    write_staged(staging.path() / states[i], folder / states[i], csv_text(tables.states));
   }
   move_all(staging.path(), folder, all);
 }

@@ -99,7 +99,7 @@ std::vector<std::string> draw_figures(const std::vector<Figure>& figures, const 
   try {
     const WorkFolder work(options.folder);
     const auto write = [&](const std::string& name, std::string_view text) {
-      replace_file(work.path() / name, {text});
+      write_staged(work.path() / name, options.folder / name, text);
     };
     write("style.gp", assets::figure_style());
     write("strip.gp", assets::figure_strip());

@@ -44,8 +44,9 @@ void TrialStore::create() const {
   std::error_code error;
   fs::create_directories(folder_ / "trials", error);
   if (!error) fs::create_directories(cache(), error);
-  if (error)
-    throw ConfigurationError(fmt::format("study.output: cannot make {}: {}", folder_.string(), error.message()));
+  const std::string what = fmt::format("study.output: cannot make {}: {}", folder_.string(), error.message());
+  if (is_disk_failure(error)) throw DataError(what);
+  if (error) throw ConfigurationError(what);
   refuse_special_file(log());
   if (const std::string obstacle = write_obstacle(folder_ / "study.h5"); !obstacle.empty())
     throw ConfigurationError("study.output: " + obstacle);
