@@ -80,6 +80,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     for (const po::option& option : parsed.options)
       if (option.string_key.find('.') != std::string::npos)
         line.overrides.emplace_back(option.string_key, option.value.at(0));
+      else if (option.position_key < 0)
+        line.given.push_back(option.string_key);
     po::store(parsed, values);
     po::notify(values);
   } catch (const po::unknown_option& error) {
@@ -93,15 +95,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     line.command = line.files.front();
     line.files.erase(line.files.begin());
   }
-  for (const auto& [word, key] : predict_words) {
-    if (!values.count(word)) continue;
-    if (line.command != "predict")
-      throw ConfigurationError(fmt::format("--{} is an option of predict; elsewhere it is --{}", word, key));
-    line.overrides.emplace_back(key, values[word].as<std::string>());
-  }
-  for (const char* word : {"to", "table", "float", "wheel_separation_m", "wheel_radius_m"})
-    if (line.command != "export" && values.count(word) && !values[word].defaulted())
-      throw ConfigurationError(fmt::format("--{} is an option of export", word));
+  for (const auto& [word, key] : predict_words)
+    if (values.count(word)) line.overrides.emplace_back(key, values[word].as<std::string>());
   if (line.form != "increment" && line.form != "full")
     throw ConfigurationError(fmt::format("--form {}: allowed are increment and full", line.form));
   return line;

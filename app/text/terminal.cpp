@@ -14,7 +14,8 @@ constexpr int label_width = 10;  // of "windows   ", as the summary's lines begi
 
 int stated_width() {
   const char* columns = std::getenv("COLUMNS");
-  return columns ? std::max(0, std::atoi(columns)) : 0;
+  constexpr long widest = 1000;  // no terminal is wider, and lines are filled up to it
+  return columns ? static_cast<int>(std::clamp(std::strtol(columns, nullptr, 10), 0L, widest)) : 0;
 }
 
 int terminal_width() {

@@ -3,6 +3,7 @@
 #include <set>
 #include <string_view>
 
+#include "ident/base/characters.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -15,6 +16,8 @@ void check_run_names(const std::vector<std::string>& names) {
         name.find_first_of(level_or_end) != std::string::npos)
       throw DataError("\"" + name +
                       "\" cannot name a run: a name must not be empty, '*', '.' or '..' nor hold '/' or a zero byte");
+    if (const std::string shown = printable(name); shown != name)
+      throw DataError("\"" + shown + "\" cannot name a run: it holds control characters");
     if (!seen.insert(name).second) throw DataError("two runs are named \"" + name + "\"");
   }
 }

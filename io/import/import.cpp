@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "ident/base/characters.hpp"
 #include "ident/lag/choice.hpp"
 #include "io/files/run_names.hpp"
 #include "io/import/import_plan.hpp"
@@ -158,6 +159,26 @@ LagReport find_lags(const std::vector<RunStreams>& streams, const DataOptions& o
 
 }  // namespace
 
+namespace {
+
+/// They are printed, and stored where readers refuse them.
+void check_printable(const std::string& what, const std::string& text) {
+  if (const std::string shown = printable(text); shown != text)
+    throw DataError(fmt::format("{} \"{}\" holds control characters", what, shown));
+}
+
+void check_printable(const ImportedData& data) {
+  for (const auto* channels : {&data.recording.states, &data.recording.inputs})
+    for (const Channel& channel : *channels) {
+      check_printable("the column", channel.name);
+      check_printable("the unit", channel.unit);
+    }
+  if (data.labels)
+    for (const std::string& label : data.labels->names) check_printable("the label", label);
+}
+
+}  // namespace
+
 ImportedData import_data(const DataOptions& options, const MemoryTables* memory) {
   ImportedData data;
   check_units("state", options.state, options.state_unit);
@@ -183,6 +204,7 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory)
   check_run_names(run_names(runs));
   if (!options.label.empty()) data.labels = labels.of(runs);
   data.recording.quantum = quanta.decide(data.recording, data.notes);
+  check_printable(data);
   return data;
 }
 

@@ -43,6 +43,8 @@ MadeRuns made_runs(const TrialStore& store, const StudyPlan& plan) {
   std::map<std::string, const TrialRow*> planned;
   for (const TrialRow& row : plan.table.rows)
     if (row.status != TrialStatus::dropped) planned[row.key] = &row;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(store.log(), error)) return made;
   std::ifstream file(store.log());
   std::string key;
   for (std::string line; std::getline(file, line);) {

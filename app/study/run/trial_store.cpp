@@ -32,9 +32,20 @@ fs::path TrialStore::failure_file(const std::string& key) const { return folder_
 
 std::vector<std::string> TrialStore::problems(const std::string& key) const { return hash_problems(archive(key)); }
 
-void TrialStore::remove_archive(const std::string& key) const { fs::remove(archive(key)); }
+bool TrialStore::has_archive(const std::string& key) const {
+  std::error_code error;
+  return fs::symlink_status(archive(key), error).type() != fs::file_type::not_found;
+}
+
+void TrialStore::remove_archive(const std::string& key) const {
+  std::error_code error;
+  fs::remove(archive(key), error);
+  if (error) throw DataError(fmt::format("cannot remove {}: {}", archive(key).string(), error.message()));
+}
 
 std::optional<FailureRecord> TrialStore::failure(const std::string& key) const {
+  std::error_code error;
+  if (!fs::is_regular_file(failure_file(key), error)) return std::nullopt;
   std::ifstream file(failure_file(key));
   if (!file) return std::nullopt;
   FailureRecord record{{std::istreambuf_iterator<char>(file), {}}, {}};

@@ -35,7 +35,8 @@ class TrialStore {
   std::filesystem::path cache() const { return folder_ / "cache"; }
   std::filesystem::path log() const { return folder_ / "log.csv"; }
 
-  bool has_archive(const std::string& key) const { return std::filesystem::exists(archive(key)); }
+  /// Something of that name, which problems() judges.
+  bool has_archive(const std::string& key) const;
   /// What is wrong with a trial's archive by its whole-file hash; nothing when it is whole.
   std::vector<std::string> problems(const std::string& key) const;
   void remove_archive(const std::string& key) const;
