@@ -105,17 +105,29 @@ void GroupReader::texts(const std::string& name, std::vector<std::string>& value
   });
 }
 
+GroupReader::Members& GroupReader::members() const {
+  if (!members_) {
+    members_.emplace();
+    for (const hdf5::Link& link : hdf5::links_of(group_.id())) members_->emplace(link.name, Member{link.hard});
+  }
+  return *members_;
+}
+
+bool GroupReader::has(const std::string& name) const {
+  const auto found = members().find(name);
+  if (found == members().end()) return false;
+  found->second.asked = true;
+  return true;
+}
+
 void GroupReader::check_links(const hdf5::LinkAllowed& elsewhere) {
-  std::vector<std::string> unknown;
-  guarded("", [&] {
-    for (const hdf5::Link& link : hdf5::links_of(group_.id())) {
-      if (!link.hard) guarded(link.name, [&] { hdf5::check_link(group_.id(), path_, link, elsewhere); });
-      if (link.hard && !seen_.contains(link.name)) unknown.push_back(link.name);
-    }
-  });
-  if (!problems_) return;
-  for (const std::string& name : unknown)
-    guarded(name, [&] { hdf5::check_below(group_.id(), path_, name, elsewhere); });
+  for (const auto& [name, member] : members())
+    guarded(name, [&, hard = member.hard, asked = member.asked] {
+      if (!hard)
+        hdf5::check_link(group_.id(), path_, {name, hard}, elsewhere);
+      else if (problems_ && !asked)
+        hdf5::check_below(group_.id(), path_, name, elsewhere);
+    });
 }
 
 }  // namespace modebank

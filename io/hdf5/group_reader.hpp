@@ -2,7 +2,8 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <set>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,10 +42,7 @@ class GroupReader {
   void optional_group(const std::string& name, bool /*present*/, const Sizes& known, Body body) {
     if (has(name)) group(name, known, body);
   }
-  bool has(const std::string& name) const {
-    seen_.insert(name);
-    return hdf5::has_link(group_.id(), name);
-  }
+  bool has(const std::string& name) const;
   /// Reports members that lie elsewhere, and in verification also what lies below members that nobody asked for.
   /// `elsewhere`: whether a link to another file may be there, by its place, the file and the place in that.
   void check_links(const hdf5::LinkAllowed& elsewhere = {});
@@ -181,7 +179,14 @@ class GroupReader {
   std::size_t problems_before_;
   std::string path_;
   Sizes sizes_;
-  mutable std::set<std::string> seen_;  ///< members that somebody asked for
+  struct Member {
+    bool hard;
+    bool asked = false;
+  };
+  using Members = std::map<std::string, Member>;
+  /// Listed at the first question: asking HDF5 for each of ten thousand takes longer.
+  Members& members() const;
+  mutable std::optional<Members> members_;
 };
 
 }  // namespace modebank

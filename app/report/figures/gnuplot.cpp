@@ -88,8 +88,11 @@ void draw(const Figure& figure, const fs::path& folder, const char* format) {
     throw ConfigurationError("report.figures needs gnuplot, which is not installed (Debian package gnuplot-nox)");
   const fs::path drawn = folder / (figure.name() + "." + format);
   std::error_code ignored;
-  if (status != 0 || !fs::exists(drawn) || fs::file_size(drawn, ignored) == 0)
-    throw DataError(fmt::format("gnuplot could not draw {}: {}", figure.name(), read_text(folder / "messages")));
+  if (status != 0 || !fs::exists(drawn) || fs::file_size(drawn, ignored) == 0) {
+    const std::string messages = read_text(folder / "messages");
+    throw DataError(fmt::format("gnuplot could not draw {}: {}", figure.name(),
+                                messages.empty() ? "it gives no reason; the disk may be full" : messages));
+  }
 }
 
 }  // namespace

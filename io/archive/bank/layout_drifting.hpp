@@ -60,8 +60,8 @@ void exchange_drifting(Io& io, M& model, const Units& units) {
   if constexpr (Io::reads)
     io.finish([&] {
       validate(model);
-      check_count("state_names", model.state_names, static_cast<std::size_t>(model.structure.states));
-      check_count("input_names", model.input_names, static_cast<std::size_t>(model.structure.inputs));
+      check_count("state_names", model.state_names, static_cast<std::size_t>(model.structure.dimension()));
+      check_count("input_names", model.input_names, static_cast<std::size_t>(model.structure.acting_inputs()));
     });
 }
 
