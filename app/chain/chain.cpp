@@ -5,6 +5,7 @@
 #include "app/chain/mode_names.hpp"
 #include "app/chain/model_rows.hpp"
 #include "app/chain/stored_banks.hpp"
+#include "app/chain/training_check.hpp"
 #include "io/import/import.hpp"
 
 namespace modebank {
@@ -31,6 +32,7 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
     wanted_[index_of(Stage::data)] = data_key;
   };
   want();
+  if (last >= Stage::lag_counts) refuse_constant_states(*archive_.recording);
   if (last >= Stage::lag_counts) count_lags(inputs_.lag_counts);
   if (archive_.lag_counts) {
     inputs_ = chain_inputs(with_lag_counts(options, *archive_.lag_counts));
@@ -101,6 +103,8 @@ void Chain::count_lags(const std::optional<LagCountInputs>& inputs) {
 
 void Chain::identify_windows(const WindowInputs& inputs) {
   const auto compute = [&] {
+    if (const std::string open = open_effects(*archive_.recording, inputs.window); !open.empty())
+      listener_.warning(open);
     const Stopwatch watch;
     archive_.windows = identify(*archive_.recording, inputs);
     listener_.progress(fmt::format("windows: {} fitted in {:.2f} s", archive_.windows->count(), watch.seconds()));

@@ -19,9 +19,14 @@ struct CommandLine {
   std::string command;                                         ///< empty: none given
   std::vector<std::string> files;                              ///< positional arguments after the command
   std::vector<std::pair<std::string, std::string>> overrides;  ///< configuration keys given as options, in order
+  std::vector<std::string> given;                              ///< long names of all other options, in order
   bool help = false;
   bool version = false;
-  bool markdown = false;  ///< help: the table of keys as README holds it
+  bool quiet = false;     ///< errors alone on standard error
+  bool verbose = false;   ///< all that was tried, too
+  bool dry_run = false;   ///< say what would be read and written, and stop
+  bool schema = false;    ///< config: a JSON schema of the keys
+  bool markdown = false;  ///< help: all keys as a table
   bool json = false;
   bool repair = false;             ///< verify: remove what is broken in study folders
   bool findings = false;           ///< check: what it finds, without settings to try
@@ -36,7 +41,8 @@ struct CommandLine {
   std::string typed;               ///< the whole line, for provenance
 };
 
-/// Throws ConfigurationError for an unknown option (naming the nearest known one) or one without its value.
+/// Throws ConfigurationError for an unknown option (naming the nearest known one), one without its value and one that
+/// the command does not read.
 CommandLine parse_command_line(int argc, const char* const* argv);
 
 }  // namespace modebank::app

@@ -91,7 +91,7 @@ void export_mat(const CommandLine& line) {
   const path output = output_of(line, ".mat");
   check_output(line, output);
   const ExportedBank bank = read_bank(line);
-  replace_file(output, [&](const path& temporary) { write_mat(bank, temporary); });
+  write_mat(bank, output);
 }
 
 /// Both files are made before either is written.
@@ -119,6 +119,7 @@ void export_ros2(const CommandLine& line) {
   const path folder = output_of(line, "_ros2");
   std::error_code error;
   std::filesystem::create_directories(folder, error);
+  if (is_disk_failure(error)) throw DataError(fmt::format("cannot write {}: {}", folder.string(), error.message()));
   if (error) throw ConfigurationError(fmt::format("-o {}: {}", folder.string(), error.message()));
   for (const auto& [name, text] : files) replace_file(folder / name, {text});
 }

@@ -1,17 +1,17 @@
-#include <spdlog/pattern_formatter.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <memory>
-#include <new>
 #include <string>
+#include <system_error>
 
 #include "app/cli/command_line.hpp"
 #include "app/cli/commands.hpp"
-#include "ident/base/characters.hpp"
+#include "app/cli/log.hpp"
+#include "ident/base/printable.hpp"
+#include "io/files/standard_error.hpp"
 #include "modebank/base/error.hpp"
 
 namespace {
@@ -19,44 +19,30 @@ namespace {
 constexpr int usage_error = 2;
 constexpr int run_failure = 1;
 
-/// What names in files and options hold is shown, not obeyed. That nobody can read the message is no second failure.
-int fail(int status, const std::string& what) {
-  const std::string message = "modebank: " + modebank::printable(what, true) + "\n";
-  std::fputs(message.c_str(), stderr);
+int fail(int status, const char* what) {
+  modebank::say(fmt::format("modebank: {}\n", modebank::printable(what)));
   return status;
 }
 
-/// The same for every line of the log.
-class PrintableMessage : public spdlog::custom_flag_formatter {
- public:
-  void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& to) override {
-    const std::string text = modebank::printable({message.payload.data(), message.payload.size()}, true);
-    to.append(text.data(), text.data() + text.size());
-  }
-  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<PrintableMessage>(); }
-};
-
-void start_log() {
-  spdlog::set_default_logger(spdlog::stderr_color_mt("modebank"));
-  auto formatter = std::make_unique<spdlog::pattern_formatter>();
-  formatter->add_flag<PrintableMessage>('*').set_pattern("%*");
-  spdlog::set_formatter(std::move(formatter));
+int fail_to_print(const std::string& reason) {
+  return fail(run_failure, ("cannot write the results to standard output: " + reason).c_str());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  start_log();
+  modebank::occupy_standard_streams();
+  modebank::app::set_up_log(modebank::app::Verbosity::normal);
   try {
     const int status = modebank::app::run_command(modebank::app::parse_command_line(argc, argv));
     // A full disk or a closed pipe must not pass for success.
-    return std::fflush(stdout) == 0 ? status : fail(run_failure, "cannot write the results to standard output");
+    return std::fflush(stdout) == 0 ? status : fail_to_print(std::generic_category().message(errno));
   } catch (const modebank::ConfigurationError& error) {
     return fail(usage_error, error.what());
   } catch (const std::filesystem::filesystem_error& error) {
-    return fail(run_failure, error.path1().string() + ": " + error.code().message());
-  } catch (const std::bad_alloc&) {
-    return fail(run_failure, "this needs more memory than there is");
+    return fail(run_failure, (error.path1().string() + ": " + error.code().message()).c_str());
+  } catch (const std::system_error& error) {  // fmt's name no file
+    return std::ferror(stdout) ? fail_to_print(error.code().message()) : fail(run_failure, error.what());
   } catch (const std::exception& error) {
     return fail(run_failure, error.what());
   }

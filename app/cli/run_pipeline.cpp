@@ -9,6 +9,8 @@
 #include "app/chain/chain.hpp"
 #include "app/chain/provenance.hpp"
 #include "app/cli/commands.hpp"
+#include "app/cli/dry_run.hpp"
+#include "app/cli/kept_stages.hpp"
 #include "app/config/config_file.hpp"
 #include "app/pipeline/pipeline.hpp"
 #include "app/text/first_screen.hpp"
@@ -86,6 +88,7 @@ class Log : public Adviser {
     Adviser::done(stage, archive);
   }
   void progress(const std::string& line) const override { spdlog::info("{}", line); }
+  void detail(const std::string& line) const override { spdlog::debug("{}", line); }
   void warning(const std::string& line) const override { spdlog::warn("{}", line); }
 
  private:
@@ -140,11 +143,12 @@ int run_pipeline(const CommandLine& line) {
         fmt::format("{} needs one configuration file: modebank {} CONFIG", line.command, line.command));
   const Config config = load_config(line.files.front(), line.overrides);
   check_request(line.command, config, line.files.front());
+  if (line.dry_run) return print_dry_run(config, {config.archive.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   std::string summary;
   if (config.archive.input.empty()) {
-    StageSource computed;
-    summary = execute(line, config, computed);
+    KeptStages kept(config.archive.output);
+    summary = execute(line, config, kept);
   } else {
     StoredStages earlier = earlier_stages(config, line.command);
     summary = execute(line, config, earlier);

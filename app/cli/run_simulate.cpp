@@ -2,6 +2,7 @@
 #include <tbb/global_control.h>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/dry_run.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "io/simulation/simulation_writer.hpp"
@@ -68,6 +69,7 @@ int run_simulate(const CommandLine& line) {
     throw ConfigurationError("simulate needs one configuration file: modebank simulate CONFIG");
   const Config config = load_config(line.files.front(), line.overrides);
   check_keys_apply(config);
+  if (line.dry_run) return print_dry_run(config, {config.simulate.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   simulate_system(config);
   fmt::print("{} runs of {} samples in {}\n", config.simulate.system.runs, config.simulate.system.samples,

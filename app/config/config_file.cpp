@@ -14,7 +14,7 @@
 #include <sstream>
 
 #include "app/config/option_table.hpp"
-#include "ident/base/characters.hpp"
+#include "ident/base/printable.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
@@ -40,7 +40,7 @@ bool takes_quotes(const std::string& key) {
 
 /// As resolved_text writes such a value: plain wherever that reads back the same.
 std::string path_text(const std::string& value) {
-  const std::string shown = printable(value);
+  const std::string shown = printable_name(value);
   if (shown == value && boost::trim_copy(value) == value && value.find('#') == std::string::npos &&
       !value.starts_with('"'))
     return value;
@@ -141,7 +141,7 @@ const Option& known_option(const std::string& where, const std::string& key) {
 void apply(Config& config, const std::string& where, const std::string& key, const std::string& value,
            bool has_comment) {
   const Option& option = known_option(where, key);
-  if (const std::string shown = printable(value, true); shown != value && !takes_quotes(key))
+  if (const std::string shown = printable(value); shown != value && !takes_quotes(key))
     throw ConfigurationError(fmt::format("{}: {} = '{}' holds control characters", where, key, shown));
   try {
     option.set(config, value);
@@ -169,10 +169,22 @@ void apply_overrides(Config& config, const KeyValues& overrides) {
   }
 }
 
-std::filesystem::path default_root(const std::filesystem::path& config_path) {
-  const char* environment = std::getenv("MODEBANK_DATA");
-  if (environment && *environment) return environment;
-  return std::filesystem::absolute(config_path).parent_path();
+/// What follows from the file's place and name where nothing is said.
+void apply_defaults_of_file(Config& config, const std::filesystem::path& path, Origins& origins) {
+  if (config.data.root.empty()) {
+    const char* environment = std::getenv("MODEBANK_DATA");
+    const bool set = environment && *environment;
+    config.data.root = set ? environment : std::filesystem::absolute(path).parent_path().string();
+    origins["data.root"] = set ? "$MODEBANK_DATA" : "folder of the file";
+  }
+  config.data.root = std::filesystem::absolute(config.data.root).lexically_normal().string();
+  const auto name_after_file = [&](std::string& value, const std::string& key, const char* ending) {
+    if (!value.empty()) return;
+    value = path.stem().string() + ending;
+    origins[key] = "name of the file";
+  };
+  name_after_file(config.archive.output, "archive.output", ".h5");
+  name_after_file(config.study.output, "study.output", ".study");
 }
 
 }  // namespace
@@ -199,7 +211,7 @@ bool looks_like_log(const std::filesystem::path& path) {
 
 }  // namespace
 
-Config load_config(const std::filesystem::path& path, const KeyValues& overrides) {
+Config load_config(const std::filesystem::path& path, const KeyValues& overrides, Origins* origins) {
   std::ifstream stream(path);
   if (stream && looks_like_log(path))
     throw ConfigurationError(fmt::format(
@@ -207,6 +219,7 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
   if (!stream || std::filesystem::is_directory(path))
     throw ConfigurationError(fmt::format("{}: cannot read this configuration file", path.string()));
   Config config;
+  Origins found;
   std::map<std::string, int> seen;
   for (const FileEntry& entry : parse_lines(stream, path.string())) {
     const std::string where = fmt::format("{}:{}", path.string(), entry.line);
@@ -215,6 +228,7 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
     if (!fresh && !(option && option->repeatable))
       throw ConfigurationError(fmt::format("{}: {} is already set in line {}", where, entry.key, earlier->second));
     apply(config, where, entry.key, entry.value, entry.has_comment);
+    found[entry.key] = where;
     if (entry.comment_touches_value)
       spdlog::warn("{}: {} is cut to '{}': # starts a comment, so no value can hold one", where, entry.key,
                    entry.value);
@@ -223,10 +237,9 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
       config.data.root = (std::filesystem::absolute(path).parent_path() / config.data.root).string();
   }
   apply_overrides(config, overrides);
-  if (config.data.root.empty()) config.data.root = default_root(path).string();
-  config.data.root = std::filesystem::absolute(config.data.root).lexically_normal().string();
-  if (config.archive.output.empty()) config.archive.output = path.stem().string() + ".h5";
-  if (config.study.output.empty()) config.study.output = path.stem().string() + ".study";
+  for (const auto& [key, value] : overrides) found[key] = "--" + key;
+  apply_defaults_of_file(config, path, found);
+  if (origins) *origins = std::move(found);
   return config;
 }
 

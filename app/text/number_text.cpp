@@ -8,8 +8,10 @@ namespace modebank::app {
 
 std::string fixed_or_short(double value, int decimals) {
   constexpr double largest_fixed = 1e5;
-  return std::abs(value) < largest_fixed || std::isnan(value) ? fmt::format("{:.{}f}", value, decimals)
-                                                              : fmt::format("{:.4g}", value);
+  constexpr int many = 4;  // decimals: fewer are meant to round small numbers away
+  const bool vanishes = decimals >= many && value != 0.0 && std::abs(value) < 0.5 * std::pow(10.0, -decimals);
+  const bool fixed = (std::abs(value) < largest_fixed && !vanishes) || std::isnan(value);
+  return fixed ? fmt::format("{:.{}f}", value, decimals) : fmt::format("{:.4g}", value);
 }
 
 std::string size_text(double value, int decimals) {

@@ -13,10 +13,6 @@ constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 /// What a terminal would obey.
 constexpr bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }
 
-/// The text as a terminal, a log or a job script can hold it: control characters as \x1b, line ends and tabs too unless
-/// `lines` are kept; all else as it is.
-std::string printable(std::string_view text, bool lines = false);
-
 /// The letters and digits of a text, a stretch of anything else between them as one '_'.
 std::string letters_and_digits(std::string_view text);
 

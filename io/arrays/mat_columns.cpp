@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "io/arrays/mat_check.hpp"
 #include "io/arrays/stored_columns.hpp"
 #include "modebank/base/error.hpp"
 
@@ -41,8 +42,8 @@ std::string type_name(const matvar_t& v) {
 
 /// The product of the extents; as many as fit where it overflows.
 std::uint64_t elements(const matvar_t& v) {
-  std::uint64_t product = v.rank > 0 ? 1 : 0;
-  for (int i = 0; i < v.rank; ++i)
+  std::uint64_t product = v.rank > 0 && v.dims ? 1 : 0;
+  for (int i = 0; product > 0 && i < v.rank; ++i)
     if (__builtin_mul_overflow(product, v.dims[i], &product)) return ~std::uint64_t{0};
   return product;
 }
@@ -112,10 +113,11 @@ class MatWalk {
     const unsigned field_count = Mat_VarGetNumberOfFields(const_cast<matvar_t*>(&v));
     if (depth > deepest_group || count == 0 || count > most_columns || field_count > most_columns) return;
     char* const* names = Mat_VarGetStructFieldnames(&v);
+    if (!names || !v.data) return;
     for (std::size_t e = 0; e < count; ++e)
       for (unsigned f = 0; f < field_count; ++f) {
         const matvar_t* field = Mat_VarGetStructFieldByIndex(const_cast<matvar_t*>(&v), f, e);
-        if (!field) continue;
+        if (!field || !names[f]) continue;
         MatPlace inner = place;
         inner.steps.push_back({names[f], e});
         part(*field, count == 1 ? path : fmt::format("{}[{}]", path, e), names[f], inner, depth + 1);
@@ -132,6 +134,7 @@ class MatWalk {
 class MatColumns : public ColumnStore {
  public:
   explicit MatColumns(const std::filesystem::path& path) : path_(path.string()) {
+    check_mat(path);
     const MatFile file = open_mat(path_);
     MatWalk walk(std::filesystem::file_size(path));
     try {

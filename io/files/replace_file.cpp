@@ -20,13 +20,20 @@ namespace fs = std::filesystem;
 
 std::string system_reason() { return std::generic_category().message(errno); }
 
+/// A folder that would take a file if its disk did.
+struct DiskFailure : DataError {
+  using DataError::DataError;
+};
+
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 /// An open descriptor; close() reports what the destructor cannot.
 class Descriptor {
  public:
   Descriptor(const fs::path& path, int flags) : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) throw DataError(system_reason());
+    if (descriptor_ >= 0) return;
+    if (is_disk_failure({errno, std::generic_category()})) throw DiskFailure(system_reason());
+    throw DataError(system_reason());
   }
   ~Descriptor() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -95,6 +102,12 @@ fs::path final_target(const fs::path& path) {
   throw DataError("'" + path.string() + "' is a symbolic link that leads back to itself");
 }
 
+bool is_disk_failure(const std::error_code& error) {
+  for (const std::errc code : {std::errc::no_space_on_device, std::errc::io_error, std::errc::file_too_large})
+    if (error == code) return true;
+  return error == std::error_code(EDQUOT, std::generic_category());
+}
+
 namespace {
 
 /// What stands in the way before anything is made; empty when nothing does.
@@ -129,6 +142,8 @@ TemporaryFile make_temporary(const fs::path& path) {
   tidy_once(folder_of(path));
   try {
     return TemporaryFile(path);
+  } catch (const DiskFailure&) {
+    throw;
   } catch (const DataError& obstacle) {
     throw DataError("the folder '" + folder_of(path).string() + "' is not writable: " + obstacle.what());
   }
@@ -141,6 +156,8 @@ std::string write_obstacle(const fs::path& path) {
     const fs::path target = final_target(path);
     if (std::string obstacle = seen_obstacle(target); !obstacle.empty()) return obstacle;
     make_temporary(target);  // and gone again
+  } catch (const DiskFailure& failure) {
+    throw DataError("cannot write " + path.string() + ": " + failure.what());
   } catch (const DataError& obstacle) {
     return obstacle.what();
   }

@@ -5,11 +5,15 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace modebank {
 
+/// Whether a disk is full or broken: nobody's mistake in what was asked for.
+bool is_disk_failure(const std::error_code& error);
+
 /// Why `path` cannot become a regular file of ours: its folder is missing or not writable, or something that is not a
-/// regular file has the name. Empty when nothing stands in the way.
+/// regular file has the name. Empty when nothing stands in the way. Throws DataError when the disk fails.
 std::string write_obstacle(const std::filesystem::path& path);
 
 /// What is written when `path` is: where its symbolic links lead, though nothing need be there. Throws DataError when

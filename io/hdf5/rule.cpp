@@ -7,8 +7,8 @@
 #include <optional>
 #include <sstream>
 
-#include "ident/base/characters.hpp"
 #include "ident/base/covariance.hpp"
+#include "ident/base/printable.hpp"
 
 namespace modebank {
 
@@ -122,7 +122,7 @@ template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const
 
 std::string broken_text(const std::vector<std::string>& texts, bool whole) {
   for (const std::string& text : texts)
-    if (const std::string shown = printable(text, whole); shown != text)
+    if (const std::string shown = whole ? printable(text) : printable_name(text); shown != text)
       return "holds the text \"" + shown + "\", which has control characters";
   return {};
 }

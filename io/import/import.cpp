@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "ident/base/characters.hpp"
+#include "ident/base/printable.hpp"
 #include "ident/lag/choice.hpp"
 #include "io/files/run_names.hpp"
 #include "io/import/import_plan.hpp"
@@ -21,6 +21,7 @@
 #include "io/import/read_runs.hpp"
 #include "io/import/run_roles.hpp"
 #include "io/import/split.hpp"
+#include "io/import/value_check.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -42,6 +43,16 @@ std::vector<Channel> with_units(std::vector<Channel> channels, const std::vector
   return channels;
 }
 
+/// A terminal would obey them.
+void refuse_control_characters(const std::vector<Channel>& channels) {
+  for (const Channel& channel : channels)
+    if (const std::string text = channel.name + channel.unit; std::any_of(text.begin(), text.end(), is_control))
+      throw DataError(
+          fmt::format("the column \"{}\" (unit \"{}\") has a control character in its name or unit: rename "
+                      "it in the file",
+                      printable(channel.name), printable(channel.unit)));
+}
+
 /// What reading one plan gave, or how it failed: the failure of the first plan in order is the one reported.
 struct Outcome {
   FileContent content;
@@ -52,8 +63,11 @@ Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_
   Outcome outcome;
   try {
     outcome.content = read_runs(plan, options);
-    for (RunStreams& run : outcome.content.runs)
+    for (RunStreams& run : outcome.content.runs) {
+      check_values(run, options);
+      for (std::string& text : run.label.text) text = printable_name(text);
       if (!as_they_stand) put_in_order(run, options.disorder);
+    }
   } catch (...) {
     outcome.error = std::current_exception();
   }
@@ -159,26 +173,6 @@ LagReport find_lags(const std::vector<RunStreams>& streams, const DataOptions& o
 
 }  // namespace
 
-namespace {
-
-/// They are printed, and stored where readers refuse them.
-void check_printable(const std::string& what, const std::string& text) {
-  if (const std::string shown = printable(text); shown != text)
-    throw DataError(fmt::format("{} \"{}\" holds control characters", what, shown));
-}
-
-void check_printable(const ImportedData& data) {
-  for (const auto* channels : {&data.recording.states, &data.recording.inputs})
-    for (const Channel& channel : *channels) {
-      check_printable("the column", channel.name);
-      check_printable("the unit", channel.unit);
-    }
-  if (data.labels)
-    for (const std::string& label : data.labels->names) check_printable("the label", label);
-}
-
-}  // namespace
-
 ImportedData import_data(const DataOptions& options, const MemoryTables* memory) {
   ImportedData data;
   check_units("state", options.state, options.state_unit);
@@ -186,7 +180,10 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory)
   const std::vector<FilePlan> plans = plan_import(options, memory);
   data.recording.states = with_units(plans.front().states, options.state_unit);
   data.recording.inputs = with_units(plans.front().inputs, options.input_unit);
+  refuse_control_characters(data.recording.states);
+  refuse_control_characters(data.recording.inputs);
   std::vector<RunStreams> streams = named_streams(plans, options, data, false);
+  for (std::string& line : dominating_values(streams, options)) data.notes.push_back(std::move(line));
   if (options.lag_auto) data.lag = find_lags(streams, options);
   auto& runs = data.recording.runs;
   Quanta quanta(options);
@@ -204,7 +201,6 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory)
   check_run_names(run_names(runs));
   if (!options.label.empty()) data.labels = labels.of(runs);
   data.recording.quantum = quanta.decide(data.recording, data.notes);
-  check_printable(data);
   return data;
 }
 
@@ -213,6 +209,8 @@ std::vector<RunStreams> read_streams(const DataOptions& options) {
   DataOptions lenient = options;
   lenient.disorder = Disorder::sort;  // of streams that several tables make up; one table's stays as it is
   std::vector<FilePlan> plans = plan_import(lenient);
+  refuse_control_characters(plans.front().states);
+  refuse_control_characters(plans.front().inputs);
   for (FilePlan& plan : plans)
     for (SourcePlan& source : plan.sources) {
       source.request.may_miss.assign(source.request.numbers.size(), true);

@@ -70,7 +70,9 @@ class StagingFolder {
     if (!error) fs::create_directory(path_, error);
     if (!error) return;
     remove();
-    throw ConfigurationError(fmt::format("cannot make folder {}: {}", target.string(), error.message()));
+    const std::string what = fmt::format("cannot make folder {}: {}", target.string(), error.message());
+    if (is_disk_failure(error)) throw DataError(what);
+    throw ConfigurationError(what);
   }
   ~StagingFolder() { remove(); }
   StagingFolder(const StagingFolder&) = delete;
@@ -96,6 +98,40 @@ void check_targets(const fs::path& folder, const std::vector<std::string>& names
       throw ConfigurationError(fmt::format("cannot write {}: it is not a regular file", (folder / name).string()));
 }
 
+/// Moves the files to their places. What was there is kept beside them until all are moved, and put back when one
+/// cannot be.
+void move_all(const fs::path& from, const fs::path& to, const std::vector<std::string>& names) {
+  const auto kept = [&](const std::string& name) { return from / (name + ".before"); };
+  std::size_t moved = 0;
+  try {
+    for (; moved < names.size(); ++moved) {
+      const std::string& name = names[moved];
+      if (fs::exists(to / name)) fs::copy_file(to / name, kept(name));
+      fs::rename(from / name, to / name);
+    }
+  } catch (const fs::filesystem_error& error) {
+    std::error_code ignored;
+    while (moved-- > 0) {
+      if (fs::exists(kept(names[moved]), ignored))
+        fs::rename(kept(names[moved]), to / names[moved], ignored);
+      else
+        fs::remove(to / names[moved], ignored);
+    }
+    throw DataError(fmt::format("cannot write {}: {}", (error.path2().empty() ? to : error.path2()).string(),
+                                error.code().message()));
+  }
+}
+
+/// A file of the staging folder, under the name it will have.
+void write_staged(const fs::path& staging, const fs::path& folder, const std::string& name, const std::string& text) {
+  try {
+    replace_file(staging / name, {text});
+  } catch (const DataError& error) {
+    const std::string why = error.what();
+    throw DataError(fmt::format("cannot write {}: {}", (folder / name).string(), why.substr(why.rfind(": ") + 2)));
+  }
+}
+
 }  // namespace
 
 void check_column_names(const std::vector<std::string>& names) {
@@ -114,14 +150,10 @@ void write_simulation_files(const fs::path& folder, std::size_t runs,
   check_targets(folder, all);
   for (std::size_t i = 0; i < runs; ++i) {
     const SimulationTables tables = tables_of(i);
-    replace_file(staging.path() / inputs[i], {csv_text(tables.inputs)});
-    replace_file(staging.path() / states[i], {csv_text(tables.states)});
+    write_staged(staging.path(), folder, inputs[i], csv_text(tables.inputs));
+    write_staged(staging.path(), folder, states[i], csv_text(tables.states));
   }
-  try {
-    for (const std::string& name : all) fs::rename(staging.path() / name, folder / name);
-  } catch (const fs::filesystem_error& error) {
-    throw DataError(fmt::format("cannot write {}: {}", folder.string(), error.code().message()));
-  }
+  move_all(staging.path(), folder, all);
 }
 
 }  // namespace modebank

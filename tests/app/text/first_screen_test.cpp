@@ -102,7 +102,7 @@ TEST(FirstScreen, ItsTermsHaveAMeaning) {
        {"evidence", "mode",      "bank",       "drifting",      "competitor",    "nats",   "held-out",
         "step",     "used",      "stay",       "decay/sample",  "time constant", "period", "steady gain",
         "band",     "95 % band", "calibrated", "overconfident", "RMSE",          "+-"})
-    EXPECT_FALSE(app::meaning_of(term).empty()) << term;
+    EXPECT_FALSE(app::help_on(term).empty()) << term;
 }
 
 struct NextStep : testing::Test {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
-#include <fstream>
 
 #include "modebank/base/error.hpp"
 #include "tests/io/arrays/mat_writer.hpp"
@@ -96,35 +95,6 @@ TEST_P(MatFiles, NameSignalsOfSimulinksStructureWithTime) {
   EXPECT_THAT(numbers(*store, "scope.wheel speed"), ElementsAre(1, 2, 3));
   EXPECT_THAT(numbers(*store, "scope.pose[1]"), ElementsAre(4, 5, 6));
   for (const StoredColumn& column : store->columns()) EXPECT_EQ(column.group, "scope");
-}
-
-TEST_P(MatFiles, AreRefusedOrReadWholeWhenDamaged) {
-  {
-    MatWriter all = writer();
-    for (const char* name : {"t", "x"}) {
-      std::vector<double> values(200);
-      for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i * i % 97);
-      all.write(MatWriter::matrix(name, values, 200));
-    }
-  }
-  std::ifstream in(file, std::ios::binary);
-  const std::string whole((std::istreambuf_iterator<char>(in)), {});
-  const auto try_all = [&](const std::string& content) {
-    test::write_file(file, content);
-    try {
-      const auto store = open();
-      for (std::size_t i = 0; i < store->columns().size(); ++i)
-        EXPECT_EQ(store->numbers(i).size(), store->columns()[i].rows);
-    } catch (const DataError&) {
-    } catch (const ConfigurationError&) {
-    }
-  };
-  for (std::size_t cut = 0; cut < whole.size(); cut += whole.size() / 40 + 1) try_all(whole.substr(0, cut));
-  for (std::size_t at = 4; at < whole.size(); at += whole.size() / 150 + 1) {
-    std::string flipped = whole;
-    flipped[at] = static_cast<char>(flipped[at] ^ 0x41);
-    try_all(flipped);
-  }
 }
 
 TEST(MatObjects, AreNamedWithTheLineThatConvertsThem) {
