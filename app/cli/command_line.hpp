@@ -36,9 +36,8 @@ struct CommandLine {
   std::string form = "increment";  ///< of models that `show` prints: increment or full
   std::string
       output;  ///< -o: the file that `report`, `predict`, `init`, `export` or `check --apply` writes, demo's folder
-  ExportLine exported;             ///< of `export` alone
-  std::vector<std::string> given;  ///< names of the options above that were typed, "output" for -o
-  std::string typed;               ///< the whole line, for provenance
+  ExportLine exported;  ///< of `export` alone
+  std::string typed;    ///< the whole line, for provenance
 };
 
 /// Throws ConfigurationError for an unknown option (naming the nearest known one), one without its value and one that

@@ -190,15 +190,14 @@ TEST_F(Robustness, P8WhatACommandDoesNotReadIsRefused) {
     EXPECT_EQ(result.status, 2) << option;
     EXPECT_THAT(result.err, AllOf(HasSubstr(words.front() + " does not read " + option + ";"), HasSubstr(known)));
   };
-  refuses({"identify", config(), "--bank.stay", "0.9"}, "--bank.stay", "its sections are data, window, archive, job");
-  refuses({"simulate", config(), "--window.length", "9"}, "--window.length", "its sections are data, simulate, job");
-  refuses({"show", "none.h5", "--filter.variant", "imm"}, "--filter.variant", "its sections are none");
-  refuses({"verify", "none.h5", "--track.level", "0.9"}, "--track.level", "none");
-  refuses({"run", config(), "-o", "x.h5"}, "-o", "its options are --force");
+  refuses({"identify", config(), "--bank.stay", "0.9"}, "--bank.stay", "--data.*, --window.*, --archive.*, --job.*");
+  refuses({"simulate", config(), "--window.length", "9"}, "--window.length", "--simulate.*");
+  refuses({"show", "none.h5", "--filter.variant", "imm"}, "--filter.variant", "--json, --form");
+  refuses({"verify", "none.h5", "--track.level", "0.9"}, "--track.level", "--repair");
+  refuses({"run", config(), "-o", "x.h5"}, "--output", "--force");
   refuses({"run", config(), "--repair"}, "--repair", "--force");
-  refuses({"track", "none.h5", "--json"}, "--json", "its options are none but keys");
-  refuses({"show", "none.h5", "--samples", "9"}, "--samples", "--json, --form");
-  refuses({"report", "none.h5", "--to", "c"}, "--to", "-o");
+  refuses({"track", "none.h5", "--json"}, "--json", "--track.*");
+  refuses({"report", "none.h5", "--to", "c"}, "--to", "--output");
 }
 
 }  // namespace
