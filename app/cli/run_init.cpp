@@ -7,6 +7,7 @@
 #include "app/config/option_table.hpp"
 #include "app/init/proposal.hpp"
 #include "app/init/survey_text.hpp"
+#include "ident/base/printable.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
@@ -36,13 +37,13 @@ int run_init(const CommandLine& line) {
   check_target(target, line.force);
   std::vector<SurveyedFile> surveyed;
   for (const FileSet& set : sets) surveyed.push_back(survey_file(set.files.front()));
-  fmt::print("{}", survey_text(sets, surveyed));
+  fmt::print("{}", printable(survey_text(sets, surveyed)));
   const std::filesystem::path folder = std::filesystem::absolute(target).lexically_normal().parent_path();
   Proposal proposal = propose(sets, surveyed, guess_roles(surveyed), folder.string());
   std::erase_if(proposal.keys, [](const ProposedKey& key) { return find_option("data." + key.key) == nullptr; });
   const std::string text = configuration_text(proposal, line.typed);
   replace_file(target, {text});
-  fmt::print("\n{}:\n{}\n", target, text);
+  fmt::print("\n{}:\n{}\n", target, printable(text));
   const std::string archive = std::filesystem::path(target).stem().string() + ".h5";
   fmt::print("next: modebank run {}\nthen: modebank report {}\n", target, archive);
   return 0;

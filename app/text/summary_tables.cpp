@@ -58,9 +58,9 @@ std::string scores_text(const Archive& archive, int width) {
   for (const SummaryRow& row : archive.summary)
     if (row.run == "*")
       table.add({row.filter, std::string(name_of(row.role)), std::to_string(row.samples),
-                 fixed_or_short(row.log_score, 4), fixed_or_short_list(row.rmse, 5), share(row.coverage_95),
-                 share(row.too_far), share(row.too_close), tails(row.nis_above, row.nis_below),
-                 fixed_or_short(row.nis_mean, 3), fmt::format("{:.2g}", row.whiteness_p)});
+                 fixed_or_short(row.log_score, 4), size_list(row.rmse, 5), share(row.coverage_95), share(row.too_far),
+                 share(row.too_close), tails(row.nis_above, row.nis_below), fixed_or_short(row.nis_mean, 3),
+                 fmt::format("{:.2g}", row.whiteness_p)});
   return table.text(width) +
          "A true filter has 95 % of the samples in its 95 % band, 2.5 % too far from its prediction and 2.5 % too "
          "close\n"
