@@ -4,10 +4,12 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <utility>
 #include <vector>
 
 #include "ident/data/trajectory.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -44,6 +46,7 @@ class Grid {
   /// Leaves out what lies in the long gaps of a stream whose sample at s acts at acts_at(s).
   template <class ActsAt>
   void skip_gaps(const VectorXd& stream_s, ActsAt acts_at) {
+    samples_ = std::max(samples_, stream_s.size());
     if (stream_s.size() < 2) return;
     const double longest = std::max(gap_periods * median_period_s(stream_s), longest_gap / rate_hz_);
     for (Index k = 1; k < stream_s.size(); ++k)
@@ -63,6 +66,7 @@ class Grid {
         k = std::max(k, std::floor((gaps_[gap].second - first_) * rate_hz_));
       else
         times.push_back(time);
+      if (std::ssize(times) > std::max(most_times, most_per_sample * samples_)) refuse(times.back());
     }
     return VectorXd::Map(times.data(), std::ssize(times));
   }
@@ -70,8 +74,19 @@ class Grid {
  private:
   static constexpr double rounding = 1e-6;  // of a period: keeps an end that k / rate_hz just misses
   static constexpr double longest_gap = 1000.0, margin = 100.0;  // periods; filters start anew after 50 of the model's
+  /// A grid is finer than its streams by less: their times count something else than seconds, or the rate is wrong.
+  static constexpr Index most_times = 1'000'000, most_per_sample = 1000;
   double first_, end_, rate_hz_;
+  Index samples_ = 0;  ///< of the longest stream
   std::vector<std::pair<double, double>> gaps_;
+
+  [[noreturn]] void refuse(double time) const {
+    std::ostringstream what;
+    what << "a rate of " << rate_hz_ << " Hz makes more than " << most_per_sample << " times of every sample, of which "
+         << samples_ << " lie from " << first_ << " s to " << end_ << " s (" << time
+         << " s is the last that was made): is the unit of the times right?";
+    throw DataError(what.str());
+  }
 };
 
 VectorXd times_within(const VectorXd& time_s, double first, double end) {

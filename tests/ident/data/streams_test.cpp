@@ -4,6 +4,7 @@
 
 #include "io/files/read_file.hpp"
 #include "io/import/csv.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/support/matrix_compare.hpp"
 #include "tests/support/paths.hpp"
 
@@ -92,6 +93,12 @@ TEST(JointTimes, UniformGridFromTheFirstCommonTime) {
 TEST(JointTimes, UniformGridKeepsItsEnd) {
   const VectorXd time_s = VectorXd::LinSpaced(101, 0, 100) / 6.5;
   EXPECT_TRUE(test::near(joint_times(time_s, time_s, {6.5, 0}), time_s, time_tolerance_s));
+}
+
+/// Stamps in another unit than they are said to be in: memory for the grid would not be there.
+TEST(JointTimes, NoGridIsFarFinerThanItsStreams) {
+  const VectorXd time_s = vector({0, 1e9, 2e9, 3e9});
+  EXPECT_THROW(joint_times(time_s, time_s, {1000, 0}), DataError);
 }
 
 }  // namespace
