@@ -71,7 +71,7 @@ namespace {
 
 /// Weights and means with their standard errors, where a bootstrap made some.
 std::string component_errors_text(const MixtureResult& mixture, int width) {
-  if (mixture.weights_standard_error.size() == 0) return "";
+  if (mixture.weights_standard_error.size() == 0 || mixture.means_standard_error.size() == 0) return "";
   std::vector<TextTable::Column> columns{{"K", 4}, {"weight", 16}};
   for (const std::string& name : mixture.feature_names) columns.push_back({name, 18});
   TextTable table(std::move(columns));
@@ -214,7 +214,8 @@ std::string modes_text(const Archive& archive, bool full_form, int width) {
     if (full_form) model.A.diagonal().array() += 1.0;
     const Eigen::VectorXd theta = pack(bank.structure, model);
     std::vector<std::string> cells{mode_cell(names, k), fmt::format("{:.3f}", mode.weight)};
-    for (Index i = 0; i < theta.size(); ++i) cells.push_back(estimate(theta(i), mode.standard_error(i)));
+    for (Index i = 0; i < theta.size(); ++i)
+      cells.push_back(estimate(theta(i), mode.standard_error.size() > 0 ? mode.standard_error(i) : NAN));
     cells.push_back(fmt::format("{:.4g}", fmt::join(mode.Q.diagonal().cwiseSqrt().eval(), " ")));
     table.add(std::move(cells));
   }
