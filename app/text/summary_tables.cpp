@@ -71,7 +71,7 @@ namespace {
 
 /// Weights and means with their standard errors, where a bootstrap made some.
 std::string component_errors_text(const MixtureResult& mixture, int width) {
-  if (mixture.weights_standard_error.size() == 0 || mixture.means_standard_error.size() == 0) return "";
+  if (mixture.weights_standard_error.size() == 0) return "";
   std::vector<TextTable::Column> columns{{"K", 4}, {"weight", 16}};
   for (const std::string& name : mixture.feature_names) columns.push_back({name, 18});
   TextTable table(std::move(columns));

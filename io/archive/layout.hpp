@@ -130,7 +130,12 @@ void exchange_mixture(Io& io, X& result, const Unit& parameters) {
   io.optional_field("noise_upper", result.mixture.noise.upper, {"F"}, features, rule::finite);
   io.field("labels", result.labels, {"M"}, {}, rule::position_or_none("K"));
   io.through_rows("responsibilities", result.responsibilities, {"M", "K"}, rule::share_or_missing);
-  if constexpr (Io::reads) io.finish([&] { check_mixture(result); });
+  if constexpr (Io::reads)
+    io.finish([&] {
+      check_mixture(result);
+      check_together("weights_standard_error and means_standard_error",
+                     {result.weights_standard_error.size(), result.means_standard_error.size()});
+    });
 }
 
 template <class Io, class A>

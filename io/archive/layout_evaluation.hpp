@@ -40,6 +40,11 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.optional_field("smoothed_state", evaluation.smoothed_state, {"N", "n"}, states);
   io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"N", "n", "n"}, outer(states));
   io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"N"}, {}, rule::position_or_none("K"));
+  if constexpr (Io::reads)
+    io.finish([&] {
+      check_together("smoothed_state and smoothed_covariance",
+                     {evaluation.smoothed_state.size(), evaluation.smoothed_covariance.size()});
+    });
 }
 
 template <class Io, class F>
@@ -49,6 +54,11 @@ void exchange_free_run(Io& io, F& run, const Unit& states) {
   io.optional_field("free_run_lower", run.lower, {"N", "n_y"}, states);
   io.optional_field("free_run_upper", run.upper, {"N", "n_y"}, states);
   io.optional_field("free_run_mode", run.mode, {"N"}, {}, rule::position_or_none("K"));
+  if constexpr (Io::reads)
+    io.finish([&] {
+      check_together("free_run_mean, free_run_sd, free_run_lower and free_run_upper",
+                     {run.mean.size(), run.deviation.size(), run.lower.size(), run.upper.size()});
+    });
 }
 
 /// One filter's evaluation of every run of the recording.

@@ -76,6 +76,12 @@ std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, 
   return covariances;
 }
 
+void check_together(const char* what, std::initializer_list<Eigen::Index> sizes) {
+  const auto missing = std::count(sizes.begin(), sizes.end(), 0);
+  if (missing != 0 && missing != static_cast<std::ptrdiff_t>(sizes.size()))
+    throw DataError(std::string("one of ") + what + " is missing");
+}
+
 void check_mixture(const MixtureResult& result) {
   constexpr double sum_tolerance = 1e-6;
   const GaussianMixture& mixture = result.mixture;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, 
 
 // What arrays that were read one by one must be together; each throws DataError.
 void check_mixture(const MixtureResult& result);
+
+/// The members of these sizes, which may be missing, are all there or none is.
+void check_together(const char* what, std::initializer_list<Eigen::Index> sizes);
 /// Tables speak of runs that are there and of filters that are known.
 void check_score_names(const Archive& archive);
 

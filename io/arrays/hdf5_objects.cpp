@@ -148,7 +148,9 @@ void check_chunks(hid_t dataset, hid_t made, const Shape& chunk, hsize_t element
                                          : H5Pget_filter2(made, static_cast<unsigned>(filters - 1), &flags, &values,
                                                           nullptr, 0, nullptr, &config);
   const Handle space(H5Dget_space(dataset), H5Sclose, "read a shape");
-  hsize_t count = 0;
+  hsize_t count = 0, file_bytes = 0;
+  const Handle file(H5Iget_file_id(dataset), H5Fclose, "look at the file");
+  hdf5::check(H5Fget_filesize(file.id(), &file_bytes), "measure the file");
   hdf5::check(H5Dget_num_chunks(dataset, space.id(), &count), "count its chunks");
   for (hsize_t i = 0; i < count; ++i) {
     Shape offset(chunk.size());
@@ -156,6 +158,7 @@ void check_chunks(hid_t dataset, hid_t made, const Shape& chunk, hsize_t element
     haddr_t at = 0;
     hsize_t stored = 0;
     hdf5::check(H5Dget_chunk_info(dataset, space.id(), i, offset.data(), &mask, &at, &stored), "look at a chunk");
+    if (stored > file_bytes) throw DataError("declares chunks larger than the file");
     hsize_t unpacked = stored;
     if (mask == 0 && last == H5Z_FILTER_DEFLATE) {
       std::string packed(stored, '\0');

@@ -80,7 +80,7 @@ void Hdf5Walk::dataset(hid_t id, const std::string& path, const std::string& gro
   const Handle type(H5Dget_type(id), H5Tclose, "read the type of '" + path + "'");
   const Shape shape = hdf5_shape(id);
   if (made == "char") return note_label(id, full, shape);
-  if (H5Tget_class(type.id()) == H5T_REFERENCE && made.empty() && depth > 0)
+  if (H5Tget_class(type.id()) == H5T_REFERENCE && made.empty() && depth > 0 && depth < deepest_group)
     return struct_array(id, type.id(), shape, group_name, name, depth);
   if (!made.empty() && made != "logical" && !hdf5_is_number(type.id())) return;
   StoredColumn column{group_name, name, hdf5_type_name(type.id()), hdf5_unit(id)};

@@ -110,13 +110,15 @@ class Elements {
     if (room == 0) return;  // a field that holds nothing
     if (depth > deepest) fail("its structs are nested too deeply");
     const Part flags = part(room);
-    if (flags.bytes < tag_bytes) fail("a matrix does not say what it is");
+    if (flags.type != flags_type || flags.bytes != tag_bytes) fail("a matrix does not say what it is");
     const std::uint32_t word = value(flags), kind = word & 0xff;
     const bool is_complex = (word & 0x800) != 0;
     rest(flags, 4);
     if (kind == opaque) return bytes_.skip(room);
     const std::uint64_t count = extents(part(room));
-    name(part(room));
+    const Part called = part(room);
+    if (depth > 0 && called.bytes > 0) fail("a part of a struct or cell has a name of its own");
+    name(called);
     if (kind == object) name(part(room));
     if (kind == cell) return matrices(count, room, depth);
     if (kind == structure || kind == object) return fields(count, room, depth);
@@ -143,6 +145,7 @@ class Elements {
   static constexpr std::uint32_t matrix_type = 14, compressed_type = 15;
 
  private:
+  static constexpr std::uint32_t extents_type = 5, flags_type = 6;  // numbers of 4 bytes, with a sign and without
   enum Kind : std::uint32_t {
     cell = 1,
     structure = 2,
@@ -155,6 +158,7 @@ class Elements {
 
   /// One part of a matrix: so many bytes, and what fills the last eight; small ones stand in their tag.
   struct Part {
+    std::uint32_t type = 0;
     std::uint64_t bytes = 0, padding = 0;
     std::array<char, 4> small{};
     bool is_small = false;
@@ -175,11 +179,13 @@ class Elements {
     const std::uint32_t first = whole(bytes_, swapped_);
     if (first >> 16 != 0) {
       result.is_small = true;
+      result.type = first & 0xffff;
       result.bytes = first >> 16;
       if (result.bytes > result.small.size()) fail("a small part is too large");
       bytes_.read(result.small.data(), result.small.size());
       return result;
     }
+    result.type = first;
     result.bytes = whole(bytes_, swapped_);
     result.padding = (tag_bytes - result.bytes % tag_bytes) % tag_bytes;
     take(room, result.bytes);
@@ -202,7 +208,8 @@ class Elements {
 
   std::uint64_t extents(const Part& of) {
     constexpr std::uint64_t most_extents = 32;
-    if (of.is_small || of.bytes < 8 || of.bytes % 4 != 0 || of.bytes / 4 > most_extents) fail("a matrix has no shape");
+    if (of.type != extents_type || of.is_small || of.bytes < 8 || of.bytes % 4 != 0 || of.bytes / 4 > most_extents)
+      fail("a matrix has no shape");
     std::uint64_t count = 1;
     for (std::uint64_t i = 0; i < of.bytes / 4; ++i) {
       const std::uint32_t extent = whole(bytes_, swapped_);
@@ -219,7 +226,7 @@ class Elements {
 
   void fields(std::uint64_t count, std::uint64_t room, int depth) {
     const Part length = part(room);
-    if (length.bytes < 4) fail("a struct does not tell its fields");
+    if (length.type != extents_type || length.bytes != 4) fail("a struct does not tell its fields");
     const std::uint32_t longest = value(length);
     rest(length, 4);
     const Part names = part(room);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "io/hdf5/links.hpp"
+#include "io/hdf5/read_driver.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::hdf5 {
@@ -82,10 +83,9 @@ Quiet::~Quiet() {
 Handle open_file(const std::string& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the file access");
   check(H5Pset_file_locking(access.id(), false, true), "switch file locking off");
+  check(H5Pset_driver(access.id(), read_driver(), nullptr), "prepare the file access");
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id());
-  if (file >= 0) return {file, H5Fclose, "open the file"};
-  // HDF5 locks a file one way: as another part of the process (h5py) does that has it open.
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open the file"};
+  return {file, H5Fclose, "open the file"};
 }
 
 Handle open_group(hid_t parent, const std::string& name) {

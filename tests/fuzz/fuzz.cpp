@@ -4,6 +4,7 @@
 // Runs readers of the program in process under mutated inputs. --seconds: by the clock, for all targets together;
 // --count: inputs of each; --part: this share of each target's whole campaign. With files: those, as they are.
 #include <fmt/format.h>
+#include <hdf5.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -132,6 +133,7 @@ int main(int argc, char** argv) {
   // Memory where there is some: most targets write a file per input.
   if (std::filesystem::is_directory("/dev/shm")) setenv("TMPDIR", "/dev/shm", 0);
   spdlog::set_level(spdlog::level::off);
+  H5dont_atexit();  // what the mutators cannot close of files that they broke is no reader's fault
   try {
     const test::TemporaryFolder folder;
     fuzz::set_scratch_folder(folder.path());
