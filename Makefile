@@ -196,7 +196,7 @@ coverage: packages-build packages-test
 	ctest --preset coverage -j $(JOBS)
 
 # README's picture: a held-out run of the demo.
-picture: demo
+picture: build
 	build/modebank demo -o $(DEMO) --data.label mode
 	/usr/bin/python3 docs/pictures/demo.py $(DEMO)/demo.h5 > docs/pictures/demo.svg
 

@@ -20,7 +20,7 @@ author = "the authors of modebank"
 copyright = author
 
 extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx.ext.autodoc", "sphinxcontrib.bibtex", "sphinxcontrib.programoutput", "breathe",
-              "program"]
+              "program", "made"]
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 4
 highlight_language = "none"  # of blocks that name no language

@@ -32,8 +32,10 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
     wanted_[index_of(Stage::data)] = data_key;
   };
   want();
-  if (last >= Stage::lag_counts) refuse_constant_states(*archive_.recording);
-  if (last >= Stage::lag_counts) count_lags(inputs_.lag_counts);
+  if (last >= Stage::lag_counts) {
+    refuse_constant_states(*archive_.recording);
+    count_lags(inputs_.lag_counts);
+  }
   if (archive_.lag_counts) {
     inputs_ = chain_inputs(with_lag_counts(options, *archive_.lag_counts));
     want();

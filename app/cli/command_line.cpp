@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <boost/algorithm/string.hpp>
 #include <boost/program_options.hpp>
+#include <cstdlib>
+#include <filesystem>
 
 #include "app/cli/command_table.hpp"
 #include "app/config/config_file.hpp"
@@ -50,8 +53,22 @@ po::options_description describe_options(CommandLine& line) {
   return description;
 }
 
-std::string shell_quoted(const std::string& word) {
-  return word.find_first_of(" \t*|'\"#$&;()<>") == std::string::npos ? word : "'" + word + "'";
+/// Whether the shell finds this program by the name alone.
+bool is_in_path(const std::filesystem::path& program) {
+  const char* const path = std::getenv("PATH");
+  std::vector<std::string> folders;
+  boost::split(folders, path == nullptr ? std::string() : std::string(path), boost::is_any_of(":"));
+  for (const std::string& folder : folders) {
+    std::error_code absent;
+    const std::filesystem::path candidate = std::filesystem::path(folder) / program.filename();
+    if (std::filesystem::exists(candidate, absent)) return std::filesystem::equivalent(candidate, program, absent);
+  }
+  return false;
+}
+
+std::string program_as_called(const std::string& typed) {
+  const bool by_name = typed.find('/') == std::string::npos || is_in_path(typed);
+  return by_name ? std::filesystem::path(typed).filename().string() : shell_quoted(typed);
 }
 
 bool takes_a_value(const po::options_description& description, const std::string& word) {
@@ -95,9 +112,14 @@ std::vector<std::string> joined_values(int argc, const char* const* argv, const 
 
 }  // namespace
 
+std::string shell_quoted(const std::string& word) {
+  return word.find_first_of(" \t*|'\"#$&;()<>") == std::string::npos ? word : "'" + word + "'";
+}
+
 CommandLine parse_command_line(int argc, const char* const* argv) {
   CommandLine line;
   for (int i = 0; i < argc; ++i) line.typed += (i ? " " : "") + shell_quoted(argv[i]);
+  line.program = program_as_called(argc > 0 ? argv[0] : "modebank");
   const po::options_description description = describe_options(line);
   po::positional_options_description positional;
   positional.add("words", -1);

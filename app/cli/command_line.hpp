@@ -32,13 +32,17 @@ struct CommandLine {
   bool findings = false;           ///< check: what it finds, without settings to try
   bool apply = false;              ///< check: write what it suggests
   bool force = false;              ///< write though something speaks against it (init, demo, export)
-  bool yes = false;                ///< init: ask nothing (it never does)
+  bool yes = false;                ///< init: ask nothing
   std::string form = "increment";  ///< of models that `show` prints: increment or full
   std::string
       output;  ///< -o: the file that `report`, `predict`, `init`, `export` or `check --apply` writes, demo's folder
   ExportLine exported;  ///< of `export` alone
   std::string typed;    ///< the whole line, for provenance
+  std::string program;  ///< as the user has to call it: modebank where the shell finds it, else its path
 };
+
+/// A word as a shell takes it.
+std::string shell_quoted(const std::string& word);
 
 /// Throws ConfigurationError for an unknown option (naming the nearest known one), one without its value and one that
 /// the command does not read.

@@ -38,7 +38,9 @@ std::vector<Command> commands_to_start() {
        "states and inputs are guessed, each guess with its reason beside it.",
        "modebank init robot.bag",
        {},
-       {output("FILE", "the configuration (named after the log)"), force("overwrite FILE"), {"yes", "", "ask nothing"}},
+       {output("FILE", "the configuration (named after the log)"),
+        force("overwrite FILE"),
+        {"yes", "", "ask nothing; without it a terminal is asked whether state and inputs are right"}},
        run_init},
       {"Start",
        "check",
@@ -140,7 +142,9 @@ std::vector<Command> commands_to_use() {
        "track",
        "ARCHIVE",
        "live filter: samples in on standard input, estimates out, line by line",
-       "",
+       "Lines in: a header with the time and the archive's states and inputs (or JSON objects of these names), then a "
+       "sample each; a state that was not measured stays empty. Lines out: the estimate, its interval, the modes' "
+       "probabilities, the prediction for the next sample, an alarm.",
        "modebank track robot.h5 < log.csv",
        {"data", "filter", "track", "job"},
        {},
@@ -149,7 +153,8 @@ std::vector<Command> commands_to_use() {
        "predict",
        "ARCHIVE",
        "free run: a few measured samples, then inputs only",
-       "",
+       "Files need the archive's columns; states after the first samples may be missing. Out comes, per sample and "
+       "state, the prediction with its standard deviation and 95 % band, and the most probable mode.",
        "modebank predict robot.h5 --data.inputs plan.csv --samples 10",
        {"data", "filter", "track.filter", "job"},
        {{"samples", "N", "measured samples at the start, short for --filter.simulate"},
@@ -161,7 +166,9 @@ std::vector<Command> commands_to_use() {
        "export",
        "ARCHIVE --to FORM",
        "the bank for other programs: json, mat, c, casadi, ros2, or a table as csv",
-       "Refused where the verdict on its uncertainty is overconfident or underconfident.",
+       "Every form is x[k+1] = A x[k] + B u[k] + c: json one page; mat for MATLAB and Octave; c a C99 filter without "
+       "heap; casadi Python text for MPC; ros2 parameter files, one per mode. Refused where the verdict on its "
+       "uncertainty is overconfident or underconfident.",
        "modebank export robot.h5 --to c -o tracker.c",
        {"track.filter"},
        {{"to", "FORM", "json, mat, c, casadi, ros2 or csv"},

@@ -82,7 +82,7 @@ std::vector<std::string> options_for(const std::string& command, const CommandLi
 
 /// The command as a user would type it, to be learned and repeated.
 CommandLine typed_command(const CommandLine& demo, const std::vector<std::string>& words) {
-  std::vector<std::string> all{"modebank"};
+  std::vector<std::string> all{demo.program};
   all.insert(all.end(), words.begin(), words.end());
   const std::vector<std::string> options = options_for(words.front(), demo);
   all.insert(all.end(), options.begin(), options.end());
@@ -114,8 +114,8 @@ int run_demo(const CommandLine& line) {
   replace_file(demo.configuration(), {assets::demo_ini()});
   if (const int status = run_typed(simulate, run_simulate); status != 0) return status;
   if (const int status = run_typed(run, run_pipeline); status != 0) return status;
-  fmt::print("Look inside: modebank show {0}\nA page of it: modebank report {0} -o demo.html\n",
-             demo.archive().string());
+  fmt::print("Look inside: {0} show {1}\nA page of it: {0} report {1} -o demo.html\n", line.program,
+             shell_quoted(demo.archive().string()));
   return 0;
 }
 

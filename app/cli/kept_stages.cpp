@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "ident/base/printable.hpp"
 #include "io/archive/archive.hpp"
 
 namespace modebank::app {
@@ -17,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double worth_a_file_s = 1.0;
+constexpr std::array signals{SIGINT, SIGTERM};
 
 /// What a signal handler may print: made beforehand, since it may not allocate.
 std::array<char, 4096> kept_message;
@@ -35,13 +37,21 @@ void set_message(const std::string& text) {
   kept_size = size;
 }
 
+void tell_kept(const fs::path& folder) {
+  set_message(fmt::format(
+      "\nmodebank: stopped; finished stages that took long are kept in {}: the same command goes on from there\n",
+      printable(folder.string())));
+}
+
 }  // namespace
 
 KeptStages::KeptStages(const fs::path& output)
     : folder_(output.parent_path() / fmt::format(".{}.stages", output.filename().string())) {
   set_message("\nmodebank: stopped; no stage that took long was finished, so nothing is kept\n");
-  std::signal(SIGINT, say_what_is_kept);
-  std::signal(SIGTERM, say_what_is_kept);
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    before_[i] = std::signal(signals[i], say_what_is_kept);
+    if (before_[i] == SIG_IGN) std::signal(signals[i], SIG_IGN);  // as nohup and a shell's background jobs ask for
+  }
 }
 
 void KeptStages::provide(Stage stage, const std::string& key, const StagePart& part) {
@@ -58,6 +68,7 @@ bool KeptStages::load(const fs::path& file, const StagePart& part) const {
   if (!fs::is_regular_file(file, error)) return false;
   try {
     part.take(read_archive(file));
+    tell_kept(folder_);
     spdlog::info("{}: taken from a run that was stopped", file.string());
     return true;
   } catch (const std::exception& damage) {
@@ -70,15 +81,14 @@ void KeptStages::store(const fs::path& file, const StagePart& part) const {
   try {
     fs::create_directory(folder_);
     write_archive(file, part.copy());
-    set_message(fmt::format(
-        "\nmodebank: stopped; the stages that were finished are kept in {}: the same command goes on from there\n",
-        folder_.string()));
+    tell_kept(folder_);
   } catch (const std::exception& obstacle) {  // it would have saved time, nothing else
     spdlog::debug("{}", obstacle.what());
   }
 }
 
 KeptStages::~KeptStages() {
+  for (std::size_t i = 0; i < signals.size(); ++i) std::signal(signals[i], before_[i]);
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error))
     if (entry.path().extension() == ".h5") fs::remove(entry.path(), error);

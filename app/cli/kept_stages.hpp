@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 
@@ -13,19 +14,19 @@ class KeptStages : public StageSource {
  public:
   /// From now on Ctrl-C says what is kept.
   explicit KeptStages(const std::filesystem::path& output);
-  /// Nothing is left of a run that ended, well or by an error.
+  /// Nothing is left of a run that ended, well or by an error; signals do what they did before.
   ~KeptStages() override;
   KeptStages(const KeptStages&) = delete;
   KeptStages& operator=(const KeptStages&) = delete;
 
   void provide(Stage stage, const std::string& key, const StagePart& part) override;
 
-
  private:
   bool load(const std::filesystem::path& file, const StagePart& part) const;
   void store(const std::filesystem::path& file, const StagePart& part) const;
 
   std::filesystem::path folder_;
+  std::array<void (*)(int), 2> before_{};  ///< what SIGINT and SIGTERM did
 };
 
 }  // namespace modebank::app

@@ -9,7 +9,6 @@
 
 #include "app/cli/command_line.hpp"
 #include "app/cli/commands.hpp"
-#include "app/cli/log.hpp"
 #include "ident/base/printable.hpp"
 #include "io/files/standard_error.hpp"
 #include "modebank/base/error.hpp"
@@ -32,7 +31,6 @@ int fail_to_print(const std::string& reason) {
 
 int main(int argc, char** argv) {
   modebank::occupy_standard_streams();
-  modebank::app::set_up_log(modebank::app::Verbosity::normal);
   try {
     const int status = modebank::app::run_command(modebank::app::parse_command_line(argc, argv));
     // A full disk or a closed pipe must not pass for success.

@@ -35,8 +35,8 @@ void check_target(const CommandLine& line, const Config& config) {
   if (!line.apply) return;
   if (const std::string obstacle = write_obstacle(line.output); !obstacle.empty())
     throw ConfigurationError("-o: " + obstacle);
-  std::vector<std::filesystem::path> sources = data_files(config.data);
-  sources.emplace_back(line.files.front());
+  std::vector<std::filesystem::path> sources{line.files.front()};
+  for (const DataFile& file : data_files(config.data)) sources.push_back(file.path);
   for (const std::filesystem::path& source : sources) {
     std::error_code absent;
     if (std::filesystem::equivalent(source, line.output, absent))

@@ -18,23 +18,53 @@ std::vector<std::string> command_names() {
   return names;
 }
 
-std::vector<std::string> options_of(const Command& command) {
-  std::vector<std::string> names;
-  for (const std::vector<CommandOption>* list : {&command.options, &common_options()})
-    for (const CommandOption& option : *list) names.push_back("--" + option.long_name());
+/// What may follow a command: its options and the keys that it reads.
+struct Word {
+  std::string name;  ///< without dashes
+  std::string help;
+  bool takes_value = false;
+  std::vector<std::string> choices = {};  ///< of the value; empty: not words
+};
+
+std::vector<Word> options_in(const std::vector<CommandOption>& options) {
+  std::vector<Word> words;
+  for (const CommandOption& option : options)
+    words.push_back({option.long_name(), option.help, !option.argument.empty()});
+  return words;
+}
+
+std::vector<Word> keys_of(const Command& command) {
+  std::vector<Word> words;
   for (const Option& option : option_table())
-    if (command.reads(option.key)) names.push_back("--" + option.key);
-  return names;
+    if (command.reads(option.key)) words.push_back({option.key, option.help, true, option.choices()});
+  return words;
+}
+
+/// The command's own options, those that all have, its keys.
+std::vector<Word> words_after(const Command& command) {
+  std::vector<Word> all = options_in(command.options);
+  for (const std::vector<Word>& more : {options_in(common_options()), keys_of(command)})
+    all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+/// A branch of a script for each key whose value is one of some words. `action` has {} where these stand.
+std::string value_branches(fmt::format_string<std::string> action) {
+  std::string text;
+  for (const Option& option : option_table())
+    if (const auto choices = option.choices(); !choices.empty())
+      text += fmt::format("    --{}) {}; return ;;\n", option.key,
+                          fmt::format(action, fmt::format("{}", fmt::join(choices, " "))));
+  return text;
 }
 
 std::string bash_script() {
-  std::string options, values;
-  for (const Command& command : command_table())
-    options += fmt::format("    {}) words=\"{}\" ;;\n", command.name, fmt::join(options_of(command), " "));
-  for (const Option& option : option_table())
-    if (const auto words = option.choices(); !words.empty())
-      values += fmt::format("    --{}) COMPREPLY=($(compgen -W \"{}\" -- \"$current\")); return ;;\n", option.key,
-                            fmt::join(words, " "));
+  std::string options;
+  for (const Command& command : command_table()) {
+    options += fmt::format("    {}) words=\"", command.name);
+    for (const Word& word : words_after(command)) options += (options.back() == '"' ? "--" : " --") + word.name;
+    options += "\" ;;\n";
+  }
   return fmt::format(R"(# completion of modebank for bash
 _modebank() {{
   local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}} words=
@@ -53,7 +83,8 @@ _modebank() {{
 }}
 complete -o filenames -o bashdefault -F _modebank modebank
 )",
-                     fmt::join(command_names(), " "), values, options);
+                     fmt::join(command_names(), " "),
+                     value_branches("COMPREPLY=($(compgen -W \"{}\" -- \"$current\"))"), options);
 }
 
 /// In single quotes of zsh and fish, for a description.
@@ -71,17 +102,10 @@ std::string zsh_script() {
   for (const Command& command : command_table()) {
     commands += fmt::format("    '{}:{}'\n", command.name, quoted(command.summary));
     options += fmt::format("    {})\n      options=(", command.name);
-    for (const std::vector<CommandOption>* list : {&command.options, &common_options()})
-      for (const CommandOption& option : *list)
-        options += fmt::format("\n        '--{}:{}'", option.long_name(), quoted(option.help));
-    for (const Option& option : option_table())
-      if (command.reads(option.key)) options += fmt::format("\n        '--{}:{}'", option.key, quoted(option.help));
+    for (const Word& word : words_after(command))
+      options += fmt::format("\n        '--{}:{}'", word.name, quoted(word.help));
     options += ") ;;\n";
   }
-  std::string values;
-  for (const Option& option : option_table())
-    if (const auto words = option.choices(); !words.empty())
-      values += fmt::format("    --{}) compadd -- {}; return ;;\n", option.key, fmt::join(words, " "));
   return fmt::format(R"(#compdef modebank
 # completion of modebank for zsh
 _modebank() {{
@@ -104,9 +128,14 @@ _modebank() {{
 {2}  esac
   _describe -t options option options
 }}
-compdef _modebank modebank
+# Loaded by its name at the first completion, or sourced.
+if [ "$funcstack[1]" = _modebank ]; then
+  _modebank "$@"
+else
+  compdef _modebank modebank
+fi
 )",
-                     commands, values, options);
+                     commands, value_branches("compadd -- {}"), options);
 }
 
 std::string fish_script() {
@@ -115,15 +144,11 @@ std::string fish_script() {
     text += fmt::format("complete -c modebank -n __fish_use_subcommand -f -a {} -d '{}'\n", command.name,
                         quoted(command.summary));
     const std::string within = fmt::format("complete -c modebank -n '__fish_seen_subcommand_from {}'", command.name);
-    for (const CommandOption& option : command.options)
-      text += fmt::format("{} -l {}{} -d '{}'\n", within, option.long_name(), option.argument.empty() ? "" : " -r",
-                          quoted(option.help));
-    for (const Option& option : option_table()) {
-      if (!command.reads(option.key)) continue;
-      const auto words = option.choices();
-      text += fmt::format("{} -l {} -r{} -d '{}'\n", within, option.key,
-                          words.empty() ? "" : fmt::format(" -f -a '{}'", fmt::join(words, " ")), quoted(option.help));
-    }
+    for (const std::vector<Word>& words : {options_in(command.options), keys_of(command)})
+      for (const Word& word : words)
+        text += fmt::format("{} -l {}{}{} -d '{}'\n", within, word.name, word.takes_value ? " -r" : "",
+                            word.choices.empty() ? "" : fmt::format(" -f -a '{}'", fmt::join(word.choices, " ")),
+                            quoted(word.help));
   }
   for (const CommandOption& option : common_options())
     text += fmt::format("complete -c modebank -l {} -d '{}'\n", option.long_name(), quoted(option.help));

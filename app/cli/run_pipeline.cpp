@@ -131,7 +131,8 @@ std::string execute(const CommandLine& line, const Config& config, StageSource& 
                                          : chain.judge_stored(banks, options, execution);
   write_archive(config.archive.output, archive);
   if (has_first_screen(archive))
-    return first_screen(archive, resolved_values(archive.config), config.archive.output, standard_output().width);
+    return first_screen(archive, resolved_values(archive.config), config.archive.output, standard_output().width,
+                        line.program);
   return summary_text(archive) + free_run_text(archive) + archive_line(config);
 }
 

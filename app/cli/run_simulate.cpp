@@ -52,11 +52,22 @@ VehicleSimulationOptions vehicle_of(const Config& config) {
   return vehicle;
 }
 
+/// As many as there are kinds, or none.
+const std::vector<std::string>& grounds_of(const SimulateConfig& options) {
+  const std::size_t kinds = options.vehicle.friction.size();
+  if (!options.ground_names.empty() && options.ground_names.size() != kinds)
+    throw ConfigurationError(
+        fmt::format("simulate.ground_names has {} names for {} kinds of ground (simulate.friction)",
+                    options.ground_names.size(), kinds));
+  return options.ground_names;
+}
+
 void simulate_system(const Config& config) {
   const DataOptions& data = config.data;
   const SimulateConfig& options = config.simulate;
   if (options.kind == SimulatedSystem::vehicle)
-    write_simulation(simulate_vehicle(vehicle_of(config), config.job.seed), {options.output, data.state, data.input});
+    write_simulation(simulate_vehicle(vehicle_of(config), config.job.seed),
+                     {options.output, data.state, data.input, grounds_of(options)});
   else
     write_simulation(simulate(system_of(config), config.job.seed),
                      {options.output, data.state, data.input, options.state_rate_hz});

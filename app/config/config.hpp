@@ -62,6 +62,7 @@ struct SimulateConfig {
   SimulationOptions system;          ///< the linear system; commands, runs and outliers also of the vehicle
   VehicleSimulationOptions vehicle;  ///< what only a vehicle has
   std::string output = "simulated";
+  std::vector<std::string> ground_names;  ///< of a vehicle's kinds of ground
   double rate_hz = 6.5;
   double state_rate_hz = 65.0;
 };

@@ -10,10 +10,6 @@ import re
 import subprocess
 from xml.etree import ElementTree
 
-from docutils import nodes
-from docutils.parsers.rst import directives
-from sphinx.util.docutils import SphinxDirective
-
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("MODEBANK_BUILD", ROOT / "build"))
 
@@ -44,10 +40,22 @@ def key_rows():
 
 
 def command_rows():
-    """(name, arguments, help), in the program's order."""
-    listed = ask("help").split("\nCommands\n", 1)[1].split("\n\n", 1)[0]
-    for name, arguments, text in re.findall(r"^  (\w+) ((?:(?:\[?--?\w+|\[?[A-Z][A-Z|.\]]+) )*) *(.+)$", listed, re.M):
-        yield name, arguments.strip(), text
+    """(group, name), in the program's order."""
+    group = ""
+    for line in ask("help").split("\nEvery command has\n", 1)[0].splitlines()[1:]:
+        if line and not line.startswith(" "):
+            group = line
+        elif named := re.match(r"  (\w+)  ", line):
+            yield group, named[1]
+
+
+def basic_keys():
+    """Keys that most users set: in the schema that editors are given."""
+    def marked(node):
+        return isinstance(node, dict) and (node.get("x-basic", False) or any(marked(part) for part in node.get("oneOf", [])))
+
+    sections = json.loads(ask("config", "--schema"))["properties"]
+    return {f"{section}.{name}" for section, content in sections.items() for name, key in content["properties"].items() if marked(key)}
 
 
 def terms():
@@ -60,21 +68,25 @@ def plain(text):
 
 
 def keys_page():
-    lines, section = [], None
+    lines, section, basic = [], None, basic_keys()
     for key, allowed, unit, default, text in key_rows():
         if key.split(".")[0] != section:
             section = key.split(".")[0]
             lines += [f"## {section}", "", SECTIONS.get(section, ""), ""]
         facts = f"allowed: {plain(allowed)}" + (f"; unit: {plain(unit)}" if unit else "")
         facts += f"; default: `{default}`" if default else "; default: empty"
+        facts += "; **basic**" if key in basic else ""
         lines += [f"````{{confval}} {key}", plain(text[:1].upper() + text[1:]) + ".", "", f"*{facts}*", "````", ""]
     return "\n".join(lines)
 
 
 def commands_page():
-    lines = []
-    for name, arguments, text in command_rows():
-        lines += [f"````{{command}} {name} {arguments}".rstrip(), plain(text[:1].upper() + text[1:]) + ".", "````", ""]
+    lines, heading = [], None
+    for group, name in command_rows():
+        if group != heading:
+            heading = group
+            lines += [f"## {group}", ""]
+        lines += [f"````{{command}} {name}", "```text", ask("help", name).rstrip(), "```", "````", ""]
     return "\n".join(lines)
 
 
@@ -164,29 +176,7 @@ def name_of(env, signature, node):
     return signature.split(" ")[0]
 
 
-class Made(SphinxDirective):
-    """How a table was made; check_results.py says what stands in it."""
-
-    required_arguments = 1
-    final_argument_whitespace = True
-    has_content = False
-    option_spec = dict.fromkeys(("revision", "date", "machine", "reads", "data", "hash", "data_hash", "older"), directives.unchanged)
-
-    def run(self):
-        given = self.options
-        text = f"Made by ``{self.arguments[0]}``; revision {given['revision']}, {given['date']}, {given['machine']}"
-        text += f"; hash {given.get('hash', 'none')}" + (f", data {given['data_hash']}" if "data_hash" in given else "") + "."
-        line = nodes.paragraph("", "", classes=["made"])
-        for part, piece in enumerate(text.split("``")):
-            line += nodes.literal(piece, piece) if part % 2 else nodes.Text(piece)
-        if "older" in given:
-            note = f" Not of this version: {given['older']}."
-            line += nodes.emphasis(note, note)
-        return [line]
-
-
 def setup(app):
-    app.add_directive("made", Made)
     app.add_object_type("confval", "confval", objname="key", indextemplate="pair: %s; key")
     app.add_object_type("command", "command", objname="command", indextemplate="pair: %s; command", parse_node=name_of)
     app.connect("source-read", list_others)

@@ -50,6 +50,12 @@ Eigen::MatrixXd matrix_of(const json& stored) {
   return matrix;
 }
 
+Eigen::VectorXd vector_of(const json& stored) {
+  const Eigen::MatrixXd matrix = matrix_of(stored);
+  if (matrix.cols() != 1) throw std::invalid_argument("a vector has one column");
+  return matrix;
+}
+
 json to_json(const std::vector<Eigen::MatrixXd>& matrices) {
   json list = json::array();
   for (const Eigen::MatrixXd& matrix : matrices) list.push_back(to_json(matrix));

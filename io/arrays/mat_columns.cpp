@@ -174,13 +174,18 @@ class MatColumns : public ColumnStore {
     throw ConfigurationError(fmt::format("{}: no column of numbers of two rows or more{}", path_, why));
   }
 
+  /// Whether so many elements were read: a damaged file may declare more.
+  static bool holds(const matvar_t& part, std::uint64_t count) {
+    return part.data && part.data_size > 0 && part.nbytes / static_cast<std::size_t>(part.data_size) >= count;
+  }
+
   std::string text_at(const MatPlace& place) const {
     const MatFile file = open_mat(path_);
     const Variable v(Mat_VarRead(file.get(), place.variable.c_str()));
     const matvar_t* part = v ? follow(v.get(), place.steps) : nullptr;
     std::string text;
     constexpr std::uint64_t longest = 200;
-    if (!part || !part->data || elements(*part) > longest) return text;
+    if (!part || elements(*part) > longest || !holds(*part, elements(*part))) return text;
     for (std::uint64_t i = 0; i < elements(*part); ++i) {
       const auto* bytes = static_cast<const unsigned char*>(part->data) + i * static_cast<std::size_t>(part->data_size);
       text += bytes[0] >= 32 && bytes[0] < 127 ? static_cast<char>(bytes[0]) : '_';
@@ -195,8 +200,7 @@ class MatColumns : public ColumnStore {
     const Variable v(Mat_VarRead(file.get(), place.variable.c_str()));
     const matvar_t* part = v ? follow(v.get(), place.steps) : nullptr;
     const auto rows = static_cast<std::size_t>(columns_[column].rows);
-    if (!part || !part->data || !is_number(*part) || elements(*part) < place.first + rows ||
-        part->nbytes < (place.first + rows) * static_cast<std::size_t>(part->data_size))
+    if (!part || !is_number(*part) || elements(*part) < place.first + rows || !holds(*part, place.first + rows))
       throw DataError(fmt::format("{}: column {} cannot be read: the file is damaged", path_, columns_[column].path()));
     return converted<T>(*part, place.first, rows);
   }

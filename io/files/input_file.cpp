@@ -1,7 +1,5 @@
 #include "io/files/input_file.hpp"
 
-#include <algorithm>
-
 #include "ident/base/printable.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
@@ -9,26 +7,7 @@
 
 namespace modebank {
 
-namespace {
-
-/// The files of a folder, by name.
-InputFile describe_folder(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.is_regular_file()) paths.push_back(entry.path());
-  std::sort(paths.begin(), paths.end());
-  std::vector<InputFile> files;
-  InputFile whole{printable_name(std::filesystem::absolute(folder).string()), 0, {}};
-  for (const auto& path : paths) whole.bytes += files.emplace_back(describe_file(path)).bytes;
-  whole.sha256 = data_hash(files);
-  return whole;
-}
-
-}  // namespace
-
 InputFile describe_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) return describe_folder(path);
   constexpr std::size_t block_bytes = 1 << 18;
   std::ifstream stream = open_file(path);
   stream.rdbuf()->pubsetbuf(nullptr, 0);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <climits>
@@ -14,6 +13,8 @@
 #include <iterator>
 #include <string>
 #include <vector>
+
+#include "ident/base/characters.hpp"
 
 namespace modebank {
 
@@ -26,9 +27,8 @@ constexpr std::string_view suffix = ".tmp";
 
 /// What may stand in a part of a name: the separator, slashes and blanks may not.
 std::string plain(std::string text) {
-  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '.'; };
   std::replace_if(
-      text.begin(), text.end(), [&](char c) { return !fits(static_cast<unsigned char>(c)); }, '_');
+      text.begin(), text.end(), [](char c) { return !is_letter(c) && !is_digit(c) && c != '-' && c != '.'; }, '_');
   return text;
 }
 
@@ -54,7 +54,7 @@ std::string process_space() {
   std::error_code error;
   const std::string link = fs::read_symlink("/proc/self/ns/pid", error).string();
   std::string digits;
-  std::copy_if(link.begin(), link.end(), std::back_inserter(digits), [](char c) { return c >= '0' && c <= '9'; });
+  std::copy_if(link.begin(), link.end(), std::back_inserter(digits), is_digit);
   return digits;
 }
 

@@ -84,8 +84,7 @@ Handle open_file(const std::string& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the file access");
   check(H5Pset_file_locking(access.id(), false, true), "switch file locking off");
   check(H5Pset_driver(access.id(), read_driver(), nullptr), "prepare the file access");
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id());
-  return {file, H5Fclose, "open the file"};
+  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, "open the file"};
 }
 
 Handle open_group(hid_t parent, const std::string& name) {

@@ -76,7 +76,7 @@ H5FD_class_t description() {
   driver.close = close_file;
   driver.cmp = compare;
   driver.query = [](const H5FD_t*, unsigned long* features) -> herr_t {
-    if (features) *features = 0;
+    if (features) *features = H5FD_FEAT_DATA_SIEVE;  // of raw data alone; metadata are not gathered
     return 0;
   };
   driver.get_eoa = [](const H5FD_t* file, H5FD_mem_t) { return ours(file).end; };

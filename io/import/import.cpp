@@ -199,7 +199,10 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory)
   }
   sort_by_name(runs);
   check_run_names(run_names(runs));
-  if (!options.label.empty()) data.labels = labels.of(runs);
+  if (!options.label.empty()) {
+    data.labels = labels.of(runs);
+    check_labels(options.label, *data.labels, data.notes);
+  }
   data.recording.quantum = quanta.decide(data.recording, data.notes);
   return data;
 }
@@ -219,9 +222,17 @@ std::vector<RunStreams> read_streams(const DataOptions& options) {
   return named_streams(plans, lenient, unused, true);
 }
 
-std::vector<std::filesystem::path> data_files(const DataOptions& options) {
-  std::vector<std::filesystem::path> files;
-  for (const FilePlan& plan : plan_import(options)) files.insert(files.end(), plan.paths.begin(), plan.paths.end());
+std::vector<DataFile> data_files(const DataOptions& options) {
+  std::vector<DataFile> files;
+  for (const FilePlan& plan : plan_import(options))
+    for (std::size_t path = 0; path < plan.paths.size(); ++path) {
+      DataFile& file = files.emplace_back(DataFile{plan.paths[path]});
+      const auto requests = plan.requests_of(path).requests;
+      const std::vector<TableInfo> tables = plan.readers[path]->tables();
+      for (const TableRequest& request : requests) file.tables.push_back(tables[request.table].name);
+      std::sort(file.tables.begin(), file.tables.end());
+      file.describe = [reader = plan.readers[path], requests] { return reader->describe(requests); };
+    }
   return files;
 }
 

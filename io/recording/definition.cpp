@@ -100,6 +100,11 @@ std::string full_name(std::string_view type, const std::string& package, Dialect
   return fmt::format("{}/{}", package, type);
 }
 
+std::string field_text(const Field& field) {
+  const std::string type = field.type ? field.type->name : fmt::format("{}", static_cast<int>(field.kind));
+  return fmt::format("  {} {} {} {}\n", type, static_cast<int>(field.many), field.count, field.name);
+}
+
 }  // namespace
 
 std::uint64_t bytes_of(Kind kind) {
@@ -134,6 +139,15 @@ std::map<std::string, std::string_view> split_definitions(const std::string& roo
 
 Schema::Schema(const std::string& root, Dialect dialect, const Lookup& lookup) : dialect_(dialect) {
   root_ = resolve(short_type(root), lookup, 0);
+}
+
+std::string Schema::text() const {
+  std::string text = fmt::format("ROS {}, {}\n", dialect_ == Dialect::ros1 ? 1 : 2, root_->name);
+  for (const auto& [name, type] : types_) {
+    text += name + "\n";
+    for (const Field& field : type->fields) text += field_text(field);
+  }
+  return text;
 }
 
 Field Schema::parse_field(std::string_view type, std::string_view name, const std::string& package,

@@ -33,9 +33,11 @@ std::string quoted(const std::string& name) {
 std::string csv_text(const SimulationTable& table) {
   std::string text;
   for (std::size_t i = 0; i < table.names.size(); ++i) text += (i == 0 ? "" : ",") + quoted(table.names[i]);
-  for (Eigen::Index k = 0; k < table.values.cols(); ++k)
+  for (Eigen::Index k = 0; k < table.values.cols(); ++k) {
     for (Eigen::Index i = 0; i < table.values.rows(); ++i)
       fmt::format_to(std::back_inserter(text), "{}{}", i == 0 ? '\n' : ',', table.values(i, k));
+    for (const auto& column : table.texts) text += "," + quoted(column[static_cast<std::size_t>(k)]);
+  }
   return text + "\n";
 }
 

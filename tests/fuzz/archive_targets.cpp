@@ -83,6 +83,7 @@ void use_archive(std::string_view bytes) {
     if (accepted) throw std::logic_error(fmt::format("verify accepts it, reading does not: {}", error.what()));
     throw;
   }
+  if (!accepted) throw std::logic_error("it is read, but verify does not accept it");
   shown(archive, file.string());
   app::stored_config(archive.config, {});
   if (chances.one_in(4)) inspect(file, "/").dump();

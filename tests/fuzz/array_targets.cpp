@@ -196,25 +196,15 @@ std::string hdf5_log(Random& random) {
   return bytes == seed || random.one_in(4) ? mutated_bytes(random, bytes) : bytes;
 }
 
-template <const char* Name>
-void read_arrays(std::string_view bytes) {
-  Random chances = chances_of(bytes);
-  const std::filesystem::path file = scratch_file(Name, bytes);
-  if (chances.one_in(6))
-    import_some(file, chances);
-  else
-    read_all_tables(file, chances);
-}
-
 constexpr char mat_name[] = "fuzz.mat", h5_name[] = "fuzz.h5";
 
 }  // namespace
 
 std::vector<Target> array_targets() {
   constexpr std::uint64_t inputs = 100'000;
-  return {{"mat4", inputs, mat4, read_arrays<mat_name>},
-          {"mat5", inputs, mat5, read_arrays<mat_name>},
-          {"hdf5", inputs, hdf5_log, read_arrays<h5_name>}};
+  return {{"mat4", inputs, mat4, read_as_file<mat_name>},
+          {"mat5", inputs, mat5, read_as_file<mat_name>},
+          {"hdf5", inputs, hdf5_log, read_as_file<h5_name>}};
 }
 
 }  // namespace modebank::fuzz

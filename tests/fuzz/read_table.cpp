@@ -33,9 +33,9 @@ TableRequest some_request(const TableInfo& table, std::size_t position, Random& 
       (request.time.nanoseconds.empty() && !request.time.column.empty() && chances.one_in(6) ? request.time.nanoseconds
                                                                                              : request.time.column) =
           column.name;
-    else if (is_text && request.text.empty())
-      request.text = column.name;
-    else if (!is_text)
+    else if (is_text)
+      request.texts.push_back(column.name);
+    else
       request.numbers.push_back(column.name);
   }
   request.time.unit = any_of<TimeUnit>(chances);
@@ -50,7 +50,8 @@ void check_rows(const Table& table, const TableRequest& request) {
   };
   must(table.numbers.size() == request.numbers.size(), "columns are missing");
   for (const auto& numbers : table.numbers) must(numbers.size() == table.rows(), "columns of different lengths");
-  must(request.text.empty() || table.text.size() == table.rows(), "text of another length");
+  must(table.texts.size() == request.texts.size(), "texts are missing");
+  for (const auto& texts : table.texts) must(texts.size() == table.rows(), "texts of different lengths");
   must(request.time.column.empty() || table.time_ns.size() == table.rows(), "times of another length");
 }
 
@@ -64,7 +65,7 @@ void read_all_tables(const std::filesystem::path& file, Random& chances) {
   const std::vector<TableInfo> tables = reader->tables();
   for (std::size_t t = 0; t < tables.size(); ++t) requests.push_back(some_request(tables[t], t, chances));
   InputFile described;
-  const std::vector<Table> read = reader->read(requests, described);
+  const std::vector<Table> read = reader->read(requests, &described);
   for (std::size_t t = 0; t < read.size(); ++t) check_rows(read[t], requests[t]);
 }
 

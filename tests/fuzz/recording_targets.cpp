@@ -10,16 +10,6 @@ namespace modebank::fuzz {
 
 namespace {
 
-template <const char* Name>
-void read_recording(std::string_view bytes) {
-  Random chances = chances_of(bytes);
-  const std::filesystem::path file = scratch_file(Name, bytes);
-  if (chances.one_in(6))
-    import_some(file, chances);
-  else
-    read_all_tables(file, chances);
-}
-
 constexpr char bag_name[] = "fuzz.bag", mcap_name[] = "fuzz.mcap", db3_name[] = "fuzz.db3";
 
 /// metadata.yaml of a folder whose two parts are there.
@@ -43,9 +33,9 @@ std::vector<Target> recording_targets() {
   const std::vector<std::string> yaml_tokens{
       "relative_file_paths:",  "- ", "a.mcap", "b.mcap", "../", "\"", "'", "files:", "path: ", "[a.mcap, b.mcap]", ":",
       "compression_mode: FILE"};
-  return {{"bag", million, some_bag, read_recording<bag_name>},
-          {"mcap", million, some_mcap, read_recording<mcap_name>},
-          {"db3", few, some_db3, read_recording<db3_name>},
+  return {{"bag", million, some_bag, read_as_file<bag_name>},
+          {"mcap", million, some_mcap, read_as_file<mcap_name>},
+          {"db3", few, some_db3, read_as_file<db3_name>},
           {"parts", few,
            [yaml_tokens](Random& random) {
              static const auto texts = corpus("parts");

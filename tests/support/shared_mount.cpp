@@ -86,6 +86,9 @@ int get_attributes(const char* path, struct stat* about, fuse_file_info* file) {
 
 int open_file(const char* path, fuse_file_info* file) {
   forget(path);
+  // The kernel knows files by their names here, and would mix pages of one that was replaced with those of the new one;
+  // a real network file system numbers files.
+  file->direct_io = (file->flags & O_ACCMODE) == O_RDONLY;
   const int descriptor = ::open(real(path).c_str(), file->flags & ~O_APPEND);  // the kernel says where to write
   if (descriptor < 0) return -errno;
   file->fh = static_cast<std::uint64_t>(descriptor);

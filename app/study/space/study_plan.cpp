@@ -31,7 +31,7 @@ class DataHashes {
     auto [known, fresh] = by_section_.try_emplace(section);
     if (fresh) {
       std::vector<InputFile> files;
-      for (const std::filesystem::path& path : data_files(config.data)) files.push_back(describe(path));
+      for (const DataFile& file : data_files(config.data)) files.push_back(describe(file));
       known->second = data_hash(files);
     }
     return known->second;
@@ -39,19 +39,19 @@ class DataHashes {
 
   std::vector<InputFile> files() const {
     std::vector<InputFile> all;
-    for (const auto& [path, file] : by_path_) all.push_back(file);
+    for (const auto& [use, file] : by_use_) all.push_back(file);
     return all;
   }
 
  private:
-  const InputFile& describe(const std::filesystem::path& path) {
-    auto [known, fresh] = by_path_.try_emplace(std::filesystem::absolute(path).string());
-    if (fresh) known->second = describe_file(path);
+  const InputFile& describe(const DataFile& file) {
+    auto [known, fresh] = by_use_.try_emplace({std::filesystem::absolute(file.path).string(), file.tables});
+    if (fresh) known->second = file.describe();
     return known->second;
   }
 
   std::map<std::string, std::string> by_section_;
-  std::map<std::string, InputFile> by_path_;
+  std::map<std::pair<std::string, std::vector<std::string>>, InputFile> by_use_;  // by path and tables
 };
 
 /// Small enough for every reader of the table, JavaScript's doubles included.

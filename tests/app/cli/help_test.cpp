@@ -97,6 +97,15 @@ TEST_F(Help, DryRunNamesFilesAndWritesNone) {
   EXPECT_TRUE(left_behind().empty());
 }
 
+/// Stages that come from an archive bring their data along.
+TEST_F(Help, DryRunOnAnArchivesStagesReadsTheArchive) {
+  write("out.h5", "is not opened");
+  const ProgramResult result = modebank({"cluster", config(), "--archive.input", archive(), "--dry-run"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("reads     " + archive()), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("run_00.csv"), std::string::npos) << result.out;
+}
+
 TEST_F(Help, BashCompletesCommandsOptionsKeysAndWords) {
   write("c.bash", modebank({"completion", "bash"}).out);
   const auto completed = [&](const std::string& words) {

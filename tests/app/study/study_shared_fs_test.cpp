@@ -92,9 +92,12 @@ class SharedFileSystems : public SharedFileSystem, public ::testing::WithParamIn
 /// Two machines begin at once; their clocks are twelve minutes apart.
 TEST_P(SharedFileSystems, TwoMachinesAtOnceLeaveTheTableOfOne) {
   const std::string numbers_expected = expected();
-  Process first(study_on({"n1", GetParam(), 300})), second(study_on({"n2", GetParam(), -420}));
-  EXPECT_EQ(first.wait(), 0);
-  EXPECT_EQ(second.wait(), 0);
+  ProgramResult first, second;
+  std::thread other([&] { second = run_program(study_on({"n2", GetParam(), -420})); });
+  first = run_program(study_on({"n1", GetParam(), 300}));
+  other.join();
+  EXPECT_EQ(first.status, 0) << first.out << first.err;
+  EXPECT_EQ(second.status, 0) << second.out << second.err;
   check(numbers_expected);
   for (const auto& entry : std::filesystem::recursive_directory_iterator(file(shared)))
     EXPECT_NE(entry.path().extension(), ".tmp") << entry.path();

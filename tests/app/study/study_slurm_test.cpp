@@ -60,8 +60,9 @@ TEST_F(StudySlurm, TableEqualsTheLocalOne) {
   const SlurmCluster cluster(3, 2);
   const ProgramResult submitted = study("slurm", {"--study.stage", "submit", "--study.slurm_tasks", "6"});
   ASSERT_EQ(submitted.status, 0) << submitted.err;
-  EXPECT_TRUE(std::regex_search(submitted.out, std::regex("sbatch --parsable --array=0-5 "))) << submitted.out;
-  EXPECT_TRUE(std::regex_search(submitted.out, std::regex("--dependency=afterany:[0-9]+ "))) << submitted.out;
+  EXPECT_TRUE(std::regex_search(submitted.out, std::regex("sbatch --parsable --job-name=run-slurm .*--array=0-5 ")))
+      << submitted.out;
+  EXPECT_TRUE(std::regex_search(submitted.out, std::regex("sbatch .*--dependency=afterany:[0-9]+ "))) << submitted.out;
   ASSERT_TRUE(settled(cluster, 60)) << cluster.queue();
   std::set<std::string> nodes;
   for (const Task& task : tasks_of(cluster)) {

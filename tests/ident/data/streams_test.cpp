@@ -20,7 +20,7 @@ constexpr double time_tolerance_s = 1e-12;  // sums and products of a few times
 
 Stream golden_stream(const char* name) {
   const std::string path = (test::golden_dir() / name).string();
-  const Table table = parse_csv(path, read_file(path), {0, {"time", "value"}, ""});
+  const Table table = parse_csv(path, read_file(path), {0, {"time", "value"}});
   const auto rows = static_cast<Eigen::Index>(table.rows());
   return {Eigen::Map<const VectorXd>(table.numbers[0].data(), rows),
           Eigen::Map<const VectorXd>(table.numbers[1].data(), rows).transpose()};
