@@ -12,6 +12,7 @@
 #include "app/config/valid_config.hpp"
 #include "app/text/lag_counts_text.hpp"
 #include "app/text/terminal.hpp"
+#include "ident/base/printable.hpp"
 #include "io/files/replace_file.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
@@ -72,7 +73,7 @@ nlohmann::json lag_counts_json(const LagCounts& found) {
 /// Findings come at once, suggestions when they are scored.
 Suggestions tell(const CommandLine& line, const Config& config, const DataCheck& check) {
   const std::vector<std::string> findings = findings_of(check, config);
-  if (!line.json) fmt::print("{}", check_text(check, findings));
+  if (!line.json) fmt::print("{}", printable(check_text(check, findings)));
   std::fflush(stdout);
   const bool usable = check.unusable.empty(), scored = usable && !line.findings;
   ChainOptions options = chain_options(config);
