@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
@@ -82,7 +83,10 @@ int run_show(const CommandLine& line) {
   const std::string path = line.files.size() == 2 ? line.files[1] : "/";
   json object = inspect(file, path);
   if (line.form == "full") convert_to_full_form(file, path, object);
-  fmt::print("{}\n", object.dump(2));
+  if (line.json)
+    print_json(line, object);
+  else
+    fmt::print("{}\n", object.dump(2));
   return 0;
 }
 
