@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
+.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
 
 all: build
 
@@ -80,6 +80,10 @@ evidence: build
 # How much is lost against the filter with the true parameters, on systems that are known; about three hours of a processor.
 systems: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_systems.py build/modebank
+
+# Time and memory of five million rows and of ten thousand runs, as docs/results/scale.md has them; ten minutes of two processors and 10 GB of disk.
+scale: build
+	/usr/bin/python3 tests/bench/scale.py build/modebank build/scale
 
 # Bias and stated uncertainty on rounded outputs, by their intervals and as they stand.
 quantised: build

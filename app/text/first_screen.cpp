@@ -56,6 +56,8 @@ std::string read_words(const Archive& archive) {
   if (!recording.inputs.empty()) text += fmt::format(" from {}", fmt::join(names_of(recording.inputs), ", "));
   if (archive.lag && archive.lag->correction != LagCorrection::none)
     text += fmt::format(", which act {:+.3f} s later", archive.lag->lag.mean);
+  if (archive.learned_transitions > 0)
+    text += fmt::format("; the bank learned {}", learned_words(archive.learned_transitions, steps));
   if (archive.lag_counts)
     text += fmt::format("; lags found: {} of the state, {} of the inputs", archive.lag_counts->state_lags,
                         archive.lag_counts->input_lags);

@@ -155,6 +155,7 @@ void exchange_archive(Io& io, A& archive) {
   exchange_part(io, "bank", archive.bank, {}, [&](auto& member, auto& part) {
     exchange_one(member, part);
     member.optional_attribute("measured_fit", archive.measured_fit);
+    member.attribute_unless(Index{0}, "learned_transitions", archive.learned_transitions);
     member.optional_attribute_texts("mode_names", archive.mode_names);
     exchange_part(member, "unrefined", archive.unrefined, {}, exchange_one);
     exchange_merging(member, archive.merging);
