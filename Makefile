@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture readme clean
+.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs
 
 all: build
 
@@ -65,11 +65,11 @@ FORCE:
 guards: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_guards.py build/modebank
 
-# Coverage of the stated 95 % regions, as the README's table has it.
+# Coverage of the stated 95 % regions, as docs/results/uncertainty.md has it.
 uncertainty: bench-programs
 	build/measure_coverage
 
-# How often the true number of modes is found, as the README's table has it.
+# How often the true number of modes is found, as docs/results/mixture.md has it.
 recovery: bench-programs
 	build/measure_recovery
 
@@ -85,6 +85,10 @@ systems: build
 scale: build
 	/usr/bin/python3 tests/bench/scale.py build/modebank build/scale
 
+# A robot's day through `modebank track`, killed every ten minutes of the log; docs/results/track.md.
+track-day: demo
+	/usr/bin/python3 tests/bench/track_day.py build/modebank $(DEMO)/demo.h5
+
 # Bias and stated uncertainty on rounded outputs, by their intervals and as they stand.
 quantised: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_quantised.py build/modebank
@@ -95,8 +99,20 @@ export-recovery: packages-build packages-test build/build.ninja
 	cmake --build --preset release -j $(JOBS) --target test_export_recovery
 	MODEBANK_EXPORT_SEEDS=1000 build/test_export_recovery
 
+# The how-to's commands and lost nodes on a real Slurm of three nodes (slurmctld, slurmd, munge), which the test starts and ends.
+slurm: packages-build packages-test build/build.ninja
+	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
+	cmake --build --preset release -j $(JOBS) --target test_study_survival
+	CI=true build/test_study_survival --gtest_filter='StudySlurm*'
+
+# Studies of several machines on a file system without locks, with caches and other clocks; 40 machines are lost. Root, for mounts.
+shared-fs: packages-build packages-test build/build.ninja
+	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
+	cmake --build --preset release -j $(JOBS) --target test_shared_fs
+	CI=true MODEBANK_SHARED_FS_ROUNDS=40 build/test_shared_fs
+
 # Everything CI runs beside `make test`.
-check: format lint shellcheck api tidy-changed seeds sanitize
+check: format lint shellcheck docs tidy-changed seeds sanitize
 
 format: packages-check
 	git ls-files '*.hpp' '*.cpp' '*.js' | xargs clang-format --dry-run --Werror
@@ -105,6 +121,22 @@ format: packages-check
 api: packages-check
 	@mkdir -p build/api
 	doxygen Doxyfile
+
+# The pages of docs/, build/docs/index.html: built offline, a warning is an error; and their spelling.
+docs: packages-docs build api
+	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
+	cmake --build --preset release -j $(JOBS) --target modebank_python
+	/usr/bin/python3 -m sphinx -q -E -a -W --keep-going -b html docs build/docs
+	/usr/bin/python3 docs/check_spelling.py README.md docs
+	/usr/bin/python3 docs/check_results.py $(if $(wildcard $(DATA)/.),--data $(DATA)) docs/results/*.md
+
+# What README and the tutorials print, run and compared; docs-update writes what is printed now into them.
+DATA := $(or $(MODEBANK_DATA),../shared/data)
+PAGES := README.md docs/tutorials/*.md
+docs-examples docs-update: packages-test build
+	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
+	cmake --build --preset release -j $(JOBS) --target modebank_python
+	/usr/bin/python3 tests/docs/examples.py $(if $(findstring update,$@),--update) --data $(DATA) build $(PAGES)
 
 # The pages' scripts. Debian's eslint is told where Debian's modules are: another node does not know.
 lint: packages-check
@@ -140,21 +172,41 @@ sanitize: packages-build packages-test
 	cmake --build --preset sanitize -j $(JOBS)
 	ctest --preset sanitize -j $(JOBS)
 
+# Every reader under mutated inputs, with sanitizers: ten minutes (FUZZ_SECONDS) with the day's seed. What it finds is kept in build/findings;
+# `sanitize` does the same for a minute.
+FUZZ_SECONDS ?= 600
+FUZZ_SEED ?= $(shell date +%Y%m%d)
+fuzz: fuzz-build
+	build/sanitize/fuzz all --seconds $(FUZZ_SECONDS) --seed $(FUZZ_SEED) --findings build/findings
+
+# As many inputs as docs/developing/fuzzing.md tells of, by number; hours.
+fuzz-campaign: fuzz-build
+	build/sanitize/fuzz all --part 1 --seed $(FUZZ_SEED) --findings build/findings
+
+fuzz-build: packages-build packages-test
+	cmake --preset sanitize >/dev/null
+	cmake --build --preset sanitize -j $(JOBS) --target fuzz
+	@mkdir -p build/findings
+
+# Every command on a disk that runs full at every one of its calls, of which `make test` takes a sample.
+faults: packages-build packages-test build/build.ninja
+	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
+	cmake --build --preset release -j $(JOBS) --target test_faults
+	MODEBANK_FAULTS=all build/test_faults
+
 coverage: packages-build packages-test
 	cmake --preset coverage >/dev/null
 	cmake --build --preset coverage -j $(JOBS)
 	ctest --preset coverage -j $(JOBS)
 
-# README's pictures: two figures of the demo's report.
-picture: demo packages-picture
-	build/modebank report $(DEMO)/demo.h5 --report.figures $(DEMO)/figures --report.png true
-	cp $(DEMO)/figures/local_models.png app/report/readme_local_models.png
-	cp $(DEMO)/figures/estimates.png app/report/readme_estimates.png
+# README's picture: a held-out run of the demo.
+picture: build
+	build/modebank demo -o $(DEMO) --data.label mode
+	/usr/bin/python3 docs/pictures/demo.py $(DEMO)/demo.h5 > docs/pictures/demo.svg
 
-# README's table of keys is what the program prints.
-readme: build
-	@build/modebank help --markdown > build/options.md
-	@sed -i -e '/<!-- options -->/,/<!-- end of options -->/{//!d}' -e '/<!-- options -->/r build/options.md' README.md
+# configs/reference.ini: every key at its default.
+reference-ini: build
+	/usr/bin/python3 docs/reference_ini.py > configs/reference.ini
 
 clean:
 	rm -rf build

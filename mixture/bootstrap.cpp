@@ -11,6 +11,7 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
 #include "mixture/detail/cloud.hpp"
+#include "mixture/detail/whole_loop.hpp"
 
 namespace modebank {
 
@@ -166,6 +167,7 @@ MixtureErrors bootstrap_runs(const PointSet& points, const std::vector<Index>& r
           fit.weights(own) > least ? Eigen::VectorXd(fit.means.col(own)) : Eigen::VectorXd::Constant(F, not_a_number);
     }
   });
+  require_whole_loop();
   // The variance of a mean of R resampled runs is (R - 1) / R of the unbiased one.
   const double unbiased = std::sqrt(static_cast<double>(runs.count) / static_cast<double>(runs.count - 1));
   MixtureErrors errors{unbiased * deviation(all.weights), Eigen::MatrixXd(F, K)};

@@ -10,6 +10,7 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
 #include "mixture/detail/cloud.hpp"
+#include "mixture/detail/whole_loop.hpp"
 
 namespace modebank {
 
@@ -84,6 +85,7 @@ HeldoutScore heldout_score(const PointSet& points, const std::vector<Index>& run
     score.sums(g) = weight.dot(density);
     score.weights(g) = weight.sum();
   });
+  require_whole_loop();
   return score;
 }
 

@@ -14,6 +14,7 @@
 #include "ident/base/seed.hpp"
 #include "mixture/bootstrap.hpp"
 #include "mixture/criteria.hpp"
+#include "mixture/detail/whole_loop.hpp"
 #include "mixture/heldout.hpp"
 #include "mixture/reduction.hpp"
 #include "modebank/base/error.hpp"
@@ -120,6 +121,7 @@ void for_each_from_the_largest(Index count, Do action) {
         for (Index i = range.begin(); i < range.end(); ++i) action(count - 1 - i);
       },
       tbb::simple_partitioner());
+  require_whole_loop();
 }
 
 bool wants_heldout(const Task& task) {

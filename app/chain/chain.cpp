@@ -5,6 +5,7 @@
 #include "app/chain/mode_names.hpp"
 #include "app/chain/model_rows.hpp"
 #include "app/chain/stored_banks.hpp"
+#include "app/chain/training_check.hpp"
 #include "io/import/import.hpp"
 
 namespace modebank {
@@ -33,7 +34,10 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
     wanted_[index_of(Stage::data)] = data_key;
   };
   want();
-  if (last >= Stage::lag_counts) count_lags(inputs_.lag_counts);
+  if (last >= Stage::lag_counts) {
+    refuse_constant_states(*archive_.recording);
+    count_lags(inputs_.lag_counts);
+  }
   if (archive_.lag_counts) {
     inputs_ = chain_inputs(with_lag_counts(options, *archive_.lag_counts));
     want();
@@ -55,6 +59,7 @@ void Chain::import(const DataInputs& inputs) {
   const auto compute = [&] {
     const Stopwatch watch;
     data_ = import_data(inputs.data, memory_);
+    archive_.provenance.data_hash = data_.data_hash;  // listeners may want to know which data they are
     for (const std::string& note : data_.notes) listener_.warning(note);
     archive_.recording = std::move(data_.recording);
     archive_.lag = std::move(data_.lag);
@@ -77,7 +82,7 @@ void Chain::import(const DataInputs& inputs) {
     archive_.lag = std::move(part.lag);
     archive_.labels = std::move(part.labels);
     data_.files = std::move(part.provenance.inputs);
-    data_.data_hash = std::move(part.provenance.data_hash);
+    archive_.provenance.data_hash = data_.data_hash = std::move(part.provenance.data_hash);
   };
   provide(Stage::data, {compute, copy, take});
 }
@@ -102,6 +107,8 @@ void Chain::count_lags(const std::optional<LagCountInputs>& inputs) {
 
 void Chain::identify_windows(const WindowInputs& inputs) {
   const auto compute = [&] {
+    if (const std::string open = open_effects(*archive_.recording, inputs.window); !open.empty())
+      listener_.warning(open);
     const Stopwatch watch;
     archive_.windows = identify(*archive_.recording, inputs);
     listener_.progress(fmt::format("windows: {} fitted in {:.2f} s", archive_.windows->count(), watch.seconds()));

@@ -94,7 +94,7 @@ std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& i
 
 void tell_of(const Refinement& refined, const Listener& listener) {
   for (const RefineCandidate& c : refined.candidates)
-    listener.progress(fmt::format(
+    listener.detail(fmt::format(
         "refine: {:<12} {:>3} modes, Q prior {}{}: {:.4f} nats/sample left out, {:.4f} +- {:.4f} below the best, after "
         "{} iterations{}",
         c.start, c.modes, c.noise_transitions,

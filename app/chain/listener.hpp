@@ -14,6 +14,8 @@ class Listener {
   virtual ~Listener() = default;
   /// One line on how it goes on.
   virtual void progress(const std::string&) const {}
+  /// One line on something that was tried on the way.
+  virtual void detail(const std::string&) const {}
   /// One line on what may need a look.
   virtual void warning(const std::string&) const {}
   /// The stage's result has come into the archive.

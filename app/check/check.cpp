@@ -11,6 +11,7 @@
 #include "ident/lag/choice.hpp"
 #include "io/import/import.hpp"
 #include "io/import/missing_values.hpp"
+#include "io/import/value_check.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -152,7 +153,8 @@ double median_of(std::vector<double> values) {
   return values.empty() ? 0.0 : median(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
 }
 
-/// Largest share of repeated values of a measured input. Commands are coarse; measurements take many values.
+/// Largest share of repeated values of a measured input; one that never changes has no rate. Commands are coarse;
+/// measurements take many values.
 double repeated_inputs(const Material& material) {
   double most = 0.0;
   for (Index i = 0; i < material.structure.inputs; ++i) {
@@ -160,7 +162,7 @@ double repeated_inputs(const Material& material) {
     for (const RunPair& run : material.ordered)
       if (run.role == Role::train) rows.push_back(run.inputs.values.row(i));
     const ChannelCheck values = check_channel(joined(rows));
-    if (values.quantum == 0.0) most = std::max(most, values.repeated);
+    if (values.quantum == 0.0 && values.levels > 1) most = std::max(most, values.repeated);
   }
   return most;
 }
@@ -202,8 +204,8 @@ std::string find_unusable(const DataCheck& check) {
     return fmt::format("the longest stretch of the training runs has {} transitions, fewer than one window",
                        check.longest_stretch);
   for (const ChannelSummary& channel : check.channels)
-    if (channel.is_state && !(channel.values.sd > 0.0))
-      return fmt::format("the state {} never changes", channel.channel.name);
+    if (channel.is_state && channel.values.levels == 1)
+      return fmt::format("the state {} is constant: {:g} in every sample", channel.channel.name, channel.values.least);
   return "";
 }
 
@@ -216,6 +218,7 @@ DataCheck check_data(const CheckOptions& options) {
                         options.intercept};
   DataCheck check;
   check.window_length = options.window_length;
+  check.dominating = dominating_values(material.recorded, options.data);
   for (const RunStreams& run : material.recorded) {
     material.ordered.push_back({run.run, run.role, in_order(run.states.stream), in_order(run.inputs.stream)});
     RunReport& report = check.runs.emplace_back();

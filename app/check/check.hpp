@@ -50,8 +50,9 @@ struct DataCheck {
   LagReport lag;
   bool has_lag = false;
   Advice advice;
-  Index longest_stretch = 0;  ///< transitions without a gap in the training runs
-  std::string unusable;       ///< why nothing can be identified; empty: something can
+  Index longest_stretch = 0;            ///< transitions without a gap in the training runs
+  std::vector<std::string> dominating;  ///< lines on values that least squares would follow alone
+  std::string unusable;                 ///< why nothing can be identified; empty: something can
 };
 
 /// What is checked, and the windows that it would be cut into.

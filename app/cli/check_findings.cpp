@@ -83,7 +83,9 @@ void channel_findings(const DataCheck& check, std::vector<std::string>& found) {
           channel.is_state ? ": noise of a third of that is in every sample; data.quantum = auto takes values for "
                              "intervals of it where that is coarse against the noise"
                            : ""));
-    if (channel.values.repeated > 0.3 && (channel.is_state || channel.values.quantum == 0.0))
+    if (channel.values.levels == 1)
+      found.push_back(fmt::format("{} is constant: {:g} in every sample", channel.channel.name, channel.values.least));
+    else if (channel.values.repeated > 0.3 && (channel.is_state || channel.values.quantum == 0.0))
       found.push_back(fmt::format("{} repeats {:.0f} % of its samples: its source is slower than the file",
                                   channel.channel.name, percent * channel.values.repeated));
     if (channel.is_state && channel.values.outliers > 0)
@@ -150,6 +152,7 @@ std::vector<std::string> findings_of(const DataCheck& check, const Config& confi
   std::vector<std::string> found;
   if (!check.unusable.empty()) found.push_back("UNUSABLE as configured: " + unusable_text(check));
   time_findings(check, config, found);
+  found.insert(found.end(), check.dominating.begin(), check.dominating.end());
   channel_findings(check, found);
   rest_findings(check, found);
   excitation_findings(check, found);

@@ -1,13 +1,12 @@
 #include "app/cli/commands.hpp"
 
 #include <fmt/format.h>
-
-#include <algorithm>
-#include <boost/algorithm/string.hpp>
+#include <fmt/ranges.h>
 
 #include "app/chain/build_info.hpp"
+#include "app/cli/command_table.hpp"
 #include "app/cli/help_text.hpp"
-#include "app/config/option_table.hpp"
+#include "app/cli/log.hpp"
 #include "app/study/answers/verify_study.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "io/archive/archive.hpp"
@@ -16,87 +15,40 @@
 namespace modebank::app {
 namespace {
 
-struct Command {
-  const char* name;
-  const char* arguments;
-  const char* help;
-  int (*run)(const CommandLine&);
-};
+void print_help(const CommandLine& line) {
+  // `run --help` and `help run` are the same.
+  std::vector<std::string> names = line.files;
+  if (line.help) names.assign(!line.command.empty(), line.command);
+  for (const std::string& name : names) fmt::print("{}", help_on(name));
+  if (names.empty()) fmt::print("{}", line.markdown ? option_markdown() : help_overview());
+}
 
-constexpr Command commands[] = {
-    {"init", "FILE...",
-     "look into logs of any kind, list their channels and write a configuration to start from (-o FILE, --force)",
-     run_init},
-    {"run", "CONFIG", "the whole chain: import, windows, mixture, bank, evaluation, archive, summary", run_pipeline},
-    {"demo", "[-o FOLDER]",
-     "simulates a robot on ice and grip with known truth and runs the whole chain on it, in FOLDER (modebank_demo); "
-     "--force where that holds other files",
-     run_demo},
-    {"identify", "CONFIG", "fit the windows and archive them", run_pipeline},
-    {"cluster", "CONFIG", "cluster the windows (of --archive.input, if given)", run_pipeline},
-    {"evaluate", "CONFIG", "learn the bank and score it (stages of --archive.input; or the bank of --archive.bank)",
-     run_pipeline},
-    {"check", "CONFIG",
-     "advice on the data before identification, run by run, and settings that gain in cross-validation; --json; "
-     "--apply -o FILE writes the configuration with them; --findings leaves the settings out, which take minutes on "
-     "large data",
-     run_check},
-    {"simulate", "CONFIG", "write runs with known truth in the CSV layout that run reads", run_simulate},
-    {"study", "CONFIG", "a parameter study: plans, runs and merges, resuming what is done; --study.stage does one step",
-     run_study},
-    {"show", "ARCHIVE [PATH]", "provenance, candidates, modes, summary; or one object; --json; --form full", run_show},
-    {"track", "ARCHIVE", "live filter: samples in on standard input, estimates out on standard output, line by line",
-     run_track},
-    {"predict", "ARCHIVE",
-     "free run on new inputs (--data.inputs FILES --samples N [--horizon H] [--filter NAME]): CSV on standard output, "
-     "or -o FILE",
-     run_predict},
-    {"export", "ARCHIVE --to FORM",
-     "the bank for other programs: json, mat, c [--float], casadi, ros2 [--wheel_separation_m W --wheel_radius_m R], "
-     "or "
-     "csv --table PATH; -o FILE or folder; --force where its verdict is overconfident or underconfident",
-     run_export},
-    {"report", "ARCHIVE|STUDY [ARCHIVE]",
-     "an interactive page that opens offline in a browser (-o page.html): of a run, a study, or two runs", run_report},
-    {"verify", "ARCHIVE...",
-     "check hash, schema and completeness of archives and study folders; --repair removes what is broken in the latter",
-     run_verify},
-};
+void print_version() { fmt::print("modebank {} ({})\n", build_info::version, build_info::git_revision); }
+
+[[noreturn]] void refuse_command(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Command& command : command_table()) names.push_back(command.name);
+  if (name.empty())
+    throw ConfigurationError(
+        "no command\n  modebank demo       a simulated robot on two grounds, from its log to a verdict\n"
+        "  modebank init LOG   writes a configuration for your own log\n  modebank help       all commands");
+  throw ConfigurationError(
+      fmt::format("unknown command {}{}; commands are {}", name, did_you_mean(name, names), fmt::join(names, ", ")));
+}
 
 }  // namespace
 
-std::string help_text() {
-  std::string text = "usage: modebank COMMAND [FILE...] [--key value ...]\n\nCommands\n";
-  for (const Command& command : commands)
-    text += fmt::format("  {:<24} {}\n", fmt::format("{} {}", command.name, command.arguments), command.help);
-  text +=
-      "\nOptions: -h [ --help ], --version, --json, --form increment | full (show), -o FILE (report, predict, init, "
-      "export, "
-      "check; demo: FOLDER), --apply, --findings (check), --repair (verify), --force (init, demo, export).\n"
-      "Every configuration key is an option too, and wins over the file. Exit status: 0 done; 2 usage, configuration "
-      "or "
-      "path; 1 content or run failure. `modebank help TERM` says what a word of the summary or a key means.\n";
-  return text + option_help();
-}
-
 int run_command(const CommandLine& line) {
-  if (line.version) {
-    fmt::print("modebank {} ({})\n", build_info::version, build_info::git_revision);
-    return 0;
-  }
-  if (line.help || line.command == "help") {
-    for (const std::string& name : line.files) fmt::print("{}", meaning_of(name));
-    if (line.files.empty()) fmt::print("{}", line.markdown ? option_markdown() : help_text());
-    return 0;
-  }
-  for (const Command& command : commands)
-    if (line.command == command.name) return command.run(line);
-  std::vector<std::string> names;
-  for (const Command& command : commands) names.emplace_back(command.name);
-  if (line.command.empty())
-    throw ConfigurationError(fmt::format("no command; one of {} (see --help)", fmt::join(names, ", ")));
-  throw ConfigurationError(fmt::format("unknown command {}{}; commands are {}", line.command,
-                                       did_you_mean(line.command, names), fmt::join(names, ", ")));
+  set_up_log(line.quiet ? Verbosity::quiet : line.verbose ? Verbosity::verbose : Verbosity::normal);
+  if (line.help || line.command == "help")
+    print_help(line);
+  else if (line.version || line.command == "version")
+    print_version();
+  else if (const Command* command = find_command(line.command))
+    return command->run(line);
+  else
+    refuse_command(line.command);
+  return 0;
 }
 
 namespace {

@@ -19,8 +19,8 @@ int run_track(const CommandLine& line);
 int run_predict(const CommandLine& line);
 int run_export(const CommandLine& line);
 int run_verify(const CommandLine& line);
-
-/// The help text: commands, then every option with range, unit, default and meaning.
-std::string help_text();
+int run_config(const CommandLine& line);
+int run_completion(const CommandLine& line);
+int run_manual(const CommandLine& line);
 
 }  // namespace modebank::app

@@ -82,7 +82,7 @@ std::vector<std::string> options_for(const std::string& command, const CommandLi
 
 /// The command as a user would type it, to be learned and repeated.
 CommandLine typed_command(const CommandLine& demo, const std::vector<std::string>& words) {
-  std::vector<std::string> all{"modebank"};
+  std::vector<std::string> all{demo.program};
   all.insert(all.end(), words.begin(), words.end());
   const std::vector<std::string> options = options_for(words.front(), demo);
   all.insert(all.end(), options.begin(), options.end());
@@ -104,17 +104,18 @@ int run_demo(const CommandLine& line) {
   const DemoFolder demo{line.output.empty() ? "modebank_demo" : line.output};
   const CommandLine simulate = typed_command(
       line, {"simulate", demo.simulation().string(), fmt::format("--simulate.output={}", demo.data().string())});
-  const CommandLine run =
+  CommandLine run =
       typed_command(line, {"run", demo.configuration().string(), fmt::format("--data.root={}", demo.data().string()),
                            fmt::format("--archive.output={}", demo.archive().string())});
+  run.force = true;  // the archive in its folder is the demo's own
   if (!line.force) refuse_foreign_files(demo);
   make_folder(demo.folder);
   replace_file(demo.simulation(), {assets::simulate_ice_ini()});
   replace_file(demo.configuration(), {assets::demo_ini()});
   if (const int status = run_typed(simulate, run_simulate); status != 0) return status;
   if (const int status = run_typed(run, run_pipeline); status != 0) return status;
-  fmt::print("Look inside: modebank show {0}\nA page of it: modebank report {0} -o demo.html\n",
-             demo.archive().string());
+  fmt::print("Look inside: {0} show {1}\nA page of it: {0} report {1} -o demo.html\n", line.program,
+             shell_quoted(demo.archive().string()));
   return 0;
 }
 

@@ -35,10 +35,6 @@ double input_lag_of(const Archive& archive, const Config& config) {
 
 /// The filter as the archive ran it: other options would be another filter than the one that was judged.
 ExportedBank read_bank(const CommandLine& line) {
-  for (const auto& [key, value] : line.overrides)
-    if (key != "track.filter")
-      throw ConfigurationError(
-          fmt::format("export takes the filter as the archive has it: --{} cannot change it (run does)", key));
   const std::string& file = line.files.front();
   const Config config = stored_config(load_configuration(file), line.overrides);
   if (config.track.filter == TrackedFilter::drifting)
@@ -91,7 +87,11 @@ void export_mat(const CommandLine& line) {
   const path output = output_of(line, ".mat");
   check_output(line, output);
   const ExportedBank bank = read_bank(line);
-  replace_file(output, [&](const path& temporary) { write_mat(bank, temporary); });
+  write_mat(bank, output);
+  fmt::print(
+      "wrote {0}: in MATLAB or Octave, m = load('{0}'); A = m.A(:, :, 1) is mode 1 of {1} ...\n"
+      "  x[k+1] = A x[k] + B u[k] + c every m.dt_s; m.ss_lines makes a system of it\n",
+      output.string(), bank.bank.modes.size());
 }
 
 /// Both files are made before either is written.
@@ -109,6 +109,10 @@ void export_c(const CommandLine& line) {
   const CFiles files = to_c(read_bank(line), stem, line.exported.single_precision);
   replace_file(header, {files.header});
   replace_file(source, {files.source});
+  fmt::print(
+      "wrote {0} and {1}: #include \"{2}\", {3}_restart begins a {3}_filter, {3}_step takes each sample\n"
+      "  cc -std=c99 -O2 -c {0}; link with -lm\n",
+      source.string(), header.string(), header.filename().string(), file_stem(stem));
 }
 
 void export_ros2(const CommandLine& line) {
@@ -119,8 +123,17 @@ void export_ros2(const CommandLine& line) {
   const path folder = output_of(line, "_ros2");
   std::error_code error;
   std::filesystem::create_directories(folder, error);
+  if (is_disk_failure(error)) throw DataError(fmt::format("cannot write {}: {}", folder.string(), error.message()));
   if (error) throw ConfigurationError(fmt::format("-o {}: {}", folder.string(), error.message()));
-  for (const auto& [name, text] : files) replace_file(folder / name, {text});
+  std::string names;
+  for (const auto& [name, text] : files) {
+    replace_file(folder / name, {text});
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  fmt::print(
+      "wrote {0}: {1}\n  copy the keys of the ground you drive on into your own parameter files; comments say which "
+      "channel or option a missing one needs\n",
+      folder.string(), names);
 }
 
 const std::map<std::string, void (*)(const CommandLine&)> forms{{"c", export_c},     {"casadi", export_casadi},

@@ -1,38 +1,141 @@
 #include "app/cli/help_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
 #include <boost/algorithm/string/replace.hpp>
+#include <boost/algorithm/string/trim.hpp>
+#include <cctype>
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "app/cli/command_table.hpp"
 #include "app/config/config.hpp"
 #include "app/config/option_table.hpp"
 #include "app/report/page/assets.hpp"
+#include "app/text/terminal.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
 
-std::string option_text(const Option& option) {
+constexpr int help_width = 100;
+
+/// Lines of at most `width` columns, without indentation.
+std::vector<std::string> filled(const std::string& text, int width) {
+  std::vector<std::string> lines = lines_of(wrapped(text, width));
+  for (std::string& line : lines) boost::trim(line);
+  return lines;
+}
+
+std::string default_of(const Option& option) {
   const std::string value = option.get(Config{});
-  return fmt::format("  --{} {}{}\n      {} (default: {})\n", option.key, option.range,
-                     option.unit.empty() ? "" : " [" + option.unit + "]", option.help, value.empty() ? "empty" : value);
+  return value.empty() ? "empty" : value;
+}
+
+std::string option_text(const Option& option) {
+  const std::string unit = option.unit.empty() ? "" : " [" + option.unit + "]";
+  return fmt::format("  --{} {}{}\n", option.key, option.range, unit) +
+         fmt::format("      {}\n",
+                     fmt::join(filled(fmt::format("{} (default: {})", option.help, default_of(option)), help_width - 6),
+                               "\n      "));
+}
+
+/// Two columns; the second is wrapped below itself.
+std::string row(const std::string& left, const std::string& right, std::size_t left_width) {
+  std::string text;
+  for (const std::string& line : filled(right, help_width - static_cast<int>(left_width) - 4))
+    text += fmt::format("  {:<{}}  {}\n", text.empty() ? left : "", left_width, line);
+  return text;
+}
+
+std::string heading_of(const Command& command) {
+  return fmt::format("usage: modebank {}{}{}{}{}\n\n", command.name, command.arguments.empty() ? "" : " ",
+                     command.arguments, command.options.empty() ? "" : " [options]",
+                     command.keys.empty() ? "" : " [--section.key value ...]");
+}
+
+std::string options_of(const Command& command) {
+  std::string text = "\nOptions\n";
+  std::size_t width = 0;
+  for (const CommandOption& option : command.options) width = std::max(width, option.typed().size());
+  for (const CommandOption& option : command.options) text += row(option.typed(), option.help, width);
+  return command.options.empty() ? "" : text;
+}
+
+/// The keys that most users set; the sections that hold the others.
+std::string keys_of(const Command& command) {
+  if (command.keys.empty()) return "";
+  std::string text;
+  int count = 0;
+  for (const Option& option : option_table())
+    if (option.basic && command.reads(option.key) && ++count)
+      text += fmt::format("  --{:<22} {} (default: {})\n", option.key, option.range, default_of(option));
+  constexpr int most_on_a_screen = 24;
+  if (count > most_on_a_screen) text.clear();
+  return fmt::format("\nConfiguration keys, as options they win over the file\n{}  all of them: modebank help {}\n",
+                     text, fmt::join(command.keys, " "));
+}
+
+std::string command_text(const Command& command) {
+  const std::string details = command.details.empty() ? "" : " " + command.details;
+  const std::string what = static_cast<char>(std::toupper(command.summary.front())) + command.summary.substr(1) + ".";
+  return heading_of(command) + fmt::format("{}\n", fmt::join(filled(what + details, help_width), "\n")) +
+         options_of(command) + keys_of(command) + fmt::format("\nExample\n  {}\n", command.example);
+}
+
+std::string section_text(const std::string& section) {
+  std::string text;
+  for (const Option& option : option_table())
+    if (option.section() == section) text += option_text(option);
+  return text.empty() ? "" : fmt::format("[{}]\n{}", section, text);
+}
+
+/// The term's definition, or nothing; adds the terms to `known`.
+std::string term_text(const std::string& name, std::vector<std::string>& known) {
+  const std::string wanted = boost::algorithm::to_lower_copy(name);
+  for (const nlohmann::json& entry : nlohmann::json::parse(assets::terms_json())) {
+    std::vector<std::string> names = entry.at("also");
+    names.push_back(entry.at("term"));
+    for (std::string& other : names) boost::algorithm::to_lower(other);
+    if (std::find(names.begin(), names.end(), wanted) != names.end())
+      return fmt::format("{}: {}\n", entry.at("term").get<std::string>(), entry.at("means").get<std::string>());
+    known.push_back(entry.at("term"));
+  }
+  return "";
 }
 
 }  // namespace
 
-std::string option_help() {
-  std::string text, section;
-  for (const Option& option : option_table()) {
-    if (option.section() != section) text += fmt::format("\n[{}]\n", option.section());
-    section = option.section();
-    text += option_text(option);
+std::string help_overview() {
+  std::string text = "usage: modebank COMMAND [FILE...] [--section.key value ...]\n";
+  std::string group;
+  for (const Command& command : command_table()) {
+    if (command.group != group) text += fmt::format("\n{}\n", command.group);
+    group = command.group;
+    text += row(command.name, command.summary, 10);
   }
-  return text;
+  text += "\nEvery command has\n";
+  for (const CommandOption& option : common_options()) text += row(option.typed(), option.help, 13);
+  return text +
+         "\n`modebank help X` says what a command, a section of the configuration, a key or a word of the summary is.\n"
+         "Exit status: 0 done; 1 the content or the run failed; 2 usage, configuration or path.\n";
+}
+
+std::string help_on(const std::string& name) {
+  if (const Command* command = find_command(name)) return command_text(*command);
+  if (const std::string section = section_text(name); !section.empty()) return section;
+  std::vector<std::string> known;
+  if (const std::string term = term_text(name, known); !term.empty()) return term;
+  if (const Option* option = find_option(name)) return option_text(*option);
+  const std::string terms = fmt::format("{}", fmt::join(known.begin(), known.begin() + 8, ", "));
+  for (const Command& command : command_table()) known.push_back(command.name);
+  for (const Option& option : option_table()) known.push_back(option.key);
+  throw ConfigurationError(fmt::format("{} is no command, section, key or term{}; terms are {}, ...", name,
+                                       did_you_mean(name, known), terms));
 }
 
 std::string option_markdown() {
@@ -47,25 +150,6 @@ std::string option_markdown() {
                         value.empty() ? "" : "`" + value + "`", help);
   }
   return text;
-}
-
-std::string meaning_of(const std::string& name) {
-  std::vector<std::string> known;
-  const std::string wanted = boost::algorithm::to_lower_copy(name);
-  for (const nlohmann::json& entry : nlohmann::json::parse(assets::terms_json())) {
-    std::vector<std::string> names = entry.at("also");
-    names.push_back(entry.at("term"));
-    for (std::string& other : names) boost::algorithm::to_lower(other);
-    if (std::find(names.begin(), names.end(), wanted) != names.end())
-      return fmt::format("{}: {}\n", entry.at("term").get<std::string>(), entry.at("means").get<std::string>());
-    known.push_back(entry.at("term"));
-  }
-  for (const Option& option : option_table()) {
-    if (option.key == name) return option_text(option);
-    known.push_back(option.key);
-  }
-  throw ConfigurationError(fmt::format("{} is neither a term nor a key{}; terms are {}", name,
-                                       did_you_mean(name, known), fmt::join(known.begin(), known.begin() + 8, ", ")));
 }
 
 }  // namespace modebank::app

@@ -4,13 +4,14 @@
 
 namespace modebank::app {
 
-/// All option keys with range, unit, default and meaning, section by section.
-std::string option_help();
-/// README's table of keys, so that it is this table and no other.
-std::string option_markdown();
+/// All commands, a line each.
+std::string help_overview();
 
-/// What a term or a key means: the one definition that pages show, too. Throws ConfigurationError, naming the nearest,
-/// for what is neither.
-std::string meaning_of(const std::string& name);
+/// What a command, a section, a key or a term is; the terms' definitions are those that pages show. Throws
+/// ConfigurationError, naming the nearest, for what is none of them.
+std::string help_on(const std::string& name);
+
+/// All keys as a table: the documentation's reference.
+std::string option_markdown();
 
 }  // namespace modebank::app

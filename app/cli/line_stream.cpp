@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 
@@ -28,14 +29,23 @@ void handle(int signal, void (*handler)(int)) {
   sigaction(signal, &action, nullptr);
 }
 
-/// Waits for input with the signals let in; false when asked to stop.
-bool wait_for_input() {
+enum class Waited { input, quiet, stop };
+
+timespec duration(double seconds) {
+  const double whole = std::floor(seconds);
+  return {static_cast<time_t>(whole), static_cast<long>(1e9 * (seconds - whole))};
+}
+
+/// Waits for input with the signals let in.
+Waited wait_for_input(double wait_s) {
   pollfd input{STDIN_FILENO, POLLIN, 0};
+  const timespec most = std::isfinite(wait_s) ? duration(wait_s) : timespec{};
   while (stop_asked == 0) {
-    if (ppoll(&input, 1, nullptr, &outside_mask) > 0) return true;
-    if (errno != EINTR) return true;  // read will say what is wrong
+    const int ready = ppoll(&input, 1, std::isfinite(wait_s) ? &most : nullptr, &outside_mask);
+    if (ready == 0) return Waited::quiet;
+    if (ready > 0 || errno != EINTR) return Waited::input;  // read will say what is wrong
   }
-  return false;
+  return Waited::stop;
 }
 
 }  // namespace
@@ -61,25 +71,27 @@ LineStream::~LineStream() {
   sigprocmask(SIG_SETMASK, &outside_mask, nullptr);
 }
 
-bool LineStream::fill() {
+LineStream::Filled LineStream::fill(double wait_s) {
   buffer_.erase(0, start_);
   start_ = 0;
   std::array<char, 65536> chunk;
-  while (wait_for_input()) {
+  for (Waited waited; (waited = wait_for_input(wait_s)) != Waited::stop;) {
+    if (waited == Waited::quiet) return Filled::quiet;
     const ssize_t count = read(STDIN_FILENO, chunk.data(), chunk.size());
     if (count > 0) {
       buffer_.append(chunk.data(), static_cast<std::size_t>(count));
-      return true;
+      arrival_ = Clock::now();
+      return Filled::some;
     }
-    if (count == 0) return false;
+    if (count == 0) return Filled::end;
     if (errno != EINTR && errno != EAGAIN)
       throw DataError(std::string("cannot read standard input: ") + std::strerror(errno));
   }
   buffer_.clear();  // stopped: half a line is no sample
-  return false;
+  return Filled::end;
 }
 
-LineStream::Got LineStream::next(std::string_view& line) {
+LineStream::Got LineStream::next(std::string_view& line, double wait_s) {
   while (true) {
     const std::size_t end = buffer_.find('\n', start_);
     if (end != std::string::npos) {
@@ -100,7 +112,9 @@ LineStream::Got LineStream::next(std::string_view& line) {
       start_ = 0;
       discarding_ = true;
     }
-    if (fill()) continue;
+    const Filled filled = fill(wait_s);
+    if (filled == Filled::some) continue;
+    if (filled == Filled::quiet) return Got::quiet;
     ended_ = true;
     if (start_ < buffer_.size() && !discarding_) buffer_ += '\n';
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -14,17 +16,24 @@ class LineStream {
   LineStream(const LineStream&) = delete;
   LineStream& operator=(const LineStream&) = delete;
 
-  enum class Got { line, overlong, waiting, end };
+  using Clock = std::chrono::steady_clock;
+
+  enum class Got { line, overlong, waiting, quiet, end };
   /// `line`: the next one, valid until the next call. `waiting`: all that has arrived is read; the next call waits.
-  /// `overlong`: a line that no sample is so long as, without its text. The last line may lack its newline.
-  Got next(std::string_view& line);
+  /// `overlong`: a line that no sample is so long as, without its text. `quiet`: nothing came for `wait_s`. The last
+  /// line may lack its newline.
+  Got next(std::string_view& line, double wait_s = std::numeric_limits<double>::infinity());
+  /// When what was read last had come.
+  Clock::time_point arrival() const { return arrival_; }
 
  private:
   std::string buffer_;
   std::size_t start_ = 0;
   bool waited_ = true, ended_ = false, discarding_ = false;
+  Clock::time_point arrival_ = Clock::now();
 
-  bool fill();
+  enum class Filled { some, quiet, end };
+  Filled fill(double wait_s);
 };
 
 /// Writes all of `text` to standard output; false when nobody reads it any more. Throws DataError for other failures.

@@ -43,16 +43,16 @@ class LiveBank final : public LiveOf<BankFilter, FilterSnapshot> {
   void save(const std::string& file, const std::string& identity) const override {
     save_checkpoint(file, identity, filter_.snapshot());
   }
-  double resume(const std::string& file, const std::string& identity) override {
+  Resumed resume(const std::string& file, const std::string& identity) override {
     const FilterSnapshot snapshot = load_checkpoint(file, identity);
     try {
       filter_.restore(snapshot);
     } catch (const std::invalid_argument& error) {
       throw DataError(file + ": " + error.what());
     }
-    if (snapshot.samples.samples == 0) return not_a_number;
+    if (snapshot.samples.samples == 0) return {not_a_number, {}};
     if (!std::isfinite(snapshot.samples.time_s)) throw DataError(file + ": the last sample has no time");
-    return snapshot.samples.time_s;
+    return {snapshot.samples.time_s, snapshot.samples.inputs.col(0)};  // the newest
   }
 };
 
@@ -60,7 +60,7 @@ class LiveDrifting final : public LiveOf<DriftingFilter, DriftingSnapshot> {
  public:
   using LiveOf::LiveOf;
   void save(const std::string&, const std::string&) const override { refuse(); }
-  double resume(const std::string&, const std::string&) override { refuse(); }
+  Resumed resume(const std::string&, const std::string&) override { refuse(); }
   /// Said before the first sample is read (open_filter).
   [[noreturn]] static void refuse() {
     throw ConfigurationError(

@@ -8,6 +8,12 @@
 
 namespace modebank::app {
 
+/// Where a filter goes on: the time of the last sample it knows, NaN without samples, and that sample's inputs.
+struct Resumed {
+  double time_s;
+  Eigen::VectorXd input;
+};
+
 /// One of an archive's filters at work, a bank's or the drifting model's.
 class LiveFilter {
  public:
@@ -19,10 +25,9 @@ class LiveFilter {
   /// Remembers what it knows now, and goes back to it.
   virtual void remember() = 0;
   virtual void go_back() = 0;
-  /// What it knows as a file. Throws as save_checkpoint and load_checkpoint do. `resume` returns the time of the last
-  /// sample; NaN without samples.
+  /// What it knows as a file. Throws as save_checkpoint and load_checkpoint do.
   virtual void save(const std::string& file, const std::string& identity) const = 0;
-  virtual double resume(const std::string& file, const std::string& identity) = 0;
+  virtual Resumed resume(const std::string& file, const std::string& identity) = 0;
 };
 
 /// The filter that the configuration asks for. `bank`: whose sizes and period it has.

@@ -1,12 +1,16 @@
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <string>
+#include <system_error>
 
 #include "app/cli/command_line.hpp"
 #include "app/cli/commands.hpp"
+#include "ident/base/printable.hpp"
+#include "io/files/standard_error.hpp"
 #include "modebank/base/error.hpp"
 
 namespace {
@@ -15,21 +19,28 @@ constexpr int usage_error = 2;
 constexpr int run_failure = 1;
 
 int fail(int status, const char* what) {
-  fmt::print(stderr, "modebank: {}\n", what);
+  modebank::say(fmt::format("modebank: {}\n", modebank::printable(what)));
   return status;
+}
+
+int fail_to_print(const std::string& reason) {
+  return fail(run_failure, ("cannot write the results to standard output: " + reason).c_str());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  spdlog::set_default_logger(spdlog::stderr_color_mt("modebank"));
-  spdlog::set_pattern("%v");
+  modebank::occupy_standard_streams();
   try {
     const int status = modebank::app::run_command(modebank::app::parse_command_line(argc, argv));
     // A full disk or a closed pipe must not pass for success.
-    return std::fflush(stdout) == 0 ? status : fail(run_failure, "cannot write the results to standard output");
+    return std::fflush(stdout) == 0 ? status : fail_to_print(std::generic_category().message(errno));
   } catch (const modebank::ConfigurationError& error) {
     return fail(usage_error, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(run_failure, (error.path1().string() + ": " + error.code().message()).c_str());
+  } catch (const std::system_error& error) {  // fmt's name no file
+    return std::ferror(stdout) ? fail_to_print(error.code().message()) : fail(run_failure, error.what());
   } catch (const std::exception& error) {
     return fail(run_failure, error.what());
   }

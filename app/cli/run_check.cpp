@@ -12,6 +12,7 @@
 #include "app/config/config_file.hpp"
 #include "app/text/lag_counts_text.hpp"
 #include "app/text/terminal.hpp"
+#include "ident/base/printable.hpp"
 #include "io/files/replace_file.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
@@ -34,8 +35,8 @@ void check_target(const CommandLine& line, const Config& config) {
   if (!line.apply) return;
   if (const std::string obstacle = write_obstacle(line.output); !obstacle.empty())
     throw ConfigurationError("-o: " + obstacle);
-  std::vector<std::filesystem::path> sources = data_files(config.data);
-  sources.emplace_back(line.files.front());
+  std::vector<std::filesystem::path> sources{line.files.front()};
+  for (const DataFile& file : data_files(config.data)) sources.push_back(file.path);
   for (const std::filesystem::path& source : sources) {
     std::error_code absent;
     if (std::filesystem::equivalent(source, line.output, absent))
@@ -72,7 +73,7 @@ nlohmann::json lag_counts_json(const LagCounts& found) {
 /// Findings come at once, suggestions when they are scored.
 Suggestions tell(const CommandLine& line, const Config& config, const DataCheck& check) {
   const std::vector<std::string> findings = findings_of(check, config);
-  if (!line.json) fmt::print("{}", check_text(check, findings));
+  if (!line.json) fmt::print("{}", printable(check_text(check, findings)));
   std::fflush(stdout);
   const bool usable = check.unusable.empty(), scored = usable && !line.findings;
   ChainOptions options = chain_options(config);

@@ -1,12 +1,18 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
+#include <iostream>
 
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
+#include "app/init/confirm.hpp"
 #include "app/init/proposal.hpp"
+#include "app/init/survey_set.hpp"
 #include "app/init/survey_text.hpp"
+#include "ident/base/printable.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
@@ -15,7 +21,9 @@ namespace {
 
 /// Of the inputs' files, beside where the program is called: pro_*.csv gives pro.ini.
 std::string default_name(const std::vector<FileSet>& sets) {
-  std::string stem = std::filesystem::path(sets.front().pattern).stem().string();
+  const FileSet& first = sets.front();
+  std::string stem =
+      (first.pattern.empty() ? first.files.front() : std::filesystem::path(first.pattern)).stem().string();
   stem = stem.substr(0, stem.find('*'));
   while (!stem.empty() && (stem.back() == '_' || stem.back() == '-' || stem.back() == '.')) stem.pop_back();
   return (stem.empty() ? "log" : stem) + ".ini";
@@ -26,6 +34,9 @@ void check_target(const std::string& file, bool force) {
     throw ConfigurationError(fmt::format("{} exists: name another file (-o FILE), or overwrite it with --force", file));
 }
 
+/// Whether someone can answer.
+bool is_asked(const CommandLine& line) { return !line.yes && isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1; }
+
 }  // namespace
 
 int run_init(const CommandLine& line) {
@@ -35,16 +46,18 @@ int run_init(const CommandLine& line) {
   const std::string target = line.output.empty() ? default_name(sets) : line.output;
   check_target(target, line.force);
   std::vector<SurveyedFile> surveyed;
-  for (const FileSet& set : sets) surveyed.push_back(survey_file(set.files.front()));
-  fmt::print("{}", survey_text(sets, surveyed));
+  for (const FileSet& set : sets) surveyed.push_back(survey_set(set));
+  fmt::print("{}", printable(survey_text(sets, surveyed)));
   const std::filesystem::path folder = std::filesystem::absolute(target).lexically_normal().parent_path();
-  Proposal proposal = propose(sets, surveyed, guess_roles(surveyed), folder.string());
+  Guess guess = guess_roles(surveyed);
+  if (is_asked(line)) confirm_roles(surveyed, guess, std::cin, std::cout);
+  Proposal proposal = propose(sets, surveyed, guess, folder.string());
   std::erase_if(proposal.keys, [](const ProposedKey& key) { return find_option("data." + key.key) == nullptr; });
   const std::string text = configuration_text(proposal, line.typed);
   replace_file(target, {text});
-  fmt::print("\n{}:\n{}\n", target, text);
+  fmt::print("\n{}:\n{}\n", target, printable(text));
   const std::string archive = std::filesystem::path(target).stem().string() + ".h5";
-  fmt::print("next: modebank run {}\nthen: modebank report {}\n", target, archive);
+  fmt::print("next: {0} run {1}\nthen: {0} report {2}\n", line.program, shell_quoted(target), shell_quoted(archive));
   return 0;
 }
 

@@ -3,11 +3,14 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "app/chain/chain.hpp"
 #include "app/chain/provenance.hpp"
 #include "app/cli/commands.hpp"
+#include "app/cli/dry_run.hpp"
+#include "app/cli/kept_stages.hpp"
 #include "app/config/config_file.hpp"
 #include "app/pipeline/pipeline.hpp"
 #include "app/text/first_screen.hpp"
@@ -16,6 +19,7 @@
 #include "app/text/terminal.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/archive.hpp"
+#include "io/archive/bank/load_bank.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -52,11 +56,43 @@ StoredStages earlier_stages(const Config& config, const std::string& command) {
   return source;
 }
 
+/// An archive of other data is somebody's result. Asked when it is known which data these are, before anything is
+/// fitted to them.
+void check_replaces_same_data(const std::string& output, const std::string& data_hash) {
+  std::error_code error;
+  if (!std::filesystem::exists(output, error)) return;
+  std::string other;
+  try {
+    other = load_data_hash(output);
+  } catch (const std::exception& reason) {
+    throw DataError(
+        fmt::format("archive.output: {} is there and not replaced, for it cannot be read: {}; name another "
+                    "file, or --force",
+                    output, reason.what()));
+  }
+  if (other != data_hash)
+    throw DataError(
+        fmt::format("archive.output: {} holds other data (data_hash {}, this run's is {}) and is not replaced; name "
+                    "another file, or --force",
+                    output, other, data_hash));
+}
+
 /// Writes to the log.
 class Log : public Adviser {
  public:
+  /// `output`: looked at when the data are read; empty: whatever is there is replaced.
+  explicit Log(std::string output) : output_(std::move(output)) {}
+
+  void done(Stage stage, const Archive& archive) const override {
+    if (stage == Stage::data && !output_.empty()) check_replaces_same_data(output_, archive.provenance.data_hash);
+    Adviser::done(stage, archive);
+  }
   void progress(const std::string& line) const override { spdlog::info("{}", line); }
+  void detail(const std::string& line) const override { spdlog::debug("{}", line); }
   void warning(const std::string& line) const override { spdlog::warn("{}", line); }
+
+ private:
+  std::string output_;
 };
 
 std::string archive_line(const Config& config) { return fmt::format("\narchive   {}\n", config.archive.output); }
@@ -82,7 +118,7 @@ Stage last_stage(const std::string& command) {
 
 /// Runs the stages of the command and writes the archive. Returns what to print.
 std::string execute(const CommandLine& line, const Config& config, StageSource& source) {
-  const Log log;
+  const Log log(line.force ? "" : config.archive.output);
   Chain chain(source, log);
   const ChainOptions options = chain_options(config);
   const Execution execution{resolved_text(config), make_provenance(config_hash(config), line.typed)};
@@ -93,7 +129,8 @@ std::string execute(const CommandLine& line, const Config& config, StageSource& 
   const Archive& archive =
       run_and_write(chain, options, last_stage(line.command), config.archive.bank, execution, config.archive.output);
   if (has_first_screen(archive))
-    return first_screen(archive, resolved_values(archive.config), config.archive.output, standard_output().width);
+    return first_screen(archive, resolved_values(archive.config), config.archive.output, standard_output().width,
+                        line.program);
   return summary_text(archive) + free_run_text(archive) + archive_line(config);
 }
 
@@ -105,11 +142,12 @@ int run_pipeline(const CommandLine& line) {
         fmt::format("{} needs one configuration file: modebank {} CONFIG", line.command, line.command));
   const Config config = load_config(line.files.front(), line.overrides);
   check_request(line.command, config, line.files.front());
+  if (line.dry_run) return print_dry_run(config, {config.archive.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   std::string summary;
   if (config.archive.input.empty()) {
-    StageSource computed;
-    summary = execute(line, config, computed);
+    KeptStages kept(config.archive.output);
+    summary = execute(line, config, kept);
   } else {
     StoredStages earlier = earlier_stages(config, line.command);
     summary = execute(line, config, earlier);

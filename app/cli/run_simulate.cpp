@@ -2,6 +2,7 @@
 #include <tbb/global_control.h>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/dry_run.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "io/simulation/simulation_writer.hpp"
@@ -51,11 +52,22 @@ VehicleSimulationOptions vehicle_of(const Config& config) {
   return vehicle;
 }
 
+/// As many as there are kinds, or none.
+const std::vector<std::string>& grounds_of(const SimulateConfig& options) {
+  const std::size_t kinds = options.vehicle.friction.size();
+  if (!options.ground_names.empty() && options.ground_names.size() != kinds)
+    throw ConfigurationError(
+        fmt::format("simulate.ground_names has {} names for {} kinds of ground (simulate.friction)",
+                    options.ground_names.size(), kinds));
+  return options.ground_names;
+}
+
 void simulate_system(const Config& config) {
   const DataOptions& data = config.data;
   const SimulateConfig& options = config.simulate;
   if (options.kind == SimulatedSystem::vehicle)
-    write_simulation(simulate_vehicle(vehicle_of(config), config.job.seed), {options.output, data.state, data.input});
+    write_simulation(simulate_vehicle(vehicle_of(config), config.job.seed),
+                     {options.output, data.state, data.input, grounds_of(options)});
   else
     write_simulation(simulate(system_of(config), config.job.seed),
                      {options.output, data.state, data.input, options.state_rate_hz});
@@ -68,6 +80,7 @@ int run_simulate(const CommandLine& line) {
     throw ConfigurationError("simulate needs one configuration file: modebank simulate CONFIG");
   const Config config = load_config(line.files.front(), line.overrides);
   check_keys_apply(config);
+  if (line.dry_run) return print_dry_run(config, {config.simulate.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   simulate_system(config);
   fmt::print("{} runs of {} samples in {}\n", config.simulate.system.runs, config.simulate.system.samples,

@@ -1,4 +1,5 @@
 #include "app/cli/commands.hpp"
+#include "app/cli/dry_run.hpp"
 #include "app/config/config_file.hpp"
 #include "app/study/study.hpp"
 #include "modebank/base/error.hpp"
@@ -8,7 +9,9 @@ namespace modebank::app {
 int run_study(const CommandLine& line) {
   if (line.files.size() != 1) throw ConfigurationError("study needs one configuration file: modebank study CONFIG");
   const std::string& file = line.files.front();
-  return do_study({load_config(file, line.overrides), file, line.overrides, line.typed});
+  const Config config = load_config(file, line.overrides);
+  if (line.dry_run) return print_dry_run(config, {config.study.output});
+  return do_study({config, file, line.overrides, line.typed});
 }
 
 }  // namespace modebank::app

@@ -21,12 +21,14 @@ namespace {
 
 using nlohmann::json;
 
-void print_overview(const std::string& file, bool full_form) {
+void print_overview(const CommandLine& line) {
+  const std::string& file = line.files[0];
+  const bool full_form = line.form == "full";
   const Terminal terminal = standard_output();
   const int width = terminal.width;
   const Archive archive = read_overview(file, std::max(width, 100));  // a run has columns in a strip
   if (has_first_screen(archive))
-    fmt::print("{}\n", first_screen(archive, resolved_values(archive.config), file, width));
+    fmt::print("{}\n", first_screen(archive, resolved_values(archive.config), file, width, line.program));
   fmt::print("{}\n{}", wrapped(provenance_text(archive), width), summary_text(archive, width));
   fmt::print("{}", wrapped(free_run_text(archive, width), width));
   if (const std::string strip = mode_strip_text(archive, terminal); !strip.empty()) fmt::print("\n{}", strip);
@@ -74,14 +76,13 @@ int run_show(const CommandLine& line) {
   if (line.files.empty() || line.files.size() > 2)
     throw ConfigurationError("show needs an archive and at most one path in it: modebank show ARCHIVE [PATH]");
   const std::string& file = line.files[0];
-  const bool full_form = line.form == "full";
   if (line.files.size() == 1 && !line.json) {
-    print_overview(file, full_form);
+    print_overview(line);
     return 0;
   }
   const std::string path = line.files.size() == 2 ? line.files[1] : "/";
   json object = inspect(file, path);
-  if (full_form) convert_to_full_form(file, path, object);
+  if (line.form == "full") convert_to_full_form(file, path, object);
   fmt::print("{}\n", object.dump(2));
   return 0;
 }

@@ -1,6 +1,10 @@
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
+#include <ctime>
+#include <exception>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -9,9 +13,12 @@
 #include "app/cli/line_stream.hpp"
 #include "app/cli/live_filter.hpp"
 #include "app/cli/track_input.hpp"
+#include "app/cli/track_messages.hpp"
 #include "app/cli/track_output.hpp"
+#include "app/cli/track_watchdog.hpp"
 #include "app/config/config_file.hpp"
 #include "filter/step/alarm.hpp"
+#include "filter/step/equations/bounds.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
@@ -27,7 +34,8 @@ class Tracker {
         opened_(open_filter(archive, config)),
         judge_(bank_, config.track.level, config.track.alarm),
         reader_({config.data.time.empty() ? "time" : config.data.time.front(), config.data.input, config.data.state},
-                config.track.format) {
+                config.track.format),
+        watchdog_(config.track.watchdog_s, now_s()) {
     check_columns(config, bank_, archive);
     const FilterOptions& options = opened_.options;
     identity_ = fmt::format("{} {} {} {} {} {}", archive_digest(archive), name_of(config.track.filter),
@@ -38,26 +46,28 @@ class Tracker {
         throw ConfigurationError(
             fmt::format("track.checkpoint: cannot write {}: {}", config.track.checkpoint, obstacle));
     if (config.track.resume.empty()) return;
-    if (const double time_s = filter_.resume(config.track.resume, identity_); !std::isnan(time_s))
-      last_time_s_ = time_s;
+    const Resumed resumed = filter_.resume(config.track.resume, identity_);
+    if (std::isnan(resumed.time_s)) return;
+    last_time_s_ = resumed.time_s;
+    reader_.remember(resumed.input);
   }
 
+  /// Whatever ends it: the estimates that are made leave, and what the filter knows is kept.
   void run() {
-    LineStream lines;
-    std::string_view line;
-    for (auto got = lines.next(line); got != LineStream::Got::end; got = lines.next(line)) {
-      if (got == LineStream::Got::waiting) {
-        if (!flush()) break;
-        continue;
-      }
-      ++line_number_;
-      if (got == LineStream::Got::overlong)
-        complain("is too long for a sample");
-      else
-        take(line);
+    lines_.emplace();
+    std::exception_ptr trouble;
+    try {
+      follow();
+    } catch (...) {
+      trouble = std::current_exception();
     }
-    flush();
-    if (!config_.track.checkpoint.empty()) save();
+    try {
+      flush();
+      if (!config_.track.checkpoint.empty() && (!trouble || samples_ > 0)) save();
+    } catch (...) {
+      if (!trouble) throw;
+    }
+    if (trouble) std::rethrow_exception(trouble);
   }
 
  private:
@@ -75,18 +85,74 @@ class Tracker {
   std::optional<double> before_leap_s_;
   std::size_t line_number_ = 0, samples_ = 0;
   fmt::memory_buffer out_;
+  std::optional<LineStream> lines_;  ///< while it runs
+  LiveMessages messages_;
+  Watchdog watchdog_;
+  bool checkpoint_due_ = false, checkpoint_fails_ = false;
+
+  static double now_s() { return std::chrono::duration<double>(LineStream::Clock::now().time_since_epoch()).count(); }
+
+  void follow() {
+    if (last_time_s_)
+      messages_.say(
+          fmt::format("goes on after the sample at {} s ({}); send what follows it, and drop what was written of later "
+                      "samples: they are estimated again",
+                      *last_time_s_, config_.track.resume));
+    std::string_view line;
+    for (auto got = next(line); got != LineStream::Got::end; got = next(line)) {
+      if (got == LineStream::Got::waiting) {
+        if (!flush()) break;
+      } else if (got == LineStream::Got::overlong) {
+        ++line_number_;
+        complain("is too long for a sample");
+      } else if (got == LineStream::Got::line) {
+        ++line_number_;
+        take(line);
+        if (checkpoint_due_ && !before_leap_s_) {
+          if (!flush()) break;
+          keep();
+        }
+      }
+    }
+  }
+
+  LineStream::Got next(std::string_view& line) {
+    if (!watchdog_.on()) return lines_->next(line);
+    if (const std::string text = watchdog_.due(now_s()); !text.empty())
+      messages_.say(fmt::format("{:%Y-%m-%dT%H:%M:%SZ}: {}", fmt::gmtime(std::time(nullptr)), text));
+    const LineStream::Got got = lines_->next(line, watchdog_.remaining_s(now_s()));
+    if (got == LineStream::Got::line || got == LineStream::Got::overlong) watchdog_.heard();
+    return got;
+  }
 
   bool flush() {
+    if (out_.size() == 0) return true;
     const bool read = write_out({out_.data(), out_.size()});
     out_.clear();
+    if (watchdog_.on())
+      watchdog_.answered(std::chrono::duration<double>(LineStream::Clock::now() - lines_->arrival()).count());
     return read;
   }
 
   void save() const { filter_.save(config_.track.checkpoint, identity_); }
 
-  void complain(const std::string& reason) const {
-    fmt::print(stderr, "modebank: line {}: {}; skipped\n", line_number_, reason);
+  /// A checkpoint on the way, after the estimates that it knows have left: whoever goes on from it lacks none. One that
+  /// cannot be written is no reason to stop, and is tried again when the next is due.
+  void keep() {
+    checkpoint_due_ = false;
+    try {
+      save();
+      if (checkpoint_fails_) messages_.say(fmt::format("{} is written again", config_.track.checkpoint));
+      checkpoint_fails_ = false;
+    } catch (const DataError& error) {
+      if (!checkpoint_fails_)
+        messages_.say(fmt::format("{}: the filter goes on without, and tries again every {} samples", error.what(),
+                                  config_.track.checkpoint_interval));
+      checkpoint_fails_ = true;
+    }
   }
+
+  void complain(const std::string& reason) { messages_.say(fmt::format("line {}: {}; skipped", line_number_, reason)); }
 
   void take(std::string_view line) {
     const SampleReader::Line kind = reader_.read(line);
@@ -96,7 +162,18 @@ class Tracker {
       writer_.emplace(config_.data.state, bank_.mode_count(), reader_.format() == LineFormat::ndjson);
       writer_->header(out_);
     }
-    if (kind == SampleReader::Line::sample && comes_in_time(reader_.sample().time_s)) step(reader_.sample());
+    if (kind == SampleReader::Line::sample && comes_in_time(reader_.sample().time_s)) {
+      tell_overlarge(reader_.sample().measurement);
+      step(reader_.sample());
+    }
+  }
+
+  void tell_overlarge(const Eigen::VectorXd& measurement) {
+    for (Eigen::Index i = 0; i < measurement.size(); ++i)
+      if (std::isfinite(measurement(i)) && is_missing(measurement(i)))
+        messages_.say(fmt::format("line {}: {} = {} is beyond {:g}, and taken as missing", line_number_,
+                                  config_.data.state[static_cast<std::size_t>(i)], measurement(i),
+                                  largest_measurement));
   }
 
   bool is_gap(double from_s, double to_s) const {
@@ -108,17 +185,16 @@ class Tracker {
   bool comes_in_time(double time_s) {
     if (!last_time_s_ || time_s > *last_time_s_) return true;
     if (before_leap_s_ && time_s > *before_leap_s_ && !is_gap(*before_leap_s_, time_s)) {
-      fmt::print(
-          stderr,
-          "modebank: line {}: time goes back from {} s to {} s, which follows {} s: the filter goes on from there\n",
-          line_number_, *last_time_s_, time_s, *before_leap_s_);
+      messages_.say(
+          fmt::format("line {}: time goes back from {} s to {} s, which follows {} s: the filter goes on from there",
+                      line_number_, *last_time_s_, time_s, *before_leap_s_));
       filter_.go_back();
       last_time_s_ = *before_leap_s_;
       return true;
     }
     if (*last_time_s_ - time_s > static_cast<double>(longest_gap_steps) * bank_.dt_s) {
-      fmt::print(stderr, "modebank: line {}: time goes back from {} s to {} s: the filter starts anew\n", line_number_,
-                 *last_time_s_, time_s);
+      messages_.say(fmt::format("line {}: time goes back from {} s to {} s: the filter starts anew", line_number_,
+                                *last_time_s_, time_s));
       filter_.restart();
       return true;
     }
@@ -135,12 +211,14 @@ class Tracker {
     }
     const FilterEstimate& estimate = filter_.step(sample.time_s, sample.input, sample.measurement);
     if (was_started && estimate.steps == 0)
-      fmt::print(stderr, "modebank: line {}: {} s without a sample: the filter starts anew\n", line_number_,
-                 sample.time_s - *last_time_s_);
+      messages_.say(fmt::format("line {}: {} s without a sample: the filter starts anew", line_number_,
+                                sample.time_s - *last_time_s_));
     last_time_s_ = sample.time_s;
     writer_->line(sample.time_s, estimate, judge_.judge(estimate), out_);
+    if (watchdog_.on()) watchdog_.took(sample.time_s, estimate.mode_probability);
     const auto interval = static_cast<std::size_t>(config_.track.checkpoint_interval);
-    if (++samples_; interval > 0 && samples_ % interval == 0 && !config_.track.checkpoint.empty()) save();
+    if (++samples_; interval > 0 && samples_ % interval == 0 && !config_.track.checkpoint.empty())
+      checkpoint_due_ = true;
   }
 };
 

@@ -69,6 +69,11 @@ SampleReader::SampleReader(SampleColumns columns, LineFormat format) : columns_(
   next_ = sample_;
 }
 
+void SampleReader::remember(const Eigen::VectorXd& input) {
+  sample_.input = input;
+  any_input_ = true;
+}
+
 double& SampleReader::slot(std::size_t i) {
   if (i == 0) return next_.time_s;
   if (i <= columns_.inputs.size()) return next_.input(static_cast<Eigen::Index>(i - 1));

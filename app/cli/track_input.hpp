@@ -33,6 +33,8 @@ class SampleReader {
   /// a needed column throws ConfigurationError, which lists those there are. Of a malformed line nothing is kept.
   Line read(std::string_view line);
   const LiveSample& sample() const { return sample_; }
+  /// What acts where the next sample misses an input: that of a sample before the first line.
+  void remember(const Eigen::VectorXd& input);
   const std::string& reason() const { return reason_; }
   LineFormat format() const { return format_; }
 

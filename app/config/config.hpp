@@ -27,6 +27,7 @@ struct TrackConfig {
   std::string checkpoint;
   Index checkpoint_interval = 0;
   std::string resume;
+  double watchdog_s = 0.0;  ///< period of lines that say how it fares; 0: none
 };
 
 /// The [report] section: what a page may hold, and figures for papers.
@@ -61,6 +62,7 @@ struct SimulateConfig {
   SimulationOptions system;          ///< the linear system; commands, runs and outliers also of the vehicle
   VehicleSimulationOptions vehicle;  ///< what only a vehicle has
   std::string output = "simulated";
+  std::vector<std::string> ground_names;  ///< of a vehicle's kinds of ground
   double rate_hz = 6.5;
   double state_rate_hz = 65.0;
 };

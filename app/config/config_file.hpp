@@ -12,10 +12,13 @@ namespace modebank::app {
 
 using KeyValues = std::vector<std::pair<std::string, std::string>>;
 
+/// Where each key's value comes from: "robot.ini:12", "--window.length"; a key that is missing has its default.
+using Origins = std::map<std::string, std::string>;
+
 /// Reads a configuration file as Boost.Program_options does, then applies the overrides (the command line wins).
 /// data.root becomes absolute: as configured, else $MODEBANK_DATA, else the file's folder. Throws ConfigurationError
 /// naming line, key and, for an unknown key, the nearest known one.
-Config load_config(const std::filesystem::path& path, const KeyValues& overrides);
+Config load_config(const std::filesystem::path& path, const KeyValues& overrides, Origins* origins = nullptr);
 
 /// The [data] and [filter] keys and the seed of a configuration that an archive holds, then the overrides. Keys that
 /// this version does not know are left out.

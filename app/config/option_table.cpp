@@ -1,6 +1,8 @@
 #include "app/config/option_table.hpp"
 
 #include <algorithm>
+#include <array>
+#include <boost/algorithm/string.hpp>
 
 #include "app/config/options/sections.hpp"
 
@@ -21,12 +23,42 @@ ChainOptions chain_options(const Config& c) {
           c.filter,           c.scoring, c.job.seed, c.automatic_lags, c.mode_names};
 }
 
+namespace {
+
+/// What a first configuration is made of; help shows these before all others.
+constexpr std::array basic_keys{
+    "data.inputs",      "data.states",        "data.state",   "data.input",     "data.time",       "data.derive",
+    "data.rate_hz",     "data.lag_s",         "data.test",    "data.split",     "data.label",      "window.model",
+    "window.length",    "mixture.components", "bank.modes",   "bank.refine",    "filter.horizon",  "filter.simulate",
+    "archive.output",   "archive.input",      "job.threads",  "job.seed",       "study.vary",      "study.output",
+    "track.checkpoint", "track.resume",       "track.filter", "report.figures", "simulate.system", "simulate.output",
+    "simulate.runs",    "simulate.samples"};
+
+bool is_basic(const std::string& key) {
+  return std::find(basic_keys.begin(), basic_keys.end(), key) != basic_keys.end();
+}
+
+}  // namespace
+
+std::vector<std::string> Option::choices() const {
+  std::vector<std::string> words;
+  boost::split(words, range, [](char c) { return c == '|'; });
+  for (std::string& word : words) boost::trim(word);
+  const bool all_words = std::all_of(words.begin(), words.end(), [](const std::string& word) {
+    return !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+  });
+  return all_words && words.size() > 1 ? words : std::vector<std::string>{};
+}
+
 const std::vector<Option>& option_table() {
   static const std::vector<Option> table = [] {
     std::vector<Option> all;
     for (auto section : {data_options, window_options, mixture_options, bank_options, filter_options, archive_options,
                          study_options, track_options, report_options, simulate_options})
-      for (Option& entry : section()) all.push_back(std::move(entry));
+      for (Option& entry : section()) {
+        entry.basic = is_basic(entry.key);
+        all.push_back(std::move(entry));
+      }
     return all;
   }();
   return table;

@@ -19,7 +19,11 @@ struct Option {
   std::function<void(Config&, const std::string&)> set;  ///< throws std::invalid_argument when the text is not in range
   std::function<std::string(const Config&)> get;         ///< text that `set` reads back to the same value
   std::optional<SimulatedSystem> only_for = {};          ///< the simulated system that has this key; empty: all
+  bool basic = false;                                    ///< among the few that most users set
   bool repeatable = false;  ///< may stand in several lines of a file; `get` joins them by newlines
+
+  /// The words to choose from, of a range such as "auto | point | comma"; empty where other values are allowed.
+  std::vector<std::string> choices() const;
 
   std::string section() const { return key.substr(0, key.find('.')); }
   std::string name() const { return key.substr(key.find('.') + 1); }

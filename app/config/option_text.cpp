@@ -82,8 +82,10 @@ void parse_value(const std::string& text, std::vector<Eigen::Index>& value) {
     parse_value(part.substr(0, dots), first);
     last = first;
     if (dots != std::string::npos) parse_value(part.substr(dots + 2), last);
-    if (last < first || last - first > 10'000) throw std::invalid_argument("is not a range such as 1..12");
-    for (Eigen::Index i = first; i <= last; ++i) value.push_back(i);
+    Eigen::Index span = 0;
+    if (__builtin_sub_overflow(last, first, &span) || span < 0 || span > 10'000)
+      throw std::invalid_argument("is not a range such as 1..12");
+    for (Eigen::Index k = 0; k <= span; ++k) value.push_back(first + k);
   }
   if (value.empty()) throw std::invalid_argument("is empty");
 }

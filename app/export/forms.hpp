@@ -8,7 +8,7 @@
 #include "app/export/exported_bank.hpp"
 #include "io/archive/inspect.hpp"
 
-/// One function per form of `modebank export`; docs/export.md has their schemas.
+/// One function per form of `modebank export`; docs/reference/export.md has their schemas.
 namespace modebank::app {
 
 /// Of the JSON page; its minor part grows with members, its major part with changes of what there is.
@@ -16,7 +16,7 @@ inline constexpr const char* export_schema_version = "1.0";
 
 std::string to_json(const ExportedBank& bank);
 
-/// MATLAB's MAT-file of version 5, written under this name. Throws DataError where it cannot be.
+/// MATLAB's MAT-file of version 5, written under this name as replace_file does.
 void write_mat(const ExportedBank& bank, const std::filesystem::path& file);
 
 /// C99: what a header declares, the source defines. `stem`: of the files' names; identifiers begin with it.

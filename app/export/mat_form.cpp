@@ -6,6 +6,8 @@
 
 #include "app/export/forms.hpp"
 #include "app/export/names.hpp"
+#include "io/files/memory_file.hpp"
+#include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -103,7 +105,9 @@ std::string ss_lines(const ExportedBank& exported) {
 
 }  // namespace
 
-void write_mat(const ExportedBank& exported, const std::filesystem::path& path) {
+namespace {
+
+void fill_mat(const ExportedBank& exported, const std::filesystem::path& path) {
   const Bank& bank = exported.bank;
   const auto mode = [&](Index k) -> const Mode& { return bank.modes[static_cast<std::size_t>(k)]; };
   const auto errors = [&](Index k) -> const ModeErrors& { return exported.errors[static_cast<std::size_t>(k)]; };
@@ -146,6 +150,14 @@ void write_mat(const ExportedBank& exported, const std::filesystem::path& path) 
   add_channels(file, "measurement", exported.measurements);
   file.texts("mode_names", exported.mode_names);
   file.text("ss_lines", ss_lines(exported));
+}
+
+}  // namespace
+
+void write_mat(const ExportedBank& exported, const std::filesystem::path& path) {
+  const MemoryFile memory;
+  fill_mat(exported, memory.path());
+  replace_file(path, {memory.content()});
 }
 
 }  // namespace modebank::app

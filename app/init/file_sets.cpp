@@ -37,10 +37,11 @@ std::size_t common_start(const std::vector<std::string>& names) {
 void find_pattern(FileSet& set) {
   std::sort(set.files.begin(), set.files.end());
   const Path& first = set.files.front();
-  set.pattern = first.string();
-  set.runs = {first.stem().string()};
-  if (set.files.size() == 1) return;
-  set.complete = false;
+  for (const Path& file : set.files) set.runs.push_back(file.stem().string());
+  if (set.files.size() == 1) {
+    set.pattern = first.string();
+    return;
+  }
   std::vector<std::string> names;
   for (const Path& file : set.files) {
     if (file.parent_path() != first.parent_path()) return;
@@ -51,14 +52,19 @@ void find_pattern(FileSet& set) {
   const std::string whole = (first.parent_path() / pattern).string();
   const FilePattern matcher("files", "", whole);
   const std::vector<std::string> runs = matcher.runs();
-  std::vector<std::string> ours;
-  for (const std::string& run : runs)
-    if (std::find(set.files.begin(), set.files.end(), matcher.path_of(run)) != set.files.end()) ours.push_back(run);
-  if (ours.size() != set.files.size()) return;
-  set.complete = true;
+  const bool exact = runs.size() == set.files.size() && std::all_of(runs.begin(), runs.end(), [&](const auto& run) {
+                       return std::find(set.files.begin(), set.files.end(), matcher.path_of(run)) != set.files.end();
+                     });
+  if (!exact) return;
   set.pattern = whole;
-  set.runs = ours;
-  set.others = runs.size() - ours.size();
+  set.runs = runs;
+}
+
+bool is_of_a_kind(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  const auto shared = std::count_if(
+      a.begin(), a.end(), [&](const std::string& name) { return std::find(b.begin(), b.end(), name) != b.end(); });
+  // Two instruments of one robot may share most of their names (a gyro's and an odometry's frames).
+  return 5 * shared >= 4 * std::ssize(a) && 5 * shared >= 4 * std::ssize(b);
 }
 
 }  // namespace
@@ -79,7 +85,8 @@ std::vector<FileSet> file_sets(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     const Path path = std::filesystem::absolute(file).lexically_normal();
     const std::vector<std::string> own = all_columns(path);
-    const auto known = std::find(columns.begin(), columns.end(), own);
+    const auto known =
+        std::find_if(columns.begin(), columns.end(), [&](const auto& of) { return is_of_a_kind(of, own); });
     const auto at = static_cast<std::size_t>(known - columns.begin());
     if (known == columns.end()) {
       columns.push_back(own);

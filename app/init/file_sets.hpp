@@ -6,16 +6,15 @@
 
 namespace modebank::app {
 
-/// Files with the same columns, and the pattern with one * that names them all, where their names allow one.
+/// Files of one kind, and the pattern with one * that names them and no others, where there is one.
 struct FileSet {
   std::vector<std::filesystem::path> files;  ///< absolute, in order of name
-  std::string pattern;                       ///< of one file its own path
-  std::vector<std::string> runs;             ///< what the * stands for, per file; of one file its stem
-  std::size_t others = 0;                    ///< files that the pattern matches besides
-  bool complete = true;                      ///< whether the pattern matches them all: else it is the first alone
+  std::string pattern;                       ///< of one file its own path; empty: they have to be listed
+  std::vector<std::string> runs;             ///< what the * stands for, per file; without one their stems
 };
 
-/// Files sorted into sets, in the order in which they are named. Throws ConfigurationError when one cannot be read.
+/// Files sorted into sets, those that share four fifths of either's columns into one, in the order in which they are
+/// named. Throws ConfigurationError when one cannot be read.
 std::vector<FileSet> file_sets(const std::vector<std::string>& files);
 
 /// The pattern of file names in one folder: what they begin and end with, cut where a word ends (pro_00 and pro_01 are

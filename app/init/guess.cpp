@@ -90,10 +90,6 @@ void guess_inputs(const std::vector<Candidate>& all, Guess& guess) {
     guess.inputs.push_back(input->place);
 }
 
-const SurveyedChannel& at(const std::vector<SurveyedFile>& files, const ChannelPlace& place) {
-  return files[place.file].tables[place.table].channels[place.channel];
-}
-
 /// A gyro's rate about the axis that points up takes the place of that about z.
 void turn_upright(const std::vector<SurveyedFile>& files, Guess& guess) {
   for (ChannelPlace& state : guess.states) {
@@ -108,6 +104,10 @@ void turn_upright(const std::vector<SurveyedFile>& files, Guess& guess) {
 }
 
 }  // namespace
+
+const SurveyedChannel& channel_at(const std::vector<SurveyedFile>& files, const ChannelPlace& place) {
+  return files[place.file].tables[place.table].channels[place.channel];
+}
 
 Guess guess_roles(const std::vector<SurveyedFile>& files) {
   std::vector<Candidate> all = candidates_of(files);
@@ -127,7 +127,7 @@ Guess guess_roles(const std::vector<SurveyedFile>& files) {
   guess_inputs(all, guess);
   if (guess.inputs.empty())
     guess.reasons.emplace_back("no channel looks commanded: without inputs modes differ in their own motion alone");
-  else if (score_name(at(files, guess.inputs.front()).name).input < 5)
+  else if (score_name(channel_at(files, guess.inputs.front()).name).input < 5)
     guess.reasons.emplace_back(
         "no command is recorded: measured motion stands in for it, so the model says how one follows the other");
   turn_upright(files, guess);

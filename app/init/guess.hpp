@@ -15,6 +15,8 @@ struct ChannelPlace {
   bool operator==(const ChannelPlace&) const = default;
 };
 
+const SurveyedChannel& channel_at(const std::vector<SurveyedFile>& files, const ChannelPlace& place);
+
 /// A gyro that is mounted on its side: gravity lies along another axis than z.
 struct Mounting {
   Axis up = Axis::z;            ///< the axis that gravity lies along

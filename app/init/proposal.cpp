@@ -61,31 +61,49 @@ class Proposer {
   }
   void doubt(std::string text) { proposal_.doubts.push_back(std::move(text)); }
 
-  std::string runs_text(const FileSet& set) const {
+  std::string runs_text(const FileSet& set, bool listed) const {
     if (set.files.size() == 1) return "one file";
+    if (listed) return fmt::format("{} runs, named by their files", set.files.size());
     return fmt::format("{} runs; * names them: {} to {}", set.runs.size(), set.runs.front(), set.runs.back());
+  }
+
+  /// The folder that holds all files of both sets.
+  static Path common_folder(const FileSet& a, const FileSet& b) {
+    Path folder = a.files.front().parent_path();
+    const auto holds = [&](const Path& file) { return (file.string()).starts_with((folder / "").string()); };
+    while (folder != folder.root_path() &&
+           !(std::all_of(a.files.begin(), a.files.end(), holds) && std::all_of(b.files.begin(), b.files.end(), holds)))
+      folder = folder.parent_path();
+    return folder;
   }
 
   void files(const std::string& config_folder) {
     const FileSet &inputs = sets_[input().file], &states = sets_[state().file];
-    Path folder = Path(inputs.pattern).parent_path();
-    while (!folder.empty() && folder != folder.root_path() &&
-           !(states.pattern + "/").starts_with(folder.string() + "/"))
-      folder = folder.parent_path();
+    const Path folder = common_folder(inputs, states);
     const Path relative = folder.lexically_relative(config_folder);
     const bool below = !relative.empty() && *relative.begin() != "..";
     add("root", below ? relative.string() : folder.string(), "the folder of the data");
-    const auto within = [&](const FileSet& set) { return Path(set.pattern).lexically_relative(folder).string(); };
-    add("inputs", within(inputs), runs_text(inputs));
-    if (input().file != state().file) add("states", within(states), "the same runs' measured states");
-    for (const FileSet* set : {&inputs, &states}) {
-      if (!set->complete)
-        doubt(fmt::format("{} files have the same columns, but no pattern with one * names them: {} alone is taken",
-                          set->files.size(), set->files.front().filename().string()));
-      if (set->others > 0) doubt(fmt::format("{} matches {} files that were not named", set->pattern, set->others));
-      if (set == &inputs && &inputs == &states) break;
-    }
-    if (input().file != state().file && inputs.runs != states.runs && inputs.files.size() + states.files.size() > 2)
+    const bool listed = inputs.pattern.empty() || states.pattern.empty();
+    const auto within = [&](const FileSet& set) {
+      if (!listed) return Path(set.pattern).lexically_relative(folder).string();
+      std::vector<std::string> names;
+      for (const Path& file : set.files) names.push_back(file.lexically_relative(folder).string());
+      return fmt::format("{}", fmt::join(names, ", "));
+    };
+    add("inputs", within(inputs), runs_text(inputs, listed));
+    const bool two = input().file != state().file;
+    if (two) add("states", within(states), "the same runs' measured states");
+    for (const FileSet* set : {&inputs, &states})
+      for (const Path& file : set->files)
+        if (listed && file.string().find(',') != std::string::npos)
+          doubt(fmt::format("a list of files cannot name {}, whose name has a comma", file.string()));
+    for (const FileSet& set : sets_)
+      if (&set != &inputs && &set != &states)
+        doubt(fmt::format("{} file{} of other columns and not taken: {}{}", set.files.size(),
+                          set.files.size() == 1 ? " is" : "s are", set.files.front().filename().string(),
+                          set.files.size() > 1 ? ", ..." : ""));
+    if (two && (inputs.files.size() != states.files.size() || (!listed && inputs.runs != states.runs)) &&
+        inputs.files.size() + states.files.size() > 2)
       doubt(fmt::format("{} and {} are not of the same runs: every inputs file needs its states file", within(inputs),
                         within(states)));
   }
@@ -194,8 +212,13 @@ class Proposer {
       proposal_.keys.back() = {"time", " ", "no column of times was found: row k is k / rate_hz"};
       add("rate_hz", "1", "samples per second: CHANGE THIS to what it was");
       doubt("no column of times was found: data.rate_hz = 1 stands for whatever it was");
+      for (const SurveyedTable* of : {&states, &inputs})
+        if (!of->time_problem.empty()) doubt(of->time_problem);
       return;
     }
+    if (states.time_guessed)
+      doubt(fmt::format("{} rises steadily, {:.4g} times a second: it is taken for the times", states.time.front(),
+                        states.sampling.rate_hz));
     if (own(states) && own(inputs)) return;  // what a recording calls its stamps needs no key
     const std::string time = fmt::format("{}", fmt::join(states.time, ", "));
     if (states.time != inputs.time)

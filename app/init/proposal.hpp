@@ -19,7 +19,7 @@ struct Proposal {
   std::vector<std::string> doubts;  ///< what the user should look at before anything else
 };
 
-/// `surveyed`: the first file of each set.
+/// `surveyed`: each set, by survey_set.
 Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
                  const std::string& config_folder);
 

@@ -9,27 +9,31 @@
 #include "app/init/words.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "io/import/open_table.hpp"
+#include "io/import/read_columns.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
 
-/// A table of more columns is read so many at a time.
-constexpr std::size_t columns_at_once = 64;
-
-/// Reads columns of a table; those that are no numbers are left out.
+/// Looks at the columns of one table.
 class TableSurvey {
  public:
-  TableSurvey(const TableReader& reader, std::size_t position, const TableInfo& info, std::vector<std::string>& notes)
-      : reader_(reader), position_(position), info_(info), notes_(notes) {}
+  /// `columns`: as they were read; their values are taken.
+  TableSurvey(const TableReader& reader, std::size_t position, const TableInfo& info, std::vector<FileColumn>& columns)
+      : reader_(reader), position_(position), info_(info), columns_(columns) {}
 
   SurveyedTable look() {
     SurveyedTable table{info_.name, info_.type};
-    for (const ColumnInfo& column : info_.columns) table.channels.push_back({column.name, column.unit, column.type});
-    for (std::size_t first = 0; first < table.channels.size(); first += columns_at_once)
-      read_numbers(table, first, std::min(first + columns_at_once, table.channels.size()));
-    for (SurveyedChannel& channel : table.channels)
-      if (channel.is_number()) channel.check = check_channel(channel.values);
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const ColumnInfo& column = info_.columns[i];
+      table.channels.push_back({column.name, column.unit, column.type, {}, numbers_of(columns_[i])});
+      SurveyedChannel& channel = table.channels.back();
+      if (channel.is_number())
+        channel.check = check_channel(channel.values);
+      else
+        channel.type = "text";
+      if (auto* const numbers = std::get_if<std::vector<double>>(&columns_[i])) *numbers = {};
+    }
     find_time(table);
     find_run(table);
     table.sampling = check_sampling(one_run(table));
@@ -40,44 +44,38 @@ class TableSurvey {
   const TableReader& reader_;
   std::size_t position_;
   const TableInfo& info_;
-  std::vector<std::string>& notes_;
+  std::vector<FileColumn>& columns_;
+  std::string time_problem_;
 
-  std::optional<Table> try_read(const TableRequest& request) {
-    try {
-      InputFile unused;
-      std::vector<Table> tables = reader_.read({request}, unused);
-      for (const std::string& note : tables.at(0).notes)
-        if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
-      return std::move(tables.at(0));
-    } catch (const DataError&) {
-      return std::nullopt;
+  /// Stamps in seconds.
+  static Eigen::VectorXd numbers_of(const FileColumn& column) {
+    if (const auto* numbers = std::get_if<std::vector<double>>(&column))
+      return Eigen::VectorXd::Map(numbers->data(), std::ssize(*numbers));
+    const auto* stamps = std::get_if<std::vector<std::int64_t>>(&column);
+    Eigen::VectorXd seconds(stamps == nullptr ? 0 : std::ssize(*stamps));
+    for (Eigen::Index k = 0; k < seconds.size(); ++k) {
+      const std::int64_t stamp = (*stamps)[static_cast<std::size_t>(k)];
+      seconds(k) = stamp == missing_stamp ? not_a_number : static_cast<double>(stamp) / 1e9;
     }
+    return seconds;
   }
 
-  /// All at once where that goes, else one by one to find which are text.
-  void read_numbers(SurveyedTable& table, std::size_t first, std::size_t end) {
+  /// The stamps of a candidate, those that were read as such already among them.
+  std::vector<std::int64_t> stamps_of(const std::vector<std::string>& candidate) {
+    for (std::size_t i = 0; candidate.size() == 1 && i < columns_.size(); ++i)
+      if (info_.columns[i].name == candidate[0])
+        if (const auto* stamps = std::get_if<std::vector<std::int64_t>>(&columns_[i])) return *stamps;
     TableRequest request;
     request.table = position_;
-    for (std::size_t i = first; i < end; ++i)
-      if (table.channels[i].type != "text") request.numbers.push_back(table.channels[i].name);
-    request.may_miss.assign(request.numbers.size(), true);
-    if (request.numbers.empty()) return;
-    if (const std::optional<Table> all = try_read(request)) {
-      std::size_t column = 0;
-      for (std::size_t i = first; i < end; ++i)
-        if (table.channels[i].type != "text") {
-          const std::vector<double>& values = all->numbers[column++];
-          table.channels[i].values = Eigen::VectorXd::Map(values.data(), std::ssize(values));
-        }
-      return;
+    request.time.column = candidate[0];
+    request.time.nanoseconds = candidate.size() > 1 ? candidate[1] : "";
+    request.time.may_miss = true;
+    try {
+      return std::move(reader_.read({request}, nullptr).at(0).time_ns);
+    } catch (const DataError& error) {
+      if (time_problem_.empty()) time_problem_ = error.what();
+      return {};
     }
-    if (end - first == 1) {
-      table.channels[first].type = "text";
-      return;
-    }
-    const std::size_t middle = first + (end - first) / 2;
-    read_numbers(table, first, middle);
-    read_numbers(table, middle, end);
   }
 
   /// Columns that may be times, the likeliest first: what the format calls so, then names.
@@ -119,14 +117,9 @@ class TableSurvey {
   void find_time(SurveyedTable& table) {
     std::optional<Times> jumping;
     for (const std::vector<std::string>& candidate : time_candidates(table)) {
-      TableRequest request;
-      request.table = position_;
-      request.time.column = candidate[0];
-      request.time.nanoseconds = candidate.size() > 1 ? candidate[1] : "";
-      request.time.may_miss = true;
-      const std::optional<Table> read = try_read(request);
-      if (!read || read->time_ns.size() < 2) continue;
-      take_times(table, *read);
+      const std::vector<std::int64_t> stamps = stamps_of(candidate);
+      if (stamps.size() < 2) continue;
+      take_times(table, stamps);
       table.time = candidate;
       const Eigen::Index jumps = jumps_back(table.time_s), stands = stands_still(table.time_s);
       if (stands > table.time_s.size() / 2) continue;
@@ -139,10 +132,38 @@ class TableSurvey {
       table.origin_ns = jumping->origin_ns;
       return;
     }
+    for (const SurveyedChannel& channel : table.channels)
+      if (advances_steadily(channel.values) && take_steady(table, channel.name)) return;
     table.time.clear();
+    table.time_problem = time_problem_;
     table.origin_ns = 0;
     const Eigen::Index rows = row_count(table);
     table.time_s = Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(std::max<Eigen::Index>(rows - 1, 0)));
+  }
+
+  /// As times do, and counters of rows: which are whole numbers one apart.
+  static bool advances_steadily(const Eigen::VectorXd& values) {
+    constexpr Eigen::Index fewest = 10;
+    if (values.size() < fewest || !values.allFinite()) return false;
+    Eigen::VectorXd steps = values.tail(values.size() - 1) - values.head(values.size() - 1);
+    if (!(steps.array() > 0.0).all() || (steps.array() == 1.0).all()) return false;
+    std::sort(steps.begin(), steps.end());
+    const double median = steps(steps.size() / 2);
+    const auto near = ((steps.array() > 0.5 * median) && (steps.array() < 2.0 * median)).count();
+    return 10 * near > 9 * steps.size();
+  }
+
+  /// Whether the channel's values are times of a rate that instruments have.
+  bool take_steady(SurveyedTable& table, const std::string& name) {
+    constexpr double lowest_hz = 0.01, highest_hz = 20e3;
+    const std::vector<std::int64_t> stamps = stamps_of({name});
+    if (stamps.size() < 2) return false;
+    take_times(table, stamps);
+    const double rate_hz = static_cast<double>(table.time_s.size() - 1) / (table.time_s.tail(1)(0) - table.time_s(0));
+    if (!(rate_hz >= lowest_hz && rate_hz <= highest_hz)) return false;
+    table.time = {name};
+    table.time_guessed = true;
+    return true;
   }
 
   static Eigen::Index row_count(const SurveyedTable& table) {
@@ -151,16 +172,15 @@ class TableSurvey {
     return 0;
   }
 
-  static void take_times(SurveyedTable& table, const Table& read) {
-    table.time_s.resize(std::ssize(read.time_ns));
+  static void take_times(SurveyedTable& table, const std::vector<std::int64_t>& stamps) {
+    table.time_s.resize(std::ssize(stamps));
     table.origin_ns = missing_stamp;
-    for (const std::int64_t stamp : read.time_ns)
+    for (const std::int64_t stamp : stamps)
       if (stamp != missing_stamp && (table.origin_ns == missing_stamp || stamp < table.origin_ns))
         table.origin_ns = stamp;
-    for (std::size_t k = 0; k < read.time_ns.size(); ++k)
-      table.time_s(static_cast<Eigen::Index>(k)) = read.time_ns[k] == missing_stamp
-                                                       ? not_a_number
-                                                       : static_cast<double>(read.time_ns[k] - table.origin_ns) / 1e9;
+    for (std::size_t k = 0; k < stamps.size(); ++k)
+      table.time_s(static_cast<Eigen::Index>(k)) =
+          stamps[k] == missing_stamp ? not_a_number : static_cast<double>(stamps[k] - table.origin_ns) / 1e9;
   }
 
   static bool jumps_back(const Eigen::VectorXd& time_s, Eigen::Index k) { return time_s(k) < time_s(k - 1); }
@@ -215,8 +235,12 @@ SurveyedFile survey_file(const std::filesystem::path& path) {
   const std::shared_ptr<const TableReader> reader = open_table(path, FormatOptions());
   SurveyedFile file{path, {}, {}};
   const std::vector<TableInfo> tables = reader->tables();
+  FileColumns columns = read_columns(*reader, tables, [](const TableInfo&, const ColumnInfo& column) {
+    return column.type != "text";  // of which nothing is wanted
+  });
+  file.notes = std::move(columns.notes);
   for (std::size_t i = 0; i < tables.size(); ++i)
-    file.tables.push_back(TableSurvey(*reader, i, tables[i], file.notes).look());
+    file.tables.push_back(TableSurvey(*reader, i, tables[i], columns.tables[i]).look());
   return file;
 }
 

@@ -27,6 +27,8 @@ struct SurveyedTable {
   std::string name, type;
   std::vector<SurveyedChannel> channels = {};
   std::vector<std::string> time = {};  ///< data.time; empty: none was found
+  bool time_guessed = false;           ///< by its values alone
+  std::string time_problem = {};       ///< why what is called a time is none
   std::string run = {};                ///< a column whose value separates runs; empty: none is needed
   Eigen::VectorXd time_s = {};         ///< of the rows, from their first; the row's number where there is no time
   std::int64_t origin_ns = 0;

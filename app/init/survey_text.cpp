@@ -62,7 +62,7 @@ std::string survey_text(const std::vector<FileSet>& sets, const std::vector<Surv
   std::string text;
   for (std::size_t i = 0; i < surveyed.size(); ++i) {
     text += surveyed[i].path.string();
-    if (sets[i].files.size() > 1) text += fmt::format(" (the first of {} alike)", sets[i].files.size());
+    if (sets[i].files.size() > 1) text += fmt::format(" and {} more: ranges are over all", sets[i].files.size() - 1);
     text += "\n";
     for (const std::string& note : surveyed[i].notes) text += fmt::format("  {}\n", note);
     for (const SurveyedTable& table : surveyed[i].tables) {

@@ -38,7 +38,7 @@ void check_output(const Config& config, const std::filesystem::path& configurati
   for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture_start})
     if (!file.empty()) require_other(file);
   if (!config.archive.input.empty() || memory != nullptr) return;
-  for (const std::filesystem::path& file : data_files(config.data)) require_other(file);
+  for (const DataFile& file : data_files(config.data)) require_other(file.path);
 }
 
 }  // namespace

@@ -12,6 +12,8 @@
 #include "app/study/launch/submit_study.hpp"
 #include "app/study/run/run_trials.hpp"
 #include "app/study/run/study_progress.hpp"
+#include "io/files/read_file.hpp"
+#include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -22,8 +24,14 @@ struct StudyCommand {
   const StudyCall& call;
   const Config& config;
   TrialStore store;
-  std::filesystem::file_time_type started;
+  std::string execution;                                  ///< this one
+  std::map<std::string, FailureRecord> earlier_failures;  ///< by key
 };
+
+bool has_plan(const std::filesystem::path& folder) {
+  refuse_special_file(plan_file(folder));
+  return std::filesystem::exists(plan_file(folder));
+}
 
 /// The plan of the configuration, written to the folder; one that is there must go on in it.
 StudyPlan settle_plan(const StudyCommand& command) {
@@ -31,7 +39,7 @@ StudyPlan settle_plan(const StudyCommand& command) {
   command.store.create();
   const FileLocks locks(command.store.lock_file());
   const FileLocks::Hold alone = locks.lock(plan_lock);
-  if (std::filesystem::exists(plan_file(command.store.folder()))) {
+  if (has_plan(command.store.folder())) {
     const StudyPlan before = read_plan(command.store.folder());
     check_plan_goes_on(before, plan, command.store.folder());
     if (before.config == plan.config && before.table.rows.size() == plan.table.rows.size()) return plan;
@@ -41,25 +49,33 @@ StudyPlan settle_plan(const StudyCommand& command) {
 }
 
 WorkerSettings worker_settings(const StudyCommand& command, const StudyPlan& plan) {
-  return {command.config, command.call.typed, command.store, plan.table.varied_keys, plan.provenance.modebank_version,
-          command.started};
+  return {command.config,
+          command.call.typed,
+          command.store,
+          plan.table.varied_keys,
+          plan.provenance.modebank_version,
+          command.execution,
+          command.earlier_failures};
 }
 
-void print_plan(const StudyCommand& command, const StudyPlan& plan) {
+void print_plan(const StudyCommand& command, const StudyPlan& plan, Sampling sampling) {
   const WorkerSettings settings = worker_settings(command, plan);
   fmt::print("{}", plan_text(plan, count_stages(command.config, plan), command.config.study.repeats));
   std::fflush(stdout);
-  fmt::print("{}", estimate_text(estimate_study(settings, plan), command.store, job_count(command.config.study)));
+  fmt::print("{}",
+             estimate_text(estimate_study(settings, plan, sampling), command.store, job_count(command.config.study)));
   std::fflush(stdout);
+}
+
+/// Where a plan is made, often the machine that users log in to, nothing else is computed unless asked.
+Sampling if_asked(const StudyConfig& study) {
+  return study.estimate ? Sampling::make_some_runs : Sampling::what_is_there;
 }
 
 /// Throws DataError when the study had to stop.
 RunResult run_share(const StudyCommand& command, const StudyPlan& plan) {
   const StudyConfig& study = command.config.study;
-  {
-    const FileLocks locks(command.store.lock_file());
-    command.store.remove_leftovers(locks);
-  }
+  command.store.remove_leftovers();
   const TrialGroups share = shard_of(group_trials(command.config, plan), study.shard_index, study.shard_count);
   StudyProgress progress(plan.table.varied_keys);
   const RunResult result = run_trials(worker_settings(command, plan), plan, share,
@@ -85,12 +101,13 @@ bool is_complete(const StudyTable& table) {
 
 /// What merge and status need.
 void require_plan(const StudyCommand& command) {
-  if (!std::filesystem::exists(plan_file(command.store.folder())))
+  if (!has_plan(command.store.folder()))
     throw ConfigurationError(fmt::format("{}: there is no plan yet: run the study, or --study.stage plan, first",
                                          plan_file(command.store.folder()).string()));
 }
 
 int merge(const StudyCommand& command, const std::set<std::string>& whole) {
+  command.store.look_again();
   require_plan(command);
   const FileLocks locks(command.store.lock_file());
   const FileLocks::Hold alone = locks.lock(plan_lock);
@@ -109,7 +126,7 @@ int merge(const StudyCommand& command, const std::set<std::string>& whole) {
 
 int run_all(const StudyCommand& command) {
   const StudyPlan plan = settle_plan(command);
-  print_plan(command, plan);
+  print_plan(command, plan, Sampling::make_some_runs);
   const RunResult result = run_share(command, plan);
   return merge(command, {result.whole.begin(), result.whole.end()});
 }
@@ -122,9 +139,15 @@ int show_status(const StudyCommand& command) {
   return is_complete(table) ? 0 : 1;
 }
 
+int plan_alone(const StudyCommand& command) {
+  print_plan(command, settle_plan(command), if_asked(command.config.study));
+  return 0;
+}
+
 int submit(const StudyCommand& command) {
+  check_submission(command.call);
   const StudyPlan plan = settle_plan(command);
-  print_plan(command, plan);
+  print_plan(command, plan, if_asked(command.config.study));
   fmt::print("{}", submit_study(command.call, plan, collect_table(command.store, plan)));
   return 0;
 }
@@ -132,14 +155,14 @@ int submit(const StudyCommand& command) {
 }  // namespace
 
 int do_study(const StudyCall& call) {
-  const StudyCommand command{call, call.config, TrialStore(call.config.study.output),
-                             std::filesystem::file_time_type::clock::now()};
+  const TrialStore store(call.config.study.output);
+  store.look_again();
+  const StudyCommand command{call, call.config, store, process_word(this_process()), store.failures()};
   switch (call.config.study.stage) {
     case StudyStage::all:
       return run_all(command);
     case StudyStage::plan:
-      print_plan(command, settle_plan(command));
-      return 0;
+      return plan_alone(command);
     case StudyStage::run:
       return run_share(command, settle_plan(command)).failed.empty() ? 0 : 1;
     case StudyStage::merge:

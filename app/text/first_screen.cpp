@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
+#include <cstdlib>
 
 #include "app/chain/judged_runs.hpp"
 #include "app/text/mode_words.hpp"
@@ -39,7 +40,14 @@ std::string section(const char* label, const std::string& text, int most, int co
   return narrowed(boost::algorithm::join(lines, "\n"), columns) + "\n";
 }
 
-std::string read_words(const Archive& archive) {
+/// How much later than recorded inputs act: found, or said.
+double input_lag(const Archive& archive, const Settings& settings) {
+  if (archive.lag) return archive.lag->correction == LagCorrection::none ? 0.0 : archive.lag->lag.mean;
+  const auto said = settings.find("data.lag_s");
+  return said == settings.end() ? 0.0 : std::atof(said->second.c_str());
+}
+
+std::string read_words(const Archive& archive, const Settings& settings) {
   if (!archive.recording) return "";
   const Recording& recording = *archive.recording;
   const auto count = [&](Role role) {
@@ -56,6 +64,8 @@ std::string read_words(const Archive& archive) {
   if (!recording.inputs.empty()) text += fmt::format(" from {}", fmt::join(names_of(recording.inputs), ", "));
   if (archive.lag && archive.lag->correction != LagCorrection::none)
     text += fmt::format(", which act {:+.3f} s later", archive.lag->lag.mean);
+  if (const double lag_s = input_lag(archive, settings); lag_s < 0.0)
+    text += fmt::format("{}the filter needs inputs {:.3f} s ahead of the states", archive.lag ? ": " : "; ", -lag_s);
   if (archive.learned_transitions > 0)
     text += fmt::format("; the bank learned {}", learned_words(archive.learned_transitions, steps));
   if (archive.lag_counts)
@@ -184,17 +194,20 @@ std::string calibration_words(Verdict verdict) {
 
 bool has_first_screen(const Archive& archive) { return archive.bank && !archive.summary.empty(); }
 
-std::string first_screen(const Archive& archive, const Settings& settings, const std::string& file, int width) {
+std::string first_screen(const Archive& archive, const Settings& settings, const std::string& file, int width,
+                         const std::string& program) {
   const int columns = width > 0 ? std::clamp(width, least_columns, screen_columns) : screen_columns;
   const auto part = [columns](const char* label, const std::string& text, int most) {
     return section(label, text, most, columns);
   };
-  const std::string before = part("read", read_words(archive), 2) +
+  const std::string before = part("read", read_words(archive, settings), input_lag(archive, settings) < 0.0 ? 3 : 2) +
                              part("finding", archive.finding ? archive.finding->text : "", finding_lines);
-  const std::string after = part("band", trust_words(archive), 3) +
-                            part("mean", mean_words(archive), archive.free_runs.empty() ? 2 : 3) +
-                            part("warning", warning_words(archive), 2) + part("next", next_step(archive, settings), 2) +
-                            file_line(file, columns);
+  const std::string after =
+      part("band", trust_words(archive), 3) + part("mean", mean_words(archive), archive.free_runs.empty() ? 2 : 3) +
+      part("warning", warning_words(archive), 2) +
+      part("next", boost::replace_all_copy(next_step(archive, settings), "`modebank ", "`" + program + " "),
+           program == "modebank" ? 2 : 3) +
+      file_line(file, columns);
   return before + modes_section(archive, screen_lines - line_count(before) - line_count(after), columns) + after;
 }
 

@@ -16,8 +16,9 @@ bool has_first_screen(const Archive& archive);
 
 /// What was read, what was found, the modes, how far to trust the band, how good the mean is, warnings, what to do next
 /// and where all of it is. At most screen_lines lines of screen_columns columns, but for the line of a longer `file`; a
-/// terminal of less `width` has narrower ones.
-std::string first_screen(const Archive& archive, const Settings& settings, const std::string& file, int width = 0);
+/// terminal of less `width` has narrower ones. `program`: how commands to be typed next call it.
+std::string first_screen(const Archive& archive, const Settings& settings, const std::string& file, int width = 0,
+                         const std::string& program = "modebank");
 
 /// What a verdict means: "its stated uncertainty is not found false".
 std::string calibration_words(Verdict verdict);

@@ -30,10 +30,26 @@ std::string heading(const std::string& name) {
   return first_columns(name, longest_name - 2) + "..";
 }
 
+/// Per gain (states x inputs, a state's in a row) whether the training runs leave it open: some effect of the input on
+/// the state has no standard error in the global model.
+std::vector<bool> open_gains(const Archive& archive) {
+  const LinearStructure& s = archive.bank->structure;
+  std::vector<bool> open(static_cast<std::size_t>(s.states * s.inputs), false);
+  if (!archive.windows || !archive.windows->model_parameters.empty() || !(archive.windows->structure == s)) return open;
+  const Eigen::VectorXd variance = archive.windows->global.covariance.diagonal();
+  if (variance.size() != s.parameters()) return open;
+  for (Index i = 0; i < s.states; ++i)
+    for (Index j = 0; j < s.acting_inputs(); ++j)
+      if (std::isnan(variance(i * s.regressors() + s.dimension() + j)))
+        open[static_cast<std::size_t>(i * s.inputs + j % s.inputs)] = true;
+  return open;
+}
+
 /// What a table of modes holds beside the gains.
 struct Cells {
   bool all_decays;
   std::size_t gains;
+  std::vector<bool> open;
   const std::vector<std::string>& names;  // of modes
 };
 
@@ -47,7 +63,9 @@ std::vector<std::string> cells_of(const UsedMode& used, const ModeDynamics& dyna
   const Eigen::VectorXd gains = dynamics.gain.transpose().reshaped(),
                         errors = dynamics.gain_error.transpose().reshaped();
   for (std::size_t i = 0; i < wanted.gains; ++i)
-    cells.push_back(estimate_text(gains(static_cast<Index>(i)), errors(static_cast<Index>(i))));
+    cells.push_back(i < wanted.open.size() && wanted.open[i]
+                        ? "not identifiable"
+                        : estimate_text(gains(static_cast<Index>(i)), errors(static_cast<Index>(i))));
   return cells;
 }
 
@@ -140,7 +158,7 @@ ShortModes short_modes(const Archive& archive, Index rows, int width) {
   for (Index i = shown; i < all; ++i) others += modes[static_cast<std::size_t>(i)].use;
   modes.resize(static_cast<std::size_t>(shown));
   const GainNames gains = gains_of(archive);
-  Cells cells{false, gains.names.size(), archive.mode_names};
+  Cells cells{false, gains.names.size(), open_gains(archive), archive.mode_names};
   ShortModes result{table_text(archive, modes, gains, cells, 0)};
   for (; widest_line(result.text) > width && cells.gains > 0; ++result.gains_left_out) {
     --cells.gains;
@@ -157,7 +175,8 @@ std::string modes_in_words(const Archive& archive, int width) {
   const GainNames gains = gains_of(archive);
   return fmt::format("\nmodes in words{}\n",
                      gains.unit.empty() ? "" : fmt::format("; steady gains in {}", gains.unit)) +
-         table_text(archive, used_modes(archive), gains, {true, gains.names.size(), archive.mode_names}, width);
+         table_text(archive, used_modes(archive), gains,
+                    {true, gains.names.size(), open_gains(archive), archive.mode_names}, width);
 }
 
 }  // namespace modebank::app

@@ -66,7 +66,7 @@ bool has_few_agreeing_restarts(const Situation& s) {
                      [](const Candidate& c) { return c.selected && 2 * c.agreeing_restarts < c.restarts; });
 }
 
-/// From what spoils every number to what only could be better. README has the same list.
+/// From what spoils every number to what only could be better. docs/howto/troubleshooting.md has the same list.
 const Rule rules[] = {
     {is_lost,
      [](const Situation&) -> std::string {

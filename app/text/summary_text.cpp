@@ -157,7 +157,7 @@ std::string horizon_text(const Archive& archive) {
   for (const HorizonRow& row : archive.horizons)
     if (row.run == "*" && row.role == role)
       text += fmt::format("{:<11} {:>8} {:>8} {:>10} {:>10}\n", row.filter, row.horizon, row.samples,
-                          fixed_or_short(row.log_score, 4), fixed_or_short_list(row.rmse, 5));
+                          fixed_or_short(row.log_score, 4), size_list(row.rmse, 5));
   return text;
 }
 
@@ -215,8 +215,11 @@ std::string windows_text(const WindowFits& fits, const WindowCounts& counts, con
   text += "global    ";
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const auto k = static_cast<Index>(i);
-    text += fmt::format("{}{} = {:.4g} +- {:.2g}", i == 0 ? "" : ", ", labels[i], fits.global.theta(k),
-                        std::sqrt(fits.global.covariance(k, k)));
+    const double variance = fits.global.covariance(k, k);
+    text += i == 0 ? "" : ", ";
+    text += std::isnan(variance)
+                ? labels[i] + " not identifiable"
+                : fmt::format("{} = {:.4g} +- {:.2g}", labels[i], fits.global.theta(k), std::sqrt(variance));
   }
   return text + fmt::format("; residual variance {:.4g}\n", fmt::join(fits.global.noise_variance(), " "));
 }

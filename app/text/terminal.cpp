@@ -14,7 +14,8 @@ constexpr int label_width = 10;  // of "windows   ", as the summary's lines begi
 
 int stated_width() {
   const char* columns = std::getenv("COLUMNS");
-  return columns ? std::max(0, std::atoi(columns)) : 0;
+  constexpr int widest = 10'000;  // no screen is; a text of it would be padded without end
+  return columns ? std::clamp(std::atoi(columns), 0, widest) : 0;
 }
 
 int terminal_width() {

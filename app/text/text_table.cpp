@@ -19,6 +19,32 @@ void TextTable::add(std::vector<std::string> cells, std::string remark) {
   rows_.push_back({std::move(cells), std::move(remark)});
 }
 
+namespace {
+
+/// The end of a long name tells it from others.
+std::string shortened(const std::string& text, int most) {
+  if (columns_of(text) <= most) return text;
+  std::string end = text;
+  while (columns_of(end) > most - 2) {
+    std::size_t next = 1;
+    while (next < end.size() && (static_cast<unsigned char>(end[next]) & 0xC0U) == 0x80U) ++next;  // a UTF-8 character
+    end.erase(0, next);
+  }
+  return ".." + end;
+}
+
+}  // namespace
+
+TextTable TextTable::within(int width) const {
+  constexpr int least = 8;
+  const int most = std::max(least, width / (static_cast<int>(keys_) + 1) - 1);
+  TextTable result = *this;
+  for (Column& column : result.columns_) column.title = shortened(column.title, most);
+  for (Row& row : result.rows_)
+    for (std::string& cell : row.cells) cell = shortened(cell, most);
+  return result;
+}
+
 std::vector<int> TextTable::widths(bool limited) const {
   std::vector<int> widths;
   for (std::size_t j = 0; j < columns_.size(); ++j) {
@@ -45,7 +71,9 @@ std::string TextTable::part(const std::vector<std::size_t>& shown, const std::ve
   return text;
 }
 
-std::string TextTable::text(int width) const {
+std::string TextTable::text(int width) const { return width > 0 ? within(width).laid_out(width) : laid_out(width); }
+
+std::string TextTable::laid_out(int width) const {
   const std::vector<int> wide = widths(width > 0);
   int remark = 0;
   for (const Row& row : rows_) remark = std::max(remark, columns_of(row.remark));

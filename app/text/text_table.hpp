@@ -21,7 +21,7 @@ class TextTable {
   /// One cell per column, or fewer: a row that ends early. `remark` follows the row.
   void add(std::vector<std::string> cells, std::string remark = {});
 
-  /// width 0: no limit.
+  /// width 0: no limit; else a cell that leaves its neighbours no room is shortened to its end.
   std::string text(int width) const;
 
  private:
@@ -29,6 +29,8 @@ class TextTable {
     std::vector<std::string> cells;
     std::string remark;
   };
+  TextTable within(int width) const;
+  std::string laid_out(int width) const;
   std::vector<int> widths(bool limited) const;
   std::string part(const std::vector<std::size_t>& shown, const std::vector<int>& widths) const;
 

@@ -135,7 +135,7 @@ std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow
     add_flag(flags, "NEES below a true filter's: the state's covariance is too large");
   if (all.whiteness_p < coloured && std::abs(colour.value) > noticeable_colour)
     add_flag(flags, "innovations not white: autocorrelation " + two_digits(colour.value) + " at lag " +
-                        std::to_string(colour.lag) + " (more window.state_lags, or data.lag_s = auto, may explain it)");
+                        std::to_string(colour.lag));
   if (all.verdict == Verdict::undecided) add_flag(flags, "too few samples for a verdict");
   if (nees_states < all.state_rmse.size() && all.state_rmse.allFinite())
     add_flag(flags, nees_states == 0 ? "R is as good as zero, so the state is the measurement: no NEES"

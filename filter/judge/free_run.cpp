@@ -8,6 +8,7 @@
 #include "filter/judge/free_run_forecasts.hpp"
 #include "filter/step/equations/filter_memory.hpp"
 #include "filter/step/feed/run_samples.hpp"
+#include "ident/base/interruption.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
 
@@ -113,6 +114,7 @@ void predict_on(Forecast& forecast, const Given& given, Index t, Index end, Free
   const RunInstants& instants = given.instants();
   Index ahead = 0;
   while (instants.continues(t)) {
+    interruption_point();
     forecast.step(instants.inputs.col(++t));
     const Index k = instants.instants[static_cast<std::size_t>(t)].sample;
     if (k >= end) return;
@@ -143,7 +145,10 @@ void from_each_start(const FilterModel<N, NY>& model, const Given& given, FreeRu
   FilterStep<N, NY> step(model);
   FilterState<N> state = initial_state(model);
   given.for_each(out, [&](Index first, Index last, Index end) {
-    for (Index t = first; t <= last; ++t) step_to(model, given.instants(), t, given.run(), state, step);
+    for (Index t = first; t <= last; ++t) {
+      interruption_point();
+      step_to(model, given.instants(), t, given.run(), state, step);
+    }
     from(state, last, end);
   });
 }

@@ -92,7 +92,7 @@ RateAdvice advise_rate(const RateFacts& facts) {
   const double per_time_constant = facts.inputs_hz * facts.time_constant_s;
   if (facts.time_constant_s > 0.0 && per_time_constant > most_samples)
     return {slower(facts.inputs_hz, wanted_fast / facts.time_constant_s), RateReason::too_fast};
-  if (facts.repeated >= many_repeats)
+  if (facts.repeated >= many_repeats && facts.repeated < 1.0)
     return {slower(facts.inputs_hz, facts.inputs_hz * (1.0 - facts.repeated)), RateReason::repeats};
   const double slow_hz = wanted_slow / std::max(facts.time_constant_s, 1e-30);
   if (facts.time_constant_s > 0.0 && per_time_constant < least_samples && facts.states_hz >= slow_hz)

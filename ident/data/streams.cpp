@@ -4,8 +4,12 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <sstream>
+#include <utility>
+#include <vector>
 
 #include "ident/data/trajectory.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -33,14 +37,57 @@ Index advance(const VectorXd& samples, Index sample, double time) {
   return sample;
 }
 
-VectorXd uniform_times(double first, double end, double rate_hz) {
-  constexpr double rounding = 1e-6;  // of a period: keeps an end that k / rate_hz just misses
-  const double periods = std::floor((end - first) * rate_hz + rounding);
-  if (periods < 0.0) return {};
-  VectorXd time_s(static_cast<Index>(periods) + 1);
-  for (Index k = 0; k < time_s.size(); ++k) time_s(k) = first + static_cast<double>(k) / rate_hz;
-  return time_s;
-}
+/// Times of a grid, but for what lies deep in a gap of a stream, where nothing is known: the cost of a pause is
+/// bounded, however long. Shorter gaps stay whole.
+class Grid {
+ public:
+  Grid(double first, double end, double rate_hz) : first_(first), end_(end), rate_hz_(rate_hz) {}
+
+  /// Leaves out what lies in the long gaps of a stream whose sample at s acts at acts_at(s).
+  template <class ActsAt>
+  void skip_gaps(const VectorXd& stream_s, ActsAt acts_at) {
+    samples_ = std::max(samples_, stream_s.size());
+    if (stream_s.size() < 2) return;
+    const double longest = std::max(gap_periods * median_period_s(stream_s), longest_gap / rate_hz_);
+    for (Index k = 1; k < stream_s.size(); ++k)
+      if (stream_s(k) - stream_s(k - 1) > longest)
+        gaps_.push_back({acts_at(stream_s(k - 1)) + margin / rate_hz_, acts_at(stream_s(k)) - margin / rate_hz_});
+  }
+
+  VectorXd times() {
+    std::sort(gaps_.begin(), gaps_.end());
+    std::vector<double> times;
+    const double last = std::floor((end_ - first_) * rate_hz_ + rounding);
+    std::size_t gap = 0;
+    for (double k = 0.0; k <= last; ++k) {
+      const double time = first_ + k / rate_hz_;
+      while (gap < gaps_.size() && gaps_[gap].second <= time) ++gap;
+      if (gap < gaps_.size() && gaps_[gap].first < time)
+        k = std::max(k, std::floor((gaps_[gap].second - first_) * rate_hz_));
+      else
+        times.push_back(time);
+      if (std::ssize(times) > std::max(most_times, most_per_sample * samples_)) refuse(times.back());
+    }
+    return VectorXd::Map(times.data(), std::ssize(times));
+  }
+
+ private:
+  static constexpr double rounding = 1e-6;  // of a period: keeps an end that k / rate_hz just misses
+  static constexpr double longest_gap = 1000.0, margin = 100.0;  // periods; filters start anew after 50 of the model's
+  /// A grid is finer than its streams by less: their times count something else than seconds, or the rate is wrong.
+  static constexpr Index most_times = 1'000'000, most_per_sample = 1000;
+  double first_, end_, rate_hz_;
+  Index samples_ = 0;  ///< of the longest stream
+  std::vector<std::pair<double, double>> gaps_;
+
+  [[noreturn]] void refuse(double time) const {
+    std::ostringstream what;
+    what << "a rate of " << rate_hz_ << " Hz makes more than " << most_per_sample << " times of every sample, of which "
+         << samples_ << " lie from " << first_ << " s to " << end_ << " s (" << time
+         << " s is the last that was made): is the unit of the times right?";
+    throw DataError(what.str());
+  }
+};
 
 VectorXd times_within(const VectorXd& time_s, double first, double end) {
   const double* const from = std::lower_bound(time_s.data(), time_s.data() + time_s.size(), first);
@@ -116,7 +163,12 @@ VectorXd joint_times(const VectorXd& states_time_s, const VectorXd& inputs_time_
   };
   const double first = std::max(states_time_s(0), acts_at(inputs_time_s(0)));
   const double end = std::min(last(states_time_s), acts_at(last(inputs_time_s)));
-  if (options.rate_hz > 0.0) return uniform_times(first, end, options.rate_hz);
+  if (options.rate_hz > 0.0) {
+    Grid grid(first, end, options.rate_hz);
+    grid.skip_gaps(states_time_s, [](double s) { return s; });
+    grid.skip_gaps(inputs_time_s, acts_at);
+    return grid.times();
+  }
   if (options.lag_s == 0.0 && options.drift == 0.0) return times_within(inputs_time_s, first, end);
   const double rounding = time_tolerance(inputs_time_s);  // t - lag_s must not lose a sample by it
   return times_within(inputs_time_s, std::max(states_time_s(0), first - rounding),

@@ -20,7 +20,8 @@ Eigen::VectorXd t_value(const LocalModel& fit);
 double region_degrees_of_freedom(const LocalModel& fit);
 
 /// The ellipsoid that holds theta's true value with probability `level`. With a sandwich covariance of several states
-/// it is too small unless L is large against p (README): there take each state's parameters on their own.
+/// it is too small unless L is large against p (docs/explanation/uncertainty.md): there take each state's parameters on
+/// their own.
 struct ConfidenceRegion {
   Eigen::VectorXd center;      ///< p, theta
   Eigen::MatrixXd covariance;  ///< p x p

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "ident/base/interruption.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
 #include "ident/fit/audit.hpp"
@@ -154,6 +155,7 @@ class Fitting {
     for (const auto& range : ranges) column.push_back(column.back() + range.count);
     Eigen::MatrixXd all(common_.global.theta.size(), column.back());
     const auto fit_range = [&](std::size_t j) {
+      interruption_point();
       const std::vector<batch::Verdict>* verdict = nullptr;
       if (batch) verdict = &batch->solve(ranges[j], {.theta = all.col(column[j]).data()});
       for (Index i = 0; i < ranges[j].count; ++i) {
@@ -170,6 +172,7 @@ class Fitting {
   }
 
   void fit_range(const WindowPlan::Range& range, Index column, WindowFits& fits) {
+    interruption_point();
     const std::vector<batch::Verdict>* const verdict =
         batch_ ? &batch_->solve(range, columns_from(fits, column)) : nullptr;
     for (Index i = 0; i < range.count; ++i) {

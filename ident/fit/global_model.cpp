@@ -6,6 +6,7 @@
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/motion_fit.hpp"
+#include "ident/fit/open_regressors.hpp"
 #include "ident/model/transitions.hpp"
 #include "modebank/base/error.hpp"
 
@@ -13,15 +14,37 @@ namespace modebank {
 
 namespace {
 
-/// S (x) (X'X)^-1 for theta row-major; NaN where the transitions leave it open.
-Eigen::MatrixXd least_squares_covariance(const Decomposition& d, const Eigen::MatrixXd& residual_square_sum, Index N) {
-  const Index q = d.basis.rows(), n = residual_square_sum.rows();
-  if (d.rank() < q || N <= q) return Eigen::MatrixXd::Constant(n * q, n * q, not_a_number);
-  const Eigen::MatrixXd gram_inverse = d.basis * d.basis.transpose();
+/// The columns of X whose coefficients no row of it sees alone: their unit vectors, with columns scaled to unit norm,
+/// lie outside the row space.
+std::vector<Index> open_columns(const Eigen::MatrixXd& X, const Decomposition& d) {
+  constexpr double rounding = 1e-6;  // of a squared length: far below any part that a dependence has
+  const Index q = d.basis.rows();
+  std::vector<Index> open;
+  if (d.rank() == q) return open;
+  Eigen::MatrixXd rows(q, 0);
+  if (d.rank() > 0) {
+    const Eigen::VectorXd norms = X.colwise().stableNorm().transpose();
+    rows = thin_qr((norms.array() > 0.0).select(norms, 1.0).cwiseInverse().asDiagonal() * d.basis).Q;
+  }
+  for (Index j = 0; j < q; ++j)
+    if (1.0 - rows.row(j).squaredNorm() > rounding) open.push_back(j);
+  return open;
+}
+
+/// S (x) (X'X)^+ for theta row-major; NaN where the transitions leave it open.
+Eigen::MatrixXd least_squares_covariance(const Eigen::MatrixXd& X, const Decomposition& d,
+                                         const Eigen::MatrixXd& residual_square_sum, Index N) {
+  const Index q = d.basis.rows(), n = residual_square_sum.rows(), rank = d.rank();
+  if (N <= rank) return Eigen::MatrixXd::Constant(n * q, n * q, not_a_number);
+  Eigen::MatrixXd gram_inverse = d.basis * d.basis.transpose();
+  for (const Index j : open_columns(X, d)) {
+    gram_inverse.row(j).setConstant(not_a_number);
+    gram_inverse.col(j).setConstant(not_a_number);
+  }
   Eigen::MatrixXd covariance(n * q, n * q);
   for (Index i = 0; i < n; ++i)
     for (Index j = 0; j < n; ++j)
-      covariance.block(i * q, j * q, q, q) = residual_square_sum(i, j) / static_cast<double>(N - q) * gram_inverse;
+      covariance.block(i * q, j * q, q, q) = residual_square_sum(i, j) / static_cast<double>(N - rank) * gram_inverse;
   return covariance;
 }
 
@@ -79,10 +102,16 @@ GlobalModel fit_global(const Recording& recording, const LinearStructure& struct
   GlobalModel global;
   // Column i of the coefficients is row i of [A B c], so their column-major vec is theta.
   global.theta = coefficients.reshaped();
-  global.covariance = least_squares_covariance(d, square_sum, N);
+  global.covariance = least_squares_covariance(transitions.regressors, d, square_sum, N);
   global.residual_covariance = square_sum / static_cast<double>(N);
   global.transitions = N;
   return global;
+}
+
+std::vector<Index> open_regressors(const Recording& recording, const LinearStructure& structure) {
+  const auto [transitions, N] = reduce(recording, structure);
+  if (N == 0) return {};
+  return open_columns(transitions.regressors, decompose(transitions.regressors, excitation_tolerance));
 }
 
 GlobalModel fit_global(const Recording& recording, const MotionModel& model) {

@@ -133,6 +133,10 @@ LagTrack track_lag(const Stream& states, const Stream& inputs, const LagTrackOpt
   Index first = 0;
   for (double start = u.time_s(0); start + window_s <= u.time_s(0) + span_s + 1.5 * period_s; start += 0.5 * window_s) {
     while (first < u.time_s.size() && u.time_s(first) < start) ++first;
+    // A window in a pause has nothing, and there may be any number of them: on to the first that has.
+    if (first < u.time_s.size())
+      start += 0.5 * window_s * std::max(0.0, std::floor((u.time_s(first) - window_s - start) / (0.5 * window_s)));
+    if (!(start + 0.5 * window_s > start)) break;  // so far from zero no step is resolved
     Index end = first;
     while (end < u.time_s.size() && u.time_s(end) < start + window_s) ++end;
     if (end - first < least_pairs) continue;

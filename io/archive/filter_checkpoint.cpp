@@ -7,6 +7,7 @@
 
 #include "ident/base/not_a_number.hpp"
 #include "io/files/replace_file.hpp"
+#include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -15,7 +16,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* checkpoint_format = "modebank checkpoint 1";
+constexpr const char* checkpoint_format = "modebank checkpoint 2";
+
+/// Of all that a checkpoint holds but this.
+std::string digest_of(json stored) {
+  stored.erase("sha256");
+  return sha256_hex(stored.dump());
+}
 
 json to_json(const Eigen::MatrixXd& matrix) {
   json columns = json::array();
@@ -43,6 +50,12 @@ Eigen::MatrixXd matrix_of(const json& stored) {
   return matrix;
 }
 
+Eigen::VectorXd vector_of(const json& stored) {
+  const Eigen::MatrixXd matrix = matrix_of(stored);
+  if (matrix.cols() != 1) throw std::invalid_argument("a vector has one column");
+  return matrix;
+}
+
 json to_json(const std::vector<Eigen::MatrixXd>& matrices) {
   json list = json::array();
   for (const Eigen::MatrixXd& matrix : matrices) list.push_back(to_json(matrix));
@@ -60,6 +73,12 @@ DriftState drift_of(const json& stored) {
   if (!stored.contains("drift")) return {};
   const json& drift = stored.at("drift");
   return {matrix_of(drift.at("theta")), matrices_of(drift.at("P")), matrices_of(drift.at("cross"))};
+}
+
+Eigen::VectorXd vector_of(const json& stored) {
+  const Eigen::MatrixXd matrix = matrix_of(stored);
+  if (matrix.cols() != 1) throw std::invalid_argument("columns of a vector");
+  return matrix;
 }
 
 }  // namespace
@@ -80,22 +99,28 @@ void save_checkpoint(const std::filesystem::path& path, const std::string& ident
               {"time_s", std::isfinite(snapshot.samples.time_s) ? json(snapshot.samples.time_s) : json()}};
   if (const DriftState& drift = snapshot.drift; drift.theta.size() > 0)
     stored["drift"] = {{"theta", to_json(drift.theta)}, {"P", to_json(drift.P)}, {"cross", to_json(drift.cross)}};
+  stored["sha256"] = digest_of(stored);
   replace_file(path, {stored.dump(1), "\n"});
 }
 
 FilterSnapshot load_checkpoint(const std::filesystem::path& path, const std::string& identity) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error))
+    throw ConfigurationError(path.string() + ": no such checkpoint, or it is not a regular file");
   std::ifstream file(path);
   if (!file) throw ConfigurationError(path.string() + ": no such checkpoint, or it cannot be read");
   try {
     const json stored = json::parse(file);
     if (stored.at("format") != checkpoint_format) throw DataError(path.string() + ": is not a checkpoint of track");
+    if (stored.at("sha256") != digest_of(stored))
+      throw DataError(path.string() + ": was damaged or changed after it was written (its SHA-256 is another)");
     if (stored.at("identity") != identity)
       throw DataError(path.string() + ": is a checkpoint of another bank or of other filter settings");
     FilterSnapshot snapshot;
     snapshot.started = stored.at("started").get<bool>();
     snapshot.means = matrix_of(stored.at("means"));
     snapshot.covariances = matrix_of(stored.at("covariances"));
-    snapshot.mode_probability = matrix_of(stored.at("mode_probability"));
+    snapshot.mode_probability = vector_of(stored.at("mode_probability"));
     snapshot.noise_scale = stored.at("noise_scale").get<double>();
     snapshot.noise_samples = stored.at("noise_samples").get<double>();
     snapshot.drift = drift_of(stored);

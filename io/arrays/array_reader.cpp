@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "ident/base/not_a_number.hpp"
 #include "io/arrays/stored_columns.hpp"
@@ -76,8 +77,10 @@ class ArrayReader : public TableReader {
 
   std::vector<TableInfo> tables() const override { return tables_; }
 
-  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const override {
-    file = describe_file(path_);
+  InputFile describe(const std::vector<TableRequest>&) const override { return describe_file(path_); }
+
+  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile* file) const override {
+    if (file != nullptr) *file = describe(requests);
     std::vector<Table> result;
     for (const TableRequest& request : requests) result.push_back(read_table(request));
     return result;
@@ -111,13 +114,17 @@ class ArrayReader : public TableReader {
 
   Table read_table(const TableRequest& request) const {
     Table table;
-    const auto rows = static_cast<std::size_t>(tables_.at(request.table).rows);
-    table.line.resize(rows);
-    for (std::size_t k = 0; k < rows; ++k) table.line[k] = k + 1;
+    const std::uint64_t rows = tables_.at(request.table).rows;
+    if (rows > (std::filesystem::file_size(path_) + 4096) * most_expansion)
+      throw DataError(
+          fmt::format("{}: {} declares more content than the file holds", path_.string(), tables_[request.table].name));
     for (std::size_t i = 0; i < request.numbers.size(); ++i)
       table.numbers.push_back(
           numbers(stored(request, request.numbers[i]), i < request.may_miss.size() && request.may_miss[i]));
-    if (!request.text.empty()) table.text = texts(stored(request, request.text));
+    for (const std::string& name : request.texts) table.texts.push_back(texts(stored(request, name)));
+    // Only now: columns that are there vouch for as many rows.
+    table.line.resize(static_cast<std::size_t>(rows));
+    std::iota(table.line.begin(), table.line.end(), std::uint64_t{1});
     if (!request.time.column.empty()) times(request, table);
     return table;
   }

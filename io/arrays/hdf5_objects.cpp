@@ -148,7 +148,9 @@ void check_chunks(hid_t dataset, hid_t made, const Shape& chunk, hsize_t element
                                          : H5Pget_filter2(made, static_cast<unsigned>(filters - 1), &flags, &values,
                                                           nullptr, 0, nullptr, &config);
   const Handle space(H5Dget_space(dataset), H5Sclose, "read a shape");
-  hsize_t count = 0;
+  hsize_t count = 0, file_bytes = 0;
+  const Handle file(H5Iget_file_id(dataset), H5Fclose, "look at the file");
+  hdf5::check(H5Fget_filesize(file.id(), &file_bytes), "measure the file");
   hdf5::check(H5Dget_num_chunks(dataset, space.id(), &count), "count its chunks");
   for (hsize_t i = 0; i < count; ++i) {
     Shape offset(chunk.size());
@@ -156,6 +158,7 @@ void check_chunks(hid_t dataset, hid_t made, const Shape& chunk, hsize_t element
     haddr_t at = 0;
     hsize_t stored = 0;
     hdf5::check(H5Dget_chunk_info(dataset, space.id(), i, offset.data(), &mask, &at, &stored), "look at a chunk");
+    if (stored > file_bytes) throw DataError("declares chunks larger than the file");
     hsize_t unpacked = stored;
     if (mask == 0 && last == H5Z_FILTER_DEFLATE) {
       std::string packed(stored, '\0');
@@ -171,12 +174,30 @@ void check_chunks(hid_t dataset, hid_t made, const Shape& chunk, hsize_t element
 
 }  // namespace
 
+namespace {
+
+/// HDF5 copies members from where the type says that they are, inside it or not.
+void check_members(hid_t type) {
+  if (H5Tget_class(type) != H5T_COMPOUND) return;
+  const std::size_t bytes = H5Tget_size(type);
+  for (int i = 0; i < H5Tget_nmembers(type); ++i) {
+    const auto member = static_cast<unsigned>(i);
+    const Handle part(H5Tget_member_type(type, member), H5Tclose, "read a member's type");
+    const std::size_t at = H5Tget_member_offset(type, member);
+    if (at > bytes || H5Tget_size(part.id()) > bytes - at) throw DataError("has members that lie outside its rows");
+    check_members(part.id());
+  }
+}
+
+}  // namespace
+
 void hdf5_check_readable(hid_t dataset) {
   constexpr std::uint64_t slack_bytes = 1 << 16, most_chunk_bytes = 1 << 30;
   if (hdf5::lies_outside(dataset)) throw DataError("lies outside the file, which is not followed");
   const Handle made(H5Dget_create_plist(dataset), H5Pclose, "look at a dataset");
   check_filters(made.id());
   const Handle type(H5Dget_type(dataset), H5Tclose, "read a type");
+  check_members(type.id());
   const hsize_t elements = hdf5::element_count(hdf5_shape(dataset)),
                 bytes = std::max<hsize_t>(H5Tget_size(type.id()), 1);
   const hsize_t stored = H5Dget_storage_size(dataset);

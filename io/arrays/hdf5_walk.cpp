@@ -80,7 +80,7 @@ void Hdf5Walk::dataset(hid_t id, const std::string& path, const std::string& gro
   const Handle type(H5Dget_type(id), H5Tclose, "read the type of '" + path + "'");
   const Shape shape = hdf5_shape(id);
   if (made == "char") return note_label(id, full, shape);
-  if (H5Tget_class(type.id()) == H5T_REFERENCE && made.empty() && depth > 0)
+  if (H5Tget_class(type.id()) == H5T_REFERENCE && made.empty() && depth > 0 && depth < deepest_group)
     return struct_array(id, type.id(), shape, group_name, name, depth);
   if (!made.empty() && made != "logical" && !hdf5_is_number(type.id())) return;
   StoredColumn column{group_name, name, hdf5_type_name(type.id()), hdf5_unit(id)};
@@ -132,6 +132,7 @@ void Hdf5Walk::struct_array(hid_t id, hid_t type, const Shape& shape, const std:
                             const std::string& name, int depth) {
   const hsize_t count = hdf5::element_count(shape);
   if (H5Tequal(type, H5T_STD_REF_OBJ) <= 0 || count == 0 || count > most_columns) return;
+  hdf5_check_readable(id);
   std::vector<hobj_ref_t> references(static_cast<std::size_t>(count));
   hdf5::check(H5Dread(id, H5T_STD_REF_OBJ, H5S_ALL, H5S_ALL, H5P_DEFAULT, references.data()), "read references");
   for (std::size_t i = 0; i < references.size(); ++i) {
@@ -147,6 +148,7 @@ void Hdf5Walk::note_label(hid_t id, const std::string& full, const Shape& shape)
   constexpr hsize_t longest = 200;
   const hsize_t count = hdf5::element_count(shape);
   if (!full.ends_with(".label") || count > longest) return;
+  hdf5_check_readable(id);
   std::vector<std::uint64_t> letters(static_cast<std::size_t>(count));
   hdf5::check(H5Dread(id, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, letters.data()), "read a label");
   std::string& label = labels[full];

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "io/arrays/mat_check.hpp"
 #include "io/arrays/stored_columns.hpp"
 #include "modebank/base/error.hpp"
 
@@ -41,8 +42,8 @@ std::string type_name(const matvar_t& v) {
 
 /// The product of the extents; as many as fit where it overflows.
 std::uint64_t elements(const matvar_t& v) {
-  std::uint64_t product = v.rank > 0 ? 1 : 0;
-  for (int i = 0; i < v.rank; ++i)
+  std::uint64_t product = v.rank > 0 && v.dims ? 1 : 0;
+  for (int i = 0; product > 0 && i < v.rank; ++i)
     if (__builtin_mul_overflow(product, v.dims[i], &product)) return ~std::uint64_t{0};
   return product;
 }
@@ -112,10 +113,11 @@ class MatWalk {
     const unsigned field_count = Mat_VarGetNumberOfFields(const_cast<matvar_t*>(&v));
     if (depth > deepest_group || count == 0 || count > most_columns || field_count > most_columns) return;
     char* const* names = Mat_VarGetStructFieldnames(&v);
+    if (!names || !v.data) return;
     for (std::size_t e = 0; e < count; ++e)
       for (unsigned f = 0; f < field_count; ++f) {
         const matvar_t* field = Mat_VarGetStructFieldByIndex(const_cast<matvar_t*>(&v), f, e);
-        if (!field) continue;
+        if (!field || !names[f]) continue;
         MatPlace inner = place;
         inner.steps.push_back({names[f], e});
         part(*field, count == 1 ? path : fmt::format("{}[{}]", path, e), names[f], inner, depth + 1);
@@ -132,6 +134,7 @@ class MatWalk {
 class MatColumns : public ColumnStore {
  public:
   explicit MatColumns(const std::filesystem::path& path) : path_(path.string()) {
+    check_mat(path);
     const MatFile file = open_mat(path_);
     MatWalk walk(std::filesystem::file_size(path));
     try {
@@ -171,13 +174,18 @@ class MatColumns : public ColumnStore {
     throw ConfigurationError(fmt::format("{}: no column of numbers of two rows or more{}", path_, why));
   }
 
+  /// Whether so many elements were read: a damaged file may declare more.
+  static bool holds(const matvar_t& part, std::uint64_t count) {
+    return part.data && part.data_size > 0 && part.nbytes / static_cast<std::size_t>(part.data_size) >= count;
+  }
+
   std::string text_at(const MatPlace& place) const {
     const MatFile file = open_mat(path_);
     const Variable v(Mat_VarRead(file.get(), place.variable.c_str()));
     const matvar_t* part = v ? follow(v.get(), place.steps) : nullptr;
     std::string text;
     constexpr std::uint64_t longest = 200;
-    if (!part || !part->data || elements(*part) > longest) return text;
+    if (!part || elements(*part) > longest || !holds(*part, elements(*part))) return text;
     for (std::uint64_t i = 0; i < elements(*part); ++i) {
       const auto* bytes = static_cast<const unsigned char*>(part->data) + i * static_cast<std::size_t>(part->data_size);
       text += bytes[0] >= 32 && bytes[0] < 127 ? static_cast<char>(bytes[0]) : '_';
@@ -192,8 +200,7 @@ class MatColumns : public ColumnStore {
     const Variable v(Mat_VarRead(file.get(), place.variable.c_str()));
     const matvar_t* part = v ? follow(v.get(), place.steps) : nullptr;
     const auto rows = static_cast<std::size_t>(columns_[column].rows);
-    if (!part || !part->data || !is_number(*part) || elements(*part) < place.first + rows ||
-        part->nbytes < (place.first + rows) * static_cast<std::size_t>(part->data_size))
+    if (!part || !is_number(*part) || elements(*part) < place.first + rows || !holds(*part, place.first + rows))
       throw DataError(fmt::format("{}: column {} cannot be read: the file is damaged", path_, columns_[column].path()));
     return converted<T>(*part, place.first, rows);
   }

@@ -1,38 +1,18 @@
 #include "io/files/input_file.hpp"
 
-#include <algorithm>
-
+#include "ident/base/printable.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
 
-namespace {
-
-/// The files of a folder, by name.
-InputFile describe_folder(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.is_regular_file()) paths.push_back(entry.path());
-  std::sort(paths.begin(), paths.end());
-  std::vector<InputFile> files;
-  InputFile whole{std::filesystem::absolute(folder).string(), 0, {}};
-  for (const auto& path : paths) whole.bytes += files.emplace_back(describe_file(path)).bytes;
-  whole.sha256 = data_hash(files);
-  return whole;
-}
-
-}  // namespace
-
 InputFile describe_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) return describe_folder(path);
   constexpr std::size_t block_bytes = 1 << 18;
   std::ifstream stream = open_file(path);
   stream.rdbuf()->pubsetbuf(nullptr, 0);
   std::vector<char> block(block_bytes);
-  InputFile file{std::filesystem::absolute(path).string(), 0, {}};
+  InputFile file{printable_name(std::filesystem::absolute(path).string()), 0, {}};
   Sha256 hash;
   while (stream) {
     stream.read(block.data(), static_cast<std::streamsize>(block.size()));

@@ -36,4 +36,12 @@ std::string read_file(const std::filesystem::path& path) {
   return content;
 }
 
+void refuse_special_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) return;
+  if (status.type() == std::filesystem::file_type::none) throw DataError(path.string() + ": " + error.message());
+  if (!std::filesystem::is_regular_file(status)) throw DataError(path.string() + ": is not a regular file");
+}
+
 }  // namespace modebank

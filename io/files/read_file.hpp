@@ -12,4 +12,8 @@ std::ifstream open_file(const std::filesystem::path& path);
 /// All bytes of a file. Throws as open_file does.
 std::string read_file(const std::filesystem::path& path);
 
+/// Throws DataError, naming it, where a device, a pipe or a folder (or a link to one) has the name of a file of ours:
+/// reading one need never end. A path that is not there is none.
+void refuse_special_file(const std::filesystem::path& path);
+
 }  // namespace modebank

@@ -3,11 +3,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
+#include <mutex>
+#include <set>
 #include <system_error>
 #include <utility>
 
+#include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -18,13 +20,20 @@ namespace fs = std::filesystem;
 
 std::string system_reason() { return std::generic_category().message(errno); }
 
+/// A folder that would take a file if its disk did.
+struct DiskFailure : DataError {
+  using DataError::DataError;
+};
+
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 /// An open descriptor; close() reports what the destructor cannot.
 class Descriptor {
  public:
   Descriptor(const fs::path& path, int flags) : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) throw DataError(system_reason());
+    if (descriptor_ >= 0) return;
+    if (is_disk_failure({errno, std::generic_category()})) throw DiskFailure(system_reason());
+    throw DataError(system_reason());
   }
   ~Descriptor() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -56,7 +65,7 @@ class Descriptor {
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target)
-      : path_(temporary_name(target)), descriptor_(path_, O_WRONLY | O_CREAT | O_EXCL) {}
+      : path_(temporary_path(target)), descriptor_(path_, O_WRONLY | O_CREAT | O_EXCL) {}
   ~TemporaryFile() {
     std::error_code ignored;
     if (!path_.empty()) fs::remove(path_, ignored);
@@ -74,18 +83,30 @@ class TemporaryFile {
   }
 
  private:
-  /// Unique among the processes and threads of a machine.
-  static fs::path temporary_name(const fs::path& target) {
-    static std::atomic<unsigned> counter = 0;
-    return folder_of(target) / ("." + target.filename().string() + "." + std::to_string(::getpid()) + "-" +
-                                std::to_string(counter++) + ".tmp");
-  }
-
   fs::path path_;
   Descriptor descriptor_;
 };
 
 }  // namespace
+
+fs::path final_target(const fs::path& path) {
+  constexpr int most_links = 40;  // as many as Linux follows
+  fs::path target = path;
+  std::error_code error;
+  for (int link = 0; link <= most_links; ++link) {
+    if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
+    // An absolute link replaces the folder.
+    target = folder_of(target) / fs::read_symlink(target, error);
+    if (error) throw DataError("'" + path.string() + "': " + error.message());
+  }
+  throw DataError("'" + path.string() + "' is a symbolic link that leads back to itself");
+}
+
+bool is_disk_failure(const std::error_code& error) {
+  for (const std::errc code : {std::errc::no_space_on_device, std::errc::io_error, std::errc::file_too_large})
+    if (error == code) return true;
+  return error == std::error_code(EDQUOT, std::generic_category());
+}
 
 namespace {
 
@@ -101,11 +122,28 @@ std::string seen_obstacle(const fs::path& path) {
   return {};
 }
 
+/// Once in each folder while the process lives: a study writes thousands of files into one.
+void tidy_once(const fs::path& folder) {
+  static std::mutex guard;
+  static std::set<fs::path> tidied;
+  std::error_code error;
+  const fs::path place = fs::canonical(folder, error);
+  if (error) return;
+  {
+    const std::lock_guard lock(guard);
+    if (!tidied.insert(place).second) return;
+  }
+  remove_leftovers(place);
+}
+
 /// The file under its temporary name, or why the folder does not take it: permissions do not tell (read-only mounts,
 /// /proc, root), only a file made there does.
 TemporaryFile make_temporary(const fs::path& path) {
+  tidy_once(folder_of(path));
   try {
     return TemporaryFile(path);
+  } catch (const DiskFailure&) {
+    throw;
   } catch (const DataError& obstacle) {
     throw DataError("the folder '" + folder_of(path).string() + "' is not writable: " + obstacle.what());
   }
@@ -114,33 +152,50 @@ TemporaryFile make_temporary(const fs::path& path) {
 }  // namespace
 
 std::string write_obstacle(const fs::path& path) {
-  if (std::string obstacle = seen_obstacle(path); !obstacle.empty()) return obstacle;
   try {
-    make_temporary(path);  // and gone again
+    const fs::path target = final_target(path);
+    if (std::string obstacle = seen_obstacle(target); !obstacle.empty()) return obstacle;
+    make_temporary(target);  // and gone again
+  } catch (const DiskFailure& failure) {
+    throw DataError("cannot write " + path.string() + ": " + failure.what());
   } catch (const DataError& obstacle) {
     return obstacle.what();
   }
   return {};
 }
 
-void replace_file(const fs::path& path, const std::function<void(const fs::path&)>& fill) {
+namespace {
+
+/// `named`: what messages call it.
+void replace(const fs::path& path, const fs::path& named, const std::function<void(const fs::path&)>& fill) {
   try {
-    if (const std::string obstacle = seen_obstacle(path); !obstacle.empty()) throw DataError(obstacle);
-    TemporaryFile temporary = make_temporary(path);
+    const fs::path target = final_target(path);
+    if (const std::string obstacle = seen_obstacle(target); !obstacle.empty()) throw DataError(obstacle);
+    TemporaryFile temporary = make_temporary(target);
     fill(temporary.path());
-    temporary.become(path);
-    Descriptor(folder_of(path), O_RDONLY | O_DIRECTORY).sync();
+    temporary.become(target);
+    Descriptor(folder_of(target), O_RDONLY | O_DIRECTORY).sync();
   } catch (const DataError& error) {
-    throw DataError("cannot write " + path.string() + ": " + error.what());
+    throw DataError("cannot write " + named.string() + ": " + error.what());
   } catch (const fs::filesystem_error& error) {
-    throw DataError("cannot write " + path.string() + ": " + error.code().message());
+    throw DataError("cannot write " + named.string() + ": " + error.code().message());
   }
 }
 
+void append(const fs::path& path, std::string_view bytes) { Descriptor(path, O_WRONLY | O_APPEND).write(bytes); }
+
+}  // namespace
+
+void replace_file(const fs::path& path, const std::function<void(const fs::path&)>& fill) { replace(path, path, fill); }
+
 void replace_file(const fs::path& path, std::initializer_list<std::string_view> pieces) {
-  replace_file(path, [&](const fs::path& temporary) {
-    for (const std::string_view piece : pieces) Descriptor(temporary, O_WRONLY | O_APPEND).write(piece);
+  replace(path, path, [&](const fs::path& temporary) {
+    for (const std::string_view piece : pieces) append(temporary, piece);
   });
+}
+
+void write_staged(const fs::path& staged, const fs::path& place, std::string_view content) {
+  replace(staged, place, [&](const fs::path& temporary) { append(temporary, content); });
 }
 
 }  // namespace modebank

@@ -1,8 +1,10 @@
 #include "io/files/run_names.hpp"
 
+#include <algorithm>
 #include <set>
 #include <string_view>
 
+#include "ident/base/printable.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -11,6 +13,8 @@ void check_run_names(const std::vector<std::string>& names) {
   constexpr std::string_view level_or_end("/\0", 2);
   std::set<std::string> seen;
   for (const std::string& name : names) {
+    if (std::any_of(name.begin(), name.end(), is_control))
+      throw DataError("\"" + printable(name) + "\" cannot name a run: it holds a control character");
     if (name.empty() || name == "." || name == ".." || name == "*" ||
         name.find_first_of(level_or_end) != std::string::npos)
       throw DataError("\"" + name +

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "io/hdf5/links.hpp"
+#include "io/hdf5/read_driver.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::hdf5 {
@@ -81,14 +83,15 @@ Quiet::~Quiet() {
 Handle open_file(const std::string& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the file access");
   check(H5Pset_file_locking(access.id(), false, true), "switch file locking off");
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id());
-  if (file >= 0) return {file, H5Fclose, "open the file"};
-  // HDF5 locks a file one way: as another part of the process (h5py) does that has it open.
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open the file"};
+  check(H5Pset_driver(access.id(), read_driver(), nullptr), "prepare the file access");
+  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, "open the file"};
 }
 
 Handle open_group(hid_t parent, const std::string& name) {
-  return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, "open the group '" + name + "'"};
+  require_hard(parent, name);
+  Handle group(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, "open the group '" + name + "'");
+  if (name != "/") require_single(group.id(), name);
+  return group;
 }
 
 namespace {

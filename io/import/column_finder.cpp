@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "ident/base/nearest_name.hpp"
-#include "io/import/open_table.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -61,10 +60,9 @@ std::string listing(const std::vector<TableInfo>& tables) {
 
 }  // namespace
 
-ColumnFinder::ColumnFinder(FilePlan& plan, std::shared_ptr<const DerivedChannels> derived, const FormatOptions& options)
+ColumnFinder::ColumnFinder(FilePlan& plan, std::shared_ptr<const DerivedChannels> derived)
     : plan_(plan), derived_(std::move(derived)) {
   for (std::size_t i = 0; i < plan.paths.size(); ++i) {
-    if (i == plan.readers.size()) plan.readers.push_back(open_table(plan.paths[i], options));
     names_.push_back(plan.paths[i].string());
     tables_.push_back(plan.readers[i]->tables());
   }
@@ -212,12 +210,15 @@ void ColumnFinder::time(std::size_t source, const DataOptions& options) {
   request.nanoseconds = nanoseconds->name;
 }
 
-void ColumnFinder::text(std::size_t source, const std::string& column) {
-  if (column.empty()) return;
+std::size_t ColumnFinder::text(std::size_t source, const std::string& column) {
   const ColumnInfo* found = find_within(table_of(source), column);
   if (found == nullptr) fail(column, {plan_.sources[source].path});
   column_position(path_of(source), column_names(table_of(source)), found->name);
-  plan_.sources[source].request.text = found->name;
+  std::vector<std::string>& texts = plan_.sources[source].request.texts;
+  const auto known = std::find(texts.begin(), texts.end(), found->name);
+  if (known != texts.end()) return static_cast<std::size_t>(known - texts.begin());
+  texts.push_back(found->name);
+  return texts.size() - 1;
 }
 
 std::vector<Channel> ColumnFinder::channels(const std::vector<ColumnRef>& refs) const {

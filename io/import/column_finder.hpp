@@ -11,7 +11,8 @@ namespace modebank {
 /// ConfigurationError for what is not there, naming what is.
 class ColumnFinder {
  public:
-  ColumnFinder(FilePlan& plan, std::shared_ptr<const DerivedChannels> derived, const FormatOptions& options);
+  /// The plan has its readers.
+  ColumnFinder(FilePlan& plan, std::shared_ptr<const DerivedChannels> derived);
 
   /// A column of numbers, derived or of the first of `files` (positions in FilePlan::paths) that has it; what is
   /// derived may use other files, too.
@@ -31,9 +32,10 @@ class ColumnFinder {
   std::size_t first_with_time(const std::vector<std::size_t>& sources, const DataOptions& options) const;
   std::size_t first_with(const std::string& column, const std::vector<std::size_t>& sources) const;
 
-  /// Requests times, and a column of text (none if it is empty), of a source.
+  /// Requests times of a source.
   void time(std::size_t source, const DataOptions& options);
-  void text(std::size_t source, const std::string& column);
+  /// Requests a column of text; its position in the request.
+  std::size_t text(std::size_t source, const std::string& column);
 
   /// The source whose table has the column; the first of `files` that has it.
   std::size_t source_with(const std::string& column, const std::vector<std::size_t>& files);

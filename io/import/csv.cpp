@@ -46,8 +46,11 @@ struct TableSink {
   static constexpr int skipped = -1;
   static constexpr auto none = static_cast<std::size_t>(-1);
 
-  std::vector<int> target;  // per column of the file: skipped or position in table.numbers
-  std::size_t text_column = none, time_column = none, nanoseconds_column = none;
+  struct Target {
+    int numbers = skipped, texts = skipped;
+  };
+  std::vector<Target> target;  // per column of the file: skipped or position in the table's
+  std::size_t time_column = none, nanoseconds_column = none;
   std::vector<std::string> header;
   Table table;
   std::vector<bool> may_miss;  // per position in table.numbers
@@ -71,8 +74,8 @@ struct TableSink {
     if (fields == 0 && empty_line_seen) error = "empty line before this row";
     const std::size_t column = fields++;
     if (header_rows > 0 || column >= target.size()) return;
-    if (column == text_column) table.text.emplace_back(text);
-    if (target[column] != skipped) number(column, text);
+    if (target[column].texts != skipped) table.texts[static_cast<std::size_t>(target[column].texts)].emplace_back(text);
+    if (target[column].numbers != skipped) number(column, static_cast<std::size_t>(target[column].numbers), text);
     if (column == time_column) time(text);
     if (column == nanoseconds_column) nanoseconds = text;
   }
@@ -90,10 +93,10 @@ struct TableSink {
                                            : complaint(status, time_column, text);
   }
 
-  void number(std::size_t column, std::string_view text) {
+  void number(std::size_t column, std::size_t position, std::string_view text) {
     const ParsedNumber parsed = decimal_comma ? parse_number(with_decimal_point(text)) : parse_number(text);
-    const bool tolerated = parsed.status == NumberStatus::missing && may_miss[target[column]];
-    table.numbers[target[column]].push_back(tolerated ? not_a_number : parsed.value);
+    const bool tolerated = parsed.status == NumberStatus::missing && may_miss[position];
+    table.numbers[position].push_back(tolerated ? not_a_number : parsed.value);
     if (parsed.status != NumberStatus::ok && !tolerated) error = complaint(parsed.status, column, text);
   }
 
@@ -167,8 +170,10 @@ TableSink make_sink(std::string_view file, const Head& head, const TableRequest&
   std::vector<std::string> header = head.names;
   const auto time = std::find(header.begin(), header.end(), request.time.column);
   TableSink sink(request.time, time == header.end() ? "" : head.units[static_cast<std::size_t>(time - header.begin())]);
-  sink.target.assign(header.size(), TableSink::skipped);
-  if (!request.text.empty()) sink.text_column = column_position(file, header, request.text);
+  sink.target.resize(header.size());
+  for (std::size_t i = 0; i < request.texts.size(); ++i)
+    sink.target[column_position(file, header, request.texts[i])].texts = static_cast<int>(i);
+  sink.table.texts.resize(request.texts.size());
   if (!request.time.column.empty()) {
     sink.time_column = column_position(file, header, request.time.column);
     sink.stamps.reserve(rows);
@@ -176,7 +181,7 @@ TableSink make_sink(std::string_view file, const Head& head, const TableRequest&
   if (!request.time.nanoseconds.empty())
     sink.nanoseconds_column = column_position(file, header, request.time.nanoseconds);
   for (std::size_t i = 0; i < request.numbers.size(); ++i)
-    sink.target[column_position(file, header, request.numbers[i])] = static_cast<int>(i);
+    sink.target[column_position(file, header, request.numbers[i])].numbers = static_cast<int>(i);
   sink.may_miss = request.may_miss;
   sink.may_miss.resize(request.numbers.size(), false);
   sink.table.numbers.resize(request.numbers.size());
@@ -257,13 +262,16 @@ std::vector<TableInfo> CsvReader::tables() const {
   return {std::move(table)};
 }
 
-std::vector<Table> CsvReader::read(const std::vector<TableRequest>& requests, InputFile& file) const {
+InputFile CsvReader::describe(const std::vector<TableRequest>&) const { return describe_file(path_); }
+
+std::vector<Table> CsvReader::read(const std::vector<TableRequest>& requests, InputFile* file) const {
   const std::string content = read_file(path_);
+  if (file == nullptr) return parse_all(path_.string(), content, requests, options_);
   std::vector<Table> tables;
   std::string sha256;
   tbb::parallel_invoke([&] { sha256 = sha256_hex(content); },
                        [&] { tables = parse_all(path_.string(), content, requests, options_); });
-  file = {path_.string(), content.size(), std::move(sha256)};
+  *file = {path_.string(), content.size(), std::move(sha256)};
   return tables;
 }
 

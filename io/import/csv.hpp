@@ -29,7 +29,8 @@ class CsvReader : public TableReader {
  public:
   CsvReader(std::filesystem::path path, const FormatOptions& options) : path_(std::move(path)), options_(options) {}
   std::vector<TableInfo> tables() const override;
-  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const override;
+  InputFile describe(const std::vector<TableRequest>& requests) const override;
+  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile* file) const override;
 
  private:
   std::filesystem::path path_;

@@ -9,17 +9,12 @@
 
 #include "ident/base/nearest_name.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "io/table/number.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
 
 namespace {
-
-std::string_view outer_trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 [[noreturn]] void fail_form(const std::string& line, const char* what) {
   throw ConfigurationError(
@@ -29,19 +24,19 @@ std::string_view outer_trimmed(std::string_view text) {
 }  // namespace
 
 DerivedChannel parse_derived(const std::string& line) {
-  std::string_view rest = outer_trimmed(line);
+  std::string_view rest = without_blanks(line);
   const std::string name = take_channel_name(rest);
   if (name.empty()) fail_form(line, "no name (of letters, digits, _ and ., or in single quotes)");
-  rest = outer_trimmed(rest);
+  rest = without_blanks(rest);
   std::string unit;
   if (rest.starts_with("[")) {
     const std::size_t end = rest.find(']');
     if (end == std::string_view::npos) fail_form(line, "the unit's bracket does not close");
-    unit = outer_trimmed(rest.substr(1, end - 1));
-    rest = outer_trimmed(rest.substr(end + 1));
+    unit = without_blanks(rest.substr(1, end - 1));
+    rest = without_blanks(rest.substr(end + 1));
   }
   if (!rest.starts_with("=") || rest.starts_with("==")) fail_form(line, "no = after the name");
-  return {name, unit, Expression("data.derive, " + name, outer_trimmed(rest.substr(1)))};
+  return {name, unit, Expression("data.derive, " + name, without_blanks(rest.substr(1)))};
 }
 
 DerivedChannels::DerivedChannels(const DataOptions& options) {
@@ -78,14 +73,14 @@ namespace {
 using Rows = std::vector<std::size_t>;
 
 /// Of one run each, in order of time.
-std::vector<Rows> ordered_runs(const Table& table, const std::vector<double>& time_s) {
+std::vector<Rows> ordered_runs(const Table& table, std::optional<std::size_t> run, const std::vector<double>& time_s) {
   std::vector<Rows> runs;
-  if (table.text.empty()) {
+  if (!run) {
     Rows& all = runs.emplace_back(table.rows());
     std::iota(all.begin(), all.end(), std::size_t{0});
   } else {
     std::map<std::string, Rows> by_name;
-    for (std::size_t row = 0; row < table.rows(); ++row) by_name[table.text[row]].push_back(row);
+    for (std::size_t row = 0; row < table.rows(); ++row) by_name[table.texts[*run][row]].push_back(row);
     for (auto& [name, rows] : by_name) runs.push_back(std::move(rows));
   }
   for (Rows& rows : runs)
@@ -128,11 +123,11 @@ TableRequest columns_to_read(const TableRequest& request, const std::vector<Deri
 }
 
 void derive_columns(const std::string& file, const TableRequest& request, const std::vector<DerivedColumn>& derived,
-                    const Table& clock, double rate_hz, Table& table) {
+                    const RowOrder& order, Table& table) {
   if (derived.empty()) return;
-  const bool borrowed = table.time_ns.empty() && clock.rows() == table.rows();
-  const std::vector<double> time_s = seconds_of(borrowed ? clock : table, rate_hz);
-  const std::vector<Rows> runs = ordered_runs(table, time_s);
+  const bool borrowed = table.time_ns.empty() && order.clock.rows() == table.rows();
+  const std::vector<double> time_s = seconds_of(borrowed ? order.clock : table, order.rate_hz);
+  const std::vector<Rows> runs = ordered_runs(table, order.run, time_s);
   for (const DerivedColumn& column : derived) {
     std::vector<double> values(table.rows(), not_a_number);
     for (const Rows& rows : runs) {

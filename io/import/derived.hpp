@@ -48,10 +48,17 @@ struct DerivedColumn {
 /// The request without the columns that are computed.
 TableRequest columns_to_read(const TableRequest& request, const std::vector<DerivedColumn>& derived);
 
-/// Puts the derived columns into a table that columns_to_read gave, run by run (of equal text) and in order of time:
-/// of `table`, else of `clock` where that has as many rows, else k / rate_hz. Throws DataError, naming file and line,
-/// where one is missing and may not miss.
+/// In which order a table's rows follow each other: run by run (of equal text in column `run` of its texts) and in
+/// order of time: the table's own, else of `clock` where that has as many rows, else k / rate_hz.
+struct RowOrder {
+  const Table& clock;
+  std::optional<std::size_t> run;
+  double rate_hz = 0.0;
+};
+
+/// Puts the derived columns into a table that columns_to_read gave. Throws DataError, naming file and line, where one
+/// is missing and may not miss.
 void derive_columns(const std::string& file, const TableRequest& request, const std::vector<DerivedColumn>& derived,
-                    const Table& clock, double rate_hz, Table& table);
+                    const RowOrder& order, Table& table);
 
 }  // namespace modebank

@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <numbers>
 
 #include "ident/base/characters.hpp"
 #include "ident/base/nearest_name.hpp"
-#include "ident/base/not_a_number.hpp"
 #include "io/import/expression_functions.hpp"
+#include "io/import/expression_program.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -35,45 +33,6 @@ std::string_view symbol_at(std::string_view text) {
   constexpr std::string_view ones = "+-*/^<>?:(),";
   return ones.find(text.front()) == std::string_view::npos ? std::string_view() : text.substr(0, 1);
 }
-
-double diff_per_second(double before, double after, double seconds) { return (after - before) / seconds; }
-
-void differentiate(std::vector<double>& column, std::span<const double> time_s) {
-  for (std::size_t k = column.size(); k-- > 1;)
-    column[k] = diff_per_second(column[k - 1], column[k], time_s[k] - time_s[k - 1]);
-  if (!column.empty()) column[0] = column.size() > 1 ? column[1] : not_a_number;
-}
-
-/// Turns are counted from the last row that is known.
-void unwrap(std::vector<double>& column) {
-  constexpr double turn = 2.0 * std::numbers::pi;
-  double before = not_a_number;
-  for (double& angle : column) {
-    if (std::isnan(angle)) continue;
-    if (!std::isnan(before)) angle = before + std::remainder(angle - before, turn);
-    before = angle;
-  }
-}
-
-bool any_missing(const std::vector<std::span<const double>>& columns, std::size_t row) {
-  return std::any_of(columns.begin(), columns.end(), [row](const auto& column) { return std::isnan(column[row]); });
-}
-
-/// Binds a program's columns to variables that it reads.
-class Program {
- public:
-  Program(const std::string& text, std::size_t columns) : values_(columns, 1.0) {
-    define_functions(parser_);
-    for (std::size_t i = 0; i < columns; ++i) parser_.DefineVar(fmt::format("c{}", i), &values_[i]);
-    parser_.SetExpr(text);
-  }
-  double operator()() { return parser_.Eval(); }
-  std::vector<double>& values() { return values_; }
-
- private:
-  std::vector<double> values_;
-  mu::Parser parser_;
-};
 
 }  // namespace
 
@@ -282,30 +241,6 @@ Expression::Expression(std::string key, std::string_view text) : key_(std::move(
   } catch (const mu::ParserError& error) {
     throw ConfigurationError(fmt::format("{}: {}", key_, error.GetMsg()));
   }
-}
-
-std::vector<double> Expression::evaluate(const std::vector<std::span<const double>>& operands,
-                                         std::span<const double> time_s) const {
-  std::vector<std::vector<double>> computed;
-  computed.reserve(steps_.size());
-  for (const Step& step : steps_) {
-    std::vector<std::span<const double>> columns;
-    for (const std::size_t column : step.columns)
-      columns.push_back(column < operands.size() ? operands[column] : computed[column - operands.size()]);
-    Program program(step.program, columns.size());
-    std::vector<double> result(time_s.size(), not_a_number);
-    for (std::size_t row = 0; row < result.size(); ++row) {
-      if (any_missing(columns, row)) continue;
-      for (std::size_t i = 0; i < columns.size(); ++i) program.values()[i] = columns[i][row];
-      result[row] = program();
-    }
-    if (step.then == Step::Then::diff) differentiate(result, time_s);
-    if (step.then == Step::Then::unwrap) unwrap(result);
-    for (double& value : result)
-      if (!std::isfinite(value)) value = not_a_number;
-    computed.push_back(std::move(result));
-  }
-  return std::move(computed.back());
 }
 
 }  // namespace modebank

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "ident/base/printable.hpp"
 #include "ident/lag/choice.hpp"
 #include "io/files/run_names.hpp"
 #include "io/import/import_plan.hpp"
@@ -20,6 +21,7 @@
 #include "io/import/read_runs.hpp"
 #include "io/import/run_roles.hpp"
 #include "io/import/split.hpp"
+#include "io/import/value_check.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -41,6 +43,16 @@ std::vector<Channel> with_units(std::vector<Channel> channels, const std::vector
   return channels;
 }
 
+/// A terminal would obey them.
+void refuse_control_characters(const std::vector<Channel>& channels) {
+  for (const Channel& channel : channels)
+    if (const std::string text = channel.name + channel.unit; std::any_of(text.begin(), text.end(), is_control))
+      throw DataError(
+          fmt::format("the column \"{}\" (unit \"{}\") has a control character in its name or unit: rename "
+                      "it in the file",
+                      printable(channel.name), printable(channel.unit)));
+}
+
 /// What reading one plan gave, or how it failed: the failure of the first plan in order is the one reported.
 struct Outcome {
   FileContent content;
@@ -51,8 +63,11 @@ Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_
   Outcome outcome;
   try {
     outcome.content = read_runs(plan, options);
-    for (RunStreams& run : outcome.content.runs)
+    for (RunStreams& run : outcome.content.runs) {
+      check_values(run, options);
+      for (std::string& text : run.label.text) text = printable_name(text);
       if (!as_they_stand) put_in_order(run, options.disorder);
+    }
   } catch (...) {
     outcome.error = std::current_exception();
   }
@@ -165,7 +180,10 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory)
   const std::vector<FilePlan> plans = plan_import(options, memory);
   data.recording.states = with_units(plans.front().states, options.state_unit);
   data.recording.inputs = with_units(plans.front().inputs, options.input_unit);
+  refuse_control_characters(data.recording.states);
+  refuse_control_characters(data.recording.inputs);
   std::vector<RunStreams> streams = named_streams(plans, options, data, false);
+  for (std::string& line : dominating_values(streams, options)) data.notes.push_back(std::move(line));
   if (options.lag_auto) data.lag = find_lags(streams, options);
   auto& runs = data.recording.runs;
   Quanta quanta(options);
@@ -181,7 +199,10 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory)
   }
   sort_by_name(runs);
   check_run_names(run_names(runs));
-  if (!options.label.empty()) data.labels = labels.of(runs);
+  if (!options.label.empty()) {
+    data.labels = labels.of(runs);
+    check_labels(options.label, *data.labels, data.notes);
+  }
   data.recording.quantum = quanta.decide(data.recording, data.notes);
   return data;
 }
@@ -191,6 +212,8 @@ std::vector<RunStreams> read_streams(const DataOptions& options) {
   DataOptions lenient = options;
   lenient.disorder = Disorder::sort;  // of streams that several tables make up; one table's stays as it is
   std::vector<FilePlan> plans = plan_import(lenient);
+  refuse_control_characters(plans.front().states);
+  refuse_control_characters(plans.front().inputs);
   for (FilePlan& plan : plans)
     for (SourcePlan& source : plan.sources) {
       source.request.may_miss.assign(source.request.numbers.size(), true);
@@ -199,9 +222,17 @@ std::vector<RunStreams> read_streams(const DataOptions& options) {
   return named_streams(plans, lenient, unused, true);
 }
 
-std::vector<std::filesystem::path> data_files(const DataOptions& options) {
-  std::vector<std::filesystem::path> files;
-  for (const FilePlan& plan : plan_import(options)) files.insert(files.end(), plan.paths.begin(), plan.paths.end());
+std::vector<DataFile> data_files(const DataOptions& options) {
+  std::vector<DataFile> files;
+  for (const FilePlan& plan : plan_import(options))
+    for (std::size_t path = 0; path < plan.paths.size(); ++path) {
+      DataFile& file = files.emplace_back(DataFile{plan.paths[path]});
+      const auto requests = plan.requests_of(path).requests;
+      const std::vector<TableInfo> tables = plan.readers[path]->tables();
+      for (const TableRequest& request : requests) file.tables.push_back(tables[request.table].name);
+      std::sort(file.tables.begin(), file.tables.end());
+      file.describe = [reader = plan.readers[path], requests] { return reader->describe(requests); };
+    }
   return files;
 }
 

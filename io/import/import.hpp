@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,7 +37,14 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory 
 /// data.disorder treat.
 std::vector<RunStreams> read_streams(const DataOptions& options);
 
-/// The files that import_data would read. Throws ConfigurationError as it does.
-std::vector<std::filesystem::path> data_files(const DataOptions& options);
+/// A file that import_data would read.
+struct DataFile {
+  std::filesystem::path path;
+  std::vector<std::string> tables = {};      ///< those that are read, sorted: what identifies it depends on them
+  std::function<InputFile()> describe = {};  ///< as ImportedData::files has it; throws when it cannot be read
+};
+
+/// All of them, in the order of ImportedData::files. Throws ConfigurationError as import_data does.
+std::vector<DataFile> data_files(const DataOptions& options);
 
 }  // namespace modebank

@@ -9,6 +9,7 @@
 
 #include "io/import/column_finder.hpp"
 #include "io/import/file_patterns.hpp"
+#include "io/import/open_table.hpp"
 #include "io/import/run_roles.hpp"
 #include "modebank/base/error.hpp"
 
@@ -55,7 +56,7 @@ void plan_times(FilePlan& plan, ColumnFinder& find, const DataOptions& options) 
   if (options.join == Join::time) {
     for (std::size_t source = 0; source < plan.sources.size(); ++source) {
       find.time(source, options);
-      find.text(source, options.run);
+      if (!options.run.empty()) plan.sources[source].run = find.text(source, options.run);
     }
     return;
   }
@@ -63,16 +64,13 @@ void plan_times(FilePlan& plan, ColumnFinder& find, const DataOptions& options) 
   find.time(timed, options);
   if (!options.run.empty()) {
     plan.runs_source = find.first_with(options.run, {plan.states_clock, plan.inputs_clock});
-    find.text(plan.runs_source, options.run);
+    plan.sources[plan.runs_source].run = find.text(plan.runs_source, options.run);
   }
   plan.states_clock = plan.inputs_clock = timed;
 }
 
 void plan_columns(FilePlan& plan, const DataOptions& options, const std::shared_ptr<const DerivedChannels>& derived) {
-  FormatOptions format = options.format;
-  if (!format.definitions.empty())
-    format.definitions = (std::filesystem::path(options.root) / format.definitions).string();
-  ColumnFinder find(plan, derived, format);
+  ColumnFinder find(plan, derived);
   const std::size_t inputs = 0, states = plan.paths.size() - 1;
   const std::vector<std::size_t> states_first = states == inputs ? std::vector{inputs} : std::vector{states, inputs};
   plan.state = find.numbers(options.state, {states});
@@ -83,11 +81,10 @@ void plan_columns(FilePlan& plan, const DataOptions& options, const std::shared_
   plan.truth = find.numbers(options.truth, states_first);
   if (!options.weight.empty()) plan.weight = {find.number(options.weight, states_first)};
   if (!options.where.empty()) plan.where = {find.where(states_first)};
-  if (!options.label.empty()) {
-    plan.label = options.label;
-    plan.label_source = find.source_with(options.label, states_first);
-  }
+  const std::optional<std::size_t> labels =
+      options.label.empty() ? std::nullopt : std::optional(find.source_with(options.label, states_first));
   plan_times(plan, find, options);
+  if (labels) plan.label = {*labels, find.text(*labels, options.label)};
   // A sample without time has no place, and one without weight should not be guessed at.
   for (SourcePlan& source : plan.sources)
     source.request.may_miss.assign(source.request.numbers.size(), options.missing != Missing::error);
@@ -112,20 +109,40 @@ ColumnNames with_roles(const ColumnNames& names, const DataOptions& options) {
   return runs_are_files ? without_left_out(names, options) : names;
 }
 
+FormatOptions format_of(const DataOptions& options) {
+  FormatOptions format = options.format;
+  if (!format.definitions.empty())
+    format.definitions = (std::filesystem::path(options.root) / format.definitions).string();
+  return format;
+}
+
 std::vector<FilePlan> plan_files(const DataOptions& options) {
-  const FilePattern inputs("data.inputs", options.root, options.inputs);
-  const ColumnNames names = with_roles(inputs.runs(), options);
+  if (options.inputs == frames_in_memory)
+    throw ConfigurationError(fmt::format(
+        "data.inputs = {}: these runs were handed over by a program and are in no file: hand them over again "
+        "(modebank.run of the same frames), or name files",
+        frames_in_memory));
+  const RunFiles inputs("data.inputs", options.root, options.inputs);
+  const std::vector<RunFiles::File> files = inputs.files();
+  ColumnNames names;
+  for (const RunFiles::File& file : files) names.push_back(file.run);
+  names = with_roles(names, options);
   std::vector<FilePlan> plans;
-  for (const std::string& name : names) {
+  const auto add = [&](FilePlan& plan, const RunFiles::File& file) {
+    plan.paths.push_back(file.parts.front());
+    plan.readers.push_back(open_table(file.parts, format_of(options)));
+  };
+  for (const RunFiles::File& file : files) {
+    if (std::find(names.begin(), names.end(), file.run) == names.end()) continue;
     FilePlan& plan = plans.emplace_back();
-    plan.name = name;
-    plan.starred = inputs.has_star();
-    plan.paths.push_back(inputs.path_of(name));
+    plan.name = file.run;
+    plan.starred = !inputs.one();
+    add(plan, file);
   }
-  if (!options.states.empty()) {
-    const auto partners = find_partners(inputs, {"data.states", options.root, options.states}, names);
-    for (std::size_t i = 0; i < plans.size(); ++i) plans[i].paths.push_back(partners[i]);
-  }
+  if (options.states.empty()) return plans;
+  const std::vector<RunFiles::File> partners =
+      RunFiles("data.states", options.root, options.states).partners(inputs, names);
+  for (std::size_t i = 0; i < plans.size(); ++i) add(plans[i], partners[i]);
   return plans;
 }
 
@@ -145,6 +162,16 @@ std::vector<FilePlan> plan_memory(const DataOptions& options, const MemoryTables
 }
 
 }  // namespace
+
+FilePlan::FileRequests FilePlan::requests_of(std::size_t path) const {
+  FileRequests result;
+  for (std::size_t source = 0; source < sources.size(); ++source)
+    if (sources[source].path == path) {
+      result.sources.push_back(source);
+      result.requests.push_back(columns_to_read(sources[source].request, sources[source].derived));
+    }
+  return result;
+}
 
 std::vector<FilePlan> plan_import(const DataOptions& options, const MemoryTables* memory) {
   check_options(options);

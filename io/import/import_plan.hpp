@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct SourcePlan {
   std::size_t path = 0;  ///< position in FilePlan::paths
   TableRequest request;
   std::vector<DerivedColumn> derived;  ///< of this table's columns alone, in order of position
+  std::optional<std::size_t> run;      ///< position in TableRequest::texts of the rows' run names
 };
 
 /// Stands for a source where a channel is derived from several, after they were brought to the same times.
@@ -49,13 +51,19 @@ struct FilePlan {
   /// Sources whose times the states and the inputs have; one and the same where rows correspond. What comes from
   /// another source is brought to these times.
   std::size_t states_clock = 0, inputs_clock = 0;
-  std::size_t runs_source = 0;  ///< where rows correspond: whose text column holds the rows' run names, if any
-  std::string label;            ///< column of labels in the table of label_source; empty: none
-  std::size_t label_source = 0;
+  std::size_t runs_source = 0;     ///< where rows correspond: whose text column holds the rows' run names, if any
+  std::optional<ColumnRef> label;  ///< column of labels, in TableRequest::texts
   std::vector<std::string> notes;
 
   /// Whether row i of every source belongs to row i of the others (one table, or Join::row).
   bool rows_correspond() const { return states_clock == inputs_clock; }
+
+  /// What is read of a file, and by which of `sources`.
+  struct FileRequests {
+    std::vector<std::size_t> sources;
+    std::vector<TableRequest> requests;
+  };
+  FileRequests requests_of(std::size_t path) const;
 };
 
 /// Checks options, finds the files and reads their headers, in order of `name`. Runs that neither data.train nor

@@ -1,9 +1,13 @@
 #include "io/import/label_streams.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
+
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -38,6 +42,22 @@ RunLabels LabelHolder::of(const std::vector<Trajectory>& runs) const {
         positions(k) = static_cast<int>(std::distance(names.begin(), found));
   }
   return result;
+}
+
+void check_labels(const std::string& column, const RunLabels& labels, std::vector<std::string>& notes) {
+  constexpr std::size_t usual_kinds = 32, most_kinds = 1000;
+  Index samples = 0;
+  for (const Eigen::VectorXi& run : labels.of_runs) samples += (run.array() >= 0).count();
+  const std::size_t kinds = labels.names.size();
+  const std::string found =
+      fmt::format("data.label = {} holds {} distinct values in {} samples", column, kinds, samples);
+  if (samples == 0) notes.push_back(fmt::format("data.label = {} holds no value at any sample", column));
+  if (kinds > most_kinds || (kinds > usual_kinds && 4 * kinds > static_cast<std::size_t>(samples)))
+    throw ConfigurationError(fmt::format(
+        "{} ({}, {}, ...): a measurement, or a name of each row, but no label: a label names a few kinds, as "
+        "of ground",
+        found, labels.names[0], labels.names[1]));
+  if (kinds > usual_kinds) notes.push_back(found + ": is it a label of a few kinds?");
 }
 
 }  // namespace modebank

@@ -24,4 +24,8 @@ class LabelHolder {
   std::map<std::string, std::vector<std::string>> of_run_;  // by run, per sample; empty: unknown
 };
 
+/// Whether they can be names of a few kinds. Throws ConfigurationError for what is another in nearly every row, as a
+/// measurement or a row's own name; what `notes` gets is a doubt.
+void check_labels(const std::string& column, const RunLabels& labels, std::vector<std::string>& notes);
+
 }  // namespace modebank

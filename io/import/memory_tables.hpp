@@ -13,4 +13,7 @@ namespace modebank {
 /// its states. What import_data takes in place of files.
 using MemoryTables = std::map<std::string, std::vector<std::shared_ptr<const TableReader>>>;
 
+/// What data.inputs and data.states say of them: a recording of such runs cannot be read again.
+inline constexpr const char* frames_in_memory = "<frames>";
+
 }  // namespace modebank

@@ -13,6 +13,7 @@
 #include "io/import/csv.hpp"
 #include "io/import/csv_text.hpp"
 #include "io/recording/recording_reader.hpp"
+#include "io/recording/split_recording.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -34,7 +35,7 @@ struct Format {
 constexpr std::array formats{
     Format{is_ros_log,
            [](const Path& path, const FormatOptions& options) -> std::shared_ptr<const TableReader> {
-             return std::make_shared<RecordingReader>(path, options.definitions);
+             return std::make_shared<RecordingReader>(recording_files(path), options.definitions);
            }},
     Format{[](const Path&, std::string_view first) { return is_hdf5(first); },
            [](const Path& path, const FormatOptions&) { return open_hdf5_tables(path); }},
@@ -113,6 +114,15 @@ std::shared_ptr<const TableReader> open_table(const Path& path, const FormatOpti
     if (format.probe(path, first)) return format.open(path, options);
   throw ConfigurationError(fmt::format("{} is no text and of no known format: it begins with the bytes {:02X}",
                                        path.string(), fmt::join(bytes_of(first), " ")));
+}
+
+std::shared_ptr<const TableReader> open_table(const std::vector<Path>& parts, const FormatOptions& options) {
+  if (parts.size() == 1) return open_table(parts.front(), options);
+  for (const Path& part : parts)
+    if (!is_ros_log(part, first_bytes(part)))
+      throw ConfigurationError(fmt::format(
+          "{} is no recording: only recordings are read in parts (a + b); a comma separates runs", part.string()));
+  return std::make_shared<RecordingReader>(parts, options.definitions);
 }
 
 }  // namespace modebank

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "io/table/table_reader.hpp"
 
@@ -10,5 +11,9 @@ namespace modebank {
 /// The reader of a file's format, which its first bytes tell. Throws ConfigurationError when the file cannot be read
 /// and for formats that are known but not read here, saying what to do instead.
 std::shared_ptr<const TableReader> open_table(const std::filesystem::path& path, const FormatOptions& options);
+/// The same for one file, or for a recording's parts, in the order in which they were written. Throws
+/// ConfigurationError also for several files that are no recordings.
+std::shared_ptr<const TableReader> open_table(const std::vector<std::filesystem::path>& parts,
+                                              const FormatOptions& options);
 
 }  // namespace modebank

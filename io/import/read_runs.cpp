@@ -12,22 +12,12 @@ namespace modebank {
 
 namespace {
 
-/// One table per source of the plan, and one more of labels if there are any.
+/// One table per source of the plan.
 std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent& result) {
-  std::vector<Table> tables(plan.sources.size() + (plan.label.empty() ? 0 : 1));
+  std::vector<Table> tables(plan.sources.size());
   for (std::size_t path = 0; path < plan.paths.size(); ++path) {
-    std::vector<std::size_t> here;
-    std::vector<TableRequest> requests;
-    for (std::size_t source = 0; source < plan.sources.size(); ++source)
-      if (plan.sources[source].path == path) {
-        here.push_back(source);
-        requests.push_back(columns_to_read(plan.sources[source].request, plan.sources[source].derived));
-      }
-    if (!plan.label.empty() && plan.sources[plan.label_source].path == path) {
-      here.push_back(plan.sources.size());
-      requests.push_back({plan.sources[plan.label_source].request.table, {}, plan.label});
-    }
-    std::vector<Table> read = plan.readers[path]->read(requests, result.files.emplace_back());
+    const auto [here, requests] = plan.requests_of(path);
+    std::vector<Table> read = plan.readers[path]->read(requests, &result.files.emplace_back());
     for (std::size_t i = 0; i < here.size(); ++i) {
       if (read[i].rows() == 0) throw DataError(fmt::format("{}: a header, but no rows", plan.paths[path].string()));
       result.notes.insert(result.notes.end(), read[i].notes.begin(), read[i].notes.end());
@@ -36,8 +26,8 @@ std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent
   }
   for (std::size_t source = 0; source < plan.sources.size(); ++source) {
     const SourcePlan& of = plan.sources[source];
-    derive_columns(plan.paths[of.path].string(), of.request, of.derived, tables[plan.states_clock], rate_hz,
-                   tables[source]);
+    const RowOrder order{tables[plan.states_clock], of.run, rate_hz};
+    derive_columns(plan.paths[of.path].string(), of.request, of.derived, order, tables[source]);
   }
   return tables;
 }

@@ -29,16 +29,17 @@ using Eigen::VectorXd;
 RunRows RowReader::rows_by_run(std::size_t source) const {
   const Table& table = tables_[source];
   RunRows runs;
-  if (options_.run.empty()) {
+  const SourcePlan& plan = plan_.sources[source];
+  if (!plan.run) {
     runs[""].resize(table.rows());
     std::iota(runs[""].begin(), runs[""].end(), std::size_t{0});
     return runs;
   }
+  const std::vector<std::string>& names = table.texts[*plan.run];
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (table.text[row].empty())
-      throw DataError(
-          fmt::format("{}: column {}: missing value", place(source, row), plan_.sources[source].request.text));
-    runs[table.text[row]].push_back(row);
+    if (names[row].empty())
+      throw DataError(fmt::format("{}: column {}: missing value", place(source, row), plan.request.texts[*plan.run]));
+    runs[names[row]].push_back(row);
   }
   return runs;
 }
@@ -49,7 +50,8 @@ std::int64_t RowReader::origin_ns(const std::vector<Rows>& rows) const {
     if (const auto& stamps = tables_[source].time_ns; !stamps.empty())
       for (const std::size_t row : rows[source])
         if (stamps[row] != missing_stamp) first = std::min(first, stamps[row]);
-  return first == std::numeric_limits<std::int64_t>::max() || std::abs(first) < large_origin_ns ? 0 : first;
+  const bool is_small = first > -large_origin_ns && first < large_origin_ns;
+  return first == std::numeric_limits<std::int64_t>::max() || is_small ? 0 : first;
 }
 
 FileStream RowReader::stream(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run,
@@ -88,10 +90,11 @@ void RowReader::check_stamps(const RunSlice& run) const {
 }
 
 LabelStream RowReader::labels(const RunSlice& run) const {
-  if (plan_.label.empty()) return {};
-  const std::size_t clock = plan_.rows_correspond() ? plan_.states_clock : plan_.label_source;
+  if (!plan_.label) return {};
+  const std::size_t clock = plan_.rows_correspond() ? plan_.states_clock : plan_.label->source;
   LabelStream result{times(clock, run), {}};
-  for (const std::size_t row : run.rows[clock]) result.text.push_back(tables_.back().text[row]);
+  for (const std::size_t row : run.rows[clock])
+    result.text.push_back(tables_[plan_.label->source].texts[plan_.label->column][row]);
   return result;
 }
 
@@ -151,6 +154,19 @@ std::string RowReader::place(std::size_t source, std::size_t row) const {
   return fmt::format("{}:{}", plan_.paths[plan_.sources[source].path].string(), tables_[source].line[row]);
 }
 
+namespace {
+
+/// Also of stamps that are farther apart than their numbers reach: import names these later.
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
+  constexpr double ns_per_s = 1e9;
+  std::int64_t difference_ns = 0;
+  const bool too_far = __builtin_sub_overflow(to_ns, from_ns, &difference_ns);
+  return (too_far ? static_cast<double>(to_ns) - static_cast<double>(from_ns) : static_cast<double>(difference_ns)) /
+         ns_per_s;
+}
+
+}  // namespace
+
 VectorXd RowReader::times(std::size_t source, const RunSlice& run) const {
   const Table& table = tables_[source];
   const Rows& rows = run.rows[source];
@@ -164,7 +180,7 @@ VectorXd RowReader::times(std::size_t source, const RunSlice& run) const {
     else if (run.origin_ns == 0 && !table.time_s.empty())
       time_s(at) = table.time_s[rows[k]];
     else
-      time_s(at) = static_cast<double>(table.time_ns[rows[k]] - run.origin_ns) / 1e9;
+      time_s(at) = seconds_between(run.origin_ns, table.time_ns[rows[k]]);
   }
   return time_s;
 }

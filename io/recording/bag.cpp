@@ -12,12 +12,10 @@ namespace {
 class Bag : public PieceFile {
  public:
   explicit Bag(const std::filesystem::path& path) : PieceFile(path) {
-    try {
+    begin([this] {
       const Record header = read_header();
       if (!try_index(header)) scan();
-    } catch (const Damage& damage) {
-      throw DataError(damage_text(damage.at, damage.what()));
-    }
+    });
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "ident/base/characters.hpp"
@@ -99,6 +100,11 @@ std::string full_name(std::string_view type, const std::string& package, Dialect
   return fmt::format("{}/{}", package, type);
 }
 
+std::string field_text(const Field& field) {
+  const std::string type = field.type ? field.type->name : fmt::format("{}", static_cast<int>(field.kind));
+  return fmt::format("  {} {} {} {}\n", type, static_cast<int>(field.many), field.count, field.name);
+}
+
 }  // namespace
 
 std::uint64_t bytes_of(Kind kind) {
@@ -135,6 +141,15 @@ Schema::Schema(const std::string& root, Dialect dialect, const Lookup& lookup) :
   root_ = resolve(short_type(root), lookup, 0);
 }
 
+std::string Schema::text() const {
+  std::string text = fmt::format("ROS {}, {}\n", dialect_ == Dialect::ros1 ? 1 : 2, root_->name);
+  for (const auto& [name, type] : types_) {
+    text += name + "\n";
+    for (const Field& field : type->fields) text += field_text(field);
+  }
+  return text;
+}
+
 Field Schema::parse_field(std::string_view type, std::string_view name, const std::string& package,
                           const Lookup& lookup, int depth) {
   Field field;
@@ -169,6 +184,7 @@ const MessageType* Schema::resolve(const std::string& type, const Lookup& lookup
   auto message = std::make_unique<MessageType>();
   message->name = type;
   const std::string package = type.substr(0, type.find('/'));
+  std::set<std::string_view> names;
   while (!text->empty()) {
     std::string_view line = next_line(*text);
     line = without_blanks(line.substr(0, line.find('#')));
@@ -180,6 +196,7 @@ const MessageType* Schema::resolve(const std::string& type, const Lookup& lookup
     if (!rest.empty() && rest.front() == '=') continue;  // a constant; what else follows a name is its default
     if (message->fields.size() == most_fields)
       throw DefinitionError(fmt::format("{} has more than {} fields", type, most_fields));
+    if (!names.insert(name).second) throw DefinitionError(fmt::format("{} has two fields \"{}\"", type, name));
     Field field = parse_field(word, name, package, lookup, depth);
     const std::uint64_t bytes = least_bytes(field);
     if (bytes == 0) continue;  // nothing of it is in a message: whoever walks through one need not stop here

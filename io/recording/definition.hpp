@@ -69,6 +69,8 @@ class Schema {
   const MessageType& root() const { return *root_; }
   Dialect dialect() const { return dialect_; }
   bool has_wide_strings() const { return has_wide_strings_; }
+  /// All that decides how a payload is read and what its fields are called: equal texts read alike.
+  std::string text() const;
 
  private:
   const MessageType* resolve(const std::string& type, const Lookup& lookup, int depth);

@@ -13,13 +13,11 @@ namespace {
 class Mcap : public PieceFile {
  public:
   explicit Mcap(const std::filesystem::path& path) : PieceFile(path) {
-    try {
+    begin([this] {
       if (file_.size() < magic.size() || file_.view(0, magic.size()) != magic)
         throw DataError(fmt::format("{}: no MCAP file (it does not begin with \"\\x89MCAP0\")", path_.string()));
       if (!try_summary()) scan();
-    } catch (const Damage& damage) {
-      throw DataError(damage_text(damage.at, damage.what()));
-    }
+    });
   }
 
  private:

@@ -9,6 +9,7 @@
 #include "io/recording/byte_source.hpp"
 #include "io/recording/connections.hpp"
 #include "io/recording/decompress.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -40,6 +41,16 @@ class PieceFile : public Container {
 
  protected:
   explicit PieceFile(const std::filesystem::path& path) : path_(path), file_(path) {}
+
+  /// Begins to read: what is damaged from there on cannot be read at all. Throws DataError, naming file and byte.
+  template <class Open>
+  void begin(Open&& open) {
+    try {
+      open();
+    } catch (const Damage& damage) {
+      throw DataError(damage_text(damage.at, damage.what()));
+    }
+  }
 
   /// The record at `at`, at most to `end`. Throws Damage.
   virtual RecordHead head_at(ByteSource& bytes, std::uint64_t at, std::uint64_t end) const = 0;

@@ -1,12 +1,12 @@
 #include "io/recording/recording_reader.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "ident/base/printable.hpp"
 #include "io/table/number.hpp"
 #include "io/table/stamp_column.hpp"
 #include "modebank/base/error.hpp"
@@ -25,7 +25,7 @@ std::string type_name(MessageColumn::Form form) {
 LogRequest log_request(const TableRequest& request) {
   LogRequest wanted{request.table, {}};
   for (const std::string& number : request.numbers) wanted.columns.push_back({number, Form::number});
-  if (!request.text.empty()) wanted.columns.push_back({request.text, Form::text});
+  for (const std::string& text : request.texts) wanted.columns.push_back({text, Form::text});
   if (!request.time.column.empty()) wanted.columns.push_back({request.time.column, Form::exact});
   if (!request.time.nanoseconds.empty()) wanted.columns.push_back({request.time.nanoseconds, Form::exact});
   return wanted;
@@ -86,8 +86,9 @@ void set_times(const std::string& file, const TimeRequest& request, bool is_stam
 
 }  // namespace
 
-RecordingReader::RecordingReader(const std::filesystem::path& path, const std::filesystem::path& definitions)
-    : path_(path), log_(path, KnownDefinitions(checked(definitions))) {}
+RecordingReader::RecordingReader(const std::vector<std::filesystem::path>& files,
+                                 const std::filesystem::path& definitions)
+    : path_(files.front()), log_(files, KnownDefinitions(checked(definitions))) {}
 
 std::vector<TableInfo> RecordingReader::tables() const {
   std::vector<TableInfo> tables;
@@ -107,12 +108,28 @@ std::string RecordingReader::why_without(const std::string& column) const {
   return {};
 }
 
-std::vector<Table> RecordingReader::read(const std::vector<TableRequest>& requests, InputFile& file) const {
+InputFile RecordingReader::described(const UsedMessages& used) const {
+  InputFile file{printable_name(std::filesystem::absolute(path_).string()), 0, used.hex()};
+  for (const std::filesystem::path& part : log_.files()) file.bytes += std::filesystem::file_size(part);
+  return file;
+}
+
+InputFile RecordingReader::describe(const std::vector<TableRequest>& requests) const {
+  std::vector<LogRequest> topics;
+  for (const TableRequest& request : requests) topics.push_back({request.table, {}});
+  std::vector<std::string> notes;
+  UsedMessages used;
+  log_.read(topics, notes, &used);
+  return described(used);
+}
+
+std::vector<Table> RecordingReader::read(const std::vector<TableRequest>& requests, InputFile* file) const {
   std::vector<LogRequest> wanted;
   for (const TableRequest& request : requests) wanted.push_back(log_request(request));
   std::vector<std::string> notes = log_.notes();
-  std::vector<LogRows> rows;
-  tbb::parallel_invoke([&] { file = describe_file(path_); }, [&] { rows = log_.read(wanted, notes); });
+  UsedMessages used;
+  std::vector<LogRows> rows = log_.read(wanted, notes, file == nullptr ? nullptr : &used);
+  if (file != nullptr) *file = described(used);
   std::vector<Table> tables;
   for (std::size_t r = 0; r < requests.size(); ++r) {
     const TableRequest& request = requests[r];
@@ -121,9 +138,9 @@ std::vector<Table> RecordingReader::read(const std::vector<TableRequest>& reques
     auto column = rows[r].columns.begin();
     for (std::size_t i = 0; i < request.numbers.size(); ++i) table.numbers.push_back(std::move((column++)->numbers));
     check_numbers(path_.string(), request, table);
-    if (!request.text.empty()) {
-      table.text = std::move((column++)->text);
-      for (std::string& text : table.text) text = std::string(without_blanks(text));
+    for (std::size_t i = 0; i < request.texts.size(); ++i) {
+      table.texts.push_back(std::move((column++)->text));
+      for (std::string& text : table.texts.back()) text = std::string(without_blanks(text));
     }
     if (request.time.column.empty()) continue;
     LogColumn& time = *column++;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "io/recording/ros_log.hpp"
 #include "io/table/table_reader.hpp"
@@ -12,14 +13,18 @@ namespace modebank {
 /// Recordings of ROS behind the seam: one table per topic, lines are messages of it.
 class RecordingReader : public TableReader {
  public:
-  /// `definitions`: a folder of .msg files for types that neither the recording nor the library defines; empty: none.
-  RecordingReader(const std::filesystem::path& path, const std::filesystem::path& definitions);
+  /// `files`: one, or parts that were written one after the other; `definitions`: a folder of .msg files for types that
+  /// neither the recording nor the library defines; empty: none.
+  RecordingReader(const std::vector<std::filesystem::path>& files, const std::filesystem::path& definitions);
 
   std::vector<TableInfo> tables() const override;
-  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const override;
+  InputFile describe(const std::vector<TableRequest>& requests) const override;
+  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile* file) const override;
   std::string why_without(const std::string& column) const override;
 
  private:
+  InputFile described(const UsedMessages& used) const;
+
   std::filesystem::path path_;
   RosLog log_;
 };

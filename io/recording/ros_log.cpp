@@ -59,7 +59,10 @@ std::vector<std::vector<std::string>> take_samples(Container& container, std::ve
 
 }  // namespace
 
-RosLog::RosLog(const std::filesystem::path& path, const KnownDefinitions& known) : files_(recording_files(path)) {
+RosLog::RosLog(const std::filesystem::path& path, const KnownDefinitions& known)
+    : RosLog(recording_files(path), known) {}
+
+RosLog::RosLog(std::vector<std::filesystem::path> files, const KnownDefinitions& known) : files_(std::move(files)) {
   for (const std::filesystem::path& file : files_) open_part(file, known);
 }
 
@@ -102,7 +105,8 @@ void RosLog::add_connection(Part& part, const Connection& connection, TopicDecod
   part.decoders.push_back(std::move(decoder));
 }
 
-std::vector<LogRows> RosLog::read(const std::vector<LogRequest>& requests, std::vector<std::string>& notes) const {
+std::vector<LogRows> RosLog::read(const std::vector<LogRequest>& requests, std::vector<std::string>& notes,
+                                  UsedMessages* used) const {
   std::vector<RowCollector> collectors;
   for (const LogRequest& request : requests) collectors.emplace_back(topics_[request.topic], request);
   struct Route {
@@ -118,8 +122,12 @@ std::vector<LogRows> RosLog::read(const std::vector<LogRequest>& requests, std::
           wanted[c] = true;
           routes[c].push_back({r, collectors[r].add_reader(part.decoders[c])});
         }
+    const auto topic_of = [&](std::size_t connection) -> const LogTopic& { return topics_[part.topic[connection]]; };
+    for (std::size_t c = 0; c < wanted.size(); ++c)
+      if (used != nullptr && wanted[c]) used->add_definition(topic_of(c).name, topic_of(c).type, part.decoders[c]);
     const std::string file = files_[p].string();
     std::string failure = part.container->visit(wanted, [&](const RecordedMessage& message) {
+      if (used != nullptr) used->take(topic_of(message.connection).name, message);
       for (const Route& route : routes[message.connection])
         collectors[route.collector].take(route.reader, message, file);
     });

@@ -11,6 +11,7 @@
 #include "io/recording/connections.hpp"
 #include "io/recording/known_definitions.hpp"
 #include "io/recording/topic_decoder.hpp"
+#include "io/recording/used_messages.hpp"
 
 namespace modebank {
 
@@ -59,6 +60,8 @@ class RosLog {
  public:
   /// Looks into the index and a few messages. Throws ConfigurationError when a file cannot be read and DataError when
   /// it is damaged from the beginning or of another form.
+  RosLog(std::vector<std::filesystem::path> files, const KnownDefinitions& known);
+  /// recording_files of it.
   RosLog(const std::filesystem::path& path, const KnownDefinitions& known);
   ~RosLog();
 
@@ -69,8 +72,9 @@ class RosLog {
 
   /// Reads the requested columns in one pass; `notes` gets what a user should know of the values. Throws
   /// ConfigurationError for a column that a topic has not, DataError for a message that its definition does not fit
-  /// (naming topic, type and message).
-  std::vector<LogRows> read(const std::vector<LogRequest>& requests, std::vector<std::string>& notes) const;
+  /// (naming topic, type and message). `used`, unless null, takes in all messages of these topics.
+  std::vector<LogRows> read(const std::vector<LogRequest>& requests, std::vector<std::string>& notes,
+                            UsedMessages* used = nullptr) const;
 
  private:
   static constexpr std::size_t no_topic = ~std::size_t{0};

@@ -2,13 +2,13 @@
 
 #include <csv.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <iterator>
 #include <set>
 
 #include "io/files/replace_file.hpp"
+#include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -33,9 +33,11 @@ std::string quoted(const std::string& name) {
 std::string csv_text(const SimulationTable& table) {
   std::string text;
   for (std::size_t i = 0; i < table.names.size(); ++i) text += (i == 0 ? "" : ",") + quoted(table.names[i]);
-  for (Eigen::Index k = 0; k < table.values.cols(); ++k)
+  for (Eigen::Index k = 0; k < table.values.cols(); ++k) {
     for (Eigen::Index i = 0; i < table.values.rows(); ++i)
       fmt::format_to(std::back_inserter(text), "{}{}", i == 0 ? '\n' : ',', table.values(i, k));
+    for (const auto& column : table.texts) text += "," + quoted(column[static_cast<std::size_t>(k)]);
+  }
   return text + "\n";
 }
 
@@ -65,11 +67,14 @@ class StagingFolder {
     std::error_code error;
     made_target_ = fs::create_directory(target, error);  // no error when it exists
     if (!error && !fs::is_directory(target)) error = std::make_error_code(std::errc::not_a_directory);
-    path_ = target / fmt::format(".simulation.{}.tmp", ::getpid());
+    remove_leftovers(target);
+    path_ = temporary_path(target / "simulation");
     if (!error) fs::create_directory(path_, error);
     if (!error) return;
     remove();
-    throw ConfigurationError(fmt::format("cannot make folder {}: {}", target.string(), error.message()));
+    const std::string what = fmt::format("cannot make folder {}: {}", target.string(), error.message());
+    if (is_disk_failure(error)) throw DataError(what);
+    throw ConfigurationError(what);
   }
   ~StagingFolder() { remove(); }
   StagingFolder(const StagingFolder&) = delete;
@@ -95,6 +100,30 @@ void check_targets(const fs::path& folder, const std::vector<std::string>& names
       throw ConfigurationError(fmt::format("cannot write {}: it is not a regular file", (folder / name).string()));
 }
 
+/// Moves the files to their places. What was there is kept beside them until all are moved, and put back when one
+/// cannot be.
+void move_all(const fs::path& from, const fs::path& to, const std::vector<std::string>& names) {
+  const auto kept = [&](const std::string& name) { return from / (name + ".before"); };
+  std::size_t moved = 0;
+  try {
+    for (; moved < names.size(); ++moved) {
+      const std::string& name = names[moved];
+      if (fs::exists(to / name)) fs::copy_file(to / name, kept(name));
+      fs::rename(from / name, to / name);
+    }
+  } catch (const fs::filesystem_error& error) {
+    std::error_code ignored;
+    while (moved-- > 0) {
+      if (fs::exists(kept(names[moved]), ignored))
+        fs::rename(kept(names[moved]), to / names[moved], ignored);
+      else
+        fs::remove(to / names[moved], ignored);
+    }
+    throw DataError(fmt::format("cannot write {}: {}", (error.path2().empty() ? to : error.path2()).string(),
+                                error.code().message()));
+  }
+}
+
 }  // namespace
 
 void check_column_names(const std::vector<std::string>& names) {
@@ -113,14 +142,10 @@ void write_simulation_files(const fs::path& folder, std::size_t runs,
   check_targets(folder, all);
   for (std::size_t i = 0; i < runs; ++i) {
     const SimulationTables tables = tables_of(i);
-    replace_file(staging.path() / inputs[i], {csv_text(tables.inputs)});
-    replace_file(staging.path() / states[i], {csv_text(tables.states)});
+    write_staged(staging.path() / inputs[i], folder / inputs[i], csv_text(tables.inputs));
+    write_staged(staging.path() / states[i], folder / states[i], csv_text(tables.states));
   }
-  try {
-    for (const std::string& name : all) fs::rename(staging.path() / name, folder / name);
-  } catch (const fs::filesystem_error& error) {
-    throw DataError(fmt::format("cannot write {}: {}", folder.string(), error.code().message()));
-  }
+  move_all(staging.path(), folder, all);
 }
 
 }  // namespace modebank

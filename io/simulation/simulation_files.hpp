@@ -12,7 +12,8 @@ namespace modebank {
 /// One CSV file: a name and a row of values per column.
 struct SimulationTable {
   std::vector<std::string> names;
-  Eigen::MatrixXd values;  ///< columns x samples
+  Eigen::MatrixXd values;                            ///< columns x samples
+  std::vector<std::vector<std::string>> texts = {};  ///< further columns, named by the last names
 };
 
 /// The two files of a run.

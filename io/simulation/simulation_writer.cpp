@@ -102,6 +102,7 @@ HeaderNames vehicle_states_header(const VehicleLayout& layout) {
     names.push_back("true_" + (i < layout.states.size() ? layout.states[i] : usual[i]));
   for (const std::string& input : layout.inputs) names.push_back("true_" + input);
   for (const char* name : {"x", "y", "heading", "friction", "mode"}) names.emplace_back(name);
+  if (!layout.grounds.empty()) names.emplace_back("ground");
   return names;
 }
 
@@ -109,7 +110,12 @@ SimulationTables vehicle_tables(const VehicleRun& run, const VehicleLayout& layo
   SimulationTables tables{{vehicle_inputs_header(layout), {}}, {vehicle_states_header(layout), {}}};
   tables.inputs.values.resize(static_cast<Index>(tables.inputs.names.size()), run.inputs_time_s.size());
   tables.inputs.values << run.inputs_time_s.transpose(), run.wheel_speed, run.command;
-  tables.states.values.resize(static_cast<Index>(tables.states.names.size()), run.time_s.size());
+  const auto texts = static_cast<Index>(layout.grounds.empty() ? 0 : 1);
+  tables.states.values.resize(static_cast<Index>(tables.states.names.size()) - texts, run.time_s.size());
+  for (Index i = 0; i < texts; ++i) {
+    auto& grounds = tables.states.texts.emplace_back();
+    for (const int kind : run.kind) grounds.push_back(layout.grounds.at(static_cast<std::size_t>(kind)));
+  }
   tables.states.values << run.time_s.transpose(), run.measured, run.truth, run.true_wheel, run.pose,
       run.friction.transpose(), run.kind.cast<double>().transpose();
   return tables;

@@ -56,18 +56,24 @@ std::vector<TableInfo> MemoryTable::tables() const {
   return {std::move(table)};
 }
 
-std::vector<Table> MemoryTable::read(const std::vector<TableRequest>& requests, InputFile& file) const {
-  std::vector<Table> tables;
+InputFile MemoryTable::describe(const std::vector<TableRequest>& requests) const {
   Sha256 hash;
-  file = {name_, 0, {}};
+  InputFile file{name_, 0, {}};
   for (const TableRequest& request : requests) {
-    tables.push_back(read_one(request));
     std::vector<std::string> wanted = request.numbers;
-    for (const std::string& name : {request.text, request.time.column, request.time.nanoseconds})
+    wanted.insert(wanted.end(), request.texts.begin(), request.texts.end());
+    for (const std::string& name : {request.time.column, request.time.nanoseconds})
       if (!name.empty()) wanted.push_back(name);
     for (const std::string& name : wanted) add_to_hash(column(name), hash, file.bytes);
   }
   file.sha256 = hash.hex();
+  return file;
+}
+
+std::vector<Table> MemoryTable::read(const std::vector<TableRequest>& requests, InputFile* file) const {
+  std::vector<Table> tables;
+  for (const TableRequest& request : requests) tables.push_back(read_one(request));
+  if (file != nullptr) *file = describe(requests);
   return tables;
 }
 
@@ -85,16 +91,20 @@ Table MemoryTable::read_one(const TableRequest& request) const {
   std::iota(table.line.begin(), table.line.end(), std::uint64_t{0});
   for (std::size_t i = 0; i < request.numbers.size(); ++i)
     table.numbers.push_back(numbers(request.numbers[i], i < request.may_miss.size() && request.may_miss[i]));
-  if (!request.text.empty()) {
-    const MemoryColumn& texts = column(request.text);
-    if (const auto* given = std::get_if<std::vector<std::string>>(&texts.values)) table.text = *given;
-    if (const auto* whole = std::get_if<std::span<const std::int64_t>>(&texts.values))
-      for (const std::int64_t value : *whole) table.text.push_back(std::to_string(value));
-    if (const auto* reals = std::get_if<std::span<const double>>(&texts.values))
-      for (const double value : *reals) table.text.push_back(std::isfinite(value) ? fmt::format("{}", value) : "");
-  }
+  for (const std::string& name : request.texts) table.texts.push_back(texts(name));
   if (!request.time.column.empty()) stamps(request.time, table);
   return table;
+}
+
+std::vector<std::string> MemoryTable::texts(const std::string& name) const {
+  const MemoryColumn& source = column(name);
+  if (const auto* given = std::get_if<std::vector<std::string>>(&source.values)) return *given;
+  std::vector<std::string> texts;
+  if (const auto* whole = std::get_if<std::span<const std::int64_t>>(&source.values))
+    for (const std::int64_t value : *whole) texts.push_back(std::to_string(value));
+  if (const auto* reals = std::get_if<std::span<const double>>(&source.values))
+    for (const double value : *reals) texts.push_back(std::isfinite(value) ? fmt::format("{}", value) : "");
+  return texts;
 }
 
 std::vector<double> MemoryTable::numbers(const std::string& name, bool may_miss) const {

@@ -24,11 +24,13 @@ class MemoryTable final : public TableReader {
   MemoryTable(std::string name, std::vector<MemoryColumn> columns);
 
   std::vector<TableInfo> tables() const override;
-  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const override;
+  InputFile describe(const std::vector<TableRequest>& requests) const override;
+  std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile* file) const override;
 
  private:
   const MemoryColumn& column(const std::string& name) const;
   Table read_one(const TableRequest& request) const;
+  std::vector<std::string> texts(const std::string& name) const;
   std::vector<double> numbers(const std::string& name, bool may_miss) const;
   void stamps(const TimeRequest& request, Table& table) const;
   [[noreturn]] void fail(std::size_t row, const std::string& column, const std::string& what) const;

@@ -182,7 +182,7 @@ void StampColumn::finish(std::string_view file, Table& table) {
   table.time_ns.resize(stamps_.size());
   for (std::size_t k = 0; k < stamps_.size(); ++k) {
     const Stamp& stamp = stamps_[k];
-    if (std::abs(stamp.whole) > most)
+    if (stamp.whole > most || stamp.whole < -most)  // the least number has no absolute value
       throw DataError(fmt::format("{}:{}: column {}: {} {} is no time (data.time_unit)", file, table.line[k],
                                   request_.column, stamp.whole, in_words(unit)));
     const bool missing = std::isnan(as_written_[k]);

@@ -38,20 +38,20 @@ struct TimeRequest {
 
 /// Which columns of a table are wanted; the others are skipped unread and may hold anything.
 struct TableRequest {
-  std::size_t table = 0;             ///< position in TableReader::tables
-  std::vector<std::string> numbers;  ///< columns of finite numbers, each once
-  std::string text = {};             ///< one column of text, or empty
-  std::vector<bool> may_miss = {};   ///< per number: whether missing values become NaN; empty: they are errors
+  std::size_t table = 0;                ///< position in TableReader::tables
+  std::vector<std::string> numbers;     ///< columns of finite numbers, each once
+  std::vector<std::string> texts = {};  ///< columns of text, each once
+  std::vector<bool> may_miss = {};      ///< per number: whether missing values become NaN; empty: they are errors
   TimeRequest time = {};
 };
 
 inline constexpr std::int64_t missing_stamp = std::numeric_limits<std::int64_t>::min();
 
 struct Table {
-  std::vector<std::vector<double>> numbers;  ///< one vector per requested column, one value per row
-  std::vector<std::string> text;             ///< per row, without blanks around; empty when no column was requested
-  std::vector<std::uint64_t> line;           ///< per row, where it stands (messages say file:line): line or message
-  std::vector<std::int64_t> time_ns;         ///< per row, exact; empty when no time was requested
+  std::vector<std::vector<double>> numbers;     ///< one vector per requested column, one value per row
+  std::vector<std::vector<std::string>> texts;  ///< the same for text, without blanks around
+  std::vector<std::uint64_t> line;              ///< per row, where it stands (messages say file:line): line or message
+  std::vector<std::int64_t> time_ns;            ///< per row, exact; empty when no time was requested
   /// The same times as they were written, where that is seconds in text, which may be finer; else empty.
   std::vector<double> time_s;
   std::vector<std::string> notes;  ///< what the reader found out and the user should know; without the file's name, so
@@ -70,10 +70,15 @@ class TableReader {
   /// or has no columns, DataError when they are malformed.
   virtual std::vector<TableInfo> tables() const = 0;
 
-  /// Reads what is wanted, one table per request, in one pass over the file; says in `file` what was read. Throws as
+  /// What identifies the data that `read` gives for these requests: equal data have equal hashes. Throws when it cannot
+  /// be read.
+  virtual InputFile describe(const std::vector<TableRequest>& requests) const = 0;
+
+  /// Reads what is wanted, one table per request, in one pass over the file; `file` becomes what `describe` says of it,
+  /// unless it is null. Throws as
   /// column_position does, and DataError, naming file, line and column, for text where a number is wanted, a missing
   /// value (empty, NaN or infinite) in a column that may not miss any and a malformed row.
-  virtual std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile& file) const = 0;
+  virtual std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile* file) const = 0;
 
   /// Why a column that a user may expect is not there; empty when there is nothing to say.
   virtual std::string why_without(const std::string& /*column*/) const { return {}; }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "ident/base/interruption.hpp"
 #include "ident/base/linalg.hpp"
 #include "mixture/detail/step.hpp"
 
@@ -140,6 +141,7 @@ EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptio
   GaussianMixture trial = std::move(start);
   std::optional<GaussianMixture> plain;  // what EM itself made, where `trial` is extrapolated
   while (true) {
+    interruption_point();
     const bool last = result.iterations == options.max_iterations;
     const MixtureMoments moments = last ? measure(points, trial) : expect(points, trial);
     const double gain = moments.log_likelihood - result.log_likelihood;

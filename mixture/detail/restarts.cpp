@@ -11,6 +11,7 @@
 #include "ident/base/not_a_number.hpp"
 #include "mixture/detail/iterate.hpp"
 #include "mixture/detail/split_merge.hpp"
+#include "mixture/detail/whole_loop.hpp"
 #include "mixture/reduction.hpp"
 
 namespace modebank {
@@ -81,6 +82,7 @@ EmResult best_of_restarts(const PointBlocks& points, const std::function<Start(i
   std::vector<std::optional<EmResult>> crossing(results.size());
   const auto for_each = [&](auto action) {
     tbb::parallel_for(0, options.restarts, [&](int i) { action(static_cast<std::size_t>(i)); });
+    require_whole_loop();
   };
   for_each([&](std::size_t i) { results[i] = climb(points, start_of(static_cast<int>(i)), coarse, seed); });
   std::vector<EmResult> alone = results;  // what restarts agree on is what each found for itself

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mixture/detail/density.hpp"
+#include "mixture/detail/whole_loop.hpp"
 
 namespace modebank {
 
@@ -61,10 +62,12 @@ MixtureMoments pass(const PointBlocks& points, const FactoredMixture& factored, 
     partial[g] = expect_group(points, factored, background, with_sums, first,
                               std::min(first + blocks_per_group, points.blocks()));
   };
-  if (points.count() > parallel_points)
+  if (points.count() > parallel_points) {
     tbb::parallel_for(Index(0), groups, group);
-  else
+    require_whole_loop();
+  } else {
     for (Index g = 0; g < groups; ++g) group(g);
+  }
   for (Index g = 1; g < groups; ++g) {
     partial[0].log_likelihood += partial[g].log_likelihood;
     partial[0].noise += partial[g].noise;

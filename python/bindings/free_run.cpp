@@ -6,6 +6,7 @@
 #include "modebank/filter/bank.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
+#include "python/bindings/ctrl_c.hpp"
 #include "python/bindings/keys.hpp"
 
 namespace modebank::python {
@@ -30,7 +31,7 @@ FreeRun predict(const Bank& bank, const app::Config& config, const Samples& time
                 const Samples& inputs) {
   const Trajectory run = run_of(time_s, states, inputs);
   const FreeRunOptions how = scoring_inputs(app::chain_options(config)).free_run;
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   return std::move(free_runs(bank, {run}, config.filter, how).front());
 }
 

@@ -3,6 +3,7 @@
 #include "mixture/select.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
+#include "python/bindings/ctrl_c.hpp"
 #include "python/bindings/keys.hpp"
 
 namespace modebank::python {
@@ -27,7 +28,7 @@ Selection fit_mixture(const Samples& points, const std::vector<Index>& runs, dou
                       std::uint64_t seed, const py::dict& keys) {
   const SelectionOptions options = config_of(keys, "mixture.").mixture.selection;
   const Eigen::MatrixXd values = points_of(points);
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   return select(PointSet(values), {effective_samples, runs}, options, seed);
 }
 

@@ -52,10 +52,10 @@ std::string run_file(const std::string& file, const py::dict& keys, const py::ob
 std::string run_tables(const py::dict& tables, const py::dict& keys, const py::object& progress,
                        const py::object& warning) {
   app::Config config = config_of(keys, "");
-  config.data.inputs = "*";  // every run that is there
+  config.data.inputs = frames_in_memory;
   const MemoryTables memory = memory_tables(tables);
   if (memory.empty()) throw ConfigurationError("there are no runs");
-  if (memory.begin()->second.size() > 1) config.data.states = "* (states)";
+  if (memory.begin()->second.size() > 1) config.data.states = frames_in_memory;
   const Callbacks callbacks(progress, warning);
   {
     const py::gil_scoped_release unlocked;

@@ -9,6 +9,7 @@
 #include "ident/model/parameter_labels.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
+#include "python/bindings/ctrl_c.hpp"
 #include "python/bindings/keys.hpp"
 
 namespace modebank::python {
@@ -68,7 +69,7 @@ Windows identify(const std::vector<Samples>& states, const std::vector<Samples>&
       throw std::invalid_argument("all runs must have the same signals");
   recording.states = channels(state_names, first.states().rows(), "x");
   recording.inputs = channels(input_names, first.inputs().rows(), "u");
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   Windows windows;
   windows.fits = in_section("window", [&] { return fit_windows(recording, config.window); });
   windows.labels = parameter_labels(windows.fits, names_of(recording.states), names_of(recording.inputs));

@@ -53,7 +53,7 @@ def run(data: Path | Frames, *, state: str | Sequence[str] | None = None, input:
     """Takes the whole chain over runs and returns its Archive, as `modebank run` does.
 
     data: a configuration file, or {name: DataFrame} of one run each, or {name: (inputs, states)} of two frames with
-    times of their own. Of frames, state and input name the columns, and time that of seconds (None: the index).
+    times of their own. Such a run is repeated by handing over the frames again: its archive names no files. Of frames, state and input name the columns, and time that of seconds (None: the index).
     progress: is called with each line of progress. Further keys are those of the configuration, by
     **{"window.length": 30} or window={"length": 30}; archive.output says where the archive is kept (of frames it is
     temporary otherwise). Warnings are Python's. The interpreter lock is released meanwhile; Ctrl-C ends it at the next
@@ -122,13 +122,13 @@ def _run_frames(data, state, input, time, progress, keys):
     return archive
 
 
-def read(log: Path, **options: Any) -> dict[str, pandas.DataFrame]:
+def read(log: Path, *, columns: Sequence[str] = (), **options: Any) -> dict[str, pandas.DataFrame]:
     """The tables of any readable log as {name: DataFrame}; the one table of a CSV file is called "".
 
-    options: keys of the configuration's [data] section that say how a file is to be read, as separator="semicolon".
+    columns: names of those that are wanted, or of tables (topics), of which all are; none: everything. options: keys of the configuration's [data] section that say how a file is to be read, as separator="semicolon".
     Units, where the format says them, are in frame.attrs["units"] by column."""
     frames = {}
-    for name, (columns, units) in _modebank.read_log(os.fspath(log), options).items():
+    for name, (columns, units) in _modebank.read_log(os.fspath(log), list(columns), options).items():
         frames[name] = pandas.DataFrame(columns)
         frames[name].attrs["units"] = {column: unit for column, unit in units.items() if unit}
     return frames
@@ -141,7 +141,7 @@ def identify(states: np.ndarray | Sequence[np.ndarray], inputs: np.ndarray | Seq
 
     states: (N, n), or (N,) of one state, or a list of such arrays, one per run; inputs likewise (N, m), or None; dt:
     sample period [s]. options: the keys of the configuration's [window] section, as length=30, step=5, prior="none".
-    Row-major arrays of doubles are read where they are, without a copy. Releases the interpreter lock."""
+    Row-major arrays of doubles are read where they are, without a copy. Releases the interpreter lock; Ctrl-C ends it."""
     runs = list(states) if isinstance(states, (list, tuple)) else [states]
     if inputs is None:
         inputs = [np.empty((len(run), 0)) for run in runs]
@@ -155,7 +155,7 @@ def simulate(bank: Archive | Bank | Path, states: np.ndarray, inputs: np.ndarray
 
     bank: an Archive, its path or a Bank; states: (N, n), of which the first `samples` are used (the others may be NaN;
     where they are known, log_density is of them); inputs: (N, m); dt: sample period [s] (None: the bank's), or times:
-    (N,) [s]; horizon: samples to predict, 0: all. options: further keys of the [filter] section."""
+    (N,) [s]; horizon: samples to predict, 0: all. options: further keys of the [filter] section. Ctrl-C ends it."""
     states = np.asarray(states, dtype=float)
     keys = {"simulate": samples, "simulate_horizon": horizon, **options}
     if times is None:
@@ -170,7 +170,7 @@ def fit_mixture(points: np.ndarray, components: int | str | Sequence[int] = "1..
 
     components: a number, a list, or a range as "1..12"; runs: (N,) the run each point is from, for held-out scores and
     the bootstrap; effective_samples: independent samples that the points are worth, 0: all. options: further keys of
-    the configuration's [mixture] section, as criterion="icl". Releases the interpreter lock."""
+    the configuration's [mixture] section, as criterion="icl". Releases the interpreter lock; Ctrl-C ends it."""
     if isinstance(components, range):
         components = list(components)
     return _modebank.fit_mixture(points, [int(run) for run in runs], effective_samples, seed,

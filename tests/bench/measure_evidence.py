@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How often modes of motion are claimed: where there are none, and where there are some (make evidence).
 
-  measure_evidence.py build/modebank [--seeds 100] [--first 0] [--jobs N] [--only NAME,NAME]
+  measure_evidence.py build/modebank [--seeds 100] [--first 0] [--jobs N] [--only NAME,NAME] [--quantum auto]
 
 Every system is simulated here, by numpy, as twelve runs of 400 samples with inputs redrawn or held; six train and six
 are held out, as `modebank run` divides them by default, and the program runs with nothing but [data] configured. Counted is
@@ -124,7 +124,7 @@ def truth_passes(system, runs, quantile, densities):
     return True
 
 
-def trial(program, name, seed):
+def trial(program, quantum, name, seed):
     with tempfile.TemporaryDirectory() as path:
         folder = pathlib.Path(path)
         system = None
@@ -134,7 +134,7 @@ def trial(program, name, seed):
             runs = [system.simulate(g, run, SAMPLES) for run in range(RUNS)]
         else:
             runs = {**NOTHING, **NAMED}[name](g)
-        done = run_program(program, runs, folder)
+        done = run_program(program, runs, folder, ["--data.quantum", quantum])
         if done.returncode != 0:
             return name, "refused" if done.returncode in (1, 2) else "crash", done.stderr.strip().splitlines()[-1:], None
         answer, text, quantile, densities = margins(folder)
@@ -148,11 +148,12 @@ def main():
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--only", default="")
+    parser.add_argument("--quantum", default="none", help="data.quantum: with auto readings that come in steps count as intervals")
     options = parser.parse_args()
     wanted = options.only.split(",") if options.only else [*NOTHING, *NAMED, "modes"]
     seeds = range(options.first, options.first + options.seeds)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        results = list(pool.map(lambda job: trial(options.program, *job), [(name, seed) for name in wanted for seed in seeds]))
+        results = list(pool.map(lambda job: trial(options.program, options.quantum, *job), [(name, seed) for name in wanted for seed in seeds]))
     answers = ["evidence", "cannot tell", "no evidence", "one mode", "not comparable", "refused", "crash"]
     print("| system | " + " | ".join(answers) + " |\n|---|" + "---|" * len(answers))
     claimed = 0

@@ -1,4 +1,4 @@
-// How often the number of modes of simulated systems is found: the table of the README. Arguments: seeds (default 50).
+// How often the number of modes of simulated systems is found: docs/results/mixture.md. Arguments: seeds (default 50).
 #include <fmt/format.h>
 
 #include <cstdlib>

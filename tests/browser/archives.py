@@ -47,7 +47,8 @@ def demo_data(modebank):
 
 
 def demo(modebank, data, name, *options, command="run"):
-    return modebank.run(name, modebank.source / "configs/demo.ini", "--data.root", data, "--mixture.restarts", "2", "--bank.refine", "none", *options, command=command)
+    quick = [] if command == "identify" else ["--mixture.restarts", "2", "--bank.refine", "none"]  # identify reads neither
+    return modebank.run(name, modebank.source / "configs/demo.ini", "--data.root", data, *quick, *options, command=command)
 
 
 def ice(modebank):

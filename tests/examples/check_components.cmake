@@ -24,7 +24,7 @@ file(MAKE_DIRECTORY ${WORK}/elsewhere)
 foreach(component program development)
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/${component} --component ${component})
 endforeach()
-holds(program bin share/doc/modebank)
+holds(program bin share/doc/modebank share/man/man1 share/bash-completion/completions share/zsh/vendor-completions share/fish/vendor_completions.d)
 holds(development include/modebank lib/modebank lib/cmake/modebank share/doc/libmodebank-dev)
 
 # The program needs no file beside itself: not the source tree, and not its prefix.

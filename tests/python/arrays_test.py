@@ -1,5 +1,6 @@
 """Windows, filters, free runs and mixtures on numpy arrays, against closed forms written out in numpy."""
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -125,6 +126,35 @@ print((after - before) * 1024 / (states.nbytes + inputs.nbytes))
             time.sleep(1e-4)
         worker.join()
         self.assertGreater(len(turns), 20)
+
+
+class CtrlC(unittest.TestCase):
+    """Jobs of minutes, which the signal ends."""
+
+    def interrupted(self, job):
+        timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                job()
+        finally:
+            timer.cancel()
+
+    def test_ends_identify(self):
+        states, inputs = linear_run(40_000, 0.1)
+        self.interrupted(lambda: modebank.identify(states, inputs, 0.1, residual="simulation", length=200, step=1))
+
+    def test_ends_fit_mixture(self):
+        points = np.random.default_rng(1).normal(size=(50_000, 4))
+        self.interrupted(lambda: modebank.fit_mixture(points, components=[40], restarts=1000))
+
+    def test_ends_simulate(self):
+        states, inputs = linear_run(3, 0.1)
+        modes = 8
+        bank = modebank.Bank(np.tile(A, (modes, 1, 1)), np.tile(B, (modes, 1, 1)), np.tile(0.01 * np.eye(2), (modes, 1, 1)),
+                             np.full((modes, modes), 1 / modes), dt=0.1)
+        states, inputs = np.resize(states, (2_000_000, 2)), np.resize(inputs, (2_000_000, 2))
+        self.interrupted(lambda: modebank.simulate(bank, states, inputs))
 
 
 class Filters(unittest.TestCase):

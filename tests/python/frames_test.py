@@ -103,6 +103,15 @@ class Frames(unittest.TestCase):
         runs["00"][1].loc[5, "wz"] += 1e-9
         self.assertNotEqual(modebank.run(runs, **columns).attributes()["data_hash"], first)
 
+    def test_an_archive_of_frames_says_that_no_file_holds_them(self):
+        archive = modebank.run(frames(), **COLUMNS, **QUICK)
+        with tempfile.TemporaryDirectory() as scratch:
+            config = os.path.join(scratch, "again.ini")
+            with open(config, "w", encoding="utf-8") as file:
+                file.write(archive.config)
+            with self.assertRaisesRegex(modebank.ConfigurationError, "hand them over again"):
+                modebank.run(config, **{"archive.output": os.path.join(scratch, "again.h5")})
+
     def test_mistakes(self):
         with self.assertRaisesRegex(modebank.ConfigurationError, 'no column "wy", did you mean wz'):
             modebank.run(frames(), state="wy", input=["cmd_velL"])
@@ -131,6 +140,14 @@ class Logs(unittest.TestCase):
         tables = modebank.read(folder() / "imu_00.csv")
         self.assertEqual(list(tables), [""])
         pandas.testing.assert_frame_equal(tables[""], frames()["00"][1], check_dtype=False)
+
+    def test_chosen_columns_alone(self):
+        log = folder() / "imu_00.csv"
+        chosen = modebank.read(log, columns=["wz"])[""]
+        self.assertEqual(list(chosen.columns), ["wz"])
+        np.testing.assert_array_equal(chosen["wz"], modebank.read(log)[""]["wz"])
+        with self.assertRaisesRegex(modebank.ConfigurationError, "did you mean wz"):
+            modebank.read(log, columns=["wy"])
 
     def test_text_columns_are_text(self):
         with tempfile.TemporaryDirectory() as scratch:

@@ -98,9 +98,10 @@ std::vector<Option> data_options() {
   return {
       text("data.root", "a folder", "prefix of relative data paths; empty: $MODEBANK_DATA, else this file's folder",
            MODEBANK_FIELD(data.root)),
-      text("data.inputs", "a path with at most one *", "one file per run; the part matched by * names the run",
+      text("data.inputs", "a path with at most one *, or paths",
+           "one file per run, which the part matched by * names, else the stem; a + b: parts of one recording",
            MODEBANK_FIELD(data.inputs)),
-      text("data.states", "a path with at most one *",
+      text("data.states", "a path with at most one *, or paths",
            "the runs' states files; empty: states are columns of the inputs files", MODEBANK_FIELD(data.states)),
       text("data.state", "column names", "measured states", MODEBANK_FIELD(data.state)),
       text("data.input", "column names", "inputs", MODEBANK_FIELD(data.input)),

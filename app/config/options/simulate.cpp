@@ -89,6 +89,8 @@ std::vector<Option> vehicle_options() {
                   MODEBANK_FIELD(simulate.vehicle.vehicle.drive_force_N)),
           numeric("simulate.friction", each(above(0)), "", "friction coefficient of each kind of ground",
                   MODEBANK_FIELD(simulate.vehicle.friction)),
+          text("simulate.ground_names", "words", "column ground of the states file; empty: none, mode numbers them",
+               MODEBANK_FIELD(simulate.ground_names)),
           numeric("simulate.shear", each(above(0)), "m",
                   "shear deformation modulus of each kind of ground, or one for all",
                   MODEBANK_FIELD(simulate.vehicle.shear_m)),

@@ -64,6 +64,8 @@ std::vector<Option> work_options() {
       numeric("study.cache_mb", at_least(0), "MB", "limit of the folder's cache of stages that runs share",
               MODEBANK_FIELD(study.cache_mb)),
       words("study.stage", "one step alone; all: plan, run and merge on this machine", MODEBANK_FIELD(study.stage)),
+      flag("study.estimate", "plan, submit: make some runs on this machine, to tell how long the others will take",
+           MODEBANK_FIELD(study.estimate)),
       shard_option(),
       flag("study.flat", "merge: copy the archives into study.h5 instead of linking to them",
            MODEBANK_FIELD(study.flat)),

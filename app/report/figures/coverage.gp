@@ -1,7 +1,8 @@
 # Share of samples whose NIS lies outside the 95 % interval, above (upwards) and below (downwards), training and held-out
 # runs, by filter. Data: a row per filter: position, train above, train below, test above, test below [%].
 eval open(220)
-set output figure.'.'.format
+if (!exists('drawn')) drawn = figure.'.'.format
+set output drawn
 set lmargin at screen left_edge
 set rmargin at screen right_edge
 set tmargin at screen 0.85

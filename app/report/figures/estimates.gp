@@ -1,7 +1,8 @@
 # One state of a held-out run: measured, predicted by the baseline and by the bank with its band; below it the mode probabilities.
 # Data: block 0 time, measured, baseline, bank, the bank's 95 % band from, to; block 1 time, then the probabilities' running sums from 0 to 1.
 eval open(270)
-set output figure.'.'.format
+if (!exists('drawn')) drawn = figure.'.'.format
+set output drawn
 set multiplot
 set lmargin at screen left_edge
 set rmargin at screen right_edge

@@ -2,7 +2,8 @@
 # Data: block k the windows of component k, block K those of none; then an ellipse per component and panel.
 panels = axes == 3 ? 3 : 1
 eval open(panels == 3 ? 320 : 240)
-set output figure.'.'.format
+if (!exists('drawn')) drawn = figure.'.'.format
+set output drawn
 array first[3] = [1, 1, 2]
 array second[3] = [2, 3, 3]
 array low[3]

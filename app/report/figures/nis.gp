@@ -1,7 +1,8 @@
 # NIS of a held-out run by the bank and by the baseline between the 2.5 % and 97.5 % quantiles of chi-square; below it
 # the mode probabilities. Data: block 0 time, baseline, bank; block 1 as in estimates.
 eval open(270)
-set output figure.'.'.format
+if (!exists('drawn')) drawn = figure.'.'.format
+set output drawn
 set multiplot
 set lmargin at screen left_edge
 set rmargin at screen right_edge

@@ -1,7 +1,8 @@
 # Histogram of the probability integral transform on held-out runs: flat when the stated uncertainty is true.
 # Data: per filter a block of bin centre, density.
 eval open(200)
-set output figure.'.'.format
+if (!exists('drawn')) drawn = figure.'.'.format
+set output drawn
 set lmargin at screen left_edge
 set rmargin at screen right_edge
 set tmargin at screen 0.84

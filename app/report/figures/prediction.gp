@@ -1,7 +1,8 @@
 # A held-out run: inputs, and one state with the bank's one-step 95 % band, samples outside it marked.
 # Data: block 0 time, measured, lower, upper, outside (NaN: inside); block 1 time, then the inputs.
 eval open(270)
-set output figure.'.'.format
+if (!exists('drawn')) drawn = figure.'.'.format
+set output drawn
 stats figure.'.dat' index 1 using 2 nooutput
 lowest = STATS_min
 highest = STATS_max

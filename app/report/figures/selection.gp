@@ -1,7 +1,8 @@
 # Criteria over the number of components; lower is better on the left axis, higher for the held-out score on the right.
 # Data: block 0 components, BIC, ICL, AIC, held-out score, share of restarts that agree; block 1 the chosen row.
 eval open(230)
-set output figure.'.'.format
+if (!exists('drawn')) drawn = figure.'.'.format
+set output drawn
 set lmargin at screen 0.16
 set rmargin at screen 0.85
 set tmargin at screen 0.85

@@ -12,6 +12,7 @@
 #include "app/config/option_text.hpp"
 #include "app/study/answers/answer_tables.hpp"
 #include "app/study/answers/csv_field.hpp"
+#include "io/files/look_twice.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
@@ -29,10 +30,11 @@ std::optional<TrialScores> settle(const TrialStore& store, const std::set<std::s
         whole.count(row.key) ? std::vector<std::string>() : store.problems(row.key);
     if (problems.empty()) {
       row.status = TrialStatus::done;
-      return read_trial_scores(store.archive(row.key));
+      return look_twice([&] { return read_trial_scores(store.archive(row.key)); });
     }
     row.message = problems.front();
-  } else if (const auto failure = store.failure(row.key)) {
+  }
+  if (const auto failure = store.failure(row.key)) {
     row.status = TrialStatus::failed;
     row.message = failure->message;
   }
@@ -153,6 +155,9 @@ void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTabl
   write_study_file(store.folder() / "study.h5", file, use);
   const std::string csv = table_csv(table);
   replace_file(store.folder() / "study.csv", {csv});
+  // Only over the plan that this table is of: where locks are not seen another process may have added values meanwhile.
+  const StudyPlan there = read_plan(store.folder());
+  if (there.config != plan.config || there.table.rows.size() != plan.table.rows.size()) return;
   StudyPlan current = plan;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     current.table.rows[i].status = table.rows[i].status;

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
+#include <nlohmann/json.hpp>
 
 #include "app/study/launch/shell.hpp"
 #include "app/study/launch/slurm_jobs.hpp"
+#include "ident/base/characters.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
@@ -30,19 +32,44 @@ std::string study_command(const SlurmRequest& request, const std::string& stage)
   return shell_command(words);
 }
 
-/// What both scripts begin with. Logs are appended to, so that a task that was requeued keeps its first life's.
-std::string script_head(const SlurmRequest& request, const std::string& role, const std::string& log) {
-  const std::string name = request.folder.filename().string();
+/// What both scripts begin with; no path stands in a line for Slurm, whose quotes and patterns are its own. Logs are
+/// appended to, so that a task that was requeued keeps its first life's.
+std::string script_head() {
   return fmt::format(
       "#!/bin/bash\n"
       "# Written by: modebank study --study.stage submit\n"
-      "#SBATCH --job-name={}-{}\n"
       "#SBATCH --requeue\n"
       "#SBATCH --open-mode=append\n"
-      "#SBATCH --chdir={}\n"
-      "#SBATCH --output={}\n",
-      role, boost::replace_all_copy(name, " ", "_"), fs::current_path().string(),
-      (slurm_folder(request.folder) / log).string());
+      "cd {} || exit\n",
+      shell_word(fs::current_path().string()));
+}
+
+/// "run-ice.study", of letters that no pattern, queue listing or shell takes for another thing.
+std::string job_name(const SlurmRequest& request, const std::string& role) {
+  std::string name = role + "-" + request.folder.filename().string();
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !is_letter(c) && !is_digit(c) && c != '.' && c != '-'; }, '_');
+  return name;
+}
+
+/// A log in the scripts' folder, as --output takes it: a pattern, in which a per cent sign of the path's own is two.
+std::string log_pattern(const SlurmRequest& request, const std::string& log) {
+  return boost::replace_all_copy(slurm_folder(request.folder).string(), "%", "%%") + "/" + log;
+}
+
+/// The sbatch of one script.
+std::vector<std::string> sbatch_words(const SlurmRequest& request, const std::string& role, const std::string& log,
+                                      const std::string& when, const fs::path& script) {
+  std::vector<std::string> words{"sbatch", "--parsable", "--job-name=" + job_name(request, role),
+                                 "--output=" + log_pattern(request, log), when};
+  words.insert(words.end(), request.options.begin(), request.options.end());
+  words.push_back(script.string());
+  return words;
+}
+
+/// A path as a message can hold it, control characters as \n and the like.
+std::string quoted_path(const fs::path& path) {
+  return nlohmann::json(path.string()).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
 
 bool has_jobs_override(const SlurmRequest& request) {
@@ -69,12 +96,12 @@ std::string sbatch(const SlurmRequest& request, const std::string& command) {
 std::string run_script(const SlurmRequest& request) {
   // Without --cpus-per-task Slurm gives a task one processor, whatever the machine has.
   const std::string jobs = has_jobs_override(request) ? "" : " --study.jobs \"${SLURM_CPUS_PER_TASK:-1}\"";
-  return script_head(request, "run", "%A_%a.log") + fmt::format("exec {}{} --study.shard \"$SLURM_ARRAY_TASK_ID/{}\"\n",
-                                                                study_command(request, "run"), jobs, request.shards);
+  return script_head() + fmt::format("exec {}{} --study.shard \"$SLURM_ARRAY_TASK_ID/{}\"\n",
+                                     study_command(request, "run"), jobs, request.shards);
 }
 
 std::string merge_script(const SlurmRequest& request) {
-  return script_head(request, "merge", "%j.log") + fmt::format("exec {}\n", study_command(request, "merge"));
+  return script_head() + fmt::format("exec {}\n", study_command(request, "merge"));
 }
 
 std::string array_list(const std::vector<int>& tasks) {
@@ -88,25 +115,39 @@ std::string array_list(const std::vector<int>& tasks) {
   return fmt::format("{}", fmt::join(parts, ","));
 }
 
-SlurmSubmission submit_to_slurm(const SlurmRequest& request) {
+void check_request(const SlurmRequest& request) {
   if (!in_path("sbatch"))
     throw ConfigurationError(
         "study.stage = submit: no sbatch in PATH, so there is no Slurm here; other schedulers can run "
         "--study.stage run --study.shard i/n for i = 0..n-1, then --study.stage merge");
+  for (const fs::path& path :
+       {request.program, request.config, request.folder, request.data_root, fs::current_path()}) {
+    const std::string text = path.string();
+    if (std::any_of(text.begin(), text.end(), is_control))
+      throw ConfigurationError(
+          fmt::format("study.stage = submit: the path {} holds a control character, which Slurm's lists and logs do "
+                      "not take: rename the folder",
+                      quoted_path(path)));
+  }
+  if (request.folder.string().find('\\') != std::string::npos)
+    throw ConfigurationError(
+        fmt::format("study.stage = submit: the path {} holds a backslash, which Slurm leaves out of the names of logs: "
+                    "take another study.output",
+                    request.folder.string()));
+}
+
+SlurmSubmission submit_to_slurm(const SlurmRequest& request) {
+  check_request(request);
   fs::create_directories(slurm_folder(request.folder));
   replace_file(run_script_path(request), {run_script(request)});
   replace_file(merge_script_path(request), {merge_script(request)});
   SlurmSubmission submission;
-  std::vector<std::string> array{"sbatch", "--parsable", "--array=" + array_list(request.tasks)};
-  array.insert(array.end(), request.options.begin(), request.options.end());
-  array.push_back(run_script_path(request).string());
-  submission.commands.push_back(shell_command(array));
+  submission.commands.push_back(shell_command(
+      sbatch_words(request, "run", "%A_%a.log", "--array=" + array_list(request.tasks), run_script_path(request))));
   submission.array_job = sbatch(request, submission.commands.back());
   remember_job(request.folder, {"run", submission.array_job});
-  std::vector<std::string> merge{"sbatch", "--parsable", "--dependency=afterany:" + submission.array_job};
-  merge.insert(merge.end(), request.options.begin(), request.options.end());
-  merge.push_back(merge_script_path(request).string());
-  submission.commands.push_back(shell_command(merge));
+  submission.commands.push_back(shell_command(sbatch_words(
+      request, "merge", "%j.log", "--dependency=afterany:" + submission.array_job, merge_script_path(request))));
   submission.merge_job = sbatch(request, submission.commands.back());
   remember_job(request.folder, {"merge", submission.merge_job});
   return submission;

@@ -33,9 +33,12 @@ struct SlurmSubmission {
   std::vector<std::string> commands;  ///< what was typed for the user
 };
 
-/// Writes both scripts, submits the array and a merge job that waits for its end however it ends (afterany), and
-/// remembers the ids in the study's folder. Throws ConfigurationError when there is no sbatch and DataError with
-/// sbatch's message when it refuses.
+/// Throws ConfigurationError when there is no sbatch in PATH, or when a path holds what Slurm would take for something
+/// else: before anything is written.
+void check_request(const SlurmRequest& request);
+
+/// Checks the request, writes both scripts, submits the array and a merge job that waits for its end however it ends
+/// (afterany), and remembers the ids in the study's folder. Throws DataError with sbatch's message when it refuses.
 SlurmSubmission submit_to_slurm(const SlurmRequest& request);
 
 /// Tasks of one submission by state, as Slurm sees them now.

@@ -9,6 +9,7 @@
 #include "app/study/launch/shell.hpp"
 #include "app/study/launch/slurm.hpp"
 #include "app/study/launch/slurm_jobs.hpp"
+#include "io/files/read_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -73,12 +74,14 @@ std::filesystem::path slurm_folder(const std::filesystem::path& study) { return 
 
 void remember_job(const std::filesystem::path& study, const SlurmJob& job) {
   const std::filesystem::path file = slurm_folder(study) / "jobs";
+  refuse_special_file(file);
   std::ofstream stream(file, std::ios::app);
   stream << job.role << ' ' << job.id << '\n' << std::flush;
   if (!stream) throw DataError(fmt::format("{}: cannot note Slurm job {}", file.string(), job.id));
 }
 
 std::vector<SlurmJob> remembered_jobs(const std::filesystem::path& study) {
+  refuse_special_file(slurm_folder(study) / "jobs");
   std::ifstream stream(slurm_folder(study) / "jobs");
   std::vector<SlurmJob> jobs;
   for (SlurmJob job; stream >> job.role >> job.id;) jobs.push_back(job);

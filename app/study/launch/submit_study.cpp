@@ -40,18 +40,33 @@ std::vector<std::string> words_of_line(const std::string& line) {
   return {std::istream_iterator<std::string>(stream), {}};
 }
 
+/// All but the tasks.
+SlurmRequest request_of(const StudyCall& call) {
+  namespace fs = std::filesystem;
+  const Config& config = call.config;
+  return {fs::read_symlink("/proc/self/exe"),
+          fs::absolute(call.config_file),
+          fs::absolute(config.study.output).lexically_normal(),
+          config.data.root,
+          call.overrides,
+          1,
+          {},
+          words_of_line(config.study.slurm_options)};
+}
+
 }  // namespace
+
+void check_submission(const StudyCall& call) { check_request(request_of(call)); }
 
 std::string submit_study(const StudyCall& call, const StudyPlan& plan, const StudyTable& table) {
   const Config& config = call.config;
-  namespace fs = std::filesystem;
   const int count = shard_count(config, table);
   const std::vector<int> tasks = unfinished_shards(group_trials(config, plan), count, table);
   if (tasks.empty()) return "slurm     nothing to submit: every run is done\n";
-  const SlurmSubmission submission =
-      submit_to_slurm({fs::read_symlink("/proc/self/exe"), fs::absolute(call.config_file),
-                       fs::absolute(config.study.output).lexically_normal(), config.data.root, call.overrides, count,
-                       tasks, words_of_line(config.study.slurm_options)});
+  SlurmRequest request = request_of(call);
+  request.shards = count;
+  request.tasks = tasks;
+  const SlurmSubmission submission = submit_to_slurm(request);
   std::string text;
   for (const std::string& command : submission.commands) text += command + "\n";
   return text + fmt::format(

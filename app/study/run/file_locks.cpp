@@ -2,11 +2,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <mutex>
 #include <system_error>
 
+#include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 
@@ -28,14 +31,11 @@ struct flock record(short type, long long place) {
   return lock;
 }
 
-[[noreturn]] void fail_lock() {
-  throw DataError("cannot lock the study's folder: " + std::generic_category().message(errno));
-}
-
 }  // namespace
 
-FileLocks::FileLocks(const std::filesystem::path& path)
-    : descriptor_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+FileLocks::FileLocks(const std::filesystem::path& path) : path_(path) {
+  refuse_special_file(path);
+  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0)
     throw DataError(fmt::format("cannot open {}: {}", path.string(), std::generic_category().message(errno)));
 }
@@ -48,26 +48,37 @@ FileLocks::Hold::~Hold() {
   ::fcntl(locks_->descriptor_, F_SETLK, &lock);
 }
 
+FileLocks::Hold FileLocks::without_lock(long long place) const {
+  const std::string reason = std::generic_category().message(errno);
+  static std::once_flag said;
+  std::call_once(said, [&] {
+    spdlog::warn(
+        "{}: no locks on this file system ({}): processes that work on the study at a time may make a run twice, and "
+        "the results are the same; --study.shard i/n gives each process runs of its own",
+        path_.string(), reason);
+  });
+  return {this, place};
+}
+
 FileLocks::Hold FileLocks::try_lock(const std::string& name) const {
   const long long place = lock_place(name);
   struct flock lock = record(F_WRLCK, place);
   if (::fcntl(descriptor_, F_SETLK, &lock) == 0) return {this, place};
-  if (errno != EACCES && errno != EAGAIN) fail_lock();
-  return {};
+  if (errno == EACCES || errno == EAGAIN) return {};
+  return without_lock(place);
 }
 
 FileLocks::Hold FileLocks::lock(const std::string& name) const {
   const long long place = lock_place(name);
   struct flock lock = record(F_WRLCK, place);
   while (::fcntl(descriptor_, F_SETLKW, &lock) != 0)
-    if (errno != EINTR) fail_lock();
+    if (errno != EINTR) return without_lock(place);
   return {this, place};
 }
 
 bool FileLocks::is_held_elsewhere(const std::string& name) const {
   struct flock lock = record(F_WRLCK, lock_place(name));
-  if (::fcntl(descriptor_, F_GETLK, &lock) != 0) fail_lock();
-  return lock.l_type != F_UNLCK;
+  return ::fcntl(descriptor_, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
 }
 
 }  // namespace modebank::app

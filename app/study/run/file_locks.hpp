@@ -9,9 +9,13 @@ namespace modebank::app {
 /// Named locks among the processes that work on one study, on one machine or over a network file system: each name is a
 /// byte of one lock file (POSIX record locks, by the name's SHA-256). The kernel releases what a killed process held.
 /// A process has one object of these and its locks do not pass on to children.
+///
+/// They save work and nothing else: a file system may have none, or keep those of each machine to itself without a
+/// word. Where a lock is refused for such a reason its name counts as free, which is said once; results are right
+/// without any.
 class FileLocks {
  public:
-  /// Creates the file if need be. Throws DataError.
+  /// Creates the file if need be. Throws DataError, also when something other than a regular file has its name.
   explicit FileLocks(const std::filesystem::path& path);
   ~FileLocks();
   FileLocks(const FileLocks&) = delete;
@@ -44,6 +48,10 @@ class FileLocks {
   bool is_held_elsewhere(const std::string& name) const;
 
  private:
+  /// What one gets where there are no locks (errno says why): the name, with the others.
+  Hold without_lock(long long place) const;
+
+  std::filesystem::path path_;
   int descriptor_ = -1;
 };
 

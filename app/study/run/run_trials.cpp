@@ -76,10 +76,11 @@ class TrialQueue {
 
 /// One line per trial and execution: when, host, process, key, outcome, seconds, those of each stage (0: there
 /// already), message. The estimates of time are made from it (study_estimate.cpp). Losing a line loses nothing else.
-void log_trial(const TrialStore& store, const TrialRow& row, const TrialReport& report) {
+void log_trial(const TrialStore& store, const FileLocks& locks, const TrialRow& row, const TrialReport& report) {
   static constexpr std::array<const char*, 5> words{"held", "present", "done", "failed", "stopped"};
   char host[256] = "";
   ::gethostname(host, sizeof host - 1);
+  const FileLocks::Hold alone = locks.lock("log");  // appending from two machines is no one step everywhere
   std::ofstream file(store.log(), std::ios::app);
   const std::string line =
       fmt::format("{:%Y-%m-%dT%H:%M:%SZ},{},{},{},{},{:.6g},{:.6g},{}\n", fmt::gmtime(std::time(nullptr)),
@@ -111,6 +112,7 @@ class StudyRun {
       : settings_(settings),
         rows_(plan.table.rows),
         listener_(listener),
+        locks_(settings.store.lock_file()),
         all_(count(groups)),
         pool_(std::min(job_count(settings.config.study), std::max<std::size_t>(all_, 1)),
               settings.config.study.timeout_s,
@@ -152,7 +154,7 @@ class StudyRun {
     if (done.report.outcome == TrialOutcome::held) return queue_.put_off(done.worker, done.trial);
     ++finished_;
     sort_in(row, done);
-    if (done.report.outcome != TrialOutcome::present) log_trial(settings_.store, row, done.report);
+    if (done.report.outcome != TrialOutcome::present) log_trial(settings_.store, locks_, row, done.report);
     listener_(row, done.report, finished_, all_);
   }
 
@@ -167,7 +169,7 @@ class StudyRun {
         result_.whole.push_back(row.key);
         break;
       case TrialOutcome::failed:
-        if (done.crashed) settings_.store.record_failure(row.key, done.report.message);
+        if (done.crashed) settings_.store.record_failure(row.key, {done.report.message, settings_.execution});
         result_.failed.push_back(done.trial);
         stopping_ = stopping_ || settings_.config.study.on_failure == OnFailure::stop;
         break;
@@ -180,6 +182,7 @@ class StudyRun {
   const WorkerSettings& settings_;
   const std::vector<TrialRow>& rows_;
   const TrialListener& listener_;
+  const FileLocks locks_;
   std::size_t all_, finished_ = 0;
   bool stopping_ = false;
   RunResult result_;

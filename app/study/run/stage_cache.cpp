@@ -1,6 +1,8 @@
 #include "app/study/run/stage_cache.hpp"
 
+#include <fcntl.h>
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <tuple>
@@ -18,6 +20,8 @@ FileLocks::Hold StageCache::wait_for(const std::string& stem) const {
   if (tell_waiting_) tell_waiting_(true);
   FileLocks::Hold alone = locks_.lock(stem);
   if (tell_waiting_) tell_waiting_(false);
+  std::error_code ignored;  // what the other has made may be denied until the folder is listed: TrialStore::look_again
+  for ([[maybe_unused]] const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored)) continue;
   return alone;
 }
 
@@ -39,7 +43,7 @@ bool StageCache::load(const fs::path& file, const std::function<void(Archive&&)>
   if (!fs::exists(file, error)) return false;
   try {
     take(read_archive(file));
-    fs::last_write_time(file, fs::file_time_type::clock::now(), error);
+    ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0);  // by the file system's clock, as the others' times are
     return true;
   } catch (const std::exception& damage) {  // also one that another process has just removed to make room
     spdlog::warn("{}: computed again", damage.what());

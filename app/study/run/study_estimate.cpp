@@ -10,6 +10,8 @@
 #include <map>
 #include <numeric>
 
+#include "io/files/read_file.hpp"
+
 namespace modebank::app {
 namespace {
 
@@ -43,6 +45,7 @@ MadeRuns made_runs(const TrialStore& store, const StudyPlan& plan) {
   std::map<std::string, const TrialRow*> planned;
   for (const TrialRow& row : plan.table.rows)
     if (row.status != TrialStatus::dropped) planned[row.key] = &row;
+  refuse_special_file(store.log());
   std::ifstream file(store.log());
   std::string key;
   for (std::string line; std::getline(file, line);) {
@@ -122,10 +125,11 @@ std::string basis_of(const MadeRuns& made, bool now) {
 
 }  // namespace
 
-StudyEstimate estimate_study(const WorkerSettings& settings, const StudyPlan& plan) {
+StudyEstimate estimate_study(const WorkerSettings& settings, const StudyPlan& plan, Sampling sampling) {
   StudyEstimate estimate;
   const std::size_t runs = planned(plan), jobs = job_count(settings.config.study);
-  const bool now = runs > 0 && archives_of(settings.store, plan).second == 0;
+  const bool none = runs > 0 && archives_of(settings.store, plan).second == 0;
+  const bool now = none && sampling == Sampling::make_some_runs;
   if (now)
     run_trials(settings, plan, sample_of(settings.config, plan, jobs),
                [](const TrialRow&, const TrialReport&, std::size_t, std::size_t) {});
@@ -133,7 +137,12 @@ StudyEstimate estimate_study(const WorkerSettings& settings, const StudyPlan& pl
   const MadeRuns made = made_runs(settings.store, plan);
   estimate.left = runs - archives;
   estimate.known = archives > 0 && made.count() > 0;
-  estimate.basis = estimate.known ? basis_of(made, now) : "how long is unknown: no run that succeeded was measured";
+  if (estimate.known)
+    estimate.basis = basis_of(made, now);
+  else if (none && !now)
+    estimate.basis = "how long is unknown: none was made yet; --study.estimate true makes some here";
+  else
+    estimate.basis = "how long is unknown: no run that succeeded was measured";
   if (!estimate.known) return estimate;
   const double part_left = static_cast<double>(estimate.left) / static_cast<double>(runs);
   estimate.seconds =

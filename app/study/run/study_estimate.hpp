@@ -14,9 +14,12 @@ struct StudyEstimate {
   std::string basis;  ///< what it was made from, in words
 };
 
-/// From the log and archives of the runs made before; where there are none some are made now, and kept: one in ten,
+/// What an estimate may be made from where no run was made before.
+enum class Sampling { make_some_runs, what_is_there };
+
+/// From the log and archives of the runs made before; where there are none some may be made now, and kept: one in ten,
 /// at most eight or one per process, as the keys' hashes fall. The seconds of a stage that runs share count once for
 /// each of its different inputs, here and in the plan.
-StudyEstimate estimate_study(const WorkerSettings& settings, const StudyPlan& plan);
+StudyEstimate estimate_study(const WorkerSettings& settings, const StudyPlan& plan, Sampling sampling);
 
 }  // namespace modebank::app

@@ -4,7 +4,8 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdio>
+
+#include "io/files/standard_error.hpp"
 
 namespace modebank::app {
 
@@ -12,7 +13,7 @@ StudyProgress::StudyProgress(std::vector<std::string> varied_keys)
     : varied_keys_(std::move(varied_keys)), terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 StudyProgress::~StudyProgress() {
-  if (line_open_) std::fputc('\n', stderr);
+  if (line_open_) say("\n");
 }
 
 void StudyProgress::note(const TrialRow& row, const TrialReport& report) {
@@ -23,12 +24,12 @@ void StudyProgress::note(const TrialRow& row, const TrialReport& report) {
     best_run_ = describe_trial(varied_keys_, row);
   }
   if (report.message.empty()) return;
-  if (line_open_) std::fputc('\n', stderr);
+  if (line_open_) say("\n");
   line_open_ = false;
   if (report.outcome == TrialOutcome::failed)
-    fmt::print(stderr, "failed: {}: {}\n", describe_trial(varied_keys_, row), report.message);
+    say(fmt::format("failed: {}: {}\n", describe_trial(varied_keys_, row), report.message));
   else
-    fmt::print(stderr, "{}\n", report.message);
+    say(report.message + "\n");
 }
 
 void StudyProgress::tell(const TrialRow& row, const TrialReport& report, std::size_t finished, std::size_t all) {
@@ -37,12 +38,8 @@ void StudyProgress::tell(const TrialRow& row, const TrialReport& report, std::si
   const bool last = finished == all;
   if (!last && std::chrono::duration<double>(Clock::now() - told_).count() < interval_s) return;
   told_ = Clock::now();
-  if (terminal_)
-    fmt::print(stderr, "\r{}\x1b[K", line(finished, all));
-  else
-    fmt::print(stderr, "{}\n", line(finished, all));
+  say(terminal_ ? fmt::format("\r{}\x1b[K", line(finished, all)) : line(finished, all) + "\n");
   line_open_ = terminal_;
-  std::fflush(stderr);
 }
 
 std::string StudyProgress::line(std::size_t finished, std::size_t all) const {

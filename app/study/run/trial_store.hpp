@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,10 +15,12 @@ namespace modebank::app {
 /// names.
 inline constexpr const char* plan_lock = "plan";
 
-/// Why a trial failed, and when.
+/// Why a trial failed, and in which execution of the study.
 struct FailureRecord {
   std::string message;
-  std::filesystem::file_time_type time;
+  std::string execution;  ///< the process_word of the program that was started; empty in records of older versions
+
+  bool operator==(const FailureRecord&) const = default;
 };
 
 /// A study's folder: plan.h5, trials/, cache/, log.csv, study.h5, study.csv. A trial is done when its archive is there
@@ -35,18 +38,25 @@ class TrialStore {
   std::filesystem::path cache() const { return folder_ / "cache"; }
   std::filesystem::path log() const { return folder_ / "log.csv"; }
 
-  bool has_archive(const std::string& key) const { return std::filesystem::exists(archive(key)); }
+  /// Whether anything has the name, a link to nothing included; problems() says whether it is an archive.
+  bool has_archive(const std::string& key) const;
   /// What is wrong with a trial's archive by its whole-file hash; nothing when it is whole.
   std::vector<std::string> problems(const std::string& key) const;
-  void remove_archive(const std::string& key) const;
 
   /// The failure on record, if any.
   std::optional<FailureRecord> failure(const std::string& key) const;
-  void record_failure(const std::string& key, const std::string& message) const;
+  /// All of them by key. Whether one is older than this execution is told by these, not by times: the clocks of
+  /// machines that share a folder differ.
+  std::map<std::string, FailureRecord> failures() const;
+  void record_failure(const std::string& key, const FailureRecord& failure) const;
   void forget_failure(const std::string& key) const;
 
-  /// Removes what killed processes were writing; what a living one writes is locked.
-  void remove_leftovers(const FileLocks& locks) const;
+  /// A network file system may deny for a minute what another machine has put where there was nothing: listing the
+  /// folders makes it look again.
+  void look_again() const;
+
+  /// Removes what killed processes of this machine were writing.
+  void remove_leftovers() const;
 
  private:
   std::filesystem::path failure_file(const std::string& key) const;

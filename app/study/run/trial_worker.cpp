@@ -38,10 +38,11 @@ std::optional<TrialReport> TrialWorker::settled(const TrialRow& row, std::string
       return report;
     }
     found = fmt::format("{}: {}; computed again", store.archive(row.key).string(), problems.front());
-    store.remove_archive(row.key);
   }
   const std::optional<FailureRecord> failure = store.failure(row.key);
-  if (!failure || (settings_.config.study.retry && failure->time < settings_.started)) return std::nullopt;
+  const auto earlier = settings_.earlier_failures.find(row.key);
+  const bool is_earlier = earlier != settings_.earlier_failures.end() && failure == earlier->second;
+  if (!failure || (settings_.config.study.retry && is_earlier)) return std::nullopt;
   report.outcome = TrialOutcome::failed;
   report.message = failure->message;
   return report;
@@ -49,7 +50,11 @@ std::optional<TrialReport> TrialWorker::settled(const TrialRow& row, std::string
 
 TrialReport TrialWorker::take(const TrialRow& row) {
   const FileLocks::Hold mine = locks_.try_lock(row.key);
-  if (!mine) return {};
+  if (!mine) {
+    held_.insert(row.key);
+    return {};
+  }
+  if (held_.erase(row.key) > 0) settings_.store.look_again();  // it is done now, though just now it was not
   std::string found;
   if (const auto before = settled(row, found)) return *before;
   const auto start = std::chrono::steady_clock::now();
@@ -74,7 +79,7 @@ TrialReport TrialWorker::compute(const TrialRow& row) {
     if (archive)
       write(row, config, *archive, report);
     else
-      settings_.store.record_failure(row.key, report.message);
+      settings_.store.record_failure(row.key, {report.message, settings_.execution});
   } catch (const std::exception& error) {
     report.outcome = TrialOutcome::broken;
     report.message = error.what();
@@ -85,8 +90,10 @@ TrialReport TrialWorker::compute(const TrialRow& row) {
 void TrialWorker::write(const TrialRow& row, const Config& config, const Archive& archive, TrialReport& report) {
   if (trial_key(config, archive.provenance.data_hash, settings_.version) != row.key)
     throw DataError("the data changed since they were planned; start again to see which file");
-  write_archive(settings_.store.archive(row.key), archive);
-  settings_.store.forget_failure(row.key);
+  // Where locks are not seen another process may have been first: what others may be reading stays.
+  const TrialStore& store = settings_.store;
+  if (!store.has_archive(row.key) || !store.problems(row.key).empty()) write_archive(store.archive(row.key), archive);
+  store.forget_failure(row.key);
   report.outcome = TrialOutcome::computed;
   report.log_score = headline_score(pooled_scores(archive.summary, names_of(archive.recording->states)));
 }

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "app/study/run/trial_runner.hpp"
@@ -33,7 +35,8 @@ struct WorkerSettings {
   TrialStore store;
   std::vector<std::string> varied_keys;
   std::string version;
-  std::filesystem::file_time_type started;  ///< failures recorded since then are not tried again
+  std::string execution;                                  ///< the program's process_word
+  std::map<std::string, FailureRecord> earlier_failures;  ///< by key; those recorded since are not tried again
 };
 
 /// A process's part of a study: takes trials by their rows and leaves archives or records of failure.
@@ -50,6 +53,7 @@ class TrialWorker {
   void write(const TrialRow& row, const Config& config, const Archive& archive, TrialReport& report);
 
   const WorkerSettings& settings_;
+  std::set<std::string> held_;  ///< keys that another process was at
   FileLocks locks_;
   StageCache cache_;
   TrialRunner runner_;

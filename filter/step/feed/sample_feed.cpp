@@ -38,7 +38,9 @@ void SampleFeed::restore(const Memory& memory) {
   if (memory.inputs.rows() != recent_.rows() || memory.inputs.cols() != recent_.cols() ||
       memory.measurements.rows() != measurements_.rows() || memory.measurements.cols() != measurements_.cols())
     throw std::invalid_argument("the remembered samples are not those of this bank");
-  if (!memory.inputs.allFinite() || memory.samples < 0 || memory.whole < 0 || memory.whole > memory.samples)
+  constexpr Index most_samples = Index(1) << 53;  // a million years at 285 Hz
+  if (!memory.inputs.allFinite() || memory.samples < 0 || memory.samples > most_samples || memory.whole < 0 ||
+      memory.whole > memory.samples)
     throw std::invalid_argument("the remembered samples are none that a filter has");
   recent_ = memory.inputs;
   measurements_ = memory.measurements;

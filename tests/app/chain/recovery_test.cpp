@@ -182,7 +182,7 @@ TEST(Recovery, SwitchesInsideRuns) {
              one_more, more, switching_seeds);
 }
 
-/// At least this share of a few seeds; measure_recovery does all 50 of the README's table.
+/// At least this share of a few seeds; measure_recovery does all 50 of docs/results/mixture.md.
 void expect_recovery(const RecoveryCase& recovery, int few_seeds, double share) {
   const std::vector<RecoveredSize> sizes = recover_sizes(recovery, few_seeds);
   fmt::print("{}: {} of {}, naive BIC {}\n", recovery.name, right(sizes, &RecoveredSize::chosen), few_seeds,

@@ -112,7 +112,7 @@ TEST_F(BadInput, CommentThatTouchesAValue) {
   expect(run(), 2, {"test.ini:2", "data.inputs is cut to 'run'", "# starts a comment"});
 }
 TEST_F(BadInput, UnknownCommand) { expect(modebank({"rnu", config()}), 2, {"rnu", "run"}); }
-TEST_F(BadInput, NoCommand) { expect(modebank({}), 2, {"run"}); }
+TEST_F(BadInput, NoCommand) { expect(modebank({}), 2, {"modebank help"}); }
 
 /// Archives that cannot be read.
 class BadArchive : public BadInput {

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
+#include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "app/cli/command_table.hpp"
 #include "app/text/terminal.hpp"
+#include "app/text/warnings.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/inspect.hpp"
 #include "tests/app/cli_fixture.hpp"
@@ -114,16 +117,15 @@ TEST_F(Commands, SampleWeightsComeFromAColumn) {
   EXPECT_NE(negative.err.find("run_00.csv:"), std::string::npos) << negative.err;
 }
 
-TEST_F(Commands, WindowsWithoutAFiniteFitAreAWarning) {
-  std::string text = csv_run(60, 1);
-  const std::size_t row = text.find("\n", text.size() / 2) + 1;
-  const std::size_t state = text.find(',', row) + 1;
-  text.replace(state, text.find(',', state) - state, "1e200");
-  write("run_00.csv", text);
-  const ProgramResult result = modebank({"identify", config(), "--archive.output", archive()});
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.err.find("windows have no finite fit"), std::string::npos) << result.err;
-  EXPECT_NE(result.out.find("windows have no finite fit"), std::string::npos) << result.out;
+/// Import refuses values that have no square, so that none comes from a file.
+TEST(WindowWarnings, NameWindowsWithoutAFiniteFit) {
+  app::WindowCounts counts;
+  counts.status[static_cast<std::size_t>(FitStatus::converged)] = 5;
+  EXPECT_TRUE(app::window_warnings({}, counts).empty());
+  counts.status[static_cast<std::size_t>(FitStatus::failed)] = 3;
+  const std::vector<std::string> warnings = app::window_warnings({}, counts);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("3 of 8 windows have no finite fit"), std::string::npos) << warnings[0];
 }
 
 TEST_F(Commands, ShowBeginsWithTheSameScreenAndPrintsAnyObject) {
@@ -185,12 +187,36 @@ TEST_F(Commands, ThePapersOwnLayoutRunsByChangingDataOptionsOnly) {
   EXPECT_EQ(content.recording->runs[0].run, "01");
 }
 
-TEST_F(Commands, HelpNamesEveryCommandAndOption) {
+TEST_F(Commands, HelpNamesEveryCommand) {
   const ProgramResult result = modebank({"--help"});
   EXPECT_EQ(result.status, 0);
-  for (const char* part :
-       {"run CONFIG", "verify ARCHIVE", "--window.length", "--simulate.state_rate_hz", "default: 25"})
-    EXPECT_NE(result.out.find(part), std::string::npos) << part;
+  for (const app::Command& command : app::command_table())
+    EXPECT_NE(result.out.find("\n  " + command.name + " "), std::string::npos) << command.name;
+}
+
+TEST_F(Commands, HelpOfACommandShowsItsUse) {
+  for (const auto& [command, part] : {std::pair{"export", "--to FORM"},
+                                      {"export", "casadi"},
+                                      {"track", "log.csv"},
+                                      {"predict", "--horizon"},
+                                      {"verify", "verify ARCHIVE"}}) {
+    const ProgramResult result = modebank({"help", command});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find(part), std::string::npos) << result.out;
+    EXPECT_EQ(modebank({command, "--help"}).out, result.out);
+  }
+}
+
+/// What a user may copy has to run where he stands.
+TEST_F(Commands, NextCommandsNameTheProgramAsItWasCalled) {
+  const std::string path = std::getenv("PATH"), program = MODEBANK_PROGRAM;
+  const std::string log = file("run_00.csv").string();
+  const auto next = [&] { return modebank({"init", log, "-o", file("next.ini").string(), "--force", "--yes"}).out; };
+  EXPECT_NE(next().find("next: " + program + " run "), std::string::npos);
+  setenv("PATH", (std::filesystem::path(program).parent_path().string() + ":" + path).c_str(), 1);
+  const std::string by_name = next();
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_NE(by_name.find("next: modebank run "), std::string::npos) << by_name;
 }
 
 /// The one definition of a term, by any of its names; a key by its own.
@@ -201,15 +227,7 @@ TEST_F(Commands, HelpSaysWhatATermOrAKeyMeans) {
   EXPECT_NE(modebank({"help", "window.length"}).out.find("--window.length"), std::string::npos);
   const auto unknown = modebank({"help", "wight"});
   EXPECT_EQ(unknown.status, 2);
-  EXPECT_NE(unknown.err.find("neither a term nor a key"), std::string::npos) << unknown.err;
-}
-
-TEST_F(Commands, ReadmeHoldsTheTableOfKeysAsHelpPrintsIt) {
-  const ProgramResult result = modebank({"help", "--markdown"});
-  ASSERT_EQ(result.status, 0);
-  std::ifstream stream(project_dir() / "README.md");
-  const std::string readme{std::istreambuf_iterator<char>(stream), {}};
-  EXPECT_NE(readme.find(result.out), std::string::npos) << "run: make readme";
+  EXPECT_NE(unknown.err.find("no command, section, key or term"), std::string::npos) << unknown.err;
 }
 
 }  // namespace

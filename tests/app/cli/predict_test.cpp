@@ -135,7 +135,7 @@ TEST_F(Predict, RefusesWhatItCannotStartFrom) {
               HasSubstr("too few whole measurements among its first 5 samples"));
   const ProgramResult other = run({"--samples", "5"});
   EXPECT_EQ(other.status, 2);
-  EXPECT_THAT(other.err, HasSubstr("--samples is an option of predict; elsewhere it is --filter.simulate"));
+  EXPECT_THAT(other.err, HasSubstr("run does not read --samples"));
   const ProgramResult early = run({"--window.model", "varx", "--window.state_lags", "3", "--filter.simulate", "2"});
   EXPECT_EQ(early.status, 2);
   EXPECT_THAT(early.err, HasSubstr("filter.simulate = 2"));

@@ -1,3 +1,5 @@
+#include <gmock/gmock.h>
+
 #include <cstdlib>
 #include <limits>
 #include <sstream>
@@ -44,7 +46,7 @@ TEST(NumberText, IsFixedWhereThatFits) {
   EXPECT_EQ(app::fixed_or_short(1e5, 3), "1e+05");
   EXPECT_EQ(app::fixed_or_short(-1.23456e15, 5), "-1.235e+15");
   EXPECT_EQ(app::fixed_or_short(std::numeric_limits<double>::quiet_NaN(), 2), "nan");
-  EXPECT_EQ(app::fixed_or_short_list(std::vector<double>{0.5, 2e15}, 2), "0.50 2e+15");
+  EXPECT_EQ(app::size_list(std::vector<double>{0.5, 2e15}, 2), "0.50 2e+15");
 }
 
 TEST(Wrapped, ContinuesUnderTheLabel) {
@@ -54,6 +56,18 @@ TEST(Wrapped, ContinuesUnderTheLabel) {
   EXPECT_EQ(app::wrapped("one/word/that/cannot/be/broken and more", 12), "one/word/that/cannot/be/broken\nand more");
   EXPECT_EQ(app::wrapped("no limit at all", 0), "no limit at all");
   EXPECT_EQ(app::columns_of("ü│▁x"), 4);
+}
+
+TEST(TextTable, ShortensWhatLeavesNoRoom) {
+  const std::string tail = "odometry.twist.twist.angular.z", name = "/husky_velocity_controller/" + tail;
+  app::TextTable table({{"channel", 4, app::TextTable::Align::left}, {name + " per " + name, 8}, {"AIC", 8}});
+  table.add({name + " <- " + name, "1", "2"});
+  for (const int width : {40, 60, 100}) {
+    const std::string text = table.text(width);
+    for (const std::string& line : app::lines_of(text)) EXPECT_LE(app::columns_of(line), width) << line;
+    EXPECT_THAT(text, ::testing::HasSubstr("angular.z ")) << "the end is what tells names apart";
+  }
+  EXPECT_THAT(table.text(0), ::testing::HasSubstr(name + " <- " + name));
 }
 
 TEST(TextTable, GoesOnBelowWithItsKeyRepeated) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 
 #include "app/config/option_table.hpp"
@@ -37,6 +38,21 @@ TEST_F(ConfigFile, ReadsValuesCommentsAndLists) {
   EXPECT_EQ(config.window.loss, Loss::cauchy);
   EXPECT_EQ(config.mixture.selection.components, (std::vector<Eigen::Index>{2, 3, 4}));
   EXPECT_FALSE(config.bank.measurement_variance.has_value());
+}
+
+/// What `make reference-ini` wrote of the help says what stands in the program.
+TEST_F(ConfigFile, TheReferenceHoldsEveryKeyAtItsDefault) {
+  const std::filesystem::path file = test::project_dir() / "configs/reference.ini";
+  const Config read = load_config(file, {}), defaults{};
+  for (const Option& option : option_table())
+    // These follow from the file's place and name where they are empty.
+    if (option.key != "data.root" && option.key != "archive.output" && option.key != "study.output") {
+      EXPECT_EQ(option.get(read), option.get(defaults)) << option.key;
+    }
+  std::ifstream stream(file);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  for (const Option& option : option_table())
+    EXPECT_NE(text.find("\n" + option.name() + " ="), std::string::npos) << option.key;
 }
 
 TEST_F(ConfigFile, CommandLineWins) {

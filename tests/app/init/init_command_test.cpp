@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "io/files/read_file.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
@@ -14,7 +15,7 @@ TEST_F(InitCommand, WritesAConfigurationThatRuns) {
   const std::string log = file("one.csv").string(), ini = file("one.ini").string(), archive = file("one.h5").string();
   const ProgramResult made = modebank({"init", log, "-o", ini, "--yes"});
   ASSERT_EQ(made.status, 0) << made.err;
-  EXPECT_THAT(made.out, HasSubstr("next: modebank run " + ini));
+  EXPECT_THAT(made.out, HasSubstr("next: " MODEBANK_PROGRAM " run " + ini));
   EXPECT_THAT(made.out, HasSubstr("wz"));
   const ProgramResult again = modebank({"init", log, "-o", ini});
   EXPECT_EQ(again.status, 2);
@@ -23,6 +24,40 @@ TEST_F(InitCommand, WritesAConfigurationThatRuns) {
   const ProgramResult ran = modebank({"run", ini, "--archive.output", archive});
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_TRUE(std::filesystem::exists(archive));
+}
+
+/// On a terminal it asks; --yes never does.
+TEST_F(InitCommand, AsksOnATerminal) {
+  write("one.csv", csv_run(300, 1));
+  const char* script =
+      "import os, pty, sys\n"
+      "answers, words = sys.argv[1], sys.argv[2:]\n"
+      "pid, terminal = pty.fork()\n"
+      "if pid == 0: os.execv(words[0], words)\n"
+      "if answers: os.write(terminal, answers.encode())\n"
+      "shown = b''\n"
+      "try:\n"
+      "    while chunk := os.read(terminal, 4096): shown += chunk\n"
+      "except OSError: pass\n"
+      "sys.stdout.write(shown.decode())\n"
+      "sys.exit(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))\n";
+  const std::string log = file("one.csv").string(), ini = file("one.ini").string();
+  const auto on_terminal = [&](const std::string& answers, std::vector<std::string> more) {
+    std::vector<std::string> words{"/usr/bin/python3", "-c", script, answers, MODEBANK_PROGRAM, "init", log, "-o", ini,
+                                   "--force"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  };
+  const ProgramResult asked = on_terminal("wq\nleft\nwz, right\n", {});
+  ASSERT_EQ(asked.status, 0) << asked.out;
+  EXPECT_THAT(asked.out, HasSubstr("state, which is measured [wz]"));
+  EXPECT_THAT(asked.out, HasSubstr("no channel that moves is called wq"));
+  EXPECT_THAT(read_file(ini), HasSubstr("state = left"));
+  EXPECT_THAT(read_file(ini), HasSubstr("input = wz, right"));
+  const ProgramResult quiet = on_terminal("", {"--yes"});
+  ASSERT_EQ(quiet.status, 0) << quiet.out;
+  EXPECT_EQ(quiet.out.find("state, which is measured"), std::string::npos);
+  EXPECT_THAT(read_file(ini), HasSubstr("state = wz"));
 }
 
 TEST_F(InitCommand, IsWhatRunAsksForWhenGivenALog) {

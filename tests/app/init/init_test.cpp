@@ -5,11 +5,14 @@
 
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 #include "app/config/config.hpp"
 #include "app/config/config_file.hpp"
+#include "app/init/confirm.hpp"
 #include "app/init/mounting.hpp"
 #include "app/init/proposal.hpp"
+#include "app/init/survey_set.hpp"
 #include "app/init/survey_text.hpp"
 #include "io/import/import.hpp"
 #include "tests/support/paths.hpp"
@@ -62,7 +65,7 @@ class Init : public ::testing::Test {
   std::string write(const std::vector<std::string>& files) {
     const std::vector<FileSet> sets = file_sets(files);
     std::vector<SurveyedFile> surveyed;
-    for (const FileSet& set : sets) surveyed.push_back(survey_file(set.files.front()));
+    for (const FileSet& set : sets) surveyed.push_back(survey_set(set));
     listing = survey_text(sets, surveyed);
     const Proposal proposal = propose(sets, surveyed, guess_roles(surveyed), folder.path().string());
     const std::string text = configuration_text(proposal, "modebank init");
@@ -84,7 +87,7 @@ class Init : public ::testing::Test {
 
   TemporaryFolder folder;
   Config config;
-  std::string listing;
+  std::string listing, asked;
 };
 
 /// 60 s at 50 Hz of a gyro on its side: its y axis points up or down.
@@ -208,6 +211,83 @@ TEST_F(Init, NamesAPlaceWhereNamesSayNothing) {
   EXPECT_EQ(config.data.rate_hz, 1.0);
   EXPECT_TRUE(config.data.time.empty());
   EXPECT_NO_THROW(import_data(config.data));
+}
+
+/// 20 s at 20 Hz: time, wz, cmd and what else is named, which counts up in steps of 3.
+std::string driven(const std::string& more, double input_scale = 1.0) {
+  std::string text = "time,wz,cmd" + more + "\n";
+  for (int k = 0; k < 400; ++k) {
+    text += fmt::format("{},{},{}", 0.05 * k, std::sin(0.3 * k), input_scale * std::cos(0.3 * k));
+    for (const char c : more) text += c == ',' ? fmt::format(",{}", 3 * k) : "";
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(Init, ListsFilesThatNoPatternNamesAlone) {
+  for (const char* name : {"run_1.csv", "run_2.csv", "run_3.csv"}) write_file(folder.path() / name, driven(""));
+  write({path("run_1.csv"), path("run_3.csv")});
+  EXPECT_EQ(config.data.inputs, "run_1.csv, run_3.csv");
+  EXPECT_EQ(import_data(config.data).recording.runs.size(), 2U);
+  write({path("run_1.csv"), path("run_2.csv"), path("run_3.csv")});
+  EXPECT_EQ(config.data.inputs, "run_*.csv");
+}
+
+TEST_F(Init, LooksAtAllFilesOfAKind) {
+  write_file(folder.path() / "a.csv", driven(",p,only_here", 0.0));
+  write_file(folder.path() / "b.csv", driven(",p", 2.0));
+  const std::string text = write({path("a.csv"), path("b.csv")});
+  EXPECT_THAT(config.data.input, ElementsAre("cmd")) << "it stands still in the first alone";
+  EXPECT_THAT(listing, HasSubstr("and 1 more"));
+  EXPECT_THAT(listing, HasSubstr("not in all of the 2 files, so not taken: only_here"));
+  EXPECT_EQ(import_data(config.data).recording.runs.size(), 2U);
+}
+
+TEST_F(Init, TakesAColumnThatRisesSteadilyForTheTimes) {
+  const std::string text = driven("");
+  write_file(folder.path() / "bare.csv", text.substr(text.find('\n') + 1));
+  EXPECT_THAT(write({path("bare.csv")}), HasSubstr("rises steadily, 20 times a second: it is taken for the times"));
+  EXPECT_EQ(config.data.time.size(), 1U);
+  const Trajectory run = import_data(config.data).recording.runs.front();
+  EXPECT_NEAR(run.time_s(1) - run.time_s(0), 0.05, 1e-9);
+}
+
+TEST_F(Init, SaysWhyDatesOfOtherOrdersAreNoTimes) {
+  for (const char* date : {"01.05.2024 10:00:{:06.3f}", "05/01/2024 10:00:{:06.3f}"}) {
+    std::string text = "time;wz;cmd\n";
+    for (int k = 0; k < 300; ++k)
+      text +=
+          fmt::format("{};{};{}\n", fmt::format(fmt::runtime(date), 0.05 * k), std::sin(0.3 * k), std::cos(0.3 * k));
+    write_file(folder.path() / "dates.csv", text);
+    EXPECT_THAT(write({path("dates.csv")}), HasSubstr("is no time (seconds, or as 2024-05-01T10:00:00.25Z)")) << date;
+  }
+}
+
+TEST_F(Init, TakesAnswersInPlaceOfItsGuesses) {
+  write_file(folder.path() / "log.csv", driven(",p"));
+  const std::vector<SurveyedFile> surveyed{survey_file(folder.path() / "log.csv")};
+  const auto names = [&](const std::vector<ChannelPlace>& places) {
+    std::vector<std::string> result;
+    for (const ChannelPlace& place : places) result.push_back(surveyed[0].tables[0].channels[place.channel].name);
+    return result;
+  };
+  const auto answered = [&](const std::string& lines) {
+    Guess guess = guess_roles(surveyed);
+    std::istringstream answers(lines);
+    std::ostringstream questions;
+    confirm_roles(surveyed, guess, answers, questions);
+    asked = questions.str();
+    return std::pair{names(guess.states), names(guess.inputs)};
+  };
+  const auto kept = answered("\n\n");
+  EXPECT_THAT(kept.first, ElementsAre("wz"));
+  EXPECT_THAT(kept.second, ElementsAre("cmd"));
+  EXPECT_THAT(asked, HasSubstr("state, which is measured [wz]"));
+  EXPECT_EQ(answered(""), kept) << "nobody answers";
+  const auto others = answered("wy\np , wz\nnone\n");
+  EXPECT_THAT(asked, HasSubstr("no channel that moves is called wy, did you mean wz?"));
+  EXPECT_THAT(others.first, ElementsAre("p", "wz"));
+  EXPECT_TRUE(others.second.empty());
 }
 
 }  // namespace

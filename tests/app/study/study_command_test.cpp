@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <thread>
@@ -10,6 +12,7 @@
 #include "io/archive/study_file.hpp"
 #include "tests/app/cli_fixture.hpp"
 #include "tests/io/archive/archive_patch.hpp"
+#include "tests/support/leftover.hpp"
 
 namespace modebank::test {
 namespace {
@@ -168,7 +171,7 @@ TEST_F(StudyCommands, DamageIsFoundNamedAndRepaired) {
   };
   flip(trials()[1], 5000);
   flip(trials()[3], 70);  // in the user block
-  write("s/trials/." + trials()[0].stem().string() + ".h5.1-0.tmp", "half");
+  leave_behind(trials()[0]);
   const ProgramResult found = modebank({"verify", file("s").string()});
   EXPECT_EQ(found.status, 1);
   EXPECT_EQ(count(found.out, "to redo: mixture.components = "), 2u) << found.out;
@@ -176,10 +179,10 @@ TEST_F(StudyCommands, DamageIsFoundNamedAndRepaired) {
   modebank({"verify", file("s").string(), "--repair"});
   EXPECT_EQ(trials().size(), 4u);
   flip(trials()[0], 3000);  // resuming finds damage by itself
-  write("s/.study.h5.1-0.tmp", "half");
+  const std::filesystem::path left = leave_behind(file("s/study.h5"));
   ASSERT_EQ(study_six().status, 0);
   EXPECT_EQ(text("s/study.csv"), table);
-  EXPECT_FALSE(std::filesystem::exists(file("s/.study.h5.1-0.tmp")));
+  EXPECT_FALSE(std::filesystem::exists(left));
   EXPECT_EQ(modebank({"verify", file("s").string()}).status, 0);
 }
 
@@ -204,6 +207,84 @@ TEST_F(StudyCommands, AnArchiveUnderAnothersNameIsFound) {
   const ProgramResult found = modebank({"verify", file("s").string()});
   EXPECT_EQ(found.status, 1);
   EXPECT_NE(found.out.find("not that of its name"), std::string::npos) << found.out;
+}
+
+TEST_F(StudyCommands, PlansComputeNothingUnlessAsked) {
+  const ProgramResult planned = study_six({"--study.stage", "plan"});
+  EXPECT_EQ(planned.status, 0) << planned.err;
+  EXPECT_NE(planned.out.find("6 runs left: how long is unknown: none was made yet"), std::string::npos) << planned.out;
+  EXPECT_TRUE(trials().empty());
+  const ProgramResult asked = study_six({"--study.stage", "plan", "--study.estimate", "true", "--study.jobs", "1"});
+  EXPECT_NE(asked.out.find("estimate  5 runs left: "), std::string::npos) << asked.out;
+  EXPECT_EQ(trials().size(), 1u);
+}
+
+/// D3 of the review: values that look like options, or hold equal signs. A fake sbatch takes them.
+TEST_F(StudyCommands, OptionsOfSbatchReachItAndNothingIsComputedHere) {
+  std::filesystem::create_directory(file("bin"));
+  write("bin/sbatch", "#!/bin/sh\nfor word; do printf '<%s>' \"$word\"; done >> \"$0.words\"; echo 41\n");
+  std::filesystem::permissions(file("bin/sbatch"), std::filesystem::perms::owner_all);
+  const std::string before = std::getenv("PATH");
+  setenv("PATH", (file("bin").string() + ":" + before).c_str(), 1);
+  const ProgramResult two =
+      study_six({"--study.stage", "submit", "--study.slurm_options", "--partition=main --time=60"});
+  const ProgramResult one = study_six({"--study.stage", "submit", "--study.slurm_options", "--time=60"});
+  const ProgramResult joined = study_six({"--study.stage", "submit", "--study.slurm_options=--comment=a=b"});
+  setenv("PATH", before.c_str(), 1);
+  EXPECT_EQ(two.status, 0) << two.err;
+  EXPECT_EQ(one.status, 0) << one.err;
+  EXPECT_EQ(joined.status, 0) << joined.err;
+  const std::string words = text("bin/sbatch.words");
+  EXPECT_EQ(count(words, "<--partition=main><--time=60>"), 2u) << words;
+  EXPECT_EQ(count(words, "<--array=0><--time=60>"), 1u) << words;
+  EXPECT_EQ(count(words, "<--comment=a=b>"), 2u) << words;
+  EXPECT_TRUE(trials().empty());
+  const std::string script = text("s/slurm/run.sh");
+  EXPECT_NE(script.find(" --study.slurm_options --comment=a=b "), std::string::npos) << script;
+  // The script's own line is one that modebank takes.
+  EXPECT_EQ(run_program({"/usr/bin/env", "SLURM_ARRAY_TASK_ID=0", "/bin/bash", file("s/slurm/run.sh").string()}).status,
+            0);
+  EXPECT_EQ(trials().size(), 6u);
+}
+
+TEST_F(StudyCommands, AKeyWithoutItsValueIsSaid) {
+  const ProgramResult result = study({"--study.vary", "--study.jobs", "2"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("--study.vary' is missing"), std::string::npos) << result.err;
+}
+
+/// D12 of the review: what is read must end.
+TEST_F(StudyCommands, DevicesAndPipesAreRefusedByName) {
+  ASSERT_EQ(study_six().status, 0);
+  const std::filesystem::path trial = trials()[0], log = file("s/log.csv"), plan = file("s/plan.h5");
+  const auto put = [](const std::filesystem::path& target, const std::filesystem::path& path) {
+    std::filesystem::remove(path);
+    std::filesystem::create_symlink(target, path);
+  };
+  put("/dev/zero", trial);
+  for (const char* stage : {"status", "merge"}) {
+    const ProgramResult result = study_six({"--study.stage", stage});
+    EXPECT_EQ(result.status, 1) << stage;
+    EXPECT_NE(result.out.find(trial.stem().string() + ".h5: is not a regular file"), std::string::npos) << result.out;
+  }
+  const ProgramResult verified = modebank({"verify", file("s").string()});
+  EXPECT_EQ(verified.status, 1);
+  EXPECT_NE(verified.out.find("is not a regular file"), std::string::npos) << verified.out;
+  const ProgramResult again = study_six();
+  EXPECT_EQ(again.status, 1);
+  EXPECT_NE(again.err.find(trial.filename().string()), std::string::npos) << again.err;
+  std::filesystem::remove(trial);
+  ASSERT_EQ(mkfifo((trial.parent_path() / (trial.stem().string() + ".failed")).c_str(), 0600), 0);
+  EXPECT_EQ(study_six({"--study.stage", "status"}).status, 1);
+  std::filesystem::remove(log);
+  ASSERT_EQ(mkfifo(log.c_str(), 0600), 0);
+  const ProgramResult logged = study_six();
+  EXPECT_EQ(logged.status, 1);
+  EXPECT_NE(logged.err.find("log.csv: is not a regular file"), std::string::npos) << logged.err;
+  put("plan.h5", plan);
+  const ProgramResult looped = study_six({"--study.stage", "status"});
+  EXPECT_EQ(looped.status, 1);
+  EXPECT_EQ(looped.err.find("filesystem error"), std::string::npos) << looped.err;
 }
 
 TEST_F(StudyCommands, UsageErrorsLeaveNothing) {

@@ -29,7 +29,8 @@ class StudyEstimates : public CliTest {
     write("s/trials/" + plan.table.rows[row].key + ".h5", std::string(bytes, 'x'));
   }
   StudyEstimate estimate() const {
-    return estimate_study({config, {}, TrialStore(file("s")), plan.table.varied_keys, "1", {}}, plan);
+    return estimate_study({config, {}, TrialStore(file("s")), plan.table.varied_keys, "1", {}, {}}, plan,
+                          Sampling::what_is_there);
   }
   std::string line(std::size_t row, const std::string& rest) const {
     return "2026-01-01T00:00:00Z,host,1," + plan.table.rows[row].key + rest + "\n";

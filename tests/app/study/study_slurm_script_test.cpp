@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <boost/algorithm/string.hpp>
 #include <cstdlib>
 
 #include "app/study/launch/shell.hpp"
 #include "app/study/launch/slurm.hpp"
+#include "io/files/read_file.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/support/paths.hpp"
 
@@ -26,6 +28,8 @@ TEST(StudySlurmScript, TasksRunOneShardEach) {
   EXPECT_NE(script.find("#!/bin/bash\n"), std::string::npos);
   for (const char* line : {"#SBATCH --requeue\n", "#SBATCH --open-mode=append\n"})
     EXPECT_NE(script.find(line), std::string::npos) << script;
+  EXPECT_NE(script.find("cd " + shell_word(std::filesystem::current_path().string()) + " || exit\n"), std::string::npos)
+      << script;
   EXPECT_NE(script.find("exec /opt/modebank study '/home/me/my study.ini' --study.vary 'bank.stay = 0.9 | 0.95' "
                         "--data.root /data --study.output /scratch/ice.study --study.stage run "
                         "--study.jobs \"${SLURM_CPUS_PER_TASK:-1}\" --study.shard \"$SLURM_ARRAY_TASK_ID/7\"\n"),
@@ -83,8 +87,9 @@ class FakeSlurm : public ::testing::Test {
   }
   std::filesystem::path study() const { return folder_.path() / "ice.study"; }
 
- private:
   test::TemporaryFolder folder_;
+
+ private:
   std::string before_;
 };
 
@@ -95,6 +100,40 @@ TEST_F(FakeSlurm, ArrayThenMergeWhateverBecomesOfIt) {
   EXPECT_EQ(submission.merge_job, "42");
   ASSERT_EQ(submission.commands.size(), 2U);
   EXPECT_NE(submission.commands[0].find("--time=60"), std::string::npos);
+}
+
+/// D10 of the review: a path became lines of the script, or patterns, or several words.
+TEST_F(FakeSlurm, NoPathStandsWhereSlurmReadsIt) {
+  program("sbatch", "for word; do printf '<%s>' \"$word\"; done >> \"$0.words\"; echo 41");
+  SlurmRequest wanted = request();
+  wanted.folder = study() / "it's 100 %j \"odd\"";
+  const SlurmSubmission submission = submit_to_slurm(wanted);
+  const std::string words = read_file(folder_.path() / "sbatch.words");
+  const std::string slurm = (wanted.folder / "slurm").string();
+  const std::string logs = boost::replace_all_copy(slurm, "%", "%%");
+  EXPECT_EQ(words, "<--parsable><--job-name=run-it_s_100__j__odd_><--output=" + logs +
+                       "/%A_%a.log><--array=0-2><--time=60><" + slurm +
+                       "/run.sh><--parsable><--job-name=merge-it_s_100__j__odd_><--output=" + logs +
+                       "/%j.log><--dependency=afterany:41><--time=60><" + slurm + "/merge.sh>");
+  EXPECT_EQ(submission.array_job, "41");
+  for (const std::string& script : {run_script(wanted), merge_script(wanted)})
+    for (std::size_t at = script.find("#SBATCH"); at != std::string::npos; at = script.find("#SBATCH", at + 1))
+      EXPECT_EQ(script.substr(at, script.find('\n', at) - at).find("odd"), std::string::npos) << script;
+}
+
+TEST_F(FakeSlurm, ControlCharactersInPathsAreRefusedBeforeAnythingIsWritten) {
+  program("sbatch", "echo 41");
+  SlurmRequest wanted = request();
+  wanted.folder = study() / "new\ntouch pwned";
+  try {
+    submit_to_slurm(wanted);
+    ADD_FAILURE() << "was not refused";
+  } catch (const ConfigurationError& error) {
+    EXPECT_NE(std::string(error.what()).find("new\\ntouch pwned"), std::string::npos) << error.what();
+  }
+  wanted.folder = study() / "back\\slash";
+  EXPECT_THROW(submit_to_slurm(wanted), ConfigurationError);
+  EXPECT_FALSE(std::filesystem::exists(study()));
 }
 
 TEST_F(FakeSlurm, RefusalGivesSlurmsReason) {

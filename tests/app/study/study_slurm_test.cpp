@@ -1,4 +1,5 @@
 #include <chrono>
+#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -59,8 +60,9 @@ TEST_F(StudySlurm, TableEqualsTheLocalOne) {
   const SlurmCluster cluster(3, 2);
   const ProgramResult submitted = study("slurm", {"--study.stage", "submit", "--study.slurm_tasks", "6"});
   ASSERT_EQ(submitted.status, 0) << submitted.err;
-  EXPECT_TRUE(std::regex_search(submitted.out, std::regex("sbatch --parsable --array=0-5 "))) << submitted.out;
-  EXPECT_TRUE(std::regex_search(submitted.out, std::regex("--dependency=afterany:[0-9]+ "))) << submitted.out;
+  EXPECT_TRUE(std::regex_search(submitted.out, std::regex("sbatch --parsable --job-name=run-slurm .*--array=0-5 ")))
+      << submitted.out;
+  EXPECT_TRUE(std::regex_search(submitted.out, std::regex("sbatch .*--dependency=afterany:[0-9]+ "))) << submitted.out;
   ASSERT_TRUE(settled(cluster, 60)) << cluster.queue();
   std::set<std::string> nodes;
   for (const Task& task : tasks_of(cluster)) {
@@ -74,6 +76,75 @@ TEST_F(StudySlurm, TableEqualsTheLocalOne) {
   const ProgramResult again = study("slurm", {"--study.stage", "submit"});
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(again.out.find("sbatch"), std::string::npos) << "nothing is left to submit: " << again.out;
+}
+
+/// The lines of the first block of code below a heading of a page of the documentation.
+std::vector<std::string> commands_below(const std::string& page, const std::string& heading) {
+  std::ifstream stream(project_dir() / "docs" / page);
+  std::vector<std::string> commands;
+  bool below = false, in_block = false;
+  for (std::string line; std::getline(stream, line);) {
+    below = below || line == heading;
+    if (below && line.rfind("```", 0) == 0) {
+      if (in_block) break;
+      in_block = true;
+    } else if (in_block) {
+      commands.push_back(line);
+    }
+  }
+  return commands;
+}
+
+/// In a folder, by a shell that finds this build's modebank.
+ProgramResult typed_in(const std::filesystem::path& folder, const std::string& command) {
+  return run_program({"/bin/sh", "-c", "cd \"$1\" && PATH=$2:$PATH && eval \"$3\"", "sh", folder.string(),
+                      std::filesystem::path(MODEBANK_PROGRAM).parent_path().string(), command});
+}
+
+/// The how-to's commands as they are printed, on a study of the name that they have, where paths hold what shells,
+/// Slurm's lines and its patterns each read in their own way.
+class StudySlurmPaths : public StudySlurm {
+ protected:
+  std::filesystem::path odd_folder(const std::string& name) const {
+    const std::filesystem::path folder = file(name);
+    std::filesystem::create_directories(folder / "configs");
+    for (const char* data : {"run_00.csv", "run_01.csv"})
+      std::filesystem::copy_file(file(data), folder / "configs" / data);
+    std::filesystem::copy_file(file("study.ini"), folder / "configs" / "study_ice.ini");
+    return folder;
+  }
+};
+
+TEST_F(StudySlurmPaths, TheHandbooksCommandsRunAsPrinted) {
+  MODEBANK_NEEDS_SLURM();
+  run_undisturbed();
+  const std::filesystem::path folder = odd_folder("it's 100 %j %% \"odd\" $HOME");
+  const std::vector<std::string> commands = commands_below("howto/slurm.md", "## Slurm");
+  ASSERT_EQ(commands.size(), 2U);
+  const SlurmCluster cluster(3, 2);
+  const ProgramResult submitted = typed_in(folder, commands[0]);
+  ASSERT_EQ(submitted.status, 0) << submitted.out << submitted.err;
+  ASSERT_TRUE(settled(cluster, 60)) << cluster.queue();
+  for (const Task& task : tasks_of(cluster)) EXPECT_EQ(task.state, "COMPLETED") << task.id;
+  const ProgramResult status = typed_in(folder, commands[1]);
+  EXPECT_EQ(status.status, 0) << status.out << status.err;
+  EXPECT_NE(status.out.find("24 done"), std::string::npos) << status.out;
+  std::size_t logs = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "study_ice.study" / "slurm"))
+    logs += entry.path().extension() == ".log";
+  EXPECT_EQ(logs, 25U) << "one of each task and of the merge";
+  EXPECT_EQ(numbers(std::filesystem::relative(folder / "study_ice.study", file("")).string()), numbers(undisturbed));
+}
+
+TEST_F(StudySlurmPaths, AFolderWithALineBreakIsRefusedBeforeAnythingIsWritten) {
+  MODEBANK_NEEDS_SLURM();
+  const std::filesystem::path folder = odd_folder("line\ntouch pwned\n");
+  const std::vector<std::string> commands = commands_below("howto/slurm.md", "## Slurm");
+  ASSERT_EQ(commands.size(), 2U);
+  const ProgramResult submitted = typed_in(folder, commands[0]);
+  EXPECT_EQ(submitted.status, 2) << submitted.out << submitted.err;
+  EXPECT_NE(submitted.err.find("holds a control character"), std::string::npos) << submitted.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "study_ice.study"));
 }
 
 /// A node dies as by a power cut while it works; its tasks start again on another one.

@@ -34,6 +34,20 @@ void expect_fits(const Archive& archive, const std::string& what) {
   EXPECT_EQ(screen.find('\t'), std::string::npos) << what;
 }
 
+TEST(FirstScreen, NextNamesTheProgramAsItWasCalled) {
+  const Archive archive = screen_archive(1, 2, 3);
+  EXPECT_THAT(first_screen(archive, defaults, "demo.h5", 0, "build/modebank"), HasSubstr("(`build/modebank track"));
+}
+
+TEST(FirstScreen, SaysThatInputsAreNeededAhead) {
+  const Archive archive = screen_archive(1, 2, 3);
+  app::Settings settings = defaults;
+  settings["data.lag_s"] = "0.25";
+  EXPECT_THAT(first_screen(archive, settings, "demo.h5"), Not(HasSubstr("ahead of the states")));
+  settings["data.lag_s"] = "-0.25";
+  EXPECT_THAT(first_screen(archive, settings, "demo.h5"), HasSubstr("needs inputs 0.250 s ahead of the states"));
+}
+
 /// With the longest finding and a warning of many.
 Archive talkative(Archive archive) {
   for (int i = 0; i < 200; ++i) archive.finding->text += " And another word.";
@@ -102,7 +116,7 @@ TEST(FirstScreen, ItsTermsHaveAMeaning) {
        {"evidence", "mode",      "bank",       "drifting",      "competitor",    "nats",   "held-out",
         "step",     "used",      "stay",       "decay/sample",  "time constant", "period", "steady gain",
         "band",     "95 % band", "calibrated", "overconfident", "RMSE",          "+-"})
-    EXPECT_FALSE(app::meaning_of(term).empty()) << term;
+    EXPECT_FALSE(app::help_on(term).empty()) << term;
 }
 
 struct NextStep : testing::Test {

@@ -85,7 +85,7 @@ def provenance(program):
 
 
 def preamble(program, title, protocol):
-    print(f"### {title}\n\n{protocol.strip()}\n\n{provenance(program)}\n", flush=True)
+    print(f"## {title}\n\n{protocol.strip()}\n\n{provenance(program)}\n", flush=True)
 
 
 def head(program, title, protocol, columns):

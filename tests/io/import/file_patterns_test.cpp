@@ -111,5 +111,61 @@ TEST_F(FilePatterns, PartnersNeedTheSameStars) {
               AllOf(HasSubstr("pro_*.csv"), HasSubstr("imu.csv"), HasSubstr("both or neither")));
 }
 
+/// Lists of files, and recordings in parts.
+class ListedFiles : public FilePatterns {
+ protected:
+  RunFiles listed(const std::string& text, const char* key = "data.inputs") const {
+    return {key, folder.path().string(), text};
+  }
+  std::vector<std::string> names(const std::string& text) const {
+    std::vector<std::string> result;
+    for (const RunFiles::File& file : listed(text).files()) result.push_back(file.run);
+    return result;
+  }
+  std::string error(const std::string& text) const {
+    return message_of<ConfigurationError>([&] { listed(text).files(); });
+  }
+};
+
+TEST_F(ListedFiles, AreRunsByTheirStems) {
+  for (const char* name : {"b.csv", "a.csv", "c.csv", "far/d.csv", "x, y.csv"}) touch(name);
+  EXPECT_THAT(names("b.csv, a.csv,far/d.csv"), ElementsAre("a", "b", "d"));
+  EXPECT_THAT(names("*.csv"), ElementsAre("a", "b", "c", "x, y"));
+  EXPECT_THAT(names("x, y.csv"), ElementsAre("x, y")) << "it is there";
+  EXPECT_FALSE(listed("a.csv, b.csv").one());
+  EXPECT_TRUE(listed("a.csv").one());
+}
+
+TEST_F(ListedFiles, MayBeRecordingsInParts) {
+  for (const char* name : {"drive_0.bag", "drive_1.bag", "other.bag"}) touch(name);
+  const auto files = listed("other.bag, drive_0.bag + drive_1.bag").files();
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(files[0].run, "drive_0");
+  EXPECT_THAT(files[0].parts, ElementsAre(folder.path() / "drive_0.bag", folder.path() / "drive_1.bag"));
+  EXPECT_EQ(files[1].parts.size(), 1u);
+}
+
+TEST_F(ListedFiles, HavePartnersInTheSamePlace) {
+  for (const char* name : {"u1.csv", "u2.csv", "y_b.csv", "y_a.csv"}) touch(name);
+  const RunFiles inputs = listed("u2.csv, u1.csv"), states = listed("y_b.csv, y_a.csv", "data.states");
+  const auto partners = states.partners(inputs, {"u1", "u2"});
+  ASSERT_EQ(partners.size(), 2u);
+  EXPECT_EQ(partners[0].parts.front(), folder.path() / "y_a.csv");
+  EXPECT_EQ(partners[1].parts.front(), folder.path() / "y_b.csv");
+  EXPECT_THAT(message_of<ConfigurationError>([&] {
+                listed("y_a.csv", "data.states").partners(inputs, {"u1", "u2"});
+              }),
+              HasSubstr("data.inputs names 2 files and data.states 1"));
+}
+
+TEST_F(ListedFiles, SayWhatIsWrongWithAList) {
+  touch("a.csv");
+  touch("b/a.csv");
+  EXPECT_THAT(error("a.csv, b*.csv"), HasSubstr("a * stands alone"));
+  EXPECT_THAT(error("a.csv,"), HasSubstr("an entry is empty"));
+  EXPECT_THAT(error("a.csv, none.csv"), HasSubstr("none.csv"));
+  EXPECT_THAT(error("a.csv, b/a.csv"), HasSubstr("would both be run a"));
+}
+
 }  // namespace
 }  // namespace modebank

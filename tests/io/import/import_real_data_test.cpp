@@ -39,12 +39,12 @@ TEST(ImportRealData, IceAgreesWithNumpy) {
   const std::string path = (test::golden_dir() / "ice_import.csv").string();
   const Table golden =
       parse_csv(path, read_file(path),
-                {0, {"samples", "first", "last", "mean_wz", "mean_wz_squared", "mean_velL", "mean_velR"}, "run"});
+                {0, {"samples", "first", "last", "mean_wz", "mean_wz_squared", "mean_velL", "mean_velR"}, {"run"}});
   const Recording recording = import_data(ice_options()).recording;
   ASSERT_EQ(recording.runs.size(), golden.rows());
   for (std::size_t i = 0; i < golden.rows(); ++i) {
     const Trajectory& run = recording.runs[i];
-    EXPECT_EQ(run.run, golden.text[i]);
+    EXPECT_EQ(run.run, golden.texts.at(0)[i]);
     EXPECT_EQ(run.samples(), golden.numbers[0][i]);
     EXPECT_EQ(run.time_s(0), golden.numbers[1][i]);
     EXPECT_EQ(run.time_s(run.samples() - 1), golden.numbers[2][i]);

@@ -72,6 +72,24 @@ class ImportLabel : public test::ImportFixture {
   }
 };
 
+TEST_F(ImportLabel, OfEveryRowAnotherIsNone) {
+  std::string pro = "time,u,ground\n", imu = "time,x\n", few = pro;
+  for (int k = 0; k < 100; ++k) {
+    pro += fmt::format("{0},{0},{1}\n", k, 0.1 * k);
+    few += fmt::format("{0},{0},{1}\n", k, k % 40);
+    imu += fmt::format("{0},{0}\n", k);
+  }
+  write("imu_a.csv", imu);
+  write("pro_a.csv", pro);
+  options.train = options.test = {};
+  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("data.label = ground holds 100 distinct values in 100 samples"));
+  for (int k = 100; k < 400; ++k) few += fmt::format("{0},{0},{1}\n", k, k % 40);
+  for (int k = 100; k < 400; ++k) imu += fmt::format("{0},{0}\n", k);
+  write("imu_a.csv", imu);
+  write("pro_a.csv", few);
+  EXPECT_THAT(import().notes, ::testing::Contains(HasSubstr("40 distinct values in 400 samples: is it a label")));
+}
+
 TEST_F(ImportLabel, TheLastOneHoldsThroughGapsAndRates) {
   options.missing = Missing::gap;
   write("pro_1.csv", "time,u\n0,1\n1,2\n2,3\n3,4\n4,5\n5,6\n");

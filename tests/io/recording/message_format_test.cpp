@@ -95,6 +95,11 @@ TEST(MessageFormat, NestedTypesTakeTheirPackageFromWhereTheyAreNamed) {
   EXPECT_EQ(value_of(definition, little + bytes({1, 2, 3}), "inner[1].x").number, 2.0);
 }
 
+/// Which of the two a column means cannot be told.
+TEST(MessageFormat, OneNameIsOfOneField) {
+  EXPECT_THAT(message_of<DefinitionError>([] { schema_of("uint8 x\nfloat64[2] x\n"); }), HasSubstr("two fields \"x\""));
+}
+
 TEST(MessageFormat, AnEmptyTypeIsAByteInCdrAndNothingInRos1) {
   const std::string definition = "Empty e\nuint8 a\n====\nMSG: p/Empty\nint32 ONLY=1\n";
   EXPECT_EQ(value_of(definition, little + bytes({0, 7}), "a").number, 7.0);

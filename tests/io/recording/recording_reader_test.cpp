@@ -30,17 +30,19 @@ TEST(RecordingReader, ATopicIsATableWithStamps) {
   EXPECT_EQ(tables[0].name, "/imu/data");
   EXPECT_EQ(tables[0].type, "sensor_msgs/Imu");
   EXPECT_EQ(tables[0].rows, 11865u);
-  TableRequest imu{0, {"/imu/data.angular_velocity.y"}, "/imu/data.header.frame_id", {}, {"/imu/data.header.stamp"}};
-  TableRequest fix{2, {"/fix.latitude"}, "", {}, {"/fix.receive_time"}};
+  TableRequest imu{0, {"/imu/data.angular_velocity.y"}, {"/imu/data.header.frame_id"}, {}, {"/imu/data.header.stamp"}};
+  TableRequest fix{2, {"/fix.latitude"}, {}, {}, {"/fix.receive_time"}};
   InputFile file;
-  const std::vector<Table> read = reader->read({imu, fix}, file);
+  const std::vector<Table> read = reader->read({imu, fix}, &file);
   EXPECT_EQ(file.bytes, 1470835u);
   EXPECT_EQ(file.sha256.size(), 64u);
+  EXPECT_EQ(reader->describe({imu, fix}).sha256, file.sha256);
+  EXPECT_NE(reader->describe({imu}).sha256, file.sha256);
   ASSERT_EQ(read[0].rows(), 11865u);
   EXPECT_EQ(read[0].line.front(), 1u);
   EXPECT_EQ(read[0].time_ns.front(), 1432235497988949113);
   EXPECT_NEAR(read[0].numbers[0].front(), -0.010768941, 0.5e-9);
-  EXPECT_EQ(read[0].text.front(), "imu_link");
+  EXPECT_EQ(read[0].texts.at(0).front(), "imu_link");
   ASSERT_EQ(read[1].rows(), 989u);
   EXPECT_EQ(read[1].time_ns.front(), 1432235498039331631);
 }

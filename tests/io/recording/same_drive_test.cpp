@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "io/recording/recording_reader.hpp"
+#include "io/recording/split_recording.hpp"
 #include "tests/io/recording/recording_fixture.hpp"
 
 namespace modebank::test {
@@ -58,6 +60,28 @@ TEST_F(SameDrive, IsTheSameAsRos1WritesIt) {
       expect_same_topic(read_topic(reference, topic.name), ros1);
     }
   }
+}
+
+/// The hash is of the messages that are read and of what they are read by, not of the file that holds them.
+TEST_F(SameDrive, HasTheSameHashHoweverItIsStored) {
+  MODEBANK_NEEDS_DRIVE();
+  const auto hash = [](const std::string& name, const std::vector<std::string>& topics) {
+    const RecordingReader reader(recording_files(file(name)), {});
+    std::vector<TableRequest> requests;
+    const std::vector<TableInfo> tables = reader.tables();
+    for (std::size_t t = 0; t < tables.size(); ++t)
+      if (std::find(topics.begin(), topics.end(), tables[t].name) != topics.end()) requests.push_back({t, {}});
+    EXPECT_EQ(requests.size(), topics.size()) << name;
+    return reader.describe(requests).sha256;
+  };
+  const std::vector<std::string> used{"/imu/data", "/fix"};
+  for (const char* name : {"drive_lz4.mcap", "drive_zstd.mcap", "drive_no_summary.mcap", "drive_no_chunks.mcap",
+                           "drive.db3", "drive_zstd.db3", "drive_split"})
+    EXPECT_EQ(hash(name, used), hash("drive_none.mcap", used)) << name;
+  for (const char* name : {"drive_bz2.bag", "drive_lz4.bag", "drive_ros1.mcap"})
+    EXPECT_EQ(hash(name, used), hash("drive_none.bag", used)) << name;
+  EXPECT_NE(hash("drive_none.bag", used), hash("drive_none.mcap", used));  // other payloads
+  EXPECT_NE(hash("drive_none.bag", used), hash("drive_none.bag", {"/imu/data"}));
 }
 
 /// What is cut off in the middle gives a prefix of the whole.

@@ -90,10 +90,10 @@ TEST_F(SimulationWriter, WritesTheTwoFilesOfEveryRun) {
 TEST_F(SimulationWriter, WritesModesAndExtendsTheStates) {
   const SimulatedRun run = make_run(20, 0);
   write_simulation({run}, layout);
-  const Table pro = parse_csv("pro", read_file(layout.folder / "pro_00.csv"), {0, {"mode"}, ""});
+  const Table pro = parse_csv("pro", read_file(layout.folder / "pro_00.csv"), {0, {"mode"}});
   ASSERT_EQ(pro.rows(), 20);
   for (Index k = 0; k < 20; ++k) EXPECT_EQ(pro.numbers[0][k], run.mode(k));
-  const Table imu = parse_csv("imu", read_file(layout.folder / "imu_00.csv"), {0, {"time", "wz"}, ""});
+  const Table imu = parse_csv("imu", read_file(layout.folder / "imu_00.csv"), {0, {"time", "wz"}});
   EXPECT_GE(imu.numbers[0].back(), run.measured.time_s(19) + 1.0 / 65.0 - 1e-9);
   EXPECT_EQ(imu.numbers[1].back(), run.measured.state(0, 19)) << "held after the last sample";
 }

@@ -6,7 +6,7 @@
 namespace modebank {
 
 /// The numbers that decide what refinement learns, each with its reason. They are not keys: where an experiment set
-/// one it was made inside the training runs (README, "Refined modes").
+/// one it was made inside the training runs (docs/explanation/refinement.md).
 struct RefineTuning {
   // The cross-validation inside the training runs.
   /// Iterations after which the runs left out are scored; the limit counts as one. Not before 10: the start has seen

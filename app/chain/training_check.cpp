@@ -1,0 +1,57 @@
+#include "app/chain/training_check.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ident/fit/fit_windows.hpp"
+#include "ident/fit/open_regressors.hpp"
+#include "ident/model/parameter_labels.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+void refuse_constant_states(const Recording& recording) {
+  for (Index i = 0; i < recording.state_count(); ++i) {
+    double least = std::numeric_limits<double>::infinity(), largest = -least;
+    std::vector<std::string> runs;
+    for (const Trajectory& run : recording.runs) {
+      if (run.role != Role::train) continue;
+      runs.push_back(run.run);
+      for (const double value : run.state.row(i)) {
+        if (!std::isfinite(value)) continue;
+        least = std::min(least, value);
+        largest = std::max(largest, value);
+      }
+      if (least < largest) break;
+    }
+    if (least != largest) continue;
+    constexpr std::size_t most_named = 5;
+    const std::string more = runs.size() > most_named ? fmt::format(" and {} more", runs.size() - most_named) : "";
+    runs.resize(std::min(runs.size(), most_named));
+    throw DataError(
+        fmt::format("the state {0} is constant: {1:g} in every sample of the training runs {2}{3}; there is nothing to "
+                    "learn of it: leave {0} out of data.state, or train on runs in which it moves",
+                    recording.states[static_cast<std::size_t>(i)].name, least, fmt::join(runs, ", "), more));
+  }
+}
+
+std::string open_effects(const Recording& recording, const FitOptions& options) {
+  if (!is_linear(options)) return {};
+  const LinearStructure structure = linear_structure(recording.state_count(), recording.input_count(), options);
+  const std::vector<Index> open = open_regressors(recording, structure);
+  if (open.empty()) return {};
+  std::vector<std::string> labels = regressor_labels(structure, names_of(recording.states), names_of(recording.inputs));
+  labels.emplace_back("the intercept");
+  std::vector<std::string> named;
+  for (const Index j : open) named.push_back(labels[static_cast<std::size_t>(j)]);
+  return fmt::format(
+      "not identifiable from the training runs: the effect of {}, which {} throughout; the other parameters keep their "
+      "standard errors",
+      fmt::join(named, ", "), named.size() == 1 ? "is zero" : "are zero or sums of multiples of each other");
+}
+
+}  // namespace modebank

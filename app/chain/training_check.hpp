@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ident/data/trajectory.hpp"
+#include "ident/fit/options.hpp"
+
+/// What is looked at of the training runs before anything is fitted to them.
+namespace modebank {
+
+/// Throws DataError for a state that has one value in all of them: there is no motion to learn, and any filter predicts
+/// it without error.
+void refuse_constant_states(const Recording& recording);
+
+/// A line on regressors of the linear model that they leave open; empty: none.
+std::string open_effects(const Recording& recording, const FitOptions& options);
+
+}  // namespace modebank

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/cli/command_line.hpp"
+
+namespace modebank::app {
+
+/// An option of a command that is no configuration key.
+struct CommandOption {
+  std::string name;      ///< without dashes; "output,o" has a short form as well
+  std::string argument;  ///< what follows it; empty: a switch
+  std::string help;
+
+  std::string long_name() const { return name.substr(0, name.find(',')); }
+  std::string typed() const;  ///< "-o FILE, --output FILE"
+};
+
+/// One command: help, manual, completion and the refusal of options that it does not read all come from here.
+struct Command {
+  std::string group;      ///< heading under which `help` lists it
+  std::string name;       ///
+  std::string arguments;  ///< what follows the name
+  std::string summary;    ///< one line
+  std::string details;    ///< sentences; may be empty
+  std::string example;
+  std::vector<std::string> keys;  ///< sections, or single keys, of the configuration that it reads
+  std::vector<CommandOption> options;
+  int (*run)(const CommandLine&);
+
+  bool reads(const std::string& key) const;
+  const CommandOption* find_option(const std::string& long_name) const;
+};
+
+/// All commands, group by group.
+const std::vector<Command>& command_table();
+
+/// Options that every command has.
+const std::vector<CommandOption>& common_options();
+
+/// Null when there is none of that name.
+const Command* find_command(const std::string& name);
+
+/// Throws ConfigurationError for an option that the command does not read, saying which it does.
+void check_options(const Command& command, const CommandLine& line);
+
+}  // namespace modebank::app

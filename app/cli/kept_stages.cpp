@@ -1,0 +1,98 @@
+#include "app/cli/kept_stages.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstring>
+
+#include "ident/base/printable.hpp"
+#include "io/archive/archive.hpp"
+
+namespace modebank::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double worth_a_file_s = 1.0;
+constexpr std::array signals{SIGINT, SIGTERM};
+
+/// What a signal handler may print: made beforehand, since it may not allocate.
+std::array<char, 4096> kept_message;
+std::atomic<std::size_t> kept_size = 0;
+
+extern "C" void say_what_is_kept(int signal) {
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kept_message.data(), kept_size);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void set_message(const std::string& text) {
+  kept_size = 0;
+  const std::size_t size = std::min(text.size(), kept_message.size());
+  std::memcpy(kept_message.data(), text.data(), size);
+  kept_size = size;
+}
+
+void tell_kept(const fs::path& folder) {
+  set_message(fmt::format(
+      "\nmodebank: stopped; finished stages that took long are kept in {}: the same command goes on from there\n",
+      printable(folder.string())));
+}
+
+}  // namespace
+
+KeptStages::KeptStages(const fs::path& output)
+    : folder_(output.parent_path() / fmt::format(".{}.stages", output.filename().string())) {
+  set_message("\nmodebank: stopped; no stage that took long was finished, so nothing is kept\n");
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    before_[i] = std::signal(signals[i], say_what_is_kept);
+    if (before_[i] == SIG_IGN) std::signal(signals[i], SIG_IGN);  // as nohup and a shell's background jobs ask for
+  }
+}
+
+void KeptStages::provide(Stage stage, const std::string& key, const StagePart& part) {
+  if (stage == Stage::data) return part.compute();  // what a run reads is not written again
+  const fs::path file = folder_ / fmt::format("{}-{}.h5", name_of(stage), key);
+  if (load(file, part)) return;
+  const Stopwatch watch;
+  part.compute();
+  if (watch.seconds() > worth_a_file_s) store(file, part);
+}
+
+bool KeptStages::load(const fs::path& file, const StagePart& part) const {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;
+  try {
+    part.take(read_archive(file));
+    tell_kept(folder_);
+    spdlog::info("{}: taken from a run that was stopped", file.string());
+    return true;
+  } catch (const std::exception& damage) {
+    spdlog::warn("{}: computed again", damage.what());
+    return false;
+  }
+}
+
+void KeptStages::store(const fs::path& file, const StagePart& part) const {
+  try {
+    fs::create_directory(folder_);
+    write_archive(file, part.copy());
+    tell_kept(folder_);
+  } catch (const std::exception& obstacle) {  // it would have saved time, nothing else
+    spdlog::debug("{}", obstacle.what());
+  }
+}
+
+KeptStages::~KeptStages() {
+  for (std::size_t i = 0; i < signals.size(); ++i) std::signal(signals[i], before_[i]);
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error))
+    if (entry.path().extension() == ".h5") fs::remove(entry.path(), error);
+  fs::remove(folder_, error);  // stays where it holds something else
+}
+
+}  // namespace modebank::app

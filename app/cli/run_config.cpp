@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <boost/algorithm/string.hpp>
+#include <nlohmann/json.hpp>
+
+#include "app/cli/commands.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// The resolved configuration, each value with where it comes from: a comment, so that the text is a configuration.
+std::string text_with_origins(const Config& config, const Origins& origins) {
+  std::string text, section;
+  for (const Option& option : option_table()) {
+    if (option.section() != section) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", option.section());
+    section = option.section();
+    const auto origin = origins.find(option.key);
+    std::vector<std::string> values;
+    boost::split(values, option.get(config), [](char c) { return c == '\n'; });
+    for (const std::string& value : values)
+      text += fmt::format("{:<40}  # {}\n", option.name() + " =" + (value.empty() ? "" : " " + value),
+                          origin == origins.end() ? "default" : origin->second);
+  }
+  return text;
+}
+
+/// Words to choose from are an enumeration; everything else is text, as it stands in the file.
+nlohmann::ordered_json schema_of(const Option& option) {
+  nlohmann::ordered_json schema{{"type", "string"}, {"description", option.help}, {"default", option.get(Config{})}};
+  if (const std::vector<std::string> choices = option.choices(); !choices.empty())
+    schema["enum"] = choices;
+  else
+    schema["description"] = fmt::format("{} ({})", option.help, option.range);
+  if (!option.unit.empty()) schema["x-unit"] = option.unit;
+  schema["x-basic"] = option.basic;
+  if (!option.repeatable) return schema;
+  return {{"oneOf", {schema, {{"type", "array"}, {"items", {{"type", "string"}}}}}}};
+}
+
+std::string json_schema() {
+  nlohmann::ordered_json sections = nlohmann::ordered_json::object();
+  for (const Option& option : option_table()) {
+    nlohmann::ordered_json& section = sections[option.section()];
+    section["type"] = "object";
+    section["additionalProperties"] = false;
+    section["properties"][option.name()] = schema_of(option);
+  }
+  const nlohmann::ordered_json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                                      {"title", "configuration of modebank"},
+                                      {"type", "object"},
+                                      {"additionalProperties", false},
+                                      {"properties", sections}};
+  return schema.dump(2) + "\n";
+}
+
+}  // namespace
+
+int run_config(const CommandLine& line) {
+  if (line.schema != line.files.empty() || line.files.size() > 1)
+    throw ConfigurationError(
+        "config needs one configuration file, or --schema alone: modebank config CONFIG, modebank config --schema");
+  if (line.schema) {
+    fmt::print("{}", json_schema());
+    return 0;
+  }
+  Origins origins;
+  const Config config = load_config(line.files.front(), line.overrides, &origins);
+  fmt::print("{}", text_with_origins(config, origins));
+  return 0;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,75 @@
+#include "app/init/survey_set.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace modebank::app {
+namespace {
+
+using Names = std::vector<std::string>;
+
+void add_once(Names& names, const std::string& name) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+SurveyedTable* find_table(SurveyedFile& file, const std::string& name) {
+  const auto found =
+      std::find_if(file.tables.begin(), file.tables.end(), [&](const SurveyedTable& t) { return t.name == name; });
+  return found == file.tables.end() ? nullptr : &*found;
+}
+
+/// What moves in any file moves.
+void widen(ChannelCheck& check, const ChannelCheck& other) {
+  check.least = std::min(check.least, other.least);
+  check.largest = std::max(check.largest, other.largest);
+  check.missing += other.missing;
+}
+
+/// Takes another file's table in; its channels that are not in both are `partial`.
+void merge(SurveyedTable& table, const SurveyedTable& other, Names& partial) {
+  std::erase_if(table.channels, [&](const SurveyedChannel& channel) {
+    if (other.find(channel.name) != nullptr) return false;
+    add_once(partial, channel.name);
+    return true;
+  });
+  for (const SurveyedChannel& theirs : other.channels) {
+    const auto ours = std::find_if(table.channels.begin(), table.channels.end(),
+                                   [&](const SurveyedChannel& c) { return c.name == theirs.name; });
+    if (ours == table.channels.end())
+      add_once(partial, theirs.name);
+    else if (ours->is_number() && theirs.is_number())
+      widen(ours->check, theirs.check);
+    else
+      ours->values.resize(0);  // text in one of them
+  }
+}
+
+void merge(SurveyedFile& all, SurveyedFile&& other, Names& partial) {
+  std::erase_if(all.tables, [&](const SurveyedTable& table) {
+    if (find_table(other, table.name) != nullptr) return false;
+    add_once(partial, table.name);
+    return true;
+  });
+  for (const SurveyedTable& theirs : other.tables)
+    if (SurveyedTable* const ours = find_table(all, theirs.name))
+      merge(*ours, theirs, partial);
+    else
+      add_once(partial, theirs.name);
+  for (const std::string& note : other.notes) add_once(all.notes, note);
+}
+
+}  // namespace
+
+SurveyedFile survey_set(const FileSet& set) {
+  SurveyedFile all = survey_file(set.files.front());
+  Names partial;
+  for (std::size_t i = 1; i < set.files.size(); ++i) merge(all, survey_file(set.files[i]), partial);
+  if (!partial.empty())
+    all.notes.push_back(
+        fmt::format("not in all of the {} files, so not taken: {}", set.files.size(), fmt::join(partial, ", ")));
+  return all;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,185 @@
+"""What the program says of itself, asked of it while the pages are built: keys, commands, terms.
+
+A page holds <!-- modebank: keys -->, commands, terms or headers where they belong; nothing of it is written down twice.
+Roles: {confval}`window.length` leads to a key, {term}`evidence` to a term, {command}`run` to a command.
+"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+from xml.etree import ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("MODEBANK_BUILD", ROOT / "build"))
+
+SECTIONS = {
+    "data": "Which files, channels and times a run is made of, and which runs train. The only section that every configuration needs.",
+    "window": "The local model that is fitted in every window, its loss, prior and solver: [](../explanation/windows.md).",
+    "mixture": "How the windows' parameters are clustered: [](../explanation/mixture.md).",
+    "bank": "How a bank of modes is learned from the clusters and refined: [](../explanation/refinement.md).",
+    "filter": "How a bank is stepped, scored and smoothed: [](../explanation/filter.md).",
+    "archive": "Where results go and which earlier ones are taken up.",
+    "job": "Threads and seed.",
+    "study": "What a parameter study varies, and how its runs are made: [](../tutorials/first_study.md).",
+    "track": "The live filter: [](../howto/live_filter.md).",
+    "report": "Pages and figures: [](../howto/figures.md).",
+    "simulate": "Runs with known truth: [](../explanation/vehicle.md).",
+}
+
+
+def ask(*words):
+    return subprocess.run([str(BUILD / "modebank"), *words], check=True, capture_output=True, text=True).stdout
+
+
+def key_rows():
+    """(key, range, unit, default, help), in the program's order."""
+    for line in ask("help", "--markdown").splitlines()[2:]:
+        cells = [cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+        yield cells[0].strip("`"), *cells[1:3], cells[3].strip("`"), cells[4]
+
+
+def command_rows():
+    """(group, name), in the program's order."""
+    group = ""
+    for line in ask("help").split("\nEvery command has\n", 1)[0].splitlines()[1:]:
+        if line and not line.startswith(" "):
+            group = line
+        elif named := re.match(r"  (\w+)  ", line):
+            yield group, named[1]
+
+
+def basic_keys():
+    """Keys that most users set: in the schema that editors are given."""
+    def marked(node):
+        return isinstance(node, dict) and (node.get("x-basic", False) or any(marked(part) for part in node.get("oneOf", [])))
+
+    sections = json.loads(ask("config", "--schema"))["properties"]
+    return {f"{section}.{name}" for section, content in sections.items() for name, key in content["properties"].items() if marked(key)}
+
+
+def terms():
+    return json.loads((ROOT / "app/report/web/terms.json").read_text(encoding="utf-8"))
+
+
+def plain(text):
+    """Text of the program as Markdown that shows it as it is."""
+    return re.sub(r"([\\*_<>\[\]#$`{}])", r"\\\1", text)
+
+
+def keys_page():
+    lines, section, basic = [], None, basic_keys()
+    for key, allowed, unit, default, text in key_rows():
+        if key.split(".")[0] != section:
+            section = key.split(".")[0]
+            lines += [f"## {section}", "", SECTIONS.get(section, ""), ""]
+        facts = f"allowed: {plain(allowed)}" + (f"; unit: {plain(unit)}" if unit else "")
+        facts += f"; default: `{default}`" if default else "; default: empty"
+        facts += "; **basic**" if key in basic else ""
+        lines += [f"````{{confval}} {key}", plain(text[:1].upper() + text[1:]) + ".", "", f"*{facts}*", "````", ""]
+    return "\n".join(lines)
+
+
+def commands_page():
+    lines, heading = [], None
+    for group, name in command_rows():
+        if group != heading:
+            heading = group
+            lines += [f"## {group}", ""]
+        lines += [f"````{{command}} {name}", "```text", ask("help", name).rstrip(), "```", "````", ""]
+    return "\n".join(lines)
+
+
+def terms_page():
+    """Other names that are words are terms, too; those of table columns stand behind the meaning."""
+    lines = ["```{glossary}", ":sorted:", ""]
+    for entry in terms():
+        words, columns = [entry["term"]], []
+        for name in entry["also"]:
+            if name.lower() not in [known.lower() for known in words]:
+                (words if re.fullmatch(r"[A-Za-z +-]+", name) and not name.startswith("in ") else columns).append(name)
+        also = f" Columns: {', '.join(f'`{name}`' for name in columns)}." if columns else ""
+        lines += [*words, f"  {entry['means']}{also}", ""]
+    return "\n".join([*lines, "```", ""])
+
+
+def headers():
+    return sorted(path for include in ROOT.glob("*/include") for path in include.rglob("*.hpp"))
+
+
+def declared(header):
+    """(directive, name) of what a header declares, as Doxygen's XML has it."""
+    for file in sorted((BUILD / "api/xml").glob("*_8hpp.xml")):
+        compound = ElementTree.parse(file).getroot().find("compounddef")
+        if not compound.find("location").get("file").endswith(str(header)):
+            continue
+        for inner in compound.findall("innerclass"):
+            if "<" not in inner.text and inner.get("prot") == "public" and not is_nested(inner.get("refid")):
+                yield "doxygenclass" if inner.get("refid").startswith("class") else "doxygenstruct", inner.text
+    for space in sorted((BUILD / "api/xml").glob("namespacemodebank*.xml")):
+        for member in ElementTree.parse(space).getroot().iterfind(".//memberdef"):
+            if not member.find("location").get("file").endswith(str(header)):
+                continue
+            name = member.findtext("qualifiedname")
+            if member.get("kind") in ("enum", "typedef"):
+                yield f"doxygen{member.get('kind')}", name
+            elif member.get("kind") == "function":
+                types = ", ".join("".join(parameter.find("type").itertext()) for parameter in member.findall("param"))
+                yield "doxygenfunction", f"{name}({types})"
+
+
+def is_nested(refid):
+    """A class within another is described with that."""
+    outer = refid.rpartition("_1_1")[0]
+    return any((BUILD / "api/xml" / f"{kind}{outer.removeprefix('class').removeprefix('struct')}.xml").is_file() for kind in ("class", "struct"))
+
+
+def headers_page():
+    lines = []
+    for path in headers():
+        name = path.relative_to(next(parent for parent in path.parents if parent.name == "include"))
+        lines += [f"## {name}", "", f"`{path.relative_to(ROOT)}`", ""]
+        for directive, thing in declared(path.relative_to(ROOT)):
+            members = [":members:"] if directive in ("doxygenclass", "doxygenstruct") else []
+            lines += [f"```{{{directive}}} {thing}", *members, "```", ""]
+    return "\n".join(lines)
+
+
+PAGES = {"headers": headers_page, "keys": keys_page, "commands": commands_page, "terms": terms_page}
+
+
+def list_others(app, name, source):
+    """The line * of a section's table of contents stands for the pages that it does not name; there may be none."""
+    page = pathlib.Path(app.env.doc2path(name))
+    if page.name == "index.md" and page.parent != pathlib.Path(app.srcdir):
+        listed = source[0].splitlines()
+        others = sorted(other.stem for other in page.parent.glob("*.md") if other.stem not in [*listed, "index"])
+        source[0] = re.sub(r"^\*$", "\n".join(others), source[0], flags=re.M)
+
+
+def as_it_stands(app, what, name, thing, options, lines):
+    """Docstrings are plain text: what reStructuredText would take for its marks is not."""
+    lines[:] = [re.sub(r"([*`|\\])", r"\\\1", line) for line in lines]
+
+
+def fill_in(app, name, source):
+    for what, page in PAGES.items():
+        mark = f"<!-- modebank: {what} -->"
+        if mark in source[0]:
+            source[0] = source[0].replace(mark, page())
+
+
+def name_of(env, signature, node):
+    """A command is found by its first word."""
+    from sphinx import addnodes
+    node += addnodes.desc_name(signature, signature)
+    return signature.split(" ")[0]
+
+
+def setup(app):
+    app.add_object_type("confval", "confval", objname="key", indextemplate="pair: %s; key")
+    app.add_object_type("command", "command", objname="command", indextemplate="pair: %s; command", parse_node=name_of)
+    app.connect("source-read", list_others)
+    app.connect("source-read", fill_in)
+    app.connect("autodoc-process-docstring", as_it_stands)
+    return {"parallel_read_safe": True}

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "ident/data/trajectory.hpp"
+#include "ident/model/linear_model.hpp"
+
+namespace modebank {
+
+/// Which regressors' coefficients the training runs leave open: those that are always zero, and those of which sums
+/// are. Their parameters have covariances of NaN in fit_global's model, all others keep theirs. Empty: none, or there
+/// is no transition.
+std::vector<Index> open_regressors(const Recording& recording, const LinearStructure& structure);
+
+}  // namespace modebank

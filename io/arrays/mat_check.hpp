@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+
+namespace modebank {
+
+/// Walks through a MATLAB file of version 4, 6 or 7 before libmatio sees it, which believes every size that the file
+/// declares. Throws DataError where a part is said to be larger than what is there, or has no form that these files
+/// have.
+void check_mat(const std::filesystem::path& path);
+
+}  // namespace modebank

@@ -1,0 +1,143 @@
+#include "io/import/read_columns.hpp"
+
+#include <algorithm>
+
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+/// What is asked of a table at once, and the columns that it gives: numbers, or one of the other kinds.
+struct Piece {
+  TableRequest request;
+  std::vector<std::size_t> columns;
+
+  void into(Table&& table, FileColumns& result) const {
+    std::vector<FileColumn>& of_table = result.tables[request.table];
+    for (std::size_t i = 0; i < request.numbers.size(); ++i) of_table[columns[i]] = std::move(table.numbers[i]);
+    if (!request.texts.empty()) of_table[columns.front()] = std::move(table.texts.front());
+    if (!request.time.column.empty()) of_table[columns.front()] = std::move(table.time_ns);
+    for (std::string& note : table.notes)
+      if (std::find(result.notes.begin(), result.notes.end(), note) == result.notes.end())
+        result.notes.push_back(std::move(note));
+  }
+
+  void add_number(std::size_t column, const std::string& name) {
+    columns.push_back(column);
+    request.numbers.push_back(name);
+    request.may_miss.push_back(true);
+  }
+};
+
+Piece text_piece(std::size_t table, std::size_t column, const std::string& name) {
+  Piece piece{{}, {column}};
+  piece.request.table = table;
+  piece.request.texts = {name};
+  return piece;
+}
+
+Piece stamp_piece(std::size_t table, std::size_t column, const std::string& name) {
+  Piece piece{{}, {column}};
+  piece.request.table = table;
+  piece.request.time.column = name;
+  piece.request.time.may_miss = true;
+  return piece;
+}
+
+/// Stamps and what the format calls text one by one, all others as numbers together.
+std::vector<Piece> pieces_of(const std::vector<TableInfo>& tables, const ColumnChoice& wanted) {
+  std::vector<Piece> pieces;
+  for (std::size_t t = 0; t < tables.size(); ++t) {
+    Piece numbers;
+    numbers.request.table = t;
+    for (std::size_t c = 0; c < tables[t].columns.size(); ++c) {
+      const ColumnInfo& column = tables[t].columns[c];
+      if (!wanted(tables[t], column)) continue;
+      if (column.type == "time")
+        pieces.push_back(stamp_piece(t, c, column.name));
+      else if (column.type == "text")
+        pieces.push_back(text_piece(t, c, column.name));
+      else
+        numbers.add_number(c, column.name);
+    }
+    if (!numbers.columns.empty()) pieces.push_back(std::move(numbers));
+  }
+  return pieces;
+}
+
+/// Whether the file has what the pieces ask for; `result` has it then.
+bool try_read(const TableReader& reader, const std::vector<Piece>& pieces, FileColumns& result) {
+  std::vector<TableRequest> requests;
+  for (const Piece& piece : pieces) requests.push_back(piece.request);
+  try {
+    std::vector<Table> tables = reader.read(requests, nullptr);
+    for (std::size_t i = 0; i < pieces.size(); ++i) pieces[i].into(std::move(tables[i]), result);
+    return true;
+  } catch (const DataError&) {
+    return false;
+  }
+}
+
+/// Columns [first, end) of a piece of numbers: halved until those that are none are alone, which are texts then.
+void read_numbers(const TableReader& reader, const Piece& piece, std::size_t first, std::size_t end,
+                  FileColumns& result) {
+  Piece part;
+  part.request.table = piece.request.table;
+  for (std::size_t i = first; i < end; ++i) part.add_number(piece.columns[i], piece.request.numbers[i]);
+  if (try_read(reader, {part}, result)) return;
+  if (end - first == 1) {
+    try_read(reader, {text_piece(part.request.table, part.columns[0], part.request.numbers[0])}, result);
+    return;
+  }
+  const std::size_t middle = first + (end - first) / 2;
+  read_numbers(reader, piece, first, middle, result);
+  read_numbers(reader, piece, middle, end, result);
+}
+
+void read_apart(const TableReader& reader, const Piece& piece, FileColumns& result) {
+  if (!piece.request.numbers.empty()) {
+    read_numbers(reader, piece, 0, piece.columns.size(), result);
+  } else if (!piece.request.time.column.empty()) {  // what is called a time, but is none
+    Piece number;
+    number.request.table = piece.request.table;
+    number.add_number(piece.columns.front(), piece.request.time.column);
+    read_numbers(reader, number, 0, 1, result);
+  }
+  const std::vector<FileColumn>& found = result.tables[piece.request.table];
+  const auto unread = [&](std::size_t column) { return std::holds_alternative<std::monostate>(found[column]); };
+  if (std::all_of(piece.columns.begin(), piece.columns.end(), unread))
+    reader.read({piece.request}, nullptr);  // throws what is wrong with all of them
+}
+
+}  // namespace
+
+ColumnChoice choice_of(const std::string& file, const std::vector<TableInfo>& tables,
+                       const std::vector<std::string>& chosen) {
+  if (chosen.empty()) return [](const TableInfo&, const ColumnInfo&) { return true; };
+  std::vector<std::string> all;
+  for (const TableInfo& table : tables) {
+    if (!table.name.empty()) all.push_back(table.name);
+    for (const ColumnInfo& column : table.columns) all.push_back(column.name);
+  }
+  for (const std::string& name : chosen)
+    if (std::find(all.begin(), all.end(), name) == all.end()) column_position(file, all, name);  // throws
+  return [chosen](const TableInfo& table, const ColumnInfo& column) {
+    const auto has = [&](const std::string& name) {
+      return !name.empty() && std::find(chosen.begin(), chosen.end(), name) != chosen.end();
+    };
+    return has(column.name) || has(table.name);
+  };
+}
+
+FileColumns read_columns(const TableReader& reader, const std::vector<TableInfo>& tables, const ColumnChoice& wanted) {
+  FileColumns result;
+  for (const TableInfo& table : tables) result.tables.emplace_back(table.columns.size());
+  const std::vector<Piece> pieces = pieces_of(tables, wanted);
+  if (try_read(reader, pieces, result)) return result;
+  for (const Piece& piece : pieces)
+    if (!try_read(reader, {piece}, result)) read_apart(reader, piece, result);
+  return result;
+}
+
+}  // namespace modebank

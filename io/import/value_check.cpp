@@ -1,0 +1,119 @@
+#include "io/import/value_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "ident/fit/scale.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::VectorXd;
+
+std::string place(const FileStream& source, Index k) {
+  return fmt::format("{}:{}", source.file, source.line[static_cast<std::size_t>(k)]);
+}
+
+void check_row(const RunStreams& run, const FileStream& source, const Eigen::Ref<const Eigen::RowVectorXd>& values,
+               const std::string& name) {
+  // Of all rows at one pass in vectors; false for NaN.
+  if (!(values.array().abs() >= largest_value).any()) return;
+  for (Index k = 0; k < values.size(); ++k)
+    if (std::abs(values(k)) >= largest_value)
+      throw DataError(
+          fmt::format("{}: column {}: {:g} is no number to reckon with: {:g} is the limit (run \"{}\"); leave the "
+                      "field empty where nothing was measured, and see data.missing",
+                      place(source, k), name, values(k), largest_value, run.run));
+}
+
+/// Calls visit(run, source, k, value) for every value of a column in the training runs that data.where leaves.
+template <class Visit>
+void for_each_value(const std::vector<RunStreams>& runs, bool of_states, Index row, Visit visit) {
+  for (const RunStreams& run : runs) {
+    if (run.role != Role::train) continue;
+    const FileStream& source = of_states ? run.states : run.inputs;
+    const Index N = source.stream.values.cols();
+    const bool chosen = !run.where.empty() && run.where.front().values.size() == N;
+    for (Index k = 0; k < N; ++k)
+      if (const double value = source.stream.values(row, k);
+          std::isfinite(value) && !(chosen && run.where.front().values(k) == 0.0))
+        visit(run, source, k, value);
+  }
+}
+
+/// The values furthest from a column's median.
+struct Furthest {
+  double median = 0.0, largest = 0.0, held = 0.0;  ///< held: by them, of the sum of squared distances
+  std::ptrdiff_t count = 0;
+};
+
+/// The fewest that hold more than half of the spread, and stand far off all others; count 0: there are none so few.
+Furthest furthest_of(const VectorXd& values) {
+  constexpr Index fewest = 50, one_in = 1000;
+  constexpr double half = 0.5, beyond = 10.0;
+  Furthest found;
+  if (values.size() < fewest) return found;
+  found.median = median(values);
+  VectorXd distance = (values.array() - found.median).abs();
+  const double squares = distance.squaredNorm();
+  const Index most = std::max<Index>(1, values.size() / one_in);
+  std::partial_sort(distance.begin(), distance.begin() + most + 1, distance.end(), std::greater<>());
+  double held = 0.0;
+  Index count = 0;
+  while (count < most && !(held > half * squares)) held += std::pow(distance(count++), 2);
+  if (!(held > half * squares) || !(distance(count - 1) > beyond * distance(count))) return found;
+  found.largest = distance(0);
+  found.held = held / squares;
+  found.count = count;
+  return found;
+}
+
+/// The line about one column; empty where no few values own it.
+std::string dominating_in(const std::vector<RunStreams>& runs, bool of_states, Index row, const std::string& name) {
+  std::vector<double> all;
+  for_each_value(runs, of_states, row,
+                 [&](const RunStreams&, const FileStream&, Index, double value) { all.push_back(value); });
+  const Furthest found = furthest_of(VectorXd::Map(all.data(), std::ssize(all)));
+  if (found.count == 0) return {};
+  std::string line;
+  for_each_value(runs, of_states, row, [&](const RunStreams& run, const FileStream& source, Index k, double value) {
+    if (!line.empty() || std::abs(value - found.median) != found.largest) return;
+    line = fmt::format(
+        "{}: run \"{}\": {} = {:g}{} {:.4g} % of the spread of {} in the training runs: a least-squares model follows "
+        "it alone; if it is wrong, leave the field empty (data.missing) or leave the sample out (data.where)",
+        place(source, k), run.run, name, value,
+        found.count > 1 ? fmt::format(" and {} more hold", found.count - 1) : " holds", 100.0 * found.held, name);
+  });
+  return line;
+}
+
+}  // namespace
+
+void check_values(const RunStreams& run, const DataOptions& options) {
+  for (std::size_t i = 0; i < options.state.size(); ++i)
+    check_row(run, run.states, run.states.stream.values.row(static_cast<Index>(i)), options.state[i]);
+  for (std::size_t i = 0; i < options.input.size(); ++i)
+    check_row(run, run.inputs, run.inputs.stream.values.row(static_cast<Index>(i)), options.input[i]);
+  for (std::size_t i = 0; i < run.truth.size(); ++i)
+    check_row(run, run.truth[i].with_states ? run.states : run.inputs, run.truth[i].values.transpose(),
+              options.truth[i]);
+}
+
+std::vector<std::string> dominating_values(const std::vector<RunStreams>& runs, const DataOptions& options) {
+  std::vector<std::string> lines;
+  const auto look = [&](const std::vector<std::string>& names, bool of_states) {
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (std::string line = dominating_in(runs, of_states, static_cast<Index>(i), names[i]); !line.empty())
+        lines.push_back(std::move(line));
+  };
+  look(options.state, true);
+  look(options.input, false);
+  return lines;
+}
+
+}  // namespace modebank

@@ -1,0 +1,254 @@
+// Wrong clocks and numbers that are none: what is said of them before anything is fitted, and what is right even so.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+#include <sstream>
+
+#include "filter/step/equations/bounds.hpp"
+#include "ident/data/streams.hpp"
+#include "ident/fit/global_model.hpp"
+#include "ident/fit/open_regressors.hpp"
+#include "ident/lag/track.hpp"
+#include "io/archive/archive.hpp"
+#include "io/import/value_check.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class ClocksAndNumbers : public CliTest {
+ protected:
+  using Row = std::vector<std::string>;  // time, wz, left, right
+
+  /// Changes the rows of a run's file; `line`: its number in the file, the header's is 1.
+  void change(const std::string& name, const std::function<void(int line, Row& row)>& change_row) const {
+    std::istringstream in(csv_run(80, name == "run_00.csv" ? 1 : 2));
+    std::string all, text;
+    for (int line = 1; std::getline(in, text); ++line) {
+      Row row;
+      std::istringstream fields(text);
+      for (std::string field; std::getline(fields, field, ',');) row.push_back(field);
+      if (line > 1) change_row(line, row);
+      for (std::size_t i = 0; i < row.size(); ++i) all += (i > 0 ? "," : "") + row[i];
+      all += "\n";
+    }
+    write(name, all);
+  }
+  void change_both(const std::function<void(int line, Row& row)>& change_row) const {
+    for (const char* name : {"run_00.csv", "run_01.csv"}) change(name, change_row);
+  }
+  ProgramResult check() const { return modebank({"check", config(), "--data.root", file(".").string()}); }
+};
+
+TEST_F(ClocksAndNumbers, Finding_D4_AStampFarFromItsNeighboursIsNamed) {
+  for (const char* stamp : {"1e9", "1e12", "1e308"}) {
+    change("run_00.csv", [&](int line, Row& row) { row[0] = line == 81 ? stamp : row[0]; });
+    for (const ProgramResult& result : {check(), run({"--data.lag_s", "auto"}), run({"--data.rate_hz", "100"})}) {
+      EXPECT_EQ(result.status, 1) << stamp;
+      EXPECT_THAT(result.err, HasSubstr("run_00.csv:81")) << stamp;
+    }
+  }
+}
+
+TEST_F(ClocksAndNumbers, Finding_D4_APauseOfADayCostsNoGrid) {
+  change("run_00.csv", [](int line, Row& row) {
+    if (line > 41) row[0] = std::to_string(86400.0 + std::stod(row[0]));
+  });
+  EXPECT_EQ(run({"--data.rate_hz", "100"}).status, 0);
+  const Archive archive = read_archive(this->archive());
+  Index samples = 0;
+  for (const Trajectory& part : archive.recording->runs) samples += part.samples();
+  EXPECT_LT(samples, 3000) << "at 100 Hz the pause alone would be 8.64 million";
+  EXPECT_EQ(check().status, 0);
+  EXPECT_EQ(run({"--data.lag_s", "auto"}).status, 0);
+}
+
+/// The grid about a pause is that of one without it, but for what lies deep in the pause.
+TEST(ClocksAndNumbersGrid, LeavesOutOnlyWhatLiesDeepInAPause) {
+  VectorXd time_s(200);
+  for (Index k = 0; k < 200; ++k) time_s(k) = 0.1 * static_cast<double>(k) + (k < 100 ? 0.0 : 5000.0);
+  const VectorXd grid = joint_times(time_s, time_s, {10.0, 0.0, 0.0, 0.0});
+  EXPECT_LT(grid.size(), 200 + 2 * 110);
+  Index at = 0;
+  for (double k = 0.0; k <= 50199.0; ++k) {
+    const double time = 0.0 + k / 10.0;
+    const bool deep = time > 9.9 + 9.95 && time < 5010.0 - 9.95;
+    if (at < grid.size() && grid(at) == time)
+      ++at;
+    else
+      EXPECT_TRUE(deep) << time;
+  }
+  EXPECT_EQ(at, grid.size()) << "times of the whole grid, and no others";
+  for (Index k = 0; k < 200; ++k) time_s(k) = 0.1 * static_cast<double>(k) + (k < 100 ? 0.0 : 90.0);
+  EXPECT_EQ(joint_times(time_s, time_s, {10.0, 0.0, 0.0, 0.0}).size(), 1100) << "a gap of 90 s at 10 Hz is short";
+}
+
+/// A pause of 1e9 s has 4e8 windows: they cost nothing, and the matches on either side stay.
+TEST(ClocksAndNumbersLag, PassesOverAPause) {
+  Stream inputs{VectorXd(2000), Eigen::MatrixXd(1, 2000)};
+  for (Index k = 0; k < 2000; ++k) {
+    inputs.time_s(k) = 0.1 * static_cast<double>(k) + (k < 1000 ? 0.0 : 1e9);
+    inputs.values(0, k) =
+        std::sin(0.37 * static_cast<double>(k % 1000)) + std::sin(0.11 * static_cast<double>(k % 1000));
+  }
+  Stream states = inputs;
+  for (Index k = 3; k < 2000; ++k) states.values(0, k) = inputs.values(0, k - 3);
+  const LagTrack track = track_lag(states, inputs, {.range_s = 1.0});
+  ASSERT_GT(track.windows(), 4);
+  EXPECT_NEAR(track.median_s(), 0.3, 0.07);  // half a period of held inputs may be in it
+  EXPECT_GT(track.time_s(track.windows() - 1), 1e9);
+}
+
+TEST_F(ClocksAndNumbers, Finding_D7_AValueThatNoScoreWouldCountIsRefusedWithItsPlace) {
+  for (const char* value : {"1e30", "-1e50", "1e155", "1e300"})
+    for (const char* name : {"run_00.csv", "run_01.csv"}) {  // of training, held out
+      change("run_00.csv", [](int, Row&) {});
+      change(name, [&](int line, Row& row) { row[1] = line == 42 ? value : row[1]; });
+      for (const ProgramResult& result : {run(), check()}) {
+        EXPECT_EQ(result.status, 1) << value;
+        EXPECT_THAT(result.err, HasSubstr(std::string(name) + ":42: column wz: ")) << value;
+        EXPECT_THAT(result.err, HasSubstr("1e+30 is the limit")) << value;
+      }
+      change(name, [](int, Row&) {});
+    }
+  change("run_00.csv", [](int line, Row& row) { row[2] = line == 7 ? "1e40" : row[2]; });
+  EXPECT_THAT(run().err, HasSubstr("run_00.csv:7: column left: 1e+40"));
+}
+
+/// Nothing that import takes is missing to a filter.
+static_assert(largest_value == largest_measurement);
+
+TEST_F(ClocksAndNumbers, Finding_D7_AValueBelowTheLimitIsScored) {
+  change("run_01.csv", [](int line, Row& row) { row[1] = line == 42 ? "1e29" : row[1]; });
+  ASSERT_EQ(run().status, 0);
+  for (const SummaryRow& row : read_archive(archive()).summary)
+    if (row.role == Role::test) {
+      EXPECT_EQ(row.samples, 79);
+      EXPECT_LT(row.log_score, -1e3) << row.filter;
+    }
+}
+
+TEST_F(ClocksAndNumbers, Finding_D8_AConstantStateIsRefused) {
+  change_both([](int, Row& row) { row[1] = "0.3"; });
+  const ProgramResult result = run();
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("the state wz is constant: 0.3 in every sample of the training runs 00"));
+  EXPECT_THAT(result.out + result.err, Not(HasSubstr("evidence")));
+  const ProgramResult checked = check();
+  EXPECT_EQ(checked.status, 1);
+  EXPECT_THAT(checked.out, HasSubstr("wz is constant: 0.3 in every sample"));
+  EXPECT_THAT(checked.out + checked.err, Not(HasSubstr("nan")));
+}
+
+TEST_F(ClocksAndNumbers, Finding_D8_AConstantHeldOutStateIsJudged) {
+  change("run_01.csv", [](int, Row& row) { row[1] = "0.3"; });
+  EXPECT_EQ(run().status, 0);
+}
+
+TEST_F(ClocksAndNumbers, Finding_D9_AZeroInputLeavesTheOthersTheirErrors) {
+  change_both([](int, Row& row) { row[2] = "0"; });
+  const ProgramResult result = run();
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("not identifiable from the training runs: the effect of left, which is zero"));
+  EXPECT_THAT(result.out, HasSubstr("not identifiable"));
+  const Archive archive = read_archive(this->archive());
+  const VectorXd variance = archive.windows->global.covariance.diagonal();
+  EXPECT_GT(variance(0), 0.0);
+  EXPECT_TRUE(std::isnan(variance(1)));
+  EXPECT_GT(variance(2), 0.0);
+  const ProgramResult shown = modebank({"show", this->archive()});
+  EXPECT_THAT(shown.out, HasSubstr("wz <- left not identifiable"));
+  EXPECT_THAT(shown.out, Not(HasSubstr("+- nan")));
+  const ProgramResult checked = check();
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_THAT(checked.out, HasSubstr("left is constant: 0 in every sample"));
+  EXPECT_THAT(checked.out + checked.err, Not(HasSubstr("nan")));
+}
+
+TEST_F(ClocksAndNumbers, Finding_D9_CollinearInputsLeaveTheStateItsErrors) {
+  change_both([](int, Row& row) { row[3] = row[2]; });
+  const ProgramResult result = run();
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("the effect of left, right, which are zero or sums of multiples of each other"));
+  const VectorXd variance = read_archive(archive()).windows->global.covariance.diagonal();
+  EXPECT_GT(variance(0), 0.0);
+  EXPECT_TRUE(std::isnan(variance(1)) && std::isnan(variance(2)));
+  EXPECT_THAT(check().out, Not(HasSubstr("nan")));
+}
+
+/// What is left of the regression without the column that is open is the same regression.
+TEST(ClocksAndNumbersGlobal, Finding_D9_AnOpenRegressorDoesNotChangeTheOthers) {
+  const auto recording = [](bool zero) {
+    Recording result;
+    result.states = {{"x", ""}};
+    for (int i = 0; i < (zero ? 2 : 1); ++i) result.inputs.push_back({"u" + std::to_string(i), ""});
+    Trajectory run;
+    run.run = "a";
+    run.role = Role::train;
+    run.time_s = VectorXd::LinSpaced(60, 0.0, 5.9);
+    run.state.resize(1, 60);
+    run.input = Eigen::MatrixXd::Zero(zero ? 2 : 1, 60);
+    for (Index k = 0; k < 60; ++k) {
+      const double t = static_cast<double>(k);
+      run.state(0, k) = std::sin(0.3 * t) + 0.1 * std::sin(7.0 * t);
+      run.input(run.input.rows() - 1, k) = 1e-6 * std::cos(0.7 * t * t);
+    }
+    result.runs.push_back(std::move(run));
+    return result;
+  };
+  const GlobalModel open = fit_global(recording(true), {1, 2}), whole = fit_global(recording(false), {1, 1});
+  EXPECT_NEAR(open.theta(0), whole.theta(0), 1e-12);
+  EXPECT_NEAR(open.theta(2) / whole.theta(1), 1.0, 1e-9);
+  EXPECT_NEAR(open.covariance(0, 0) / whole.covariance(0, 0), 1.0, 1e-9);
+  EXPECT_NEAR(open.covariance(2, 2) / whole.covariance(1, 1), 1.0, 1e-9);
+  EXPECT_NEAR(open.covariance(0, 2) / whole.covariance(0, 1), 1.0, 1e-6);
+  EXPECT_TRUE(std::isnan(open.covariance(1, 1)));
+  EXPECT_EQ(open_regressors(recording(true), {1, 2}), std::vector<Index>{1});
+  EXPECT_EQ(open_regressors(recording(false), {1, 1}), std::vector<Index>{});
+}
+
+TEST_F(ClocksAndNumbers, Finding_D16_OneOutlierThatOwnsTheGlobalModelIsNamed) {
+  change("run_00.csv", [](int line, Row& row) { row[1] = line == 42 ? "1e5" : row[1]; });
+  const char* said = "run_00.csv:42: run \"00\": wz = 100000 holds 100 % of the spread of wz in the training runs";
+  EXPECT_THAT(run().err, HasSubstr(said));
+  EXPECT_THAT(check().out, HasSubstr("run_00.csv:42: run \"00\": wz = 100000"));
+  // Held out it owns nothing; and where data.where leaves it out it is none of the data.
+  change("run_00.csv", [](int, Row&) {});
+  EXPECT_THAT(run().err, Not(HasSubstr("of the spread of")));
+  change("run_01.csv", [](int line, Row& row) { row[1] = line == 42 ? "1e5" : row[1]; });
+  EXPECT_THAT(run().err, Not(HasSubstr("of the spread of")));
+  change("run_01.csv", [](int, Row&) {});
+  change("run_00.csv", [](int line, Row& row) { row[1] = line == 42 ? "1e5" : row[1]; });
+  EXPECT_THAT(run({"--data.where", "abs(wz) < 1000", "--window.length", "15"}).err, Not(HasSubstr("of the spread of")));
+}
+
+TEST_F(ClocksAndNumbers, Finding_D15_NoControlCharacterReachesTheTerminal) {
+  const std::string escape = "w\x1b[31mRED\x07";
+  for (const char* name : {"run_00.csv", "run_01.csv"}) {
+    std::string text = csv_run(80, 1);
+    write(name, "time," + escape + text.substr(std::string("time,wz").size()));
+  }
+  const auto expect_shown = [&](const ProgramResult& result) {
+    EXPECT_NE(result.status, 0);
+    EXPECT_THAT(result.err, HasSubstr("w\\x1b[31mRED\\x07"));
+    EXPECT_THAT(result.out + result.err, Not(HasSubstr("\x1b")));
+  };
+  expect_shown(run());  // among the columns that there are
+  expect_shown(run({"--data.state", escape}));
+  expect_shown(modebank({"check", config(), "--data.root", file(".").string(), "--data.state", escape}));
+  for (const char* name : {"run_00.csv", "run_01.csv"}) change(name, [](int, Row&) {});
+  write("run_\x1b[31mRED\x07.csv", csv_run(80, 3));
+  const ProgramResult named = run();
+  EXPECT_EQ(named.status, 1);
+  EXPECT_THAT(named.err, HasSubstr("\"\\x1b[31mRED\\x07\" cannot name a run"));
+  EXPECT_THAT(named.out + named.err, Not(HasSubstr("\x1b")));
+}
+
+}  // namespace
+}  // namespace modebank::test

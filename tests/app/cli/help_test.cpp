@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "app/cli/command_table.hpp"
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "app/text/terminal.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+class Help : public CliTest {};
+
+bool installed(const std::string& program) {
+  return std::system(("command -v " + program + " > /dev/null").c_str()) == 0;
+}
+
+ProgramResult in_shell(const std::string& shell, const std::string& script) {
+  return run_program({shell, "-c", script});
+}
+
+TEST_F(Help, OfEveryCommandFitsAScreenAndIsTheSameBothWays) {
+  for (const app::Command& command : app::command_table()) {
+    const ProgramResult help = modebank({"help", command.name});
+    ASSERT_EQ(help.status, 0) << command.name << help.err;
+    EXPECT_EQ(help.out, modebank({command.name, "--help"}).out);
+    const std::vector<std::string> lines = app::lines_of(help.out);
+    EXPECT_LE(lines.size(), 41u) << help.out;  // with the empty text after the last line's end
+    for (const std::string& line : lines) EXPECT_LE(app::columns_of(line), 100) << line;
+    for (const app::CommandOption& option : command.options)
+      EXPECT_NE(help.out.find("--" + option.long_name()), std::string::npos) << option.name;
+  }
+}
+
+TEST_F(Help, KnowsSectionsAndKeys) {
+  const std::string section = modebank({"help", "window"}).out;
+  for (const app::Option& option : app::option_table()) {
+    EXPECT_EQ(section.find("--" + option.key + " ") != std::string::npos, option.section() == "window") << option.key;
+  }
+  EXPECT_NE(modebank({"help", "bank.refine"}).out.find("--bank.refine"), std::string::npos);
+}
+
+/// An option that nothing would read is a mistake of the user's, whatever its value.
+TEST_F(Help, OptionsThatACommandDoesNotReadAreRefused) {
+  const std::vector<std::vector<std::string>> lines{{"show", archive(), "-o", "x"},
+                                                    {"run", config(), "-o", "x"},
+                                                    {"run", config(), "--repair"},
+                                                    {"run", config(), "--study.vary", "window.length = 3"},
+                                                    {"verify", archive(), "--window.length", "30"},
+                                                    {"identify", config(), "--track.level", "0.9"},
+                                                    {"report", archive(), "--json"},
+                                                    {"simulate", config(), "--samples", "3"}};
+  for (const std::vector<std::string>& line : lines) {
+    const ProgramResult result = modebank(line);
+    EXPECT_EQ(result.status, 2) << line[0] << ' ' << line[2];
+    EXPECT_NE(result.err.find(line[0] + " does not read --"), std::string::npos) << result.err;
+  }
+  EXPECT_TRUE(left_behind().empty());
+}
+
+TEST_F(Help, WithoutACommandThreeLinesSayHowToStart) {
+  const ProgramResult result = modebank({});
+  EXPECT_EQ(result.status, 2);
+  for (const char* start : {"modebank demo", "modebank init LOG", "modebank help"})
+    EXPECT_NE(result.err.find(start), std::string::npos) << result.err;
+}
+
+TEST_F(Help, ConfigSaysWhereEachValueComesFromAndIsAConfiguration) {
+  const ProgramResult shown = modebank({"config", config(), "--window.length", "17"});
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  EXPECT_NE(shown.out.find("# --window.length"), std::string::npos);
+  EXPECT_NE(shown.out.find("# " + config() + ":"), std::string::npos);
+  EXPECT_NE(shown.out.find("# default"), std::string::npos);
+  write("again.ini", shown.out);
+  EXPECT_EQ(app::resolved_text(app::load_config(file("again.ini"), {})),
+            app::resolved_text(app::load_config(config(), {{"window.length", "17"}})));
+}
+
+TEST_F(Help, SchemaHasEveryKeyWithItsDefault) {
+  const ProgramResult shown = modebank({"config", "--schema"});
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  const nlohmann::json sections = nlohmann::json::parse(shown.out).at("properties");
+  for (const app::Option& option : app::option_table()) {
+    const nlohmann::json& key = sections.at(option.section()).at("properties").at(option.name());
+    EXPECT_EQ((option.repeatable ? key.at("oneOf").at(0) : key).at("default"), option.get(app::Config{})) << option.key;
+  }
+}
+
+TEST_F(Help, DryRunNamesFilesAndWritesNone) {
+  const ProgramResult result = run({"--dry-run"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* part : {"reads     ", "run_00.csv", "run_01.csv", "writes    ", "out.h5"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << result.out;
+  EXPECT_TRUE(left_behind().empty());
+}
+
+/// Stages that come from an archive bring their data along.
+TEST_F(Help, DryRunOnAnArchivesStagesReadsTheArchive) {
+  write("out.h5", "is not opened");
+  const ProgramResult result = modebank({"cluster", config(), "--archive.input", archive(), "--dry-run"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("reads     " + archive()), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("run_00.csv"), std::string::npos) << result.out;
+}
+
+TEST_F(Help, BashCompletesCommandsOptionsKeysAndWords) {
+  write("c.bash", modebank({"completion", "bash"}).out);
+  const auto completed = [&](const std::string& words) {
+    return in_shell("bash",
+                    fmt::format("source {}; COMP_WORDS=({}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); _modebank; "
+                                "echo \" ${{COMPREPLY[@]}} \"",
+                                file("c.bash").string(), words))
+        .out;
+  };
+  EXPECT_EQ(completed("modebank iden"), " identify \n");
+  EXPECT_EQ(completed("modebank verify --rep"), " --repair \n");
+  EXPECT_EQ(completed("modebank run --window.len"), " --window.length \n");
+  EXPECT_EQ(completed("modebank run --data.decimal co"), " comma \n");
+}
+
+TEST_F(Help, ZshAndFishTakeTheirScripts) {
+  for (const char* shell : {"zsh", "fish"}) {
+    if (!installed(shell)) {
+      fmt::print("SKIPPED PART: {} is not installed\n", shell);
+      continue;
+    }
+    write("script", modebank({"completion", shell}).out);
+    const ProgramResult read = in_shell(shell, fmt::format("{} -n {}", shell, file("script").string()));
+    EXPECT_EQ(read.status, 0) << shell << read.err;
+  }
+}
+
+TEST_F(Help, ManualPagesAreCleanRoff) {
+  if (!installed("mandoc")) GTEST_SKIP() << "mandoc is not installed";
+  for (const app::Command& command : app::command_table()) {
+    write("page.1", modebank({"manual", command.name}).out);
+    const ProgramResult lint = run_program({"mandoc", "-Tlint", "-Wwarning", file("page.1").string()});
+    EXPECT_EQ(lint.status, 0) << command.name << '\n' << lint.out << lint.err;
+  }
+  write("page.1", modebank({"manual"}).out);
+  const ProgramResult lint = run_program({"mandoc", "-Tlint", "-Wwarning", file("page.1").string()});
+  EXPECT_EQ(lint.status, 0) << lint.out << lint.err;
+}
+
+}  // namespace
+}  // namespace modebank::test

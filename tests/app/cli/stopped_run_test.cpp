@@ -1,0 +1,104 @@
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <thread>
+
+#include "app/cli/kept_stages.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A stage that takes longer than is worth a file, whose result is one number.
+struct SlowStage {
+  int computed = 0;
+  double value = 0.0;
+
+  StagePart part(double result) {
+    return {[this, result] {
+              std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+              ++computed;
+              value = result;
+            },
+            [this] {
+              Archive archive;
+              archive.lag_counts = LagCounts{};
+              archive.lag_counts->state_lags = static_cast<Index>(value);
+              return archive;
+            },
+            [this](Archive&& archive) { value = static_cast<double>(archive.lag_counts->state_lags); }};
+  }
+};
+
+class StoppedRun : public CliTest {
+ protected:
+  /// A process that is stopped by Ctrl-C after one stage; the message that it left. Says how often it computed.
+  std::string stopped_after(double result, int& computed) const {
+    std::array<int, 2> ends{}, counts{};
+    EXPECT_EQ(pipe(ends.data()) | pipe(counts.data()), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+      dup2(ends[1], STDERR_FILENO);
+      app::KeptStages kept(output());
+      SlowStage stage;
+      kept.provide(Stage::lag_counts, "key", stage.part(result));
+      const auto told = ::write(counts[1], &stage.computed, sizeof stage.computed);
+      raise(told > 0 ? SIGINT : SIGKILL);
+      _exit(0);
+    }
+    int status = 0;
+    EXPECT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
+    EXPECT_EQ(::read(counts[0], &computed, sizeof computed), static_cast<ssize_t>(sizeof computed));
+    std::string text(1000, ' ');
+    text.resize(static_cast<std::size_t>(std::max<ssize_t>(0, ::read(ends[0], text.data(), text.size()))));
+    for (const int end : {ends[0], ends[1], counts[0], counts[1]}) close(end);
+    return text;
+  }
+  fs::path output() const { return file("robot.h5"); }
+};
+
+/// What a process that was stopped by Ctrl-C has kept is taken by the next, for the same key alone; after a run that
+/// ended nothing is left.
+TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
+  int computed = -1;
+  EXPECT_NE(stopped_after(3, computed).find("are kept in"), std::string::npos);
+  EXPECT_EQ(computed, 1);
+  ASSERT_EQ(left_behind(), std::vector<std::string>{".robot.h5.stages"});
+  // Stopped once more before anything else was finished: what the first has kept is still there.
+  EXPECT_NE(stopped_after(5, computed).find("are kept in"), std::string::npos);
+  EXPECT_EQ(computed, 0);
+  {
+    app::KeptStages kept(output());
+    SlowStage same, other;
+    kept.provide(Stage::lag_counts, "key", same.part(5));
+    EXPECT_EQ(same.computed, 0);
+    EXPECT_EQ(same.value, 3.0);
+    kept.provide(Stage::lag_counts, "another key", other.part(7));
+    EXPECT_EQ(other.computed, 1);
+    EXPECT_EQ(other.value, 7.0);
+  }
+  EXPECT_TRUE(left_behind().empty());
+}
+
+/// As nohup has it; and what signals did before they do again.
+TEST_F(StoppedRun, ASignalThatIsIgnoredStaysIgnored) {
+  const auto before = signal(SIGINT, SIG_IGN);
+  {
+    const app::KeptStages kept(output());
+    EXPECT_EQ(raise(SIGINT), 0);  // or this process ends here
+  }
+  EXPECT_EQ(signal(SIGINT, before), SIG_IGN);
+  const auto at_end = signal(SIGTERM, SIG_DFL);
+  signal(SIGTERM, at_end);
+  EXPECT_EQ(at_end, SIG_DFL);
+}
+
+}  // namespace
+}  // namespace modebank::test

@@ -1,0 +1,25 @@
+# The reference tests under each of the vector kernels' x86 instruction sets. One lane at a time runs with the libm of a machine
+# without AVX2 and FMA, too. A machine that lacks a set skips its tests; sanitizers must be loaded first and leave them out.
+if(MODEBANK_SANITIZERS OR MODEBANK_COVERAGE OR NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+  return()
+endif()
+
+add_library(instruction_set MODULE support/instruction_set.cpp)
+target_link_libraries(instruction_set PRIVATE PkgConfig::highway modebank_build)
+
+function(modebank_instruction_sets test label filter)
+  foreach(set AVX3 AVX2 SCALAR)
+    set(environment LD_PRELOAD=$<TARGET_FILE:instruction_set> MODEBANK_TEST_INSTRUCTION_SET=${set})
+    if(set STREQUAL SCALAR)
+      list(APPEND environment GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA)
+    endif()
+    add_test(NAME InstructionSet.${set}.${test} COMMAND test_${test} --gtest_filter=${filter})
+    set_tests_properties(InstructionSet.${set}.${test} PROPERTIES
+      LABELS ${label} TIMEOUT 600 SKIP_RETURN_CODE 77 ENVIRONMENT "${environment}")
+    add_dependencies(test_${test} instruction_set)
+  endforeach()
+endfunction()
+
+modebank_instruction_sets(ident short "*Batch.EveryWindowIsAt*/huber_*:*Batch.EveryWindowIsAt*/tukey_*")
+modebank_instruction_sets(mixture short "MixtureGolden.*:Mclust.*")
+modebank_instruction_sets(filter short "*GoldenFilter.*:VectorImm.*:LikelihoodGradient.*:Interval.FilterAgreesWithTheIndependentReference")

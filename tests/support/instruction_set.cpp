@@ -1,0 +1,51 @@
+// Loaded before a test program (LD_PRELOAD): its vector kernels run by the instruction set that
+// MODEBANK_TEST_INSTRUCTION_SET names (AVX3, AVX2, SCALAR), not by the machine's best. Ends the program with `skipped`
+// where the machine lacks it, and with `unused` where no kernel was called, so that a test cannot pass by another set.
+#include <hwy/targets.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+constexpr int skipped = 77, unused = 78;
+
+std::int64_t target_of(const char* name) {
+  for (int bit = 0; bit < 63; ++bit)
+    if (std::strcmp(hwy::TargetName(std::int64_t{1} << bit), name) == 0) return std::int64_t{1} << bit;
+  return 0;
+}
+
+class InstructionSet {
+ public:
+  InstructionSet() {
+    if (!name_) return;
+    const std::int64_t target = target_of(name_);
+    if (target == 0) {
+      std::fprintf(stderr, "no instruction set is called %s\n", name_);
+      _exit(unused);
+    }
+    if ((hwy::SupportedTargets() & target) == 0) {
+      std::fprintf(stderr, "this machine has no instruction set %s\n", name_);
+      _exit(skipped);
+    }
+    hwy::SetSupportedTargetsForTest(target);
+  }
+  ~InstructionSet() {
+    if (!name_ || hwy::GetChosenTarget().IsInitialized()) return;
+    std::fprintf(stderr, "no kernel was called in the instruction set %s\n", name_);
+    _exit(unused);
+  }
+  InstructionSet(const InstructionSet&) = delete;
+  InstructionSet& operator=(const InstructionSet&) = delete;
+
+ private:
+  const char* name_ = std::getenv("MODEBANK_TEST_INSTRUCTION_SET");
+};
+
+const InstructionSet chosen;
+
+}  // namespace

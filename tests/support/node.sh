@@ -1,0 +1,22 @@
+#!/bin/sh
+# node.sh NAME MOUNT_PROGRAM BACKING MOUNT LOCKS CACHE_S SKEW_S COMMAND...: runs a command as on a machine of that name
+# that sees BACKING at MOUNT over a network: with host name, processes and mounts of its own (root only).
+set -eu
+if [ "${MODEBANK_NODE:-}" != inside ]; then
+  exec env MODEBANK_NODE=inside unshare --uts --pid --mount --fork --kill-child --mount-proc "$0" "$@"
+fi
+unset MODEBANK_NODE
+hostname "$1"
+program=$2 backing=$3 mount=$4 locks=$5 cache_s=$6 skew_s=$7
+shift 7
+"$program" "$backing" "$mount" "$locks" "$cache_s" "$skew_s" &
+tries=0
+until mountpoint -q "$mount"; do
+  tries=$((tries + 1))
+  [ "$tries" -lt 200 ] || { echo "node.sh: $mount was not mounted" >&2; exit 125; }
+  sleep 0.05
+done
+status=0
+"$@" || status=$?
+umount "$mount" 2>/dev/null || umount -l "$mount"
+exit "$status"
