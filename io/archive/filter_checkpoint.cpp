@@ -75,12 +75,6 @@ DriftState drift_of(const json& stored) {
   return {matrix_of(drift.at("theta")), matrices_of(drift.at("P")), matrices_of(drift.at("cross"))};
 }
 
-Eigen::VectorXd vector_of(const json& stored) {
-  const Eigen::MatrixXd matrix = matrix_of(stored);
-  if (matrix.cols() != 1) throw std::invalid_argument("columns of a vector");
-  return matrix;
-}
-
 }  // namespace
 
 void save_checkpoint(const std::filesystem::path& path, const std::string& identity, const FilterSnapshot& snapshot) {
