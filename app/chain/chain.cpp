@@ -16,9 +16,14 @@ void Chain::provide(Stage stage, const StagePart& part) {
   if (held == wanted) return;
   held.clear();  // if this throws, what is there belongs to no run
   const Stopwatch watch;
-  source_.provide(stage, wanted, part);
+  // What goes into a file as it is made is in no memory for another run to take.
+  const bool streamed = sink_ && (stage == Stage::competitor_scores || stage == Stage::bank_scores);
+  if (streamed)
+    part.compute();
+  else
+    source_.provide(stage, wanted, part);
   seconds_[index_of(stage)] = watch.seconds();
-  held = wanted;
+  if (!streamed) held = wanted;
   listener_.done(stage, archive_);
 }
 
