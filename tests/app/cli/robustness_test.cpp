@@ -133,9 +133,9 @@ TEST_F(Robustness, D16TheWidthIsThatOfATerminal) {
   const char* const before = std::getenv("COLUMNS");
   const std::string kept = before ? before : "";
   setenv("COLUMNS", "2000000000", 1);
-  EXPECT_LE(app::standard_output().width, 1000);
+  EXPECT_LE(app::standard_output().width, 10000);
   setenv("COLUMNS", "99999999999999999999", 1);
-  EXPECT_LE(app::standard_output().width, 1000);
+  EXPECT_LE(app::standard_output().width, 10000);
   setenv("COLUMNS", "80", 1);
   EXPECT_EQ(app::standard_output().width, 80);
   if (before)
