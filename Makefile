@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs
+.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs
 
 all: build
 
@@ -80,6 +80,10 @@ evidence: build
 # How much is lost against the filter with the true parameters, on systems that are known; about three hours of a processor.
 systems: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_systems.py build/modebank
+
+# Time and memory of five million rows and of ten thousand runs, as docs/results/scale.md has them; ten minutes of two processors and 10 GB of disk.
+scale: build
+	/usr/bin/python3 tests/bench/scale.py build/modebank build/scale
 
 # A robot's day through `modebank track`, killed every ten minutes of the log; docs/results/track.md.
 track-day: demo

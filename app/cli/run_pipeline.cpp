@@ -128,10 +128,8 @@ Result execute(const CommandLine& line, const Config& config, StageSource& sourc
     const Archive& data = chain.run(options, Stage::lag_counts, execution);
     if (streams_windows(*data.recording, chain.inputs().windows)) return identify_many(config, chain, data, log);
   }
-  const std::string& banks = config.archive.bank;
-  const Archive& archive = banks.empty() ? chain.run(options, last_stage(line.command), execution)
-                                         : chain.judge_stored(banks, options, execution);
-  write_archive(config.archive.output, archive);
+  const Archive& archive =
+      run_and_write(chain, options, last_stage(line.command), config.archive.bank, execution, config.archive.output);
   if (has_first_screen(archive))
     return {first_screen(archive, resolved_values(archive.config), config.archive.output, standard_output().width,
                          line.program),

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/cli/commands.hpp"
@@ -24,9 +25,9 @@ using nlohmann::json;
 void print_overview(const CommandLine& line) {
   const std::string& file = line.files[0];
   const bool full_form = line.form == "full";
-  const Archive archive = read_archive(file);
   const Terminal terminal = standard_output();
   const int width = terminal.width;
+  const Archive archive = read_overview(file, std::max(width, 100));  // a run has columns in a strip
   if (has_first_screen(archive))
     fmt::print("{}\n", first_screen(archive, resolved_values(archive.config), file, width, line.program));
   fmt::print("{}\n{}", wrapped(provenance_text(archive), width), summary_text(archive, width));
