@@ -24,8 +24,9 @@ struct TrialPlace {
 Page study_page(const StudyFile& file, const StudyTable& table, const std::vector<TrialPlace>& places,
                 const std::string& name);
 
-/// The paper's figure 5 over K: shares of samples outside the interval of the baseline, of noise only and of the banks
-/// with each number of components.
+/// coverage: the paper's figure 5 over K, shares of samples outside the interval of the baseline, of noise only and of
+/// the banks with each number of components; effects: the best that each value of each key reaches; pareto: log score
+/// over the number of modes.
 FigureSet study_figures(const StudyTable& table);
 
 }  // namespace modebank::app::report
