@@ -28,7 +28,7 @@ export function s(tag, attributes = {}, ...children) {
 // A value as C++ formatted it (numbers.hpp), with the exact one in data-value.
 export function value(cell, tag = 'span') {
   if (cell === null || cell === undefined) return h(tag, {}, '–');
-  if (typeof cell !== 'object') return h(tag, {}, String(cell));
+  if (cell instanceof Node || typeof cell !== 'object') return h(tag, {}, cell instanceof Node ? cell : String(cell));
   return h(tag, {'data-value': JSON.stringify(cell.v)}, cell.t);
 }
 
