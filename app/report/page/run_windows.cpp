@@ -26,8 +26,11 @@ Unit units_of_parameters(const Archive& archive) {
                                        : unit_of(fits.model_parameters);
 }
 
-/// The parameters among the features are the first of them; they go by their labels.
+/// As people read them: the parameters, which are the first of the features, by their labels, noise in words.
 std::vector<std::string> with_labels(std::vector<std::string> features, const Archive& archive) {
+  const std::string noise = "log_noise_variance_";
+  for (std::string& feature : features)
+    if (feature.starts_with(noise)) feature = "log noise variance of " + feature.substr(noise.size());
   const std::vector<std::string> labels = window_labels(archive);
   std::copy_n(labels.begin(), std::min(labels.size(), features.size()), features.begin());
   return features;
