@@ -76,6 +76,9 @@ function shells(cloud, axes) {
   });
 }
 
+// WebGL shows &lt; as it stands.
+const solidTitle = ({name, unit}) => axisTitle({name: name.replace(/<-/g, '←'), unit});
+
 function solidPlot(cloud) {
   const {axes} = cloud, named = cloud.windows.axes;
   const scene = {
@@ -85,7 +88,7 @@ function solidPlot(cloud) {
     camera: {eye: {x: 1.5, y: 1.5, z: 1}, center: {x: 0, y: 0, z: -0.12}},
   };
   ['xaxis', 'yaxis', 'zaxis'].forEach((name, j) => {
-    scene[name] = {title: {text: axisTitle(named[axes[j]])}, range: rangeOf(cloud, axes[j]), nticks: 5};
+    scene[name] = {title: {text: solidTitle(named[axes[j]])}, range: rangeOf(cloud, axes[j]), nticks: 5};
   });
   const traces = [
     ...windowPoints(cloud, axes, 'scatter3d'),

@@ -126,7 +126,7 @@ function switchWeights(weights) {
 
 function guard(bank) {
   if (!bank.guard) return null;
-  return [h('h3', {}, 'Which states and inputs belong to which mode'), guardFigure(bank.guard, bank.modes.length)];
+  return [h('h3', {}, 'Which states and inputs belong to which mode'), guardFigure(bank)];
 }
 
 export function switching(bank) {

@@ -10,7 +10,7 @@ import {withTips} from './tips.js';
 const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 // Commands in a sentence, `modebank show`, and options, --filter.horizon 10, as such.
-const command = /(`[^`]+`|--[\w.]+(?:[ =](?:'[^']*'|[\d.]+))?)/;
+const command = /(`[^`]+`|--[\w.]+(?:[ =](?:'[^']*'|[\d.]+|auto|varx|adaptive))?)/;
 const withCode = (text, other = (part) => part) =>
     text.split(command).map((part, i) => (i % 2 ? h('code', {}, part.replace(/`/g, '')) : other(part)));
 
@@ -50,9 +50,10 @@ export function drawVerdict(verdict) {
   const said =
       h('div', {id: 'said', class: `verdict ${sort}`}, h('p', {class: 'answer'}, capital(verdict.headline), '.'),
         h('p', {}, withTips(verdict.text)));
-  const next = verdict.next ? h('p', {id: 'next', class: 'note'}, h('b', {}, 'Next: '), withCode(verdict.next)) : null;
+  const next =
+      verdict.next ? h('p', {id: 'next', class: 'note'}, h('strong', {}, 'Next: '), withCode(verdict.next)) : null;
   const warning = verdict.warning ?
-      h('p', {id: 'warning', class: 'soft'}, h('b', {}, 'Warning: '), withCode(verdict.warning)) :
+      h('p', {id: 'warning', class: 'soft'}, h('strong', {}, 'Warning: '), withCode(verdict.warning)) :
       null;
   const element = section(
       'verdict', 'Verdict',
