@@ -97,7 +97,8 @@ std::vector<std::string> steady_gain_names(const Bank& bank, const Recording& re
 
 std::vector<std::string> motion_names(const Bank& bank) {
   std::vector<std::string> names;
-  for (const ModelParameter& parameter : bank.motion_parameters) names.push_back(parameter.name);
+  for (const ModelParameter& parameter : bank.motion_parameters)
+    names.push_back(parameter_words(parameter.name, parameter.unit));
   return names;
 }
 

@@ -31,7 +31,9 @@ std::vector<std::string> with_labels(std::vector<std::string> features, const Ar
   const std::string noise = "log_noise_variance_";
   for (std::string& feature : features)
     if (feature.starts_with(noise)) feature = "log noise variance of " + feature.substr(noise.size());
-  const std::vector<std::string> labels = window_labels(archive);
+  std::vector<std::string> labels = window_labels(archive);
+  for (std::size_t i = 0; i < archive.windows->model_parameters.size(); ++i)
+    labels[i] = parameter_words(labels[i], archive.windows->model_parameters[i].unit);
   std::copy_n(labels.begin(), std::min(labels.size(), features.size()), features.begin());
   return features;
 }

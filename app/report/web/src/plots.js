@@ -3,7 +3,7 @@ import palette from '../palette.json';
 
 import {onGround, paletteColour, translucent, usedColour} from './colour.js';
 import {h} from './elements.js';
-import {rankOf} from './mode_names.js';
+import {isOther, rankOf} from './mode_names.js';
 import {beforePrint, dark, onTheme} from './page.js';
 import {keepWhenPrinted} from './printing.js';
 
@@ -18,7 +18,7 @@ export const ink = () => (dark() ? '#e8eaee' : '#16181d');
 const faint = () => (dark() ? '#343a45' : '#dfe3e8');
 const ground = () => (dark() ? '#14161a' : '#ffffff');
 // A mode's colour is by its use, so that the modes that matter differ; the ninth and later ones are "others".
-export const modeColour = (k) => usedColour(palette, k < 0 ? k : rankOf(k));
+export const modeColour = (k) => usedColour(palette, isOther(k) ? Infinity : rankOf(k));
 export const componentColour = (k) => paletteColour(palette, k);
 export const lineColour = (colour) => onGround(colour, dark());
 export const filterColour = (name) => lineColour(palette.filters[name] || ink());

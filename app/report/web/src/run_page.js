@@ -100,7 +100,7 @@ const data = pageData();
 
 function drawFirst() {
   const {bank} = data;
-  nameModes(bank ? bank.modes.map((mode) => mode.name) : [], bank ? bank.order : []);
+  if (bank) nameModes(bank.modes.map((mode) => mode.name), bank.order, bank.told);
   head(data.file, `Run of ${data.origin.created}`);
   drawVerdict(data.verdict);
 }
