@@ -5,6 +5,7 @@ import {onGround, paletteColour, translucent, usedColour} from './colour.js';
 import {h} from './elements.js';
 import {isOther, rankOf} from './mode_names.js';
 import {beforePrint, dark, onTheme} from './page.js';
+import {runPacked} from './page_data.js';
 import {keepWhenPrinted} from './printing.js';
 
 export {palette, translucent};
@@ -112,9 +113,11 @@ function whenNear(element, begin) {
   return () => watcher.disconnect();
 }
 
-// Plotly's text stands in the page unread: it runs when the first figure needs it, after what is seen first.
-function plotly() {
-  if (!window.Plotly) document.head.append(h('script', {}, document.getElementById('plotly').textContent));
+let loading = null;
+// Plotly takes most of a second to start: it does when the first figure that needs it comes near the window.
+async function plotly() {
+  loading = loading || runPacked('plotly');
+  await loading;
   return window.Plotly;
 }
 
@@ -126,7 +129,7 @@ export function figure(label, make, caption) {
   let begun = false, drawn = false;
   element.plot = plot;
   element.redraw = async () => {
-    const {traces, layout} = await make(), Plotly = plotly();
+    const [Plotly, {traces, layout}] = await Promise.all([plotly(), make()]);
     const full = themed({...standardLayout(), ...layout});
     plot.style.height = `${full.height || 320}px`;
     await (drawn ? Plotly.react(plot, traces, full, config) : Plotly.newPlot(plot, traces, full, config));
@@ -156,7 +159,7 @@ export function figure(label, make, caption) {
   onTheme(async () => {  // or of the width, when printing
     if (!drawn) return;
     await element.redraw();
-    await plotly().Plots.resize(plot);
+    await window.Plotly.Plots.resize(plot);
   });
   return element;
 }
