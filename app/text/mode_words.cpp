@@ -45,38 +45,46 @@ std::vector<bool> open_gains(const Archive& archive) {
   return open;
 }
 
-/// What a table of modes holds beside the gains.
-struct Cells {
-  bool all_decays;
-  std::size_t gains;
-  std::vector<bool> open;
-  const std::vector<std::string>& names;  // of modes
-};
-
-std::vector<std::string> cells_of(const UsedMode& used, const ModeDynamics& dynamics, const Cells& wanted) {
-  std::vector<Decay> decays = dynamics.decays;
-  if (!wanted.all_decays && decays.size() > 1) decays.resize(1);
-  std::vector<std::string> times;
-  for (const Decay& decay : decays) times.push_back(decay_words(decay));
-  std::vector<std::string> cells{heading(mode_cell(wanted.names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
-                                 seconds(used.stay_s), per_sample_words(decays), boost::algorithm::join(times, "; ")};
+std::vector<std::string> gain_cells(const ModeDynamics& dynamics, const std::vector<bool>& open) {
+  std::vector<std::string> cells;
   const Eigen::VectorXd gains = dynamics.gain.transpose().reshaped(),
                         errors = dynamics.gain_error.transpose().reshaped();
-  for (std::size_t i = 0; i < wanted.gains; ++i)
-    cells.push_back(i < wanted.open.size() && wanted.open[i]
-                        ? "not identifiable"
-                        : estimate_text(gains(static_cast<Index>(i)), errors(static_cast<Index>(i))));
+  for (Index i = 0; i < gains.size(); ++i)
+    cells.push_back(open[static_cast<std::size_t>(i)] ? "not identifiable" : estimate_text(gains(i), errors(i)));
   return cells;
 }
 
-std::string table_text(const Archive& archive, const std::vector<UsedMode>& modes, const GainNames& gains,
-                       const Cells& wanted, int width) {
-  const auto align = wanted.names.empty() ? TextTable::Align::right : TextTable::Align::left;
-  std::vector<TextTable::Column> columns{
-      {"mode", 0, align}, {"used", 0}, {"stay", 0}, {"decay/sample", 0}, {"time constant", 0}};
-  for (std::size_t i = 0; i < wanted.gains; ++i) columns.push_back({gains.names[i], 0});
+std::vector<std::string> headings_of(const GainNames& gains) {
+  std::vector<std::string> headings{"mode", "used", "stay", "decay/sample", "time constant"};
+  headings.insert(headings.end(), gains.names.begin(), gains.names.end());
+  return headings;
+}
+
+/// With all decays of each, or the slowest alone.
+std::vector<ModeTable::Row> rows_of(const Archive& archive, const std::vector<UsedMode>& modes, bool all_decays) {
+  const std::vector<bool> open = open_gains(archive);
+  std::vector<ModeTable::Row> rows;
+  for (const UsedMode& used : modes) {
+    ModeDynamics dynamics = mode_dynamics(*archive.bank, used.mode);
+    if (!all_decays && dynamics.decays.size() > 1) dynamics.decays.resize(1);
+    std::vector<std::string> times;
+    for (const Decay& decay : dynamics.decays) times.push_back(decay_words(decay));
+    ModeTable::Row row{used.mode,
+                       {heading(mode_cell(archive.mode_names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
+                        seconds(used.stay_s), per_sample_words(dynamics.decays), boost::algorithm::join(times, "; ")}};
+    const std::vector<std::string> gains = gain_cells(dynamics, open);
+    row.cells.insert(row.cells.end(), gains.begin(), gains.end());
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string text_of(const ModeTable& modes, bool named, int width) {
+  std::vector<TextTable::Column> columns;
+  for (const std::string& heading : modes.headings)
+    columns.push_back({heading, 0, named && columns.empty() ? TextTable::Align::left : TextTable::Align::right});
   TextTable table(std::move(columns));
-  for (const UsedMode& mode : modes) table.add(cells_of(mode, mode_dynamics(*archive.bank, mode.mode), wanted));
+  for (const ModeTable::Row& row : modes.rows) table.add(row.cells);
   return table.text(width);
 }
 
@@ -147,36 +155,50 @@ GainNames gain_names(const Bank& bank, const std::vector<Channel>& states, const
   return gains;
 }
 
-ShortModes short_modes(const Archive& archive, Index rows, int width) {
-  std::vector<UsedMode> modes = used_modes(archive);
-  const auto all = static_cast<Index>(modes.size());
+Index told_modes(const std::vector<UsedMode>& modes) {
   const Index worth =
       std::count_if(modes.begin(), modes.end(), [](const UsedMode& mode) { return mode.use >= least_use; });
-  const Index told = std::min(most_modes, std::max<Index>(1, worth));
-  const Index shown = told == all && all <= rows ? all : std::clamp<Index>(rows - 1, 1, told);
-  double others = 0.0;
-  for (Index i = shown; i < all; ++i) others += modes[static_cast<std::size_t>(i)].use;
-  modes.resize(static_cast<std::size_t>(shown));
+  return std::min(most_modes, std::max<Index>(1, worth));
+}
+
+ModeTable mode_table(const Archive& archive, Index rows) {
+  std::vector<UsedMode> modes = used_modes(archive);
+  const auto all = static_cast<Index>(modes.size());
+  const Index told = told_modes(modes);
+  const bool fit = rows == 0 || (told == all ? all : told + 1) <= rows;
+  const Index shown = fit ? told : std::clamp<Index>(rows - 1, 1, told);
   const GainNames gains = gains_of(archive);
-  Cells cells{false, gains.names.size(), open_gains(archive), archive.mode_names};
-  ShortModes result{table_text(archive, modes, gains, cells, 0)};
-  for (; widest_line(result.text) > width && cells.gains > 0; ++result.gains_left_out) {
-    --cells.gains;
-    result.text = table_text(archive, modes, gains, cells, 0);
+  ModeTable table{headings_of(gains), {}, all - shown, 0.0, gains.unit};
+  for (Index i = shown; i < all; ++i) table.others_use += modes[static_cast<std::size_t>(i)].use;
+  modes.resize(static_cast<std::size_t>(shown));
+  table.rows = rows_of(archive, modes, false);
+  return table;
+}
+
+ShortModes short_modes(const Archive& archive, Index rows, int width) {
+  ModeTable table = mode_table(archive, rows);
+  const bool named = !archive.mode_names.empty();
+  ShortModes result{text_of(table, named, 0), 0};
+  const auto without_gains = headings_of({}).size();
+  while (widest_line(result.text) > width && table.headings.size() > without_gains) {
+    table.headings.pop_back();
+    for (ModeTable::Row& row : table.rows) row.cells.pop_back();
+    ++result.gains_left_out;
+    result.text = text_of(table, named, 0);
   }
-  if (shown < all)
-    result.text +=
-        fmt::format("and {} other{}, used {:.1f} %\n", all - shown, all - shown == 1 ? "" : "s", 100 * others);
+  if (table.others > 0)
+    result.text += fmt::format("and {} other{}, used {:.1f} %\n", table.others, table.others == 1 ? "" : "s",
+                               100 * table.others_use);
   return result;
 }
 
 std::string modes_in_words(const Archive& archive, int width) {
   if (!archive.bank) return "";
   const GainNames gains = gains_of(archive);
+  const ModeTable table{headings_of(gains), rows_of(archive, used_modes(archive), true), 0, 0.0, gains.unit};
   return fmt::format("\nmodes in words{}\n",
                      gains.unit.empty() ? "" : fmt::format("; steady gains in {}", gains.unit)) +
-         table_text(archive, used_modes(archive), gains,
-                    {true, gains.names.size(), open_gains(archive), archive.mode_names}, width);
+         text_of(table, !archive.mode_names.empty(), width);
 }
 
 }  // namespace modebank::app

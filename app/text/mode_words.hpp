@@ -31,8 +31,27 @@ struct GainNames {
 };
 GainNames gain_names(const Bank& bank, const std::vector<Channel>& states, const std::vector<Channel>& inputs);
 
-/// A table of at most `rows` lines below its heading, `width` columns wide: the most used modes, how many others there
-/// are; of each the slowest time constant and as many gains as there is room for.
+/// How many of them are told one by one: the most used, at most eight, none below 1 % (but at least one). The rest are
+/// "others".
+Index told_modes(const std::vector<UsedMode>& modes);
+
+/// The most used modes in words, a row each: name, use, stay, what is left per sample, slowest time constant, gains.
+struct ModeTable {
+  struct Row {
+    Index mode = 0;
+    std::vector<std::string> cells;
+  };
+  std::vector<std::string> headings;
+  std::vector<Row> rows;
+  Index others = 0;         ///< modes that are not among the rows
+  double others_use = 0.0;  ///< of all of them together
+  std::string gain_unit;    ///< that all gains have; empty where none or several are known
+};
+/// At most `rows` rows, that of the others being one of them; 0: as many as are told.
+ModeTable mode_table(const Archive& archive, Index rows = 0);
+
+/// The same as a text of at most `rows` lines below its heading, `width` columns wide: gains for which there is no room
+/// are left out.
 struct ShortModes {
   std::string text;
   Index gains_left_out = 0;

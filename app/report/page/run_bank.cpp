@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/chain/judged_runs.hpp"
 #include "app/chain/mode_names.hpp"
+#include "app/report/page/folded_transition.hpp"
 #include "app/report/page/guard_map.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
@@ -29,16 +32,21 @@ json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors) {
 }
 
 /// Which modes the bank took each label's samples for; null without labels.
-json label_section(const Archive& archive) {
+json label_section(const Archive& archive, const std::vector<Index>& told) {
   if (archive.confusion.empty()) return nullptr;
   json rows = json::array();
   for (const ConfusionRow& row : archive.confusion) {
     if (rows.empty() || rows.back()["label"] != row.label)
-      rows.push_back({{"label", row.label}, {"samples", 0}, {"shares", json::array()}});
+      rows.push_back({{"label", row.label}, {"samples", 0}, {"shares", json::array()}, {"others", 0.0}});
     rows.back()["samples"] = rows.back()["samples"].get<Index>() + row.samples;
     rows.back()["shares"].push_back(percent(row.share));
+    if (std::find(told.begin(), told.end(), row.mode) == told.end())
+      rows.back()["others"] = rows.back()["others"].get<double>() + row.share;
   }
-  for (json& row : rows) row["samples"] = count(row["samples"].get<Index>());
+  for (json& row : rows) {
+    row["samples"] = count(row["samples"].get<Index>());
+    row["others"] = percent(row["others"].get<double>());
+  }
   return {{"role", name_of(archive.confusion.front().role)}, {"rows", rows}};
 }
 
@@ -64,8 +72,7 @@ void add_diagnosis(json& row, const DiagnosticsRow& diagnosis, double dt_s) {
   row["stay"] = number(diagnosis.dwell * dt_s);
   row["usage"] = number(diagnosis.usage, fmt::format("{:.3f}", diagnosis.usage));
   row["samples"] = count(diagnosis.samples);
-  row["dwell"] = number(diagnosis.dwell);
-  row["dwell_model"] = number(diagnosis.dwell_model);
+  row["stay_model"] = number(diagnosis.dwell_model * dt_s);
   row["too_far"] = percent(diagnosis.too_far);
   row["too_close"] = percent(diagnosis.too_close);
   row["verdict"] = name_of(diagnosis.verdict);
@@ -90,8 +97,22 @@ std::vector<std::string> steady_gain_names(const Bank& bank, const Recording& re
 
 std::vector<std::string> motion_names(const Bank& bank) {
   std::vector<std::string> names;
-  for (const ModelParameter& parameter : bank.motion_parameters) names.push_back(parameter.name);
+  for (const ModelParameter& parameter : bank.motion_parameters)
+    names.push_back(parameter_words(parameter.name, parameter.unit));
   return names;
+}
+
+/// Between the modes that are told one by one and all others as one, which come last.
+json folded_transition_of(const Bank& bank, const std::vector<UsedMode>& modes, const std::vector<Index>& told) {
+  Eigen::VectorXd use(bank.mode_count());
+  for (const UsedMode& mode : modes) use(mode.mode) = mode.use;
+  const Eigen::MatrixXd folded = folded_transition(bank.transition.matrix(), told, use);
+  json rows = json::array();
+  for (Index i = 0; i < folded.rows(); ++i) {
+    rows.push_back(json::array());
+    for (const double probability : folded.row(i)) rows.back().push_back(number(probability));
+  }
+  return rows;
 }
 
 json transition_of(const Bank& bank) {
@@ -123,6 +144,8 @@ json switch_weights_of(const Bank& bank) {
   return {{"names", regressor_labels(bank.structure, bank.state_names, bank.input_names)}, {"rows", rows}};
 }
 
+std::string square_of(const std::string& unit) { return unit.empty() ? "" : fmt::format("({})²", unit); }
+
 json screened_of(const Bank& bank) {
   json list = json::array();
   for (const ScreenedMode& mode : bank.screened)
@@ -153,11 +176,19 @@ nlohmann::json bank_section(const Archive& archive) {
   const Recording& recording = *archive.recording;
   const Units units(recording);
   const Role role = diagnosis(archive, "bank", Role::test) ? Role::test : Role::train;
+  const std::vector<UsedMode> used = used_modes(archive);
+  std::vector<Index> order;
+  for (const UsedMode& mode : used) order.push_back(mode.mode);
+  const std::vector<Index> told(order.begin(), order.begin() + told_modes(used));
   json modes = json::array();
   for (Index k = 0; k < bank.mode_count(); ++k) {
     modes.push_back(mode_row(bank, k));
     modes.back()["name"] = name_of_mode(archive.mode_names, k);
     if (const DiagnosticsRow* row = diagnosis(archive, "bank", role, k)) add_diagnosis(modes.back(), *row, bank.dt_s);
+  }
+  for (const UsedMode& mode : used) {
+    json& row = modes[static_cast<std::size_t>(mode.mode)];
+    row["use"] = number(mode.use, fmt::format("{:.1f} %", 100 * mode.use));
   }
   return {{"modes", modes},
           {"baseline", archive.baseline ? mode_row(*archive.baseline, 0) : json()},
@@ -169,11 +200,15 @@ nlohmann::json bank_section(const Archive& archive) {
           {"motion_names", column_names(motion_names(bank), unit_of(bank.motion_parameters))},
           {"gain_names", column_names(steady_gain_names(bank, recording), ratios(units.states(), units.inputs()))},
           {"noise_name", with_unit("step noise sd", common_unit(recording.states))},
+          {"noise_variance_name", with_unit("Measurement noise variance R", square_of(common_unit(recording.states)))},
           {"R", number_list(bank.R.diagonal())},
+          {"order", order},
+          {"told", std::ssize(told)},
           {"transition", transition_of(bank)},
+          {"folded", folded_transition_of(bank, used, told)},
           {"switch_weights", switch_weights_of(bank)},
           {"guard", guard_of(archive)},
-          {"confusion", label_section(archive)},
+          {"confusion", label_section(archive, told)},
           {"screened", screened_of(bank)},
           {"merged", merging_of(archive, role)},
           {"refined", archive.unrefined.has_value()}};

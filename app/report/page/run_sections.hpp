@@ -13,7 +13,11 @@ namespace modebank::app::report {
 inline constexpr double drawn_level = 0.95;
 
 nlohmann::json origin_section(const Archive& archive);
+/// What the first screen says, with the same words and numbers (screen_facts.hpp), and its picture.
 nlohmann::json verdict_section(const Archive& archive);
+/// The judged runs in little: the first state by the mode that is most probable, and what is known of the ground. Small
+/// enough to be drawn before anything else is read.
+nlohmann::json picture_of(const Archive& archive);
 
 /// How many samples the finest drawing of a run's signals takes together: those of the data and the bank, and those of
 /// the other filters.

@@ -1,55 +1,126 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "app/chain/judged_runs.hpp"
+#include <boost/algorithm/string.hpp>
+#include <cmath>
+
+#include "app/config/config_file.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
-#include "app/report/page/unit_text.hpp"
-#include "app/text/first_screen.hpp"
+#include "app/text/screen_facts.hpp"
 
 namespace modebank::app::report {
 namespace {
 
 using nlohmann::json;
 
-/// One of the numbers that decide, for every filter.
-json decisive(const Archive& archive, Role role, const std::string& name, const std::string& unit,
-              const std::string& better, json (*of)(const SummaryRow&)) {
-  json values = json::object();
-  for (const SummaryRow& row : archive.summary)
-    if (row.run == "*" && row.role == role) values[row.filter] = of(row);
-  return {{"name", name}, {"unit", unit}, {"better", better}, {"values", values}};
+/// The page writes what a terminal cannot: "0.3 ± 0.1".
+std::string with_signs(const std::string& text) { return boost::replace_all_copy(text, " +- ", " ± "); }
+
+json card(const std::string& key, const std::string& name, const json& big, const std::string& unit,
+          const std::string& said) {
+  return {{"key", key}, {"name", name}, {"big", big}, {"unit", unit}, {"said", said}};
 }
 
-/// What was found, as the archive says it, and whether the bank's uncertainty is false. Good: evidence, and calibrated.
-json sentence(const Archive& archive) {
-  if (!archive.finding) return {{"text", "No bank was scored, so there is nothing to judge yet."}, {"good", nullptr}};
-  const Finding& finding = *archive.finding;
-  std::string text = finding.text;
-  bool good = finding.answer == Answer::evidence;
-  if (const DiagnosticsRow* row = diagnosis(archive, "bank", finding.role)) {
-    text += fmt::format(" Of the bank: {}.", calibration_words(row->verdict));
-    good = good && row->verdict == Verdict::calibrated;
+std::string competitor_words(const FirstScreen& screen, const std::string& words) {
+  return words.empty() ? "no competitor was scored" : fmt::format("{}: {}", screen.competitor, words);
+}
+
+json gain_card(const FirstScreen& screen) {
+  if (std::isnan(screen.gain)) return nullptr;
+  const std::string known =
+      std::isfinite(screen.gain_error) ? "above 0 the bank predicts better" : "its error is not known";
+  json gain = estimate(screen.gain, screen.gain_error);
+  if (screen.gain > 0.0) gain["t"] = "+" + gain["t"].get<std::string>();
+  return card("gain", "Gain over " + screen.competitor, gain, "nats per sample", known);
+}
+
+json coverage_card(const FirstScreen& screen) {
+  if (std::isnan(screen.coverage)) return nullptr;
+  return card("coverage", "In the 95 % band", number(screen.coverage, fmt::format("{:.1f} %", 100 * screen.coverage)),
+              fmt::format("[{:.1f}, {:.1f}]", 100 * screen.coverage_lower, 100 * screen.coverage_upper),
+              fmt::format("{}: {}", name_of(screen.verdict), calibration_words(screen.verdict)));
+}
+
+json error_card(const FirstScreen& screen, const ErrorAhead& error) {
+  const std::string name = error.steps == 1 ? "RMSE one step ahead" : fmt::format("RMSE {} steps ahead", error.steps);
+  json big = number_list(error.bank);
+  big["t"] = error.bank_words;
+  return card("error", name, big, "", competitor_words(screen, error.other_words));
+}
+
+std::string fit_words(const Eigen::VectorXd& fit) {
+  std::vector<std::string> parts;
+  for (const double percent : fit) parts.push_back(fmt::format("{:.1f} %", percent));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+json fit_card(const FirstScreen& screen) {
+  json big = number_list(screen.fit);
+  big["t"] = fit_words(screen.fit);
+  return card("fit", "FIT of the free run", big, "", competitor_words(screen, fit_words(screen.other_fit)));
+}
+
+json cards_of(const FirstScreen& screen) {
+  json cards = json::array();
+  for (const json& made : {coverage_card(screen), gain_card(screen)})
+    if (!made.is_null()) cards.push_back(made);
+  for (const ErrorAhead& error : screen.errors) cards.push_back(error_card(screen, error));
+  if (screen.errors.size() == 1)
+    cards.push_back(card("error", "RMSE ten steps ahead", nullptr, "", "not looked at: --filter.horizon 10 does so"));
+  if (screen.free_run_start > 0) cards.push_back(fit_card(screen));
+  return cards;
+}
+
+json modes_of(const FirstScreen& screen) {
+  if (screen.modes.rows.empty()) return nullptr;
+  json rows = json::array();
+  for (const ModeTable::Row& row : screen.modes.rows) {
+    json cells = json::array();
+    for (const std::string& cell : row.cells) cells.push_back(with_signs(cell));
+    rows.push_back({{"mode", row.mode}, {"cells", cells}});
   }
-  return {{"text", text}, {"good", good}, {"answer", name_of(finding.answer)}};
+  const ModeTable& modes = screen.modes;
+  const std::string others = modes.others == 0 ? ""
+                                               : fmt::format("and {} other{}, used {:.1f} % together", modes.others,
+                                                             modes.others == 1 ? "" : "s", 100 * modes.others_use);
+  return {{"count", screen.mode_count},
+          {"headings", modes.headings},
+          {"rows", rows},
+          {"others", others},
+          {"gain_unit", modes.gain_unit}};
+}
+
+/// Good: evidence, and a band that is not found false. Neither good nor bad: what cannot be told.
+json goodness(const FirstScreen& screen) {
+  if (!screen.answer || *screen.answer == Answer::cannot_tell || *screen.answer == Answer::not_comparable)
+    return nullptr;
+  if (*screen.answer == Answer::one_mode) return screen.verdict == Verdict::calibrated ? json(true) : json(nullptr);
+  return *screen.answer == Answer::evidence && screen.verdict == Verdict::calibrated;
+}
+
+std::string headline(const FirstScreen& screen) {
+  if (!screen.answer) return "nothing was judged";
+  if (*screen.answer == Answer::one_mode) return answer_words(*screen.answer);
+  return fmt::format("{} ({} modes)", answer_words(*screen.answer), screen.mode_count);
 }
 
 }  // namespace
 
 nlohmann::json verdict_section(const Archive& archive) {
-  const Role role = judged_role(archive);
-  json section = sentence(archive);
-  section["role"] = name_of(role);
-  section["numbers"] = {
-      decisive(archive, role, "Log score", "nats per sample", "higher is better",
-               [](const SummaryRow& row) { return number(row.log_score); }),
-      decisive(archive, role, "One-step RMSE", archive.recording ? common_unit(archive.recording->states) : "",
-               "lower is better", [](const SummaryRow& row) { return number_list(row.rmse); }),
-      decisive(archive, role, "In the 95 % band", "", "95 % is true",
-               [](const SummaryRow& row) { return percent(row.coverage_95); }),
-      decisive(archive, role, "Too far", "", "2.5 % is true",
-               [](const SummaryRow& row) { return percent(row.too_far); }),
-  };
-  return section;
+  const FirstScreen screen = make_first_screen(archive, resolved_values(archive.config));
+  return {{"headline", headline(screen)},
+          {"answer", screen.answer ? json(name_of(*screen.answer)) : json()},
+          {"good", goodness(screen)},
+          {"text", screen.answer ? with_signs(screen.finding)
+                                 : std::string("No bank was scored, so there is nothing to judge yet.")},
+          {"next", screen.next},
+          {"warning", screen.warning},
+          {"read", screen.read},
+          {"role", name_of(screen.role)},
+          {"cards", cards_of(screen)},
+          {"modes", modes_of(screen)},
+          {"picture", picture_of(archive)}};
 }
 
 }  // namespace modebank::app::report

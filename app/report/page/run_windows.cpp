@@ -26,9 +26,14 @@ Unit units_of_parameters(const Archive& archive) {
                                        : unit_of(fits.model_parameters);
 }
 
-/// The parameters among the features are the first of them; they go by their labels.
+/// As people read them: the parameters, which are the first of the features, by their labels, noise in words.
 std::vector<std::string> with_labels(std::vector<std::string> features, const Archive& archive) {
-  const std::vector<std::string> labels = window_labels(archive);
+  const std::string noise = "log_noise_variance_";
+  for (std::string& feature : features)
+    if (feature.starts_with(noise)) feature = "log noise variance of " + feature.substr(noise.size());
+  std::vector<std::string> labels = window_labels(archive);
+  for (std::size_t i = 0; i < archive.windows->model_parameters.size(); ++i)
+    labels[i] = parameter_words(labels[i], archive.windows->model_parameters[i].unit);
   std::copy_n(labels.begin(), std::min(labels.size(), features.size()), features.begin());
   return features;
 }

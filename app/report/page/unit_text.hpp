@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,13 @@ namespace modebank::app::report {
 /// "wz [rad/s]"; the name alone where nobody stated a unit.
 inline std::string with_unit(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : name + " [" + unit + "]";
+}
+
+/// "effective track" for effective_track_m: a model's parameter in words, without the unit that its name ends with.
+inline std::string parameter_words(std::string name, const std::string& unit) {
+  if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 /// The channels' unit where they share one, else all of them by commas; empty when one is not known.

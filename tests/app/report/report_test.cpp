@@ -5,10 +5,14 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "app/config/config_file.hpp"
+#include "app/report/page/folded_transition.hpp"
 #include "app/report/page/guard_map.hpp"
 #include "app/report/page/html_page.hpp"
 #include "app/report/page/numbers.hpp"
+#include "app/report/page/run_sections.hpp"
 #include "app/report/page/series.hpp"
+#include "app/text/screen_facts.hpp"
 #include "io/archive/archive.hpp"
 #include "io/files/read_file.hpp"
 #include "tests/app/cli_fixture.hpp"
@@ -168,6 +172,71 @@ TEST_F(Report, NamesModesAndComparesThemWithLabels) {
   EXPECT_EQ(row["samples"]["v"], 3 + stored.bank->mode_count() - 1);
   ASSERT_EQ(std::ssize(row["shares"]), stored.bank->mode_count());
   EXPECT_EQ(row["shares"][0]["v"], 0.75);
+}
+
+TEST_F(Report, BeginsWithWhatTheFirstScreenSaysAndAPicture) {
+  ASSERT_EQ(run().status, 0);
+  Archive stored = read_archive(archive());
+  RunLabels labels{{"grip", "ice"}, {}};
+  for (const Trajectory& one : stored.recording->runs) {
+    labels.of_runs.push_back(Eigen::VectorXi::Zero(one.samples()));
+    labels.of_runs.back().tail(one.samples() / 2).setOnes();
+  }
+  stored.labels = labels;
+  const json verdict = app::report::verdict_section(stored);
+  const app::FirstScreen screen = app::make_first_screen(stored, app::resolved_values(stored.config));
+  EXPECT_EQ(verdict["next"], screen.next);
+  ASSERT_FALSE(verdict["cards"].empty());
+  EXPECT_EQ(verdict["cards"][0]["key"], "coverage");
+  EXPECT_EQ(verdict["cards"][0]["big"]["v"], screen.coverage);
+  ASSERT_EQ(verdict["modes"]["rows"].size(), screen.modes.rows.size());
+  EXPECT_EQ(verdict["modes"]["rows"][0]["mode"], screen.modes.rows[0].mode);
+
+  const json& picture = verdict["picture"];
+  EXPECT_EQ(picture["labels"], (json{"grip", "ice"}));
+  const RunEvaluation* evaluation = nullptr;
+  const Trajectory* shown = nullptr;
+  for (std::size_t i = 0; i < stored.recording->runs.size() && !shown; ++i)
+    if (stored.recording->runs[i].role == screen.role) {
+      shown = &stored.recording->runs[i];
+      for (const FilterEvaluation& filter : stored.evaluations)
+        if (filter.filter == "bank") evaluation = &filter.runs[i];
+    }
+  ASSERT_TRUE(shown && evaluation);
+  const json& first = picture["runs"][0];
+  EXPECT_EQ(first["name"], shown->run);
+  const Index N = shown->samples(), drawn = std::ssize(first["low"]);
+  ASSERT_GT(drawn, 10);
+  const Index bucket = (N + drawn - 1) / drawn;
+  EXPECT_EQ(first["mode"].size(), first["low"].size());
+  EXPECT_EQ(first["label"].front(), 0);
+  EXPECT_EQ(first["label"].back(), 1);
+  const double low = picture["range"][0], high = picture["range"][1],
+               step = (high - low) / picture["steps"].get<double>();
+  for (Index i = 0; i < drawn; ++i) {
+    const double least = shown->state.row(0).segment(i * bucket, std::min(bucket, N - i * bucket)).minCoeff();
+    EXPECT_NEAR(low + step * first["low"][static_cast<std::size_t>(i)].get<double>(), least, step) << i;
+  }
+  if (bucket == 1) {
+    Index mode = -1;
+    evaluation->mode_probability.col(N - 1).maxCoeff(&mode);
+    EXPECT_EQ(first["mode"].back(), mode);
+  }
+}
+
+/// Of three modes the first is told and two are one: what leaves them is weighted by their use.
+TEST(ReportFolding, TransitionsOfTheOthersAreTheirMean) {
+  const Eigen::MatrixXd T{{0.9, 0.06, 0.04}, {0.2, 0.7, 0.1}, {0.5, 0.1, 0.4}};
+  const Eigen::MatrixXd folded = folded_transition(T, {0}, Eigen::Vector3d(0.7, 0.2, 0.1));
+  ASSERT_EQ(folded.rows(), 2);
+  EXPECT_NEAR(folded(0, 0), 0.9, 1e-15);
+  EXPECT_NEAR(folded(0, 1), 0.1, 1e-15);
+  EXPECT_NEAR(folded(1, 0), (0.2 * 0.2 + 0.1 * 0.5) / 0.3, 1e-15);
+  EXPECT_NEAR(folded.row(1).sum(), 1.0, 1e-15);
+  const Eigen::MatrixXd ordered = folded_transition(T, {2, 0, 1}, Eigen::Vector3d::Zero());
+  EXPECT_EQ(ordered(0, 1), 0.5);
+  EXPECT_EQ(ordered(1, 0), 0.04);
+  EXPECT_NEAR(folded_transition(T, {0}, Eigen::Vector3d::Zero())(1, 0), 0.35, 1e-15) << "never used: plain means";
 }
 
 /// Two modes: p0 T01 = p1 T10, T01 and T10 moved by the odds of the weights.

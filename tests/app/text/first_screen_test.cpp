@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "app/cli/help_text.hpp"
@@ -96,6 +98,58 @@ TEST(FirstScreen, SaysWhatMatters) {
 }
 
 /// Halves and less: 0.5, 0.3, 0.18, ... falls below a hundredth after the eighth.
+/// What the page shows is what the terminal says: both come from here.
+TEST(FirstScreen, ItsFieldsAreTheArchivesNumbers) {
+  Archive archive = screen_archive(1, 2, 3);
+  archive.finding->gain = 0.187;
+  archive.finding->standard_error = 0.057;
+  const app::FirstScreen screen = app::make_first_screen(archive, defaults);
+  EXPECT_EQ(screen.answer, Answer::evidence);
+  EXPECT_EQ(screen.competitor, "drifting");
+  EXPECT_EQ(screen.gain, 0.187);
+  EXPECT_EQ(screen.gain_error, 0.057);
+  EXPECT_EQ(screen.coverage, 0.966);
+  EXPECT_EQ(screen.coverage_lower, 0.956);
+  EXPECT_EQ(screen.coverage_upper, 0.974);
+  EXPECT_EQ(screen.verdict, Verdict::calibrated);
+  ASSERT_EQ(screen.errors.size(), 2u);
+  EXPECT_EQ(screen.errors[0].steps, 1);
+  EXPECT_EQ(screen.errors[1].steps, 10);
+  EXPECT_EQ(screen.errors[1].bank(0), 0.06);
+  EXPECT_EQ(screen.errors[1].other(0), 0.08);
+  EXPECT_EQ(screen.free_run_start, 0);
+  EXPECT_EQ(screen.mode_count, 3);
+  EXPECT_EQ(screen.modes.gain_unit, "(rad/s)/(m/s)");
+  ASSERT_EQ(screen.modes.rows.size(), 3u);
+  EXPECT_EQ(screen.modes.rows[0].cells.size(), screen.modes.headings.size());
+  const std::string text = screen_of(archive);
+  std::string as_one_line = text;
+  std::replace(as_one_line.begin(), as_one_line.end(), '\n', ' ');
+  for (const std::string& said : {screen.finding, screen.next, screen.modes.rows[0].cells[4]})
+    EXPECT_THAT(as_one_line, HasSubstr(said));
+}
+
+TEST(FirstScreen, WhatIsNotKnownIsNoNumber) {
+  Archive archive = screen_archive(1, 1, 1);
+  archive.finding->best_competitor.clear();
+  archive.diagnostics.clear();
+  const app::FirstScreen screen = app::make_first_screen(archive, defaults);
+  EXPECT_TRUE(std::isnan(screen.gain));
+  EXPECT_TRUE(std::isnan(screen.coverage));
+  EXPECT_EQ(screen.band, "");
+  ASSERT_EQ(screen.errors.size(), 2u);
+  EXPECT_EQ(screen.errors[0].other.size(), 0);
+  EXPECT_EQ(app::make_first_screen(Archive{}, {}).mode_count, 0);
+}
+
+TEST(FirstScreen, ItsModesAreAtMostEightAndTheOthersAddUp) {
+  const app::FirstScreen screen = app::make_first_screen(screen_archive(1, 1, 20), defaults);
+  ASSERT_EQ(screen.modes.rows.size(), 8u);
+  EXPECT_EQ(screen.modes.rows[0].mode, 0);
+  EXPECT_EQ(screen.modes.others, 12);
+  EXPECT_NEAR(screen.modes.others_use, 0.5 * (std::pow(0.6, 8) - std::pow(0.6, 20)) / 0.4, 1e-12);
+}
+
 TEST(FirstScreen, FoldsModesThatAreHardlyUsed) {
   EXPECT_THAT(screen_of(screen_archive(1, 1, 20)), HasSubstr("and 12 others, used 2.1 %"));
   EXPECT_THAT(screen_of(screen_archive(1, 1, 3)), Not(HasSubstr("other")));

@@ -93,7 +93,7 @@ function makeLegend(cloud, redraw) {
             redraw();
           }
         },
-          swatch(groupColour(key)), `${cloud.groupName(key)} (${members.length})`);
+          swatch(groupColour(cloud, key)), `${cloud.groupName(key)} (${members.length})`);
     return h('li', {}, button);
   };
   const fill = () => list.replaceChildren(...cloud.groups().map(entry));

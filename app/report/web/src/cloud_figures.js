@@ -1,14 +1,16 @@
 // The two figures of a WindowCloud: rotatable in three parameters, flat in their three projections.
 import {appendWires, ellipsePath, surface} from './ellipsoid.js';
 import {modeTitle} from './mode_names.js';
-import {axisTitle, figure, ink, modeColour, palette, plain, translucent} from './plots.js';
+import {axisTitle, componentColour, figure, ink, modeColour, palette, plain, translucent} from './plots.js';
 import {usualRange} from './statistics.js';
 
 const many = 20000;      // windows that are drawn smaller and fainter
 const many_flat = 3000;  // windows that are drawn by WebGL
 const error_windows = 60;
 
-export const groupColour = (key) => (key < 0 ? palette.unclustered : modeColour(key));
+// A bank that was not refined has the components for its modes.
+const colourIn = (cloud, k) => (cloud.by === 'mode' || !cloud.windows.refined ? modeColour(k) : componentColour(k));
+export const groupColour = (cloud, key) => (key < 0 ? palette.unclustered : colourIn(cloud, key));
 
 const rangeOf = (cloud, a) => (cloud.showAll ? undefined : usualRange(cloud.values[a]));
 const within = (cloud, axes) => (cloud.covariance ? cloud.parametersOnly(axes) : false);
@@ -16,7 +18,7 @@ const within = (cloud, axes) => (cloud.covariance ? cloud.parametersOnly(axes) :
 function windowPoints(cloud, axes, type) {
   const crowded = cloud.count > many, solid = type === 'scatter3d';
   return cloud.shownGroups(axes).map(({key, list}) => {
-    const marker = {size: solid ? 2.2 : crowded ? 2.5 : 4, color: groupColour(key), line: {width: 0}};
+    const marker = {size: solid ? 2.2 : crowded ? 2.5 : 4, color: groupColour(cloud, key), line: {width: 0}};
     marker.opacity = key < 0 ? 0.3 : crowded ? 0.35 : 0.65;
     const trace =
         {type, mode: 'markers', name: plain(cloud.groupName(key)), customdata: list, hoverinfo: 'none', marker};
@@ -70,9 +72,12 @@ function shells(cloud, axes) {
   return cloud.ellipses(axes).flatMap(({k, mean, covariance}) => {
     const mesh = surface(mean, covariance, cloud.windows.limit3);
     if (!mesh) return [];
-    return [{type: 'mesh3d', ...mesh, color: modeColour(k), opacity: 0.16, hoverinfo: 'skip', showlegend: false}];
+    return [{type: 'mesh3d', ...mesh, color: colourIn(cloud, k), opacity: 0.16, hoverinfo: 'skip', showlegend: false}];
   });
 }
+
+// WebGL shows &lt; as it stands.
+const solidTitle = ({name, unit}) => axisTitle({name: name.replace(/<-/g, '←'), unit});
 
 function solidPlot(cloud) {
   const {axes} = cloud, named = cloud.windows.axes;
@@ -83,7 +88,7 @@ function solidPlot(cloud) {
     camera: {eye: {x: 1.5, y: 1.5, z: 1}, center: {x: 0, y: 0, z: -0.12}},
   };
   ['xaxis', 'yaxis', 'zaxis'].forEach((name, j) => {
-    scene[name] = {title: {text: axisTitle(named[axes[j]])}, range: rangeOf(cloud, axes[j]), nticks: 5};
+    scene[name] = {title: {text: solidTitle(named[axes[j]])}, range: rangeOf(cloud, axes[j]), nticks: 5};
   });
   const traces = [
     ...windowPoints(cloud, axes, 'scatter3d'),
@@ -116,7 +121,7 @@ function ellipseShapes(cloud, pair, n) {
   const {limit2} = cloud.windows;
   const shape = (path, line) => ({type: 'path', path, xref: `x${n}`, yref: `y${n}`, line, layer: 'above'});
   const list = cloud.ellipses(pair).map(
-      ({k, mean, covariance}) => shape(ellipsePath(mean, covariance, limit2), {color: modeColour(k), width: 2}));
+      ({k, mean, covariance}) => shape(ellipsePath(mean, covariance, limit2), {color: colourIn(cloud, k), width: 2}));
   if (cloud.picked >= 0 && within(cloud, pair)) {
     const path = ellipsePath(cloud.point(cloud.picked, pair), cloud.errorMatrix(cloud.picked, pair), limit2);
     list.push(shape(path, {color: ink(), width: 2, dash: 'dot'}));

@@ -19,6 +19,11 @@ export function paletteColour(palette, k) {
   return mixed(base, round === 1 ? '#000000' : '#ffffff', 0.45);
 }
 
+const most_colours = 8;
+
+// Of the mode with `rank` more used ones before it: more than eight colours cannot be told apart.
+export const usedColour = (palette, rank) => paletteColour(palette, rank < most_colours ? rank : -1);
+
 // For thin lines: lighter on a dark ground.
 export function onGround(colour, dark) {
   return dark && /^#[0-9a-f]{6}$/i.test(colour) ? mixed(colour, '#ffffff', 0.35) : colour;

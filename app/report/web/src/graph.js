@@ -1,7 +1,5 @@
 // The transition graph of a bank: modes on a circle, arrows by probability.
 import {s} from './elements.js';
-import {modeTitle} from './mode_names.js';
-import {modeColour} from './plots.js';
 
 const bend = 0.14;    // of an arrow's length
 const least = 0.005;  // rarer transitions are left to the matrix
@@ -31,29 +29,35 @@ function arrow(from, to, width, colour, title) {
   return {element, at: {x: (start.x + 2 * middle.x + end.x) / 4, y: (start.y + 2 * middle.y + end.y) / 4}};
 }
 
-// `transition[i][j]`: C++'s number cells; `weights`: sizes of the nodes.
-export function transitionGraph(transition, weights) {
-  const K = transition.length, size = 420, centre = size / 2, ring = K === 1 ? 0 : size / 2 - 52;
-  const angle = (k) => (2 * Math.PI * k) / K;
-  const radius = (k) => Math.min(15 + 16 * Math.sqrt(weights[k] || 0), K > 12 ? 20 : 30);
-  const nodes = transition.map(
-      (_, k) => ({x: centre + ring * Math.sin(angle(k)), y: centre - ring * Math.cos(angle(k)), r: radius(k)}));
-  const label = `Transitions between ${K} modes; the matrix beside holds the same numbers`;
-  const picture = s('svg', {viewBox: `0 0 ${size} ${size}`, role: 'img', 'aria-label': label, class: 'graph'});
-  const labels = [];
+function edgesOf(transition, nodes, places) {
+  const labelled = nodes.length <= 6, pictures = [], labels = [];
   transition.forEach((row, i) => row.forEach((cell, j) => {
     if (i === j || !(cell.v >= least)) return;
-    const title = `from ${modeTitle(i)} to ${modeTitle(j)}: ${cell.t}`;
-    const edge = arrow(nodes[i], nodes[j], 1 + 7 * Math.sqrt(cell.v), modeColour(i), title);
-    picture.append(edge.element);
-    if (K <= 6) labels.push(s('text', {x: edge.at.x, y: edge.at.y, class: 'edge'}, cell.v.toPrecision(2)));
+    const title = `from ${nodes[i].title} to ${nodes[j].title}: ${cell.t}`;
+    const edge = arrow(places[i], places[j], 1 + 7 * Math.sqrt(cell.v), nodes[i].colour, title);
+    pictures.push(edge.element);
+    if (labelled) labels.push(s('text', {x: edge.at.x, y: edge.at.y, class: 'edge'}, cell.v.toPrecision(2)));
   }));
-  picture.append(
-      ...nodes.map(
-          (node, k) =>
-              s('g', {}, s('title', {}, `${modeTitle(k)} stays with probability ${transition[k][k].t}`),
-                s('circle', {cx: node.x, cy: node.y, r: node.r, fill: modeColour(k), stroke: 'var(--ink)'}),
-                s('text', {x: node.x, y: node.y, class: 'node'}, String(k)))),
-      ...labels);
+  return {pictures, labels};
+}
+
+// `transition[i][j]`: C++'s number cells; `nodes`: {title, short, colour, use}, the larger the more used.
+export function transitionGraph(transition, nodes) {
+  const K = nodes.length, size = 420, centre = size / 2, ring = K === 1 ? 0 : size / 2 - 52;
+  const angle = (k) => (2 * Math.PI * k) / K;
+  const places = nodes.map(({use}, k) => ({
+                             x: centre + ring * Math.sin(angle(k)),
+                             y: centre - ring * Math.cos(angle(k)),
+                             r: Math.min(15 + 16 * Math.sqrt(use || 0), 30),
+                           }));
+  const label = `Transitions between ${K} modes; the matrix beside holds the same numbers`;
+  const picture = s('svg', {viewBox: `0 0 ${size} ${size}`, role: 'img', 'aria-label': label, class: 'graph'});
+  const {pictures, labels} = edgesOf(transition, nodes, places);
+  const circles = places.map(
+      ({x, y, r}, k) =>
+          s('g', {}, s('title', {}, `${nodes[k].title} stays with probability ${transition[k][k].t}`),
+            s('circle', {cx: x, cy: y, r, fill: nodes[k].colour, stroke: 'var(--ink)'}),
+            s('text', {x, y, class: 'node'}, nodes[k].short)));
+  picture.append(...pictures, ...circles, ...labels);
   return picture;
 }

@@ -1,21 +1,33 @@
 // Which states and inputs belong to which mode, where switches see them.
 import {modeTitle} from './mode_names.js';
-import {axisTitle, figure, modeColour, plain} from './plots.js';
+import {byUse, othersName} from './modes.js';
+import {axisTitle, figure, modeColour, palette, plain} from './plots.js';
 
 const shown = (share) => `${(100 * share).toFixed(0)} %`;
 
-// The data's samples in their modes' colours: `at(i)` is where sample i is drawn.
-function sampleTraces(guard, count, x, y) {
-  return Array.from({length: count}, (_, k) => {
-    const own = guard.samples.mode.map((mode, i) => i).filter((i) => guard.samples.mode[i] === k);
+// The modes told one by one, and all others as one: {name, colour, holds: mode => bool}.
+function groupsOf(bank) {
+  const {told, others} = byUse(bank);
+  const own = ({mode}) => ({name: plain(modeTitle(mode)), colour: modeColour(mode), holds: (k) => k === mode});
+  const rest = new Set(others.map(({mode}) => mode));
+  const list = told.map(own);
+  return rest.size ? [...list, {name: othersName(rest.size), colour: palette.unclustered, holds: (k) => rest.has(k)}] :
+                     list;
+}
+
+// The data's samples in their modes' colours: `at(i, row)` is where sample i of group `row` is drawn.
+function sampleTraces(bank, x, y) {
+  const {samples} = bank.guard;
+  return groupsOf(bank).map(({name, colour, holds}, row) => {
+    const own = samples.mode.map((mode, i) => i).filter((i) => holds(samples.mode[i]));
     return {
       type: 'scatter',
       mode: 'markers',
-      name: plain(modeTitle(k)),
+      name,
       x: own.map(x),
-      y: own.map(y),
+      y: own.map((i) => y(i, row)),
       hoverinfo: 'name+x+y',
-      marker: {color: modeColour(k), size: 4, opacity: 0.8, line: {width: 0.5, color: '#ffffff'}},
+      marker: {color: colour, size: 4, opacity: 0.8, line: {width: 0.5, color: '#ffffff'}},
     };
   });
 }
@@ -44,10 +56,10 @@ function mapTrace(guard, count) {
   };
 }
 
-function map(guard, count) {
-  const [x, y] = guard.samples.at;
+function map(bank) {
+  const {guard} = bank, [x, y] = guard.samples.at;
   return {
-    traces: [mapTrace(guard, count), ...sampleTraces(guard, count, (i) => x[i], (i) => y[i])],
+    traces: [mapTrace(guard, bank.modes.length), ...sampleTraces(bank, (i) => x[i], (i) => y[i])],
     layout: {
       height: 420,
       legend: {orientation: 'h', y: 1.08},
@@ -57,20 +69,25 @@ function map(guard, count) {
   };
 }
 
-// Samples stand below the lines, a row per mode.
-function lines(guard, count) {
-  const traces = guard.lines.map((share, k) => ({
-                                   type: 'scatter',
-                                   mode: 'lines',
-                                   name: plain(modeTitle(k)),
-                                   showlegend: false,
-                                   x: guard.axes[0].values,
-                                   y: share,
-                                   line: {color: modeColour(k), width: 2},
-                                 }));
-  const rows = sampleTraces(guard, count, (i) => guard.samples.at[0][i], (i) => -0.05 - 0.05 * guard.samples.mode[i]);
+function lineTrace(guard, k) {
   return {
-    traces: [...traces, ...rows],
+    type: 'scatter',
+    mode: 'lines',
+    name: plain(modeTitle(k)),
+    showlegend: false,
+    x: guard.axes[0].values,
+    y: guard.lines[k],
+    line: {color: modeColour(k), width: 2},
+  };
+}
+
+// Samples stand below the lines, a row per mode.
+function lines(bank) {
+  const {guard} = bank;
+  const rows = sampleTraces(bank, (i) => guard.samples.at[0][i], (i, row) => -0.05 - 0.05 * row);
+  return {
+    // The most used modes last, or the others would hide them.
+    traces: [...[...bank.order].reverse().map((k) => lineTrace(guard, k)), ...rows],
     layout: {
       height: 360,
       legend: {orientation: 'h', y: 1.08},
@@ -80,8 +97,9 @@ function lines(guard, count) {
   };
 }
 
-/** Of a bank of `count` modes. */
-export function guardFigure(guard, count) {
+/** Of a bank whose switches see states and inputs. */
+export function guardFigure(bank) {
+  const {guard} = bank;
   const rest = guard.others ? ' Other states and inputs are at their training mean.' : '';
   const points = 'Points: samples of all runs, by the state and the input that the step into them started from, in ' +
       'the colour of the mode that the filter finds them in.';
@@ -89,6 +107,6 @@ export function guardFigure(guard, count) {
       'Lines: which share of the time each mode would have if state and input stayed there.' :
       'Ground: the mode that would have the largest share of the time if state and input stayed there.';
   return figure(
-      'Which states and inputs belong to which mode', () => (guard.one ? lines(guard, count) : map(guard, count)),
+      'Which states and inputs belong to which mode', () => (guard.one ? lines(bank) : map(bank)),
       `${means}${rest} ${points}`);
 }

@@ -1,10 +1,26 @@
-// What the page calls the modes of its bank; a page of several banks gives none, and their modes have numbers alone.
+// What the page calls the modes of its bank, and which of them come first; a page of several banks says neither, and
+// their modes have numbers alone.
 let names = [];
+let ranks = [];
+let toldCount = Infinity;
 
-/** `list`: the name of each mode, '' where it has none. */
-export function nameModes(list) {
+/**
+ * `list`: the name of each mode, '' where it has none; `order`: all modes, most used first, of which `told` are told
+ * one by one.
+ */
+export function nameModes(list, order = [], told = Infinity) {
   names = list;
+  ranks = [];
+  toldCount = told;
+  order.forEach((mode, rank) => {
+    ranks[mode] = rank;
+  });
 }
+
+/** How many modes are used more. */
+export const rankOf = (k) => (ranks[k] === undefined ? k : ranks[k]);
+/** Whether a mode is among those that are hardly used and taken as one. */
+export const isOther = (k) => rankOf(k) >= toldCount;
 
 /** In a column of modes. */
 export const modeCell = (k) => (names[k] ? `${k} ${names[k]}` : String(k));

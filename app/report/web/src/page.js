@@ -81,9 +81,25 @@ export function head(title, subtitle) {
   markTheme();
 }
 
-// Runs what draws the page; a failure is shown and thrown on, so that tests see it.
-export async function draw(body) {
+// The script runs before the arrays that stand after it in the file are read.
+const parsed = () => new Promise((resolve) => {
+  if (document.readyState !== 'loading') resolve();
+  document.addEventListener('DOMContentLoaded', resolve);
+});
+
+// After what is there has been painted; a page that nobody sees is never painted.
+const painted = () => new Promise((resolve) => {
+  requestAnimationFrame(() => setTimeout(resolve, 0));
+  setTimeout(resolve, 300);
+});
+
+// Runs what draws the page: `first` is seen before anything else is read. A failure is shown and thrown on, so that
+// tests see it.
+export async function draw(body, first = () => undefined) {
   try {
+    first();
+    await painted();
+    await parsed();
     await body();
     document.documentElement.dataset.ready = 'true';
   } catch (error) {

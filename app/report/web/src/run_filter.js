@@ -167,7 +167,7 @@ export function drawFilter(filter, runs, state, options, picker) {
   const modes = Math.max(0, ...state.runs.map(({filters: {bank}}) => (bank && bank.probability || []).length));
   return section(
       'filter', 'The filter', controls(picker(), pickState, timeControls(state)),
-      modes > 1 ? options.modeLegend(modes) : null, filterPlot(runs, state, options),
+      modes > 1 ? options.modeLegend() : null, filterPlot(runs, state, options),
       h('div', {class: 'pair'}, h('div', {}, histograms(filter)),
         h('div', {}, autocorrelations(filter, runs.states), outside(filter))),
       drawScores(filter), drawFreeRun(filter, runs, state));

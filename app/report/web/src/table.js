@@ -2,21 +2,24 @@
 import {h, swatch, value} from './elements.js';
 import {sortedRows} from './ordering.js';
 import {meaningOf} from './terms.js';
+import {describe, headingWithTip} from './tips.js';
 
 // Cell of a row: columns are {name, text: true for words, prose: true for sentences, of: row => cell, swatch: row =>
-// colour}.
+// colour or null}.
 export function cellOf(column, row) {
   const cell = value(column.of(row), 'td');
   if (column.text || column.prose) cell.classList.add('text');
   if (column.prose) cell.classList.add('prose');
-  if (column.swatch) cell.prepend(swatch(column.swatch(row)));
+  const colour = column.swatch && column.swatch(row);
+  if (colour) cell.prepend(swatch(colour));
   return cell;
 }
 
-export const headingOf = (column, attributes, ...content) =>
-    h('th',
-      {scope: 'col', class: column.text || column.prose ? 'text' : null, title: meaningOf(column.name), ...attributes},
-      content);
+// `content`: the heading's text, or the button that sorts by it; either tells what the column means.
+export function headingOf(column, attributes, content) {
+  const told = content instanceof Element ? describe(content, meaningOf(column.name)) : headingWithTip(content);
+  return h('th', {scope: 'col', class: column.text || column.prose ? 'text' : null, ...attributes}, told);
+}
 
 // A heading's button; `order` is {column, down}: what the table is sorted by.
 export const sortButton = (onclick, ...content) => h('button', {type: 'button', onclick}, content);

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {test} from 'node:test';
 
-import {mixed, onGround, paletteColour, translucent} from '../src/colour.js';
+import {mixed, onGround, paletteColour, translucent, usedColour} from '../src/colour.js';
 
 const palette = JSON.parse(readFileSync(new URL('../palette.json', import.meta.url), 'utf8'));
 
@@ -29,4 +29,12 @@ test('opacity is the last byte; lines are lighter on a dark ground', () => {
   assert.equal(onGround('#000000', false), '#000000');
   assert.equal(onGround('#000000', true), '#595959');  // 0.35 * 255 = 89.25
   assert.equal(onGround('red', true), 'red');
+});
+
+test('the eight most used modes have a colour of their own, the others one together', () => {
+  const ranks = Array.from({length: 8}, (_, rank) => usedColour(palette, rank));
+  assert.equal(new Set(ranks).size, 8);
+  assert.equal(ranks[0], palette.modes[0]);
+  assert.equal(usedColour(palette, 8), palette.unclustered);
+  assert.equal(usedColour(palette, 54), palette.unclustered);
 });

@@ -1,0 +1,47 @@
+// Terms as headings and sentences hold them.
+
+const escaped = (text) => text.replace(/[.*+?^${}()|[\]\\/-]/g, '\\$&');
+
+// Any of the names as a word of its own, or its plural; longer ones first: "95 % band" before "band". A sentence that
+// says "one motion" need not mean the competitor one_motion.
+function anyOf(names) {
+  const isOther = (name) => name.includes(' ') && names.includes(name.replace(/ /g, '_'));
+  const meant = (name) => name.length > 2 && /^\w/.test(name) && !isOther(name);
+  const sorted = names.filter(meant).sort((a, b) => b.length - a.length);
+  return new RegExp(`(?<![\\w-])(${sorted.map(escaped).join('|')})s?(?![\\w])`, 'gi');
+}
+
+/** `terms`: [{term, also, means}]. */
+export class Glossary {
+  constructor(terms) {
+    const named = terms.flatMap(({term, also, means}) => [term, ...also].map((name) => [name.toLowerCase(), means]));
+    this.meanings = new Map(named);
+    this.anyTerm = anyOf([...this.meanings.keys()]);
+  }
+
+  /** The meaning of a heading, whatever unit it has and whatever it is of; null for words that need none. */
+  meaningOf(heading) {
+    const name = String(heading).toLowerCase(), bare = name.replace(/ \[[^\]]*\]$/, '');
+    const general = bare.replace(/^(steady gain|rmse|log noise variance) .*/, '$1');
+    return [name, bare, general].map((text) => this.meanings.get(text)).find(Boolean) || null;
+  }
+
+  /** A sentence in parts {part, meaning}: meaning where a part is the first mention of a term, else null. */
+  termsIn(sentence) {
+    const parts = [], told = new Set();
+    let from = 0;
+    const add = (to, meaning) => {
+      if (to > from) parts.push({part: sentence.slice(from, to), meaning});
+      from = to;
+    };
+    for (const found of sentence.matchAll(this.anyTerm)) {
+      const meaning = this.meanings.get(found[1].toLowerCase());
+      if (told.has(meaning)) continue;
+      told.add(meaning);
+      add(found.index, null);
+      add(found.index + found[0].length, meaning);
+    }
+    add(sentence.length, null);
+    return parts;
+  }
+}

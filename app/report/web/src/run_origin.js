@@ -1,0 +1,36 @@
+// Where the run comes from, for who must check it: one click away, at the end of the page.
+import {controls, copyButton, details, facts, h, note} from './elements.js';
+import {section} from './page.js';
+import {table} from './table.js';
+
+const changedColumns = [
+  {name: 'Setting', text: true, of: (row) => row.key},
+  {name: 'Value', text: true, of: (row) => row.value},
+  {name: 'Default', text: true, of: (row) => row.standard},
+];
+const fileColumns = [
+  {name: 'File', text: true, of: (row) => row.path},
+  {name: 'Bytes', of: (row) => row.bytes},
+  {name: 'SHA-256', text: true, of: (row) => row.sha256},
+];
+
+export function drawOrigin(origin) {
+  const code = (text) => h('code', {}, text), listing = (text) => h('pre', {tabindex: 0}, text);
+  const changed = {caption: 'Settings that are not the defaults'};
+  section(
+      'origin', 'What was run', facts([['Made', `${origin.created} by modebank ${origin.version}`], ...origin.facts]),
+      controls(copyButton('Copy the configuration', origin.config)),
+      details('Command and hashes', facts([
+                ['Command', code(origin.command)],
+                ['Hash of settings', code(origin.config_hash)],
+                ['Hash of data', code(origin.data_hash)],
+              ])),
+      details(
+          'Settings',
+          origin.changed.length ? table(changedColumns, origin.changed, changed) :
+                                  note('All settings are the defaults.'),
+          details('The whole configuration', listing(origin.config))),
+      details(`${origin.inputs.length} input files`, table(fileColumns, origin.inputs, {caption: 'Input files'})),
+      details('Versions', facts(origin.versions)),
+      details('The summary as the program prints it, with its audit', listing(origin.summary)));
+}

@@ -1,0 +1,156 @@
+// The data in little, drawn on a plain canvas so that it is seen first: the first state in the colour of the most
+// probable mode, the modes as a strip, and beneath it what is known of the ground.
+import {mixed} from './colour.js';
+import {h, legend} from './elements.js';
+import {roleNames} from './filters.js';
+import {modeTitle, rankOf} from './mode_names.js';
+import {dark, onTheme} from './page.js';
+import {segments, ticks} from './picture_layout.js';
+import {ink, lineColour, modeColour, palette} from './plots.js';
+
+const strip_px = 13, gap_px = 4, above_px = 18, left_px = 66, apart_px = 6;
+const least_px = 60;  // of a run's width: below it there is no room for its times
+
+// Greys, so that no label looks like a mode.
+export const labelColour = (k, count) => {
+  const ground = dark() ? '#14161a' : '#ffffff';
+  return mixed(ground, ink(), 0.12 + (0.58 * k) / Math.max(1, count - 1));
+};
+
+const titleOf = ({name, unit}) => (unit ? `${name} [${unit}]` : name);
+
+// Where everything stands on a canvas so wide and high: each run's stretch in proportion to its samples.
+function layoutOf(picture, width, height) {
+  const strips = [picture.modes > 1 ? 'mode' : null, picture.labels.length ? 'label' : null].filter(Boolean);
+  const total = picture.runs.reduce((sum, run) => sum + run.low.length, 0);
+  const room = width - left_px - 8 - apart_px * (picture.runs.length - 1);
+  const timed = picture.runs.some((run) => (room * run.low.length) / total > least_px);
+  const below = timed ? 22 : 4, plot = height - above_px - below - strips.length * (strip_px + gap_px);
+  let x = left_px;
+  const places = picture.runs.map((run) => {
+    const place = {run, x, width: (room * run.low.length) / total};
+    x += place.width + apart_px;
+    return place;
+  });
+  const top = (strip) => above_px + plot + gap_px + strips.indexOf(strip) * (strip_px + gap_px);
+  return {plot, places, strips, top, bottom: height - below};
+}
+
+// Where a share of the range stands; its ends are clear of the frame.
+const heightOf = (at, share) => above_px + at.plot * (0.98 - 0.96 * share);
+
+function drawState(pen, picture, at, {run, x, width}) {
+  const n = run.low.length, step = width / n, high = run.high || run.low;
+  const y = (v) => heightOf(at, v / picture.steps);
+  const list = run.mode || run.low.map(() => -1);
+  // The rarer modes last, or the others would hide them.
+  const modes = [...new Set(list)].sort((a, b) => rankOf(a) - rankOf(b));
+  for (const mode of modes) {
+    pen.beginPath();
+    for (let i = 0; i < n; ++i) {
+      if (list[i] !== mode || run.low[i] === null) continue;
+      const middle = x + (i + 0.5) * step;
+      const before = i > 0 && run.low[i - 1] !== null ? (run.low[i - 1] + high[i - 1]) / 2 : run.low[i];
+      pen.moveTo(i > 0 ? middle - step : middle, y(before));
+      pen.lineTo(middle, y(run.low[i]));
+      pen.lineTo(middle, y(high[i]));
+    }
+    pen.strokeStyle = mode < 0 ? ink() : lineColour(modeColour(mode));
+    pen.stroke();
+  }
+}
+
+function drawStrip(pen, values, top, {x, width}, colour) {
+  const step = width / values.length;
+  for (const {from, to, value} of segments(values)) {
+    if (value < 0) continue;
+    pen.fillStyle = colour(value);
+    pen.fillRect(x + from * step, top, (to - from) * step, strip_px);
+  }
+}
+
+function drawNames(pen, picture, at) {
+  const tint = dark() ? '#a9b0bc' : '#555c68';
+  pen.fillStyle = tint;
+  pen.font = '12px system-ui, "DejaVu Sans", sans-serif';
+  pen.textAlign = 'right';
+  pen.textBaseline = 'middle';
+  for (const value of ticks(picture.range, 5)) {
+    const share = (value - picture.range[0]) / (picture.range[1] - picture.range[0]);
+    pen.fillText(String(value), left_px - 6, heightOf(at, share));
+  }
+  for (const strip of at.strips)
+    pen.fillText(strip === 'mode' ? 'mode' : 'known', left_px - 6, at.top(strip) + strip_px / 2);
+  pen.save();
+  pen.translate(9, above_px + at.plot / 2);
+  pen.rotate(-Math.PI / 2);
+  pen.textAlign = 'center';
+  pen.fillText(titleOf(picture.state), 0, 0, at.plot);
+  pen.restore();
+  pen.textAlign = 'left';
+  for (const {run, x, width} of at.places) {
+    if (width > 40) pen.fillText(run.name, x, 8, width);
+    pen.textAlign = 'right';
+    if (width > least_px) pen.fillText(`${Number(run.seconds.toPrecision(3))} s`, x + width, at.bottom + 12);
+    pen.textAlign = 'left';
+    if (width > least_px) pen.fillText('0', x, at.bottom + 12);
+  }
+}
+
+function frame(pen, at) {
+  pen.strokeStyle = dark() ? '#3a404b' : '#d5d9e0';
+  pen.lineWidth = 1;
+  for (const {x, width} of at.places) pen.strokeRect(x - 0.5, above_px - 0.5, width + 1, at.plot + 1);
+}
+
+function paint(canvas, picture) {
+  const scale = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
+  canvas.width = Math.round(scale * width);
+  canvas.height = Math.round(scale * height);
+  const pen = canvas.getContext('2d');
+  pen.scale(scale, scale);
+  pen.clearRect(0, 0, width, height);
+  const at = layoutOf(picture, width, height);
+  frame(pen, at);
+  pen.lineWidth = 1.4;
+  pen.lineJoin = 'round';
+  for (const place of at.places) {
+    drawState(pen, picture, at, place);
+    if (at.strips.includes('mode') && place.run.mode) drawStrip(pen, place.run.mode, at.top('mode'), place, modeColour);
+    if (place.run.label) {
+      drawStrip(pen, place.run.label, at.top('label'), place, (k) => labelColour(k, picture.labels.length));
+    }
+  }
+  drawNames(pen, picture, at);
+}
+
+// What the picture shows, in words.
+function described(picture, role) {
+  const shown = picture.runs.length;
+  const which = shown < picture.of_runs ? `${shown} of ${picture.of_runs} ${roleNames[role]}` : roleNames[role];
+  const known = picture.labels.length ? '; beneath, what is known of them' : '';
+  const coloured = picture.modes > 1 ? ', in the colour of the mode that the filter finds most probable' : '';
+  return `${titleOf(picture.state)} over time [s], ${which}${coloured}${known}.`;
+}
+
+function key(picture, modes) {
+  const told = modes && picture.modes > 1 ? modes.rows.map(({mode}) => [modeColour(mode), modeTitle(mode)]) : [];
+  const others = told.length && modes.others ? [[palette.unclustered, 'others']] : [];
+  const known = picture.labels.map((name, k) => [labelColour(k, picture.labels.length), `known: ${name}`]);
+  return legend([...told, ...others, ...known], 'Colours of modes and labels');
+}
+
+/** Into `place`: the picture of the verdict's section, anew whenever its size or the theme changes. */
+export function drawPicture(place, {picture, role, modes}) {
+  const text = described(picture, role);
+  const canvas = h('canvas', {class: 'picture', role: 'img', 'aria-label': text});
+  const caption = h('figcaption', {class: 'caption'});
+  place.append(h('figure', {}, canvas, caption));
+  const again = () => {
+    paint(canvas, picture);
+    caption.replaceChildren(key(picture, modes), text);
+  };
+  again();
+  onTheme(again);
+  new ResizeObserver(() => paint(canvas, picture)).observe(canvas);
+}

@@ -1,0 +1,63 @@
+// The first screen: what was found, whether the band may be used, what to do next, a picture. Its words and numbers are
+// those of the program's first screen (screen_facts.hpp).
+import {h, value} from './elements.js';
+import {section} from './page.js';
+import {modeColour} from './plots.js';
+import {drawPicture} from './run_picture.js';
+import {cellOf, headingOf, scrolling} from './table.js';
+import {withTips} from './tips.js';
+
+const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+// Commands in a sentence, `modebank show`, and options, --filter.horizon 10, as such.
+const command = /(`[^`]+`|--[\w.]+(?:[ =](?:'[^']*'|[\d.]+|auto|varx|adaptive))?)/;
+const withCode = (text, other = (part) => part) =>
+    text.split(command).map((part, i) => (i % 2 ? h('code', {}, part.replace(/`/g, '')) : other(part)));
+
+function card(row) {
+  return h(
+      'li', {'data-card': row.key}, h('div', {class: 'name'}, withTips(row.name)),
+      h('div', {}, h('span', {class: 'big'}, value(row.big)), ' ', h('span', {class: 'soft'}, withTips(row.unit))),
+      h('div', {class: 'said'}, withCode(row.said, withTips)));
+}
+
+const cardList = (id, rows) => (rows.length ? h('ul', {class: 'numbers', id}, rows.map(card)) : null);
+
+const left_out = 'decay/sample';  // a time constant says it to people
+
+function modesTable(modes) {
+  const kept = modes.headings.map((_, i) => i).filter((i) => modes.headings[i] !== left_out);
+  const unit = modes.gain_unit ? `; gains in ${modes.gain_unit}` : '';
+  const title = `${modes.count} mode${modes.count === 1 ? '' : 's'}${unit}`;
+  const columns = kept.map((i) => ({
+                             name: modes.headings[i],
+                             text: i === 0,
+                             of: (row) => row.cells[i],
+                             swatch: i === 0 ? (row) => modeColour(row.mode) : null,
+                           }));
+  const head = h('tr', {}, columns.map((column) => headingOf(column, {}, column.name)));
+  const body = modes.rows.map((row) => h('tr', {}, columns.map((column) => cellOf(column, row))));
+  const caption = h('caption', {}, title);
+  return h(
+      'div', {id: 'screen-modes'},
+      scrolling('Modes in words', h('table', {}, caption, h('thead', {}, head), h('tbody', {}, body))),
+      modes.others ? h('p', {class: 'soft'}, modes.others) : null);
+}
+
+export function drawVerdict(verdict) {
+  const sort = verdict.good === true ? 'good' : verdict.good === false ? 'bad' : '';
+  const of = (wanted) => verdict.cards.filter((row) => (row.key === 'coverage') === wanted);
+  const said =
+      h('div', {id: 'said', class: `verdict ${sort}`}, h('p', {class: 'answer'}, capital(verdict.headline), '.'),
+        h('p', {}, withTips(verdict.text)));
+  const next =
+      verdict.next ? h('p', {id: 'next', class: 'note'}, h('strong', {}, 'Next: '), withCode(verdict.next)) : null;
+  const warning = verdict.warning ?
+      h('p', {id: 'warning', class: 'soft'}, h('strong', {}, 'Warning: '), withCode(verdict.warning)) :
+      null;
+  const element = section(
+      'verdict', 'Verdict',
+      h('div', {class: 'screen'}, said, cardList('coverage', of(true)), next, h('div', {id: 'picture'}),
+        cardList('scores', of(false)), verdict.modes ? modesTable(verdict.modes) : null, warning));
+  if (verdict.picture) drawPicture(element.querySelector('#picture'), verdict);
+}

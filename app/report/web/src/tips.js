@@ -1,0 +1,59 @@
+// Definitions of terms, on hover and on focus: the words of `modebank help TERM`.
+import {h} from './elements.js';
+import {meaningOf, termsIn} from './terms.js';
+
+let shown = null;
+
+function tip() {
+  let element = document.getElementById('term-tip');
+  if (!element) {
+    element = h('div', {id: 'term-tip', class: 'tip', role: 'tooltip', hidden: true});
+    document.body.append(element);
+    addEventListener('keydown', (event) => {
+      if (event.key === 'Escape') hide();
+    });
+    addEventListener('scroll', () => hide(), {passive: true, capture: true});
+  }
+  return element;
+}
+
+function hide() {
+  shown = null;
+  tip().hidden = true;
+}
+
+function show(element, meaning) {
+  const box = element.getBoundingClientRect(), label = tip();
+  shown = element;
+  label.textContent = meaning;
+  label.hidden = false;
+  label.style.left = `${Math.max(8, Math.min(box.left, innerWidth - label.offsetWidth - 8))}px`;
+  const below = box.bottom + 6;
+  label.style.top =
+      `${below + label.offsetHeight < innerHeight ? below : Math.max(8, box.top - label.offsetHeight - 6)}px`;
+}
+
+/** Makes `element`, which can be focused, tell what it means; screen readers read it as its description. */
+export function describe(element, meaning) {
+  if (!meaning) return element;
+  element.classList.add('term');
+  element.setAttribute('aria-description', meaning);
+  element.addEventListener('pointerenter', () => show(element, meaning));
+  element.addEventListener('focus', () => show(element, meaning));
+  element.addEventListener('click', () => show(element, meaning));
+  for (const end of ['pointerleave', 'blur']) {
+    element.addEventListener(end, () => {
+      if (shown === element) hide();
+    });
+  }
+  return element;
+}
+
+const term = (text, meaning) => describe(h('span', {tabindex: 0}, text), meaning);
+
+/** A heading: the whole of it is the term, whatever unit it has. */
+export const headingWithTip = (text) => (meaningOf(text) ? term(text, meaningOf(text)) : text);
+
+/** A sentence's parts: the first mention of each term in it tells what it means. */
+export const withTips = (text) =>
+    termsIn(String(text || '')).map(({part, meaning}) => (meaning ? term(part, meaning) : part));

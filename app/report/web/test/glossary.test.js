@@ -1,0 +1,35 @@
+import assert from 'node:assert/strict';
+import {readFileSync} from 'node:fs';
+import {test} from 'node:test';
+
+import {Glossary} from '../src/glossary.js';
+
+const small = new Glossary([
+  {term: 'band', also: ['95 % band'], means: 'B'},
+  {term: 'gain', also: ['steady gain'], means: 'G'},
+]);
+const program = new Glossary(JSON.parse(readFileSync(new URL('../terms.json', import.meta.url), 'utf8')));
+
+test('a heading has its meaning with any unit', () => {
+  assert.equal(small.meaningOf('Band [rad/s]'), 'B');
+  assert.equal(small.meaningOf('steady gain wz per velL [1/s]'), 'G');
+  assert.equal(small.meaningOf('Run'), null);
+});
+
+test('a sentence tells each meaning once, at the longest name', () => {
+  const parts = small.termsIn('In the 95 % band, bands and gains; bandit');
+  assert.deepEqual(parts, [
+    {part: 'In the ', meaning: null},
+    {part: '95 % band', meaning: 'B'},
+    {part: ', bands and ', meaning: null},
+    {part: 'gains', meaning: 'G'},
+    {part: '; bandit', meaning: null},
+  ]);
+  assert.deepEqual(small.termsIn(''), []);
+});
+
+test('the words of the first screen have meanings', () => {
+  for (const text of ['RMSE one step ahead', 'In the 95 % band', 'Gain over drifting', 'FIT of the free run']) {
+    assert.ok(program.termsIn(text).some(({meaning}) => meaning), text);
+  }
+});

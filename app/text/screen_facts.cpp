@@ -1,0 +1,213 @@
+#include "app/text/screen_facts.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+#include <cstdlib>
+
+#include "app/chain/judged_runs.hpp"
+#include "app/text/warnings.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// How much later than recorded inputs act: found, or said.
+double input_lag(const Archive& archive, const Settings& settings) {
+  if (archive.lag) return archive.lag->correction == LagCorrection::none ? 0.0 : archive.lag->lag.mean;
+  const auto said = settings.find("data.lag_s");
+  return said == settings.end() ? 0.0 : std::atof(said->second.c_str());
+}
+
+std::string read_words(const Archive& archive, const Settings& settings) {
+  if (!archive.recording) return "";
+  const Recording& recording = *archive.recording;
+  const auto count = [&](Role role) {
+    return std::count_if(recording.runs.begin(), recording.runs.end(),
+                         [role](const Trajectory& t) { return t.role == role; });
+  };
+  const Index train = count(Role::train), test = count(Role::test);
+  const Index steps = recording.transitions(Role::train), held_out = recording.transitions(Role::test);
+  std::string text =
+      test == 0 ? fmt::format("{} training run{}, none held out, {} steps", train, train == 1 ? "" : "s", steps)
+                : fmt::format("{} training and {} held-out run{}, {} and {} steps", train, test, test == 1 ? "" : "s",
+                              steps, held_out);
+  text += fmt::format(" of {:.3g} s; {}", recording.median_period_s(), fmt::join(names_of(recording.states), ", "));
+  if (!recording.inputs.empty()) text += fmt::format(" from {}", fmt::join(names_of(recording.inputs), ", "));
+  if (archive.lag && archive.lag->correction != LagCorrection::none)
+    text += fmt::format(", which act {:+.3f} s later", archive.lag->lag.mean);
+  if (const double lag_s = input_lag(archive, settings); lag_s < 0.0)
+    text += fmt::format("{}the filter needs inputs {:.3f} s ahead of the states", archive.lag ? ": " : "; ", -lag_s);
+  if (archive.learned_transitions > 0)
+    text += fmt::format("; the bank learned {}", learned_words(archive.learned_transitions, steps));
+  if (archive.lag_counts)
+    text += fmt::format("; lags found: {} of the state, {} of the inputs", archive.lag_counts->state_lags,
+                        archive.lag_counts->input_lags);
+  return text;
+}
+
+std::string verdict_words(Verdict verdict) {
+  if (verdict == Verdict::undecided) return "undecided, for too few samples";
+  return fmt::format("{}, {}", name_of(verdict), calibration_words(verdict));
+}
+
+std::string band_words(const DiagnosticsRow& row) {
+  return fmt::format(
+      "{:.1f} % [{:.1f}, {:.1f}] of the {} samples lie in the 95 % band: {}; {:.1f} % in the 50 %, {:.1f} % in the "
+      "90 %, {:.1f} % in the 99 % band",
+      100 * row.coverage_95, 100 * row.coverage_95_lower, 100 * row.coverage_95_upper, words_for(row.role),
+      verdict_words(row.verdict), 100 * row.coverage_50, 100 * row.coverage_90, 100 * row.coverage_99);
+}
+
+/// "0.0301 rad/s", or per state "wz 0.0301 rad/s, v 0.2 m/s".
+std::string rmse_words(const Eigen::VectorXd& rmse, const std::vector<Channel>& states) {
+  std::vector<std::string> parts;
+  for (Index i = 0; i < rmse.size(); ++i) {
+    const Channel state = static_cast<std::size_t>(i) < states.size() ? states[static_cast<std::size_t>(i)] : Channel{};
+    parts.push_back(fmt::format("{}{:.4g}{}", rmse.size() > 1 ? state.name + " " : "", rmse(i),
+                                state.unit.empty() ? "" : " " + state.unit));
+  }
+  return boost::algorithm::join(parts, ", ");
+}
+
+const HorizonRow* longest_horizon(const Archive& archive, const std::string& filter, Role role) {
+  const HorizonRow* longest = nullptr;
+  for (const HorizonRow& row : archive.horizons)
+    if (row.filter == filter && row.role == role && row.run == "*" && row.horizon > (longest ? longest->horizon : 1))
+      longest = &row;
+  return longest;
+}
+
+const FreeRunRow* free_run_of(const Archive& archive, const std::string& filter, Role role) {
+  const auto found = std::find_if(archive.free_runs.begin(), archive.free_runs.end(), [&](const FreeRunRow& row) {
+    return row.filter == filter && row.role == role && row.run == "*";
+  });
+  return found == archive.free_runs.end() ? nullptr : &*found;
+}
+
+/// One step ahead, and as far as was looked ahead.
+std::vector<ErrorAhead> errors_ahead(const Archive& archive, const std::string& competitor, Role role) {
+  const std::vector<Channel> states = archive.recording ? archive.recording->states : std::vector<Channel>();
+  std::vector<ErrorAhead> errors;
+  const auto add = [&](Index steps, const auto* bank, const auto* other) {
+    if (!bank) return;
+    errors.push_back({steps, bank->rmse, other ? other->rmse : Eigen::VectorXd(), rmse_words(bank->rmse, states),
+                      other ? rmse_words(other->rmse, states) : ""});
+  };
+  add(1, pooled_row(archive, "bank", role), pooled_row(archive, competitor, role));
+  if (const HorizonRow* far = longest_horizon(archive, "bank", role))
+    add(far->horizon, far, longest_horizon(archive, competitor, role));
+  return errors;
+}
+
+/// "71.2 %", or of several states "71.2 %, 65.0 %".
+std::string fit_words(const Eigen::VectorXd& fit) {
+  std::vector<std::string> parts;
+  for (const double percent : fit) parts.push_back(fmt::format("{:.1f} %", percent));
+  return boost::algorithm::join(parts, ", ");
+}
+
+/// "RMSE one step ahead 0.03 rad/s (drifting: 0.04 rad/s); 10 steps ahead ...; free run from 3 samples FIT 71.2 %
+/// (...)"
+std::string mean_words(const FirstScreen& screen) {
+  const auto beside = [&](const std::string& words) {
+    return words.empty() ? "" : fmt::format(" ({}: {})", screen.competitor, words);
+  };
+  std::vector<std::string> parts;
+  for (const ErrorAhead& error : screen.errors)
+    parts.push_back(
+        (error.steps == 1 ? std::string("RMSE one step ahead ") : fmt::format("{} steps ahead ", error.steps)) +
+        error.bank_words + beside(error.other_words));
+  if (screen.free_run_start > 0)
+    parts.push_back(fmt::format("free run from {} samples FIT {}{}", screen.free_run_start, fit_words(screen.fit),
+                                beside(fit_words(screen.other_fit))));
+  return screen.errors.empty() ? "" : boost::algorithm::join(parts, "; ");
+}
+
+std::string warning_words(const Archive& archive) {
+  const std::vector<std::string> warnings = archive_warnings(archive);
+  if (warnings.empty()) return "";
+  return warnings.size() == 1
+             ? warnings.front()
+             : fmt::format("{}, the first: {} (`modebank show` has all)", warnings.size(), warnings.front());
+}
+
+/// The numbers of the scores; `screen` has role and competitor already.
+void add_scores(FirstScreen& screen, const Archive& archive) {
+  screen.errors = errors_ahead(archive, screen.competitor, screen.role);
+  if (const FreeRunRow* bank = free_run_of(archive, "bank", screen.role)) {
+    screen.free_run_start = bank->start;
+    screen.fit = bank->fit;
+    if (const FreeRunRow* other = free_run_of(archive, screen.competitor, screen.role)) screen.other_fit = other->fit;
+  }
+  screen.mean = mean_words(screen);
+  screen.coverage = screen.coverage_lower = screen.coverage_upper = not_a_number;
+  if (const DiagnosticsRow* row = diagnosis(archive, "bank", screen.role)) {
+    screen.band = band_words(*row);
+    screen.verdict = row->verdict;
+    screen.coverage = row->coverage_95;
+    screen.coverage_lower = row->coverage_95_lower;
+    screen.coverage_upper = row->coverage_95_upper;
+  }
+}
+
+}  // namespace
+
+std::string answer_words(Answer answer) {
+  switch (answer) {
+    case Answer::one_mode:
+      return "one mode";
+    case Answer::not_comparable:
+      return "modes of motion cannot be judged";
+    case Answer::cannot_tell:
+      return "modes of motion: cannot tell";
+    case Answer::no_evidence:
+      return "no evidence for modes of motion";
+    case Answer::evidence:
+      return "evidence for modes of motion";
+  }
+  return "";
+}
+
+std::string calibration_words(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::calibrated:
+      return "its stated uncertainty is not found false";
+    case Verdict::overconfident:
+      return "it claims more certainty than it has";
+    case Verdict::underconfident:
+      return "it claims less certainty than it has";
+    case Verdict::undecided:
+      break;
+  }
+  return "whether its stated uncertainty is false is undecided";
+}
+
+bool has_first_screen(const Archive& archive) { return archive.bank && !archive.summary.empty(); }
+
+FirstScreen make_first_screen(const Archive& archive, const Settings& settings) {
+  FirstScreen screen;
+  screen.read = read_words(archive, settings);
+  screen.inputs_ahead = input_lag(archive, settings) < 0.0;
+  screen.warning = warning_words(archive);
+  screen.next = next_step(archive, settings);
+  screen.role = judged_role(archive);
+  screen.gain = screen.gain_error = not_a_number;
+  if (archive.finding) {
+    const Finding& finding = *archive.finding;
+    screen.finding = finding.text;
+    screen.answer = finding.answer;
+    screen.competitor = finding.best_competitor;
+    if (!finding.best_competitor.empty()) screen.gain = finding.gain, screen.gain_error = finding.standard_error;
+  }
+  add_scores(screen, archive);
+  if (archive.bank) {
+    screen.mode_count = archive.bank->mode_count();
+    screen.modes = mode_table(archive);
+  }
+  return screen;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/text/mode_words.hpp"
+#include "app/text/next_step.hpp"
+#include "io/archive/archive.hpp"
+
+/// What the first screen of a run says, in words and numbers: on a terminal (first_screen.hpp) and on the report's
+/// page.
+namespace modebank::app {
+
+/// Whether the archive holds what the screen is about: a bank and its scores.
+bool has_first_screen(const Archive& archive);
+
+/// How far predictions are off, beside the best competitor's.
+struct ErrorAhead {
+  Index steps = 1;
+  Eigen::VectorXd bank, other;          ///< n_y, root mean square [state unit]; other: empty where it is not known
+  std::string bank_words, other_words;  ///< the same with units
+};
+
+/// What the screen says, computed once: first_screen prints it, the report's page shows it. Sentences are empty where
+/// there is nothing to say.
+struct FirstScreen {
+  std::string read, finding, band, mean, warning, next;
+  bool inputs_ahead = false;  ///< the filter needs inputs earlier than the states they act on
+  Role role = Role::test;     ///< of the judged runs
+  std::string competitor;     ///< the best one; empty without
+  std::optional<Answer> answer;
+  double gain = 0.0, gain_error = 0.0;  ///< of log score over the competitor [nats/sample]; NaN where not known
+  double coverage = 0.0, coverage_lower = 0.0, coverage_upper = 0.0;  ///< of the 95 % band; NaN where not known
+  Verdict verdict = Verdict::undecided;
+  std::vector<ErrorAhead> errors;  ///< one step ahead, and as far as filter.horizon looks
+  Index free_run_start = 0;        ///< measured samples that free runs begin with; 0: there are none
+  Eigen::VectorXd fit, other_fit;  ///< n_y, of the free runs [%]
+  Index mode_count = 0;
+  ModeTable modes;  ///< of a scored bank
+};
+FirstScreen make_first_screen(const Archive& archive, const Settings& settings);
+
+/// "evidence for modes of motion": the answer as a headline has it.
+std::string answer_words(Answer answer);
+/// What a verdict means: "its stated uncertainty is not found false".
+std::string calibration_words(Verdict verdict);
+
+}  // namespace modebank::app

@@ -1,0 +1,136 @@
+"""What the page of a run shows before any scrolling, and that its words are explained."""
+import subprocess
+
+import h5py
+import session
+from session import PageTest, pooled
+
+DESKTOP, PHONE = (1440, 900), (390, 844)
+# Headings that say what they are.
+PLAIN = {"", "Runs", "Run", "Filter", "Samples", "Shape", "Iterations", "Converged", "Status", "Setting", "Value", "Default", "File", "Bytes", "SHA-256",
+         "from \\ to", "to", "others"}
+
+
+class FirstScreen(PageTest):
+    def setUp(self):
+        for name, options in (("none_held_out", ("--data.train", ",".join(f"{run:02d}" for run in range(12)))), ("many_modes", ("--mixture.components", "20"))):
+            if name not in session.made:
+                session.made[name] = session.archives.demo(session.modebank, session.data, name, *options)
+
+    def tearDown(self):
+        session.browser.size(1200, 900)
+
+    def open_run(self, name, size=DESKTOP):
+        session.browser.size(*size)
+        self.open(session.modebank.page(name, session.made[name]))
+        session.browser.run("window.scrollTo(0, 0)")
+
+    def bottoms(self, *selectors):
+        found = session.browser.run("""
+            return arguments[0].map((selector) => document.querySelector(selector)?.getBoundingClientRect())
+                .map((box) => box && box.width > 0 && box.height > 0 && box.left >= 0 && box.right <= innerWidth ? box.bottom : null);""", list(selectors))
+        self.assertNotIn(None, found, selectors)
+        return found
+
+    def test_the_answer_is_on_the_first_screen(self):
+        for name in ("demo", "one_mode", "none_held_out", "many_modes", "ice"):
+            if name not in session.made:
+                continue
+            with self.subTest(name):
+                self.open_run(name)
+                self.assertLessEqual(max(self.bottoms("#said", "#coverage", "#next", "#scores", "#picture canvas", "#screen-modes")), DESKTOP[1])
+                session.browser.screenshot(f"first_{name}", whole=False)
+                self.open_run(name, PHONE)
+                self.assertLessEqual(max(self.bottoms("#said", "#coverage", "#next", "#picture canvas")), PHONE[1])
+                session.browser.screenshot(f"first_{name}_phone", whole=False)
+                self.assertLessEqual(session.browser.run("return document.documentElement.scrollWidth"), PHONE[0])
+                self.assert_quiet()
+
+    def test_its_numbers_are_the_archives(self):
+        self.open_run("demo")
+        rows = pooled(session.made["demo"])
+        shown = {name: (value, text) for name, value, text in session.browser.run("""
+            return [...document.querySelectorAll('#verdict .numbers > li')].map((card) =>
+                [card.querySelector('.name').textContent, JSON.parse(card.querySelector('.big span').dataset.value ?? 'null'), card.textContent]);""")}
+        bank = rows["bank", "test"]
+        best = max((row for (_, role), row in rows.items() if role == "test" and row["filter"] != b"bank"), key=lambda row: row["log_score"])
+        competitor = best["filter"].decode()
+        self.assertEqual(shown["In the 95 % band"][0], bank["coverage_95"])
+        self.assertAlmostEqual(shown[f"Gain over {competitor}"][0], bank["log_score"] - best["log_score"], places=9)
+        self.assertIn("±", shown[f"Gain over {competitor}"][1])
+        self.assertEqual(shown["RMSE one step ahead"][0], float(bank["rmse"].ravel()[0]))
+        self.assertIn(f"{competitor}: {best['rmse'].ravel()[0]:.4g} rad/s", shown["RMSE one step ahead"][1])
+        screen = session.modebank("show", session.made["demo"]).stdout
+        told = session.browser.run("return document.querySelector('#next').textContent").removeprefix("Next: ")
+        self.assertIn("".join(told.split()), "".join(screen.replace("`", "").split()))
+
+    def test_it_is_painted_before_the_rest_is_read(self):
+        script = session.browser.cdp("Page.addScriptToEvaluateOnNewDocument", source="""
+            new PerformanceObserver(() => {
+              if (window.atFirstPaint) return;
+              const canvas = document.querySelector('#picture canvas');
+              window.atFirstPaint = {said: document.querySelector('#said')?.textContent ?? '', plotly: 'Plotly' in window,
+                                     inked: canvas ? canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v) : false};
+            }).observe({type: 'paint', buffered: true});""")
+        try:
+            self.open_run("demo")
+            first = session.browser.wait("return window.atFirstPaint", what="the first paint")
+        finally:
+            session.browser.cdp("Page.removeScriptToEvaluateOnNewDocument", identifier=script["identifier"])
+        self.assertIn("modes of motion", first["said"])
+        self.assertTrue(first["inked"])
+        self.assertFalse(first["plotly"])
+
+    def test_many_modes_are_folded(self):
+        self.open_run("many_modes")
+        with h5py.File(session.made["many_modes"]) as file:
+            modes = len(file["bank/weight"])
+            rows = [row for row in file["evaluation/diagnostics"][:] if row["filter"] == b"bank" and row["role"] == b"test" and row["mode"] >= 0]
+        order = [int(row["mode"]) for row in sorted(rows, key=lambda row: -row["usage"])]
+        told = min(8, sum(row["usage"] >= 0.01 for row in rows))
+        self.assertLess(told, modes)
+        session.browser.draw_all("#bank")
+        first = session.browser.run("return [...document.querySelectorAll('#screen-modes tbody tr td:first-child')].map((td) => parseInt(td.textContent))")
+        self.assertEqual(first, order[:told])
+        names = [list(row.values())[0][0] for row in self.table("Modes, most used first")]
+        self.assertEqual([int(name.split()[0]) for name in names if name != "baseline"], order[:told])
+        self.assertEqual(session.browser.run("return document.querySelectorAll('#bank svg.graph circle').length"), told + 1)
+        colours = session.browser.run("return [...document.querySelectorAll('#picture .legend .swatch')].map((s) => s.style.background)")
+        self.assertEqual(len(set(colours)), len(colours))
+        self.assertLessEqual(len(self.table("Parameters")), modes + 1)
+
+    def test_words_are_explained_on_hover_and_on_focus(self):
+        self.open_run("demo")
+        heading = "document.querySelector('#screen-modes th .term')"
+        session.browser.run(f"{heading}.focus()")
+        tip = session.browser.run("const tip = document.getElementById('term-tip'); return tip.hidden ? null : tip.textContent")
+        word = session.browser.run(f"return {heading}.textContent")
+        said = subprocess.run([session.modebank.program, "help", word], capture_output=True, text=True, check=True).stdout
+        self.assertIn("".join(tip.split()), "".join(said.split()))
+        session.browser.key("Escape")
+        self.assertTrue(session.browser.run("return document.getElementById('term-tip').hidden"))
+        box = session.browser.box("#coverage .term")
+        session.browser.move(box["x"] + 3, box["y"] + 3)
+        session.browser.wait("return !document.getElementById('term-tip').hidden", what="the definition to show")
+        bare = session.browser.run("return [...document.querySelectorAll('th')].filter((th) => !th.querySelector('.term')).map((th) => th.textContent)")
+        unexplained = {text for text in bare if text not in PLAIN and " <- " not in text and " per " not in text and not text.startswith("mode ")
+                       and not text.split()[0].isdigit()}
+        self.assertEqual(unexplained, set())
+
+    def test_nothing_is_named_by_a_column_of_a_table(self):
+        self.open_run("demo")
+        session.browser.draw_all()
+        names = session.browser.run("""
+            return [...document.querySelectorAll('div.js-plotly-plot')].flatMap((plot) => Object.entries(plot._fullLayout))
+                .filter(([key, axis]) => /^[xy]axis/.test(key) && axis.title).map(([, axis]) => axis.title.text)
+                .concat([...document.querySelectorAll('option')].map((option) => option.textContent));""")
+        self.assertTrue(names)
+        for name in names:
+            self.assertNotRegex(name, r"log_|_variance|nis_|too_")
+
+    def test_where_it_comes_from_is_at_the_end_one_click_away(self):
+        self.open_run("demo")
+        self.assertEqual(session.browser.run("return document.querySelector('main > section:last-child').id"), "origin")
+        self.assertEqual(session.browser.run("return [...document.querySelectorAll('code')].filter((c) => /^[0-9a-f]{64}$/.test(c.textContent) && c.checkVisibility()).length"), 0)
+        session.browser.run("document.querySelector('#origin details summary').click()")
+        self.assertEqual(session.browser.run("return [...document.querySelectorAll('#origin code')].filter((c) => /^[0-9a-f]{64}$/.test(c.textContent) && c.checkVisibility()).length"), 2)
