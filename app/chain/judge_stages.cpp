@@ -1,6 +1,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "app/chain/stages.hpp"
@@ -11,6 +12,7 @@
 #include "filter/judge/scores.hpp"
 #include "filter/judge/smoother.hpp"
 #include "filter/judge/statistics.hpp"
+#include "ident/base/work_counter.hpp"
 #include "ident/model/residual_tests.hpp"
 
 namespace modebank {
@@ -77,11 +79,15 @@ void append(std::vector<Row> rows, std::vector<Row>& all) {
 template <class Evaluate>
 void score_role(const Scored& scored, Role role, Evaluate evaluate, FilterScores& result) {
   FilterEvaluation& said = result.evaluation;
+  const auto has_role = [role](const Trajectory& run) { return run.role == role; };
+  WorkCounter counter("runs filtered by " + scored.name,
+                      static_cast<std::size_t>(std::count_if(scored.runs.begin(), scored.runs.end(), has_role)));
   std::vector<RunScores> scores(scored.runs.size());
   for (const Positions& part : parts_of(scored.runs, role)) {
     tbb::parallel_for(std::size_t{0}, part.size(), [&](std::size_t at) {
       const std::size_t i = part[at];
       said.runs[i] = evaluate(i);
+      counter.add();
       scores[i] = score_run(said.runs[i]);
       result.residual_tests.runs[i] = test_innovations(scored.runs[i], scores[i]);
     });

@@ -12,6 +12,7 @@
 #include "app/cli/dry_run.hpp"
 #include "app/cli/kept_stages.hpp"
 #include "app/cli/progress_meter.hpp"
+#include "app/cli/summary_json.hpp"
 #include "app/config/valid_config.hpp"
 #include "app/pipeline/pipeline.hpp"
 #include "app/text/first_screen.hpp"
@@ -130,11 +131,13 @@ Result execute(const CommandLine& line, const Config& config, StageSource& sourc
   }
   const Archive& archive =
       run_and_write(chain, options, last_stage(line.command), config.archive.bank, execution, config.archive.output);
-  if (has_first_screen(archive))
-    return {first_screen(archive, resolved_values(archive.config), config.archive.output, standard_output().width,
-                         line.program),
-            written(config)};
-  return {summary_text(archive) + free_run_text(archive) + archive_line(config), written(config)};
+  if (!has_first_screen(archive))
+    return {summary_text(archive) + free_run_text(archive) + archive_line(config), written(config)};
+  const Settings settings = resolved_values(archive.config);
+  Result result{first_screen(archive, settings, config.archive.output, standard_output().width, line.program),
+                written(config)};
+  if (line.json) result.members["summary"] = summary_json(archive, settings);
+  return result;
 }
 
 }  // namespace
