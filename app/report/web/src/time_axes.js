@@ -36,7 +36,11 @@ const superscripts = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 const powerOfTen = (power) =>
     `10${power < 0 ? '⁻' : ''}${[...String(Math.abs(power))].map((d) => superscripts[Number(d)]).join('')}`;
 
-/** Powers of ten, not more than fit. @returns {Scale} */
+/**
+ * Powers of ten, not more than fit.
+ * @param {[number, number]} range
+ * @returns {Scale}
+ */
 function logarithmic([low, high], top, bottom) {
   const lowest = low > 0 ? low : 1e-12;
   const scale = scaleLog().domain([lowest, Math.max(high, 10 * lowest)]).range([bottom, top]).clamp(true);

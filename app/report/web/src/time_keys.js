@@ -20,6 +20,9 @@ const edge = (state, which) => {
 };
 
 // Keys (as events name them), what they are called, what they do, how.
+/**
+ * @type {[string[], string, string, (state: import('./time_state.js').TimeState, event: KeyboardEvent) => unknown][]}
+ */
 const actions = [
   [
     ['ArrowLeft', 'ArrowRight'], '← →', 'move the crosshair; with Shift ten times as far',
