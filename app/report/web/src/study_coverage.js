@@ -34,7 +34,7 @@ function averageOf(study, rows, score) {
  * @param {any} study
  * @param {any[]} groups
  * @param {string} measure
- * @param {(string|number)[]} side
+ * @param {any[]} side
  * @param {string[]} role
  */
 function coverageBars(study, groups, measure, [side, sign], [role, name, colour]) {
