@@ -57,6 +57,7 @@ void Chain::import(const DataInputs& inputs) {
   const auto compute = [&] {
     const Stopwatch watch;
     data_ = import_data(inputs.data, memory_);
+    archive_.provenance.data_hash = data_.data_hash;  // listeners may want to know which data they are
     for (const std::string& note : data_.notes) listener_.warning(note);
     archive_.recording = std::move(data_.recording);
     archive_.lag = std::move(data_.lag);
@@ -79,7 +80,7 @@ void Chain::import(const DataInputs& inputs) {
     archive_.lag = std::move(part.lag);
     archive_.labels = std::move(part.labels);
     data_.files = std::move(part.provenance.inputs);
-    data_.data_hash = std::move(part.provenance.data_hash);
+    archive_.provenance.data_hash = data_.data_hash = std::move(part.provenance.data_hash);
   };
   provide(Stage::data, {compute, copy, take});
 }

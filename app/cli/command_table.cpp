@@ -70,11 +70,12 @@ std::vector<Command> commands_to_start() {
 
 std::vector<Command> commands_to_identify() {
   const std::vector<CommandOption> written{dry_run()};
+  const std::vector<CommandOption> archived{dry_run(), force("replace an archive of other data")};
   return {
       {"Identify", "run", "CONFIG", "the whole chain, from log to verdict: writes an archive and prints a summary",
        "Reads the runs, fits windows, clusters them, learns a bank of modes and judges it on held-out runs against "
        "models that one would use instead.",
-       "modebank run robot.ini --window.length 30", chain_keys, written, run_pipeline},
+       "modebank run robot.ini --window.length 30", chain_keys, archived, run_pipeline},
       {"Identify",
        "identify",
        "CONFIG",
@@ -82,7 +83,7 @@ std::vector<Command> commands_to_identify() {
        "",
        "modebank identify robot.ini",
        {"data", "window", "archive", "job"},
-       written,
+       archived,
        run_pipeline},
       {"Identify",
        "cluster",
@@ -91,11 +92,11 @@ std::vector<Command> commands_to_identify() {
        "",
        "modebank cluster robot.ini --archive.input windows.h5",
        {"data", "window", "mixture", "archive", "job"},
-       written,
+       archived,
        run_pipeline},
       {"Identify", "evaluate", "CONFIG",
        "learn a bank and judge it (from --archive.input), or judge that of --archive.bank", "",
-       "modebank evaluate other.ini --archive.bank robot.h5", chain_keys, written, run_pipeline},
+       "modebank evaluate other.ini --archive.bank robot.h5", chain_keys, archived, run_pipeline},
       {"Identify",
        "study",
        "CONFIG",

@@ -104,9 +104,10 @@ int run_demo(const CommandLine& line) {
   const DemoFolder demo{line.output.empty() ? "modebank_demo" : line.output};
   const CommandLine simulate = typed_command(
       line, {"simulate", demo.simulation().string(), fmt::format("--simulate.output={}", demo.data().string())});
-  const CommandLine run =
+  CommandLine run =
       typed_command(line, {"run", demo.configuration().string(), fmt::format("--data.root={}", demo.data().string()),
                            fmt::format("--archive.output={}", demo.archive().string())});
+  run.force = true;  // the archive in its folder is the demo's own
   if (!line.force) refuse_foreign_files(demo);
   make_folder(demo.folder);
   replace_file(demo.simulation(), {assets::simulate_ice_ini()});

@@ -6,6 +6,9 @@
 
 #include <cstdlib>
 #include <memory>
+#include <string>
+
+#include "ident/base/printable.hpp"
 
 namespace modebank::app {
 namespace {
@@ -28,6 +31,16 @@ class Mark : public spdlog::custom_flag_formatter {
   }
 };
 
+/// What names in files hold is shown, not obeyed.
+class Message : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
+    const std::string text = printable({message.payload.data(), message.payload.size()});
+    out.append(text.data(), text.data() + text.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<Message>(); }
+};
+
 bool colours_wanted() {
   const char* no_color = std::getenv("NO_COLOR");
   return no_color == nullptr || *no_color == '\0';
@@ -40,7 +53,7 @@ void set_up_log(Verbosity verbosity) {
                                                                                      : spdlog::color_mode::never);
   auto logger = std::make_shared<spdlog::logger>("modebank", std::move(sink));
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
-  formatter->add_flag<Mark>('*').set_pattern("%*%v");
+  formatter->add_flag<Mark>('*').add_flag<Message>('#').set_pattern("%*%#");
   logger->set_formatter(std::move(formatter));
   logger->set_level(verbosity == Verbosity::quiet    ? spdlog::level::err
                     : verbosity == Verbosity::normal ? spdlog::level::info

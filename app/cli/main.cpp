@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <system_error>
 
@@ -36,6 +37,8 @@ int main(int argc, char** argv) {
     return std::fflush(stdout) == 0 ? status : fail_to_print(std::generic_category().message(errno));
   } catch (const modebank::ConfigurationError& error) {
     return fail(usage_error, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(run_failure, (error.path1().string() + ": " + error.code().message()).c_str());
   } catch (const std::system_error& error) {  // fmt's name no file
     return std::ferror(stdout) ? fail_to_print(error.code().message()) : fail(run_failure, error.what());
   } catch (const std::exception& error) {

@@ -9,9 +9,10 @@
 #include "app/cli/check_output.hpp"
 #include "app/cli/check_suggestions.hpp"
 #include "app/cli/commands.hpp"
-#include "app/config/config_file.hpp"
+#include "app/config/valid_config.hpp"
 #include "app/text/lag_counts_text.hpp"
 #include "app/text/terminal.hpp"
+#include "ident/base/printable.hpp"
 #include "io/files/replace_file.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
@@ -72,7 +73,7 @@ nlohmann::json lag_counts_json(const LagCounts& found) {
 /// Findings come at once, suggestions when they are scored.
 Suggestions tell(const CommandLine& line, const Config& config, const DataCheck& check) {
   const std::vector<std::string> findings = findings_of(check, config);
-  if (!line.json) fmt::print("{}", check_text(check, findings));
+  if (!line.json) fmt::print("{}", printable(check_text(check, findings)));
   std::fflush(stdout);
   const bool usable = check.unusable.empty(), scored = usable && !line.findings;
   ChainOptions options = chain_options(config);
@@ -97,8 +98,7 @@ Suggestions tell(const CommandLine& line, const Config& config, const DataCheck&
 
 int run_check(const CommandLine& line) {
   require_usage(line);
-  const Config config = load_config(line.files.front(), line.overrides);
-  validate(config);
+  const Config config = load_valid_config(line.files.front(), line.overrides);
   check_target(line, config);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   const DataCheck check = check_data({data_options_of(config), config.window.length, config.window.intercept});

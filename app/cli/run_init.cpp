@@ -12,6 +12,7 @@
 #include "app/init/proposal.hpp"
 #include "app/init/survey_set.hpp"
 #include "app/init/survey_text.hpp"
+#include "ident/base/printable.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
@@ -46,7 +47,7 @@ int run_init(const CommandLine& line) {
   check_target(target, line.force);
   std::vector<SurveyedFile> surveyed;
   for (const FileSet& set : sets) surveyed.push_back(survey_set(set));
-  fmt::print("{}", survey_text(sets, surveyed));
+  fmt::print("{}", printable(survey_text(sets, surveyed)));
   const std::filesystem::path folder = std::filesystem::absolute(target).lexically_normal().parent_path();
   Guess guess = guess_roles(surveyed);
   if (is_asked(line)) confirm_roles(surveyed, guess, std::cin, std::cout);
@@ -54,7 +55,7 @@ int run_init(const CommandLine& line) {
   std::erase_if(proposal.keys, [](const ProposedKey& key) { return find_option("data." + key.key) == nullptr; });
   const std::string text = configuration_text(proposal, line.typed);
   replace_file(target, {text});
-  fmt::print("\n{}:\n{}\n", target, text);
+  fmt::print("\n{}:\n{}\n", target, printable(text));
   const std::string archive = std::filesystem::path(target).stem().string() + ".h5";
   fmt::print("next: {0} run {1}\nthen: {0} report {2}\n", line.program, shell_quoted(target), shell_quoted(archive));
   return 0;

@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "app/chain/chain.hpp"
@@ -10,7 +11,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/dry_run.hpp"
 #include "app/cli/kept_stages.hpp"
-#include "app/config/config_file.hpp"
+#include "app/config/valid_config.hpp"
 #include "app/pipeline/pipeline.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
@@ -18,6 +19,7 @@
 #include "app/text/terminal.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/archive.hpp"
+#include "io/archive/bank/load_bank.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -54,12 +56,43 @@ StoredStages earlier_stages(const Config& config, const std::string& command) {
   return source;
 }
 
+/// An archive of other data is somebody's result. Asked when it is known which data these are, before anything is
+/// fitted to them.
+void check_replaces_same_data(const std::string& output, const std::string& data_hash) {
+  std::error_code error;
+  if (!std::filesystem::exists(output, error)) return;
+  std::string other;
+  try {
+    other = load_data_hash(output);
+  } catch (const std::exception& reason) {
+    throw DataError(
+        fmt::format("archive.output: {} is there and not replaced, for it cannot be read: {}; name another "
+                    "file, or --force",
+                    output, reason.what()));
+  }
+  if (other != data_hash)
+    throw DataError(
+        fmt::format("archive.output: {} holds other data (data_hash {}, this run's is {}) and is not replaced; name "
+                    "another file, or --force",
+                    output, other, data_hash));
+}
+
 /// Writes to the log.
 class Log : public Adviser {
  public:
+  /// `output`: looked at when the data are read; empty: whatever is there is replaced.
+  explicit Log(std::string output) : output_(std::move(output)) {}
+
+  void done(Stage stage, const Archive& archive) const override {
+    if (stage == Stage::data && !output_.empty()) check_replaces_same_data(output_, archive.provenance.data_hash);
+    Adviser::done(stage, archive);
+  }
   void progress(const std::string& line) const override { spdlog::info("{}", line); }
   void detail(const std::string& line) const override { spdlog::debug("{}", line); }
   void warning(const std::string& line) const override { spdlog::warn("{}", line); }
+
+ private:
+  std::string output_;
 };
 
 std::string archive_line(const Config& config) { return fmt::format("\narchive   {}\n", config.archive.output); }
@@ -85,7 +118,7 @@ Stage last_stage(const std::string& command) {
 
 /// Runs the stages of the command and writes the archive. Returns what to print.
 std::string execute(const CommandLine& line, const Config& config, StageSource& source) {
-  const Log log;
+  const Log log(line.force ? "" : config.archive.output);
   Chain chain(source, log);
   const ChainOptions options = chain_options(config);
   const Execution execution{resolved_text(config), make_provenance(config_hash(config), line.typed)};
@@ -109,7 +142,7 @@ int run_pipeline(const CommandLine& line) {
   if (line.files.size() != 1)
     throw ConfigurationError(
         fmt::format("{} needs one configuration file: modebank {} CONFIG", line.command, line.command));
-  const Config config = load_config(line.files.front(), line.overrides);
+  const Config config = load_valid_config(line.files.front(), line.overrides);
   check_request(line.command, config, line.files.front());
   if (line.dry_run) return print_dry_run(config, {config.archive.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());

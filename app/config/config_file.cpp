@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/program_options.hpp>
+#include <charconv>
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "app/config/option_table.hpp"
+#include "ident/base/printable.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
@@ -28,6 +31,67 @@ struct FileEntry {
   bool has_comment = false, comment_touches_value = false;
 };
 
+/// Keys of one path each, which may hold what a configuration file has other uses for: their values may stand in double
+/// quotes, with \\" \\\\ \\n and \\x1b inside. Elsewhere quotes are part of the value.
+bool takes_quotes(const std::string& key) {
+  return key == "data.root" || key == "archive.output" || key == "archive.input" || key == "archive.bank" ||
+         key == "study.output" || key == "simulate.output" || key == "mixture.start";
+}
+
+/// As resolved_text writes such a value: plain wherever that reads back the same.
+std::string path_text(const std::string& value) {
+  const std::string shown = printable_name(value);
+  if (shown == value && boost::trim_copy(value) == value && value.find('#') == std::string::npos &&
+      !value.starts_with('"'))
+    return value;
+  std::string text = "\"";
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const char c = value[i];
+    constexpr char second_set = '\xc2';  // the first of two bytes of more control characters
+    if (is_control(c) || c == second_set || (i > 0 && value[i - 1] == second_set))
+      text += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    else
+      text += (c == '"' || c == '\\' ? "\\" : "") + std::string(1, c);
+  }
+  return text + "\"";
+}
+
+/// What stands in quotes from `begin` on, if nothing but a comment follows.
+std::optional<std::string> unquoted(std::string_view text) {
+  std::string value;
+  std::size_t i = 1;
+  for (; i < text.size() && text[i] != '"'; ++i) {
+    if (text[i] != '\\') {
+      value += text[i];
+      continue;
+    }
+    if (++i == text.size()) return std::nullopt;
+    unsigned code = 0;
+    if (text[i] == 'x' && i + 2 < text.size() &&
+        std::from_chars(text.data() + i + 1, text.data() + i + 3, code, 16).ptr == text.data() + i + 3) {
+      value += static_cast<char>(code);
+      i += 2;
+    } else {
+      value += text[i] == 'n' ? '\n' : text[i];
+    }
+  }
+  if (i >= text.size()) return std::nullopt;
+  const std::string rest = boost::trim_copy(std::string(text.substr(i + 1)));
+  return rest.empty() || rest.front() == '#' ? std::optional(value) : std::nullopt;
+}
+
+/// A line of such a key whose value is in quotes; `section` as it stands in the file, "[data]".
+std::optional<FileEntry> quoted_entry(const std::string& section, const std::string& line, int number) {
+  const std::size_t equal = line.find('='), quote = equal == std::string::npos ? equal : line.find('"', equal);
+  if (quote == std::string::npos || !boost::trim_copy(line.substr(equal + 1, quote - equal - 1)).empty())
+    return std::nullopt;
+  const std::string name = boost::trim_copy(line.substr(0, equal));
+  const std::string key = section.empty() ? name : section.substr(1, section.size() - 2) + "." + name;
+  if (!takes_quotes(key)) return std::nullopt;
+  const std::optional<std::string> value = unquoted(std::string_view(line).substr(quote));
+  return value ? std::optional(FileEntry{key, *value, number}) : std::nullopt;
+}
+
 /// One line at a time through Boost's parser: its grammar, and a line number for every message.
 std::vector<FileEntry> parse_lines(std::istream& stream, const std::string& path) {
   static const po::options_description no_options;
@@ -41,6 +105,10 @@ std::vector<FileEntry> parse_lines(std::istream& stream, const std::string& path
     if (content.empty()) continue;
     if (content.front() == '[' && content.back() == ']') {
       section = content;
+      continue;
+    }
+    if (auto entry = quoted_entry(section, line, number)) {
+      entries.push_back(*std::move(entry));
       continue;
     }
     std::istringstream one(section + "\n" + line + "\n");
@@ -73,6 +141,8 @@ const Option& known_option(const std::string& where, const std::string& key) {
 void apply(Config& config, const std::string& where, const std::string& key, const std::string& value,
            bool has_comment) {
   const Option& option = known_option(where, key);
+  if (const std::string shown = printable(value); shown != value && !takes_quotes(key))
+    throw ConfigurationError(fmt::format("{}: {} = '{}' holds control characters", where, key, shown));
   try {
     option.set(config, value);
   } catch (const std::invalid_argument& error) {
@@ -92,7 +162,7 @@ void clear_overridden(Config& config, const KeyValues& overrides) {
 void apply_overrides(Config& config, const KeyValues& overrides) {
   clear_overridden(config, overrides);
   for (const auto& [key, value] : overrides) {
-    if (value.find('#') != std::string::npos)
+    if (value.find('#') != std::string::npos && !takes_quotes(key))
       throw ConfigurationError(fmt::format(
           "--{}: '{}' holds a #, which starts a comment in configuration files, so no value can hold one", key, value));
     apply(config, "--" + key, key, boost::trim_copy(value), false);
@@ -205,6 +275,7 @@ std::string resolved_text(const Config& config) {
     section = option.section();
     std::vector<std::string> values;
     boost::split(values, option.get(config), [](char c) { return c == '\n'; });
+    if (takes_quotes(option.key)) values = {path_text(option.get(config))};
     for (const std::string& value : values) text += option.name() + " =" + (value.empty() ? "" : " " + value) + "\n";
   }
   return text;

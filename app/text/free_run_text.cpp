@@ -9,7 +9,7 @@ namespace modebank::app {
 namespace {
 
 /// "95.1 94.8": of every state.
-std::string percents(const Eigen::VectorXd& shares) { return fixed_or_short_list((100.0 * shares).eval(), 1); }
+std::string percents(const Eigen::VectorXd& shares) { return size_list((100.0 * shares).eval(), 1); }
 
 std::string caption(const FreeRunRow& bank) {
   return fmt::format("\nFree run: {} measured samples at the beginning, then inputs alone; by {}\n", bank.start,
@@ -39,9 +39,8 @@ std::string free_run_text(const Archive& archive, int width) {
     if (row.run != "*") continue;
     lost += row.lost_paths;
     table.add({row.filter, std::string(name_of(row.role)), std::to_string(row.samples),
-               fixed_or_short(row.log_score, 4), fixed_or_short_list(row.rmse, 5), fixed_or_short_list(row.nrmse, 3),
-               fixed_or_short_list(row.fit, 1), percents(row.coverage_50), percents(row.coverage_90),
-               percents(row.coverage_95)});
+               fixed_or_short(row.log_score, 4), size_list(row.rmse, 5), size_list(row.nrmse, 3), size_list(row.fit, 1),
+               percents(row.coverage_50), percents(row.coverage_90), percents(row.coverage_95)});
   }
   const std::string text = caption(archive.free_runs.front()) + table.text(width);
   return lost == 0 ? text : text + fmt::format("{} sample paths left the finite range and were taken out\n", lost);

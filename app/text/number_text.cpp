@@ -14,6 +14,12 @@ std::string fixed_or_short(double value, int decimals) {
   return fixed ? fmt::format("{:.{}f}", value, decimals) : fmt::format("{:.4g}", value);
 }
 
+std::string size_text(double value, int decimals) {
+  constexpr double least = 10.0;  // as its digits: two
+  const bool tiny = value > 0.0 && value * std::pow(10.0, decimals) < least;
+  return tiny ? fmt::format("{:.3g}", value) : fixed_or_short(value, decimals);
+}
+
 std::string estimate_text(double value, double standard_error, const char* plus_minus) {
   constexpr int most_decimals = 12;
   if (!std::isfinite(value) || !std::isfinite(standard_error) || standard_error <= 0.0)

@@ -58,9 +58,9 @@ std::string scores_text(const Archive& archive, int width) {
   for (const SummaryRow& row : archive.summary)
     if (row.run == "*")
       table.add({row.filter, std::string(name_of(row.role)), std::to_string(row.samples),
-                 fixed_or_short(row.log_score, 4), fixed_or_short_list(row.rmse, 5), share(row.coverage_95),
-                 share(row.too_far), share(row.too_close), tails(row.nis_above, row.nis_below),
-                 fixed_or_short(row.nis_mean, 3), fmt::format("{:.2g}", row.whiteness_p)});
+                 fixed_or_short(row.log_score, 4), size_list(row.rmse, 5), share(row.coverage_95), share(row.too_far),
+                 share(row.too_close), tails(row.nis_above, row.nis_below), fixed_or_short(row.nis_mean, 3),
+                 fmt::format("{:.2g}", row.whiteness_p)});
   return table.text(width) +
          "A true filter has 95 % of the samples in its 95 % band, 2.5 % too far from its prediction and 2.5 % too "
          "close\n"
@@ -214,7 +214,8 @@ std::string modes_text(const Archive& archive, bool full_form, int width) {
     if (full_form) model.A.diagonal().array() += 1.0;
     const Eigen::VectorXd theta = pack(bank.structure, model);
     std::vector<std::string> cells{mode_cell(names, k), fmt::format("{:.3f}", mode.weight)};
-    for (Index i = 0; i < theta.size(); ++i) cells.push_back(estimate(theta(i), mode.standard_error(i)));
+    for (Index i = 0; i < theta.size(); ++i)
+      cells.push_back(estimate(theta(i), mode.standard_error.size() > 0 ? mode.standard_error(i) : NAN));
     cells.push_back(fmt::format("{:.4g}", fmt::join(mode.Q.diagonal().cwiseSqrt().eval(), " ")));
     table.add(std::move(cells));
   }

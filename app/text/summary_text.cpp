@@ -157,7 +157,7 @@ std::string horizon_text(const Archive& archive) {
   for (const HorizonRow& row : archive.horizons)
     if (row.run == "*" && row.role == role)
       text += fmt::format("{:<11} {:>8} {:>8} {:>10} {:>10}\n", row.filter, row.horizon, row.samples,
-                          fixed_or_short(row.log_score, 4), fixed_or_short_list(row.rmse, 5));
+                          fixed_or_short(row.log_score, 4), size_list(row.rmse, 5));
   return text;
 }
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "ident/base/covariance.hpp"
+
 namespace modebank {
 
 namespace {
@@ -33,8 +35,6 @@ void check_mode(const Mode& mode, const LinearStructure& s, const std::string& n
 void require(bool holds, const std::string& what) {
   if (!holds) throw std::invalid_argument("the bank's " + what);
 }
-
-bool is_covariance(const Eigen::MatrixXd& S) { return S.allFinite() && (S.diagonal().array() >= 0.0).all(); }
 
 void check_numbers(const Mode& mode, const std::string& of_mode) {
   require(mode.model.A.allFinite() && mode.model.B.allFinite() && mode.model.c.allFinite(),

@@ -8,6 +8,7 @@
 #include "filter/step/equations/predicted_mixture.hpp"
 #include "filter/step/filter_shell.hpp"
 #include "filter/step/stepper.hpp"
+#include "ident/base/covariance.hpp"
 
 namespace modebank {
 
@@ -32,6 +33,9 @@ void check_memory(const FilterMemory& memory, Index n, Index K) {
       memory.mode_probability.minCoeff() < 0.0 || !is_positive(memory.mode_probability.sum()) ||
       !is_positive(memory.noise_scale) || !(memory.noise_samples >= 0.0 && std::isfinite(memory.noise_samples)))
     throw std::invalid_argument("the snapshot holds numbers that no filter has");
+  for (Index k = 0; k < K; ++k)
+    if (!is_covariance(memory.covariances.col(k).reshaped(n, n)))
+      throw std::invalid_argument("the snapshot holds a matrix that is no covariance");
 }
 
 /// The same of what is known of coefficients that drift; `own`: that of this filter.

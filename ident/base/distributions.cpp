@@ -14,7 +14,24 @@ namespace modebank {
 
 namespace math = boost::math;
 
-double normal_quantile(double probability) { return math::quantile(math::normal(), probability); }
+namespace {
+
+/// Where a distribution is not defined, or a series does not end, the answer is NaN: numbers from files and from
+/// filters that have lost themselves come here, and Boost's own words for it would say nothing to anybody.
+using Quiet = math::policies::policy<math::policies::domain_error<math::policies::ignore_error>,
+                                     math::policies::pole_error<math::policies::ignore_error>,
+                                     math::policies::overflow_error<math::policies::ignore_error>,
+                                     math::policies::evaluation_error<math::policies::ignore_error>>;
+using Normal = math::normal_distribution<double, Quiet>;
+using ChiSquared = math::chi_squared_distribution<double, Quiet>;
+using FisherF = math::fisher_f_distribution<double, Quiet>;
+using StudentsT = math::students_t_distribution<double, Quiet>;
+using Beta = math::beta_distribution<double, Quiet>;
+using Binomial = math::binomial_distribution<double, Quiet>;
+
+}  // namespace
+
+double normal_quantile(double probability) { return math::quantile(Normal(), probability); }
 
 double normal_score(double pit) {
   constexpr double clip = 1e-15;
@@ -22,39 +39,38 @@ double normal_score(double pit) {
 }
 
 double chi_square_quantile(double probability, double degrees) {
-  return math::quantile(math::chi_squared(degrees), probability);
+  return math::quantile(ChiSquared(degrees), probability);
 }
 
-double chi_square_density(double value, double degrees) { return math::pdf(math::chi_squared(degrees), value); }
+double chi_square_density(double value, double degrees) { return math::pdf(ChiSquared(degrees), value); }
 
 double chi_square_upper_tail(double value, double degrees) {
-  return math::cdf(math::complement(math::chi_squared(degrees), value));
+  if (value > 1e8 + 1e3 * degrees) return 0.0;  // far below the smallest double, and out of reach of the series
+  return math::cdf(math::complement(ChiSquared(degrees), value));
 }
 
 double chi_square_upper_quantile(double tail, double degrees) {
-  return math::quantile(math::complement(math::chi_squared(degrees), tail));
+  return math::quantile(math::complement(ChiSquared(degrees), tail));
 }
 
 double fisher_quantile(double probability, double numerator, double denominator) {
-  return math::quantile(math::fisher_f(numerator, denominator), probability);
+  return math::quantile(FisherF(numerator, denominator), probability);
 }
 
 double student_quantile(double probability, double degrees) {
-  return std::isinf(degrees) ? normal_quantile(probability) : math::quantile(math::students_t(degrees), probability);
+  return std::isinf(degrees) ? normal_quantile(probability) : math::quantile(StudentsT(degrees), probability);
 }
 
-double student_probability(double value, double degrees) { return math::cdf(math::students_t(degrees), value); }
+double student_probability(double value, double degrees) { return math::cdf(StudentsT(degrees), value); }
 
-double beta_quantile(double probability, double a, double b) {
-  return math::quantile(math::beta_distribution<>(a, b), probability);
-}
+double beta_quantile(double probability, double a, double b) { return math::quantile(Beta(a, b), probability); }
 
 double binomial_quantile(double probability, double trials, double success) {
-  return math::quantile(math::binomial(trials, success), probability);
+  return math::quantile(Binomial(trials, success), probability);
 }
 
 double binomial_upper_quantile(double probability, double trials, double success) {
-  return math::quantile(math::complement(math::binomial(trials, success), probability));
+  return math::quantile(math::complement(Binomial(trials, success), probability));
 }
 
 double integrate(const std::function<double(double)>& function, double from, double to) {

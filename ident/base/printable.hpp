@@ -7,19 +7,10 @@
 
 namespace modebank {
 
-/// The text as a terminal may be given it: control characters but line ends as \x1b.
-inline std::string printable(std::string_view text) {
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string result;
-  for (const char c : text) {
-    if (!is_control(c) || c == '\n') {
-      result += c;
-      continue;
-    }
-    const auto code = static_cast<unsigned char>(c);
-    result += {'\\', 'x', digits[code / 16], digits[code % 16]};
-  }
-  return result;
-}
+/// The text as a terminal may be given it: control characters but line ends and tabs as \x1b.
+std::string printable(std::string_view text);
+
+/// A name as a line of a log, a table or a job script can hold it: line ends and tabs too are shown as \x0a.
+std::string printable_name(std::string_view text);
 
 }  // namespace modebank

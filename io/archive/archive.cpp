@@ -107,6 +107,7 @@ Archive read_stages(const hdf5::Handle& file, std::vector<std::string>* problems
   Archive archive;
   GroupReader root(open_root(file), problems);
   layout::exchange_archive(root, archive);
+  root.check_links(archive.recording ? hdf5::LinkAllowed() : is_trial_link);
   return archive;
 }
 
@@ -128,10 +129,13 @@ Verification verify_archive(const std::filesystem::path& path) {
   Verification verification{hash_problems(path)};
   try {
     std::vector<std::string> found;
-    read_stages(open_archive(path, HashCheck::unchecked), &found);
+    read_stages(open_archive(path, HashCheck::before), &found);
     verification.problems.insert(verification.problems.end(), found.begin(), found.end());
   } catch (const DataError& error) {
-    verification.problems.emplace_back(error.what());
+    // What the hash said already need not be said again; HDF5 was not handed the file then.
+    const std::string problem = error.what();
+    if (verification.ok() || problem.find(verification.problems.front()) == std::string::npos)
+      verification.problems.push_back(problem);
   }
   return verification;
 }

@@ -7,6 +7,7 @@
 
 #include "ident/base/not_a_number.hpp"
 #include "io/files/replace_file.hpp"
+#include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -15,7 +16,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* checkpoint_format = "modebank checkpoint 1";
+constexpr const char* checkpoint_format = "modebank checkpoint 2";
+
+/// Of all that a checkpoint holds but this.
+std::string digest_of(json stored) {
+  stored.erase("sha256");
+  return sha256_hex(stored.dump());
+}
 
 json to_json(const Eigen::MatrixXd& matrix) {
   json columns = json::array();
@@ -86,15 +93,21 @@ void save_checkpoint(const std::filesystem::path& path, const std::string& ident
               {"time_s", std::isfinite(snapshot.samples.time_s) ? json(snapshot.samples.time_s) : json()}};
   if (const DriftState& drift = snapshot.drift; drift.theta.size() > 0)
     stored["drift"] = {{"theta", to_json(drift.theta)}, {"P", to_json(drift.P)}, {"cross", to_json(drift.cross)}};
+  stored["sha256"] = digest_of(stored);
   replace_file(path, {stored.dump(1), "\n"});
 }
 
 FilterSnapshot load_checkpoint(const std::filesystem::path& path, const std::string& identity) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error))
+    throw ConfigurationError(path.string() + ": no such checkpoint, or it is not a regular file");
   std::ifstream file(path);
   if (!file) throw ConfigurationError(path.string() + ": no such checkpoint, or it cannot be read");
   try {
     const json stored = json::parse(file);
     if (stored.at("format") != checkpoint_format) throw DataError(path.string() + ": is not a checkpoint of track");
+    if (stored.at("sha256") != digest_of(stored))
+      throw DataError(path.string() + ": was damaged or changed after it was written (its SHA-256 is another)");
     if (stored.at("identity") != identity)
       throw DataError(path.string() + ": is a checkpoint of another bank or of other filter settings");
     FilterSnapshot snapshot;

@@ -112,7 +112,7 @@ json json_at(const hdf5::Handle& file, const std::string& path) {
 
 nlohmann::json inspect(const std::filesystem::path& archive, const std::string& path) {
   const hdf5::Quiet quiet;
-  const hdf5::Handle file = open_archive(archive, HashCheck::unchecked);
+  const hdf5::Handle file = open_archive(archive, HashCheck::before);
   try {
     return json_at(file, path);
   } catch (const DataError& error) {

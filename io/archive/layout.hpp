@@ -18,8 +18,8 @@ namespace modebank::layout {
 
 template <class Io, class G>
 void exchange_global(Io& io, G& global, const Unit& parameters, const Unit& states) {
-  io.attribute("transitions", global.transitions);
-  io.field("parameters", global.theta, {"p"}, parameters);
+  io.attribute("transitions", global.transitions, rule::not_negative);
+  io.field("parameters", global.theta, {"p"}, parameters, rule::finite_or_missing);
   io.field("covariance", global.covariance, {"p", "p"}, outer(parameters));
   io.field("residual_covariance", global.residual_covariance, {"n", "n"}, outer(states));
   const Eigen::VectorXd noise_variance = Io::reads ? Eigen::VectorXd() : global.noise_variance();
@@ -33,17 +33,17 @@ inline Unit window_units(const WindowFits& fits, const Units& units) {
 
 template <class Io, class A>
 void exchange_audit(Io& io, A& audit) {
-  io.optional_attribute("audit_batch_windows", audit.batch);
-  io.optional_attribute("audit_ceres_windows", audit.ceres);
+  io.optional_attribute("audit_batch_windows", audit.batch, rule::not_negative);
+  io.optional_attribute("audit_ceres_windows", audit.ceres, rule::not_negative);
   io.optional_attribute("audit_batch_method", audit.batch_method);
   io.optional_attribute("audit_ceres_method", audit.ceres_method);
-  io.optional_attribute("audit_checked", audit.checked);
+  io.optional_attribute("audit_checked", audit.checked, rule::not_negative);
   io.optional_attribute("audit_cost_difference", audit.cost_difference);
   io.optional_attribute("audit_gradient", audit.gradient);
   io.optional_attribute("audit_ceres_gradient", audit.ceres_gradient);
   io.optional_attribute("audit_parameter_difference", audit.parameter_difference);
-  io.optional_attribute("audit_replaced", audit.replaced);
-  io.optional_attribute("audit_lower", audit.lower);
+  io.optional_attribute("audit_replaced", audit.replaced, rule::not_negative);
+  io.optional_attribute("audit_lower", audit.lower, rule::not_negative);
 }
 
 template <class Io, class W>
@@ -53,8 +53,8 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
   io.attribute("residual", fits.residual);
   exchange_model_parameters(io, fits.model_parameters, "model_parameter");
   exchange_structure(io, fits.structure, fits.model);
-  io.attribute("length", fits.length);
-  io.attribute("step", fits.step);
+  io.attribute("length", fits.length, rule::at_least_one);
+  io.attribute("step", fits.step, rule::at_least_one);
   io.attribute("loss", fits.loss);
   exchange_audit(io, fits.audit);
   io.through(
@@ -62,24 +62,24 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
       [&](const StoredWindows& stored) { return restore_windows(stored, runs, fits.length); },
       [&](auto& stored) {
         io.texts("run", stored.run, {"M"});
-        io.field("start", stored.start, {"M"});
+        io.field("start", stored.start, {"M"}, {}, rule::not_negative);
       });
   io.field("parameters", fits.parameters, {"M", "p"}, parameters);
   io.field("covariance", fits.covariance, {"M", "p", "p"}, outer(parameters));
-  io.field("noise_variance", fits.noise_variance, {"M", "n"}, squared(units.states()));
-  io.field("condition", fits.condition, {"M"});
-  io.field("rank", fits.rank, {"M"});
+  io.field("noise_variance", fits.noise_variance, {"M", "n"}, squared(units.states()), rule::not_negative_or_missing);
+  io.field("condition", fits.condition, {"M"}, {}, rule::not_negative_or_missing);
+  io.field("rank", fits.rank, {"M"}, {}, rule::count_of("p"));
   io.field("information", fits.information, {"M", "p"});
-  io.field("inlier_fraction", fits.inlier_fraction, {"M"});
-  io.field("status", fits.status, {"M"});
+  io.field("inlier_fraction", fits.inlier_fraction, {"M"}, {}, rule::share_or_missing);
+  io.field("status", fits.status, {"M"}, {}, rule::between(0, static_cast<int>(FitStatus::failed)));
   io.optional_field("r_squared", fits.r_squared, {"M", "n"});
   io.optional_field("aic", fits.aic, {"M"}, {"nat"});
-  io.optional_field("transitions", fits.transitions, {"M"});
+  io.optional_field("transitions", fits.transitions, {"M"}, {}, rule::not_negative);
   io.optional_field("weighed_information", fits.weighed_information, {"M", "n"});
   io.optional_derived_field(
       "standard_error", [&] { return fits.standard_errors(); }, {"M", "p"}, parameters);
   io.optional_derived_field("t_value", [&] { return fits.t_values(); }, {"M", "p"});
-  io.optional_field("prior_sd", fits.prior_sd, {"p"}, parameters);
+  io.optional_field("prior_sd", fits.prior_sd, {"p"}, parameters, rule::not_negative_or_missing);
   if constexpr (Io::reads) io.finish([&] { restore_window_structure(fits, io.size("n"), io.size("p")); });
   std::vector<std::string> names = fits.parameter_names();
   io.attribute_texts("parameter_names", names);
@@ -92,16 +92,18 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
 
 template <class Io, class C>
 void exchange_candidates(Io& io, C& candidates) {
-  io.table("candidates", candidates, column("components", &Candidate::components),
+  io.table("candidates", candidates, column("components", &Candidate::components).obeying(rule::at_least_one),
            column("covariance", &Candidate::covariance), column("log_likelihood", &Candidate::log_likelihood, "nat"),
            column("parameters", &Candidate::parameters), column("effective_samples", &Candidate::effective_samples),
            column("bic", &Candidate::bic), column("aic", &Candidate::aic), column("icl", &Candidate::icl),
-           column("heldout", &Candidate::heldout, "nat"), column("iterations", &Candidate::iterations),
-           column("converged", &Candidate::converged), column("agreeing_restarts", &Candidate::agreeing_restarts),
+           column("heldout", &Candidate::heldout, "nat"),
+           column("iterations", &Candidate::iterations).obeying(rule::not_negative),
+           column("converged", &Candidate::converged),
+           column("agreeing_restarts", &Candidate::agreeing_restarts).obeying(rule::not_negative),
            column("selected", &Candidate::selected), later_column("bic_naive", &Candidate::bic_naive),
-           later_column("restarts", &Candidate::restarts), later_column("floor_active", &Candidate::floor_active),
-           later_column("status", &Candidate::status), later_column("heldout_error", &Candidate::heldout_error),
-           later_column("failed", &Candidate::failed));
+           later_column("restarts", &Candidate::restarts).obeying(rule::not_negative),
+           later_column("floor_active", &Candidate::floor_active), later_column("status", &Candidate::status),
+           later_column("heldout_error", &Candidate::heldout_error), later_column("failed", &Candidate::failed));
 }
 
 /// `parameters`: units of theta, the first features; the others are logarithms, without unit.
@@ -112,22 +114,28 @@ void exchange_mixture(Io& io, X& result, const Unit& parameters) {
   exchange_candidates(io, result.candidates);
   io.attribute_texts("feature_names", result.feature_names);
   io.attribute("covariance", result.mixture.type);
-  io.field("weights", result.mixture.weights, {"K"});
-  io.field("means", result.mixture.means, {"K", "F"}, features);
+  io.field("weights", result.mixture.weights, {"K"}, {}, rule::share);
+  io.field("means", result.mixture.means, {"K", "F"}, features, rule::finite);
   io.through(
       result.mixture.covariances, store_covariances,
       [&](const Eigen::MatrixXd& stored) { return restore_covariances(stored, result.mixture.features()); },
       [&](auto& stored) {
-        io.field("covariances", stored, {"K", "F", "F"}, outer(features));
+        io.field("covariances", stored, {"K", "F", "F"}, outer(features), rule::covariances);
       });
   io.optional_field("weights_standard_error", result.weights_standard_error, {"K"});
   io.optional_field("means_standard_error", result.means_standard_error, {"K", "F"}, features);
-  io.optional_attribute("clustered_windows", result.clustered);
-  io.optional_attribute("noise_weight", result.mixture.noise.weight);
-  io.optional_field("noise_lower", result.mixture.noise.lower, {"F"}, features);
-  io.optional_field("noise_upper", result.mixture.noise.upper, {"F"}, features);
-  io.field("labels", result.labels, {"M"});
-  io.through_rows("responsibilities", result.responsibilities, {"M", "K"});
+  io.optional_attribute("clustered_windows", result.clustered, rule::not_negative);
+  io.optional_attribute("noise_weight", result.mixture.noise.weight, rule::share);
+  io.optional_field("noise_lower", result.mixture.noise.lower, {"F"}, features, rule::finite);
+  io.optional_field("noise_upper", result.mixture.noise.upper, {"F"}, features, rule::finite);
+  io.field("labels", result.labels, {"M"}, {}, rule::position_or_none("K"));
+  io.through_rows("responsibilities", result.responsibilities, {"M", "K"}, rule::share_or_missing);
+  if constexpr (Io::reads)
+    io.finish([&] {
+      check_mixture(result);
+      check_together("weights_standard_error and means_standard_error",
+                     {result.weights_standard_error.size(), result.means_standard_error.size()});
+    });
 }
 
 template <class Io, class A>
@@ -141,7 +149,9 @@ void exchange_archive(Io& io, A& archive) {
   const Recording none;
   const Recording& recording = archive.recording ? *archive.recording : none;
   const Units units(recording);
-  exchange_part(io, "windows", archive.windows, {},
+  Sizes channels;
+  if (archive.recording) channels.set("n", recording.states.size());
+  exchange_part(io, "windows", archive.windows, channels,
                 [&](auto& member, auto& part) { exchange_windows(member, part, recording, units); });
   Sizes known;
   Unit parameters;
@@ -156,6 +166,7 @@ void exchange_archive(Io& io, A& archive) {
     exchange_one(member, part);
     member.optional_attribute("measured_fit", archive.measured_fit);
     member.optional_attribute_texts("mode_names", archive.mode_names);
+    if constexpr (Io::reads) member.finish([&] { check_count("mode_names", archive.mode_names, part.modes.size()); });
     exchange_part(member, "unrefined", archive.unrefined, {}, exchange_one);
     exchange_merging(member, archive.merging);
   });
@@ -166,7 +177,8 @@ void exchange_archive(Io& io, A& archive) {
                 [&](auto& member, auto& part) { exchange_drifting(member, part, units); });
   io.optional_group("residual_tests", !archive.residual_tests.empty(), {},
                     [&](auto& member) { exchange_residual_tests(member, archive.residual_tests, recording); });
-  io.optional_group("evaluation", !archive.evaluations.empty() || !archive.summary.empty(), {},
+  io.optional_group("evaluation", !archive.evaluations.empty() || !archive.summary.empty(),
+                    sizes_of_evaluation(archive, recording),
                     [&](auto& member) { exchange_evaluation(member, archive, recording, units); });
 }
 

@@ -67,15 +67,15 @@ void exchange_recording(Io& io, R& recording, L& labels) {
     Eigen::VectorXi label = labels && !label_names.empty() ? labels->of_runs[i] : Eigen::VectorXi();
     io.group(run.run, known, [&](auto& member) {
       member.attribute("role", run.role);
-      member.attribute("lag_s", run.lag_s);
+      member.attribute("lag_s", run.lag_s, rule::finite);
       member.attribute_unless(std::int64_t{0}, "time_origin_ns", run.time_origin_ns);
-      member.field("time", run.time_s, {"N"}, {"s"});
-      member.field("state", run.state, {"N", "n"}, units.states());
-      member.field("input", run.input, {"N", "m"}, units.inputs());
-      member.optional_field("truth", run.truth, {"N", "n"}, units.states());
-      member.optional_field("weight", run.weight, {"N"});
-      member.optional_field("quantum", recording.quantum, {"n"}, units.states());  // of all runs
-      member.optional_field("label", label, {"N"});                                // positions in label_names
+      member.field("time", run.time_s, {"N"}, {"s"}, rule::increasing);
+      member.field("state", run.state, {"N", "n"}, units.states(), rule::finite_or_missing);
+      member.field("input", run.input, {"N", "m"}, units.inputs(), rule::finite_or_missing);
+      member.optional_field("truth", run.truth, {"N", "n"}, units.states(), rule::finite_or_missing);
+      member.optional_field("weight", run.weight, {"N"}, {}, rule::not_negative);
+      member.optional_field("quantum", recording.quantum, {"n"}, units.states(), rule::not_negative);  // of all runs
+      member.optional_field("label", label, {"N"});  // positions in label_names
     });
     if constexpr (Io::reads)
       if (labels) {
@@ -101,8 +101,9 @@ void exchange_lag(Io& io, L& lag) {
   exchange_pooled(io, "start_lag_s", lag.start_lag);
   exchange_pooled(io, "clock_drift", lag.drift);
   io.table("scores", lag.scores, column("correction", &LagScore::correction),
-           column("transitions", &LagScore::transitions), column("log_score", &LagScore::log_score, "nat"),
-           column("rmse", &LagScore::rmse), column("gain", &LagScore::gain, "nat"),
+           column("transitions", &LagScore::transitions).obeying(rule::not_negative),
+           column("log_score", &LagScore::log_score, "nat"), column("rmse", &LagScore::rmse),
+           column("gain", &LagScore::gain, "nat"),
            column("gain_standard_error", &LagScore::gain_standard_error, "nat"));
   io.table("runs", lag.runs, column("run", &RunLag::run), column("status", &RunLag::status),
            column("lag_s", &RunLag::lag_s, "s"), column("lag_standard_error_s", &RunLag::lag_standard_error_s, "s"),
@@ -112,21 +113,23 @@ void exchange_lag(Io& io, L& lag) {
            column("clock_drift", &RunLag::clock_drift),
            column("clock_drift_standard_error", &RunLag::clock_drift_standard_error),
            column("match_s", &RunLag::match_s, "s"), column("match_least_s", &RunLag::match_least_s, "s"),
-           column("match_largest_s", &RunLag::match_largest_s, "s"), column("match_windows", &RunLag::match_windows),
-           column("applied_lag_s", &RunLag::applied_lag_s, "s"),
-           column("applied_clock_drift", &RunLag::applied_clock_drift),
+           column("match_largest_s", &RunLag::match_largest_s, "s"),
+           column("match_windows", &RunLag::match_windows).obeying(rule::not_negative),
+           column("applied_lag_s", &RunLag::applied_lag_s, "s").obeying(rule::finite),
+           column("applied_clock_drift", &RunLag::applied_clock_drift).obeying(rule::finite),
            column("applied_reference_s", &RunLag::applied_reference_s, "s"));
 }
 
 /// /lag_counts: what window.state_lags = auto and window.input_lags = auto found.
 template <class Io, class L>
 void exchange_lag_counts(Io& io, L& counts) {
-  io.attribute("state_lags", counts.state_lags);
-  io.attribute("input_lags", counts.input_lags);
+  io.attribute("state_lags", counts.state_lags, rule::lags);
+  io.attribute("input_lags", counts.input_lags, rule::lags);
   io.table("scores", counts.scores, column("varied", &LagCountScore::varied),
-           column("state_lags", &LagCountScore::state_lags), column("input_lags", &LagCountScore::input_lags),
-           column("samples", &LagCountScore::samples), column("log_score", &LagCountScore::log_score, "nat"),
-           column("loss", &LagCountScore::loss, "nat"),
+           column("state_lags", &LagCountScore::state_lags).obeying(rule::lags),
+           column("input_lags", &LagCountScore::input_lags).obeying(rule::lags),
+           column("samples", &LagCountScore::samples).obeying(rule::not_negative),
+           column("log_score", &LagCountScore::log_score, "nat"), column("loss", &LagCountScore::loss, "nat"),
            column("loss_standard_error", &LagCountScore::loss_standard_error, "nat"),
            column("chosen", &LagCountScore::chosen));
 }

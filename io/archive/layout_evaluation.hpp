@@ -15,9 +15,11 @@ namespace modebank::layout {
 
 template <class Io, class R>
 void exchange_merging(Io& io, R& rows) {
-  io.optional_table("merged", rows, column("role", &MergingCost::role), column("components", &MergingCost::components),
-                    column("modes_unlimited", &MergingCost::modes_unlimited), column("modes", &MergingCost::modes),
-                    column("samples", &MergingCost::samples),
+  io.optional_table("merged", rows, column("role", &MergingCost::role),
+                    column("components", &MergingCost::components).obeying(rule::not_negative),
+                    column("modes_unlimited", &MergingCost::modes_unlimited).obeying(rule::not_negative),
+                    column("modes", &MergingCost::modes).obeying(rule::not_negative),
+                    column("samples", &MergingCost::samples).obeying(rule::not_negative),
                     column("log_score_unlimited", &MergingCost::log_score_unlimited, "nat"),
                     column("log_score", &MergingCost::log_score, "nat"), column("loss", &MergingCost::loss, "nat"));
 }
@@ -29,15 +31,20 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.field("innovation_covariance", evaluation.innovation_covariance, {"N", "n_y", "n_y"}, outer(states));
   io.field("state", evaluation.state, {"N", "n"}, states);
   io.field("covariance", evaluation.covariance, {"N", "n", "n"}, outer(states));
-  io.field("nis", evaluation.nis, {"N"});
-  io.field("pit", evaluation.pit, {"N", "n_y"});
+  io.field("nis", evaluation.nis, {"N"}, {}, rule::not_negative_or_missing);
+  io.field("pit", evaluation.pit, {"N", "n_y"}, {}, rule::share_or_missing);
   io.field("log_density", evaluation.log_density, {"N"}, {"nat"});
-  io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"N", "K"});
-  io.field("mode_probability", evaluation.mode_probability, {"N", "K"});
+  io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"N", "K"}, {}, rule::share_or_missing);
+  io.field("mode_probability", evaluation.mode_probability, {"N", "K"}, {}, rule::share_or_missing);
   io.optional_field("spread_share", evaluation.spread_share, {"N"});
   io.optional_field("smoothed_state", evaluation.smoothed_state, {"N", "n"}, states);
   io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"N", "n", "n"}, outer(states));
-  io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"N"});
+  io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"N"}, {}, rule::position_or_none("K"));
+  if constexpr (Io::reads)
+    io.finish([&] {
+      check_together("smoothed_state and smoothed_covariance",
+                     {evaluation.smoothed_state.size(), evaluation.smoothed_covariance.size()});
+    });
 }
 
 template <class Io, class F>
@@ -46,12 +53,17 @@ void exchange_free_run(Io& io, F& run, const Unit& states) {
   io.optional_field("free_run_sd", run.deviation, {"N", "n_y"}, states);
   io.optional_field("free_run_lower", run.lower, {"N", "n_y"}, states);
   io.optional_field("free_run_upper", run.upper, {"N", "n_y"}, states);
-  io.optional_field("free_run_mode", run.mode, {"N"});
+  io.optional_field("free_run_mode", run.mode, {"N"}, {}, rule::position_or_none("K"));
+  if constexpr (Io::reads)
+    io.finish([&] {
+      check_together("free_run_mean, free_run_sd, free_run_lower and free_run_upper",
+                     {run.mean.size(), run.deviation.size(), run.lower.size(), run.upper.size()});
+    });
 }
 
 /// One filter's evaluation of every run of the recording.
 template <class Io, class F>
-void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Unit& states) {
+void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Sizes& of_bank, const Unit& states) {
   auto free_runs = evaluation.free_runs;
   free_runs.resize(recording.runs.size());  // without any they are empty, and left out
   if constexpr (Io::reads) evaluation.runs.resize(recording.runs.size());
@@ -60,7 +72,7 @@ void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Un
                                 std::to_string(evaluation.runs.size()) + " runs of " +
                                 std::to_string(recording.runs.size()));
   for (std::size_t i = 0; i < recording.runs.size(); ++i) {
-    Sizes known;
+    Sizes known = of_bank;
     if (recording.runs[i].samples() > 0) known.set("N", static_cast<hsize_t>(recording.runs[i].samples()));
     io.group(recording.runs[i].run, known, [&](auto& member) {
       exchange_run_evaluation(member, evaluation.runs[i], states);
@@ -75,7 +87,8 @@ void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Un
 template <class Io, class S>
 void exchange_summary(Io& io, S& summary, const Unit& states) {
   io.optional_table("summary", summary, column("filter", &SummaryRow::filter), column("role", &SummaryRow::role),
-                    column("run", &SummaryRow::run), column("samples", &SummaryRow::samples),
+                    column("run", &SummaryRow::run),
+                    column("samples", &SummaryRow::samples).obeying(rule::not_negative),
                     column("log_score", &SummaryRow::log_score, "nat"),
                     column("rmse", &SummaryRow::rmse, joined(states)), column("nis_mean", &SummaryRow::nis_mean),
                     column("nis_above", &SummaryRow::nis_above), column("nis_below", &SummaryRow::nis_below),
@@ -87,45 +100,48 @@ void exchange_summary(Io& io, S& summary, const Unit& states) {
 
 template <class Io, class R>
 void exchange_horizon(Io& io, R& rows, const Unit& states) {
-  io.optional_table("horizon", rows, column("filter", &HorizonRow::filter), column("role", &HorizonRow::role),
-                    column("run", &HorizonRow::run), column("horizon", &HorizonRow::horizon, "samples"),
-                    column("samples", &HorizonRow::samples), column("log_score", &HorizonRow::log_score, "nat"),
-                    column("rmse", &HorizonRow::rmse, joined(states)));
+  io.optional_table(
+      "horizon", rows, column("filter", &HorizonRow::filter), column("role", &HorizonRow::role),
+      column("run", &HorizonRow::run), column("horizon", &HorizonRow::horizon, "samples").obeying(rule::at_least_one),
+      column("samples", &HorizonRow::samples).obeying(rule::not_negative),
+      column("log_score", &HorizonRow::log_score, "nat"), column("rmse", &HorizonRow::rmse, joined(states)));
 }
 
 template <class Io, class R>
 void exchange_free_runs(Io& io, R& rows, const Unit& states) {
   using Row = FreeRunRow;
-  io.optional_table("free_run", rows, column("filter", &Row::filter), column("role", &Row::role),
-                    column("run", &Row::run), column("method", &Row::method), column("start", &Row::start, "samples"),
-                    column("samples", &Row::samples), column("log_score", &Row::log_score, "nat"),
-                    column("rmse", &Row::rmse, joined(states)), column("nrmse", &Row::nrmse),
-                    column("fit", &Row::fit, "%"), column("coverage_50", &Row::coverage_50),
-                    column("coverage_90", &Row::coverage_90), column("coverage_95", &Row::coverage_95),
-                    column("coverage_99", &Row::coverage_99), column("lost_paths", &Row::lost_paths));
+  io.optional_table(
+      "free_run", rows, column("filter", &Row::filter), column("role", &Row::role), column("run", &Row::run),
+      column("method", &Row::method), column("start", &Row::start, "samples").obeying(rule::not_negative),
+      column("samples", &Row::samples).obeying(rule::not_negative), column("log_score", &Row::log_score, "nat"),
+      column("rmse", &Row::rmse, joined(states)), column("nrmse", &Row::nrmse), column("fit", &Row::fit, "%"),
+      column("coverage_50", &Row::coverage_50), column("coverage_90", &Row::coverage_90),
+      column("coverage_95", &Row::coverage_95), column("coverage_99", &Row::coverage_99),
+      column("lost_paths", &Row::lost_paths).obeying(rule::not_negative));
 }
 
 template <class Io, class R>
 void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
   using Row = DiagnosticsRow;
   io.optional_table(
-      "diagnostics", rows, column("filter", &Row::filter), column("role", &Row::role), column("mode", &Row::mode),
-      column("samples", &Row::samples), column("usage", &Row::usage), column("entropy", &Row::entropy),
-      column("dwell", &Row::dwell, "samples"), column("dwell_model", &Row::dwell_model, "samples"),
-      column("coverage_50", &Row::coverage_50), column("coverage_50_lower", &Row::coverage_50_lower),
-      column("coverage_50_upper", &Row::coverage_50_upper), column("coverage_90", &Row::coverage_90),
-      column("coverage_90_lower", &Row::coverage_90_lower), column("coverage_90_upper", &Row::coverage_90_upper),
-      column("coverage_95", &Row::coverage_95), column("coverage_95_lower", &Row::coverage_95_lower),
-      column("coverage_95_upper", &Row::coverage_95_upper), column("coverage_99", &Row::coverage_99),
-      column("coverage_99_lower", &Row::coverage_99_lower), column("coverage_99_upper", &Row::coverage_99_upper),
-      column("too_far", &Row::too_far), column("too_far_lower", &Row::too_far_lower),
-      column("too_far_upper", &Row::too_far_upper), column("too_close", &Row::too_close),
-      column("too_close_lower", &Row::too_close_lower), column("too_close_upper", &Row::too_close_upper),
-      column("nis_mean", &Row::nis_mean), column("nis_lower", &Row::nis_lower), column("nis_upper", &Row::nis_upper),
-      column("nees_mean", &Row::nees_mean), column("nees_lower", &Row::nees_lower),
-      column("nees_upper", &Row::nees_upper), column("state_rmse", &Row::state_rmse, joined(states)),
-      column("whiteness_p", &Row::whiteness_p), column("spread_share", &Row::spread_share),
-      column("verdict", &Row::verdict), column("flags", &Row::flags));
+      "diagnostics", rows, column("filter", &Row::filter), column("role", &Row::role),
+      column("mode", &Row::mode).obeying(rule::position_or_none("K")),
+      column("samples", &Row::samples).obeying(rule::not_negative), column("usage", &Row::usage),
+      column("entropy", &Row::entropy), column("dwell", &Row::dwell, "samples"),
+      column("dwell_model", &Row::dwell_model, "samples"), column("coverage_50", &Row::coverage_50),
+      column("coverage_50_lower", &Row::coverage_50_lower), column("coverage_50_upper", &Row::coverage_50_upper),
+      column("coverage_90", &Row::coverage_90), column("coverage_90_lower", &Row::coverage_90_lower),
+      column("coverage_90_upper", &Row::coverage_90_upper), column("coverage_95", &Row::coverage_95),
+      column("coverage_95_lower", &Row::coverage_95_lower), column("coverage_95_upper", &Row::coverage_95_upper),
+      column("coverage_99", &Row::coverage_99), column("coverage_99_lower", &Row::coverage_99_lower),
+      column("coverage_99_upper", &Row::coverage_99_upper), column("too_far", &Row::too_far),
+      column("too_far_lower", &Row::too_far_lower), column("too_far_upper", &Row::too_far_upper),
+      column("too_close", &Row::too_close), column("too_close_lower", &Row::too_close_lower),
+      column("too_close_upper", &Row::too_close_upper), column("nis_mean", &Row::nis_mean),
+      column("nis_lower", &Row::nis_lower), column("nis_upper", &Row::nis_upper), column("nees_mean", &Row::nees_mean),
+      column("nees_lower", &Row::nees_lower), column("nees_upper", &Row::nees_upper),
+      column("state_rmse", &Row::state_rmse, joined(states)), column("whiteness_p", &Row::whiteness_p),
+      column("spread_share", &Row::spread_share), column("verdict", &Row::verdict), column("flags", &Row::flags));
 }
 
 /// /evaluation/evidence: what was found, in words and in the numbers that decided.
@@ -133,8 +149,8 @@ template <class Io, class F>
 void exchange_finding(Io& io, F& finding) {
   io.attribute("answer", finding.answer);
   io.attribute("role", finding.role);
-  io.attribute("runs", finding.runs);
-  io.attribute("modes", finding.modes);
+  io.attribute("runs", finding.runs, rule::not_negative);
+  io.attribute("modes", finding.modes, rule::not_negative);
   io.attribute("modes_differ", finding.modes_differ);
   io.attribute("best_competitor", finding.best_competitor);
   io.attribute("gain", finding.gain);
@@ -142,21 +158,24 @@ void exchange_finding(Io& io, F& finding) {
   io.attribute("better_description", finding.better_description);
   io.attribute("text", finding.text);
   io.optional_table("gains", finding.gains, column("competitor", &PairedGain::competitor),
-                    column("samples", &PairedGain::samples), column("gain", &PairedGain::gain, "nat"),
+                    column("samples", &PairedGain::samples).obeying(rule::not_negative),
+                    column("gain", &PairedGain::gain, "nat"),
                     column("standard_error", &PairedGain::standard_error, "nat"),
                     column("degrees_of_freedom", &PairedGain::degrees_of_freedom),
                     column("margin", &PairedGain::margin, "nat"), column("by_blocks", &PairedGain::by_blocks));
   io.optional_table("better_means", finding.better_means, column("competitor", &BetterMean::competitor),
-                    column("horizon", &BetterMean::horizon, "samples"), column("state", &BetterMean::state),
-                    column("rmse_bank", &BetterMean::rmse_bank), column("rmse", &BetterMean::rmse));
+                    column("horizon", &BetterMean::horizon, "samples").obeying(rule::not_negative),
+                    column("state", &BetterMean::state), column("rmse_bank", &BetterMean::rmse_bank),
+                    column("rmse", &BetterMean::rmse));
 }
 
 template <class Io, class R>
 void exchange_confusion(Io& io, R& rows) {
   using Row = ConfusionRow;
   io.optional_table("confusion", rows, column("filter", &Row::filter), column("role", &Row::role),
-                    column("label", &Row::label), column("mode", &Row::mode), column("samples", &Row::samples),
-                    column("share", &Row::share));
+                    column("label", &Row::label), column("mode", &Row::mode).obeying(rule::position("K")),
+                    column("samples", &Row::samples).obeying(rule::not_negative),
+                    column("share", &Row::share).obeying(rule::share_or_missing));
 }
 
 template <class Io, class A>
@@ -173,20 +192,22 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
   };
   io.through(archive.evaluations, names, named, [&](auto& filters) { io.attribute_texts("filters", filters); });
   for (auto& evaluation : archive.evaluations)
-    io.group(evaluation.filter, {},
-             [&](auto& member) { exchange_filter(member, evaluation, recording, units.states()); });
+    io.group(evaluation.filter, {}, [&](auto& member) {
+      exchange_filter(member, evaluation, recording, sizes_of_filter(archive, evaluation.filter), units.states());
+    });
   exchange_summary(io, archive.summary, units.states());
   exchange_horizon(io, archive.horizons, units.states());
   exchange_free_runs(io, archive.free_runs, units.states());
   exchange_diagnostics(io, archive.diagnostics, units.states());
   exchange_confusion(io, archive.confusion);
   exchange_part(io, "evidence", archive.finding, {}, [](auto& member, auto& part) { exchange_finding(member, part); });
+  if constexpr (Io::reads) io.finish([&] { check_score_names(archive); });
 }
 
 template <class Io, class R>
 void exchange_run_residuals(Io& io, R& tests) {
-  io.attribute("samples", tests.samples);
-  io.attribute("level", tests.level);
+  io.attribute("samples", tests.samples, rule::not_negative);
+  io.attribute("level", tests.level, rule::share);
   io.attribute("autocorrelation_band", tests.autocorrelation_band);
   io.field("autocorrelation", tests.autocorrelation, {"T", "n"});
   io.field("cross_correlation", tests.cross_correlation, {"T", "n", "m"});

@@ -1,8 +1,13 @@
 #include "io/archive/stored.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
+#include <set>
 #include <stdexcept>
 
+#include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -69,6 +74,91 @@ std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, 
   std::vector<Eigen::MatrixXd> covariances;
   for (Index k = 0; k < stored.cols(); ++k) covariances.push_back(one_of(stored, k, features, features));
   return covariances;
+}
+
+void check_together(const char* what, std::initializer_list<Eigen::Index> sizes) {
+  const auto missing = std::count(sizes.begin(), sizes.end(), 0);
+  if (missing != 0 && missing != static_cast<std::ptrdiff_t>(sizes.size()))
+    throw DataError(std::string("one of ") + what + " is missing");
+}
+
+void check_mixture(const MixtureResult& result) {
+  constexpr double sum_tolerance = 1e-6;
+  const GaussianMixture& mixture = result.mixture;
+  const double sum = mixture.weights.sum() + mixture.noise.weight;
+  if (mixture.components() > 0 && !(std::abs(sum - 1.0) <= sum_tolerance))
+    throw DataError("the weights sum to " + std::to_string(sum) + ", must be 1");
+  check_count("feature_names", result.feature_names, static_cast<std::size_t>(mixture.features()));
+  if (mixture.noise.lower.size() != mixture.noise.upper.size()) throw DataError("the box of the noise has one corner");
+}
+
+namespace {
+
+constexpr std::array filters{"bank", "baseline", "noise_only", "one_motion", "drifting"};
+
+/// Of rows that have a filter and a run.
+template <class Row>
+void check_rows(const std::vector<Row>& rows, const std::set<std::string>& runs, const std::string& table) {
+  for (const Row& row : rows) {
+    if (std::find(filters.begin(), filters.end(), row.filter) == filters.end())
+      throw DataError(table + " names the unknown filter '" + row.filter + "'");
+    if constexpr (requires { row.run; })
+      if (!runs.empty() && row.run != "*" && !runs.contains(row.run))
+        throw DataError(table + " names the unknown run '" + row.run + "'");
+  }
+}
+
+}  // namespace
+
+void check_score_names(const Archive& archive) {
+  std::set<std::string> runs;
+  if (archive.recording)
+    for (const Trajectory& run : archive.recording->runs) runs.insert(run.run);
+  check_rows(archive.evaluations, {}, "filters");
+  check_rows(archive.summary, runs, "summary");
+  check_rows(archive.horizons, runs, "horizon");
+  check_rows(archive.free_runs, runs, "free_run");
+  check_rows(archive.diagnostics, runs, "diagnostics");
+  check_rows(archive.confusion, runs, "confusion");
+}
+
+namespace {
+
+/// None where it could not be read: verification goes on without.
+std::optional<Bank> whole_bank(const Archive& archive, const std::string& filter) try {
+  if (filter == "drifting" && archive.drifting) validate(*archive.drifting);
+  return archive.bank_of(filter);
+} catch (const std::invalid_argument&) {
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool is_trial_link(const std::string& place, const std::string& file, const std::string& object) {
+  constexpr std::string_view folder = "trials/", suffix = ".h5";
+  if (!file.starts_with(folder) || !file.ends_with(suffix) || object != "/") return false;
+  const std::string key = file.substr(folder.size(), file.size() - folder.size() - suffix.size());
+  return is_sha256(key) && place.starts_with("/trials/");
+}
+
+Sizes sizes_of_filter(const Archive& archive, const std::string& filter) {
+  Sizes sizes;
+  if (archive.recording) sizes.set("n_y", archive.recording->states.size());
+  const std::optional<Bank> bank = whole_bank(archive, filter);
+  if (!bank || bank->modes.empty()) return sizes;
+  sizes.set("K", bank->modes.size());
+  sizes.set("n", static_cast<hsize_t>(bank->structure.dimension()));
+  return sizes;
+}
+
+Sizes sizes_of_evaluation(const Archive& archive, const Recording& recording) {
+  Sizes sizes;
+  if (!recording.states.empty()) sizes.set("n_y", recording.states.size());
+  std::size_t modes = 0;
+  for (const char* filter : filters)
+    if (const auto bank = whole_bank(archive, filter)) modes = std::max(modes, bank->modes.size());
+  if (modes > 0) sizes.set("K", modes);
+  return sizes;
 }
 
 void check_label_positions(const Eigen::VectorXi& label, std::size_t names, const std::string& run) {

@@ -2,12 +2,15 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
 #include "ident/data/trajectory.hpp"
 #include "ident/model/local_model.hpp"
+#include "io/archive/archive.hpp"
 #include "io/archive/bank/stored_bank.hpp"
+#include "io/hdf5/sizes.hpp"
 
 namespace modebank {
 
@@ -32,6 +35,22 @@ void restore_window_structure(WindowFits& fits, Index states, Index parameters);
 /// The components' covariances, F*F x K.
 Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances);
 std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, Index features);
+
+// What arrays that were read one by one must be together; each throws DataError.
+void check_mixture(const MixtureResult& result);
+
+/// The members of these sizes, which may be missing, are all there or none is.
+void check_together(const char* what, std::initializer_list<Eigen::Index> sizes);
+/// Tables speak of runs that are there and of filters that are known.
+void check_score_names(const Archive& archive);
+
+/// Extents that a filter's evaluation has from its bank and from the data, as far as the archive holds them.
+Sizes sizes_of_filter(const Archive& archive, const std::string& filter);
+/// Of the tables over all filters.
+Sizes sizes_of_evaluation(const Archive& archive, const Recording& recording);
+
+/// Whether a link to another file is one of a study's to its trials: /trials/KEY to the root of trials/KEY.h5.
+bool is_trial_link(const std::string& place, const std::string& file, const std::string& object);
 
 /// Throws DataError for a label of the run that none of so many names belongs to; -1: nothing is known.
 void check_label_positions(const Eigen::VectorXi& label, std::size_t names, const std::string& run);

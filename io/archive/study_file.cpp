@@ -59,7 +59,7 @@ void link_archives(const hdf5::Handle& file, const StudyFile& study, const std::
 void copy_archives(const hdf5::Handle& file, const StudyFile& study) {
   const hdf5::Handle trials = make_group(file, trials_group);
   for (const auto& [name, path] : study.archives) {
-    const hdf5::Handle archive = open_archive(path, HashCheck::unchecked);
+    const hdf5::Handle archive = open_archive(path, HashCheck::before);
     hdf5::check(H5Ocopy(archive.id(), "/", trials.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
                 "copy " + path.string());
   }
@@ -139,6 +139,16 @@ void write_study_file(const std::filesystem::path& path, const StudyFile& study,
     write_copied(path, study);
 }
 
+namespace {
+
+/// Nobody follows them here, but a reader who was sent the table might.
+void check_trial_links(const hdf5::Handle& trials) {
+  for (const hdf5::Link& link : hdf5::links_of(trials.id()))
+    hdf5::check_link(trials.id(), std::string("/") + trials_group, link, is_trial_link);
+}
+
+}  // namespace
+
 StudyFile read_study_file(const std::filesystem::path& path, const std::string& table) {
   const hdf5::Quiet quiet;
   const hdf5::Handle file = open_archive(path, HashCheck::before);
@@ -146,6 +156,8 @@ StudyFile read_study_file(const std::filesystem::path& path, const std::string& 
     Archive origin;
     GroupReader root(open_root(file), nullptr);
     layout::exchange_origin(root, origin);
+    root.check_links(is_trial_link);
+    if (root.has(trials_group)) check_trial_links(hdf5::open_group(open_root(file).id(), trials_group));
     StudyFile study{std::move(origin.provenance), std::move(origin.config), table, {}, {}, {}};
     study.columns = read_columns(hdf5::StoredArray(open_root(file).id(), hdf5::Place::dataset, table));
     return study;
@@ -194,7 +206,7 @@ std::vector<std::pair<std::string, double>> pooled_scores(const std::vector<Summ
 
 TrialScores read_trial_scores(const std::filesystem::path& path) {
   const hdf5::Quiet quiet;
-  const hdf5::Handle file = open_archive(path, HashCheck::unchecked);
+  const hdf5::Handle file = open_archive(path, HashCheck::before);
   try {
     const hdf5::Handle root = open_root(file);
     const hdf5::Handle data = hdf5::open_group(root.id(), "data");

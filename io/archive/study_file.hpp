@@ -52,7 +52,7 @@ struct TrialScores {
   std::vector<std::pair<std::string, double>> pooled;  ///< <filter>_<role>_<score>, ..._rmse_<state>: the summary's "*"
 };
 
-/// Reads those alone, without checking the hash. Throws as read_archive does.
+/// Reads those alone. Throws as read_archive does.
 TrialScores read_trial_scores(const std::filesystem::path& archive);
 
 /// The names and values of pooled scores, from a summary in memory.

@@ -1,5 +1,6 @@
 #include "io/files/input_file.hpp"
 
+#include "ident/base/printable.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
@@ -11,7 +12,7 @@ InputFile describe_file(const std::filesystem::path& path) {
   std::ifstream stream = open_file(path);
   stream.rdbuf()->pubsetbuf(nullptr, 0);
   std::vector<char> block(block_bytes);
-  InputFile file{std::filesystem::absolute(path).string(), 0, {}};
+  InputFile file{printable_name(std::filesystem::absolute(path).string()), 0, {}};
   Sha256 hash;
   while (stream) {
     stream.read(block.data(), static_cast<std::streamsize>(block.size()));

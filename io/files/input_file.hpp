@@ -9,7 +9,7 @@ namespace modebank {
 
 /// One file that was read, for provenance.
 struct InputFile {
-  std::string path;  ///< absolute
+  std::string path;  ///< absolute; control characters as \x1b, for it is there to be read
   std::uint64_t bytes = 0;
   std::string sha256;  ///< lowercase hex of the content; of a recording, of what is read (UsedMessages)
 };

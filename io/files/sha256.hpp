@@ -25,6 +25,9 @@ class Sha256 {
   std::uint64_t bytes_ = 0;                         ///< so far
 };
 
+/// Whether a text is one: 64 lowercase hexadecimal digits.
+bool is_sha256(std::string_view text);
+
 std::string sha256_hex(std::string_view bytes);
 
 }  // namespace modebank

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "io/hdf5/links.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::hdf5 {
@@ -148,7 +149,9 @@ StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : p
   const std::string what = quoted(place, name);
   Handle space;
   if (place == Place::dataset) {
+    require_hard(parent, name);
     object_ = Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + what);
+    require_single(object(), name);
     // Our own archives hold all their data; a layout that points elsewhere must not make us read other files.
     if (lies_outside(object())) throw DataError(what + " keeps its content in another file");
     type_ = Handle(H5Dget_type(object()), H5Tclose, "read the type of " + what);

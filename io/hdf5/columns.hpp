@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "io/hdf5/rule.hpp"
 #include "io/hdf5/table.hpp"
 #include "modebank/base/error.hpp"
 #include "modebank/base/names.hpp"
@@ -17,11 +18,18 @@ struct Column {
   T Row::*member;
   std::string unit = {};
   bool optional = false;  ///< archives of earlier minor versions lack it; their rows keep the member's default
+  Rule rule = rule::any;  ///< of its values
+
+  Column obeying(Rule other) const {
+    Column column = *this;
+    column.rule = std::move(other);
+    return column;
+  }
 };
 
 template <class Row, class T>
 Column<Row, T> column(std::string name, T Row::*member, std::string unit = {}) {
-  return {std::move(name), member, std::move(unit), false};
+  return {std::move(name), member, std::move(unit)};
 }
 
 template <class Row, class T>
@@ -46,6 +54,7 @@ auto to_stored(const T& value) {
 template <class T, class Stored>
 void from_stored(const Stored& stored, T& value) {
   if constexpr (std::is_same_v<T, bool>) {
+    if (stored != 0 && stored != 1) throw DataError("holds " + std::to_string(stored) + ", must be 0 or 1");
     value = stored != 0;
   } else if constexpr (std::is_enum_v<T>) {
     const auto parsed = parse_name<T>(stored);
@@ -75,12 +84,39 @@ hdf5::TableColumn encode(const std::vector<Row>& rows, const Column<Row, T>& col
   }
 }
 
-/// Reads one column into the rows, of which there are as many as the table has.
+/// What of a column's stored values breaks its rule; empty when nothing does.
+inline std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::TableColumn& column) {
+  return std::visit(
+      [&](const auto& values) {
+        using Values = std::decay_t<decltype(values)>;
+        if constexpr (std::is_same_v<Values, std::vector<std::string>>)
+          return broken_text(values, true);  // messages have lines
+        else if constexpr (std::is_same_v<Values, Eigen::MatrixXd>)
+          return broken(rule, sizes, {static_cast<hsize_t>(values.cols()), static_cast<hsize_t>(values.rows())},
+                        values.data());
+        else
+          return broken(rule, sizes, {values.size()}, values.data());
+      },
+      column.values);
+}
+
+/// Reads one column into the rows, which become as many as the table has.
 template <class Row, class T>
-void decode(const hdf5::StoredArray& table, const Column<Row, T>& column, std::vector<Row>& rows) {
+void decode(const hdf5::StoredArray& table, const Column<Row, T>& column, const Sizes& sizes, std::vector<Row>& rows) {
   if (column.optional && !hdf5::has_column(table, column.name)) return;
   hdf5::TableColumn stored = encode(std::vector<Row>(), column);
   hdf5::read_column(table, stored);
+  if constexpr (std::is_same_v<T, Eigen::VectorXd>) {
+    // One value per measured signal, whatever the table; an empty table's column has the least length.
+    const Eigen::Index length = std::get<Eigen::MatrixXd>(stored.values).rows();
+    if (const auto signals = sizes.find("n_y");
+        signals && table.elements() > 0 && *signals != static_cast<hsize_t>(length))
+      throw DataError("column '" + column.name + "' has " + std::to_string(length) + " values a row, but n_y is " +
+                      std::to_string(*signals));
+  }
+  if (const std::string problem = broken(column.rule, sizes, stored); !problem.empty())
+    throw DataError("column '" + column.name + "' " + problem);
+  rows.resize(static_cast<std::size_t>(table.elements()));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if constexpr (std::is_same_v<T, Eigen::VectorXd>)
       rows[i].*column.member = std::get<Eigen::MatrixXd>(stored.values).col(static_cast<Eigen::Index>(i));

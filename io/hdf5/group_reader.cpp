@@ -71,7 +71,10 @@ void GroupReader::constant_attribute(const std::string& name, const std::string&
 }
 
 void GroupReader::attribute_texts(const std::string& name, std::vector<std::string>& texts) {
-  guarded(name, [&] { texts = open_attribute(name, H5T_STRING, false).texts(); });
+  guarded(name, [&] {
+    texts = open_attribute(name, H5T_STRING, false).texts();
+    if (const std::string problem = broken_text(texts); !problem.empty()) throw DataError(problem);
+  });
 }
 
 void GroupReader::attributes(std::vector<std::pair<std::string, std::string>>& pairs) {
@@ -88,6 +91,7 @@ void GroupReader::text(const std::string& name, std::string& value) {
     const hdf5::StoredArray array(group_.id(), hdf5::Place::dataset, require(name));
     if (array.elements() != 1) throw DataError("is not one text");
     value = array.texts().front();
+    check(rule::any, value);
   });
 }
 
@@ -97,7 +101,33 @@ void GroupReader::texts(const std::string& name, std::vector<std::string>& value
     const std::string problem = sizes_.agree(letters, array.shape());
     if (!problem.empty()) throw DataError("has " + problem);
     values = array.texts();
+    if (const std::string text = broken_text(values); !text.empty()) throw DataError(text);
   });
+}
+
+GroupReader::Members& GroupReader::members() const {
+  if (!members_) {
+    members_.emplace();
+    for (const hdf5::Link& link : hdf5::links_of(group_.id())) members_->emplace(link.name, Member{link.hard});
+  }
+  return *members_;
+}
+
+bool GroupReader::has(const std::string& name) const {
+  const auto found = members().find(name);
+  if (found == members().end()) return false;
+  found->second.asked = true;
+  return true;
+}
+
+void GroupReader::check_links(const hdf5::LinkAllowed& elsewhere) {
+  for (const auto& [name, member] : members())
+    guarded(name, [&, hard = member.hard, asked = member.asked] {
+      if (!hard)
+        hdf5::check_link(group_.id(), path_, {name, hard}, elsewhere);
+      else if (problems_ && !asked)
+        hdf5::check_below(group_.id(), path_, name, elsewhere);
+    });
 }
 
 }  // namespace modebank

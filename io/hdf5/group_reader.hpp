@@ -2,11 +2,15 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "io/hdf5/array.hpp"
 #include "io/hdf5/columns.hpp"
+#include "io/hdf5/links.hpp"
+#include "io/hdf5/rule.hpp"
 #include "io/hdf5/sizes.hpp"
 #include "modebank/base/error.hpp"
 
@@ -30,6 +34,7 @@ class GroupReader {
       GroupReader member(hdf5::open_group(group_.id(), require(name)), problems_, path_ + "/" + name);
       member.sizes_ = known;
       body(member);
+      member.check_links();
     });
   }
   /// Reads the part if it is there.
@@ -37,19 +42,23 @@ class GroupReader {
   void optional_group(const std::string& name, bool /*present*/, const Sizes& known, Body body) {
     if (has(name)) group(name, known, body);
   }
-  bool has(const std::string& name) const { return hdf5::has_link(group_.id(), name); }
+  bool has(const std::string& name) const;
+  /// Reports members that lie elsewhere, and in verification also what lies below members that nobody asked for.
+  /// `elsewhere`: whether a link to another file may be there, by its place, the file and the place in that.
+  void check_links(const hdf5::LinkAllowed& elsewhere = {});
 
   template <class T>
-  void attribute(const std::string& name, T& value) {
+  void attribute(const std::string& name, T& value, const Rule& rule = rule::any) {
     guarded(name, [&] {
       auto stored = to_stored(value);
       read_attribute(name, stored);
+      check(rule, stored);
       from_stored(stored, value);
     });
   }
   template <class T>
-  void optional_attribute(const std::string& name, T& value) {
-    if (hdf5::has_attribute(group_.id(), name)) attribute(name, value);
+  void optional_attribute(const std::string& name, T& value, const Rule& rule = rule::any) {
+    if (hdf5::has_attribute(group_.id(), name)) attribute(name, value, rule);
   }
   template <class T>
   void attribute_unless(const T& /*absent*/, const std::string& name, T& value) {
@@ -67,8 +76,8 @@ class GroupReader {
   void texts(const std::string& name, std::vector<std::string>& values, const Letters& letters);
 
   template <class Derived>
-  void field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
-             const Unit& = {}) {
+  void field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters, const Unit& = {},
+             const Rule& rule = rule::any) {
     guarded(name, [&] {
       using Stored = decltype(to_stored(std::declval<typename Derived::Scalar>()));
       constexpr bool real = std::is_floating_point_v<Stored>;
@@ -79,13 +88,15 @@ class GroupReader {
       else
         values.resize(static_cast<Eigen::Index>(extent(1) * extent(2)), static_cast<Eigen::Index>(extent(0)));
       array.read(hdf5::memory_type<Stored>(), values.data());
+      const std::string problem = broken(rule, sizes_, array.shape(), stored_values(values));
+      if (!problem.empty()) throw DataError(problem);
     });
   }
   /// One that is written block by block.
   template <class Source>
-  void through_rows(const std::string& name, Source& values, const Letters& letters) {
+  void through_rows(const std::string& name, Source& values, const Letters& letters, const Rule& rule = rule::any) {
     Eigen::MatrixXd all;
-    field(name, all, letters);
+    field(name, all, letters, {}, rule);
     values = Source(std::move(all));
   }
   template <class Derived>
@@ -101,16 +112,15 @@ class GroupReader {
   }
   template <class Derived>
   void optional_field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
-                      const Unit& = {}) {
-    if (has(name)) field(name, values, letters);
+                      const Unit& = {}, const Rule& rule = rule::any) {
+    if (has(name)) field(name, values, letters, {}, rule);
   }
 
   template <class Row, class... T>
   void table(const std::string& name, std::vector<Row>& rows, const Column<Row, T>&... columns) {
     guarded(name, [&] {
       const hdf5::StoredArray array(group_.id(), hdf5::Place::dataset, require(name));
-      rows.resize(static_cast<std::size_t>(array.elements()));
-      (guarded(name, [&] { decode(array, columns, rows); }), ...);
+      (guarded(name, [&] { decode(array, columns, sizes_, rows); }), ...);
     });
   }
 
@@ -138,6 +148,21 @@ class GroupReader {
   Sizes known(const Letters& letters) const { return sizes_.only(letters); }
 
  private:
+  /// Values as they were read: what is a 64-bit number to Eigen is one of ours.
+  template <class Derived>
+  static auto stored_values(const Eigen::PlainObjectBase<Derived>& values) {
+    using Stored = decltype(to_stored(std::declval<typename Derived::Scalar>()));
+    return reinterpret_cast<const Stored*>(values.data());
+  }
+  template <class Stored>
+  void check(const Rule& rule, const Stored& stored) const {
+    std::string problem;
+    if constexpr (std::is_same_v<Stored, std::string>)
+      problem = broken_text({stored}, true);
+    else
+      problem = broken(rule, sizes_, {}, &stored);
+    if (!problem.empty()) throw DataError(problem);
+  }
   void guarded(const std::string& name, const std::function<void()>& step);
   const std::string& require(const std::string& name) const;
   hdf5::StoredArray open_numbers(const std::string& name, const Letters& letters, H5T_class_t kind);
@@ -154,6 +179,14 @@ class GroupReader {
   std::size_t problems_before_;
   std::string path_;
   Sizes sizes_;
+  struct Member {
+    bool hard;
+    bool asked = false;
+  };
+  using Members = std::map<std::string, Member>;
+  /// Listed at the first question: asking HDF5 for each of ten thousand takes longer.
+  Members& members() const;
+  mutable std::optional<Members> members_;
 };
 
 }  // namespace modebank

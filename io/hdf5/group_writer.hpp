@@ -8,6 +8,7 @@
 
 #include "io/hdf5/array.hpp"
 #include "io/hdf5/columns.hpp"
+#include "io/hdf5/rule.hpp"
 #include "io/hdf5/sizes.hpp"
 
 namespace modebank {
@@ -41,12 +42,12 @@ class GroupWriter {
   }
 
   template <class T>
-  void attribute(const std::string& name, const T& value) {
+  void attribute(const std::string& name, const T& value, const Rule& = rule::any) {
     if (complete()) write_attribute(name, to_stored(value));
   }
   /// What older archives lack.
   template <class T>
-  void optional_attribute(const std::string& name, const T& value) {
+  void optional_attribute(const std::string& name, const T& value, const Rule& = rule::any) {
     attribute(name, value);
   }
   /// What is left out where it says nothing.
@@ -82,7 +83,7 @@ class GroupWriter {
   /// then be known already.
   template <class Derived>
   void field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
-             const Unit& unit = {}) {
+             const Unit& unit = {}, const Rule& = rule::any) {
     using Stored = decltype(to_stored(std::declval<typename Derived::Scalar>()));
     const bool rows_only = part_ && letters.front() == "M";
     if (!rows_only && !complete()) return;
@@ -100,7 +101,7 @@ class GroupWriter {
   }
   /// An array whose columns are made as they are written: `values` has windows(), components() and block(first, count).
   template <class Source>
-  void through_rows(const std::string& name, const Source& values, const Letters& letters) {
+  void through_rows(const std::string& name, const Source& values, const Letters& letters, const Rule& = rule::any) {
     constexpr Eigen::Index rows_at_once = 16384;
     const hdf5::Shape shape{static_cast<hsize_t>(values.windows()), static_cast<hsize_t>(values.components())};
     agree(name, letters, shape);
@@ -124,7 +125,7 @@ class GroupWriter {
   /// An empty array is left out.
   template <class Derived>
   void optional_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
-                      const Unit& unit = {}) {
+                      const Unit& unit = {}, const Rule& = rule::any) {
     if (values.size() > 0) field(name, values, letters, unit);
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/hdf5/links.hpp"
 #include "io/hdf5/read_driver.hpp"
 #include "modebank/base/error.hpp"
 
@@ -87,7 +88,10 @@ Handle open_file(const std::string& path) {
 }
 
 Handle open_group(hid_t parent, const std::string& name) {
-  return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, "open the group '" + name + "'"};
+  require_hard(parent, name);
+  Handle group(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, "open the group '" + name + "'");
+  if (name != "/") require_single(group.id(), name);
+  return group;
 }
 
 namespace {

@@ -87,6 +87,8 @@ template <class T>
 void read_values(const StoredArray& table, const std::string& name, Vector<T>& values) {
   const H5T_class_t expected = std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INTEGER;
   const Handle stored = member_type(table, name, expected);
+  // A narrower number would let a small file ask for much memory.
+  if (H5Tget_size(stored.id()) != sizeof(T)) throw DataError("column '" + name + "' holds numbers of another width");
   values.resize(static_cast<std::size_t>(table.elements()));
   table.read(compound_of(name, memory_type<T>()).id(), values.data());
 }

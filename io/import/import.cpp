@@ -65,7 +65,7 @@ Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_
     outcome.content = read_runs(plan, options);
     for (RunStreams& run : outcome.content.runs) {
       check_values(run, options);
-      for (std::string& text : run.label.text) text = printable(text);
+      for (std::string& text : run.label.text) text = printable_name(text);
       if (!as_they_stand) put_in_order(run, options.disorder);
     }
   } catch (...) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ident/base/printable.hpp"
 #include "io/table/number.hpp"
 #include "io/table/stamp_column.hpp"
 #include "modebank/base/error.hpp"
@@ -108,7 +109,7 @@ std::string RecordingReader::why_without(const std::string& column) const {
 }
 
 InputFile RecordingReader::described(const UsedMessages& used) const {
-  InputFile file{std::filesystem::absolute(path_).string(), 0, used.hex()};
+  InputFile file{printable_name(std::filesystem::absolute(path_).string()), 0, used.hex()};
   for (const std::filesystem::path& part : log_.files()) file.bytes += std::filesystem::file_size(part);
   return file;
 }

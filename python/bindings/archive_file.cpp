@@ -10,6 +10,7 @@
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/bank/open_archive.hpp"
 #include "io/hdf5/array.hpp"
+#include "io/hdf5/links.hpp"
 #include "modebank/base/error.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
@@ -109,6 +110,7 @@ class ArchiveFile {
     for (std::size_t end = relative.find('/');; end = relative.find('/', end + 1)) {
       const std::string part = relative.substr(0, end);
       if (!hdf5::has_link(root.id(), part)) throw py::key_error(path_ + " holds no " + path);
+      hdf5::require_hard(root.id(), part);  // those above it are by now
       if (end == std::string::npos) break;
     }
     try {

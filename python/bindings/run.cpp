@@ -1,6 +1,6 @@
 #include <string>
 
-#include "app/config/config_file.hpp"
+#include "app/config/valid_config.hpp"
 #include "app/pipeline/pipeline.hpp"
 #include "modebank/base/error.hpp"
 #include "python/bindings/bindings.hpp"
@@ -38,7 +38,7 @@ class Callbacks : public app::Adviser {
 /// Returns where the archive is.
 std::string run_file(const std::string& file, const py::dict& keys, const py::object& progress,
                      const py::object& warning) {
-  const app::Config config = app::load_config(file, key_values(keys, ""));
+  const app::Config config = app::load_valid_config(file, key_values(keys, ""));
   const Callbacks callbacks(progress, warning);
   {
     const py::gil_scoped_release unlocked;

@@ -44,8 +44,9 @@ ProgramResult CliTest::modebank(std::vector<std::string> arguments) const {
 }
 
 ProgramResult CliTest::run(std::vector<std::string> options) const {
-  std::vector<std::string> arguments{"run",     config(),      "--archive.output",
-                                     archive(), "--data.root", folder_.path().string()};
+  // --force: tests change the runs and go on with the same archive.
+  std::vector<std::string> arguments{
+      "run", config(), "--force", "--archive.output", archive(), "--data.root", folder_.path().string()};
   arguments.insert(arguments.end(), options.begin(), options.end());
   return modebank(arguments);
 }

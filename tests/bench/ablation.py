@@ -178,7 +178,8 @@ def halves(bench, given):
     """The options of the two folds: as configured, and with training and test runs exchanged."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "runs.h5")
-        bench.call("identify", bench.config, *flags({**given, "window.step": "100"}), "--archive.output", path)
+        bench.call("identify", bench.config, *flags({**{k: v for k, v in given.items() if k.startswith(("data.", "window."))}, "window.step": "100"}),
+                   "--archive.output", path)
         names = json.loads(bench.call("show", path, "/data", "--json"))["members"]
         roles = {name: json.loads(bench.call("show", path, "/data/" + name, "--json"))["attributes"]["role"]
                  for name in names}

@@ -11,9 +11,10 @@
 namespace modebank::app::report {
 namespace {
 
-/// Between single quotes gnuplot takes everything as it is but the quote.
+/// Between single quotes gnuplot takes everything as it is but the quote, which it misreads at their beginning even
+/// when doubled: an apostrophe stands in for it.
 std::string quoted(const std::string& text) {
-  std::string copy = boost::replace_all_copy(text, "'", "''");
+  std::string copy = boost::replace_all_copy(text, "'", "\u2019");
   std::replace_if(
       copy.begin(), copy.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
   return "'" + copy + "'";

@@ -85,7 +85,8 @@ std::string draw(const Figure& figure, const fs::path& folder, const char* forma
     throw ConfigurationError("report.figures needs gnuplot, which is not installed (Debian package gnuplot-nox)");
   std::string content = drawn.content();
   if (status != 0 || content.empty())
-    throw DataError(fmt::format("gnuplot could not draw {}: {}", figure.name(), messages.content()));
+    throw DataError(fmt::format("gnuplot could not draw {}: {}", figure.name(),
+                                messages.content().empty() ? "it gives no reason" : messages.content()));
   return content;
 }
 

@@ -51,7 +51,8 @@ std::vector<TrialPlace> archives_of(const StudyTable& table, const fs::path& fol
   std::vector<TrialPlace> places(table.rows.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     const fs::path archive = trial_archive(folder, table.rows[i].key);
-    if (!table.rows[i].key.empty() && fs::exists(archive)) places[i].archive = archive.string();
+    std::error_code error;
+    if (!table.rows[i].key.empty() && fs::is_regular_file(archive, error)) places[i].archive = archive.string();
   }
   return places;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/report/page/study_page.hpp"
+#include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 #include "modebank/base/names.hpp"
 
@@ -52,6 +53,8 @@ StudyTable study_table_of(const StudyFile& file) {
     row.message = messages[i];
     row.evidence = evidence[i];
     const auto status = parse_name<TrialStatus>(statuses[i]);
+    if (!keys[i].empty() && !is_sha256(keys[i]))
+      throw DataError(fmt::format("run {} has the key {}, which is not 64 hexadecimal digits", i, keys[i]));
     if (!status) throw DataError(fmt::format("run {} has the unknown status {}", i, statuses[i]));
     row.status = *status;
   }

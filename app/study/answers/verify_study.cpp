@@ -35,10 +35,21 @@ std::string trial_problem(const TrialStore& store, const Config& study, const St
   }
 }
 
+/// A link that leads nowhere is there, too.
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  return fs::symlink_status(path, error).type() != fs::file_type::not_found;
+}
+
 /// A file of the study that must be a whole one if it is there.
 void check_whole_file(const fs::path& file, StudyVerification& result) {
-  if (!fs::exists(file)) return;
-  for (const std::string& problem : verify_archive(file).problems) result.problems.push_back({file, problem, "", true});
+  if (!is_there(file)) return;
+  try {
+    for (const std::string& problem : verify_archive(file).problems)
+      result.problems.push_back({file, problem, "", false});
+  } catch (const std::exception& error) {
+    result.problems.push_back({file, error.what(), "", false});
+  }
 }
 
 std::optional<StudyPlan> check_plan(const fs::path& folder, StudyVerification& result) {
@@ -46,7 +57,7 @@ std::optional<StudyPlan> check_plan(const fs::path& folder, StudyVerification& r
   try {
     return read_plan(folder);
   } catch (const std::exception& error) {
-    result.problems.push_back({file, error.what(), "", fs::exists(file)});
+    result.problems.push_back({file, error.what(), "", false});
     return std::nullopt;
   }
 }
@@ -77,7 +88,8 @@ void check_trials(const TrialStore& store, const StudyPlan& plan, StudyVerificat
 
 /// Half-written files, and archives of no planned trial, whose hash alone can be checked.
 void check_others(const TrialStore& store, const std::optional<StudyPlan>& plan, StudyVerification& result) {
-  if (!fs::exists(store.folder() / "trials")) return;
+  std::error_code error;
+  if (!fs::is_directory(store.folder() / "trials", error)) return;
   std::map<std::string, bool> planned;
   if (plan)
     for (const TrialRow& row : plan->table.rows) planned[row.key + ".h5"] = true;
@@ -95,8 +107,24 @@ void check_others(const TrialStore& store, const std::optional<StudyPlan>& plan,
 }  // namespace
 
 bool is_study_folder(const fs::path& path) {
-  return fs::is_directory(path) && (fs::exists(plan_file(path)) || fs::exists(path / "trials"));
+  std::error_code error;
+  return fs::is_directory(path, error) && (is_there(plan_file(path)) || is_there(path / "trials"));
 }
+
+namespace {
+
+/// What repairing may take away: a file of the study's own folder trials/ or cache/, not one that a link or a name
+/// leads to elsewhere.
+bool lies_within(const fs::path& folder, const fs::path& file) {
+  std::error_code error;
+  for (const char* part : {"trials", "cache"})
+    if (fs::symlink_status(folder / part, error).type() == fs::file_type::directory &&
+        file.parent_path() == folder / part && file.has_filename() && file.filename() != "." && file.filename() != "..")
+      return true;
+  return false;
+}
+
+}  // namespace
 
 StudyVerification verify_study(const fs::path& folder) {
   const TrialStore store(folder);
@@ -105,13 +133,15 @@ StudyVerification verify_study(const fs::path& folder) {
   check_whole_file(folder / "study.h5", result);
   if (plan) check_trials(store, *plan, result);
   check_others(store, plan, result);
+  for (StudyProblem& problem : result.problems)
+    problem.removable = problem.removable && lies_within(folder, problem.file);
   return result;
 }
 
 void repair_study(const fs::path& folder, const StudyVerification& verification) {
   TrialStore(folder).remove_leftovers();
   for (const StudyProblem& problem : verification.problems)
-    if (problem.removable && problem.file.extension() != ".tmp") fs::remove(problem.file);
+    if (problem.removable) fs::remove(problem.file);
 }
 
 }  // namespace modebank::app

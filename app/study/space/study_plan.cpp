@@ -102,9 +102,26 @@ NamedColumn text_column(const std::string& name, const std::vector<TrialRow>& ro
   return {name, std::move(values)};
 }
 
-const std::vector<std::string>& texts_of(const StudyFile& file, std::size_t column) {
-  return std::get<std::vector<std::string>>(file.columns.at(column).values);
+/// The values of a column that has that name and kind, which is how plans are told from other tables.
+template <class T>
+const std::vector<T>& values_of(const StudyFile& file, std::size_t column, const std::string& name) {
+  const NamedColumn& found = file.columns.at(column);
+  if (found.name != name)
+    throw DataError(fmt::format("not a plan: its column {} is {}, must be {}", column, found.name, name));
+  const auto* const values = std::get_if<std::vector<T>>(&found.values);
+  if (!values) throw DataError(fmt::format("not a plan: its column {} holds another kind of value", name));
+  return *values;
 }
+
+/// A plan from elsewhere may hold anything; its keys are names of files.
+void check_row(const TrialRow& row, std::size_t r) {
+  const bool dropped = row.status == TrialStatus::dropped;
+  if (!is_sha256(row.key) && !(dropped && row.key.empty()))
+    throw DataError(fmt::format("row {}: the key \"{}\" is not 64 hexadecimal digits", r, row.key));
+  if (row.repeat < 0) throw DataError(fmt::format("row {}: repeat is {}", r, row.repeat));
+}
+
+StudyPlan plan_of(const StudyFile& file);
 
 /// Columns of plan.h5 that are not varied keys: key before them; repeat, seed, status and message after them.
 constexpr std::size_t columns_before = 1, columns_after = 4;
@@ -203,24 +220,47 @@ void write_plan(const std::filesystem::path& folder, const StudyPlan& plan) {
 
 StudyPlan read_plan(const std::filesystem::path& folder) {
   const StudyFile file = look_twice([&] { return read_study_file(plan_file(folder), "plan"); });
-  if (file.columns.size() < columns_before + columns_after)
-    throw DataError(plan_file(folder).string() + ": not a plan");
+  try {
+    return plan_of(file);
+  } catch (const DataError& error) {
+    throw DataError(plan_file(folder).string() + ": " + error.what());
+  }
+}
+
+namespace {
+
+StudyPlan plan_of(const StudyFile& file) {
+  if (file.columns.size() < columns_before + columns_after) throw DataError("not a plan");
   StudyPlan plan{file.config, file.provenance, {}};
-  const std::size_t varied = file.columns.size() - columns_before - columns_after;
-  for (std::size_t i = 0; i < varied; ++i) plan.table.varied_keys.push_back(file.columns[columns_before + i].name);
-  plan.table.rows.resize(texts_of(file, 0).size());
-  const std::size_t after = columns_before + varied;
-  for (std::size_t r = 0; r < plan.table.rows.size(); ++r) {
+  const std::size_t varied = file.columns.size() - columns_before - columns_after, after = columns_before + varied;
+  const auto& keys = values_of<std::string>(file, 0, "key");
+  const auto& repeats = values_of<std::int64_t>(file, after, "repeat");
+  const auto& seeds = values_of<std::uint64_t>(file, after + 1, "seed");
+  const auto& status = values_of<std::string>(file, after + 2, "status");
+  const auto& messages = values_of<std::string>(file, after + 3, "message");
+  plan.table.rows.resize(keys.size());
+  for (std::size_t i = columns_before; i < after; ++i) {
+    const std::string& name = file.columns[i].name;
+    if (!find_option(name)) throw DataError(fmt::format("not a plan: it varies \"{}\", which is no key", name));
+    plan.table.varied_keys.push_back(name);
+    const auto& values = values_of<std::string>(file, i, name);
+    for (std::size_t r = 0; r < keys.size(); ++r) plan.table.rows[r].varied.push_back(values[r]);
+  }
+  for (std::size_t r = 0; r < keys.size(); ++r) {
     TrialRow& row = plan.table.rows[r];
-    row.key = texts_of(file, 0)[r];
-    for (std::size_t i = 0; i < varied; ++i) row.varied.push_back(texts_of(file, columns_before + i)[r]);
-    row.repeat = std::get<std::vector<std::int64_t>>(file.columns[after].values)[r];
-    row.seed = std::get<std::vector<std::uint64_t>>(file.columns[after + 1].values)[r];
-    row.status = parse_name<TrialStatus>(texts_of(file, after + 2)[r]).value_or(TrialStatus::planned);
-    row.message = texts_of(file, after + 3)[r];
+    row.key = keys[r];
+    row.repeat = repeats[r];
+    row.seed = seeds[r];
+    const auto known = parse_name<TrialStatus>(status[r]);
+    if (!known) throw DataError(fmt::format("row {}: the status \"{}\" is none", r, status[r]));
+    row.status = *known;
+    row.message = messages[r];
+    check_row(row, r);
   }
   return plan;
 }
+
+}  // namespace
 
 void check_plan_goes_on(const StudyPlan& before, const StudyPlan& now, const std::filesystem::path& folder) {
   std::map<std::string, bool> keys;

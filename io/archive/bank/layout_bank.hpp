@@ -25,10 +25,10 @@ void exchange_structure(Io& io, S& structure, Name& model) {
   io.attribute("model", model);
   io.constant_attribute("form", std::string("increment"));
   io.attribute("intercept", structure.intercept);
-  io.attribute("inputs", structure.inputs);
-  io.attribute("state_lags", structure.state_lags);
-  io.attribute("input_lags", structure.input_lags);
-  io.attribute("input_delay", structure.input_delay);
+  io.attribute("inputs", structure.inputs, rule::channels);
+  io.attribute("state_lags", structure.state_lags, rule::lags);
+  io.attribute("input_lags", structure.input_lags, rule::lags);
+  io.attribute("input_delay", structure.input_delay, rule::delay);
 }
 
 /// Names and units of a motion model's parameters; empty lists for linear models.
@@ -46,28 +46,28 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   const Unit parameters = parameter_units(stored.structure, states, inputs);
   const bool measured = static_cast<std::size_t>(stored.C.cols()) == states.size();
   const Unit outputs(states.begin(), states.begin() + (measured ? stored.C.rows() : 0));
-  io.field("weight", stored.weight, {"K"});
-  io.field("c", stored.c, {"K", "n"}, states);
-  io.field("A", stored.A, {"K", "n", "n"}, ratios(states, states));
-  io.field("B", stored.B, {"K", "n", "m"}, ratios(states, inputs));
-  io.field("Q", stored.Q, {"K", "n", "n"}, outer(states));
-  io.field("parameters", stored.parameters, {"K", "p"}, parameters);
+  io.field("weight", stored.weight, {"K"}, {}, rule::share);
+  io.field("c", stored.c, {"K", "n"}, states, rule::finite);
+  io.field("A", stored.A, {"K", "n", "n"}, ratios(states, states), rule::finite);
+  io.field("B", stored.B, {"K", "n", "m"}, ratios(states, inputs), rule::finite);
+  io.field("Q", stored.Q, {"K", "n", "n"}, outer(states), rule::covariances);
+  io.field("parameters", stored.parameters, {"K", "p"}, parameters, rule::finite_or_missing);
   io.optional_field("parameter_covariance", stored.spread, {"K", "p", "p"}, outer(parameters));
   io.optional_field("parameter_standard_error", stored.standard_error, {"K", "p"}, parameters);
   io.optional_field("Q_standard_error", stored.Q_standard_error, {"K", "n", "n"}, outer(states));
   io.optional_field("R_standard_error", stored.R_standard_error, {"n_y", "n_y"}, measured ? outer(outputs) : Unit());
   io.optional_field("transition_standard_error", stored.transition_standard_error, {"K", "K"});
-  io.field("C", stored.C, {"n_y", "n"}, measured ? ratios(outputs, states) : Unit());
-  io.field("R", stored.R, {"n_y", "n_y"}, measured ? outer(outputs) : Unit());
-  io.optional_field("quantum", stored.quantum, {"n_y"}, outputs);
-  io.field("transition", stored.transition, {"K", "K"});
-  io.optional_field("transition_weights", stored.transition_weights, {"K", "K", "features"});
-  io.optional_field("transition_reference", stored.transition_reference, {"features"});
+  io.field("C", stored.C, {"n_y", "n"}, measured ? ratios(outputs, states) : Unit(), rule::finite);
+  io.field("R", stored.R, {"n_y", "n_y"}, measured ? outer(outputs) : Unit(), rule::covariances);
+  io.optional_field("quantum", stored.quantum, {"n_y"}, outputs, rule::not_negative);
+  io.field("transition", stored.transition, {"K", "K"}, {}, rule::probabilities);
+  io.optional_field("transition_weights", stored.transition_weights, {"K", "K", "features"}, {}, rule::finite);
+  io.optional_field("transition_reference", stored.transition_reference, {"features"}, {}, rule::finite);
   io.optional_field("transition_weight_standard_error", stored.transition_weight_error, {"K", "features"});
-  io.field("initial_probability", stored.initial_probability, {"K"});
-  io.optional_field("drift_scale", stored.drift_scale, {"regressors"});
-  io.optional_field("drift_rates", stored.drift_rates, {"rates"});
-  io.optional_field("motion_parameters", stored.motion_parameters, {"K", "p_motion"}, motion);
+  io.field("initial_probability", stored.initial_probability, {"K"}, {}, rule::probabilities);
+  io.optional_field("drift_scale", stored.drift_scale, {"regressors"}, {}, rule::positive);
+  io.optional_field("drift_rates", stored.drift_rates, {"rates"}, {}, rule::not_negative);
+  io.optional_field("motion_parameters", stored.motion_parameters, {"K", "p_motion"}, motion, rule::finite);
   io.optional_field("motion_standard_error", stored.motion_standard_error, {"K", "p_motion"}, motion);
   exchange_structure(io, stored.structure, stored.model);
   if constexpr (Io::reads)
@@ -81,17 +81,22 @@ void exchange_bank(Io& io, B& bank, const Units& units) {
   io.attribute_texts("input_names", bank.input_names);
   if constexpr (!Io::reads)
     io.attribute_texts("parameter_labels", parameter_labels(bank.structure, bank.state_names, bank.input_names));
-  io.attribute("dt_s", bank.dt_s);
-  io.optional_attribute("noise_forgetting", bank.noise_adaptation.forgetting);
-  io.optional_attribute("noise_prior_samples", bank.noise_adaptation.prior_samples);
+  io.attribute("dt_s", bank.dt_s, rule::positive);
+  io.optional_attribute("noise_forgetting", bank.noise_adaptation.forgetting, rule::share);
+  io.optional_attribute("noise_prior_samples", bank.noise_adaptation.prior_samples, rule::positive);
   exchange_model_parameters(io, bank.motion_parameters, "motion_parameter");
-  io.table("screened", bank.screened, column("component", &ScreenedMode::component),
+  io.table("screened", bank.screened, column("component", &ScreenedMode::component).obeying(rule::not_negative),
            column("weight", &ScreenedMode::weight), column("spectral_radius", &ScreenedMode::spectral_radius),
            column("reason", &ScreenedMode::reason));
   const Unit states = units.states(bank.state_names), inputs = units.inputs(bank.input_names);
   io.through(
       bank, store_bank, [&](const StoredBank& stored) { return restore_bank(stored, bank); },
       [&](auto& stored) { exchange_modes(io, stored, states, inputs, unit_of(bank.motion_parameters)); });
+  if constexpr (Io::reads)
+    io.finish([&] {
+      check_count("state_names", bank.state_names, static_cast<std::size_t>(bank.structure.dimension()));
+      check_count("input_names", bank.input_names, static_cast<std::size_t>(bank.structure.acting_inputs()));
+    });
 }
 
 }  // namespace modebank::layout

@@ -36,8 +36,8 @@ template <class Io, class M>
 void exchange_drifting(Io& io, M& model, const Units& units) {
   io.attribute_texts("state_names", model.state_names);
   io.attribute_texts("input_names", model.input_names);
-  io.attribute("dt_s", model.dt_s);
-  io.attribute("states", model.structure.states);
+  io.attribute("dt_s", model.dt_s, rule::positive);
+  io.attribute("states", model.structure.states, rule::between(1, rule::channels.most));
   std::string name = "varx";
   exchange_structure(io, model.structure, name);
   io.attribute("q", model.rates.q);
@@ -46,7 +46,7 @@ void exchange_drifting(Io& io, M& model, const Units& units) {
   io.attribute("lam", model.lam);
   io.attribute("nu", model.nu);
   io.attribute("training_log_score", model.tuning.log_score);
-  io.attribute("training_samples", model.tuning.samples);
+  io.attribute("training_samples", model.tuning.samples, rule::not_negative);
   io.attribute_texts("at_grid_end", model.tuning.at_grid_end);
   io.field("parameters", model.theta0, {"p"}, parameter_units(model.structure, units.states(), units.inputs()));
   io.field("regressor_scale", model.scale, {"r"});
@@ -54,9 +54,15 @@ void exchange_drifting(Io& io, M& model, const Units& units) {
   io.field("variance_floor", model.variance_floor, {"n_y"}, squared(units.states()));
   io.optional_field("quantum", model.quantum, {"n_y"}, units.states());
   io.through(model.horizon_factor, store_factors, restore_factors, [&](auto& stored) {
-    io.optional_field("horizon", stored.horizon, {"H"}, {"samples"});
+    io.optional_field("horizon", stored.horizon, {"H"}, {"samples"}, rule::between(2, 1e6));
     io.optional_field("horizon_factor", stored.factor, {"H"});
   });
+  if constexpr (Io::reads)
+    io.finish([&] {
+      validate(model);
+      check_count("state_names", model.state_names, static_cast<std::size_t>(model.structure.dimension()));
+      check_count("input_names", model.input_names, static_cast<std::size_t>(model.structure.acting_inputs()));
+    });
 }
 
 }  // namespace modebank::layout

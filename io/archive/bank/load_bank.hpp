@@ -18,6 +18,9 @@ DriftingModel load_drifting(const std::filesystem::path& path);
 /// The resolved configuration an archive was made with.
 std::string load_configuration(const std::filesystem::path& path);
 
+/// The hash of the data it was made from.
+std::string load_data_hash(const std::filesystem::path& path);
+
 /// The archive's SHA-256, as its user block states it: tells archives apart.
 std::string archive_digest(const std::filesystem::path& path);
 

@@ -1,10 +1,13 @@
 #include "io/archive/bank/open_archive.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <charconv>
-#include <fstream>
 #include <system_error>
 
 #include "io/files/sha256.hpp"
@@ -16,8 +19,6 @@ namespace modebank {
 namespace {
 
 constexpr std::size_t hash_bytes = 64;
-
-bool is_lowercase_hex(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); }
 
 }  // namespace
 
@@ -31,7 +32,7 @@ UserBlock make_user_block(std::string_view content_sha256) {
 std::vector<std::string> user_block_problems(const UserBlock& block, std::string_view content_sha256) {
   const std::string_view stored(block.data(), hash_bytes);
   std::vector<std::string> problems;
-  if (!std::all_of(stored.begin(), stored.end(), is_lowercase_hex))
+  if (!is_sha256(stored))
     problems.push_back("the user block holds no SHA-256 in bytes 0-63: damaged, or not a modebank archive");
   else if (stored != content_sha256)
     problems.push_back("the content's SHA-256 is " + std::string(content_sha256) + ", the user block says " +
@@ -44,54 +45,93 @@ std::vector<std::string> user_block_problems(const UserBlock& block, std::string
 
 namespace {
 
-/// Of everything from where `file` stands to its end.
-std::string hash_of_rest(std::ifstream& file) {
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail_reading() { throw DataError("cannot read the file: " + std::generic_category().message(errno)); }
+
+/// One opening of a file, through which it is hashed and handed to HDF5: a file that takes its name in between is not
+/// the one that was judged. Nothing but a regular file is waited for or read.
+class OpenedFile {
+ public:
+  explicit OpenedFile(const fs::path& path) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+    if (descriptor_ < 0) throw DataError("cannot open the file: " + std::generic_category().message(errno));
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
+      ::close(descriptor_);
+      throw DataError(S_ISDIR(status.st_mode) ? "is a folder, not an archive" : "is not a regular file");
+    }
+    bytes_ = static_cast<std::uintmax_t>(status.st_size);
+  }
+  ~OpenedFile() { ::close(descriptor_); }
+  OpenedFile(const OpenedFile&) = delete;
+  OpenedFile& operator=(const OpenedFile&) = delete;
+
+  std::uintmax_t bytes() const { return bytes_; }
+  /// How many of `count` bytes at the offset there are.
+  std::size_t read(char* to, std::size_t count, std::uintmax_t offset) const {
+    std::size_t done = 0;
+    while (done < count) {
+      const ssize_t got = ::pread(descriptor_, to + done, count - done, static_cast<off_t>(offset + done));
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) fail_reading();
+      if (got == 0) break;
+      done += static_cast<std::size_t>(got);
+    }
+    return done;
+  }
+  std::string bytes_at(std::uintmax_t offset, std::size_t count) const {
+    std::string text(count, '\0');
+    text.resize(read(text.data(), count, offset));
+    return text;
+  }
+  /// A name that leads to this very file, whatever its own leads to by now; the path where there is no /proc.
+  std::string name(const fs::path& path) const {
+    const std::string own = "/proc/self/fd/" + std::to_string(descriptor_);
+    std::error_code error;
+    return fs::exists(own, error) ? own : path.string();
+  }
+
+ private:
+  int descriptor_;
+  std::uintmax_t bytes_ = 0;
+};
+
+/// Of everything after the user block.
+std::string content_hash(const OpenedFile& file) {
   Sha256 hash;
   std::vector<char> buffer(std::size_t{1} << 20);
-  while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), file.gcount() > 0)
-    hash.update(buffer.data(), static_cast<std::size_t>(file.gcount()));
-  if (file.bad()) throw DataError("cannot read the file: " + std::generic_category().message(errno));
+  std::uintmax_t offset = user_block_bytes;
+  while (const std::size_t got = file.read(buffer.data(), buffer.size(), offset)) {
+    hash.update(buffer.data(), got);
+    offset += got;
+  }
   return hash.hex();
+}
+
+std::vector<std::string> hash_problems(const OpenedFile& file) {
+  UserBlock block{};
+  if (file.read(block.data(), block.size(), 0) < block.size()) return {"the file is shorter than its user block"};
+  return user_block_problems(block, content_hash(file));
 }
 
 }  // namespace
 
-std::string content_hash(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  file.seekg(static_cast<std::streamoff>(user_block_bytes));
-  return hash_of_rest(file);
-}
+std::string content_hash(const fs::path& path) { return content_hash(OpenedFile(path)); }
 
-std::vector<std::string> hash_problems(const std::filesystem::path& path) try {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return {"cannot open the file: " + std::generic_category().message(errno)};
-  UserBlock block{};
-  if (!file.read(block.data(), block.size())) return {"the file is shorter than its user block"};
-  return user_block_problems(block, hash_of_rest(file));
+std::vector<std::string> hash_problems(const fs::path& path) try {
+  return hash_problems(OpenedFile(path));
 } catch (const DataError& error) {
   return {error.what()};
 }
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 
-std::string bytes_at(const fs::path& path, std::streamoff offset, std::size_t count) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw DataError(std::generic_category().message(errno));
-  std::string bytes(count, '\0');
-  file.seekg(offset);
-  file.read(bytes.data(), static_cast<std::streamsize>(count));
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
-  return bytes;
-}
-
 /// Where HDF5's superblock, which the signature begins, says that the file ends; 0 where it is not one that we write.
-std::uintmax_t stated_end(const fs::path& path) {
+std::uintmax_t stated_end(const OpenedFile& file) {
   constexpr std::size_t version_at = 8, address_size_at = 9, end_at = 28, address_bytes = 8;
-  const std::string superblock = bytes_at(path, user_block_bytes, end_at + address_bytes);
+  const std::string superblock = file.bytes_at(user_block_bytes, end_at + address_bytes);
   if (superblock.size() < end_at + address_bytes || superblock[version_at] != 2 ||
       superblock[address_size_at] != address_bytes)
     return 0;
@@ -101,15 +141,15 @@ std::uintmax_t stated_end(const fs::path& path) {
 }
 
 /// Before HDF5 sees the file: most foreign files are told apart here, and those that were cut off.
-void check_signature(const fs::path& path) {
-  const std::uintmax_t bytes = fs::file_size(path);
-  if (bytes == 0) throw DataError("the file is empty");
-  if (bytes_at(path, user_block_bytes, hdf5_signature.size()) == hdf5_signature) {
-    if (const std::uintmax_t end = stated_end(path); bytes < end)
-      throw DataError("truncated file: " + std::to_string(bytes) + " of " + std::to_string(end) + " bytes are there");
+void check_signature(const OpenedFile& file) {
+  if (file.bytes() == 0) throw DataError("the file is empty");
+  if (file.bytes_at(user_block_bytes, hdf5_signature.size()) == hdf5_signature) {
+    if (const std::uintmax_t end = stated_end(file); file.bytes() < end)
+      throw DataError("truncated file: " + std::to_string(file.bytes()) + " of " + std::to_string(end) +
+                      " bytes are there");
     return;
   }
-  if (bytes_at(path, 0, hdf5_signature.size()) == hdf5_signature)
+  if (file.bytes_at(0, hdf5_signature.size()) == hdf5_signature)
     throw DataError("not a modebank archive (an HDF5 file of another program)");
   throw DataError("not a modebank archive");
 }
@@ -143,8 +183,8 @@ void check_schema(const hdf5::Handle& root) {
         ": scores had other names then (tail_above, tail_below) and fewer competitors; run its /config again");
 }
 
-void check_hash(const fs::path& path) {
-  if (const std::vector<std::string> problems = hash_problems(path); !problems.empty())
+void check_hash(const OpenedFile& file) {
+  if (const std::vector<std::string> problems = hash_problems(file); !problems.empty())
     throw DataError("damaged: " + problems.front());
 }
 
@@ -154,6 +194,7 @@ void require_readable(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) throw ConfigurationError(path.string() + ": no such file");
+  if (error) throw DataError(path.string() + ": " + error.message());
   if (fs::is_directory(status)) throw DataError(path.string() + ": is a folder, not an archive");
   if (!fs::is_regular_file(status)) throw DataError(path.string() + ": is not a regular file");
 }
@@ -161,15 +202,14 @@ void require_readable(const fs::path& path) {
 hdf5::Handle open_archive(const fs::path& path, HashCheck hash) {
   require_readable(path);
   try {
-    check_signature(path);
-    if (hash == HashCheck::before) check_hash(path);
-    hdf5::Handle file = hdf5::open_file(path.string());
+    const OpenedFile opened(path);
+    check_signature(opened);
+    if (hash == HashCheck::before) check_hash(opened);
+    hdf5::Handle file = hdf5::open_file(opened.name(path));
     check_schema(open_root(file));
     return file;
   } catch (const DataError& error) {
     throw DataError(path.string() + ": " + error.what());
-  } catch (const fs::filesystem_error& error) {
-    throw DataError(path.string() + ": " + error.code().message());
   }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/hdf5/handle.hpp"
+#include "io/hdf5/links.hpp"
 
 namespace modebank {
 
@@ -32,8 +33,7 @@ std::vector<std::string> hash_problems(const std::filesystem::path& path);
 /// Throws ConfigurationError when there is no such path and DataError when it is not a regular file that can be read.
 void require_readable(const std::filesystem::path& path);
 
-/// before: HDF5 sees no byte of a file whose hash is wrong. unchecked: for those that check it themselves, and for
-/// looking at many archives quickly.
+/// before: HDF5 sees no byte of a file whose hash is wrong. unchecked: for those that have just checked it themselves.
 enum class HashCheck { before, unchecked };
 
 /// Opens an existing archive for reading, after it has been seen to be one: a regular file with a user block, HDF5's

@@ -29,9 +29,15 @@ std::vector<ModelParameter> restore_model_parameters(const StoredChannels& store
   return parameters;
 }
 
+void check_count(const std::string& what, const std::vector<std::string>& names, std::size_t named) {
+  if (names.empty() || names.size() == named) return;
+  throw DataError(what + " holds " + std::to_string(names.size()) + " names for " + std::to_string(named));
+}
+
 void check_lags(const LinearStructure& s, Index dimension) {
-  if (dimension < 1 || s.inputs < 0 || s.state_lags < 1 || s.input_lags < 1 || s.input_delay < 0 ||
-      dimension % s.state_lags != 0)
+  constexpr Index most_states = 1'000'000;  // so that the sizes made of them are numbers
+  if (dimension < 1 || dimension > most_states || s.inputs < 0 || s.state_lags < 1 || s.input_lags < 1 ||
+      s.input_delay < 0 || dimension % s.state_lags != 0)
     throw DataError(std::to_string(dimension) + " states, " + std::to_string(s.inputs) + " inputs and lags of " +
                     std::to_string(s.state_lags) + ", " + std::to_string(s.input_lags) + ", " +
                     std::to_string(s.input_delay) + " make no model");

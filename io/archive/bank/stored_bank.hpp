@@ -40,6 +40,9 @@ struct StoredChannels {
 StoredChannels store_model_parameters(const std::vector<ModelParameter>& parameters);
 std::vector<ModelParameter> restore_model_parameters(const StoredChannels& stored);
 
+/// Throws DataError unless there are as many names as they name, or none at all.
+void check_count(const std::string& what, const std::vector<std::string>& names, std::size_t named);
+
 /// The structure with the states that its dimension n says. Throws DataError when p parameters do not fit.
 LinearStructure restore_structure(LinearStructure stored, Eigen::Index dimension, Eigen::Index parameters);
 

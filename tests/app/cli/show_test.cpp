@@ -46,7 +46,7 @@ TEST(NumberText, IsFixedWhereThatFits) {
   EXPECT_EQ(app::fixed_or_short(1e5, 3), "1e+05");
   EXPECT_EQ(app::fixed_or_short(-1.23456e15, 5), "-1.235e+15");
   EXPECT_EQ(app::fixed_or_short(std::numeric_limits<double>::quiet_NaN(), 2), "nan");
-  EXPECT_EQ(app::fixed_or_short_list(std::vector<double>{0.5, 2e15}, 2), "0.50 2e+15");
+  EXPECT_EQ(app::size_list(std::vector<double>{0.5, 2e15}, 2), "0.50 2e+15");
 }
 
 TEST(Wrapped, ContinuesUnderTheLabel) {

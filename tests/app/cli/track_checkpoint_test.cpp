@@ -97,7 +97,7 @@ TEST_F(TrackCheckpoint, GoesOnFromACheckpointAsIfItHadNeverStopped) {
       modebank({"track", archive(), "--track.resume", checkpoint(), "--track.filter", "baseline"});
   EXPECT_EQ(other.status, 1);
   EXPECT_THAT(other.err, HasSubstr("is a checkpoint of another bank or of other filter settings"));
-  write("half.json", "{\"format\": \"modebank checkpoint 1\"");
+  write("half.json", "{\"format\": \"modebank checkpoint 2\"");
   EXPECT_EQ(modebank({"track", archive(), "--track.resume", file("half.json").string()}).status, 1);
   EXPECT_EQ(modebank({"track", archive(), "--track.resume", file("none.json").string()}).status, 2);
   EXPECT_EQ(modebank({"track", archive(), "--track.checkpoint", "/nowhere/state.json"}).status, 2);

@@ -68,10 +68,13 @@ TEST_F(Export, ModesHaveTheirNames) {
   judge(Verdict::calibrated);
   Archive stored = read_archive(archive());
   stored.mode_names.assign(static_cast<std::size_t>(stored.bank->mode_count()), "");
-  stored.mode_names[0] = "ice\n*/ \"grit\"";
+  stored.mode_names[0] = "ice\n*/";
+  write_archive(archive(), stored);
+  EXPECT_EQ(exported("json").status, 1) << "names have one line";
+  stored.mode_names[0] = "ice */ \"grit\"";
   write_archive(archive(), stored);
   const json modes = json::parse(exported("json").out).at("modes");
-  EXPECT_EQ(modes.at(0).at("name"), "ice */ \"grit\"") << "on one line";
+  EXPECT_EQ(modes.at(0).at("name"), "ice */ \"grit\"");
   for (std::size_t k = 1; k < modes.size(); ++k) EXPECT_EQ(modes.at(k).at("name"), "mode " + std::to_string(k));
 }
 

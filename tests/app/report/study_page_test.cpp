@@ -22,7 +22,7 @@ StudyTable example_table() {
   table.score_names = {"modes", "bank_train_log_score", "bank_test_log_score", "bank_test_nis_above"};
   for (int i = 0; i < 6; ++i) {
     TrialRow row;
-    row.key = "key" + std::to_string(i);
+    row.key = std::string(63, 'a') + std::to_string(i);
     row.varied = {std::to_string(i / 2 + 1), i % 2 ? "full" : "diagonal"};
     row.seed = 1;
     row.status = i == 4 ? TrialStatus::failed : TrialStatus::done;

@@ -146,7 +146,7 @@ TEST_F(ArchiveDamage, HostileContentIsAnErrorAndNeverMore) {
   refuses("/windows/parameters", {9}, test::Kind::real, "must have the dimensions");
   refuses("/windows/parameters", {9, 8}, test::Kind::integer, "another kind");
   refuses("/windows/run", {9}, test::Kind::real, "fixed-length strings");
-  refuses("/bank/transition", {3, 3}, test::Kind::real, "transition matrix");
+  refuses("/bank/transition", {3, 3}, test::Kind::real, "probabilities that sum to 0");
   refuses("/bank/B", {3, 2, 2}, test::Kind::real, "inputs");
   refuses("/baseline/parameters", {1, 7}, test::Kind::real, "do not fit");
   refuses("/mixture/candidates", {2}, test::Kind::real, "not a table");

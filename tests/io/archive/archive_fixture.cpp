@@ -68,10 +68,11 @@ WindowFits make_windows_fits(const LinearStructure& structure) {
   fits.noise_variance = pattern(n, count, 3.0);
   fits.condition = pattern(count, 1, 4.0);
   fits.condition(2) = std::numeric_limits<double>::infinity();
-  fits.rank = Eigen::VectorXi::LinSpaced(count, 1, 9);
+  fits.rank.resize(count);
+  for (Index i = 0; i < count; ++i) fits.rank(i) = static_cast<int>((i + 1) % (p + 1));
   fits.information = pattern(p, count, 5.0);
   fits.information.col(1).setConstant(not_a_number);
-  fits.inlier_fraction = pattern(count, 1, 6.0);
+  fits.inlier_fraction = share_pattern(count, 1, 6.0);
   fits.status = Eigen::VectorXi::LinSpaced(count, 0, 3);
   fits.r_squared = pattern(n, count, 12.0);
   fits.r_squared(0, 1) = not_a_number;
@@ -83,20 +84,27 @@ WindowFits make_windows_fits(const LinearStructure& structure) {
   return fits;
 }
 
+/// base + 101 i + 1/3 on the diagonal, 1/3 beside it.
+Eigen::MatrixXd covariance_pattern(Index side, double base) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Constant(side, side, 1.0 / 3.0);
+  for (Index i = 0; i < side; ++i) result(i, i) = base + 101.0 * static_cast<double>(i) + 1.0 / 3.0;
+  return result;
+}
+
 MixtureResult make_mixture(const WindowFits& fits) {
   const Index features = fits.parameter_count() + 1, count = fits.count();
   MixtureResult result;
   result.mixture.weights = Eigen::Vector3d(0.5, 0.3, 0.2);
   result.mixture.means = pattern(features, modes, 20.0);
   for (Index k = 0; k < modes; ++k)
-    result.mixture.covariances.push_back(pattern(features, features, 30.0 + static_cast<double>(k)));
+    result.mixture.covariances.push_back(covariance_pattern(features, 30.0 + static_cast<double>(k)));
   result.mixture.type = CovarianceType::diagonal;
   result.feature_names = fits.structure.parameter_names();
   result.feature_names.push_back("log_noise_variance_x0");
   result.labels = Eigen::VectorXi::Constant(count, -1);
   result.labels.head(3) << 0, 2, 1;
   Eigen::MatrixXd responsibilities = Eigen::MatrixXd::Constant(modes, count, not_a_number);
-  responsibilities.leftCols(3) = pattern(modes, 3, 40.0);
+  responsibilities.leftCols(3) = share_pattern(modes, 3, 40.0);
   result.responsibilities = responsibilities;
   result.candidates.push_back({2, CovarianceType::full, -10.25, 13, 7.5, 1.0 / 3.0, 2.0 / 3.0, 4.0 / 3.0, not_a_number,
                                17, false, 1, false, 0.5, 5, true, CandidateStatus::fitted, not_a_number, ""});
@@ -163,13 +171,15 @@ Eigen::MatrixXd pattern(Index rows, Index cols, double base) {
   return result;
 }
 
+Eigen::MatrixXd share_pattern(Index rows, Index cols, double base) { return pattern(rows, cols, base) / 1e4; }
+
 namespace {
 
 DriftingModel make_drifting(const LinearStructure& structure) {
   DriftingModel model;
   model.structure = structure;
-  model.state_names = {"wz"};
-  model.input_names = {"u"};
+  model.state_names.assign(static_cast<std::size_t>(structure.states), "wz");
+  model.input_names.assign(static_cast<std::size_t>(structure.inputs), "u");
   model.dt_s = 0.125;
   model.theta0 = pattern(structure.parameters(), 1, 95.0);
   model.scale = pattern(structure.regressors(), 1, 96.0);
@@ -189,15 +199,15 @@ namespace {
 
 /// Of every second sample; nothing is known of the others. Stamps count from an hour that a double does not hold.
 void add_labels(Archive& archive) {
-  archive.labels = RunLabels{{"ice", "a\nb"}, {}};
+  archive.labels = RunLabels{{"ice", "a, b"}, {}};
   for (Trajectory& run : archive.recording->runs) {
     Eigen::VectorXi labels = Eigen::VectorXi::Constant(run.samples(), -1);
     for (Index k = 0; k < run.samples(); k += 2) labels(k) = static_cast<int>(k / 2 % 2);
     archive.labels->of_runs.push_back(labels);
     run.time_origin_ns = 1'714'557'600'000'000'001;
   }
-  archive.confusion = {{"bank", Role::test, "a\nb", 0, 7, 0.875},
-                       {"bank", Role::test, "a\nb", 1, 1, 0.125},
+  archive.confusion = {{"bank", Role::test, "a, b", 0, 7, 0.875},
+                       {"bank", Role::test, "a, b", 1, 1, 0.125},
                        {"bank", Role::test, "ice", 0, 0, 0.0},
                        {"bank", Role::test, "ice", 1, 3, 1.0}};
 }

@@ -17,6 +17,9 @@ void add_evaluation(Archive& archive);
 /// rows x cols of base + 100 col + row + 1/3.
 Eigen::MatrixXd pattern(Index rows, Index cols, double base);
 
+/// The same over 10^4: what lies in 0 .. 1.
+Eigen::MatrixXd share_pattern(Index rows, Index cols, double base);
+
 /// All fields of both archives are the same bits (NaN included).
 void expect_same(const Archive& actual, const Archive& expected);
 void expect_same(const Bank& actual, const Bank& expected);

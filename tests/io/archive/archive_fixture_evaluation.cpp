@@ -15,15 +15,16 @@ RunEvaluation make_evaluation(Index n, Index samples, Index count) {
   evaluation.covariance = pattern(n * n, samples, 74.0);
   evaluation.nis = pattern(samples, 1, 75.0);
   evaluation.nis(0) = not_a_number;
-  evaluation.pit = pattern(n, samples, 76.0);
+  evaluation.pit = share_pattern(n, samples, 76.0);
   evaluation.log_density = pattern(samples, 1, 77.0);
-  evaluation.mode_probability_predicted = pattern(count, samples, 78.0);
-  evaluation.mode_probability = pattern(count, samples, 79.0);
+  evaluation.mode_probability_predicted = share_pattern(count, samples, 78.0);
+  evaluation.mode_probability = share_pattern(count, samples, 79.0);
   evaluation.spread_share = pattern(samples, 1, 81.0);
   if (count == 1) return evaluation;  // as without filter.smooth
   evaluation.smoothed_state = pattern(n, samples, 82.0);
   evaluation.smoothed_covariance = pattern(n * n, samples, 83.0);
-  evaluation.viterbi_mode = Eigen::VectorXi::LinSpaced(samples, -1, static_cast<int>(samples) - 2);
+  evaluation.viterbi_mode.resize(samples);
+  for (Index s = 0; s < samples; ++s) evaluation.viterbi_mode(s) = static_cast<int>(s % (count + 1)) - 1;
   return evaluation;
 }
 
@@ -44,13 +45,13 @@ SummaryRow make_row(const std::string& filter, Role role, const std::string& run
           0.51,   0.91, 0.96, 0.995, 0.1, not_a_number};
 }
 
-FreeRun make_free_run(Index n, Index samples) {
+FreeRun make_free_run(Index n, Index samples, Index count) {
   FreeRun run;
   run.mean = pattern(n, samples, 60.0);
   run.deviation = pattern(n, samples, 61.0);
   run.lower = pattern(n, samples, 62.0);
   run.upper = pattern(n, samples, 63.0);
-  run.mode = Eigen::VectorXi::Constant(samples, 2);
+  run.mode = Eigen::VectorXi::Constant(samples, static_cast<int>(count) - 1);
   return run;
 }
 
@@ -144,7 +145,7 @@ void add_evaluation(Archive& archive) {
     archive.summary.push_back(make_row(filter, Role::train, "run 2", n));
     archive.summary.push_back(make_row(filter, Role::test, "*", n));
     for (const Trajectory& run : archive.recording->runs)
-      archive.evaluations.back().free_runs.push_back(make_free_run(n, run.samples()));
+      archive.evaluations.back().free_runs.push_back(make_free_run(n, run.samples(), count));
     archive.free_runs.push_back(make_free_run_row(filter, n));
     archive.horizons.push_back({filter, Role::test, "*", 5, 118, 1.5, pattern(n, 1, 84.0)});
     archive.diagnostics.push_back(make_diagnostics(filter, n));

@@ -142,4 +142,74 @@ void replace_by_external(const std::filesystem::path& path, const std::string& m
   sign(path);
 }
 
+void craft(const std::filesystem::path& path, const std::function<void(hid_t file)>& change) {
+  const hid_t file = open_for_change(path);
+  change(file);
+  must(H5Fclose(file));
+  sign(path);
+}
+
+void patch_number(const std::filesystem::path& path, const std::string& dataset, std::size_t index, double value) {
+  craft(path, [&](hid_t file) {
+    const hid_t data = must(H5Dopen2(file, dataset.c_str(), H5P_DEFAULT)), space = must(H5Dget_space(data));
+    std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+    must(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    values.at(index) = value;
+    must(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    H5Sclose(space);
+    H5Dclose(data);
+  });
+}
+
+void patch_cell(const std::filesystem::path& path, const std::string& table, const std::string& column, std::size_t row,
+                double value) {
+  craft(path, [&](hid_t file) {
+    const hid_t data = must(H5Dopen2(file, table.c_str(), H5P_DEFAULT)), space = must(H5Dget_space(data));
+    const hid_t cell = must(H5Tcreate(H5T_COMPOUND, sizeof(double)));
+    must(H5Tinsert(cell, column.c_str(), 0, H5T_NATIVE_DOUBLE));
+    std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+    must(H5Dread(data, cell, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    values.at(row) = value;
+    must(H5Dwrite(data, cell, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    H5Tclose(cell);
+    H5Sclose(space);
+    H5Dclose(data);
+  });
+}
+
+void patch_number_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name,
+                            double value) {
+  craft(path, [&](hid_t file) {
+    // Taken away and made again: HDF5 1.10 does not find attributes in dense storage to write them.
+    const hid_t holder = must(H5Oopen(file, object.c_str(), H5P_DEFAULT));
+    const hid_t old = must(H5Aopen(holder, name.c_str(), H5P_DEFAULT)), type = must(H5Aget_type(old));
+    H5Aclose(old);
+    must(H5Adelete(holder, name.c_str()));
+    const hid_t space = must(H5Screate(H5S_SCALAR));
+    const hid_t attribute = must(H5Acreate2(holder, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT));
+    must(H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value));
+    H5Aclose(attribute);
+    H5Sclose(space);
+    H5Tclose(type);
+    H5Oclose(holder);
+  });
+}
+
+void link_to_file(const std::filesystem::path& path, const std::string& member, const std::string& elsewhere) {
+  craft(path, [&](hid_t file) {
+    if (H5Lexists(file, member.c_str(), H5P_DEFAULT) > 0) must(H5Ldelete(file, member.c_str(), H5P_DEFAULT));
+    must(H5Lcreate_external(elsewhere.c_str(), "/", file, member.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+  });
+}
+
+void link_to_place(const std::filesystem::path& path, const std::string& member, const std::string& place, bool hard) {
+  craft(path, [&](hid_t file) {
+    if (H5Lexists(file, member.c_str(), H5P_DEFAULT) > 0) must(H5Ldelete(file, member.c_str(), H5P_DEFAULT));
+    if (hard)
+      must(H5Lcreate_hard(file, place.c_str(), file, member.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+    else
+      must(H5Lcreate_soft(place.c_str(), file, member.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+  });
+}
+
 }  // namespace modebank::test

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <hdf5.h>
+
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,6 +26,18 @@ void keep_columns(const std::filesystem::path& path, const std::string& table, u
 /// The member becomes a dataset without stored content: as large as declared, all zeros.
 void replace_by_zeros(const std::filesystem::path& path, const std::string& member,
                       const std::vector<unsigned long long>& shape, Kind kind);
+/// Any change to the open file.
+void craft(const std::filesystem::path& path, const std::function<void(hid_t file)>& change);
+/// One number of a dataset (`index` in row-major order), of a table's column (`index`: the row) or of an attribute.
+void patch_number(const std::filesystem::path& path, const std::string& dataset, std::size_t index, double value);
+void patch_cell(const std::filesystem::path& path, const std::string& table, const std::string& column, std::size_t row,
+                double value);
+void patch_number_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name,
+                            double value);
+/// The member becomes a link to the root of another file, or to another place in this one.
+void link_to_file(const std::filesystem::path& path, const std::string& member, const std::string& file);
+void link_to_place(const std::filesystem::path& path, const std::string& member, const std::string& place, bool hard);
+
 /// The member becomes nine doubles that lie in another file.
 void replace_by_external(const std::filesystem::path& path, const std::string& member, const std::string& elsewhere);
 

@@ -44,6 +44,7 @@ TEST(ArchiveRoundTrip, ThreeStatesWithoutInputs) {
 TEST(ArchiveRoundTrip, KeepsANoiseComponent) {
   Archive archive = full_archive(2, 1);
   GaussianMixture& mixture = archive.mixture->mixture;
+  mixture.weights *= 0.875;
   mixture.noise.weight = 0.125;
   mixture.noise.lower = -Eigen::VectorXd::LinSpaced(mixture.features(), 1.0, 2.0);
   mixture.noise.upper = Eigen::VectorXd::LinSpaced(mixture.features(), 0.5, 3.0);

@@ -82,7 +82,7 @@ TEST_F(Inspect, AttributesKeepTheirKinds) {
 
 TEST_F(Inspect, NamesLabelsAndOrigins) {
   EXPECT_EQ(at("/bank")["attributes"]["mode_names"], json({"ice", "", "Gelände, \"naß\""}));
-  EXPECT_EQ(at("/data")["attributes"]["label_names"], json({"ice", "a\nb"}));
+  EXPECT_EQ(at("/data")["attributes"]["label_names"], json({"ice", "a, b"}));
   const Archive archive = test::full_archive(2, 1);
   const std::string run = "/data/" + archive.recording->runs[0].run;
   EXPECT_EQ(at(run)["attributes"]["time_origin_ns"], 1'714'557'600'000'000'001);
@@ -93,7 +93,7 @@ TEST_F(Inspect, NamesLabelsAndOrigins) {
   EXPECT_EQ(labels[2], 1);
   const json confusion = at("/evaluation/confusion");
   EXPECT_EQ(confusion["shape"], json({4}));
-  EXPECT_EQ(confusion["value"][0]["label"], "a\nb");
+  EXPECT_EQ(confusion["value"][0]["label"], "a, b");
   EXPECT_EQ(confusion["value"][0]["samples"], 7);
   EXPECT_EQ(confusion["value"][3]["share"], 1.0);
 }

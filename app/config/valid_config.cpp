@@ -1,0 +1,83 @@
+#include "app/config/valid_config.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include "app/config/option_table.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+using Options = std::vector<const Option*>;
+
+bool fits(const Config& config) {
+  try {
+    validate(config);
+    return true;
+  } catch (const ConfigurationError&) {
+    return false;
+  }
+}
+
+/// Keys that the file sets to something else than their defaults, and no override takes back.
+Options set_by_file(const Config& config, const Origins& origins) {
+  const Config defaults;
+  Options options;
+  for (const Option& option : option_table()) {
+    const auto origin = origins.find(option.key);
+    if (origin == origins.end() || origin->second.starts_with("--")) continue;
+    if (option.section() != "data" && option.get(config) != option.get(defaults)) options.push_back(&option);
+  }
+  return options;
+}
+
+/// The fewest of the options, three at most, whose defaults fit the rest of the configuration; empty: there are none.
+Options fewest_to_reset(const Config& config, const Options& options, std::size_t first, std::size_t most) {
+  const Config defaults;
+  for (std::size_t i = first; most > 0 && i < options.size(); ++i) {
+    Config changed = config;
+    options[i]->set(changed, options[i]->get(defaults));
+    if (fits(changed)) return {options[i]};
+  }
+  Options fewest;
+  for (std::size_t i = first; most > 1 && i < options.size(); ++i) {
+    Config changed = config;
+    options[i]->set(changed, options[i]->get(defaults));
+    Options rest = fewest_to_reset(changed, options, i + 1, fewest.empty() ? most - 1 : fewest.size() - 2);
+    if (rest.empty()) continue;
+    fewest = std::move(rest);
+    fewest.insert(fewest.begin(), options[i]);
+  }
+  return fewest;
+}
+
+/// "; set --window.state_lags 1, too, since robot.ini:12 says 3"; empty where nothing is overridden or nothing helps.
+std::string what_to_set_too(const Config& config, const KeyValues& overrides, const Origins& origins) {
+  constexpr std::size_t most = 3;
+  if (overrides.empty()) return "";
+  std::vector<std::string> settings, reasons;
+  for (const Option* option : fewest_to_reset(config, set_by_file(config, origins), 0, most)) {
+    const std::string standard = option->get(Config{});
+    settings.push_back(fmt::format("--{} {}", option->key, standard.empty() ? "''" : standard));
+    reasons.push_back(fmt::format("{} says {}", origins.at(option->key), option->get(config)));
+  }
+  if (settings.empty()) return "";
+  return fmt::format("; set {}, too, since {}", boost::join(settings, " "), boost::join(reasons, ", "));
+}
+
+}  // namespace
+
+Config load_valid_config(const std::filesystem::path& path, const KeyValues& overrides) {
+  Origins origins;
+  Config config = load_config(path, overrides, &origins);
+  try {
+    validate(config);
+  } catch (const ConfigurationError& error) {
+    throw ConfigurationError(error.what() + what_to_set_too(config, overrides, origins));
+  }
+  return config;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,20 @@
+#include "ident/base/covariance.hpp"
+
+#include "ident/base/linalg.hpp"
+
+namespace modebank {
+
+bool is_covariance(const Eigen::MatrixXd& M) {
+  constexpr double rounding = 1e-9;
+  if (M.rows() != M.cols() || !M.allFinite() || (M.diagonal().array() < 0.0).any()) return false;
+  // In units of the standard deviations; a row without variance holds nothing else.
+  const Eigen::VectorXd sd = M.diagonal().cwiseSqrt();
+  const Eigen::VectorXd scale = (sd.array() > 0.0).select(sd.cwiseInverse(), 0.0);
+  for (Eigen::Index i = 0; i < M.rows(); ++i)
+    if (sd(i) == 0.0 && !(M.row(i).isZero(0.0) && M.col(i).isZero(0.0))) return false;
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * M * scale.asDiagonal();
+  if (!correlation.allFinite() || !(correlation - correlation.transpose()).isZero(rounding)) return false;
+  return Cholesky(correlation + rounding * Eigen::MatrixXd::Identity(M.rows(), M.cols())).definite();
+}
+
+}  // namespace modebank

@@ -1,0 +1,130 @@
+#include "io/hdf5/rule.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <sstream>
+
+#include "ident/base/covariance.hpp"
+#include "ident/base/printable.hpp"
+
+namespace modebank {
+
+namespace {
+
+std::string number_text(double value) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(15);
+  text << value;
+  return text.str();
+}
+
+/// Where the i-th of all values stands: "(3, 0)"; nothing of a single one.
+std::string place(const hdf5::Shape& shape, std::size_t i) {
+  if (shape.empty()) return {};
+  std::string text;
+  for (std::size_t d = shape.size(); d-- > 0;) {
+    const auto extent = static_cast<std::size_t>(std::max<hsize_t>(shape[d], 1));
+    text = std::to_string(i % extent) + (text.empty() ? "" : ", ") + text;
+    i /= extent;
+  }
+  return " at (" + text + ")";
+}
+
+/// The bounds with the letter's extent.
+Rule bound(Rule rule, const Sizes& sizes) {
+  if (rule.below.empty()) return rule;
+  if (const auto extent = sizes.find(rule.below)) rule.most = static_cast<double>(*extent) - 1.0 + rule.beyond;
+  return rule;
+}
+
+bool holds(const Rule& rule, double value) {
+  if (std::isnan(value)) return rule.may_be_missing;
+  if (rule.finite && std::isinf(value)) return false;
+  return (rule.above_least ? value > rule.least : value >= rule.least) && value <= rule.most;
+}
+
+std::string demand(const Rule& rule) {
+  const std::string least = number_text(rule.least), most = number_text(rule.most == rule::one ? 1.0 : rule.most);
+  std::string text = "must be finite";
+  if (std::isfinite(rule.least) && std::isfinite(rule.most))
+    text = "must lie in " + least + " .. " + most;
+  else if (std::isfinite(rule.least))
+    text = (rule.above_least ? "must be above " : "must be at least ") + least;
+  return text + (rule.may_be_missing ? " or NaN" : "");
+}
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// How many values one matrix or row takes whose extents are the last `dimensions`.
+std::size_t stretch(const hdf5::Shape& shape, std::size_t dimensions) {
+  std::size_t count = 1;
+  for (std::size_t d = shape.size() - std::min(dimensions, shape.size()); d < shape.size(); ++d)
+    count *= static_cast<std::size_t>(shape[d]);
+  return count;
+}
+
+std::string broken_form(const Rule& rule, const hdf5::Shape& shape, const std::vector<double>& values) {
+  constexpr double sum_tolerance = 1e-6;
+  switch (rule.form) {
+    case Rule::Form::none:
+      return {};
+    case Rule::Form::increasing:
+      for (std::size_t i = 1; i < values.size(); ++i)
+        if (!(values[i] > values[i - 1]))
+          return "does not increase" + place(shape, i) + ": " + number_text(values[i]) + " after " +
+                 number_text(values[i - 1]);
+      return {};
+    case Rule::Form::probabilities: {
+      const std::size_t row = stretch(shape, 1);
+      for (std::size_t begin = 0; row > 0 && begin < values.size(); begin += row) {
+        double sum = 0.0;
+        for (std::size_t i = begin; i < begin + row; ++i) sum += values[i];
+        if (std::abs(sum - 1.0) > sum_tolerance)
+          return "holds probabilities that sum to " + number_text(sum) + place(shape, begin);
+      }
+      return {};
+    }
+    case Rule::Form::covariances: {
+      const std::size_t matrix = stretch(shape, 2);
+      const auto side = static_cast<Eigen::Index>(shape.empty() ? 1 : shape.back());
+      for (std::size_t begin = 0; matrix > 0 && begin + matrix <= values.size(); begin += matrix)
+        if (static_cast<std::size_t>(side * side) != matrix ||
+            !is_covariance(Eigen::Map<const RowMajor>(values.data() + begin, side, side)))
+          return "holds a matrix" + place(shape, begin) + " that is no covariance: not symmetric or not definite";
+      return {};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+template <class Number>
+std::string broken(const Rule& given, const Sizes& sizes, const hdf5::Shape& shape, const Number* values) {
+  const Rule rule = bound(given, sizes);
+  const auto count = static_cast<std::size_t>(hdf5::element_count(shape));
+  for (std::size_t i = 0; i < count; ++i)
+    if (!holds(rule, static_cast<double>(values[i])))
+      return "holds " + number_text(static_cast<double>(values[i])) + place(shape, i) + ", " + demand(rule);
+  if (rule.form == Rule::Form::none) return {};
+  return broken_form(rule, shape, std::vector<double>(values, values + count));
+}
+
+template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const double*);
+template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const std::int8_t*);
+template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const std::int32_t*);
+template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const std::int64_t*);
+template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const std::uint64_t*);
+
+std::string broken_text(const std::vector<std::string>& texts, bool whole) {
+  for (const std::string& text : texts)
+    if (const std::string shown = whole ? printable(text) : printable_name(text); shown != text)
+      return "holds the text \"" + shown + "\", which has control characters";
+  return {};
+}
+
+}  // namespace modebank

@@ -1,0 +1,204 @@
+// What a user, a colleague's study folder or a file's name can do to the program, each as it was once found.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "app/config/config_file.hpp"
+#include "app/report/figures/figure.hpp"
+#include "app/study/answers/csv_field.hpp"
+#include "app/study/space/study_plan.hpp"
+#include "app/text/number_text.hpp"
+#include "app/text/terminal.hpp"
+#include "ident/base/distributions.hpp"
+#include "io/archive/bank/load_bank.hpp"
+#include "io/archive/study_file.hpp"
+#include "io/files/read_file.hpp"
+#include "tests/app/cli_fixture.hpp"
+#include "tests/io/archive/archive_patch.hpp"
+
+namespace modebank::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Robustness : public CliTest {
+ protected:
+  /// The folder of a study whose plan has one trial of that key.
+  fs::path study_of(const std::string& key) const {
+    const fs::path folder = file("study");
+    fs::create_directories(folder / "trials");
+    app::StudyPlan plan;
+    plan.config = app::resolved_text(app::Config());
+    plan.table.varied_keys = {"mixture.components"};
+    app::TrialRow row;
+    row.key = key;
+    row.varied = {"1"};
+    plan.table.rows = {row};
+    app::write_plan(folder, plan);
+    return folder;
+  }
+  ProgramResult identify(const std::string& config, std::vector<std::string> options = {}) const {
+    options.insert(options.begin(), {"identify", config, "--archive.output", archive()});
+    return modebank(options);
+  }
+};
+
+TEST_F(Robustness, D1RepairRemovesNothingThatAKeyNamesElsewhere) {
+  write("victim.h5", "precious");
+  const ProgramResult result = modebank({"verify", study_of("../../victim").string(), "--repair"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.out, HasSubstr("the key \"../../victim\" is not 64 hexadecimal digits"));
+  EXPECT_EQ(read_file(file("victim.h5")), "precious");
+}
+
+TEST_F(Robustness, D1RepairRemovesNothingThroughALinkedFolder) {
+  fs::create_directories(file("elsewhere"));
+  write("elsewhere/data.h5", "precious");
+  const fs::path study = study_of(std::string(64, 'a'));
+  fs::remove_all(study / "trials");
+  fs::create_directory_symlink(file("elsewhere"), study / "trials");
+  EXPECT_EQ(modebank({"verify", study.string(), "--repair"}).status, 1);
+  EXPECT_EQ(read_file(file("elsewhere/data.h5")), "precious");
+}
+
+TEST_F(Robustness, D12ATrialThatIsADeviceIsNotRead) {
+  const std::string key(64, 'a');
+  const fs::path study = study_of(key);
+  fs::create_symlink("/dev/zero", study / "trials" / (key + ".h5"));
+  const ProgramResult result = modebank({"verify", study.string()});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.out, HasSubstr("is not a regular file"));
+}
+
+TEST_F(Robustness, D13CausesInPlaceOfInternalMessages) {
+  const fs::path study = study_of(std::string(64, 'a'));
+  write_study_file(app::plan_file(study), {{}, "", "plan", {{"key", std::vector<std::string>{"a"}}}, {}, {}});
+  EXPECT_THAT(modebank({"verify", study.string()}).out, HasSubstr("not a plan"));
+  const std::vector<std::string> text{"x"};
+  write_study_file(
+      app::plan_file(study),
+      {{}, "", "plan", {{"key", text}, {"repeat", text}, {"seed", text}, {"status", text}, {"message", text}}, {}, {}});
+  EXPECT_THAT(modebank({"verify", study.string()}).out, HasSubstr("not a plan: its column repeat holds another kind"));
+  fs::remove(app::plan_file(study));
+  fs::create_symlink("plan.h5", app::plan_file(study));
+  const ProgramResult loop = modebank({"verify", study.string()});
+  EXPECT_EQ(loop.status, 1);
+  EXPECT_THAT(loop.out + loop.err, AllOf(HasSubstr("plan.h5: Too many levels"), Not(HasSubstr("filesystem error"))));
+}
+
+TEST_F(Robustness, D13TailsBeyondEverySeriesAreZeroAndUndefinedOnesNaN) {
+  EXPECT_EQ(chi_square_upper_tail(1e300, 2.0), 0.0);
+  EXPECT_EQ(chi_square_upper_tail(4.6e18, 1.0), 0.0);
+  EXPECT_NEAR(chi_square_upper_tail(3.841458820694124, 1.0), 0.05, 1e-12);
+  EXPECT_TRUE(std::isnan(chi_square_upper_tail(-1.0, 1.0)));
+  EXPECT_TRUE(std::isnan(chi_square_quantile(0.5, std::nan(""))));
+}
+
+TEST_F(Robustness, D14TheStoredConfigurationRunsAgainWhateverThePath) {
+  for (const std::string name :
+       {"ha#sh", "new\nstate = oops", "ends in blank ", "quo\"ted", "back\\slash", "tab\tbed"}) {
+    const fs::path folder = file("folders") / name;
+    fs::create_directories(folder);
+    for (const char* part : {"test.ini", "run_00.csv", "run_01.csv"}) fs::copy_file(file(part), folder / part);
+    const ProgramResult first = identify((folder / "test.ini").string(), {"--force"});
+    ASSERT_EQ(first.status, 0) << name << first.err;
+    write("again.ini", load_configuration(archive()));
+    const ProgramResult again = identify(file("again.ini").string());
+    EXPECT_EQ(again.status, 0) << name << again.err;
+  }
+}
+
+TEST_F(Robustness, D15ControlCharactersDoNotReachTheTerminal) {
+  const std::string evil = "w\x1b[31mRED\x1b[2J\x1b]0;title\x07";
+  for (const char* run : {"run_00.csv", "run_01.csv"}) {
+    std::string text = read_file(file(run));
+    write(run, text.replace(text.find("wz"), 2, evil));
+  }
+  for (const std::string command : {"run", "check", "identify"}) {
+    const ProgramResult chosen = modebank({command, config(), "--data.state", evil});
+    EXPECT_EQ(chosen.status, 2) << command;
+    EXPECT_THAT(chosen.out + chosen.err, AllOf(HasSubstr("\\x1b[31mRED"), Not(HasSubstr("\x1b")))) << command;
+    const ProgramResult listed = modebank({command, config()});  // the columns that there are
+    EXPECT_EQ(listed.status, 2) << command;
+    EXPECT_THAT(listed.out + listed.err, AllOf(HasSubstr("RED"), Not(HasSubstr("\x1b")))) << command;
+  }
+}
+
+TEST_F(Robustness, D16TheWidthIsThatOfATerminal) {
+  const char* const before = std::getenv("COLUMNS");
+  const std::string kept = before ? before : "";
+  setenv("COLUMNS", "2000000000", 1);
+  EXPECT_LE(app::standard_output().width, 10000);
+  setenv("COLUMNS", "99999999999999999999", 1);
+  EXPECT_LE(app::standard_output().width, 10000);
+  setenv("COLUMNS", "80", 1);
+  EXPECT_EQ(app::standard_output().width, 80);
+  if (before)
+    setenv("COLUMNS", kept.c_str(), 1);
+  else
+    unsetenv("COLUMNS");
+}
+
+TEST_F(Robustness, D16SmallErrorsAreNotPrintedAsZero) {
+  EXPECT_EQ(app::size_text(3.48e-10, 5), "3.48e-10");
+  EXPECT_EQ(app::size_text(0.0348, 5), "0.03480");
+  EXPECT_EQ(app::size_text(0.0, 5), "0.00000");
+  EXPECT_EQ(app::size_text(2e15, 5), "2e+15");
+}
+
+TEST_F(Robustness, D16TablesHoldNoFormulas) {
+  for (const std::string formula : {"=cmd|' /C calc'!A0", "@SUM(1)", "+x", "-x"})
+    EXPECT_EQ(app::csv_field(formula).substr(0, 1), "'") << formula;
+  for (const std::string plain : {"-1", "+1.5e-3", "wz", "", "-inf"}) EXPECT_EQ(app::csv_field(plain), plain);
+  EXPECT_EQ(app::csv_field("=1,2"), "\"'=1,2\"");
+}
+
+TEST_F(Robustness, P8AnArchiveOfOtherDataIsNotReplaced) {
+  const auto go = [&](std::vector<std::string> options) { return identify(config(), std::move(options)); };
+  ASSERT_EQ(go({}).status, 0);
+  ASSERT_EQ(go({"--window.length", "12"}).status, 0) << "other settings, the same data";
+  const std::string before = read_file(archive()), hash = load_data_hash(archive());
+  write("run_01.csv", csv_run(80, 9));
+  const ProgramResult refused = go({});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr(archive()), HasSubstr(hash), HasSubstr("--force")));
+  EXPECT_THAT(refused.err, Not(HasSubstr("fitted")));
+  EXPECT_EQ(read_file(archive()), before);
+  EXPECT_EQ(go({"--force"}).status, 0);
+  EXPECT_NE(load_data_hash(archive()), hash);
+  write("out.h5", "a text of mine");
+  EXPECT_THAT(go({}).err, HasSubstr("is there and not replaced"));
+  EXPECT_EQ(read_file(archive()), "a text of mine");
+}
+
+TEST_F(Robustness, P8ALinkedArchiveIsWrittenThrough) {
+  fs::create_directory(file("far"));
+  fs::create_symlink("far/target.h5", archive());
+  ASSERT_EQ(identify(config()).status, 0);
+  EXPECT_TRUE(fs::is_symlink(archive()));
+  EXPECT_EQ(modebank({"verify", file("far/target.h5").string()}).status, 0);
+}
+
+TEST_F(Robustness, P8WhatACommandDoesNotReadIsRefused) {
+  const auto refuses = [&](const std::vector<std::string>& words, const std::string& option, const std::string& known) {
+    const ProgramResult result = modebank(words);
+    EXPECT_EQ(result.status, 2) << option;
+    EXPECT_THAT(result.err, AllOf(HasSubstr(words.front() + " does not read " + option + ";"), HasSubstr(known)));
+  };
+  refuses({"identify", config(), "--bank.stay", "0.9"}, "--bank.stay", "--data.*, --window.*, --archive.*, --job.*");
+  refuses({"simulate", config(), "--window.length", "9"}, "--window.length", "--simulate.*");
+  refuses({"show", "none.h5", "--filter.variant", "imm"}, "--filter.variant", "--json, --form");
+  refuses({"verify", "none.h5", "--track.level", "0.9"}, "--track.level", "--repair");
+  refuses({"run", config(), "-o", "x.h5"}, "--output", "--force");
+  refuses({"run", config(), "--repair"}, "--repair", "--force");
+  refuses({"track", "none.h5", "--json"}, "--json", "--track.*");
+  refuses({"report", "none.h5", "--to", "c"}, "--to", "--output");
+}
+
+}  // namespace
+}  // namespace modebank::test
