@@ -62,6 +62,7 @@ export function interaction(cells, goal, spread = 0) {
   const bests = cells.map((line) => bestCell([line], goal)).filter(Boolean).map(({value}) => value);
   const losses = cells.flat().filter((value) => value !== null).map(loss).sort((p, q) => p - q);
   const range = losses[Math.floor(losses.length / 2)] - losses[0];
+  /** @type {null|{level: number, best: number, kept: number, cost: number}} */
   let worst = null;
   cells.forEach((line, level) => {
     const own = bestCell([line], goal), kept = line[best.a];

@@ -48,8 +48,8 @@ export function drawBetter(study, showRun) {
   }
   const how =
       'Differences of the log score, each sample against the same sample; the error is clustered by run (of the ' +
-      'first repeat), so that long runs do not count as many. Settings were chosen as the best by these very scores: the ' +
-      'best of many is a little too good.';
+      'first repeat), so that long runs do not count as many. Settings were chosen as the best by these very scores: ' +
+      'the best of many is a little too good.';
   section(
       'better', title, h('p', {class: 'verdict'}, sentence(better)),
       table(columnsOf(study, showRun), better.rivals, {caption: 'The next best settings against the best'}),

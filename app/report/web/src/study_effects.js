@@ -109,8 +109,8 @@ export function drawEffects(context) {
   const element = figure(
       'Main effects: what each value of each varied key reaches',
       () => effectsDrawing(axes, axisOf(study, score), shown.rows, by, element.clientWidth || 900),
-      'Line: the best setting with that value over all other keys (or, if chosen, the mean of its runs); star: the best ' +
-          'value; dotted: the best setting of all; dots: the runs, those far below outside the frame.');
+      'Line: the best setting with that value over all other keys (or, if chosen, the mean of its runs); star: ' +
+          'the best value; dotted: the best setting of all; dots: the runs, those far below outside the frame.');
   const pick = scoreChoice(study, score, (name) => {
     score = name;
     element.redraw();

@@ -92,8 +92,8 @@ export function drawHeatMap(context) {
   const element = figure(
       'Heat map: what each pair of values of two keys reaches',
       () => heatDrawing(axis('across'), axis('down'), axis('score'), shown.rows, chosen.by),
-      'The best setting with the pair of values over all other keys (or, if chosen, the mean of its runs). Framed: the ' +
-          'best pair.');
+      'The best setting with the pair of values over all other keys (or, if chosen, the mean of its runs). Framed: ' +
+          'the best pair.');
   const say = () => notes.replaceChildren(...interactionNotes(study, shown.rows, axis('score')));
   const choose = (which, name) => {
     chosen[which] = name;

@@ -59,8 +59,8 @@ export function drawPareto(context) {
   const element = figure(
       'Pareto plot: score against number of modes, the front marked',
       () => paretoDrawing(study, axisOf(study, cost), axisOf(study, score), shown.rows),
-      'Front: runs that no other run beats in the score with as few or fewer. Runs far from it lie outside the frame. ' +
-          'Click a run to see it.');
+      'Front: runs that no other run beats in the score with as few or fewer. Runs far from it lie outside the ' +
+          'frame. Click a run to see it.');
   element.ready.then(() => element.plot.on('plotly_click', (event) => showRun(study.rows[event.points[0].customdata])));
   const pickCost = choice('Cost', costs.map(columnTitle), 0, (i) => {
     cost = costs[i];
