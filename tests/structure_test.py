@@ -42,7 +42,7 @@ MAY_INCLUDE = {
     "app/text": BELOW_APP + ["app/chain"],
     "app/pipeline": BELOW_APP + ["app/chain", "app/config", "app/text"],
     "app/export": BELOW_APP + ["app/chain", "app/text"],
-    "app/study": BELOW_APP + ["app/chain", "app/config"],
+    "app/study": BELOW_APP + ["app/chain", "app/config", "app/text"],
     "app/report": BELOW_APP + ["app/chain", "app/config", "app/text", "app/study"],
     "app/init": BELOW_APP,
     "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("init", "chain", "check", "config", "text", "pipeline", "export", "study", "report")],

@@ -88,7 +88,9 @@ CommandLine typed_command(const CommandLine& demo, const std::vector<std::string
   all.insert(all.end(), options.begin(), options.end());
   std::vector<const char*> argv;
   for (const std::string& word : all) argv.push_back(word.c_str());
-  return parse_command_line(static_cast<int>(argv.size()), argv.data());
+  CommandLine command = parse_command_line(static_cast<int>(argv.size()), argv.data());
+  command.json = demo.json;
+  return command;
 }
 
 }  // namespace

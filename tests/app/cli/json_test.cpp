@@ -74,7 +74,7 @@ TEST_F(Json, CommandsGiveTheMembersThatAreDocumented) {
       {"init", file("run_00.csv").string(), "-o", file("init.ini").string()},
       {"identify", config(), "--archive.output", windows},
       {"cluster", config(), "--archive.output", clusters},
-      {"run", config()},
+      {"run", config(), "--archive.output", archive()},
       {"evaluate", config(), "--archive.output", file("judged.h5").string()},
       {"show", archive(), "/bank/A"},
       {"show", archive(), "/bank"},
@@ -90,7 +90,12 @@ TEST_F(Json, CommandsGiveTheMembersThatAreDocumented) {
 }
 
 TEST_F(Json, NumbersAreThoseOfTheArchive) {
-  object({"run", config()});
+  const json summary = object({"run", config(), "--archive.output", archive()}).at("summary");
+  const json rows = json::parse(modebank({"show", archive(), "/evaluation/summary", "--json"}).out).at("value");
+  for (const json& row : rows)
+    if (row.at("filter") == "bank" && row.at("run") == "*" && row.at("role") == summary.at("role")) {
+      EXPECT_EQ(summary.at("errors").at(0).at("bank"), row.at("rmse"));
+    }
   const json predicted = object({"predict", archive(), "--samples", "5"});
   const ProgramResult csv = modebank({"predict", archive(), "--samples", "5"});
   std::size_t samples = 0;
@@ -99,8 +104,9 @@ TEST_F(Json, NumbersAreThoseOfTheArchive) {
     samples += run.at("time_s").size();
   }
   EXPECT_EQ(samples + 1, static_cast<std::size_t>(std::count(csv.out.begin(), csv.out.end(), '\n')));
-  EXPECT_EQ(object({"config", config()}).at("keys").at("window.length").at("origin").get<std::string>().substr(0, 1),
-            config().substr(0, 1));
+  const json keys = object({"config", config(), "--window.length", "30"}).at("keys");
+  EXPECT_EQ(keys.at("window.length"), (json{{"value", "30"}, {"origin", "--window.length"}}));
+  EXPECT_EQ(keys.at("window.step").at("origin"), "default");
 }
 
 TEST_F(Json, ErrorsAreSaidInIt) {
