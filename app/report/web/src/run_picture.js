@@ -79,8 +79,9 @@ function drawNames(pen, picture, at) {
     const share = (value - picture.range[0]) / (picture.range[1] - picture.range[0]);
     pen.fillText(String(value), left_px - 6, heightOf(at, share));
   }
-  for (const strip of at.strips)
+  for (const strip of at.strips) {
     pen.fillText(strip === 'mode' ? 'mode' : 'known', left_px - 6, at.top(strip) + strip_px / 2);
+  }
   pen.save();
   pen.translate(9, above_px + at.plot / 2);
   pen.rotate(-Math.PI / 2);
