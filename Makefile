@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs
+.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs
 
 all: build
 
@@ -81,6 +81,10 @@ evidence: build
 systems: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_systems.py build/modebank
 
+# Time and memory of five million rows and of ten thousand runs, as docs/results/scale.md has them; ten minutes of two processors and 10 GB of disk.
+scale: build
+	/usr/bin/python3 tests/bench/scale.py build/modebank build/scale
+
 # A robot's day through `modebank track`, killed every ten minutes of the log; docs/results/track.md.
 track-day: demo
 	/usr/bin/python3 tests/bench/track_day.py build/modebank $(DEMO)/demo.h5
@@ -134,9 +138,10 @@ docs-examples docs-update: packages-test build
 	cmake --build --preset release -j $(JOBS) --target modebank_python
 	/usr/bin/python3 tests/docs/examples.py $(if $(findstring update,$@),--update) --data $(DATA) build $(PAGES)
 
-# The pages' scripts. Debian's eslint is told where Debian's modules are: another node does not know.
+# The pages' scripts: style, and types as their comments state them. Debian's eslint is told where Debian's modules are: another node does not know.
 lint: packages-check
 	NODE_PATH=/usr/share/nodejs eslint --format unix app/report/web/src app/report/web/test
+	tsc --project app/report/web/tsconfig.json
 
 shellcheck: packages-check
 	git ls-files '*.sh' .ci | xargs grep -lE '^#!.*\b(ba)?sh$$' | xargs shellcheck

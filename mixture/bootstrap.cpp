@@ -10,6 +10,7 @@
 
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
+#include "ident/base/work_counter.hpp"
 #include "mixture/detail/cloud.hpp"
 #include "mixture/detail/whole_loop.hpp"
 
@@ -152,6 +153,7 @@ MixtureErrors bootstrap_runs(const PointSet& points, const std::vector<Index>& r
   EmOptions once = options;
   once.restarts = 1;
   once.split_merge = 0;
+  WorkCounter counter("bootstrap replicates", static_cast<std::size_t>(replicates));
   tbb::parallel_for(0, replicates, [&](int b) {
     std::mt19937_64 generator = make_generator(seed, "bootstrap", static_cast<std::uint64_t>(b));
     const Eigen::VectorXd weights = resampled_weights(points, runs, generator);
@@ -166,6 +168,7 @@ MixtureErrors bootstrap_runs(const PointSet& points, const std::vector<Index>& r
       all.means[static_cast<std::size_t>(k)].col(b) =
           fit.weights(own) > least ? Eigen::VectorXd(fit.means.col(own)) : Eigen::VectorXd::Constant(F, not_a_number);
     }
+    counter.add();
   });
   require_whole_loop();
   // The variance of a mean of R resampled runs is (R - 1) / R of the unbiased one.

@@ -12,6 +12,7 @@
 
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
+#include "ident/base/work_counter.hpp"
 #include "mixture/bootstrap.hpp"
 #include "mixture/criteria.hpp"
 #include "mixture/detail/whole_loop.hpp"
@@ -115,10 +116,14 @@ FittedCandidate fit_candidate(const Task& task, const EmSweep& sweep, Index comp
 /// The largest candidates take longest and start first.
 template <class Do>
 void for_each_from_the_largest(Index count, Do action) {
+  WorkCounter counter("candidates", static_cast<std::size_t>(count));
   tbb::parallel_for(
       tbb::blocked_range<Index>(0, count, 1),
       [&](const tbb::blocked_range<Index>& range) {
-        for (Index i = range.begin(); i < range.end(); ++i) action(count - 1 - i);
+        for (Index i = range.begin(); i < range.end(); ++i) {
+          action(count - 1 - i);
+          counter.add();
+        }
       },
       tbb::simple_partitioner());
   require_whole_loop();

@@ -16,13 +16,20 @@ void Chain::provide(Stage stage, const StagePart& part) {
   if (held == wanted) return;
   held.clear();  // if this throws, what is there belongs to no run
   const Stopwatch watch;
-  source_.provide(stage, wanted, part);
+  // What goes into a file as it is made is in no memory for another run to take.
+  const bool streamed = sink_ && (stage == Stage::competitor_scores || stage == Stage::bank_scores);
+  if (streamed)
+    part.compute();
+  else
+    source_.provide(stage, wanted, part);
   seconds_[index_of(stage)] = watch.seconds();
-  held = wanted;
+  if (!streamed) held = wanted;
   listener_.done(stage, archive_);
 }
 
-const Archive& Chain::run(const ChainOptions& options, Stage last, const Execution& execution) {
+const Archive& Chain::run(const ChainOptions& options, Stage last, const Execution& execution,
+                          const EvaluationSink* sink) {
+  sink_ = sink;
   seconds_.fill(0.0);
   inputs_ = chain_inputs(options);
   wanted_ = stage_keys(inputs_, "");  // what the data hold is known when they are read
@@ -150,6 +157,7 @@ void Chain::learn_bank(const ChainInputs& inputs) {
     archive_.unrefined = std::move(learned.unrefined);
     archive_.measured_fit = learned.measured_fit;
     archive_.merging = std::move(learned.merging);
+    archive_.learned_transitions = learned.learned_transitions;
     listener_.progress(fmt::format("bank: {} modes, {} screened, in {:.2f} s", archive_.bank->mode_count(),
                                    archive_.bank->screened.size(), watch.seconds()));
   };
@@ -159,6 +167,7 @@ void Chain::learn_bank(const ChainInputs& inputs) {
     part.unrefined = archive_.unrefined;
     part.measured_fit = archive_.measured_fit;
     part.merging = archive_.merging;
+    part.learned_transitions = archive_.learned_transitions;
     return part;
   };
   const auto take = [&](Archive&& part) {
@@ -166,22 +175,26 @@ void Chain::learn_bank(const ChainInputs& inputs) {
     archive_.unrefined = std::move(part.unrefined);
     archive_.measured_fit = part.measured_fit;
     archive_.merging = std::move(part.merging);
+    archive_.learned_transitions = part.learned_transitions;
   };
   provide(Stage::bank, {learn, copy, take});
 }
 
 void Chain::score(const std::string& filter, const FilterOptions& options, const ScoringOptions& scoring) {
+  std::optional<EvaluationStream> stream;
+  if (sink_) stream = EvaluationStream{*sink_, archive_.labels.has_value()};
+  const EvaluationStream* const to = stream ? &*stream : nullptr;
   if (filter == "drifting" && archive_.drifting)
-    put(score_drifting(*archive_.drifting, *archive_.recording, options.time_steps, scoring));
+    put(score_drifting(*archive_.drifting, *archive_.recording, options.time_steps, scoring, to));
   else if (const std::optional<Bank> bank = archive_.bank_of(filter))
-    put(score_filter(filter, *bank, *archive_.recording, options, scoring));
+    put(score_filter(filter, *bank, *archive_.recording, options, scoring, to));
 }
 
 void Chain::put(FilterScores scores) {
   const std::string filter = scores.evaluation.filter;
   for (const std::string& line : remarks(filter, archive_.recording->runs, scores.evaluation.free_runs))
     listener_.warning(line);
-  put(test_filter(*archive_.recording, scores.evaluation));
+  if (!scores.residual_tests.runs.empty()) put(std::move(scores.residual_tests));
   std::vector<FilterEvaluation> evaluation;
   evaluation.push_back(std::move(scores.evaluation));
   put_rows(filter, std::move(evaluation), archive_.evaluations);
@@ -217,7 +230,8 @@ void Chain::judge(const ChainInputs& inputs) {
 }
 
 const Archive& Chain::judge_stored(const std::filesystem::path& banks, const ChainOptions& options,
-                                   const Execution& execution) {
+                                   const Execution& execution, const EvaluationSink* sink) {
+  sink_ = sink;
   wanted_ = stage_keys(chain_inputs(options), "");
   import({options.data});
   const Stopwatch watch;

@@ -55,13 +55,15 @@ class Chain {
       : source_(source), listener_(listener), memory_(memory) {}
 
   /// The archive after the stage `last` (bank_scores: all), which must not be earlier than in the run before. Throws
-  /// what the stages throw; what then is there is not used again.
-  const Archive& run(const ChainOptions& options, Stage last, const Execution& execution);
+  /// what the stages throw; what then is there is not used again. `sink`: takes evaluations as they are made, which
+  /// then are not in the archive; null: they are.
+  const Archive& run(const ChainOptions& options, Stage last, const Execution& execution,
+                     const EvaluationSink* sink = nullptr);
 
   /// Scores the banks of another archive on the data; nothing is learned. Throws DataError when their channels do not
   /// fit the data's. Not to be mixed with run().
   const Archive& judge_stored(const std::filesystem::path& banks, const ChainOptions& options,
-                              const Execution& execution);
+                              const Execution& execution, const EvaluationSink* sink = nullptr);
 
   /// Of the last run, with the numbers of lags that it found.
   const ChainInputs& inputs() const { return inputs_; }
@@ -95,6 +97,7 @@ class Chain {
   ChainInputs inputs_;
   StageKeys wanted_, held_;
   std::array<double, stage_count> seconds_{};
+  const EvaluationSink* sink_ = nullptr;  ///< during run and judge_stored
 };
 
 }  // namespace modebank

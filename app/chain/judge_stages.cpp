@@ -1,4 +1,8 @@
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <iterator>
 
 #include "app/chain/stages.hpp"
 #include "filter/judge/diagnostics.hpp"
@@ -8,96 +12,163 @@
 #include "filter/judge/scores.hpp"
 #include "filter/judge/smoother.hpp"
 #include "filter/judge/statistics.hpp"
+#include "ident/base/work_counter.hpp"
 #include "ident/model/residual_tests.hpp"
 
 namespace modebank {
 namespace {
 
-std::vector<RunEvaluation> evaluate_runs(const Bank& bank, const std::vector<Trajectory>& runs,
-                                         const FilterOptions& options, bool smooth, std::uint64_t seed) {
-  std::vector<RunEvaluation> evaluations(runs.size());
-  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
-    evaluations[i] = evaluate_run(bank, runs[i], options);
-    draw_pit(runs[i], seed, evaluations[i]);
-    if (smooth) smooth_run(bank, runs[i], options, evaluations[i]);
-  });
-  return evaluations;
+/// What is scored, and how: a filter that is `bank` or has its sizes.
+struct Scored {
+  const std::string& name;
+  const Bank& bank;
+  const FilterOptions& filter;
+  const std::vector<Trajectory>& runs;
+  const ScoringOptions& scoring;
+  const EvaluationStream* stream;
+};
+
+using Positions = std::vector<std::size_t>;
+
+/// The runs of a role in order, in parts whose evaluations may be in memory whole at the same time: one run per thread,
+/// and as many more as are short.
+std::vector<Positions> parts_of(const std::vector<Trajectory>& runs, Role role) {
+  constexpr Index samples_at_once = 200000;
+  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  std::vector<Positions> parts;
+  Index samples = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].role != role) continue;
+    samples += runs[i].samples();
+    if (parts.empty() || (parts.back().size() >= threads && samples > samples_at_once)) {
+      parts.emplace_back();
+      samples = runs[i].samples();
+    }
+    parts.back().push_back(i);
+  }
+  return parts;
 }
 
-std::vector<HorizonEvaluation> look_ahead(const Bank& bank, const std::vector<Trajectory>& runs,
-                                          const FilterOptions& options, const std::vector<Index>& horizons) {
-  std::vector<HorizonEvaluation> evaluations(runs.size());
-  tbb::parallel_for(std::size_t{0}, runs.size(),
-                    [&](std::size_t i) { evaluations[i] = evaluate_horizons(bank, runs[i], options, horizons); });
-  return evaluations;
+/// Drops what no judge reads. States and their covariance are judged where the truth is known; without a sequence of
+/// modes a state says whether a sample has a mode.
+void keep_for_judges(const Trajectory& run, RunEvaluation& e) {
+  for (Eigen::MatrixXd* array : {&e.prediction, &e.smoothed_state, &e.smoothed_covariance}) array->resize(0, 0);
+  if (run.truth.size() > 0) return;
+  e.covariance.resize(0, 0);
+  if (e.viterbi_mode.size() > 0) e.state.resize(0, 0);
 }
 
-template <class Test>
-ResidualTestSet test_runs(const std::string& model, std::size_t runs, Test test) {
-  ResidualTestSet set{model, std::vector<ResidualTests>(runs)};
-  tbb::parallel_for(std::size_t{0}, runs, [&](std::size_t i) { set.runs[i] = test(i); });
-  return set;
+/// Drops what neither the finding nor the confusion reads of a run that has been judged.
+void keep_for_finding(const Scored& scored, bool judged, RunEvaluation& e) {
+  RunEvaluation kept;
+  if (judged) kept.log_density = std::move(e.log_density);
+  if (judged && scored.name == "bank") {
+    kept.innovation.resize(e.innovation.rows(), 0);
+    kept.innovation_covariance = std::move(e.innovation_covariance);
+    if (scored.stream->labelled) kept.mode_probability = std::move(e.mode_probability);
+  }
+  e = std::move(kept);
 }
 
-}  // namespace
+template <class Row>
+void append(std::vector<Row> rows, std::vector<Row>& all) {
+  all.insert(all.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
+}
 
-namespace {
+/// Evaluates the runs of a role, tests their residuals and appends their rows. `evaluate`: makes a run's evaluation.
+template <class Evaluate>
+void score_role(const Scored& scored, Role role, Evaluate evaluate, FilterScores& result) {
+  FilterEvaluation& said = result.evaluation;
+  const auto has_role = [role](const Trajectory& run) { return run.role == role; };
+  WorkCounter counter("runs filtered by " + scored.name,
+                      static_cast<std::size_t>(std::count_if(scored.runs.begin(), scored.runs.end(), has_role)));
+  std::vector<RunScores> scores(scored.runs.size());
+  for (const Positions& part : parts_of(scored.runs, role)) {
+    tbb::parallel_for(std::size_t{0}, part.size(), [&](std::size_t at) {
+      const std::size_t i = part[at];
+      said.runs[i] = evaluate(i);
+      counter.add();
+      scores[i] = score_run(said.runs[i]);
+      result.residual_tests.runs[i] = test_innovations(scored.runs[i], scores[i]);
+    });
+    for (const std::size_t i : part) {
+      if (!scored.stream) break;
+      scored.stream->sink(said.filter, i, said.runs[i], said.free_runs.empty() ? nullptr : &said.free_runs[i]);
+      keep_for_judges(scored.runs[i], said.runs[i]);
+    }
+  }
+  append(summarize_role(scored.name, role, scored.runs, said.runs, scores), result.summary);
+  append(diagnose_role(scored.name, role, scored.bank, scored.filter, scored.runs, said.runs, scores),
+         result.diagnostics);
+}
 
-/// `bank` and `filter`: what made the evaluations.
-FilterScores scores_of(FilterEvaluation said, const Bank& bank, const FilterOptions& filter,
-                       const std::vector<Trajectory>& runs, const std::vector<HorizonEvaluation>& ahead,
-                       const FreeRunOptions& free_run) {
-  FilterScores scores;
-  said.scores = score_runs(said.runs);
-  scores.summary = summarize(said.filter, runs, said.runs, said.scores);
-  scores.diagnostics = diagnose(said.filter, bank, filter, runs, said.runs, said.scores);
-  if (!ahead.empty()) scores.horizons = summarize_horizons(said.filter, runs, ahead);
-  if (!said.free_runs.empty()) scores.free_runs = summarize_free_runs(said.filter, runs, said.free_runs, free_run);
-  scores.evaluation = std::move(said);
-  return scores;
+/// `ahead`: empty, or what was predicted of every run by the end of this.
+template <class Evaluate>
+FilterScores score_runs(const Scored& scored, std::vector<FreeRun> free_runs,
+                        const std::vector<HorizonEvaluation>& ahead, Evaluate evaluate) {
+  const std::vector<Trajectory>& runs = scored.runs;
+  FilterScores result;
+  FilterEvaluation& said = result.evaluation;
+  said = {scored.name, std::vector<RunEvaluation>(runs.size()), std::move(free_runs), scored.stream != nullptr};
+  result.residual_tests = {scored.name, std::vector<ResidualTests>(runs.size())};
+  const Role judged = parts_of(runs, Role::test).empty() ? Role::train : Role::test;
+  for (const Role role : {Role::train, Role::test}) {
+    score_role(scored, role, evaluate, result);
+    for (std::size_t i = 0; scored.stream && i < runs.size(); ++i)
+      if (runs[i].role == role) keep_for_finding(scored, role == judged, said.runs[i]);
+  }
+  if (!ahead.empty()) result.horizons = summarize_horizons(scored.name, runs, ahead);
+  if (!said.free_runs.empty())
+    result.free_runs = summarize_free_runs(scored.name, runs, said.free_runs, scored.scoring.free_run);
+  return result;
 }
 
 bool looks_ahead(const ScoringOptions& scoring) { return scoring.horizon != std::vector<Index>{1}; }
 
 }  // namespace
 
+bool streams_evaluations(const Recording& recording) {
+  constexpr Index most_in_memory = 500000;  // samples, some 0.8 GB of all filters and the file's image
+  return recording.transitions(Role::train) + recording.transitions(Role::test) > most_in_memory;
+}
+
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
-                          const FilterOptions& filter, const ScoringOptions& scoring) {
+                          const FilterOptions& filter, const ScoringOptions& scoring, const EvaluationStream* stream) {
   const std::vector<Trajectory>& runs = recording.runs;
-  std::vector<HorizonEvaluation> ahead;
-  if (looks_ahead(scoring)) ahead = look_ahead(bank, runs, filter, scoring.horizon);
-  return scores_of({name,
-                    evaluate_runs(bank, runs, filter, scoring.smooth, scoring.seed),
-                    {},
-                    free_runs(bank, runs, filter, scoring.free_run)},
-                   bank, filter, runs, ahead, scoring.free_run);
+  std::vector<HorizonEvaluation> ahead(looks_ahead(scoring) ? runs.size() : 0);
+  return score_runs({name, bank, filter, runs, scoring, stream}, free_runs(bank, runs, filter, scoring.free_run), ahead,
+                    [&](std::size_t i) {
+                      RunEvaluation said = evaluate_run(bank, runs[i], filter);
+                      draw_pit(runs[i], scoring.seed, said);
+                      if (scoring.smooth) smooth_run(bank, runs[i], filter, said);
+                      if (!ahead.empty()) ahead[i] = evaluate_horizons(bank, runs[i], filter, scoring.horizon);
+                      return said;
+                    });
 }
 
 FilterScores score_drifting(const DriftingModel& model, const Recording& recording, TimeSteps time_steps,
-                            const ScoringOptions& scoring) {
+                            const ScoringOptions& scoring, const EvaluationStream* stream) {
   const std::vector<Trajectory>& runs = recording.runs;
-  std::vector<RunEvaluation> said(runs.size());
   std::vector<HorizonEvaluation> ahead(looks_ahead(scoring) ? runs.size() : 0);
-  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
-    said[i] = evaluate_run(model, runs[i], time_steps);
-    draw_pit(runs[i], scoring.seed, said[i]);
-    if (!ahead.empty()) ahead[i] = evaluate_horizons(model, runs[i], time_steps, scoring.horizon);
-  });
   FilterOptions filter;
   filter.noise = FilterNoise::adaptive;  // its variance is learned on the way, so its NIS is not chi-square
-  return scores_of({"drifting", std::move(said), {}, free_runs(model, runs, time_steps, scoring.free_run)},
-                   fixed_bank(model), filter, runs, ahead, scoring.free_run);
+  const std::string name = "drifting";
+  const Bank bank = fixed_bank(model);
+  return score_runs({name, bank, filter, runs, scoring, stream}, free_runs(model, runs, time_steps, scoring.free_run),
+                    ahead, [&](std::size_t i) {
+                      RunEvaluation said = evaluate_run(model, runs[i], time_steps);
+                      draw_pit(runs[i], scoring.seed, said);
+                      if (!ahead.empty()) ahead[i] = evaluate_horizons(model, runs[i], time_steps, scoring.horizon);
+                      return said;
+                    });
 }
 
 ResidualTestSet test_global(const Recording& recording, const WindowFits& windows, const FitOptions& window) {
   const Eigen::VectorXd theta = linear_global(recording, windows, window).theta;
-  return test_runs("global", recording.runs.size(),
-                   [&](std::size_t i) { return test_residuals(recording.runs[i], windows.structure, theta); });
-}
-
-ResidualTestSet test_filter(const Recording& recording, const FilterEvaluation& evaluation) {
-  return test_runs(evaluation.filter, recording.runs.size(),
-                   [&](std::size_t i) { return test_innovations(recording.runs[i], evaluation.scores.at(i)); });
+  ResidualTestSet set{"global", std::vector<ResidualTests>(recording.runs.size())};
+  tbb::parallel_for(std::size_t{0}, recording.runs.size(),
+                    [&](std::size_t i) { set.runs[i] = test_residuals(recording.runs[i], windows.structure, theta); });
+  return set;
 }
 
 }  // namespace modebank

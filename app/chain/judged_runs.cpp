@@ -16,4 +16,20 @@ Role judged_role(const Archive& archive) { return modebank::judged_role(archive.
 
 const char* words_for(Role role) { return role == Role::test ? "held-out" : "training"; }
 
+namespace {
+
+/// In groups of three digits.
+std::string grouped(Eigen::Index count) {
+  std::string digits = std::to_string(count);
+  for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3)
+    digits.insert(static_cast<std::size_t>(at), ",");
+  return digits;
+}
+
+}  // namespace
+
+std::string learned_words(Eigen::Index learned, Eigen::Index all) {
+  return "from " + grouped(learned) + " of " + grouped(all) + " training transitions";
+}
+
 }  // namespace modebank

@@ -18,4 +18,7 @@ Role judged_role(const Archive& archive);
 /// "held-out" or "training".
 const char* words_for(Role role);
 
+/// "from 200,000 of 2,500,000 training transitions".
+std::string learned_words(Eigen::Index learned, Eigen::Index all);
+
 }  // namespace modebank

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/chain/judged_runs.hpp"
 #include "app/chain/stages.hpp"
 #include "filter/judge/scores.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/from_mixture/passing_windows.hpp"
 #include "filter/learn/learn.hpp"
+#include "filter/learn/refine/learning_part.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/linearise.hpp"
 
@@ -54,8 +56,13 @@ Bank learn_single_filter(const Recording& recording, const WindowFits& windows, 
   return std::move(baseline.bank);
 }
 
-Competitors learn_competitors(const Recording& recording, const WindowFits& windows, Index components,
+Competitors learn_competitors(const Recording& all, const WindowFits& windows, Index components,
                               const CompetitorInputs& inputs, const Listener& listener) {
+  const std::optional<Recording> part = learning_part(all, inputs.transitions, inputs.seed);
+  const Recording& recording = part ? *part : all;
+  if (part)
+    listener.progress(fmt::format("competitors: learned {}",
+                                  learned_words(part->transitions(Role::train), all.transitions(Role::train))));
   Competitors learned{learn_single_filter(recording, windows, inputs.window, inputs.filter, listener), {}, {}, {}};
   learned.drifting = drifting(recording, windows, inputs, listener);
   learned.noise_only = learn_noise_only(recording, windows.structure, learned.baseline.R);
@@ -147,7 +154,10 @@ LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const
     listener.progress(fmt::format("bank: the mixture's own modes of model {}, not refined", from.windows.model));
   if (inputs.bank.refine == Refine::none) warn_of_passing_modes(from, refined.bank, listener);
   tell_of(refined, listener);
-  LearnedBank learned{std::move(refined.bank), {}, refined.measurement.end, {}};
+  if (const Index learned_from = refined.learned_transitions; learned_from > 0)
+    listener.progress(
+        fmt::format("refine: learned {}", learned_words(learned_from, from.recording.transitions(Role::train))));
+  LearnedBank learned{std::move(refined.bank), {}, refined.measurement.end, {}, refined.learned_transitions};
   if (inputs.bank.refine == Refine::em) learned.unrefined = std::move(refined.start);
   learned.merging = merging_of(from, inputs, learned.bank);
   return learned;

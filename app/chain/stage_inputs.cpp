@@ -20,7 +20,12 @@ BankInputs bank_inputs(const ChainOptions& options, const FitOptions& window) {
 
 /// one_motion is learned by refinement, whatever makes the bank; a single Kalman filter has no use for it.
 CompetitorInputs competitor_inputs(const ChainOptions& options, const FitOptions& window) {
-  CompetitorInputs inputs{window, {}, competitor_filter("one_motion", options.filter), options.scoring.horizon};
+  CompetitorInputs inputs{window,
+                          {},
+                          competitor_filter("one_motion", options.filter),
+                          options.scoring.horizon,
+                          options.bank.em.transitions,
+                          options.seed};
   if (options.filter.variant == FilterVariant::kf) return inputs;
   BankOptions learned;
   learned.measurement_variance = options.bank.measurement_variance;

@@ -33,6 +33,8 @@ struct CompetitorInputs {
   std::optional<BankOptions> one_motion;  ///< how it is learned: as the bank; empty where there is none
   FilterOptions filter;                   ///< that runs competitors, for the noise scale's memory
   std::vector<Index> horizon;             ///< that drifting is to widen its predictions for
+  Index transitions = 0;                  ///< that they learn from at most, as the bank does; 0: from all
+  std::uint64_t seed = 1;                 ///< which these are
 };
 
 struct BankInputs {

@@ -79,7 +79,7 @@ MODEBANK_KEY_FIELDS(RefineTuning, checkpoints, falls, forgettings, noise_prior_s
                     R_start_share_with_theta, least_gain)
 MODEBANK_KEY_FIELDS(DriftOptions, how, rate, start, leak)
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, members, look_ahead, folds,
-                    measurement_noise, screen, guards, one_theta, seed, drift, tuning)
+                    measurement_noise, screen, guards, one_theta, seed, drift, tuning, transitions)
 MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, modes,
                     refine, em)
 MODEBANK_KEY_FIELDS(FilterOptions, variant, parameter_noise, time_steps, noise)
@@ -90,7 +90,7 @@ MODEBANK_KEY_FIELDS(AutomaticLags, state, input)
 MODEBANK_KEY_FIELDS(DataInputs, data)
 MODEBANK_KEY_FIELDS(WindowInputs, window)
 MODEBANK_KEY_FIELDS(MixtureInputs, mixture, start_file, start_sha256, seed)
-MODEBANK_KEY_FIELDS(CompetitorInputs, window, one_motion, filter, horizon)
+MODEBANK_KEY_FIELDS(CompetitorInputs, window, one_motion, filter, horizon, transitions, seed)
 MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter)
 MODEBANK_KEY_FIELDS(LearningInputs, mixture, baseline_filter, bank, filter)
 MODEBANK_KEY_FIELDS(LagCountInputs, automatic, learning)

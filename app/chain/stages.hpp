@@ -63,6 +63,7 @@ struct LearnedBank {
   std::optional<Bank> unrefined;  ///< that refinement started from
   MeasuredFit measured_fit = MeasuredFit::none;
   std::vector<MergingCost> merging;  ///< where a limit on the number of modes merged some
+  Index learned_transitions = 0;     ///< that refinement learned from; 0: all of the training runs'
 };
 LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const Listener& listener);
 
@@ -73,15 +74,25 @@ struct FilterScores {
   std::vector<HorizonRow> horizons;
   std::vector<DiagnosticsRow> diagnostics;
   std::vector<FreeRunRow> free_runs = {};
+  ResidualTestSet residual_tests = {};
 };
 
-/// `name`: bank, baseline, noise_only or one_motion.
+/// Where evaluations go as soon as they are made; what stays in memory is what find_modes and confusion_of read.
+struct EvaluationStream {
+  EvaluationSink sink;
+  bool labelled = false;  ///< the data have labels, to which the bank's mode probabilities are compared
+};
+/// Whether there are too many samples to hold all filters' evaluations in memory.
+bool streams_evaluations(const Recording& recording);
+
+/// `name`: bank, baseline, noise_only or one_motion. `stream`: null keeps all in memory.
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
-                          const FilterOptions& filter, const ScoringOptions& scoring);
+                          const FilterOptions& filter, const ScoringOptions& scoring,
+                          const EvaluationStream* stream = nullptr);
 
 /// The same of the drifting competitor.
 FilterScores score_drifting(const DriftingModel& model, const Recording& recording, TimeSteps time_steps,
-                            const ScoringOptions& scoring);
+                            const ScoringOptions& scoring, const EvaluationStream* stream = nullptr);
 
 /// Free runs of every run, none where none is asked for. Throws ConfigurationError, naming the key, when the model
 /// needs more measured samples than the options have.
@@ -102,8 +113,7 @@ std::optional<Finding> find_modes(const Archive& archive);
 /// Of the bank's most probable modes against the labels, on the judged runs; none without labels.
 std::vector<ConfusionRow> confusion_of(const Archive& archive);
 
-/// Residual tests on all runs: of the global model's one-step residuals, and of a filter's scores z.
+/// Residual tests on all runs, of the global model's one-step residuals.
 ResidualTestSet test_global(const Recording& recording, const WindowFits& windows, const FitOptions& window);
-ResidualTestSet test_filter(const Recording& recording, const FilterEvaluation& evaluation);
 
 }  // namespace modebank

@@ -17,7 +17,7 @@ const std::vector<std::string> chain_keys{"data", "window", "mixture", "bank", "
 CommandOption output(const std::string& what, const std::string& help) { return {"output,o", what, help}; }
 CommandOption force(const std::string& help) { return {"force", "", help}; }
 CommandOption dry_run() { return {"dry-run", "", "say what would be read and written, and stop"}; }
-CommandOption as_json() { return {"json", "", "the result as JSON"}; }
+CommandOption as_json() { return {"json", "", "the result as one JSON object"}; }
 
 std::vector<Command> commands_to_start() {
   return {
@@ -28,7 +28,8 @@ std::vector<Command> commands_to_start() {
        "The ground is known there, so that what is found can be compared. Needs no file.",
        "modebank demo",
        {"data", "window", "mixture", "bank", "filter", "archive", "job", "simulate"},
-       {output("FOLDER", "where it has its files (modebank_demo)"), force("also where that folder holds other files")},
+       {as_json(), output("FOLDER", "where it has its files (modebank_demo)"),
+        force("also where that folder holds other files")},
        run_demo},
       {"Start",
        "init",
@@ -38,7 +39,8 @@ std::vector<Command> commands_to_start() {
        "states and inputs are guessed, each guess with its reason beside it.",
        "modebank init robot.bag",
        {},
-       {output("FILE", "the configuration (named after the log)"),
+       {as_json(),
+        output("FILE", "the configuration (named after the log)"),
         force("overwrite FILE"),
         {"yes", "", "ask nothing; without it a terminal is asked whether state and inputs are right"}},
        run_init},
@@ -63,14 +65,14 @@ std::vector<Command> commands_to_start() {
        "configuration.",
        "modebank config robot.ini",
        {"data", "window", "mixture", "bank", "filter", "archive", "job", "study", "track", "report", "simulate"},
-       {{"schema", "", "a JSON schema of all keys, for editors; takes no CONFIG"}},
+       {as_json(), {"schema", "", "a JSON schema of all keys, for editors; takes no CONFIG"}},
        run_config},
   };
 }
 
 std::vector<Command> commands_to_identify() {
-  const std::vector<CommandOption> written{dry_run()};
-  const std::vector<CommandOption> archived{dry_run(), force("replace an archive of other data")};
+  const std::vector<CommandOption> written{as_json(), dry_run()};
+  const std::vector<CommandOption> archived{as_json(), dry_run(), force("replace an archive of other data")};
   return {
       {"Identify", "run", "CONFIG", "the whole chain, from log to verdict: writes an archive and prints a summary",
        "Reads the runs, fits windows, clusters them, learns a bank of modes and judges it on held-out runs against "
@@ -157,7 +159,8 @@ std::vector<Command> commands_to_use() {
        "state, the prediction with its standard deviation and 95 % band, and the most probable mode.",
        "modebank predict robot.h5 --data.inputs plan.csv --samples 10",
        {"data", "filter", "track.filter", "job"},
-       {{"samples", "N", "measured samples at the start, short for --filter.simulate"},
+       {as_json(),
+        {"samples", "N", "measured samples at the start, short for --filter.simulate"},
         {"horizon", "H", "steps from there on, short for --filter.simulate_horizon"},
         {"filter", "NAME", "which model, short for --track.filter"},
         output("FILE", "CSV file (standard output)")},
@@ -171,7 +174,8 @@ std::vector<Command> commands_to_use() {
        "uncertainty is overconfident or underconfident.",
        "modebank export robot.h5 --to c -o tracker.c",
        {"track.filter"},
-       {{"to", "FORM", "json, mat, c, casadi, ros2 or csv"},
+       {as_json(),
+        {"to", "FORM", "json, mat, c, casadi, ros2 or csv"},
         output("FILE", "file, or folder of ros2"),
         force("also where the verdict speaks against it"),
         {"table", "PATH", "csv: which table of the archive"},
@@ -186,7 +190,7 @@ std::vector<Command> commands_to_use() {
        "",
        "modebank verify robot.h5",
        {},
-       {{"repair", "", "of study folders: remove what is broken"}},
+       {as_json(), {"repair", "", "of study folders: remove what is broken"}},
        run_verify},
   };
 }
@@ -200,9 +204,9 @@ std::vector<Command> commands_about() {
        "",
        "modebank help window.length",
        {},
-       {{"markdown", "", "all keys as a table"}},
+       {as_json(), {"markdown", "", "all keys as a table"}},
        nullptr},
-      {"About", "version", "", "version and revision", "", "modebank version", {}, {}, nullptr},
+      {"About", "version", "", "version and revision", "", "modebank version", {}, {as_json()}, nullptr},
       {"About",
        "completion",
        "bash | zsh | fish",

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <nlohmann/json.hpp>
+
 #include "app/chain/build_info.hpp"
 #include "app/cli/command_table.hpp"
 #include "app/cli/help_text.hpp"
 #include "app/cli/log.hpp"
+#include "app/cli/result.hpp"
 #include "app/study/answers/verify_study.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "io/archive/archive.hpp"
@@ -19,11 +22,17 @@ void print_help(const CommandLine& line) {
   // `run --help` and `help run` are the same.
   std::vector<std::string> names = line.files;
   if (line.help) names.assign(!line.command.empty(), line.command);
-  for (const std::string& name : names) fmt::print("{}", help_on(name));
-  if (names.empty()) fmt::print("{}", line.markdown ? option_markdown() : help_overview());
+  std::string text;
+  for (const std::string& name : names) text += help_on(name);
+  if (names.empty()) text = line.markdown ? option_markdown() : help_overview();
+  print_text(line, text);
+  print_json(line, {{"text", text}});
 }
 
-void print_version() { fmt::print("modebank {} ({})\n", build_info::version, build_info::git_revision); }
+void print_version(const CommandLine& line) {
+  print_text(line, fmt::format("modebank {} ({})\n", build_info::version, build_info::git_revision));
+  print_json(line, {{"revision", build_info::git_revision}});
+}
 
 [[noreturn]] void refuse_command(const std::string& name) {
   std::vector<std::string> names;
@@ -43,7 +52,7 @@ int run_command(const CommandLine& line) {
   if (line.help || line.command == "help")
     print_help(line);
   else if (line.version || line.command == "version")
-    print_version();
+    print_version(line);
   else if (const Command* command = find_command(line.command))
     return command->run(line);
   else
@@ -53,35 +62,47 @@ int run_command(const CommandLine& line) {
 
 namespace {
 
-bool report_archive(const std::string& file) {
+using nlohmann::json;
+
+/// Of one archive or study: its problems, and what else there is to say.
+json report_archive(const CommandLine& line, const std::string& file) {
   const Verification result = verify_archive(file);
-  if (result.ok()) fmt::print("{}: ok\n", file);
-  for (const std::string& problem : result.problems) fmt::print("{}: {}\n", file, problem);
-  return result.ok();
+  if (result.ok()) print_text(line, fmt::format("{}: ok\n", file));
+  json problems = json::array();
+  for (const std::string& problem : result.problems) {
+    print_text(line, fmt::format("{}: {}\n", file, problem));
+    problems.push_back({{"what", problem}});
+  }
+  return {{"file", file}, {"problems", problems}};
 }
 
-/// Whether all is well, or repaired as far as files go.
-bool report_study(const std::string& folder, bool repair) {
+json report_study(const CommandLine& line, const std::string& folder) {
   const StudyVerification result = verify_study(folder);
-  for (const StudyProblem& problem : result.problems)
-    fmt::print("{}: {}{}{}\n", problem.file.string(), problem.what,
-               problem.redo.empty() ? "" : "; to redo: " + problem.redo,
-               repair && problem.removable ? "; removed" : "");
-  if (repair) repair_study(folder, result);
-  fmt::print("{}: {} trials are whole{}\n", folder, result.whole,
-             result.problems.empty() ? ": ok" : fmt::format(", {} problems", result.problems.size()));
-  return result.problems.empty();
+  json problems = json::array();
+  for (const StudyProblem& problem : result.problems) {
+    const bool removed = line.repair && problem.removable;
+    print_text(line, fmt::format("{}: {}{}{}\n", problem.file.string(), problem.what,
+                                 problem.redo.empty() ? "" : "; to redo: " + problem.redo, removed ? "; removed" : ""));
+    problems.push_back(
+        {{"file", problem.file.string()}, {"what", problem.what}, {"redo", problem.redo}, {"removed", removed}});
+  }
+  if (line.repair) repair_study(folder, result);
+  print_text(line, fmt::format("{}: {} trials are whole{}\n", folder, result.whole,
+                               problems.empty() ? ": ok" : fmt::format(", {} problems", problems.size())));
+  return {{"file", folder}, {"problems", problems}, {"whole_trials", result.whole}};
 }
 
 }  // namespace
 
 int run_verify(const CommandLine& line) {
   if (line.files.empty()) throw ConfigurationError("verify needs at least one archive: modebank verify ARCHIVE...");
+  json files = json::array();
   bool all_good = true;
   for (const std::string& file : line.files) {
-    const bool good = is_study_folder(file) ? report_study(file, line.repair) : report_archive(file);
-    all_good = all_good && good;
+    files.push_back(is_study_folder(file) ? report_study(line, file) : report_archive(line, file));
+    all_good = all_good && files.back()["problems"].empty();
   }
+  print_json(line, {{"files", files}}, all_good ? 0 : 1);
   return all_good ? 0 : 1;
 }
 

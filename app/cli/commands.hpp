@@ -1,17 +1,20 @@
 #pragma once
 
 #include "app/cli/command_line.hpp"
+#include "app/cli/result.hpp"
 
 namespace modebank::app {
 
 /// Runs the command that was typed; returns the exit status. Errors are exceptions (ConfigurationError: 2, others: 1).
 int run_command(const CommandLine& line);
 
-int run_pipeline(const CommandLine& line);  ///< run, identify, cluster, evaluate
+int run_pipeline(const CommandLine& line);    ///< run, identify, cluster, evaluate
+Result do_pipeline(const CommandLine& line);  ///< the same without printing
 int run_init(const CommandLine& line);
 int run_demo(const CommandLine& line);
 int run_check(const CommandLine& line);
 int run_simulate(const CommandLine& line);
+Result do_simulate(const CommandLine& line);  ///< the same without printing
 int run_report(const CommandLine& line);
 int run_study(const CommandLine& line);
 int run_show(const CommandLine& line);

@@ -91,11 +91,6 @@ CommandLine typed_command(const CommandLine& demo, const std::vector<std::string
   return parse_command_line(static_cast<int>(argv.size()), argv.data());
 }
 
-int run_typed(const CommandLine& command, int (*run)(const CommandLine&)) {
-  fmt::print("{}\n", command.typed);
-  return run(command);
-}
-
 }  // namespace
 
 int run_demo(const CommandLine& line) {
@@ -112,11 +107,13 @@ int run_demo(const CommandLine& line) {
   make_folder(demo.folder);
   replace_file(demo.simulation(), {assets::simulate_ice_ini()});
   replace_file(demo.configuration(), {assets::demo_ini()});
-  if (const int status = run_typed(simulate, run_simulate); status != 0) return status;
-  if (const int status = run_typed(run, run_pipeline); status != 0) return status;
-  fmt::print("Look inside: {0} show {1}\nA page of it: {0} report {1} -o demo.html\n", line.program,
-             shell_quoted(demo.archive().string()));
-  return 0;
+  print_text(line, simulate.typed + "\n");
+  print_text(line, do_simulate(simulate).text);
+  print_text(line, run.typed + "\n");
+  Result result = do_pipeline(run);
+  result.text += fmt::format("Look inside: {0} show {1}\nA page of it: {0} report {1} -o demo.html\n", line.program,
+                             shell_quoted(demo.archive().string()));
+  return print_result(line, result);
 }
 
 }  // namespace modebank::app

@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <vector>
 
+#include "app/cli/result.hpp"
 #include "app/config/config.hpp"
 
 namespace modebank::app {
 
-/// Prints which files a command would read and write, and which of these are there. Returns the exit status 0; throws
-/// what finding the data throws.
-int print_dry_run(const Config& config, const std::vector<std::filesystem::path>& written);
+/// Which files a command would read and write, and which of these are there. Throws what finding the data throws.
+Result dry_run(const Config& config, const std::vector<std::filesystem::path>& written);
 
 }  // namespace modebank::app

@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "app/cli/commands.hpp"
 #include "app/cli/live_filter.hpp"
+#include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/export/forms.hpp"
 #include "app/export/names.hpp"
@@ -17,6 +19,7 @@
 namespace modebank::app {
 namespace {
 
+using nlohmann::json;
 using std::filesystem::path;
 
 /// Throws ConfigurationError where no such file can be written, or it is the archive.
@@ -56,46 +59,49 @@ path output_of(const CommandLine& line, const std::string& ending) {
   return file_stem(path(line.files.front()).stem().string()) + ending;
 }
 
-/// A form that is one text: to standard output without -o.
+/// A form that is one text: to standard output without -o. Like every form, what --json says of it.
 template <class Make>
-void write_text(const CommandLine& line, Make make) {
+json write_text(const CommandLine& line, Make make) {
   if (!line.output.empty()) check_output(line, line.output);
   const std::string text = make();
-  if (line.output.empty())
-    fmt::print("{}", text);
-  else
-    replace_file(line.output, {text});
+  if (line.output.empty()) {
+    print_text(line, text);
+    return {{"text", text}};
+  }
+  replace_file(line.output, {text});
+  return {{"written", {line.output}}};
 }
 
-void export_json(const CommandLine& line) {
-  write_text(line, [&] { return to_json(read_bank(line)); });
+json export_json(const CommandLine& line) {
+  return write_text(line, [&] { return to_json(read_bank(line)); });
 }
 
-void export_casadi(const CommandLine& line) {
-  write_text(line, [&] { return to_casadi(read_bank(line)); });
+json export_casadi(const CommandLine& line) {
+  return write_text(line, [&] { return to_casadi(read_bank(line)); });
 }
 
-void export_csv(const CommandLine& line) {
+json export_csv(const CommandLine& line) {
   const std::string& table = line.exported.table;
   if (table.empty())
     throw ConfigurationError(
         "export --to csv needs --table PATH, such as /evaluation/summary (modebank show ARCHIVE /)");
-  write_text(line, [&] { return to_csv(inspect(line.files.front(), table), table); });
+  return write_text(line, [&] { return to_csv(inspect(line.files.front(), table), table); });
 }
 
-void export_mat(const CommandLine& line) {
+json export_mat(const CommandLine& line) {
   const path output = output_of(line, ".mat");
   check_output(line, output);
   const ExportedBank bank = read_bank(line);
   write_mat(bank, output);
-  fmt::print(
-      "wrote {0}: in MATLAB or Octave, m = load('{0}'); A = m.A(:, :, 1) is mode 1 of {1} ...\n"
-      "  x[k+1] = A x[k] + B u[k] + c every m.dt_s; m.ss_lines makes a system of it\n",
-      output.string(), bank.bank.modes.size());
+  print_text(line,
+             fmt::format("wrote {0}: in MATLAB or Octave, m = load('{0}'); A = m.A(:, :, 1) is mode 1 of {1} ...\n"
+                         "  x[k+1] = A x[k] + B u[k] + c every m.dt_s; m.ss_lines makes a system of it\n",
+                         output.string(), bank.bank.modes.size()));
+  return {{"written", {output.string()}}};
 }
 
 /// Both files are made before either is written.
-void export_c(const CommandLine& line) {
+json export_c(const CommandLine& line) {
   path source = output_of(line, ".c");
   if (std::filesystem::is_directory(source)) source /= file_stem(path(line.files.front()).stem().string()) + ".c";
   if (source.extension() != ".c")
@@ -109,13 +115,15 @@ void export_c(const CommandLine& line) {
   const CFiles files = to_c(read_bank(line), stem, line.exported.single_precision);
   replace_file(header, {files.header});
   replace_file(source, {files.source});
-  fmt::print(
-      "wrote {0} and {1}: #include \"{2}\", {3}_restart begins a {3}_filter, {3}_step takes each sample\n"
-      "  cc -std=c99 -O2 -c {0}; link with -lm\n",
-      source.string(), header.string(), header.filename().string(), file_stem(stem));
+  print_text(
+      line,
+      fmt::format("wrote {0} and {1}: #include \"{2}\", {3}_restart begins a {3}_filter, {3}_step takes each sample\n"
+                  "  cc -std=c99 -O2 -c {0}; link with -lm\n",
+                  source.string(), header.string(), header.filename().string(), file_stem(stem)));
+  return {{"written", {source.string(), header.string()}}};
 }
 
-void export_ros2(const CommandLine& line) {
+json export_ros2(const CommandLine& line) {
   const RobotSizes sizes{line.exported.wheel_separation_m, line.exported.wheel_radius_m};
   if (!(sizes.wheel_separation_m >= 0.0 && sizes.wheel_radius_m >= 0.0))
     throw ConfigurationError("--wheel_separation_m and --wheel_radius_m are lengths above 0");
@@ -126,17 +134,20 @@ void export_ros2(const CommandLine& line) {
   if (is_disk_failure(error)) throw DataError(fmt::format("cannot write {}: {}", folder.string(), error.message()));
   if (error) throw ConfigurationError(fmt::format("-o {}: {}", folder.string(), error.message()));
   std::string names;
+  json written = json::array();
   for (const auto& [name, text] : files) {
     replace_file(folder / name, {text});
+    written.push_back((folder / name).string());
     names += (names.empty() ? "" : ", ") + name;
   }
-  fmt::print(
-      "wrote {0}: {1}\n  copy the keys of the ground you drive on into your own parameter files; comments say which "
-      "channel or option a missing one needs\n",
-      folder.string(), names);
+  print_text(line, fmt::format("wrote {0}: {1}\n  copy the keys of the ground you drive on into your own parameter "
+                               "files; comments say which "
+                               "channel or option a missing one needs\n",
+                               folder.string(), names));
+  return {{"written", written}};
 }
 
-const std::map<std::string, void (*)(const CommandLine&)> forms{{"c", export_c},     {"casadi", export_casadi},
+const std::map<std::string, json (*)(const CommandLine&)> forms{{"c", export_c},     {"casadi", export_casadi},
                                                                 {"csv", export_csv}, {"json", export_json},
                                                                 {"mat", export_mat}, {"ros2", export_ros2}};
 
@@ -149,7 +160,9 @@ int run_export(const CommandLine& line) {
         fmt::format("export needs one archive and one of the forms json, mat, c, casadi, ros2 and csv{}: modebank "
                     "export ARCHIVE --to FORM",
                     line.exported.to.empty() || form != forms.end() ? "" : ", not " + line.exported.to));
-  form->second(line);
+  json result = form->second(line);
+  result["form"] = line.exported.to;
+  print_json(line, result);
   return 0;
 }
 

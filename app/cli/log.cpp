@@ -3,6 +3,7 @@
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <memory>
@@ -53,7 +54,8 @@ void set_up_log(Verbosity verbosity) {
                                                                                      : spdlog::color_mode::never);
   auto logger = std::make_shared<spdlog::logger>("modebank", std::move(sink));
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
-  formatter->add_flag<Mark>('*').add_flag<Message>('#').set_pattern("%*%#");
+  formatter->add_flag<Mark>('*').add_flag<Message>('#').set_pattern(
+      isatty(STDERR_FILENO) == 1 ? "%*%#\x1b[K" : "%*%#");  // no rest of a progress meter's line
   logger->set_formatter(std::move(formatter));
   logger->set_level(verbosity == Verbosity::quiet    ? spdlog::level::err
                     : verbosity == Verbosity::normal ? spdlog::level::info

@@ -1,14 +1,17 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "app/cli/command_line.hpp"
 #include "app/cli/commands.hpp"
+#include "app/cli/result.hpp"
 #include "ident/base/printable.hpp"
 #include "io/files/standard_error.hpp"
 #include "modebank/base/error.hpp"
@@ -27,6 +30,16 @@ int fail_to_print(const std::string& reason) {
   return fail(run_failure, ("cannot write the results to standard output: " + reason).c_str());
 }
 
+/// Programs that asked for JSON learn from it, too, what went wrong.
+int fail_as_asked(int argc, char** argv, int status, const char* what) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  const auto command = std::find_if(words.begin(), words.end(), [](const std::string& w) { return w[0] != '-'; });
+  if (std::find(words.begin(), words.end(), "--json") != words.end())
+    modebank::app::print_json_error(command == words.end() ? "" : *command, what, status);
+  std::fflush(stdout);
+  return fail(status, what);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -36,12 +49,14 @@ int main(int argc, char** argv) {
     // A full disk or a closed pipe must not pass for success.
     return std::fflush(stdout) == 0 ? status : fail_to_print(std::generic_category().message(errno));
   } catch (const modebank::ConfigurationError& error) {
-    return fail(usage_error, error.what());
+    return fail_as_asked(argc, argv, usage_error, error.what());
   } catch (const std::filesystem::filesystem_error& error) {
-    return fail(run_failure, (error.path1().string() + ": " + error.code().message()).c_str());
+    const std::string what = error.path1().string() + ": " + error.code().message();
+    return fail_as_asked(argc, argv, run_failure, what.c_str());
   } catch (const std::system_error& error) {  // fmt's name no file
-    return std::ferror(stdout) ? fail_to_print(error.code().message()) : fail(run_failure, error.what());
+    return std::ferror(stdout) ? fail_to_print(error.code().message())
+                               : fail_as_asked(argc, argv, run_failure, error.what());
   } catch (const std::exception& error) {
-    return fail(run_failure, error.what());
+    return fail_as_asked(argc, argv, run_failure, error.what());
   }
 }

@@ -1,16 +1,17 @@
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/chain/stages.hpp"
 #include "app/chain/stored_banks.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/live_filter.hpp"
+#include "app/cli/predict_text.hpp"
+#include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
@@ -70,27 +71,6 @@ std::vector<FreeRun> predict_all(const std::string& archive, const Config& confi
   return free_runs(bank, recording.runs, options, how);
 }
 
-/// A line per predicted sample; how many there are.
-Index write_csv(const Recording& recording, const std::vector<FreeRun>& predicted, fmt::memory_buffer& out) {
-  auto to = std::back_inserter(out);
-  fmt::format_to(to, "run,time");
-  for (const Channel& s : recording.states) fmt::format_to(to, ",{0}_predicted,{0}_sd,{0}_lower,{0}_upper", s.name);
-  fmt::format_to(to, ",mode\n");
-  Index lines = 0;
-  for (std::size_t r = 0; r < predicted.size(); ++r) {
-    const FreeRun& run = predicted[r];
-    for (Index k = 0; k < run.mode.size(); ++k) {
-      if (run.mode(k) < 0) continue;
-      ++lines;
-      fmt::format_to(to, "{},{}", recording.runs[r].run, recording.runs[r].time_s(k));
-      for (Index i = 0; i < run.mean.rows(); ++i)
-        fmt::format_to(to, ",{},{},{},{}", run.mean(i, k), run.deviation(i, k), run.lower(i, k), run.upper(i, k));
-      fmt::format_to(to, ",{}\n", run.mode(k));
-    }
-  }
-  return lines;
-}
-
 Config predict_config(const CommandLine& line) {
   const std::string& archive = line.files.front();
   Config config = stored_config(load_configuration(archive), line.overrides);
@@ -113,13 +93,17 @@ int run_predict(const CommandLine& line) {
   for (const std::string& note : data.notes) spdlog::warn("{}", note);
   const std::vector<FreeRun> predicted = predict_all(line.files.front(), config, data.recording);
   for (const std::string& remark : remarks("bank", data.recording.runs, predicted)) spdlog::warn("{}", remark);
-  fmt::memory_buffer out;
-  if (write_csv(data.recording, predicted, out) == 0) throw DataError("nothing could be predicted");
-  const std::string_view text(out.data(), out.size());
-  if (line.output.empty())
-    fmt::print("{}", text);
-  else
-    replace_file(line.output, {text});
+  if (predicted_samples(predicted) == 0) throw DataError("nothing could be predicted");
+  nlohmann::json result;
+  if (!line.output.empty()) {
+    replace_file(line.output, {predicted_csv(data.recording, predicted)});
+    result["written"] = {line.output};
+  } else if (line.json) {
+    result["runs"] = predicted_json(data.recording, predicted);
+  } else {
+    print_text(line, predicted_csv(data.recording, predicted));
+  }
+  print_json(line, result);
   return 0;
 }
 

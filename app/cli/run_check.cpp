@@ -2,13 +2,14 @@
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "app/chain/stages.hpp"
 #include "app/cli/check_output.hpp"
 #include "app/cli/check_suggestions.hpp"
 #include "app/cli/commands.hpp"
+#include "app/cli/progress_meter.hpp"
+#include "app/cli/result.hpp"
 #include "app/config/valid_config.hpp"
 #include "app/text/lag_counts_text.hpp"
 #include "app/text/terminal.hpp"
@@ -71,27 +72,32 @@ nlohmann::json lag_counts_json(const LagCounts& found) {
 }
 
 /// Findings come at once, suggestions when they are scored.
-Suggestions tell(const CommandLine& line, const Config& config, const DataCheck& check) {
+Suggestions tell(const CommandLine& line, const Config& config, const DataCheck& check, nlohmann::json& page) {
   const std::vector<std::string> findings = findings_of(check, config);
-  if (!line.json) fmt::print("{}", printable(check_text(check, findings)));
-  std::fflush(stdout);
+  print_text(line, check_text(check, findings));
   const bool usable = check.unusable.empty(), scored = usable && !line.findings;
   ChainOptions options = chain_options(config);
   const std::optional<LagCounts> lags = scored ? lags_found(options) : std::nullopt;
   if (lags) options = with_lag_counts(options, *lags);
-  if (lags && !line.json) fmt::print("\n{}", wrapped(lag_counts_text(*lags), standard_output().width));
+  if (lags) print_text(line, "\n" + wrapped(lag_counts_text(*lags), standard_output().width));
   const Suggestions suggestions = scored ? suggest(options, check, ScoringLog()) : Suggestions{};
+  if (scored) print_text(line, suggestions_text(suggestions, config));
   if (line.json) {
-    nlohmann::json page = check_json(check, findings);
+    page = check_json(check, findings);
     page["lag_counts"] = lags ? lag_counts_json(*lags) : nlohmann::json(nullptr);
     page["suggestions"] = scored ? suggestions_json(suggestions, config) : nlohmann::json(nullptr);
-    fmt::print("{}\n", page.dump(2));
-  } else if (scored) {
-    fmt::print("{}", suggestions_text(suggestions, config));
   }
-  std::fflush(stdout);
-  if (!usable) throw DataError("unusable as configured: " + unusable_text(check));
-  return suggestions;
+  if (usable) return suggestions;
+  print_json(line, page, 1);
+  throw DataError("unusable as configured: " + unusable_text(check));
+}
+
+void apply(const CommandLine& line, const Config& config, const Suggestions& suggestions, nlohmann::json& page) {
+  replace_file(line.output, {applied_text(suggestions, config, line.files.front(), line.overrides, line.output)});
+  print_text(
+      line, fmt::format("{}: {}\n", line.output,
+                        suggestions.any() ? "the configuration with what is suggested" : "the configuration as it is"));
+  page["written"] = {line.output};
 }
 
 }  // namespace
@@ -101,13 +107,12 @@ int run_check(const CommandLine& line) {
   const Config config = load_valid_config(line.files.front(), line.overrides);
   check_target(line, config);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
+  const ProgressMeter meter(!line.quiet);
   const DataCheck check = check_data({data_options_of(config), config.window.length, config.window.intercept});
-  const Suggestions suggestions = tell(line, config, check);
-  if (!line.apply) return 0;
-  replace_file(line.output, {applied_text(suggestions, config, line.files.front(), line.overrides, line.output)});
-  if (!line.json)
-    fmt::print("{}: {}\n", line.output,
-               suggestions.any() ? "the configuration with what is suggested" : "the configuration as it is");
+  nlohmann::json page;
+  const Suggestions suggestions = tell(line, config, check, page);
+  if (line.apply) apply(line, config, suggestions, page);
+  print_json(line, page);
   return 0;
 }
 

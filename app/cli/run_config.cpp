@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "modebank/base/error.hpp"
@@ -25,6 +26,16 @@ std::string text_with_origins(const Config& config, const Origins& origins) {
                           origin == origins.end() ? "default" : origin->second);
   }
   return text;
+}
+
+nlohmann::json keys_json(const Config& config, const Origins& origins) {
+  nlohmann::json keys = nlohmann::json::object();
+  for (const Option& option : option_table()) {
+    const auto origin = origins.find(option.key);
+    keys[option.key] = {{"value", option.get(config)},
+                        {"origin", origin == origins.end() ? "default" : origin->second}};
+  }
+  return keys;
 }
 
 /// Words to choose from are an enumeration; everything else is text, as it stands in the file.
@@ -68,7 +79,8 @@ int run_config(const CommandLine& line) {
   }
   Origins origins;
   const Config config = load_config(line.files.front(), line.overrides, &origins);
-  fmt::print("{}", text_with_origins(config, origins));
+  print_text(line, text_with_origins(config, origins));
+  print_json(line, {{"keys", keys_json(config, origins)}});
   return 0;
 }
 

@@ -4,11 +4,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "app/init/confirm.hpp"
+#include "app/init/init_json.hpp"
 #include "app/init/proposal.hpp"
 #include "app/init/survey_set.hpp"
 #include "app/init/survey_text.hpp"
@@ -35,7 +38,9 @@ void check_target(const std::string& file, bool force) {
 }
 
 /// Whether someone can answer.
-bool is_asked(const CommandLine& line) { return !line.yes && isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1; }
+bool is_asked(const CommandLine& line) {
+  return !line.yes && !line.json && isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1;
+}
 
 }  // namespace
 
@@ -47,7 +52,7 @@ int run_init(const CommandLine& line) {
   check_target(target, line.force);
   std::vector<SurveyedFile> surveyed;
   for (const FileSet& set : sets) surveyed.push_back(survey_set(set));
-  fmt::print("{}", printable(survey_text(sets, surveyed)));
+  print_text(line, survey_text(sets, surveyed));
   const std::filesystem::path folder = std::filesystem::absolute(target).lexically_normal().parent_path();
   Guess guess = guess_roles(surveyed);
   if (is_asked(line)) confirm_roles(surveyed, guess, std::cin, std::cout);
@@ -55,9 +60,13 @@ int run_init(const CommandLine& line) {
   std::erase_if(proposal.keys, [](const ProposedKey& key) { return find_option("data." + key.key) == nullptr; });
   const std::string text = configuration_text(proposal, line.typed);
   replace_file(target, {text});
-  fmt::print("\n{}:\n{}\n", target, printable(text));
+  print_text(line, fmt::format("\n{}:\n{}\n", target, text));
   const std::string archive = std::filesystem::path(target).stem().string() + ".h5";
-  fmt::print("next: {0} run {1}\nthen: {0} report {2}\n", line.program, shell_quoted(target), shell_quoted(archive));
+  print_text(line, fmt::format("next: {0} run {1}\nthen: {0} report {2}\n", line.program, shell_quoted(target),
+                               shell_quoted(archive)));
+  nlohmann::json result = init_json(surveyed, proposal);
+  result["written"] = {target};
+  print_json(line, result);
   return 0;
 }
 

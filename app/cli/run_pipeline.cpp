@@ -11,6 +11,8 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/dry_run.hpp"
 #include "app/cli/kept_stages.hpp"
+#include "app/cli/progress_meter.hpp"
+#include "app/cli/summary_json.hpp"
 #include "app/config/valid_config.hpp"
 #include "app/pipeline/pipeline.hpp"
 #include "app/text/first_screen.hpp"
@@ -97,8 +99,10 @@ class Log : public Adviser {
 
 std::string archive_line(const Config& config) { return fmt::format("\narchive   {}\n", config.archive.output); }
 
-/// Too many windows for memory: written as they are fitted. Returns the summary.
-std::string identify_many(const Config& config, const Chain& chain, const Archive& data, const Log& log) {
+nlohmann::json written(const Config& config) { return {{"written", {config.archive.output}}}; }
+
+/// Too many windows for memory: written as they are fitted.
+Result identify_many(const Config& config, const Chain& chain, const Archive& data, const Log& log) {
   const Stopwatch watch;
   WindowCounts counts;
   const WindowInputs& inputs = chain.inputs().windows;
@@ -106,18 +110,17 @@ std::string identify_many(const Config& config, const Chain& chain, const Archiv
       identify_into_file(config.archive.output, data, inputs, [&](const WindowFits& fits) { counts.add(fits); });
   log.progress(fmt::format("windows: {} fitted and archived in {:.2f} s", counts.total(), watch.seconds()));
   log.warn_of_windows(common, counts);
-  return data_text(*data.recording) +
-         windows_text(common, counts,
-                      parameter_labels(common, names_of(data.recording->states), names_of(data.recording->inputs))) +
-         archive_line(config);
+  const std::vector<std::string> labels =
+      parameter_labels(common, names_of(data.recording->states), names_of(data.recording->inputs));
+  return {data_text(*data.recording) + windows_text(common, counts, labels) + archive_line(config), written(config)};
 }
 
 Stage last_stage(const std::string& command) {
   return command == "identify" ? Stage::windows : command == "cluster" ? Stage::mixture : Stage::bank_scores;
 }
 
-/// Runs the stages of the command and writes the archive. Returns what to print.
-std::string execute(const CommandLine& line, const Config& config, StageSource& source) {
+/// Runs the stages of the command and writes the archive.
+Result execute(const CommandLine& line, const Config& config, StageSource& source) {
   const Log log(line.force ? "" : config.archive.output);
   Chain chain(source, log);
   const ChainOptions options = chain_options(config);
@@ -126,36 +129,36 @@ std::string execute(const CommandLine& line, const Config& config, StageSource& 
     const Archive& data = chain.run(options, Stage::lag_counts, execution);
     if (streams_windows(*data.recording, chain.inputs().windows)) return identify_many(config, chain, data, log);
   }
-  const std::string& banks = config.archive.bank;
-  const Archive& archive = banks.empty() ? chain.run(options, last_stage(line.command), execution)
-                                         : chain.judge_stored(banks, options, execution);
-  write_archive(config.archive.output, archive);
-  if (has_first_screen(archive))
-    return first_screen(archive, resolved_values(archive.config), config.archive.output, standard_output().width,
-                        line.program);
-  return summary_text(archive) + free_run_text(archive) + archive_line(config);
+  const Archive& archive =
+      run_and_write(chain, options, last_stage(line.command), config.archive.bank, execution, config.archive.output);
+  if (!has_first_screen(archive))
+    return {summary_text(archive) + free_run_text(archive) + archive_line(config), written(config)};
+  const Settings settings = resolved_values(archive.config);
+  Result result{first_screen(archive, settings, config.archive.output, standard_output().width, line.program),
+                written(config)};
+  if (line.json) result.members["summary"] = summary_json(archive, settings);
+  return result;
 }
 
 }  // namespace
 
-int run_pipeline(const CommandLine& line) {
+Result do_pipeline(const CommandLine& line) {
   if (line.files.size() != 1)
     throw ConfigurationError(
         fmt::format("{} needs one configuration file: modebank {} CONFIG", line.command, line.command));
   const Config config = load_valid_config(line.files.front(), line.overrides);
   check_request(line.command, config, line.files.front());
-  if (line.dry_run) return print_dry_run(config, {config.archive.output});
+  if (line.dry_run) return dry_run(config, {config.archive.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
-  std::string summary;
+  const ProgressMeter meter(!line.quiet);
   if (config.archive.input.empty()) {
     KeptStages kept(config.archive.output);
-    summary = execute(line, config, kept);
-  } else {
-    StoredStages earlier = earlier_stages(config, line.command);
-    summary = execute(line, config, earlier);
+    return execute(line, config, kept);
   }
-  fmt::print("{}", summary);
-  return 0;
+  StoredStages earlier = earlier_stages(config, line.command);
+  return execute(line, config, earlier);
 }
+
+int run_pipeline(const CommandLine& line) { return print_result(line, do_pipeline(line)); }
 
 }  // namespace modebank::app

@@ -27,8 +27,11 @@ std::filesystem::path page_if_asked(const CommandLine& line, const ReportConfig&
 void report_run(const std::filesystem::path& file, const std::filesystem::path& page, const ReportConfig& options) {
   if (!page.empty()) report::check_page_path(page, {file});
   const Archive archive = read_archive(file);
-  if (!options.figures.empty()) report::write_figures(report::run_figures(archive, options.run), options);
+  const report::FigureSet figures =
+      options.figures.empty() ? report::FigureSet() : report::run_figures(archive, options.run);
   if (!page.empty()) report::write_page(page, report::run_page(archive, file.filename().string(), options));
+  // Last: a figure that cannot be drawn must not cost the page.
+  if (!options.figures.empty()) report::write_figures(figures, options);
 }
 
 }  // namespace

@@ -75,17 +75,19 @@ void simulate_system(const Config& config) {
 
 }  // namespace
 
-int run_simulate(const CommandLine& line) {
+Result do_simulate(const CommandLine& line) {
   if (line.files.size() != 1)
     throw ConfigurationError("simulate needs one configuration file: modebank simulate CONFIG");
   const Config config = load_config(line.files.front(), line.overrides);
   check_keys_apply(config);
-  if (line.dry_run) return print_dry_run(config, {config.simulate.output});
+  if (line.dry_run) return dry_run(config, {config.simulate.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   simulate_system(config);
-  fmt::print("{} runs of {} samples in {}\n", config.simulate.system.runs, config.simulate.system.samples,
-             config.simulate.output);
-  return 0;
+  const SimulationOptions& made = config.simulate.system;
+  return {fmt::format("{} runs of {} samples in {}\n", made.runs, made.samples, config.simulate.output),
+          {{"written", {config.simulate.output}}, {"runs", made.runs}, {"samples", made.samples}}};
 }
+
+int run_simulate(const CommandLine& line) { return print_result(line, do_simulate(line)); }
 
 }  // namespace modebank::app

@@ -1,6 +1,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/dry_run.hpp"
 #include "app/config/config_file.hpp"
+#include "app/study/answers/study_json.hpp"
 #include "app/study/study.hpp"
 #include "modebank/base/error.hpp"
 
@@ -10,8 +11,11 @@ int run_study(const CommandLine& line) {
   if (line.files.size() != 1) throw ConfigurationError("study needs one configuration file: modebank study CONFIG");
   const std::string& file = line.files.front();
   const Config config = load_config(file, line.overrides);
-  if (line.dry_run) return print_dry_run(config, {config.study.output});
-  return do_study({config, file, line.overrides, line.typed});
+  if (line.dry_run) return print_result(line, dry_run(config, {config.study.output}));
+  const int status =
+      do_study({config, file, line.overrides, line.typed, [&](const std::string& text) { print_text(line, text); }});
+  if (line.json) print_json(line, study_json(config.study.output), status);
+  return status;
 }
 
 }  // namespace modebank::app

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
@@ -23,9 +25,9 @@ using nlohmann::json;
 void print_overview(const CommandLine& line) {
   const std::string& file = line.files[0];
   const bool full_form = line.form == "full";
-  const Archive archive = read_archive(file);
   const Terminal terminal = standard_output();
   const int width = terminal.width;
+  const Archive archive = read_overview(file, std::max(width, 100));  // a run has columns in a strip
   if (has_first_screen(archive))
     fmt::print("{}\n", first_screen(archive, resolved_values(archive.config), file, width, line.program));
   fmt::print("{}\n{}", wrapped(provenance_text(archive), width), summary_text(archive, width));
@@ -82,7 +84,10 @@ int run_show(const CommandLine& line) {
   const std::string path = line.files.size() == 2 ? line.files[1] : "/";
   json object = inspect(file, path);
   if (line.form == "full") convert_to_full_form(file, path, object);
-  fmt::print("{}\n", object.dump(2));
+  if (line.json)
+    print_json(line, object);
+  else
+    fmt::print("{}\n", object.dump(2));
   return 0;
 }
 

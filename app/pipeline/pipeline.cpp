@@ -67,13 +67,32 @@ void check_request(const std::string& command, const Config& config, const std::
   check_output(config, file, memory);
 }
 
+const Archive& run_and_write(Chain& chain, const ChainOptions& options, Stage last, const std::string& banks,
+                             const Execution& execution, const std::filesystem::path& output) {
+  const auto make = [&](const EvaluationSink* sink) -> const Archive& {
+    return banks.empty() ? chain.run(options, last, execution, sink)
+                         : chain.judge_stored(banks, options, execution, sink);
+  };
+  if (last == Stage::bank_scores) {
+    const Recording& recording = *chain.run(options, Stage::data, execution).recording;
+    const Archive* archive = nullptr;
+    const auto make_streamed = [&](const EvaluationSink& sink) -> const Archive& { return *(archive = &make(&sink)); };
+    if (streams_evaluations(recording)) {
+      stream_archive(output, recording, make_streamed);
+      return *archive;
+    }
+  }
+  const Archive& archive = make(nullptr);
+  write_archive(output, archive);
+  return archive;
+}
+
 void run_all(const Config& config, const std::string& typed, const Listener& listener, const MemoryTables* memory) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   StageSource computed;
   Chain chain(computed, listener, memory);
-  const Archive& archive = chain.run(chain_options(config), Stage::bank_scores,
-                                     {resolved_text(config), make_provenance(config_hash(config), typed)});
-  write_archive(config.archive.output, archive);
+  run_and_write(chain, chain_options(config), Stage::bank_scores, "",
+                {resolved_text(config), make_provenance(config_hash(config), typed)}, config.archive.output);
 }
 
 }  // namespace modebank::app

@@ -23,6 +23,12 @@ class Adviser : public Listener {
 void check_request(const std::string& command, const Config& config, const std::filesystem::path& file,
                    const MemoryTables* memory = nullptr);
 
+/// Runs the chain's stages up to `last`, or scores the banks of an archive (`banks`, else empty), and writes the result
+/// to `output`, evaluations as they are made where there are too many to hold. Returns the archive, in that case
+/// without them.
+const Archive& run_and_write(Chain& chain, const ChainOptions& options, Stage last, const std::string& banks,
+                             const Execution& execution, const std::filesystem::path& output);
+
 /// All stages, computed, written to archive.output. `typed`: for provenance; `memory`: runs in place of files. Throws
 /// what the stages throw.
 void run_all(const Config& config, const std::string& typed, const Listener& listener,

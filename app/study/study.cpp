@@ -12,6 +12,7 @@
 #include "app/study/launch/submit_study.hpp"
 #include "app/study/run/run_trials.hpp"
 #include "app/study/run/study_progress.hpp"
+#include "app/text/duration_text.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
@@ -60,11 +61,9 @@ WorkerSettings worker_settings(const StudyCommand& command, const StudyPlan& pla
 
 void print_plan(const StudyCommand& command, const StudyPlan& plan, Sampling sampling) {
   const WorkerSettings settings = worker_settings(command, plan);
-  fmt::print("{}", plan_text(plan, count_stages(command.config, plan), command.config.study.repeats));
-  std::fflush(stdout);
-  fmt::print("{}",
-             estimate_text(estimate_study(settings, plan, sampling), command.store, job_count(command.config.study)));
-  std::fflush(stdout);
+  const auto& say = command.call.say;
+  say(plan_text(plan, count_stages(command.config, plan), command.config.study.repeats));
+  say(estimate_text(estimate_study(settings, plan, sampling), command.store, job_count(command.config.study)));
 }
 
 /// Where a plan is made, often the machine that users log in to, nothing else is computed unless asked.
@@ -86,7 +85,7 @@ RunResult run_share(const StudyCommand& command, const StudyPlan& plan) {
   if (result.broken)
     throw DataError(fmt::format("the study stopped ({}): {}\nwhat is done stays; the same command goes on from there",
                                 counts, *result.broken));
-  fmt::print("run       {}\n", counts);
+  command.call.say(fmt::format("run       {}\n", counts));
   if (!result.failed.empty() && study.on_failure == OnFailure::stop)
     throw DataError(fmt::format("the study stopped at a run that failed (study.on_failure = stop): {}",
                                 describe_trial(plan.table.varied_keys, plan.table.rows[result.failed.front()])));
@@ -116,11 +115,11 @@ int merge(const StudyCommand& command, const std::set<std::string>& whole) {
   const StudyTable table = collect_table(command.store, plan, whole);
   const Answers answers = answer(table);
   write_study(command.store, plan, table, answers, command.config.study.flat ? ArchiveUse::copy : ArchiveUse::link);
-  fmt::print("{}", table_text(table, command.store));
+  command.call.say(table_text(table, command.store));
   write_best_runs(command.store.folder(), command.config, table, answers);
-  fmt::print("\n{}\n", answers_text(table, answers));
-  fmt::print("table     {}, {}\n", (command.store.folder() / "study.h5").string(),
-             (command.store.folder() / "study.csv").string());
+  command.call.say(fmt::format("\n{}\ntable     {}, {}\n", answers_text(table, answers),
+                               (command.store.folder() / "study.h5").string(),
+                               (command.store.folder() / "study.csv").string()));
   return is_complete(table) ? 0 : 1;
 }
 
@@ -135,7 +134,7 @@ int show_status(const StudyCommand& command) {
   require_plan(command);
   const StudyPlan plan = read_plan(command.store.folder());
   const StudyTable table = collect_table(command.store, plan);
-  fmt::print("{}{}", table_text(table, command.store), slurm_text(slurm_view(command.store.folder())));
+  command.call.say(table_text(table, command.store) + slurm_text(slurm_view(command.store.folder())));
   return is_complete(table) ? 0 : 1;
 }
 
@@ -148,7 +147,7 @@ int submit(const StudyCommand& command) {
   check_submission(command.call);
   const StudyPlan plan = settle_plan(command);
   print_plan(command, plan, if_asked(command.config.study));
-  fmt::print("{}", submit_study(command.call, plan, collect_table(command.store, plan)));
+  command.call.say(submit_study(command.call, plan, collect_table(command.store, plan)));
   return 0;
 }
 

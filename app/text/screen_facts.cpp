@@ -40,6 +40,8 @@ std::string read_words(const Archive& archive, const Settings& settings) {
     text += fmt::format(", which act {:+.3f} s later", archive.lag->lag.mean);
   if (const double lag_s = input_lag(archive, settings); lag_s < 0.0)
     text += fmt::format("{}the filter needs inputs {:.3f} s ahead of the states", archive.lag ? ": " : "; ", -lag_s);
+  if (archive.learned_transitions > 0)
+    text += fmt::format("; the bank learned {}", learned_words(archive.learned_transitions, steps));
   if (archive.lag_counts)
     text += fmt::format("; lags found: {} of the state, {} of the inputs", archive.lag_counts->state_lags,
                         archive.lag_counts->input_lags);

@@ -237,6 +237,9 @@ std::string summary_text(const Archive& archive, int width) {
   if (archive.mixture) text += mixture_text(*archive.mixture, window_labels(archive));
   if (archive.bank) {
     text += bank_text(*archive.bank) + merging_text(archive);
+    if (archive.learned_transitions > 0 && archive.recording)
+      text += fmt::format("learned   {}\n",
+                          learned_words(archive.learned_transitions, archive.recording->transitions(Role::train)));
     if (const std::string warning = refinement_warning(archive.measured_fit); !warning.empty())
       text += "          warning: " + warning + "\n";
   }

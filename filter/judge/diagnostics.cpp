@@ -146,35 +146,39 @@ std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow
 
 }  // namespace
 
-std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
-                                     const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
-                                     const std::vector<RunScores>& scores) {
+std::vector<DiagnosticsRow> diagnose_role(const std::string& filter, Role role, const Bank& bank,
+                                          const FilterOptions& options, const std::vector<Trajectory>& runs,
+                                          const std::vector<RunEvaluation>& evaluations,
+                                          const std::vector<RunScores>& scores) {
+  if (std::none_of(runs.begin(), runs.end(), [role](const Trajectory& run) { return run.role == role; })) return {};
   // One Gaussian of known variance per prediction.
   const bool chi_square_nis =
       (bank.mode_count() == 1 || options.variant == FilterVariant::kf) && options.noise == FilterNoise::gaussian;
-  std::vector<DiagnosticsRow> rows;
-  for (const Role role : {Role::train, Role::test}) {
-    if (std::none_of(runs.begin(), runs.end(), [role](const Trajectory& run) { return run.role == role; })) continue;
-    const std::vector<Index> nees_states = states_with_noise(bank, role, runs, evaluations);
-    Autocorrelation colour;
-    const auto row_of = [&](Index mode) {
-      const Collected collected = collect(bank, mode, role, chi_square_nis, nees_states, runs, evaluations, scores);
-      DiagnosticsRow row = make_row(collected, std::ssize(nees_states));
-      row.filter = filter;
-      row.role = role;
-      row.mode = mode;
-      if (mode < 0) colour = largest_autocorrelation(collected.z);
-      if (mode >= 0 && bank.transition_logit.empty())
-        row.dwell_model = 1.0 / (1.0 - bank.transition.matrix()(mode, mode));
-      return row;
-    };
-    DiagnosticsRow all = row_of(-1);
-    std::vector<DiagnosticsRow> modes;
-    for (Index mode = 0; bank.mode_count() > 1 && mode < bank.mode_count(); ++mode) modes.push_back(row_of(mode));
-    all.flags = flags_of(all, modes, std::ssize(nees_states), colour);
-    rows.push_back(std::move(all));
-    rows.insert(rows.end(), modes.begin(), modes.end());
-  }
+  const std::vector<Index> nees_states = states_with_noise(bank, role, runs, evaluations);
+  Autocorrelation colour;
+  const auto row_of = [&](Index mode) {
+    const Collected collected = collect(bank, mode, role, chi_square_nis, nees_states, runs, evaluations, scores);
+    DiagnosticsRow row = make_row(collected, std::ssize(nees_states));
+    row.filter = filter;
+    row.role = role;
+    row.mode = mode;
+    if (mode < 0) colour = largest_autocorrelation(collected.z);
+    if (mode >= 0 && bank.transition_logit.empty())
+      row.dwell_model = 1.0 / (1.0 - bank.transition.matrix()(mode, mode));
+    return row;
+  };
+  std::vector<DiagnosticsRow> rows{row_of(-1)};
+  for (Index mode = 0; bank.mode_count() > 1 && mode < bank.mode_count(); ++mode) rows.push_back(row_of(mode));
+  rows.front().flags = flags_of(rows.front(), {rows.begin() + 1, rows.end()}, std::ssize(nees_states), colour);
+  return rows;
+}
+
+std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
+                                     const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
+                                     const std::vector<RunScores>& scores) {
+  std::vector<DiagnosticsRow> rows = diagnose_role(filter, Role::train, bank, options, runs, evaluations, scores);
+  const auto held_out = diagnose_role(filter, Role::test, bank, options, runs, evaluations, scores);
+  rows.insert(rows.end(), held_out.begin(), held_out.end());
   return rows;
 }
 

@@ -48,5 +48,10 @@ struct DiagnosticsRow {
 std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
                                      const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
                                      const std::vector<RunScores>& scores);
+/// Those of one role, whose runs alone need an evaluation.
+std::vector<DiagnosticsRow> diagnose_role(const std::string& filter, Role role, const Bank& bank,
+                                          const FilterOptions& options, const std::vector<Trajectory>& runs,
+                                          const std::vector<RunEvaluation>& evaluations,
+                                          const std::vector<RunScores>& scores);
 
 }  // namespace modebank

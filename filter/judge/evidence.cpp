@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "ident/base/distributions.hpp"
 #include "ident/base/linalg.hpp"
@@ -36,6 +37,7 @@ class Collector {
     for (SquaredDistances* distances : {&evidence.nis, &sums.nees}) distances->begin_run();
     for (SeriesByRun& series : evidence.outside) series.emplace_back();
     OutputSeries z(static_cast<std::size_t>(e.pit.rows()));  // of a mode's own samples
+    if (mode_ < 0) make_room(e, z);
     for (Index k = 0; k < e.log_density.size(); ++k) {
       if (std::isnan(e.log_density(k))) continue;
       add_probabilities(e, k);
@@ -44,11 +46,21 @@ class Collector {
       if (run.truth.size() > 0) add_truth(run, e, k);
     }
     sums.whiteness.push_back(mode_ < 0 ? scores.whiteness_p : whiteness_p(z));
-    if (mode_ < 0) sums.z.insert(sums.z.end(), z.begin(), z.end());
+    if (mode_ < 0) sums.z.insert(sums.z.end(), std::make_move_iterator(z.begin()), std::make_move_iterator(z.end()));
     add_visits(e);
   }
 
  private:
+  /// For all samples of a run, since growing series take up to twice of what they need.
+  void make_room(const RunEvaluation& e, OutputSeries& z) {
+    Evidence& evidence = sums.evidence;
+    const auto samples = static_cast<std::size_t>(e.log_density.size()), all = samples * z.size();
+    for (SeriesByRun* series : {&evidence.far, &evidence.close, &evidence.sizes}) series->back().reserve(all);
+    for (SeriesByRun& series : evidence.outside) series.back().reserve(all);
+    for (SeriesByRun* series : {&evidence.nis.value, &evidence.nis.degrees}) series->back().reserve(samples);
+    for (std::vector<double>& output : z) output.reserve(samples);
+  }
+
   Index mode_;
   const std::vector<Index>& nees_states_;
   double lower_, upper_;

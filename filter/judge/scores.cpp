@@ -99,30 +99,37 @@ class ScoreSums {
 
 }  // namespace
 
-std::vector<SummaryRow> summarize(const std::string& filter, const std::vector<Trajectory>& runs,
-                                  const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores) {
+std::vector<SummaryRow> summarize_role(const std::string& filter, Role role, const std::vector<Trajectory>& runs,
+                                       const std::vector<RunEvaluation>& evaluations,
+                                       const std::vector<RunScores>& scores) {
   if (runs.size() != evaluations.size() || runs.size() != scores.size())
     throw std::invalid_argument(std::to_string(runs.size()) + " runs, but " + std::to_string(evaluations.size()) +
                                 " evaluations and " + std::to_string(scores.size()) + " of them scored");
   std::vector<SummaryRow> rows;
-  const auto add_row = [&](const ScoreSums& sums, Role role, const std::string& run) {
+  const auto add_row = [&](const ScoreSums& sums, const std::string& run) {
     rows.push_back(sums.row());
     rows.back().filter = filter;
     rows.back().role = role;
     rows.back().run = run;
   };
-  for (const Role role : {Role::train, Role::test}) {
-    std::optional<ScoreSums> pooled;
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      if (runs[i].role != role) continue;
-      ScoreSums single(evaluations[i].innovation.rows());
-      single.add(evaluations[i], scores[i]);
-      add_row(single, role, runs[i].run);
-      if (!pooled) pooled.emplace(evaluations[i].innovation.rows());
-      pooled->add(evaluations[i], scores[i]);
-    }
-    if (pooled) add_row(*pooled, role, "*");
+  std::optional<ScoreSums> pooled;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].role != role) continue;
+    ScoreSums single(evaluations[i].innovation.rows());
+    single.add(evaluations[i], scores[i]);
+    add_row(single, runs[i].run);
+    if (!pooled) pooled.emplace(evaluations[i].innovation.rows());
+    pooled->add(evaluations[i], scores[i]);
   }
+  if (pooled) add_row(*pooled, "*");
+  return rows;
+}
+
+std::vector<SummaryRow> summarize(const std::string& filter, const std::vector<Trajectory>& runs,
+                                  const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores) {
+  std::vector<SummaryRow> rows = summarize_role(filter, Role::train, runs, evaluations, scores);
+  const std::vector<SummaryRow> held_out = summarize_role(filter, Role::test, runs, evaluations, scores);
+  rows.insert(rows.end(), held_out.begin(), held_out.end());
   return rows;
 }
 

@@ -37,6 +37,10 @@ inline constexpr double true_tail = 0.025;
 /// rows. `scores`: of the evaluations (score_runs).
 std::vector<SummaryRow> summarize(const std::string& filter, const std::vector<Trajectory>& runs,
                                   const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores);
+/// Those of one role, whose runs alone need an evaluation.
+std::vector<SummaryRow> summarize_role(const std::string& filter, Role role, const std::vector<Trajectory>& runs,
+                                       const std::vector<RunEvaluation>& evaluations,
+                                       const std::vector<RunScores>& scores);
 
 /// What a limit on the number of modes cost on the runs of one role: a row of /bank/merged.
 struct MergingCost {

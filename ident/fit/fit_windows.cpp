@@ -14,6 +14,7 @@
 #include "ident/base/interruption.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
+#include "ident/base/work_counter.hpp"
 #include "ident/fit/audit.hpp"
 #include "ident/fit/detail/batch/windows.hpp"
 #include "ident/fit/global_model.hpp"
@@ -122,6 +123,7 @@ class Fitting {
 
   /// Windows first .. first + count - 1 into the columns of `fits`.
   void fit(Index first, Index count, WindowFits& fits) {
+    if (!counter_) counter_.emplace("windows", static_cast<std::size_t>(plan_.count()));
     fits.resize(count);
     fits.by_batch.assign(static_cast<std::size_t>(count), 0);
     const auto ranges = plan_.ranges(first, count, longest_range(batch_.get()));
@@ -173,6 +175,7 @@ class Fitting {
 
   void fit_range(const WindowPlan::Range& range, Index column, WindowFits& fits) {
     interruption_point();
+    counter_->add(static_cast<std::size_t>(range.count));
     const std::vector<batch::Verdict>* const verdict =
         batch_ ? &batch_->solve(range, columns_from(fits, column)) : nullptr;
     for (Index i = 0; i < range.count; ++i) {
@@ -218,6 +221,7 @@ class Fitting {
   std::unique_ptr<BatchWindows> batch_;
   std::vector<Index> audited_;
   std::atomic<Index> by_ceres_ = 0;
+  std::optional<WorkCounter> counter_;  ///< from the first window on
 };
 
 WindowFits collect(Fitting&& fitting) {

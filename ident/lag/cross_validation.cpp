@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "ident/base/linalg.hpp"
+#include "ident/base/work_counter.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/lag/objective.hpp"
 
@@ -177,8 +178,11 @@ Trajectory join_delayed(const RunPair& run, double rate_hz, const InputClock& cl
 std::vector<LagScore> cross_validate_lags(const std::vector<LagSubject>& subjects, double rate_hz) {
   const std::size_t folds = std::min(subjects.size(), most_folds);
   std::vector<std::vector<std::vector<RunScore>>> by_fold(folds);
-  tbb::parallel_for(std::size_t{0}, folds,
-                    [&](std::size_t f) { by_fold[f] = score_fold(subjects, f, folds, rate_hz); });
+  WorkCounter counter("parts left out for the lag", folds);
+  tbb::parallel_for(std::size_t{0}, folds, [&](std::size_t f) {
+    by_fold[f] = score_fold(subjects, f, folds, rate_hz);
+    counter.add();
+  });
   std::vector<std::vector<RunScore>> runs;
   for (auto& fold : by_fold) runs.insert(runs.end(), fold.begin(), fold.end());
   std::vector<LagScore> scores;

@@ -44,9 +44,13 @@ struct Provenance {
 struct FilterEvaluation {
   std::string filter;  ///< bank or a competitor
   std::vector<RunEvaluation> runs;
-  std::vector<RunScores> scores;        ///< of these, where they have just been made; archives do not hold them
   std::vector<FreeRun> free_runs = {};  ///< with filter.simulate; archives hold neither pit nor log_density nor notes
+  bool streamed = false;                ///< the runs are in the file in the making; here is what later stages read
 };
+
+/// Takes what a filter said of a run, by its position in the recording, so that not all of it need be in memory.
+using EvaluationSink =
+    std::function<void(const std::string& filter, std::size_t run, const RunEvaluation& said, const FreeRun* free_run)>;
 
 /// Residual tests of one model over all runs of the recording, in its order.
 struct ResidualTestSet {
@@ -78,6 +82,7 @@ struct Archive {
   std::vector<std::string> mode_names = {};  ///< of the bank, where modes have names; empty where one has none
   std::optional<Bank> unrefined;             ///< the bank that expectation-maximisation started from
   MeasuredFit measured_fit = MeasuredFit::none;
+  Index learned_transitions = 0;  ///< that the bank was refined on; 0: all of the training runs'
   std::optional<Bank> baseline;
   std::optional<Bank> noise_only;
   std::optional<Bank> one_motion;
@@ -112,10 +117,20 @@ void write_large_archive(const std::filesystem::path& path, const Archive& archi
 WindowFits write_archive(const std::filesystem::path& path, const Archive& archive, Index count,
                          const std::function<WindowFits(const WindowSink&)>& produce);
 
+/// The same for an archive whose evaluations are written while they are made: `make` hands them to the sink, from one
+/// thread, and returns the archive of the rest. Throws what `make` throws.
+void stream_archive(const std::filesystem::path& path, const Recording& recording,
+                    const std::function<const Archive&(const EvaluationSink&)>& make);
+
 /// Reads all stages that the file holds, bit by bit as written. Throws DataError for a file that is unreadable,
 /// truncated, damaged (its hash does not match), not a modebank archive, or of a newer major schema; ConfigurationError
 /// when it does not exist.
 Archive read_archive(const std::filesystem::path& path);
+
+/// The same, but of the filters' evaluations only the bank's of the first `runs` judged runs are read, and residual
+/// tests of the global model and the bank alone; what is not read is empty. For overviews: of many runs these take most
+/// of the time and memory.
+Archive read_overview(const std::filesystem::path& path, Index runs);
 
 /// What verification found; empty `problems` means the archive is whole.
 struct Verification {

@@ -165,6 +165,7 @@ void exchange_archive(Io& io, A& archive) {
   exchange_part(io, "bank", archive.bank, {}, [&](auto& member, auto& part) {
     exchange_one(member, part);
     member.optional_attribute("measured_fit", archive.measured_fit);
+    member.attribute_unless(Index{0}, "learned_transitions", archive.learned_transitions);
     member.optional_attribute_texts("mode_names", archive.mode_names);
     if constexpr (Io::reads) member.finish([&] { check_count("mode_names", archive.mode_names, part.modes.size()); });
     exchange_part(member, "unrefined", archive.unrefined, {}, exchange_one);

@@ -61,6 +61,18 @@ void exchange_free_run(Io& io, F& run, const Unit& states) {
     });
 }
 
+/// One run of one filter.
+template <class Io, class E, class F>
+void exchange_filter_run(Io& io, const Trajectory& run, const Sizes& of_bank, E& evaluation, F& free_run,
+                         const Unit& states) {
+  Sizes known = of_bank;
+  if (run.samples() > 0) known.set("N", static_cast<hsize_t>(run.samples()));
+  io.group(run.run, known, [&](auto& member) {
+    exchange_run_evaluation(member, evaluation, states);
+    exchange_free_run(member, free_run, states);
+  });
+}
+
 /// One filter's evaluation of every run of the recording.
 template <class Io, class F>
 void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Sizes& of_bank, const Unit& states) {
@@ -71,14 +83,8 @@ void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Si
     throw std::invalid_argument("filter " + evaluation.filter + " has evaluated " +
                                 std::to_string(evaluation.runs.size()) + " runs of " +
                                 std::to_string(recording.runs.size()));
-  for (std::size_t i = 0; i < recording.runs.size(); ++i) {
-    Sizes known = of_bank;
-    if (recording.runs[i].samples() > 0) known.set("N", static_cast<hsize_t>(recording.runs[i].samples()));
-    io.group(recording.runs[i].run, known, [&](auto& member) {
-      exchange_run_evaluation(member, evaluation.runs[i], states);
-      exchange_free_run(member, free_runs[i], states);
-    });
-  }
+  for (std::size_t i = 0; i < recording.runs.size(); ++i)
+    exchange_filter_run(io, recording.runs[i], of_bank, evaluation.runs[i], free_runs[i], states);
   if constexpr (Io::reads)
     if (std::any_of(free_runs.begin(), free_runs.end(), [](const FreeRun& run) { return run.mean.size() > 0; }))
       evaluation.free_runs = std::move(free_runs);
@@ -187,14 +193,15 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
   };
   const auto named = [](const std::vector<std::string>& filters) {
     std::vector<FilterEvaluation> list;
-    for (const std::string& filter : filters) list.push_back({filter, {}, {}});
+    for (const std::string& filter : filters) list.push_back({filter, {}});
     return list;
   };
   io.through(archive.evaluations, names, named, [&](auto& filters) { io.attribute_texts("filters", filters); });
   for (auto& evaluation : archive.evaluations)
-    io.group(evaluation.filter, {}, [&](auto& member) {
-      exchange_filter(member, evaluation, recording, sizes_of_filter(archive, evaluation.filter), units.states());
-    });
+    if (!evaluation.streamed)
+      io.group(evaluation.filter, {}, [&](auto& member) {
+        exchange_filter(member, evaluation, recording, sizes_of_filter(archive, evaluation.filter), units.states());
+      });
   exchange_summary(io, archive.summary, units.states());
   exchange_horizon(io, archive.horizons, units.states());
   exchange_free_runs(io, archive.free_runs, units.states());

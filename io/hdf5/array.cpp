@@ -31,18 +31,16 @@ Handle make_space(const Shape& shape) {
   return {space, H5Sclose, "make a dataspace"};
 }
 
-/// Compact content is as long as the dataset's header says, and HDF5 copies it without looking at that.
-bool is_compact(hid_t dataset) {
-  const Handle creation(H5Dget_create_plist(dataset), H5Pclose, "read a layout");
-  return H5Pget_layout(creation.id()) == H5D_COMPACT;
-}
-
 }  // namespace
 
-bool lies_outside(hid_t dataset) {
+Storage storage_of(hid_t dataset) {
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose, "read a layout");
-  return H5Pget_external_count(creation.id()) != 0 || H5Pget_layout(creation.id()) == H5D_VIRTUAL;
+  const H5D_layout_t layout = H5Pget_layout(creation.id());
+  if (H5Pget_external_count(creation.id()) != 0 || layout == H5D_VIRTUAL) return Storage::outside;
+  return layout == H5D_COMPACT ? Storage::header : Storage::file;
 }
+
+bool lies_outside(hid_t dataset) { return storage_of(dataset) == Storage::outside; }
 
 Handle string_type(std::size_t bytes) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a string type");
@@ -89,16 +87,21 @@ hsize_t element_count(const Shape& shape) {
 
 namespace {
 
-Handle without_times() {
+Handle without_times(H5D_layout_t layout) {
   Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare datasets");
   check(H5Pset_obj_track_times(creation.id(), false), "prepare datasets");
+  check(H5Pset_layout(creation.id(), layout), "prepare datasets");
   return creation;
 }
 
-/// A contiguous dataset without time stamps.
-Handle create_dataset(hid_t parent, const std::string& name, hid_t file_type, const Handle& space) {
-  // Made once: an archive has a thousand datasets. It stays until HDF5 itself ends, which may be before our statics do.
-  static const Handle& creation = *new Handle(without_times());
+/// A dataset without time stamps. `bytes`: of its values; few lie in its header, which takes less room and time.
+Handle create_dataset(hid_t parent, const std::string& name, hid_t file_type, const Handle& space, hsize_t bytes) {
+  constexpr hsize_t most_compact = 4096;
+  // Made once: an archive has a thousand datasets. They stay until HDF5 itself ends, which may be before our statics
+  // do.
+  static const Handle &contiguous = *new Handle(without_times(H5D_CONTIGUOUS)),
+                      &compact = *new Handle(without_times(H5D_COMPACT));
+  const Handle& creation = bytes > 0 && bytes <= most_compact ? compact : contiguous;
   return {H5Dcreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose,
           "create " + quoted(Place::dataset, name)};
 }
@@ -109,7 +112,7 @@ void write_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t me
                 hsize_t first, hsize_t count, const void* data) {
   const std::string what = quoted(Place::dataset, name);
   const Handle space = make_space(shape);
-  const Handle dataset = first == 0 ? create_dataset(parent, name, file_type, space)
+  const Handle dataset = first == 0 ? create_dataset(parent, name, file_type, space, H5S_UNLIMITED)
                                     : Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + what);
   Shape offset(shape.size(), 0), extent = shape;
   offset.front() = first;
@@ -131,7 +134,8 @@ Handle write_array(hid_t parent, Place place, const std::string& name, hid_t fil
     check(H5Awrite(attribute.id(), memory_type, data), "write " + what);
     return attribute;
   }
-  Handle dataset = create_dataset(parent, name, file_type, space);
+  Handle dataset =
+      create_dataset(parent, name, file_type, space, saturating_product(element_count(shape), H5Tget_size(file_type)));
   if (element_count(shape) > 0)
     check(H5Dwrite(dataset.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write " + what);
   return dataset;
@@ -153,7 +157,8 @@ StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : p
     object_ = Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + what);
     require_single(object(), name);
     // Our own archives hold all their data; a layout that points elsewhere must not make us read other files.
-    if (lies_outside(object())) throw DataError(what + " keeps its content in another file");
+    storage_ = storage_of(object());
+    if (storage_ == Storage::outside) throw DataError(what + " keeps its content in another file");
     type_ = Handle(H5Dget_type(object()), H5Tclose, "read the type of " + what);
     space = Handle(H5Dget_space(object()), H5Sclose, "read the shape of " + what);
   } else {
@@ -170,15 +175,18 @@ StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : p
 }
 
 void StoredArray::check_plausible() const {
+  const auto refuse = [&] { throw DataError(quoted(place_, name_) + " declares more content than the file holds"); };
+  const hsize_t bytes = saturating_product(elements_, H5Tget_size(type()));
+  // Content in the header is as long as that says, and HDF5 copies it without looking.
+  const bool in_header = storage_ == Storage::header;
+  if (in_header && bytes > H5Dget_storage_size(object())) refuse();
+  if (in_header && elements_ > 0) return;  // no extent is longer then than there are elements
   hsize_t file_bytes = 0;
   const Handle file(H5Iget_file_id(object()), H5Fclose, "find the file");
   check(H5Fget_filesize(file.id(), &file_bytes), "read the size of the file");
-  const hsize_t backing_bytes =
-      place_ == Place::dataset && is_compact(object()) ? H5Dget_storage_size(object()) : file_bytes;
   // An array without elements may still declare extents, which the readers take for counts.
   const hsize_t longest_extent = shape_.empty() ? 0 : *std::max_element(shape_.begin(), shape_.end());
-  if (saturating_product(elements_, H5Tget_size(type())) > backing_bytes || longest_extent > file_bytes)
-    throw DataError(quoted(place_, name_) + " declares more content than the file holds");
+  if (bytes > file_bytes || longest_extent > file_bytes) refuse();
 }
 
 void StoredArray::read(hid_t memory_type, void* data) const {

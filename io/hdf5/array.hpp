@@ -45,6 +45,10 @@ std::vector<std::string> unpack_texts(const std::string& cells, std::size_t byte
 /// Number of elements; the largest hsize_t when the product does not fit.
 hsize_t element_count(const Shape& shape);
 
+/// Where a dataset's values are: in its header, elsewhere in the file, or in another file or other datasets.
+enum class Storage { header, file, outside };
+Storage storage_of(hid_t dataset);
+
 /// Whether a dataset's values are in another file or in other datasets.
 bool lies_outside(hid_t dataset);
 
@@ -77,6 +81,7 @@ class StoredArray {
   void check_plausible() const;
 
   Place place_;
+  Storage storage_ = Storage::file;  ///< attributes', too, for what they may declare
   std::string name_;
   Handle object_;
   Handle type_;

@@ -28,10 +28,15 @@ class GroupReader {
         problems_before_(problems ? problems->size() : 0),
         path_(std::move(path)) {}
 
+  /// From here on groups whose path `wanted` refuses are left unread. It must outlive the reader.
+  void read_groups(const std::function<bool(const std::string& path)>& wanted) { wanted_ = &wanted; }
+
   template <class Body>
   void group(const std::string& name, const Sizes& known, Body body) {
+    if (wanted_ && !(*wanted_)(path_ + "/" + name)) return;
     guarded(name, [&] {
       GroupReader member(hdf5::open_group(group_.id(), require(name)), problems_, path_ + "/" + name);
+      member.wanted_ = wanted_;
       member.sizes_ = known;
       body(member);
       member.check_links();
@@ -179,6 +184,7 @@ class GroupReader {
   std::size_t problems_before_;
   std::string path_;
   Sizes sizes_;
+  const std::function<bool(const std::string&)>* wanted_ = nullptr;
   struct Member {
     bool hard;
     bool asked = false;

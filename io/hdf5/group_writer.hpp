@@ -41,6 +41,9 @@ class GroupWriter {
     part_ = Part{first, count, total, std::move(texts)};
   }
 
+  /// From here on member groups that are there are gone on with.
+  void go_on_with_groups() { goes_on_ = true; }
+
   template <class T>
   void attribute(const std::string& name, const T& value, const Rule& = rule::any) {
     if (complete()) write_attribute(name, to_stored(value));
@@ -178,6 +181,7 @@ class GroupWriter {
   std::string path_;
   Sizes sizes_;
   std::optional<Part> part_;
+  bool goes_on_ = false;
 };
 
 }  // namespace modebank

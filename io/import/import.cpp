@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "ident/base/printable.hpp"
+#include "ident/base/work_counter.hpp"
 #include "ident/lag/choice.hpp"
 #include "io/files/run_names.hpp"
 #include "io/import/import_plan.hpp"
@@ -92,7 +93,9 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
     outcomes[plan] = try_read(plans[plan], options, as_they_stand);
     return plan;
   };
+  WorkCounter counter("files", plans.size());
   const auto collect = [&](std::size_t plan) {
+    counter.add();
     Outcome outcome = std::exchange(outcomes[plan], {});
     if (outcome.error && !error) error = outcome.error;
     failed = error != nullptr;

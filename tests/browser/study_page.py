@@ -3,7 +3,7 @@ import h5py
 import session
 from session import PageTest
 
-STUDY_SECTIONS = ["origin", "verdict", "runs", "parallel", "effects", "heatmap", "pareto", "coverage"]
+STUDY_SECTIONS = ["verdict", "better", "runs", "parallel", "effects", "heatmap", "pareto", "coverage", "origin"]
 
 
 class StudyPage(PageTest):
@@ -18,11 +18,13 @@ class StudyPage(PageTest):
         return [row[name][1] for row in self.rows()]
 
     def rows(self):
+        """By the columns' names in the study, which the headings say in words."""
+        names = session.browser.run("return [...document.querySelectorAll('#study-table thead tr:first-child th')].map((th) => th.dataset.column)")
         table = self.table("Every run")
-        return [{heading.rstrip(" ▴▾"): cell for heading, cell in row.items()} for row in table]
+        return [dict(zip(names, row.values())) for row in table]
 
     def sort_by(self, name):
-        session.browser.run("[...document.querySelectorAll('#study-table th button')].find((b) => b.textContent.startsWith(arguments[0])).click()", name)
+        session.browser.run("document.querySelector(`#study-table th[data-column='${arguments[0]}'] button`).click()", name)
 
     def filter(self, name, text):
         session.browser.run("""
@@ -45,15 +47,32 @@ class StudyPage(PageTest):
         self.assertEqual(len(rows), len(stored))
         scores = [name for name in stored.dtype.names if name.startswith(("bank_", "baseline_", "noise_only_", "one_motion_", "drifting_")) or name == "modes"]
         self.assertGreater(len(scores), 20)
-        for line, row in zip(rows, stored):
+        best_first = stored[(-stored["bank_test_log_score"]).argsort(kind="stable")]
+        for line, row in zip(rows, best_first):
             self.assertEqual(line["status"][0], row["status"].decode())
+            self.assertEqual(line["seed"][0], str(row["seed"]))
             self.assertEqual(line["window.length"][1], row["window.length"])
             self.assertEqual(line["mixture.covariance"][0], row["mixture.covariance"].decode())
             for name in scores:
                 self.same(line[name][1], row[name])
 
+    def test_whether_the_best_is_better(self):
+        self.open(self.page())
+        stored = self.stored()
+        order = (-stored["bank_test_log_score"]).argsort(kind="stable")
+        best = stored[order[0]]
+        rivals = self.table("The next best settings")
+        self.assertEqual(len(rivals), 8)
+        for rival, row in zip(rivals, stored[order[1:9]]):
+            gain = rival["Best is ahead by [nats/sample]"]
+            # The mean difference over the same samples is that of the scores.
+            self.assertAlmostEqual(gain[1], float(best["bank_test_log_score"] - row["bank_test_log_score"]), places=9)
+            self.assertIn("±", gain[0])
+            self.assertEqual(rival["error from"][0], "6 runs")
+
     def test_sorting(self):
         self.open(self.page())
+        self.assertEqual(self.column("bank_test_log_score"), sorted(self.stored()["bank_test_log_score"], reverse=True))  # as it opens
         self.sort_by("bank_test_log_score")
         self.assertEqual(self.column("bank_test_log_score"), sorted(self.stored()["bank_test_log_score"]))
         self.sort_by("bank_test_log_score")
@@ -88,18 +107,31 @@ class StudyPage(PageTest):
         self.open(self.page())
         session.browser.draw_all()
         stored = self.stored()
-        means = session.browser.run("return document.querySelector('#effects div.plot')._fullData.filter((t) => t.meta === 'main effect').map((t) => t.y)")
+        score = stored["bank_test_log_score"]
+        effects = "return document.querySelector('#effects div.plot')._fullData.filter((t) => t.meta === 'main effect').map((t) => t.y)"
+        choose = """const select = [...document.querySelectorAll(arguments[0] + ' label')].find((l) => l.textContent.startsWith('Show')).querySelector('select');
+            select.selectedIndex = arguments[1]; select.dispatchEvent(new Event('change'));"""
         keys = ["window.length", "mixture.components", "mixture.covariance"]
-        for key, shown in zip(keys, means):
-            levels = list(dict.fromkeys(stored[key].tolist()))
-            levels = levels if key == "mixture.covariance" else sorted(levels)
-            for level, mean in zip(levels, shown):
-                self.assertAlmostEqual(mean, float(stored["bank_test_log_score"][stored[key] == level].mean()), places=10)
-        cells = session.browser.run("return document.querySelector('#heatmap div.plot')._fullData[0].z")
-        for a, length in enumerate((15, 25)):
-            for b, components in enumerate((1, 2, 3)):
-                here = (stored["window.length"] == length) & (stored["mixture.components"] == components)
-                self.assertAlmostEqual(cells[b][a], float(stored["bank_test_log_score"][here].mean()), places=10)
+        for way, of in ((0, lambda values: values.max()), (1, lambda values: values.mean())):
+            for section in ("#effects", "#heatmap"):
+                session.browser.run(choose, section, way)
+            first = stored[keys[0]] == min(stored[keys[0]])
+            session.browser.wait(f"{effects.replace('return', 'return Math.abs(')}[0][0] - arguments[0]) < 1e-9", float(of(score[first])), what="the main effects")
+            for key, shown in zip(keys, session.browser.run(effects)):
+                levels = list(dict.fromkeys(stored[key].tolist()))
+                levels = levels if key == "mixture.covariance" else sorted(levels)
+                for level, value in zip(levels, shown):
+                    self.assertAlmostEqual(value, float(of(score[stored[key] == level])), places=10)
+                if way == 0:
+                    self.assertEqual(max(shown), score.max())  # the plots agree with the verdict
+            cells = session.browser.run("return document.querySelector('#heatmap div.plot')._fullData[0].z")
+            for a, length in enumerate((15, 25)):
+                for b, components in enumerate((1, 2, 3)):
+                    here = (stored["window.length"] == length) & (stored["mixture.components"] == components)
+                    self.assertAlmostEqual(cells[b][a], float(of(score[here])), places=10)
+            frame = session.browser.run("const s = document.querySelector('#heatmap div.plot')._fullLayout.shapes[0]; return [s.x0 + 0.46, s.y0 + 0.46]")
+            best = max((value, a, b) for b, line in enumerate(cells) for a, value in enumerate(line))
+            self.assertEqual([round(x) for x in frame], list(best[1:]))
         front = session.browser.run("return document.querySelector('#pareto div.plot')._fullData[1].customdata")
         beaten = lambda i: any((stored["modes"][j] <= stored["modes"][i]) and (stored["bank_test_log_score"][j] > stored["bank_test_log_score"][i]) for j in range(len(stored)))
         for i in front:
@@ -132,5 +164,5 @@ class StudyPage(PageTest):
         self.assertEqual([row["Log score [nats]"][1] for row in rows], [best["bank_test_log_score"]])
         self.open(self.page())
         session.browser.run("document.querySelector('#study-table tbody tr').click()")
-        self.assertIn(stored[0]["key"].decode(), session.browser.run("return document.getElementById('run-detail').textContent"))
+        self.assertIn(best["key"].decode(), session.browser.run("return document.getElementById('run-detail').textContent"))  # the best stands first
         self.assert_quiet()

@@ -46,6 +46,10 @@ std::vector<Option> bank_options() {
           "parts of the training runs that em leaves out in turn to choose start, number of modes and of iterations; "
           "1: none",
           MODEBANK_FIELD(bank.em.folds)),
+      numeric("bank.refine_transitions", between(0, 1'000'000'000), "transitions",
+              "em and the competitors learn from so many at most: where training runs have more, from stretches of "
+              "them drawn with job.seed; all are scored; 0: from all",
+              MODEBANK_FIELD(bank.em.transitions)),
       words("bank.drift",
             "whether each mode's theta goes on learning within a run: auto: as fast as training runs left out like it; "
             "fixed: as the next three keys say",

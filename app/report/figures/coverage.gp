@@ -6,7 +6,7 @@ set output drawn
 set lmargin at screen left_edge
 set rmargin at screen right_edge
 set tmargin at screen 0.85
-set bmargin at screen filters > 5 ? 0.25 : 0.11
+set bmargin at screen filters > 4 ? 0.25 : 0.11
 set xrange [0.4:filters+0.6]
 larger(a, b) = a == a && (b != b || a > b) ? a : b  # of two of which one may be NaN
 stats figure.'.dat' index 0 using (larger(column(2), column(4))) nooutput
@@ -18,7 +18,7 @@ set yrange [-1.05*lowest:1.05*highest]
 set ytics ('0' 0)
 do for [i = 1:10] { set ytics add (sprintf('%g', i * step) i * step, sprintf('%g', i * step) -i * step) }
 set label 100 'NIS below | above [%]' at screen 0.03, screen 0.5 center rotate by 90
-if (filters > 5) { set xtics scale 0 rotate by 35 right offset 0.6,0.2 } else { set xtics scale 0 }
+if (filters > 4) { set xtics scale 0 rotate by 35 right offset 0.6,0.2 } else { set xtics scale 0 }
 set xtics (filter_title[1] 1)
 do for [f = 2:filters] { set xtics add (filter_title[f] f) }
 eval legend(0.99)

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/report/figures/palette.hpp"
+#include "app/report/figures/shown_groups.hpp"
 
 namespace modebank::app::report {
 namespace {
@@ -34,7 +35,31 @@ std::string comment(const std::string& text) {
   return "# " + copy + "\n";
 }
 
+/// Text as LaTeX prints it.
+std::string latex_text(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    const std::string_view special = "&%$#_{}";
+    if (special.find(c) != std::string_view::npos)
+      result += std::string("\\") + c;
+    else if (c == '\\')
+      result += "\\textbackslash{}";
+    else if (c == '~' || c == '^')
+      result += std::string("\\") + c + "{}";
+    else
+      result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return result;
+}
+
 }  // namespace
+
+std::string Figure::latex() const {
+  return fmt::format(
+      "% \\usepackage{{graphicx}}; the file is {0}.pdf\n\\begin{{figure}}\n  \\centering\n  "
+      "\\includegraphics[width=\\columnwidth]{{{0}}}\n  \\caption{{{1}}}\n  \\label{{fig:{0}}}\n\\end{{figure}}\n",
+      name_, latex_text(caption_));
+}
 
 void Figure::set(const std::string& variable, double value) {
   settings_ += std::isfinite(value) ? fmt::format("{} = {:.9g}\n", variable, value) : variable + " = NaN\n";
@@ -63,8 +88,7 @@ void Figure::add_block(const std::string& title, const std::vector<std::string>&
 }
 
 std::string Figure::script() const {
-  constexpr int most_colours = 40;
-  const Palette colours = palette(most_colours);
+  const Palette colours = palette(most_shown_groups);
   return comment("Drawn by gnuplot 5 or later: gnuplot " + name_ + ".gp") + "figure = " + quoted(name_) + "\n" +
          array_text("palette", colours.modes) + "bank_colour = " + quoted(colours.filters.at("bank")) +
          "\nbaseline_colour = " + quoted(colours.filters.at("baseline")) +

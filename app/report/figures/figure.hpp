@@ -23,15 +23,20 @@ class Figure {
   void add_block(const std::string& title, const std::vector<std::string>& columns,
                  const Eigen::Ref<const Eigen::MatrixXd>& rows);
 
+  /// What a reader has to know, in a sentence or two, for the LaTeX snippet.
+  void set_caption(const std::string& caption) { caption_ = caption; }
+
   const std::string& name() const { return name_; }
   std::string script() const;  ///< complete: settings, common style, drawing
   const std::string& data() const { return data_; }
+  std::string latex() const;  ///< a figure environment that includes the PDF or PNG
 
  private:
   std::string name_;
   std::string_view script_;
   std::string settings_;
   std::string data_;
+  std::string caption_;
 };
 
 }  // namespace modebank::app::report

@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 
@@ -78,6 +79,12 @@ int run_gnuplot(const fs::path& folder, const std::string& name, const char* for
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+/// One figure that gnuplot cannot draw.
+struct FigureFailure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws FigureFailure when gnuplot fails on this figure.
 std::string draw(const Figure& figure, const fs::path& folder, const char* format) {
   const MemoryFile drawn, messages;
   const int status = run_gnuplot(folder, figure.name(), format, drawn, messages);
@@ -85,45 +92,85 @@ std::string draw(const Figure& figure, const fs::path& folder, const char* forma
     throw ConfigurationError("report.figures needs gnuplot, which is not installed (Debian package gnuplot-nox)");
   std::string content = drawn.content();
   if (status != 0 || content.empty())
-    throw DataError(fmt::format("gnuplot could not draw {}: {}", figure.name(),
-                                messages.content().empty() ? "it gives no reason" : messages.content()));
+    throw FigureFailure(fmt::format("{}.{}: gnuplot could not draw it: {}", figure.name(), format,
+                                    messages.content().empty() ? "it gives no reason" : messages.content()));
   return content;
+}
+
+/// Files on their way into the folder.
+class FigureFolder {
+ public:
+  explicit FigureFolder(const fs::path& folder) : folder_(folder), work_(folder) {}
+
+  const fs::path& work() const { return work_.path(); }
+  void stage(const std::string& name, std::string_view text) const {
+    write_staged(work_.path() / name, folder_ / name, text);
+  }
+  /// Renames what was staged under these names.
+  void finish(const std::vector<std::string>& names) const {
+    std::error_code error;
+    for (const std::string& name : names) {
+      fs::rename(work_.path() / name, folder_ / name, error);
+      if (error) fail(folder_ / name, error);
+    }
+  }
+
+ private:
+  fs::path folder_;
+  WorkFolder work_;
+};
+
+/// Stages everything of a figure; returns the files' names.
+std::vector<std::string> stage_figure(const Figure& figure, const FigureFolder& folder, const FigureOptions& options) {
+  std::vector<std::string> files;
+  folder.stage(figure.name() + ".gp", figure.script());
+  folder.stage(figure.name() + ".dat", figure.data());
+  for (const char* format : {"svg", "pdf", "png"}) {
+    if (format == std::string_view("png") && !options.png) continue;
+    files.push_back(figure.name() + "." + format);
+    folder.stage(files.back(), draw(figure, folder.work(), format));
+  }
+  files.push_back(figure.name() + ".tex");
+  folder.stage(files.back(), figure.latex());
+  if (options.sources) files.insert(files.end(), {figure.name() + ".gp", figure.name() + ".dat"});
+  return files;
+}
+
+/// What is wrong with the disk concerns every figure, what is wrong with a figure that one alone.
+DrawnFigures draw_into(const FigureFolder& folder, const std::vector<Figure>& figures, const FigureOptions& options) {
+  DrawnFigures drawn;
+  folder.stage("style.gp", assets::figure_style());
+  folder.stage("strip.gp", assets::figure_strip());
+  for (const Figure& figure : figures) {
+    std::vector<std::string> files;
+    try {
+      files = stage_figure(figure, folder, options);
+    } catch (const FigureFailure& failure) {
+      drawn.failed.emplace_back(failure.what());
+      continue;
+    }
+    folder.finish(files);
+    drawn.files.insert(drawn.files.end(), files.begin(), files.end());
+  }
+  if (options.sources && !drawn.files.empty()) {
+    folder.finish({"style.gp", "strip.gp"});
+    drawn.files.insert(drawn.files.end(), {"style.gp", "strip.gp"});
+  }
+  return drawn;
 }
 
 }  // namespace
 
-std::vector<std::string> draw_figures(const std::vector<Figure>& figures, const FigureOptions& options) {
+DrawnFigures draw_figures(const std::vector<Figure>& figures, const FigureOptions& options) {
   std::error_code error;
   const bool made = fs::create_directories(options.folder, error);
   if (error) fail(options.folder, error);
-  std::vector<std::string> files;
   try {
-    const WorkFolder work(options.folder);
-    const auto write = [&](const std::string& name, std::string_view text) {
-      write_staged(work.path() / name, options.folder / name, text);
-    };
-    write("style.gp", assets::figure_style());
-    write("strip.gp", assets::figure_strip());
-    if (options.sources) files = {"style.gp", "strip.gp"};
-    for (const Figure& figure : figures) {
-      write(figure.name() + ".gp", figure.script());
-      write(figure.name() + ".dat", figure.data());
-      for (const char* format : {"svg", "png"}) {
-        if (format == std::string_view("png") && !options.png) continue;
-        files.push_back(figure.name() + "." + format);
-        write(files.back(), draw(figure, work.path(), format));
-      }
-      if (options.sources) files.insert(files.end(), {figure.name() + ".gp", figure.name() + ".dat"});
-    }
-    for (const std::string& file : files) {
-      fs::rename(work.path() / file, options.folder / file, error);
-      if (error) fail(options.folder / file, error);
-    }
+    return draw_into(FigureFolder(options.folder), figures, options);
   } catch (...) {
-    if (made) fs::remove(options.folder, error);
+    if (made) fs::remove(options.folder, error);  // if nothing is in it
     throw;
   }
-  return files;
 }
 
 }  // namespace modebank::app::report

@@ -10,12 +10,19 @@ namespace modebank::app::report {
 
 struct FigureOptions {
   std::filesystem::path folder;  ///< made if it is not there
-  bool png = false;              ///< PNG beside the SVG
+  bool png = false;              ///< PNG, too
   bool sources = false;          ///< gnuplot scripts and data beside them, to restyle
 };
 
-/// Draws every figure with gnuplot and puts the files into the folder, all or none. Returns their names. Throws
-/// ConfigurationError when gnuplot is missing or the folder cannot be written, DataError when gnuplot fails.
-std::vector<std::string> draw_figures(const std::vector<Figure>& figures, const FigureOptions& options);
+/// What became of the figures.
+struct DrawnFigures {
+  std::vector<std::string> files;   ///< their names in the folder
+  std::vector<std::string> failed;  ///< "nis.pdf: what gnuplot said"
+};
+
+/// Draws every figure with gnuplot as SVG and PDF, writes a LaTeX snippet that includes it, and puts the files of a
+/// figure into the folder, all or none: one that cannot be drawn does not lose the others. Throws ConfigurationError
+/// when gnuplot is missing or the folder cannot be written.
+DrawnFigures draw_figures(const std::vector<Figure>& figures, const FigureOptions& options);
 
 }  // namespace modebank::app::report

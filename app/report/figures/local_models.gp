@@ -1,5 +1,6 @@
 # Local models by component, in the projections of three parameters, with the components' 95 % ellipses.
-# Data: block k the windows of component k, block K those of none; then an ellipse per component and panel.
+# Data: block k the windows of the component at place k, the heaviest first, block K all others; then an ellipse per
+# component and panel; then the bank's modes.
 panels = axes == 3 ? 3 : 1
 eval open(panels == 3 ? 320 : 240)
 if (!exists('drawn')) drawn = figure.'.'.format
@@ -39,12 +40,14 @@ do for [p = 1:panels] {
   set yrange [low[second[p]]:high[second[p]]]
   set xtics round_tic(high[first[p]] - low[first[p]], 5)
   set ytics round_tic(high[second[p]] - low[second[p]], 6)
-  set xlabel axis_label[first[p]] offset 0,0.9
-  set label 100 axis_label[second[p]] at graph -0.36, graph 0.5 center rotate by 90
+  set xlabel axis_label[first[p]] offset 0,0.9 font legend_font
+  set label 100 axis_label[second[p]] at graph -0.36, graph 0.5 center rotate by 90 font legend_font
   plot figure.'.dat' index K using first[p]:second[p] with points pointtype 1 pointsize dot(0.15) linecolor rgb grey notitle, \
-       for [k = 0:K-1] '' index k using first[p]:second[p] with points pointtype mode_point(k) pointsize dot(0.12) linecolor rgb palette[k+1] notitle, \
+       for [k = 0:K-1] '' index k using first[p]:second[p] with points pointtype 7 pointsize dot(0.12) linecolor rgb component_colour[k+1] notitle, \
        for [k = 0:K-1] '' index K+1+3*k+p-1 using 1:2 with lines linewidth 2.2 linecolor rgb '#ffffff' notitle, \
-       for [k = 0:K-1] '' index K+1+3*k+p-1 using 1:2 with lines linewidth 1.2 linecolor rgb palette[k+1] notitle
+       for [k = 0:K-1] '' index K+1+3*k+p-1 using 1:2 with lines linewidth 1.2 linecolor rgb component_colour[k+1] notitle, \
+       for [i = 1:(modes > 0 ? 1 : 0)] '' index 4*K+1 using first[p]:second[p] with points pointtype 13 pointsize dot(0.75) linecolor rgb '#ffffff' notitle, \
+       for [i = 1:(modes > 0 ? 1 : 0)] '' index 4*K+1 using first[p]:second[p] with points pointtype 13 pointsize dot(0.5) linecolor rgb '#000000' notitle
 }
 if (panels == 3) {
   unset border
@@ -55,15 +58,15 @@ if (panels == 3) {
   unset key
   set xrange [0:1]
   set yrange [0:1]
-  # More than nine components go into two columns.
   set label 1 key_title at graph 0.0, graph 0.97
   do for [k = 0:K] {
-    x = K < 9 ? 0.05 : 0.05 + 0.5 * (k / 9)
-    y = 0.86 - 0.1 * (k % 9)
+    y = 0.86 - 0.085 * k
     name = k < K ? component_title[k+1] : rest_title
-    colour = k < K ? palette[k+1] : grey
-    kind = k < K ? mode_point(k) : 1
-    set label k+2 name at graph x, graph y left offset 0.8,-0.1 point pointtype kind pointsize dot(0.4) linecolor rgb colour
+    colour = k < K ? component_colour[k+1] : grey
+    set label k+2 name at graph 0.05, graph y left offset 0.8,-0.1 point pointtype 7 pointsize dot(0.4) linecolor rgb colour
+  }
+  if (modes > 0) {
+    set label K+3 'mode of the bank' at graph 0.05, graph 0.86-0.085*(K+1) left offset 0.8,-0.1 point pointtype 13 pointsize dot(0.5) linecolor rgb '#000000'
   }
   plot NaN notitle
 }

@@ -58,6 +58,10 @@ Figure pit(const Archive& archive) {
   figure.set("filters", static_cast<Index>(titles.size()));
   figure.set("filter_title", titles);
   figure.set("filter_colour", colours);
+  figure.set_caption(
+      fmt::format("Histogram of the probability integral transform (PIT) of the one-step predictions on the "
+                  "{} runs: flat for a true filter; grey: where 95 % of its bars lie.",
+                  words_for(judged_role(archive))));
   return figure;
 }
 
@@ -82,6 +86,9 @@ Figure coverage(const Archive& archive) {
   figure.set("filter_title", titles);
   figure.add_block("NIS outside its 95 % interval [%]",
                    {"position", "train above", "train below", "test above", "test below"}, rows);
+  figure.set_caption(
+      "Share of samples whose normalised innovation squared (NIS) lies above (upwards) or below (downwards) "
+      "its 95 % interval; 2.5 % on either side is true.");
   return figure;
 }
 
@@ -96,7 +103,9 @@ void add_score_figures(const Archive& archive, FigureSet& set) {
   set.figures.push_back(coverage(archive));
 }
 
-std::string bank_title(const Archive& archive) { return fmt::format("bank, K = {}", archive.bank->mode_count()); }
+std::string bank_title(const Archive& archive) {
+  return fmt::format("bank, {} mode{}", archive.bank->mode_count(), archive.bank->mode_count() == 1 ? "" : "s");
+}
 
 const FilterEvaluation* evaluation_of(const Archive& archive, const std::string& filter) {
   for (const FilterEvaluation& evaluation : archive.evaluations)
@@ -109,6 +118,7 @@ FigureSet run_figures(const Archive& archive, const std::string& run) {
   add_window_figures(archive, set);
   add_time_figures(archive, run, set);
   add_score_figures(archive, set);
+  add_transition_figure(archive, set);
   return set;
 }
 

@@ -7,6 +7,7 @@
 
 #include "app/chain/judged_runs.hpp"
 #include "app/report/figures/run_figures.hpp"
+#include "app/report/figures/shown_groups.hpp"
 #include "app/report/page/assets.hpp"
 #include "app/report/page/prediction_band.hpp"
 #include "app/report/page/unit_text.hpp"
@@ -51,17 +52,40 @@ void set_time(const DrawnRun& drawn, Figure& figure) {
   figure.set("end", drawn.run.time_s(drawn.samples() - 1));
 }
 
-/// Running sums of the mode probabilities, for the strip below.
+/// Running sums of the mode probabilities, for the strip below; those of modes that are not told apart come last,
+/// together.
 void add_strip(const DrawnRun& drawn, Figure& figure) {
   const Eigen::MatrixXd& probability = drawn.bank.mode_probability;
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(probability.rows() + 1, probability.cols());
+  const ShownGroups modes = shown_modes(drawn.archive);
+  std::vector<std::string> titles;
+  for (const Index k : modes.shown) titles.push_back(fmt::format("{}", k));
+  if (modes.any_others()) titles.push_back(modes.others_title());
+  const auto layers = static_cast<Index>(titles.size());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(layers + 1, probability.cols());
+  for (std::size_t i = 0; i < modes.shown.size(); ++i)
+    sums.row(static_cast<Index>(i) + 1) = sums.row(static_cast<Index>(i)) + probability.row(modes.shown[i]);
+  if (modes.any_others())
+    sums.row(layers) = sums.row(layers - 1) + probability(modes.others, Eigen::all).colwise().sum();
   std::vector<std::string> columns{"time [s]", "0"};
-  for (Index k = 0; k < probability.rows(); ++k) {
-    sums.row(k + 1) = sums.row(k) + probability.row(k);
-    columns.push_back(fmt::format("modes 0 to {}", k));
-  }
-  figure.set("K", probability.rows());
-  figure.add_block("mode probabilities, summed from mode 0 on", columns, with_time(drawn, sums));
+  for (const std::string& title : titles) columns.push_back("up to mode " + title);
+  figure.set("layers", layers);
+  figure.set("told_apart", static_cast<Index>(modes.shown.size()));
+  figure.set("layer_title", titles);
+  figure.add_block("mode probabilities, summed from the first mode on", columns, with_time(drawn, sums));
+}
+
+/// The run in words, for captions.
+std::string run_words(const DrawnRun& drawn) {
+  const std::string part = drawn.samples() < drawn.run.samples()
+                               ? fmt::format(", its first {} of {} samples", drawn.samples(), drawn.run.samples())
+                               : "";
+  return fmt::format("the {} run {}{}", words_for(drawn.run.role), drawn.run.run, part);
+}
+
+std::string strip_words(const DrawnRun& drawn) {
+  return shown_modes(drawn.archive).any_others()
+             ? fmt::format(" Bottom: probabilities of the {} most used modes.", most_shown_groups)
+             : " Bottom: probabilities of the modes.";
 }
 
 std::string state_label(const DrawnRun& drawn, Index state) {
@@ -91,6 +115,11 @@ Figure estimates(const DrawnRun& drawn, Index state) {
   figure.add_block("run " + drawn.run.run, {"time [s]", "measured", "baseline", "bank", "lower", "upper"},
                    with_time(drawn, rows));
   add_strip(drawn, figure);
+  figure.set_caption(
+      fmt::format("{} of {}: measured, and predicted one sample ahead by one Kalman filter (baseline) and "
+                  "by the bank with its 95 % band.",
+                  state_label(drawn, state), run_words(drawn)) +
+      strip_words(drawn));
   return figure;
 }
 
@@ -107,6 +136,9 @@ Figure nis(const DrawnRun& drawn) {
   figure.set("bank_title", bank_title(drawn.archive));
   figure.add_block("NIS of run " + drawn.run.run, {"time [s]", "baseline", "bank"}, with_time(drawn, rows));
   add_strip(drawn, figure);
+  figure.set_caption(fmt::format("Normalised innovation squared (NIS) on {}; grey: where 95 % of a true filter's lie.",
+                                 run_words(drawn)) +
+                     strip_words(drawn));
   return figure;
 }
 
@@ -135,6 +167,10 @@ Figure prediction(const DrawnRun& drawn, Index state) {
   std::vector<std::string> columns = names_of(recording.inputs);
   columns.insert(columns.begin(), "time [s]");
   figure.add_block("inputs", columns, with_time(drawn, drawn.run.input));
+  figure.set_caption(
+      fmt::format("Inputs and {} of {} with the 95 % band that the bank predicts one sample ahead; {} of "
+                  "{} samples lie outside.",
+                  state_label(drawn, state), run_words(drawn), outside, drawn.samples()));
   return figure;
 }
 

@@ -4,7 +4,9 @@
 #include <limits>
 
 #include "app/report/figures/confidence_ellipse.hpp"
+#include "app/report/figures/palette.hpp"
 #include "app/report/figures/run_figures.hpp"
+#include "app/report/figures/shown_groups.hpp"
 #include "app/report/page/assets.hpp"
 #include "app/report/page/unit_text.hpp"
 #include "app/text/summary_text.hpp"
@@ -33,22 +35,36 @@ std::vector<Index> projection_axes(const std::vector<std::string>& names) {
   return axes;
 }
 
-/// Windows of component k (-1: of none), every `stride`-th, their parameters at `axes`.
-Eigen::MatrixXd points_of(const Archive& archive, int k, Index stride, const std::vector<Index>& axes) {
+/// Windows of these components (-1: of none), every `stride`-th, their parameters at `axes`.
+Eigen::MatrixXd points_of(const Archive& archive, const std::vector<Index>& components, Index stride,
+                          const std::vector<Index>& axes) {
   std::vector<Index> columns;
   for (Index i = 0; i < archive.windows->count(); i += stride)
-    if (archive.mixture->labels(i) == k) columns.push_back(i);
-  Eigen::MatrixXd rows(static_cast<Index>(columns.size()), static_cast<Index>(axes.size()));
-  for (Index r = 0; r < rows.rows(); ++r)
-    for (Index c = 0; c < rows.cols(); ++c)
-      rows(r, c) = archive.windows->parameters(axes[static_cast<std::size_t>(c)], columns[static_cast<std::size_t>(r)]);
+    if (std::find(components.begin(), components.end(), archive.mixture->labels(i)) != components.end())
+      columns.push_back(i);
+  return archive.windows->parameters(axes, columns).transpose();
+}
+
+/// The bank's modes that figures tell apart, at `axes`.
+Eigen::MatrixXd modes_at(const Archive& archive, const std::vector<Index>& axes) {
+  if (!archive.bank) return Eigen::MatrixXd(0, std::ssize(axes));
+  const std::vector<Index> modes = shown_modes(archive).shown;
+  Eigen::MatrixXd rows(std::ssize(modes), std::ssize(axes));
+  for (Index i = 0; i < rows.rows(); ++i) {
+    const Index k = modes[static_cast<std::size_t>(i)];
+    const Mode& mode = archive.bank->modes[static_cast<std::size_t>(k)];
+    const Eigen::VectorXd theta = archive.bank->motion_parameters.empty() ? archive.bank->theta(k) : mode.motion_theta;
+    if (axes.back() >= theta.size()) return Eigen::MatrixXd(0, std::ssize(axes));  // of another model
+    rows.row(i) = theta(axes).transpose();
+  }
   return rows;
 }
 
 /// Three blocks per component, one per panel.
-void add_ellipses(const GaussianMixture& mixture, const std::vector<Index>& axes, Figure& figure) {
+void add_ellipses(const GaussianMixture& mixture, const std::vector<Index>& components, const std::vector<Index>& axes,
+                  Figure& figure) {
   const std::vector<std::pair<std::size_t, std::size_t>> panels{{0, 1}, {0, 2}, {1, 2}};
-  for (Index k = 0; k < mixture.components(); ++k)
+  for (const Index k : components)
     for (const auto& [first, second] : panels) {
       Eigen::MatrixXd boundary(0, 2);
       if (second < axes.size()) {
@@ -63,35 +79,75 @@ void add_ellipses(const GaussianMixture& mixture, const std::vector<Index>& axes
     }
 }
 
-std::string label_of(const Archive& archive, std::size_t parameter) {
+/// Unit of a parameter; "" without.
+std::string unit_at(const Archive& archive, Index parameter) {
   const WindowFits& fits = *archive.windows;
   const Units units(archive.recording.value_or(Recording()));
   const Unit all = fits.model_parameters.empty() ? parameter_units(fits.structure, units.states(), units.inputs())
                                                  : unit_of(fits.model_parameters);
-  const std::string unit = parameter < all.size() && all[parameter] != "1" ? all[parameter] : "";
-  return with_unit(window_labels(archive)[parameter], unit);
+  const auto at = static_cast<std::size_t>(parameter);
+  return at < all.size() && all[at] != "1" ? all[at] : "";
+}
+
+/// ", wz <- velL in (rad/s)/(m/s)": panels are too narrow for it.
+std::string units_words(const Archive& archive, const std::vector<Index>& axes,
+                        const std::vector<std::string>& labels) {
+  std::string words;
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    if (const std::string unit = unit_at(archive, axes[i]); !unit.empty())
+      words += fmt::format("; {} in {}", labels[i], unit);
+  return words;
+}
+
+/// The components that are told apart, the heaviest first: the points of the lighter ones lie over theirs.
+std::vector<Index> by_weight(const GaussianMixture& mixture, std::vector<Index> components) {
+  std::stable_sort(components.begin(), components.end(),
+                   [&](Index a, Index b) { return mixture.weights(a) > mixture.weights(b); });
+  return components;
+}
+
+void name_components(const GaussianMixture& mixture, const ShownGroups& groups, const std::vector<Index>& order,
+                     Figure& figure) {
+  const Palette colours = palette(most_shown_groups);
+  std::vector<std::string> titles, used;
+  for (const Index k : order) {
+    titles.push_back(fmt::format("{} ({:.0f} %)", k, 100 * mixture.weights(k)));
+    const auto position = std::find(groups.shown.begin(), groups.shown.end(), k) - groups.shown.begin();
+    used.push_back(colours.modes.at(static_cast<std::size_t>(position)));
+  }
+  figure.set("K", std::ssize(order));
+  figure.set("component_title", titles);
+  figure.set("component_colour", used);
+  figure.set("key_title", std::string("component (weight)"));
+  figure.set("rest_title", groups.any_others() ? groups.others_title() + ", none" : std::string("none"));
 }
 
 Figure local_models(const Archive& archive, const std::vector<Index>& axes) {
   const GaussianMixture& mixture = archive.mixture->mixture;
+  const ShownGroups groups = shown_groups(mixture.weights);
+  const std::vector<Index> order = by_weight(mixture, groups.shown);
   Figure figure("local_models", assets::figure_local_models());
-  std::vector<std::string> labels, titles;
-  for (const Index axis : axes) labels.push_back(label_of(archive, static_cast<std::size_t>(axis)));
-  for (Index k = 0; k < mixture.components(); ++k)
-    titles.push_back(fmt::format("{} ({:.0f} %)", k, 100 * mixture.weights(k)));
-  figure.set("K", mixture.components());
+  std::vector<std::string> labels;
+  for (const Index axis : axes) labels.push_back(window_labels(archive)[static_cast<std::size_t>(axis)]);
   figure.set("axes", static_cast<Index>(axes.size()));
   figure.set("axis_label", labels);
-  figure.set("component_title", titles);
-  figure.set("key_title", std::string("component (weight)"));
-  figure.set("rest_title", std::string("none"));
-  const Index stride = (archive.windows->count() + most_points - 1) / most_points;
-  for (Index k = 0; k <= mixture.components(); ++k) {
-    const int label = k < mixture.components() ? static_cast<int>(k) : -1;
-    figure.add_block(fmt::format("windows of component {}, one in {}", label, stride), labels,
-                     points_of(archive, label, std::max<Index>(1, stride), axes));
-  }
-  add_ellipses(mixture, axes, figure);
+  name_components(mixture, groups, order, figure);
+  const Index stride = std::max<Index>(1, (archive.windows->count() + most_points - 1) / most_points);
+  for (const Index k : order)
+    figure.add_block(fmt::format("windows of component {}, one in {}", k, stride), labels,
+                     points_of(archive, {k}, stride, axes));
+  std::vector<Index> rest = groups.others;
+  rest.push_back(-1);
+  figure.add_block(fmt::format("all other windows, one in {}", stride), labels, points_of(archive, rest, stride, axes));
+  add_ellipses(mixture, order, axes, figure);
+  const Eigen::MatrixXd modes = modes_at(archive, axes);
+  figure.set("modes", modes.rows());
+  figure.add_block("modes of the bank", labels, modes);
+  figure.set_caption(
+      fmt::format("Local models of {} windows, coloured by mixture component, with the components' 95 % "
+                  "ellipses{}{}.",
+                  archive.windows->count(), modes.rows() > 0 ? "; diamonds: modes of the bank" : "",
+                  units_words(archive, axes, labels)));
   return figure;
 }
 
@@ -111,6 +167,9 @@ Figure selection(const std::vector<Candidate>& candidates) {
   figure.set("last", candidates.back().components);
   figure.set("heldout", static_cast<Index>(rows.col(4).array().isFinite().any()));
   figure.add_block("candidates", {"components", "BIC", "ICL", "AIC", "held out", "agreeing restarts"}, rows);
+  figure.set_caption(
+      "Criteria over the number of mixture components: lower is better for BIC, ICL and AIC, higher for the "
+      "held-out score; the bar marks the choice.");
   return figure;
 }
 

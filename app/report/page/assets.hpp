@@ -24,6 +24,9 @@ std::string_view figure_nis();
 std::string_view figure_selection();
 std::string_view figure_pit();
 std::string_view figure_coverage();
+std::string_view figure_transition();
+std::string_view figure_effects();
+std::string_view figure_pareto();
 
 // Configurations of the demo.
 std::string_view simulate_ice_ini();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "app/chain/judged_runs.hpp"
 #include "app/report/page/assets.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
@@ -44,12 +45,18 @@ int measured_states(const StudyTable& table) {
   return std::max(1, static_cast<int>(count));
 }
 
+bool has_repeats(const StudyTable& table) {
+  return std::any_of(table.rows.begin(), table.rows.end(), [](const TrialRow& row) { return row.repeat > 0; });
+}
+
 json columns_of(const StudyTable& table) {
   json columns = json::array();
   for (const std::string& key : table.varied_keys)
     columns.push_back({{"name", key}, {"kind", "varied"}, {"shown", true}});
-  for (const char* name : {"status", "evidence", "repeat"})
-    columns.push_back({{"name", name}, {"kind", "about"}, {"text", true}, {"shown", std::string(name) != "repeat"}});
+  for (const char* name : {"status", "evidence"})
+    columns.push_back({{"name", name}, {"kind", "about"}, {"text", true}, {"shown", true}});
+  for (const char* name : {"repeat", "seed"})
+    columns.push_back({{"name", name}, {"kind", "about"}, {"text", true}, {"shown", has_repeats(table)}});
   for (const std::string& score : table.score_names)
     columns.push_back({{"name", score},
                        {"kind", score == "modes" ? "cost" : "score"},
@@ -72,6 +79,7 @@ json cells_of(const StudyFile& file, const StudyTable& table, std::size_t i) {
   cells.push_back(name_of(row.status));
   cells.push_back(row.evidence);
   cells.push_back(row.repeat);
+  cells.push_back(std::to_string(row.seed));
   for (const double score : row.scores) cells.push_back(number(score));
   return cells;
 }
@@ -85,6 +93,7 @@ json rows_of(const StudyFile& file, const StudyTable& table, const std::vector<T
                     {"message", row.message},
                     {"key", row.key},
                     {"seed", std::to_string(row.seed)},
+                    {"repeat", row.repeat},
                     {"varied", row.varied},
                     {"cells", cells_of(file, table, i)},
                     {"page", places[i].page},
@@ -125,7 +134,8 @@ json best_of(const StudyTable& table, const Answers& answers) {
     std::string setting;
     for (std::size_t k = 0; k < table.varied_keys.size(); ++k)
       setting += (k ? ", " : "") + table.varied_keys[k] + " = " + row.varied[k];
-    std::string text = fmt::format("The best {} ({} is better), {}, comes from {}", best.score, best.goal.text(),
+    std::string text = fmt::format("The best log score of the bank on {} runs, {} nats per sample, comes from {}",
+                                   words_for(best.score == "bank_test_log_score" ? Role::test : Role::train),
                                    number_text(best.value), setting);
     if (best.repeats > 1) text += fmt::format(" (mean of {} repeats)", best.repeats);
     if (!row.evidence.empty()) text += fmt::format("; on modes of motion it answers: {}", row.evidence);
@@ -154,6 +164,7 @@ Page study_page(const StudyFile& file, const StudyTable& table, const std::vecto
                  {"varied", varied_of(table)},
                  {"counts", counts_of(table)},
                  {"best", best_of(table, answers)},
+                 {"better", better_section(table, places, answers.headline)},
                  {"standard_score", answers.headline}}}};
   return page;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,27 @@ struct TrialPlace {
   std::string archive;  ///< empty: not there
 };
 
+/// How much better one setting scores than another, paired by repeat: repeats of one number share their seed.
+struct RepeatGain {
+  Eigen::Index repeats = 0;
+  double gain = std::numeric_limits<double>::quiet_NaN();
+  double standard_error = gain, margin = gain;  ///< NaN below two repeats; t(0.975, repeats - 1) standard errors
+};
+RepeatGain repeat_gain(const StudyTable& table, const std::vector<std::size_t>& best,
+                       const std::vector<std::size_t>& other, std::size_t score);
+
+/// Whether the best setting is better than the next ones: its gain in log score over each with an error, paired by run
+/// where the archives hold the same runs (of the first repeat), else by repeat. Null without two settings.
+nlohmann::json better_section(const StudyTable& table, const std::vector<TrialPlace>& places,
+                              const std::string& headline);
+
 /// The page of a study: `places` holds one entry per row of `table`.
 Page study_page(const StudyFile& file, const StudyTable& table, const std::vector<TrialPlace>& places,
                 const std::string& name);
 
-/// The paper's figure 5 over K: shares of samples outside the interval of the baseline, of noise only and of the banks
-/// with each number of components.
+/// coverage: the paper's figure 5 over K, shares of samples outside the interval of the baseline, of noise only and of
+/// the banks with each number of components; effects: the best that each value of each key reaches; pareto: log score
+/// over the number of modes.
 FigureSet study_figures(const StudyTable& table);
 
 }  // namespace modebank::app::report

@@ -74,6 +74,15 @@ void write_run_pages(const StudyTable& table, const fs::path& page, const Report
   }
 }
 
+void write_study_page(const fs::path& study, const fs::path& path, const StudyFile& file, const StudyTable& table,
+                      const fs::path& page, const ReportConfig& options) {
+  std::vector<TrialPlace> places = archives_of(table, path.parent_path());
+  write_run_pages(table, page, options, places);
+  const fs::path name = fs::absolute(fs::is_directory(study) ? study : path).lexically_normal();
+  write_page(page,
+             study_page(file, table, places, (name.has_filename() ? name : name.parent_path()).filename().string()));
+}
+
 }  // namespace
 
 bool is_study(const fs::path& path) {
@@ -86,13 +95,9 @@ void report_study(const fs::path& study, const fs::path& page, const ReportConfi
   if (!page.empty()) check_page_path(page, {path});
   const StudyFile file = read_study_file(path, "study");
   const StudyTable table = study_table_of(file);
+  if (!page.empty()) write_study_page(study, path, file, table, page, options);
+  // Last: a figure that cannot be drawn must not cost the page.
   if (!options.figures.empty()) write_figures(study_figures(table), options);
-  if (page.empty()) return;
-  std::vector<TrialPlace> places = archives_of(table, path.parent_path());
-  write_run_pages(table, page, options, places);
-  const fs::path name = fs::absolute(fs::is_directory(study) ? study : path).lexically_normal();
-  write_page(page,
-             study_page(file, table, places, (name.has_filename() ? name : name.parent_path()).filename().string()));
 }
 
 }  // namespace modebank::app::report

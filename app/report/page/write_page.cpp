@@ -26,9 +26,12 @@ void write_page(const std::filesystem::path& path, const Page& page) {
 }
 
 void write_figures(const FigureSet& set, const ReportConfig& options) {
-  const auto files = draw_figures(set.figures, {options.figures, options.png, options.sources});
-  fmt::print("{}: {}\n", options.figures, fmt::join(files, ", "));
+  const DrawnFigures drawn = draw_figures(set.figures, {options.figures, options.png, options.sources});
+  if (!drawn.files.empty()) fmt::print("{}: {}\n", options.figures, fmt::join(drawn.files, ", "));
   for (const std::string& reason : set.left_out) fmt::print("left out: {}\n", reason);
+  if (!drawn.failed.empty())
+    throw DataError(fmt::format("report.figures: {} of {} figures could not be drawn, the others are there\n{}",
+                                drawn.failed.size(), set.figures.size(), fmt::join(drawn.failed, "\n")));
 }
 
 }  // namespace modebank::app::report

@@ -14,7 +14,8 @@ void check_page_path(const std::filesystem::path& path, const std::vector<std::f
 /// Writes the page under a temporary name and renames it; says how large it is.
 void write_page(const std::filesystem::path& path, const Page& page);
 
-/// Draws the figures into report.figures and prints what was written and what could not be.
+/// Draws the figures into report.figures and prints what was written; throws DataError that names those which could not
+/// be drawn, after the others.
 void write_figures(const FigureSet& set, const ReportConfig& options);
 
 /// A study's figures, where report.figures asks for them, and its page, unless `page` is empty.

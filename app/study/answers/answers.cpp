@@ -71,17 +71,31 @@ std::optional<ScoreGoal> goal_in(const StudyTable& table, std::size_t score) {
   return goal_of(table.score_names[score], state_count(table, table.score_names[score]));
 }
 
+/// The best mean over the repeats of a setting; NaN without scores.
+double best_mean(const StudyTable& table, const std::vector<std::size_t>& rows, std::size_t score,
+                 const ScoreGoal& goal) {
+  std::map<std::vector<std::string>, std::vector<std::size_t>> settings;
+  for (const std::size_t row : rows) settings[table.rows[row].varied].push_back(row);
+  double best = no_number;
+  for (const auto& [varied, repeats] : settings) {
+    const double mean = mean_of(values_of(table, repeats, score));
+    if (!std::isnan(mean) && !(goal.loss(mean) >= goal.loss(best))) best = mean;
+  }
+  return best;
+}
+
 /// Adds the effects of one key on one score.
 void add_effects(const StudyTable& table, const std::string& key, const std::vector<ValueGroup>& groups,
                  std::size_t score, Answers& answers) {
   const std::string& name = table.score_names[score];
+  const ScoreGoal goal = goal_in(table, score).value();
   std::vector<double> all;
   double within = 0.0;
   for (const ValueGroup& group : groups) {
     const std::vector<double> values = values_of(table, group.rows, score);
     const double mean = mean_of(values);
-    answers.main_effects.push_back(
-        {key, group.label, name, static_cast<int>(values.size()), mean, std::sqrt(variance_of(values))});
+    answers.main_effects.push_back({key, group.label, name, static_cast<int>(values.size()), mean,
+                                    std::sqrt(variance_of(values)), best_mean(table, group.rows, score, goal)});
     within += squares_about(values, mean);
     all.insert(all.end(), values.begin(), values.end());
   }

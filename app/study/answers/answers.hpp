@@ -12,12 +12,14 @@
 namespace modebank::app {
 
 /// Mean of a score over all trials in which a varied key had one value (for keys with many numbers: a range of
-/// values), whatever the others were. Confounded where the plan is not a full grid.
+/// values), whatever the others were. Confounded where the plan is not a full grid, and drawn down by settings that
+/// nobody would choose: `best` is what the value can reach, and the best of all values is the best setting.
 struct MainEffect {
   std::string key, value, score;
   int trials = 0;
   double mean = 0.0;
-  double sd = 0.0;  ///< between those trials; NaN for one
+  double sd = 0.0;    ///< between those trials; NaN for one
+  double best = 0.0;  ///< of the settings with that value, each by the mean over its repeats
 };
 
 /// How much of a score's variance over the trials the values of one key explain (eta squared, 0 to 1).

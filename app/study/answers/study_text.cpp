@@ -5,6 +5,7 @@
 #include <map>
 
 #include "app/study/run/study_progress.hpp"
+#include "app/text/duration_text.hpp"
 
 namespace modebank::app {
 namespace {

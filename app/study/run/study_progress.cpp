@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "app/text/duration_text.hpp"
 #include "io/files/standard_error.hpp"
 
 namespace modebank::app {
@@ -48,7 +49,7 @@ std::string StudyProgress::line(std::size_t finished, std::size_t all) const {
   const double elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
   if (computed_ > 0 && elapsed_s > 0.0) {
     const double rate = static_cast<double>(computed_) / elapsed_s;
-    text += fmt::format(", {:.3g} per {}", rate >= 0.1 ? rate : rate * 3600.0, rate >= 0.1 ? "s" : "h");
+    text += ", " + rate_text(rate);
     if (finished < all) text += fmt::format(", {} left", duration_text(static_cast<double>(all - finished) / rate));
   }
   if (!best_run_.empty()) text += fmt::format(", best log score {:.4f} ({})", best_, best_run_);
@@ -61,12 +62,6 @@ std::string describe_trial(const std::vector<std::string>& varied_keys, const Tr
     text += fmt::format("{}{} = {}", i == 0 ? "" : ", ", varied_keys[i], row.varied[i]);
   if (row.repeat > 0) text += fmt::format(", repeat {}", row.repeat);
   return text;
-}
-
-std::string duration_text(double seconds) {
-  if (seconds < 120.0) return fmt::format("{:.3g} s", seconds);
-  if (seconds < 7200.0) return fmt::format("{:.3g} min", seconds / 60.0);
-  return fmt::format("{:.3g} h", seconds / 3600.0);
 }
 
 }  // namespace modebank::app

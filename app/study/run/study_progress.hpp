@@ -36,7 +36,4 @@ class StudyProgress {
 /// "mixture.components = 9, bank.stay = 0.95", for messages.
 std::string describe_trial(const std::vector<std::string>& varied_keys, const TrialRow& row);
 
-/// "3 s", "4.2 min", "1.5 h".
-std::string duration_text(double seconds);
-
 }  // namespace modebank::app

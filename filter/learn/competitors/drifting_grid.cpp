@@ -9,6 +9,7 @@
 #include "filter/learn/competitors/drifting_lanes.hpp"
 #include "filter/step/feed/run_samples.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "ident/base/work_counter.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -118,7 +119,9 @@ DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& 
   const Index drifts = size[0] * size[1] * size[2], rest = size[3] * size[4] * size[5];
   DriftingScores scores{Eigen::VectorXd(drifts * rest), 0};
   std::vector<Index> samples(static_cast<std::size_t>(drifts), 0);
+  WorkCounter counter("settings of the drifting model", static_cast<std::size_t>(drifts));
   tbb::parallel_for(Index{0}, drifts, [&](Index d) {
+    counter.add();
     const std::array<Index, 6> at = grid.point(d * rest);
     const DriftRates rates{grid.q[static_cast<std::size_t>(at[0])], grid.p0[static_cast<std::size_t>(at[1])],
                            grid.leak[static_cast<std::size_t>(at[2])]};

@@ -14,6 +14,7 @@
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/transition_learning.hpp"
 #include "filter/learn/learn.hpp"
+#include "filter/learn/refine/learning_part.hpp"
 #include "mixture/select.hpp"
 #include "modebank/base/error.hpp"
 
@@ -220,7 +221,10 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
     em.most_modes = std::min(em.most_modes, options.modes);
   }
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
-  return refine_bank(recording, fits, starts, em, filter);
+  const std::optional<Recording> part = learning_part(recording, em.transitions, em.seed);
+  Refinement refined = refine_bank(part ? *part : recording, fits, starts, em, filter);
+  if (part) refined.learned_transitions = part->transitions(Role::train);
+  return refined;
 }
 
 Refine refinement_asked(const BankOptions& options, bool linear) {

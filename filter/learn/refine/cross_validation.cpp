@@ -9,6 +9,7 @@
 
 #include "filter/judge/look_ahead.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "ident/base/work_counter.hpp"
 
 namespace modebank {
 namespace {
@@ -54,10 +55,12 @@ CrossValidation::CrossValidation(const RefineInput& in) : in_(in), splits_(split
 }
 
 void CrossValidation::consider(const std::vector<RefineStart>& candidates) {
+  WorkCounter counter("fits of modes", candidates.size());
   for (const RefineStart& start : candidates) {
     fits_.push_back(possible() ? best_iterations(start)
                                : ScoredFit{start, 0, in_.options.max_iterations, {start.model.modes(), {}}, {}});
     fits_.back().row = fits_.size() - 1;
+    counter.add();
   }
   if (possible()) chosen_ = fewest_modes_as_good(scores_of(fits_), samples_, in_.options.tuning.most_loss);
 }

@@ -12,6 +12,7 @@
 #include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
 #include "ident/base/linalg.hpp"
+#include "ident/base/work_counter.hpp"
 
 namespace modebank {
 namespace {
@@ -138,9 +139,11 @@ class MeasuredSplits {
 MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
                                             const RefineTuning& tuning) {
   std::vector<LikelihoodMaximum> ends(tuning.R_start_shares.size());
+  WorkCounter counter("searches for measurement noise", ends.size());
   tbb::parallel_for(std::size_t{0}, ends.size(), [&](std::size_t i) {
     ends[i] = maximise_likelihood(target, free_noise(bank.R.rows()), with_share_as_R(bank, tuning.R_start_shares[i]),
                                   search_limits);
+    counter.add();
   });
   MeasurementNoise result;
   result.starts = std::ssize(ends);

@@ -30,6 +30,7 @@ struct Refinement {
   SwitchingStage switching = {};
   DriftStage drift = {};
   LookAheadStage look_ahead = {};
+  Eigen::Index learned_transitions = 0;  ///< that a part of the training runs has (learning_part.hpp); 0: all
 };
 
 /// Expectation-maximisation of the switching model (switching_regression.hpp) from banks of mixtures. Which start, how

@@ -132,6 +132,7 @@ const std::map<std::string, std::vector<std::string>> texts{
     {"window.state_lags", {"2", "auto"}},
     {"window.input_lags", {"2", "auto"}},
     {"data.quantum", {"0.02", "auto"}},
+    {"bank.refine_transitions", {"0", "100"}},
 };
 
 /// Other values that the option accepts: words, or some numbers.

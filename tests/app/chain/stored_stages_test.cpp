@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/chain/chain.hpp"
+#include "app/config/config_file.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/inspect.hpp"
 #include "io/files/read_file.hpp"
@@ -37,6 +39,37 @@ TEST_F(StoredStages, NumbersAreTheSameForAnyThreadCount) {
   const std::string one = all_stages(archive());
   ASSERT_EQ(run({"--job.threads", "2"}).status, 0);
   EXPECT_EQ(all_stages(archive()), one);
+}
+
+TEST_F(StoredStages, LearningFromAPartIsTheSameForAnyThreadCountAndSaysSo) {
+  ASSERT_EQ(run({"--bank.refine_transitions", "60", "--job.threads", "1"}).status, 0);
+  const std::string one = all_stages(archive());
+  EXPECT_EQ(read_archive(archive()).learned_transitions, 60);
+  EXPECT_THAT(modebank({"show", archive()}).out, ::testing::HasSubstr("learned   from 60 of 79 training transitions"));
+  ASSERT_EQ(run({"--bank.refine_transitions", "60", "--job.threads", "2"}).status, 0);
+  EXPECT_EQ(all_stages(archive()), one);
+}
+
+TEST_F(StoredStages, ALimitOfAllTransitionsChangesNothing) {
+  ASSERT_EQ(run({"--bank.refine_transitions", "0"}).status, 0);
+  const std::string all = all_stages(archive());
+  ASSERT_EQ(run({"--bank.refine_transitions", "79"}).status, 0);
+  EXPECT_EQ(all_stages(archive()), all);
+}
+
+/// As recordings of more samples are written than memory holds evaluations of.
+TEST_F(StoredStages, EvaluationsWrittenAsTheyAreMadeAreTheSame) {
+  ASSERT_EQ(run().status, 0);
+  const std::string streamed = file("streamed.h5").string();
+  const ChainOptions options = app::chain_options(app::load_config(config(), {}));
+  StageSource computed;
+  const Listener silent;
+  Chain chain(computed, silent);
+  const Recording& recording = *chain.run(options, Stage::data, {}).recording;
+  stream_archive(streamed, recording, [&](const EvaluationSink& sink) -> const Archive& {
+    return chain.run(options, Stage::bank_scores, {}, &sink);
+  });
+  EXPECT_EQ(all_stages(streamed), all_stages(archive()));
 }
 
 TEST_F(StoredStages, StoredConfigurationReproducesTheArchive) {

@@ -51,7 +51,6 @@ TEST_F(Help, OptionsThatACommandDoesNotReadAreRefused) {
                                                     {"run", config(), "--study.vary", "window.length = 3"},
                                                     {"verify", archive(), "--window.length", "30"},
                                                     {"identify", config(), "--track.level", "0.9"},
-                                                    {"report", archive(), "--json"},
                                                     {"simulate", config(), "--samples", "3"}};
   for (const std::vector<std::string>& line : lines) {
     const ProgramResult result = modebank(line);

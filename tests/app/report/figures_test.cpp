@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "app/report/figures/figure.hpp"
+#include "app/report/figures/shown_groups.hpp"
 #include "ident/base/distributions.hpp"
 #include "io/archive/archive.hpp"
 #include "tests/app/cli_fixture.hpp"
@@ -69,7 +70,7 @@ TEST_F(Figures, AreDrawnFromTheArchivesNumbers) {
   const ProgramResult result = report({"--report.sources", "true", "--report.png", "true"});
   ASSERT_EQ(result.status, 0) << result.err;
   for (const char* name : {"local_models", "selection", "estimates", "prediction", "nis", "pit", "coverage"})
-    for (const char* kind : {".svg", ".png", ".gp", ".dat"})
+    for (const char* kind : {".svg", ".pdf", ".png", ".tex", ".gp", ".dat"})
       EXPECT_TRUE(drawn().count(std::string(name) + kind)) << name << kind;
   const Archive archived = read_archive(archive());
   const RunEvaluation& evaluation = archived.evaluations.at(0).runs.at(1);  // bank, the held-out run
@@ -127,6 +128,56 @@ TEST_F(Figures, AnArchiveWithoutABankSaysWhatIsMissing) {
   const ProgramResult result = report();
   EXPECT_NE(result.out.find("no mixture"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("no evaluation"), std::string::npos) << result.out;
+}
+
+/// A font file in a PDF is a stream that a descriptor names.
+TEST_F(Figures, FontsAreEmbeddedInThePdf) {
+  MODEBANK_NEEDS_GNUPLOT();
+  ASSERT_EQ(run().status, 0);
+  ASSERT_EQ(report().status, 0);
+  EXPECT_NE(text_of(file("figures/pit.pdf")).find("/FontFile"), std::string::npos);
+  const std::string snippet = text_of(file("figures/pit.tex"));
+  EXPECT_NE(snippet.find("\\includegraphics[width=\\columnwidth]{pit}"), std::string::npos) << snippet;
+  EXPECT_NE(snippet.find("95 \\% of its bars"), std::string::npos) << snippet;
+}
+
+TEST_F(Figures, OneThatFailsIsNamedAndDoesNotLoseTheOthers) {
+  MODEBANK_NEEDS_GNUPLOT();
+  ASSERT_EQ(run().status, 0);
+  std::filesystem::create_directory(file("bin"));
+  write("bin/gnuplot",
+        "#!/bin/sh\nfor last; do :; done\n[ \"$last\" != nis.gp ] || { echo no ink left >&2; exit 1; }\n"
+        "PATH=${PATH#*:} exec gnuplot \"$@\"\n");
+  std::filesystem::permissions(file("bin/gnuplot"), std::filesystem::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (file("bin").string() + ":" + path).c_str(), 1);
+  const ProgramResult result = report({"-o", file("page.html").string()});
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("1 of "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("nis.svg: gnuplot could not draw it: no ink left"), std::string::npos) << result.err;
+  EXPECT_TRUE(drawn().count("pit.pdf") && drawn().count("transition.svg") + drawn().count("coverage.svg") > 0);
+  EXPECT_FALSE(drawn().count("nis.svg"));
+  EXPECT_TRUE(std::filesystem::exists(file("page.html")));
+}
+
+/// The largest keep their order and their colours; the others are one group.
+TEST(ShownGroups, AreTheLargestOfMany) {
+  Eigen::VectorXd sizes = Eigen::VectorXd::LinSpaced(55, 0.0, 1.0);
+  sizes(3) = 2.0;
+  const app::report::ShownGroups groups = app::report::shown_groups(sizes);
+  EXPECT_EQ(groups.shown, (std::vector<Eigen::Index>{3, 48, 49, 50, 51, 52, 53, 54}));
+  EXPECT_EQ(groups.others.size(), 47u);
+  EXPECT_EQ(groups.others_title(), "47 others");
+  EXPECT_FALSE(app::report::shown_groups(sizes.head(8)).any_others());
+}
+
+TEST_F(Figures, OfFiftyComponentsAreDrawn) {
+  MODEBANK_NEEDS_GNUPLOT();
+  ASSERT_EQ(run({"--mixture.components", "50", "--mixture.restarts", "1", "--bank.refine", "none"}).status, 0);
+  const ProgramResult result = report();
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(text_of(file("figures/local_models.svg")).find("42 others, none"), std::string::npos);
 }
 
 TEST_F(Figures, AMissingGnuplotIsNamedAndNothingIsWritten) {

@@ -280,6 +280,7 @@ void expect_same(const Archive& actual, const Archive& expected) {
   expect_same_part(actual.mixture, expected.mixture, "mixture");
   expect_same_part(actual.bank, expected.bank, "bank");
   EXPECT_EQ(actual.measured_fit, expected.measured_fit);
+  EXPECT_EQ(actual.learned_transitions, expected.learned_transitions);
   EXPECT_EQ(actual.mode_names, expected.mode_names);
   expect_same_labels(actual, expected);
   expect_same_part(actual.unrefined, expected.unrefined, "unrefined");

@@ -235,6 +235,7 @@ Archive full_archive(Index n, Index m) {
   archive.merging = {{Role::train, 7, 6, modes, 300, 1.25, 1.125, 0.125},
                      {Role::test, 7, 6, modes, 299, 1.5, 1.75, -0.25}};
   archive.measured_fit = MeasuredFit::iteration_limit;
+  archive.learned_transitions = 40;
   archive.mode_names = {"ice", "", "Gelände, \"naß\""};
   add_labels(archive);
   archive.baseline = make_bank(structure, 1, false);

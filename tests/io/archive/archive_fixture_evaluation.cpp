@@ -137,7 +137,7 @@ void add_evaluation(Archive& archive) {
   const Index n = archive.recording->state_count(), m = archive.recording->input_count();
   archive.finding = make_finding();
   for (const char* filter : {"bank", "baseline", "noise_only", "one_motion"}) {
-    FilterEvaluation evaluation{filter, {}, {}};
+    FilterEvaluation evaluation{filter, {}};
     const Index count = evaluation.filter == "baseline" ? 1 : archive.bank->mode_count();
     for (const Trajectory& run : archive.recording->runs)
       evaluation.runs.push_back(make_evaluation(n, run.samples(), count));

@@ -59,6 +59,7 @@ function drawScores(data) {
       data.scores.length ? table(scoreColumns, data.scores, options) : note('Not both hold scores.'));
 }
 
+/** @param {any[]} both @param {string[]} criterion */
 function selectionDrawing(both, [key, name]) {
   const traces = both.flatMap((one, k) => {
     if (!one) return [];

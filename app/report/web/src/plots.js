@@ -2,6 +2,7 @@
 import palette from '../palette.json';
 
 import {onGround, paletteColour, translucent, usedColour} from './colour.js';
+import {blobOf, downloads} from './downloads.js';
 import {h} from './elements.js';
 import {isOther, rankOf} from './mode_names.js';
 import {beforePrint, dark, onTheme} from './page.js';
@@ -17,7 +18,7 @@ export const axisTitle = ({name, unit}) => plain(unit ? `${name} [${unit}]` : na
 
 export const ink = () => (dark() ? '#e8eaee' : '#16181d');
 const faint = () => (dark() ? '#343a45' : '#dfe3e8');
-const ground = () => (dark() ? '#14161a' : '#ffffff');
+export const ground = () => (dark() ? '#14161a' : '#ffffff');
 // A mode's colour is by its use, so that the modes that matter differ; the ninth and later ones are "others".
 export const modeColour = (k) => usedColour(palette, isOther(k) ? Infinity : rankOf(k));
 export const componentColour = (k) => paletteColour(palette, k);
@@ -99,12 +100,12 @@ const config = {
 
 // Figures are drawn one after the other, so that the first is seen before a large one begins.
 let turn = Promise.resolve();
-function inTurn(task) {
+export function inTurn(task) {
   turn = turn.then(task).then(() => new Promise((shown) => setTimeout(shown, 0)));
 }
 
 // Calls `begin` when the element comes near the window: a page of many figures opens at once.
-function whenNear(element, begin) {
+export function whenNear(element, begin) {
   const near = (entries) => {
     if (entries.some((entry) => entry.isIntersecting)) begin();
   };
@@ -125,7 +126,11 @@ async function plotly() {
 // says. Returns the element; element.redraw() calls `make` anew and keeps zoom (layout.uirevision).
 export function figure(label, make, caption) {
   const plot = h('div', {class: 'plot', role: 'img', 'aria-label': label});
-  const element = h('figure', {}, plot, caption ? h('figcaption', {class: 'caption'}, caption) : null);
+  const file = (format) => async () => blobOf(await (await plotly()).toImage(plot, {format, scale: 2}));
+  const files = downloads(label, {svg: file('svg'), png: file('png')});
+  const element =
+      h('figure', {}, plot, h('div', {class: 'below-plot'}, files),
+        caption ? h('figcaption', {class: 'caption'}, caption) : null);
   let begun = false, drawn = false;
   element.plot = plot;
   element.redraw = async () => {

@@ -8,13 +8,12 @@ import {draw, head, section} from './page.js';
 import {pageData} from './page_data.js';
 import {ink, lineColour, palette} from './plots.js';
 import {drawBank} from './run_bank.js';
+import {dataPlot} from './run_data.js';
 import {drawFilter} from './run_filter.js';
 import {drawOrigin} from './run_origin.js';
 import {drawSelection} from './run_selection.js';
 import {drawVerdict} from './run_verdict.js';
-import {inputRows, probabilityRow, stateRow} from './time_rows.js';
-import {runChoice, timeControls, timePlot, TimeState} from './timeview.js';
-
+import {runChoice, timeControls, TimeState} from './timeview.js';
 
 // Drop-downs of run and filter, one pair per place, all of them of the same state.
 function pickers(state, filters, options) {
@@ -56,19 +55,11 @@ function dataLegend(runs, filtered) {
 }
 
 function drawData(runs, state, options, picker) {
-  const filtered = Object.keys(runs.runs[0].filters).length > 0;
-  const rows = () => {
-    const chosen = options.layer.of(state.current);
-    return [
-      ...runs.states.map((_, i) => stateRow(runs, i, [options.layer])),
-      ...inputRows(runs),
-      ...(chosen && chosen.probability ? [probabilityRow(options.layer.of)] : []),
-    ];
-  };
-  const plot = timePlot(state, 'State with prediction, and inputs, of one run over time', rows, runs.note);
+  const filters = Object.keys(runs.runs[0].filters), filtered = filters.length > 0;
   section(
       'data', 'The data', filtered ? null : note('No filter was run, so there is no prediction to compare with.'),
-      controls(picker(), timeControls(state)), dataLegend(runs, filtered), options.modeLegend(), plot);
+      controls(picker(), timeControls(state)), dataLegend(runs, filtered), options.modeLegend(),
+      dataPlot(runs, state, filters, options));
 }
 
 async function drawWindows(windows, runs, goTo) {
@@ -116,7 +107,7 @@ async function drawRest() {
   const picker = pickers(state, filters, options);
   drawData(runs, state, options, picker);
   drawBank(data.bank);
-  drawFilter(data.filter, runs, state, options, picker);
+  drawFilter(data.filter, runs, state);
   await drawWindows(data.windows, runs, (run, begin, end) => {
     const around = 3 * (end - begin), {time} = runs.runs[run];
     state.select(run, [Math.max(time.start, begin - around), Math.min(time.end, end + around)], [begin, end]);

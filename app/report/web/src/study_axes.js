@@ -3,6 +3,7 @@
 import {choice} from './elements.js';
 import {plainValue} from './ordering.js';
 import {plain} from './plots.js';
+import {columnTitle} from './score_names.js';
 import {isNumber} from './statistics.js';
 
 // Values of a column over the study, in the order the study gave them; numbers in theirs where all are.
@@ -13,12 +14,21 @@ export function axisOf(study, name) {
   const levels = [...new Set(study.rows.map(of).filter((v) => v !== null))];
   if (numeric) levels.sort((a, b) => a - b);
   const position = new Map(levels.map((level, k) => [level, k]));
-  return {name, of, numeric, levels, position, label: plain(name)};
+  const {goal} = study.columns[i];
+  return {name, of, numeric, levels, position, goal, label: plain(columnTitle(name))};
 }
 
 // An axis whose levels stand at equal distances.
 export const levelTicks = (axis) =>
     ({tickvals: axis.levels.map((_, k) => k), ticktext: axis.levels.map((level) => plain(level))});
+
+// Ticks of a numeric axis: whole numbers where all its values are.
+export function numberTicks(axis) {
+  const whole = axis.numeric && axis.levels.every(Number.isInteger);
+  if (!whole || !axis.levels.length) return {};
+  const range = axis.levels[axis.levels.length - 1] - axis.levels[0];
+  return {dtick: Math.max(1, Math.ceil(range / 12)), tick0: 0, tickformat: 'd'};
+}
 
 // Names of the columns of a kind: varied, score, cost.
 export const namesOf = (study, kind) => study.columns.filter((column) => column.kind === kind).map(({name}) => name);
@@ -26,8 +36,16 @@ export const positionOf = (list, wanted) => Math.max(0, list.indexOf(wanted));
 
 export function scoreChoice(study, begin, onchange) {
   const scores = namesOf(study, 'score');
-  return choice('Score', scores, positionOf(scores, begin), (i) => onchange(scores[i]));
+  return choice('Score', scores.map(columnTitle), positionOf(scores, begin), (i) => onchange(scores[i]));
 }
+
+// The best that a value reaches over all other keys, which agrees with the verdict, or the average over them.
+const ways = [['best', 'best over the other keys'], ['mean', 'average over the other keys']];
+export const wayWords = {
+  best: 'best',
+  mean: 'mean'
+};
+export const wayChoice = (onchange) => choice('Show', ways.map(([, text]) => text), 0, (i) => onchange(ways[i][0]));
 
 export const isDrawn = (element) => element.plot.querySelector('.main-svg') !== null;
 

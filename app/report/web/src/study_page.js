@@ -2,9 +2,12 @@
 import {copyButton, details, facts, h, note} from './elements.js';
 import {draw, head, section} from './page.js';
 import {pageData} from './page_data.js';
+import {columnTitle} from './score_names.js';
+import {drawBetter} from './study_better.js';
 import {drawCoverage} from './study_coverage.js';
 import {drawEffects} from './study_effects.js';
 import {drawHeatMap} from './study_heat_map.js';
+import {keepLive} from './study_live.js';
 import {drawParallel} from './study_parallel.js';
 import {drawPareto} from './study_pareto.js';
 import {drawStudyTable} from './study_table.js';
@@ -51,7 +54,7 @@ function archiveOf(row) {
 // A run: its configuration, its scores, its page or how to make it.
 function runDetail(study, row) {
   const configuration = configurationOf(study, row);
-  const scores = study.columns.map((column, i) => ({name: column.name, cell: row.cells[i]}))
+  const scores = study.columns.map((column, i) => ({name: columnTitle(column.name), cell: row.cells[i]}))
                      .filter(({cell}) => cell && typeof cell === 'object');
   const columns = [{name: 'Score', text: true, of: (s) => s.name}, {name: 'Value', of: (s) => s.cell}];
   return [
@@ -59,7 +62,7 @@ function runDetail(study, row) {
     row.message ? note(row.message, true) : '',
     facts([...configuration, ['key', h('code', {}, row.key)], ['archive', archiveOf(row)]]),
     copyButton('Copy as options', configuration.map(([key, text]) => `--${key} '${text}'`).join(' ')),
-    scores.length ? table(columns, scores, {caption: 'Scores of this run'}) : '',
+    scores.length ? details('All scores of this run', table(columns, scores, {caption: 'Scores of this run'})) : '',
   ];
 }
 
@@ -90,8 +93,9 @@ draw(async () => {
   };
   document.title = `Study ${data.file}`;
   head(`Study ${data.file}`, `${study.rows.length} runs, made ${data.origin.created}`);
-  drawOrigin(study, data.origin);
   drawVerdict(study, showRun);
+  if (study.live) keepLive(study.live);
+  drawBetter(study, showRun);
   const runs = section('runs', 'Runs');
   const {restrict} = drawStudyTable(runs, study, {filter, showRun, chosen: () => chosen});
   runs.append(detail);
@@ -101,4 +105,5 @@ draw(async () => {
   drawHeatMap(context);
   drawPareto(context);
   drawCoverage(context);
+  drawOrigin(study, data.origin);
 });

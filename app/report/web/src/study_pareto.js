@@ -2,8 +2,9 @@
 import {choice, controls} from './elements.js';
 import {section} from './page.js';
 import {figure, palette, plain} from './plots.js';
+import {columnTitle} from './score_names.js';
 import {isNumber, lossOf, paretoFront} from './statistics.js';
-import {axisOf, follow, namesOf, scoreChoice} from './study_axes.js';
+import {axisOf, follow, namesOf, numberTicks, scoreChoice} from './study_axes.js';
 
 // `points`: {x, y, row}; `look`: more of the trace.
 function runsTrace(study, points, look) {
@@ -19,8 +20,18 @@ function runsTrace(study, points, look) {
   };
 }
 
+// Where the front lies and as much again below: runs far below would press it flat.
+function rangeAround(points, front) {
+  const values = front.map((p) => p.y), all = points.map((p) => p.y);
+  const low = Math.min(...values), high = Math.max(...values), room = high - low;
+  if (!(room > 0)) return {};
+  return {
+    range: [Math.max(low - room, Math.min(...all) - 0.1 * room), Math.min(high + room, Math.max(...all) + 0.1 * room)]
+  };
+}
+
 function paretoDrawing(study, x, y, rows) {
-  const {goal} = study.columns.find((column) => column.name === y.name);
+  const {goal} = y;
   const points = rows.filter((row) => isNumber(x.of(row)) && isNumber(y.of(row)))
                      .map((row) => ({x: x.of(row), y: y.of(row), loss: lossOf(goal, y.of(row)), row}));
   const grey = {name: 'runs', mode: 'markers', marker: {size: 7, color: palette.unclustered, opacity: 0.6}};
@@ -32,8 +43,9 @@ function paretoDrawing(study, x, y, rows) {
   };
   const layout = {
     height: 420,
-    xaxis: {title: {text: x.label}},
-    yaxis: {title: {text: y.label}},
+    uirevision: `${x.name} ${y.name}`,
+    xaxis: {title: {text: x.label}, ...numberTicks(x)},
+    yaxis: {title: {text: y.label}, ...rangeAround(points, paretoFront(points))},
     legend: {orientation: 'h', y: 1.08},
   };
   return {traces: [runsTrace(study, points, grey), runsTrace(study, paretoFront(points), front)], layout};
@@ -47,9 +59,10 @@ export function drawPareto(context) {
   const element = figure(
       'Pareto plot: score against number of modes, the front marked',
       () => paretoDrawing(study, axisOf(study, cost), axisOf(study, score), shown.rows),
-      'Front: runs that no other run beats in the score with as few or fewer. Click a run to see it.');
+      'Front: runs that no other run beats in the score with as few or fewer. Runs far from it lie outside the ' +
+          'frame. Click a run to see it.');
   element.ready.then(() => element.plot.on('plotly_click', (event) => showRun(study.rows[event.points[0].customdata])));
-  const pickCost = choice('Cost', costs, 0, (i) => {
+  const pickCost = choice('Cost', costs.map(columnTitle), 0, (i) => {
     cost = costs[i];
     element.redraw();
   });

@@ -1,19 +1,23 @@
 // The table of a study's runs: click a heading to sort; type under it to filter; a run is chosen by click or Enter.
+// Repeats of a setting stand together in a row unless asked for one by one.
 import {check, controls, details, h} from './elements.js';
 import {filterOf} from './filter_text.js';
 import {sortedRows} from './ordering.js';
+import {groupedRows} from './repeats.js';
+import {columnTitle} from './score_names.js';
 import {ariaSort, cellOf, headingOf, pressed, scrolling, sortButton} from './table.js';
 
-const at_once = 200;  // rows shown at first
+const at_once = 30;  // lines shown at first
 
 class StudyTable {
   // `reader`: filter(rows, base, dragged), showRun(row), chosen() => row.
   constructor(study, reader) {
     this.study = study;
     this.reader = reader;
-    this.columns =
-        study.columns.map((column, i) => ({...column, of: (row) => row.cells[i], visible: column.shown, filter: ''}));
-    this.order = {column: null, down: false};
+    this.columns = this.inOrder(
+        study.columns.map((column, i) => ({...column, of: (row) => row.cells[i], visible: column.shown, filter: ''})));
+    this.order = this.bestFirst();
+    this.grouped = study.rows.some((row) => row.repeat > 0);
     this.restriction = null;
     this.most = at_once;
     this.rows = study.rows;
@@ -22,6 +26,24 @@ class StudyTable {
     this.headings = h('tr');
     this.inputs = h('tr', {class: 'filters'});
     this.more = h('button', {type: 'button', onclick: () => this.showMore()}, 'Show more');
+  }
+
+  // What was varied, the score that the verdict is about, how many modes, then the rest.
+  inOrder(columns) {
+    const place = ({kind, name}) =>
+        (kind === 'varied'                      ? 0 :
+             name === this.study.standard_score ? 1 :
+             kind === 'cost'                    ? 2 :
+                                                  3);
+    return columns.map((column, i) => [place(column), i, column])
+        .sort((p, q) => p[0] - q[0] || p[1] - q[1])
+        .map(([, , column]) => column);
+  }
+
+  // By the score that the verdict is about.
+  bestFirst() {
+    const column = this.columns.find(({name}) => name === this.study.standard_score) || null;
+    return {column, down: Boolean(column && (!column.goal || column.goal.kind === 'higher'))};
   }
 
   visible() {
@@ -44,15 +66,24 @@ class StudyTable {
   }
 
   showMore() {
-    this.most += 5 * at_once;
+    this.most += 10 * at_once;
     this.fill();
   }
 
   fill() {
-    const {length} = this.rows, all = this.study.rows.length, cut = length > this.most;
-    this.body.replaceChildren(...this.rows.slice(0, this.most).map((row) => this.line(row)));
-    this.status.textContent = `${length} of ${all} runs${cut ? `, the first ${this.most} of them shown` : ''}`;
+    const {length} = this.rows, all = this.study.rows.length, lines = this.lines(), cut = lines.length > this.most;
+    const settings = this.grouped ? ` in ${lines.length} settings` : '';
+    this.body.replaceChildren(...lines.slice(0, this.most).map((row) => this.line(row)));
+    this.status.textContent =
+        `${length} of ${all} runs${settings}${cut ? `, the first ${this.most} lines of them shown` : ''}`;
     this.more.hidden = !cut;
+  }
+
+  // What the table's lines hold: the runs, or the settings of those.
+  lines() {
+    const rows = this.grouped ? groupedRows(this.study.columns, this.rows) : this.rows;
+    const {column, down} = this.order;
+    return column ? sortedRows(rows, column.of, down) : rows;
   }
 
   // Filters, restricts and sorts the rows anew.
@@ -60,19 +91,17 @@ class StudyTable {
     const tests = this.columns.filter(({filter}) => filter.trim()).map(({filter, of}) => [filterOf(filter), of]);
     const base = this.study.rows.filter((row) => tests.every(([test, of]) => test(of(row))));
     this.rows = this.restriction ? base.filter(this.restriction) : base;
-    const {column, down} = this.order;
-    if (column) this.rows = sortedRows(this.rows, column.of, down);
     this.fill();
     this.reader.filter(this.rows, base, dragged);
   }
 
   heading(column) {
     const sort = ariaSort(this.order, column), mark = {ascending: ' ▴', descending: ' ▾'}[sort] || '';
-    return headingOf(column, {'aria-sort': sort}, sortButton(() => {
+    return headingOf(column, {'aria-sort': sort, 'data-column': column.name}, sortButton(() => {
                        this.order = pressed(this.order, column);
                        this.frame();
                        this.update();
-                     }, column.name + mark));
+                     }, columnTitle(column.name) + mark));
   }
 
   input(column) {
@@ -83,7 +112,7 @@ class StudyTable {
     return h('td', {}, h('input', {
                type: 'search',
                size: 6,
-               'aria-label': `Filter ${column.name}`,
+               'aria-label': `Filter ${columnTitle(column.name)}`,
                'data-column': column.name,
                value: column.filter,
                oninput,
@@ -97,9 +126,16 @@ class StudyTable {
   }
 
   columnChoice(column) {
-    return check(column.name, column.visible, (on) => {
+    return check(columnTitle(column.name), column.visible, (on) => {
       column.visible = on;
       this.frame();
+      this.fill();
+    });
+  }
+
+  groupChoice() {
+    return check('Repeats of a setting in one line (mean ± standard deviation)', this.grouped, (on) => {
+      this.grouped = on;
       this.fill();
     });
   }
@@ -110,11 +146,12 @@ class StudyTable {
     const help = 'Filters: a part of the text, > 2, <= 0.1, 3..5 or a | b. The plots below show the runs that pass.';
     return [
       h('p', {class: 'soft'}, help),
+      this.study.rows.some((row) => row.repeat > 0) ? controls(this.groupChoice()) : null,
       details('Columns', controls(this.columns.map((column) => this.columnChoice(column)))),
       this.status,
       scrolling('Table of runs', element),
       this.more,
-    ];
+    ].filter(Boolean);
   }
 }
 

@@ -84,6 +84,8 @@ struct RefineOptions {
   std::uint64_t seed = 1;         ///< of the random starts
   DriftOptions drift;             ///< whether theta of each mode follows a run
   RefineTuning tuning;            ///< what has no key in configurations
+  std::ptrdiff_t transitions = 200000;  ///< learn from so many at most, stretches of the runs drawn with the seed; 0:
+                                        ///< from all
 };
 
 /// How a mixture of windows becomes a bank. Defaults are the recommended method.

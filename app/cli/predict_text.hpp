@@ -1,0 +1,20 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "filter/judge/free_run.hpp"
+
+/// What `predict` says: samples without a prediction are left out.
+namespace modebank::app {
+
+Index predicted_samples(const std::vector<FreeRun>& predicted);
+
+/// A line per predicted sample; columns of the prediction, its standard deviation and its band per state.
+std::string predicted_csv(const Recording& recording, const std::vector<FreeRun>& predicted);
+
+/// The same per run, an array per column.
+nlohmann::json predicted_json(const Recording& recording, const std::vector<FreeRun>& predicted);
+
+}  // namespace modebank::app

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "ident/base/work_counter.hpp"
+
+namespace modebank::app {
+
+/// While it lives, says on standard error how far loops are that take over a second: on a terminal in one line that is
+/// rewritten, elsewhere in a line every ten seconds.
+class ProgressMeter {
+ public:
+  explicit ProgressMeter(bool wanted);
+  ~ProgressMeter();
+  ProgressMeter(const ProgressMeter&) = delete;
+  ProgressMeter& operator=(const ProgressMeter&) = delete;
+
+ private:
+  void watch();
+  void tell(const WorkDone& work);
+
+  bool terminal_ = false, stopped_ = false, line_open_ = false;
+  std::mutex mutex_;
+  std::condition_variable stop_;
+  std::thread thread_;
+};
+
+/// "windows: 12000 of 50000, 3.1e+04 per s, 1.2 s left"; nothing of what is left before anything is done.
+std::string progress_text(const WorkDone& work);
+
+}  // namespace modebank::app

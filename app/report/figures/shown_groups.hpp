@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "io/archive/archive.hpp"
+
+namespace modebank::app::report {
+
+/// Which of many modes or components a figure tells apart: no more than eye and palette can, the largest; the others
+/// are drawn alike. Position i among `shown` has colour i of the palette.
+struct ShownGroups {
+  std::vector<Index> shown;   ///< in their own order
+  std::vector<Index> others;  ///< empty where all are shown
+
+  bool any_others() const { return !others.empty(); }
+  std::string others_title() const;  ///< "47 others"
+};
+
+inline constexpr std::size_t most_shown_groups = 8;
+
+/// By size, e.g. weights or usage.
+ShownGroups shown_groups(const Eigen::VectorXd& sizes);
+
+/// The bank's modes by how much the judged runs use them, by weight where no run was judged.
+ShownGroups shown_modes(const Archive& archive);
+
+}  // namespace modebank::app::report

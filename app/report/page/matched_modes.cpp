@@ -1,0 +1,90 @@
+#include "app/report/page/matched_modes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ident/base/distributions.hpp"
+#include "mixture/bootstrap.hpp"
+
+namespace modebank::app::report {
+namespace {
+
+using Eigen::Index;
+
+/// A mode's parameters as the page shows them, with their errors; 0: not known.
+struct Estimates {
+  Eigen::VectorXd values, errors;
+};
+
+bool usable(double error) { return std::isfinite(error) && error > 0.0; }
+
+Estimates estimates_of(const Bank& bank, Index k) {
+  const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
+  const bool motion = !bank.motion_parameters.empty();
+  Estimates estimates{motion ? mode.motion_theta : bank.theta(k), {}};
+  const Eigen::VectorXd& stated = motion ? mode.motion_standard_error : mode.standard_error;
+  estimates.errors = Eigen::VectorXd::Zero(estimates.values.size());
+  for (Index i = 0; i < estimates.errors.size(); ++i) {
+    if (i < stated.size() && usable(stated(i)))
+      estimates.errors(i) = stated(i);
+    else if (!motion && i < mode.spread.rows() && usable(mode.spread(i, i)))
+      estimates.errors(i) = std::sqrt(mode.spread(i, i));
+  }
+  return estimates;
+}
+
+MatchedMode pair_of(const Bank& first, Index a, const Bank& second, Index b) {
+  const Estimates one = estimates_of(first, a), other = estimates_of(second, b);
+  MatchedMode pair{a, b, Eigen::VectorXd::Zero(one.values.size())};
+  Index counted = 0;
+  for (Index i = 0; i < pair.z.size(); ++i) {
+    const double error = std::hypot(one.errors(i), other.errors(i));
+    if (error <= 0.0) continue;
+    pair.z(i) = (other.values(i) - one.values(i)) / error;
+    ++counted;
+  }
+  pair.distance = counted > 0 ? std::sqrt(pair.z.squaredNorm() / static_cast<double>(counted)) : 0.0;
+  return pair;
+}
+
+/// Why parameters of the two cannot be set against each other.
+std::string obstacle(const Bank& first, const Bank& second) {
+  if (first.model != second.model) return "their models differ: " + first.model + " and " + second.model;
+  if (first.theta(0).size() != second.theta(0).size() || first.state_names != second.state_names ||
+      first.input_names != second.input_names)
+    return "their models have different parameters";
+  return "";
+}
+
+}  // namespace
+
+bool MatchedMode::agree() const {
+  if (z.size() == 0) return false;
+  const double limit = normal_quantile(1.0 - 0.025 / static_cast<double>(z.size()));
+  return z.cwiseAbs().maxCoeff() <= limit;
+}
+
+ModeMatch match_modes(const Bank& first, const Bank& second) {
+  ModeMatch match;
+  match.difference = obstacle(first, second);
+  if (!match.difference.empty()) return match;
+  const Index K = first.mode_count(), L = second.mode_count(), most = std::max(K, L);
+  // Rows and columns that only fill up cost the same with everyone.
+  Eigen::MatrixXd merit = Eigen::MatrixXd::Zero(most, most);
+  for (Index a = 0; a < K; ++a)
+    for (Index b = 0; b < L; ++b) {
+      const double distance = pair_of(first, a, second, b).distance;
+      merit(a, b) = -std::log1p(distance * distance);
+    }
+  const std::vector<Index> column = best_assignment(merit);
+  for (Index a = 0; a < most; ++a) {
+    const Index b = column[static_cast<std::size_t>(a)];
+    if (a < K && b < L)
+      match.modes.push_back(pair_of(first, a, second, b));
+    else
+      match.modes.push_back({a < K ? a : -1, b < L ? b : -1, {}});
+  }
+  return match;
+}
+
+}  // namespace modebank::app::report

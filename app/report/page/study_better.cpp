@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "app/report/page/numbers.hpp"
+#include "app/report/page/paired_runs.hpp"
+#include "app/report/page/study_page.hpp"
+#include "ident/base/distributions.hpp"
+#include "io/archive/archive.hpp"
+
+namespace modebank::app::report {
+namespace {
+
+using nlohmann::json;
+using Rows = std::vector<std::size_t>;
+
+constexpr std::size_t most_rivals = 8;
+constexpr double upper_probability = 0.975;
+
+/// Finished settings with a score, the best by the mean over its repeats first.
+std::vector<Rows> ranked_settings(const StudyTable& table, std::size_t score, const ScoreGoal& goal) {
+  std::map<std::vector<std::string>, Rows> by_values;
+  std::vector<std::vector<std::string>> order;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const TrialRow& row = table.rows[i];
+    if (row.status != TrialStatus::done || std::isnan(row.scores[score])) continue;
+    Rows& rows = by_values[row.varied];
+    if (rows.empty()) order.push_back(row.varied);
+    rows.push_back(i);
+  }
+  std::vector<std::pair<double, Rows>> settings;
+  for (const auto& values : order) {
+    const Rows& rows = by_values[values];
+    double sum = 0.0;
+    for (const std::size_t row : rows) sum += table.rows[row].scores[score];
+    settings.emplace_back(goal.loss(sum / static_cast<double>(rows.size())), rows);
+  }
+  std::stable_sort(settings.begin(), settings.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Rows> ranked;
+  for (auto& [loss, rows] : settings) ranked.push_back(std::move(rows));
+  return ranked;
+}
+
+/// The archive of a row; nothing where it is not there or cannot be read.
+std::optional<Archive> archive_of(const TrialPlace& place) {
+  if (place.archive.empty()) return {};
+  try {
+    return read_archive(place.archive);
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+/// Less than this in log score is nobody's reason to choose [nats/sample].
+constexpr double no_matter = 0.001;
+
+std::string verdict_of(double gain, double margin) {
+  if (std::abs(gain) < no_matter && !(margin >= no_matter)) return "the same";
+  if (!std::isfinite(margin)) return "error not known";
+  return gain > margin ? "worse" : gain < -margin ? "better" : "cannot tell";
+}
+
+nlohmann::json gain_cell(double gain, double error) {
+  if (!std::isfinite(gain)) return number(gain);
+  return number(gain,
+                std::isfinite(error) ? fmt::format("{:+.4f} ± {:.4f}", gain, error) : fmt::format("{:+.4f}", gain));
+}
+
+json row_json(const StudyTable& table, std::size_t row, double gain, double error, double margin) {
+  return {{"row", row},
+          {"varied", table.rows[row].varied},
+          {"gain", gain_cell(gain, error)},
+          {"margin", std::isfinite(margin) ? number(margin, fmt::format("{:.4f}", margin)) : number(margin)},
+          {"verdict", verdict_of(gain, margin)}};
+}
+
+}  // namespace
+
+RepeatGain repeat_gain(const StudyTable& table, const Rows& best, const Rows& other, std::size_t score) {
+  std::vector<double> differences;
+  for (const std::size_t a : best)
+    for (const std::size_t b : other)
+      if (table.rows[a].repeat == table.rows[b].repeat)
+        differences.push_back(table.rows[a].scores[score] - table.rows[b].scores[score]);
+  RepeatGain gain{std::ssize(differences)};
+  if (differences.empty()) return gain;
+  const Eigen::Map<const Eigen::VectorXd> d(differences.data(), gain.repeats);
+  gain.gain = d.mean();
+  if (gain.repeats < 2) return gain;
+  const auto R = static_cast<double>(gain.repeats);
+  gain.standard_error = std::sqrt((d.array() - gain.gain).square().sum() / (R - 1.0) / R);
+  gain.margin = student_quantile(upper_probability, R - 1.0) * gain.standard_error;
+  return gain;
+}
+
+nlohmann::json better_section(const StudyTable& table, const std::vector<TrialPlace>& places,
+                              const std::string& headline) {
+  const auto found = std::find(table.score_names.begin(), table.score_names.end(), headline);
+  if (found == table.score_names.end()) return nullptr;
+  const auto score = static_cast<std::size_t>(found - table.score_names.begin());
+  const std::vector<Rows> settings = ranked_settings(table, score, goal_of(headline, 1).value());
+  if (settings.size() < 2) return nullptr;
+  const std::optional<Archive> best = archive_of(places[settings[0].front()]);
+  json rivals = json::array();
+  for (std::size_t s = 1; s < std::min(settings.size(), most_rivals + 1); ++s) {
+    const std::size_t row = settings[s].front();
+    json rival;
+    const std::optional<Archive> other = best ? archive_of(places[row]) : std::nullopt;
+    const ArchiveGain by_run = other ? gain_between(*best, *other) : ArchiveGain();
+    const RepeatGain by_repeat = repeat_gain(table, settings[0], settings[s], score);
+    if (by_run.runs > 0) {
+      rival = row_json(table, row, by_run.gain.gain, by_run.gain.standard_error, by_run.gain.margin);
+      rival["by"] = by_run.gain.by_blocks ? "blocks of samples" : fmt::format("{} runs", by_run.runs);
+    } else {
+      rival = row_json(table, row, by_repeat.gain, by_repeat.standard_error, by_repeat.margin);
+      rival["by"] = by_repeat.repeats < 2 ? "nothing to pair by" : fmt::format("{} repeats", by_repeat.repeats);
+    }
+    rival["repeats"] = by_repeat.repeats < 2 ? json() : gain_cell(by_repeat.gain, by_repeat.standard_error);
+    rivals.push_back(rival);
+  }
+  return {{"best", settings[0].front()}, {"settings", settings.size()}, {"rivals", rivals}};
+}
+
+}  // namespace modebank::app::report

@@ -1,0 +1,46 @@
+// Runs that differ in their seed alone, as one line of a table.
+import {isNumber, mean} from './statistics.js';
+
+const known = (cell) => Boolean(cell) && typeof cell === 'object' && isNumber(cell.v);
+
+// Mean ± standard deviation of a score's cells; {t, v} as C++ writes numbers.
+function meanCell(cells) {
+  const values = cells.filter(known).map(({v}) => v);
+  if (!values.length) return cells[0];
+  const middle = mean(values);
+  if (values.length === 1) return {t: cells.find(known).t, v: middle};
+  const sd = Math.sqrt(values.reduce((sum, v) => sum + (v - middle) ** 2, 0) / (values.length - 1));
+  if (sd === 0) return {t: cells.find(known).t, v: middle};
+  return {t: `${Number(middle.toPrecision(4))} ± ${Number(sd.toPrecision(2))}`, v: middle};
+}
+
+// "done" where all are alike, else "2 done, 1 failed".
+function wordsOf(cells) {
+  const counts = new Map();
+  for (const cell of cells) counts.set(cell, (counts.get(cell) || 0) + 1);
+  if (counts.size === 1) return cells[0];
+  return [...counts].map(([word, count]) => `${count} ${word}`).join(', ');
+}
+
+function cellOf(column, cells) {
+  if (column.kind === 'varied') return cells[0];
+  if (column.name === 'repeat') return `${cells.length} run${cells.length > 1 ? 's' : ''}`;
+  if (column.name === 'seed') return cells.join(', ');
+  return column.kind === 'about' ? wordsOf(cells) : meanCell(cells);
+}
+
+// One row per setting, in the order of their first runs; what is chosen in it is the first run. `members`: its runs.
+export function groupedRows(columns, rows) {
+  const groups = new Map();
+  for (const row of rows) {
+    const key = JSON.stringify(row.varied);
+    if (!groups.has(key)) groups.set(key, []);
+    groups.get(key).push(row);
+  }
+  return [...groups.values()].map(
+      (members) => ({
+        ...members[0],
+        members,
+        cells: columns.map((column, i) => cellOf(column, members.map((row) => row.cells[i])))
+      }));
+}

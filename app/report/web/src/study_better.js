@@ -1,0 +1,57 @@
+// Is the best setting of a study better than the next ones?
+import {h} from './elements.js';
+import {section} from './page.js';
+import {table} from './table.js';
+
+const verdicts = {
+  worse: 'worse than the best',
+  better: 'better than the best',
+  'cannot tell': 'cannot be told from the best',
+  'the same': 'as good (less than 0.001 apart)',
+};
+
+function settingColumn(study) {
+  return study.varied.map(({key}, i) => ({name: key, text: true, of: (rival) => rival.varied[i]}));
+}
+
+function columnsOf(study, showRun) {
+  const show = (rival) => h(
+      'button', {type: 'button', 'aria-label': `Show run ${rival.row}`, onclick: () => showRun(study.rows[rival.row])},
+      `run ${rival.row}`);
+  const repeats = study.better.rivals.some((rival) => rival.repeats);
+  return [
+    {name: 'Best is ahead by [nats/sample]', of: (rival) => rival.gain},
+    {name: 'needed for 95 %', of: (rival) => rival.margin},
+    {name: 'It is', text: true, of: (rival) => verdicts[rival.verdict] || rival.verdict},
+    ...settingColumn(study),
+    {name: 'error from', text: true, of: (rival) => rival.by},
+    ...(repeats ? [{name: 'ahead over repeats', of: (rival) => rival.repeats}] : []),
+    {name: 'Look', text: true, of: show},
+  ];
+}
+
+// What the table says in a sentence.
+function sentence({rivals, settings}) {
+  const undecided = rivals.filter((rival) => rival.verdict !== 'worse').length;
+  const all = settings - 1 > rivals.length ? `the next ${rivals.length} of ${settings - 1} settings` :
+                                             `the other ${rivals.length} settings`;
+  if (undecided === 0) return `The best setting is better than ${all}, beyond what chance makes.`;
+  return `Of ${all}, ${
+      undecided} cannot be told from the best: choose among them by what else matters, e.g. fewer modes.`;
+}
+
+export function drawBetter(study, showRun) {
+  const {better} = study, title = 'Is the best better?';
+  if (!better) {
+    section('better', title, h('p', {}, 'Fewer than two settings have a score.'));
+    return;
+  }
+  const how =
+      'Differences of the log score, each sample against the same sample; the error is clustered by run (of the ' +
+      'first repeat), so that long runs do not count as many. Settings were chosen as the best by these very scores: ' +
+      'the best of many is a little too good.';
+  section(
+      'better', title, h('p', {class: 'verdict'}, sentence(better)),
+      table(columnsOf(study, showRun), better.rivals, {caption: 'The next best settings against the best'}),
+      h('p', {class: 'caption'}, how));
+}

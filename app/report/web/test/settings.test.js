@@ -1,0 +1,90 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {groupedRows} from '../src/repeats.js';
+import {columnTitle} from '../src/score_names.js';
+import {bestCell, cellsOver, interaction, levelOf, reached, repeatSpread, settingsOf} from '../src/settings.js';
+
+// K over 1, 2, 3 and a filter that is good or bad: with the bad one few components are best, with the good one many.
+const scores = {
+  good: [1.0, 1.4, 1.6],
+  bad: [-1.0, -2.0, -5.0]
+};
+const rows = [];
+for (const variant of ['good', 'bad']) {
+  [1, 2, 3].forEach((K, i) => {
+    for (const repeat of [0, 1]) {
+      rows.push({
+        number: rows.length,
+        repeat,
+        varied: [String(K), variant],
+        cells: [K, variant, {v: scores[variant][i] + (repeat ? 0.02 : -0.02), t: ''}, String(1000 + repeat), 'done'],
+      });
+    }
+  });
+}
+const axis = (i, levels) => ({of: (row) => row.cells[i], levels});
+const K = axis(0, [1, 2, 3]), variant = axis(1, ['good', 'bad']);
+const score = {
+  of: (row) => row.cells[2].v
+};
+const higher = {
+  kind: 'higher'
+};
+const close = (a, b) => assert.ok(Math.abs(a - b) < 1e-12, `${a} is not ${b}`);
+
+test('repeats of a setting are one setting', () => {
+  const settings = settingsOf(rows, score);
+  assert.equal(settings.length, 6);
+  close(settings[2].mean, 1.6);
+  close(settings[2].sd, 0.04 / Math.SQRT2);
+  close(repeatSpread(settings), 0.04 / Math.SQRT2);
+});
+
+test('the best over the others agrees with the best setting, the average does not', () => {
+  const settings = settingsOf(rows, score);
+  const of = (by) => K.levels.map((level) => reached(settings.filter((one) => levelOf(K, one) === level), higher, by));
+  of('best').forEach((value, i) => close(value, scores.good[i]));
+  of('mean').forEach((value, i) => close(value, (scores.good[i] + scores.bad[i]) / 2));
+  assert.equal(bestCell([of('best')], higher).a, 2);
+  assert.equal(bestCell([of('mean')], higher).a, 0);
+});
+
+test('an interaction names the level whose best is another, and what keeping the overall best costs there', () => {
+  const found = interaction(cellsOver(K, variant, settingsOf(rows, score), higher, 'best'), higher);
+  assert.deepEqual([found.level, found.best, found.kept], [1, 0, 2]);
+  close(found.cost, 4);
+  // Nothing to say of parallel lines, nor of what repeats differ by.
+  assert.equal(interaction([[1, 2, 3], [2, 3, 4]], higher), null);
+  assert.equal(interaction([[1, 2, 2.05], [2, 3.2, 3.1]], higher, 0.1), null);
+});
+
+test('cells that no run has are empty, lower is better where the goal says so', () => {
+  const cells = cellsOver(K, axis(1, ['good', 'none']), settingsOf(rows, score), {kind: 'lower'}, 'best');
+  assert.deepEqual(cells[1], [null, null, null]);
+  assert.equal(bestCell(cells, {kind: 'lower'}).a, 0);
+});
+
+test('a line of the table holds the mean of the repeats, their spread and their seeds', () => {
+  const columns = [
+    {name: 'K', kind: 'varied'},
+    {name: 'variant', kind: 'varied'},
+    {name: 's', kind: 'score'},
+    {name: 'seed', kind: 'about'},
+    {name: 'status', kind: 'about'},
+  ];
+  const lines = groupedRows(columns, rows);
+  assert.equal(lines.length, 6);
+  close(lines[1].cells[2].v, 1.4);
+  assert.equal(lines[1].cells[2].t, '1.4 ± 0.028');
+  assert.equal(lines[1].cells[3], '1000, 1001');
+  assert.equal(lines[1].cells[4], 'done');
+  const failed = {...rows[3], cells: [...rows[3].cells.slice(0, 4), 'failed']};
+  assert.equal(groupedRows(columns, [rows[2], failed])[0].cells[4], '1 done, 1 failed');
+});
+
+test('columns in words', () => {
+  assert.equal(columnTitle('bank_test_log_score'), 'bank, held out: log score [nats/sample]');
+  assert.equal(columnTitle('noise_only_train_rmse_wz'), 'noise only, training: RMSE wz');
+  assert.equal(columnTitle('window.length'), 'window.length');
+});

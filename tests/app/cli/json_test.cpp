@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+
+#include "app/cli/command_table.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+/// What `--json` prints is what docs/reference/json.md says.
+namespace modebank::test {
+namespace {
+
+using nlohmann::json;
+
+class Json : public CliTest {
+ protected:
+  /// The one object on standard output.
+  json object(const std::vector<std::string>& arguments, int status = 0) const {
+    std::vector<std::string> all = arguments;
+    all.emplace_back("--json");
+    const ProgramResult result = modebank(all);
+    EXPECT_EQ(result.status, status) << arguments[0] << ": " << result.err;
+    const json found = json::parse(result.out, nullptr, false);
+    EXPECT_TRUE(found.is_object()) << arguments[0] << ": " << result.out;
+    if (!found.is_object()) return json::object();
+    EXPECT_EQ(found.value("command", ""), arguments[0]);
+    EXPECT_EQ(found.value("status", -1), status);
+    EXPECT_FALSE(found.value("modebank", "").empty());
+    return found;
+  }
+};
+
+/// Words in backquotes of the documentation's lines of that command.
+std::set<std::string> documented(const std::string& command) {
+  std::ifstream stream(project_dir() / "docs/reference/json.md");
+  std::set<std::string> words;
+  for (std::string line; std::getline(stream, line);) {
+    const std::size_t end = line.find('|', 1);
+    if (line.empty() || line[0] != '|' || line.substr(0, end).find("`" + command + "`") == std::string::npos) continue;
+    const std::string rest = line.substr(end);
+    const std::regex word("`([a-z_]+)`");
+    for (std::sregex_iterator it(rest.begin(), rest.end(), word), none; it != none; ++it) words.insert((*it)[1]);
+  }
+  return words;
+}
+
+void expect_documented(const json& object) {
+  const std::set<std::string> words = documented(object.at("command"));
+  for (const auto& [name, value] : object.items())
+    if (name != "command" && name != "modebank" && name != "status") {
+      EXPECT_TRUE(words.contains(name)) << object.at("command") << " gives " << name;
+    }
+}
+
+TEST_F(Json, EveryCommandButStreamsAndScriptsHasIt) {
+  const std::set<std::string> without{"track", "completion", "manual"};
+  for (const app::Command& command : app::command_table()) {
+    EXPECT_EQ(command.find_option("json") != nullptr, !without.contains(command.name)) << command.name;
+    if (!without.contains(command.name) && command.name != "demo") {
+      EXPECT_FALSE(documented(command.name).empty()) << command.name;
+    }
+  }
+}
+
+TEST_F(Json, CommandsGiveTheMembersThatAreDocumented) {
+  const std::string windows = file("windows.h5").string(), clusters = file("clusters.h5").string();
+  const std::vector<std::vector<std::string>> commands{
+      {"version"},
+      {"help", "window.length"},
+      {"config", config()},
+      {"check", config(), "--findings"},
+      {"init", file("run_00.csv").string(), "-o", file("init.ini").string()},
+      {"identify", config(), "--archive.output", windows},
+      {"cluster", config(), "--archive.output", clusters},
+      {"run", config()},
+      {"evaluate", config(), "--archive.output", file("judged.h5").string()},
+      {"show", archive(), "/bank/A"},
+      {"show", archive(), "/bank"},
+      {"predict", archive(), "--samples", "5"},
+      {"predict", archive(), "--samples", "5", "-o", file("p.csv").string()},
+      {"export", archive(), "--to", "json", "--force"},
+      {"export", archive(), "--to", "c", "--force", "-o", file("f.c").string()},
+      {"verify", archive()},
+      {"study", config(), "--study.vary", "window.length = 20 | 25", "--study.output", file("s").string()},
+      {"verify", file("s").string()},
+  };
+  for (const std::vector<std::string>& command : commands) expect_documented(object(command));
+}
+
+TEST_F(Json, NumbersAreThoseOfTheArchive) {
+  object({"run", config()});
+  const json predicted = object({"predict", archive(), "--samples", "5"});
+  const ProgramResult csv = modebank({"predict", archive(), "--samples", "5"});
+  std::size_t samples = 0;
+  for (const json& run : predicted.at("runs")) {
+    EXPECT_EQ(run.at("time_s").size(), run.at("states").at("wz").at("predicted").size());
+    samples += run.at("time_s").size();
+  }
+  EXPECT_EQ(samples + 1, static_cast<std::size_t>(std::count(csv.out.begin(), csv.out.end(), '\n')));
+  EXPECT_EQ(object({"config", config()}).at("keys").at("window.length").at("origin").get<std::string>().substr(0, 1),
+            config().substr(0, 1));
+}
+
+TEST_F(Json, ErrorsAreSaidInIt) {
+  EXPECT_NE(object({"run", file("no.ini").string()}, 2).at("error").get<std::string>().find("no.ini"),
+            std::string::npos);
+  EXPECT_NE(object({"run", config(), "--window.lenght", "3"}, 2).at("error").get<std::string>().find("window.length"),
+            std::string::npos);
+  write("broken.h5", "no archive");
+  EXPECT_FALSE(object({"verify", file("broken.h5").string()}, 1).at("files").at(0).at("problems").empty());
+  EXPECT_FALSE(object({"show", file("broken.h5").string()}, 1).at("error").get<std::string>().empty());
+}
+
+}  // namespace
+}  // namespace modebank::test
