@@ -28,6 +28,7 @@ if not (os.path.exists("/usr/bin/chromium") and os.path.exists("/usr/bin/chromed
 import session  # noqa: E402
 from compare_page import ComparePage, Refusals  # noqa: E402, F401
 from first_screen import FirstScreen  # noqa: E402, F401
+from looking_around import LookingAround  # noqa: E402, F401
 from run_pages import RunPages  # noqa: E402, F401
 from study_page import StudyPage  # noqa: E402, F401
 
