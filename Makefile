@@ -134,9 +134,10 @@ docs-examples docs-update: packages-test build
 	cmake --build --preset release -j $(JOBS) --target modebank_python
 	/usr/bin/python3 tests/docs/examples.py $(if $(findstring update,$@),--update) --data $(DATA) build $(PAGES)
 
-# The pages' scripts. Debian's eslint is told where Debian's modules are: another node does not know.
+# The pages' scripts: style, and types as their comments state them. Debian's eslint is told where Debian's modules are: another node does not know.
 lint: packages-check
 	NODE_PATH=/usr/share/nodejs eslint --format unix app/report/web/src app/report/web/test
+	tsc --project app/report/web/tsconfig.json
 
 shellcheck: packages-check
 	git ls-files '*.sh' .ci | xargs grep -lE '^#!.*\b(ba)?sh$$' | xargs shellcheck

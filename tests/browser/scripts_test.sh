@@ -1,10 +1,16 @@
 #!/bin/sh
-# Runs tests of the pages' scripts: scripts_test.sh TEST.js... Skips loudly without node, or fails where everything must be
-# there.
+# Runs tests of the pages' scripts, bundled as the pages are: scripts_test.sh TEST.js... Skips loudly without node, or
+# fails where everything must be there.
 set -eu
 if ! command -v node >/dev/null; then
   echo "SKIPPED: node is missing (Debian package nodejs)"
   [ "${CI:-}" = true ] && exit 1
   exit 77
 fi
-exec node --test "$@"
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+web=$(dirname "$1")/..
+ln -s "$(realpath "$web")"/*.json "$folder"
+NODE_PATH=/usr/share/nodejs esbuild --bundle --platform=node --format=esm --charset=utf8 --log-level=warning \
+  --out-extension:.js=.mjs --outdir="$folder/test" "$@"
+node --test "$folder/test"

@@ -37,7 +37,7 @@ std::string part(std::string_view name, const Page& page) {
   if (name == "css") return std::string(assets::page_css());
   if (name == "data") return json_in_script(page.data);
   if (name == "arrays") return array_elements(page.arrays);
-  if (name == "plotly") return std::string(assets::plotly_js());
+  if (name == "plotly") return std::string(assets::plotly_packed());
   if (name == "script") return std::string(page.script);
   throw std::logic_error(fmt::format("page.html has a part {} that nobody fills", name));
 }

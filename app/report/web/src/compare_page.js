@@ -79,6 +79,7 @@ function drawScores(data) {
       data.scores.length ? scoreTables(data) : note('Not all hold scores.'));
 }
 
+/** @param {any[]} both @param {string[]} criterion */
 function selectionDrawing(both, [key, name]) {
   const traces = both.flatMap((one, k) => {
     if (!one) return [];

@@ -66,7 +66,8 @@ function copyByHand(text) {
   return copied;
 }
 
-export function copyButton(label, text) {
+// `given`: the text, or what makes it when it is asked for.
+export function copyButton(label, given) {
   const button = h('button', {type: 'button', class: 'copy'}, label);
   const done = (word) => {
     button.textContent = word;
@@ -74,10 +75,11 @@ export function copyButton(label, text) {
       button.textContent = label;
     }, 1500);
   };
-  const byHand = () => done(copyByHand(text) ? 'Copied' : 'Not allowed');
+  const byHand = (text) => done(copyByHand(text) ? 'Copied' : 'Not allowed');
   button.addEventListener('click', () => {
-    if (!navigator.clipboard) return byHand();
-    return navigator.clipboard.writeText(text).then(() => done('Copied'), byHand);
+    const text = typeof given === 'function' ? given() : given;
+    if (!navigator.clipboard) return byHand(text);
+    return navigator.clipboard.writeText(text).then(() => done('Copied'), () => byHand(text));
   });
   return button;
 }

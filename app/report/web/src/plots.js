@@ -2,8 +2,10 @@
 import palette from '../palette.json';
 
 import {onGround, paletteColour, translucent} from './colour.js';
+import {blobOf, downloads} from './downloads.js';
 import {h} from './elements.js';
 import {beforePrint, dark, onTheme} from './page.js';
+import {runPacked} from './page_data.js';
 import {keepWhenPrinted} from './printing.js';
 
 export {palette, translucent};
@@ -15,7 +17,7 @@ export const axisTitle = ({name, unit}) => plain(unit ? `${name} [${unit}]` : na
 
 export const ink = () => (dark() ? '#e8eaee' : '#16181d');
 const faint = () => (dark() ? '#343a45' : '#dfe3e8');
-const ground = () => (dark() ? '#14161a' : '#ffffff');
+export const ground = () => (dark() ? '#14161a' : '#ffffff');
 export const modeColour = (k) => paletteColour(palette, k);
 export const lineColour = (colour) => onGround(colour, dark());
 export const filterColour = (name) => lineColour(palette.filters[name] || ink());
@@ -95,12 +97,12 @@ const config = {
 
 // Figures are drawn one after the other, so that the first is seen before a large one begins.
 let turn = Promise.resolve();
-function inTurn(task) {
+export function inTurn(task) {
   turn = turn.then(task).then(() => new Promise((shown) => setTimeout(shown, 0)));
 }
 
 // Calls `begin` when the element comes near the window: a page of many figures opens at once.
-function whenNear(element, begin) {
+export function whenNear(element, begin) {
   const near = (entries) => {
     if (entries.some((entry) => entry.isIntersecting)) begin();
   };
@@ -109,16 +111,27 @@ function whenNear(element, begin) {
   return () => watcher.disconnect();
 }
 
+let loading = null;
+// Plotly takes most of a second to start: it does when the first figure that needs it comes near the window.
+async function plotly() {
+  loading = loading || runPacked('plotly');
+  await loading;
+  return window.Plotly;
+}
+
 // A figure: `make` returns {traces, layout} and is called again when the theme changes. `label` is what a screen reader
 // says. Returns the element; element.redraw() calls `make` anew and keeps zoom (layout.uirevision).
 export function figure(label, make, caption) {
-  const {Plotly} = window;
   const plot = h('div', {class: 'plot', role: 'img', 'aria-label': label});
-  const element = h('figure', {}, plot, caption ? h('figcaption', {class: 'caption'}, caption) : null);
+  const file = (format) => async () => blobOf(await (await plotly()).toImage(plot, {format, scale: 2}));
+  const files = downloads(label, {svg: file('svg'), png: file('png')});
+  const element =
+      h('figure', {}, plot, h('div', {class: 'below-plot'}, files),
+        caption ? h('figcaption', {class: 'caption'}, caption) : null);
   let begun = false, drawn = false;
   element.plot = plot;
   element.redraw = async () => {
-    const {traces, layout} = await make();
+    const [Plotly, {traces, layout}] = await Promise.all([plotly(), make()]);
     const full = themed({...standardLayout(), ...layout});
     plot.style.height = `${full.height || 320}px`;
     await (drawn ? Plotly.react(plot, traces, full, config) : Plotly.newPlot(plot, traces, full, config));
@@ -148,7 +161,7 @@ export function figure(label, make, caption) {
   onTheme(async () => {  // or of the width, when printing
     if (!drawn) return;
     await element.redraw();
-    await Plotly.Plots.resize(plot);
+    await window.Plotly.Plots.resize(plot);
   });
   return element;
 }

@@ -13,7 +13,7 @@ function still(scene) {
 }
 
 function beforePrinting() {
-  for (const plot of document.querySelectorAll('div.js-plotly-plot')) {
+  for (const plot of /** @type {NodeListOf<any>} */ (document.querySelectorAll('div.js-plotly-plot'))) {
     if (plot.clientWidth > sheet_px) plot.style.zoom = sheet_px / plot.clientWidth;
     const layout = plot._fullLayout;
     const scene = layout && layout.scene && layout.scene._scene;
@@ -23,7 +23,9 @@ function beforePrinting() {
 
 function afterPrinting() {
   for (const copy of document.querySelectorAll('canvas.still')) copy.remove();
-  for (const plot of document.querySelectorAll('div.js-plotly-plot')) plot.style.zoom = '';
+  for (const plot of /** @type {NodeListOf<any>} */ (document.querySelectorAll('div.js-plotly-plot'))) {
+    plot.style.zoom = '';
+  }
 }
 
 // Listening twice does no harm: the same function is kept once.

@@ -6,8 +6,6 @@ import {drawFreeRun} from './free_run.js';
 import {section} from './page.js';
 import {dashedLine, figure, filterColour, greyBand, palette} from './plots.js';
 import {drawScores} from './run_scores.js';
-import {innovationRow, nisRow, probabilityRow, stateRow} from './time_rows.js';
-import {timeControls, timePlot} from './timeview.js';
 
 const present = (list, key) => [...new Set(list.map((row) => row[key]))];
 const legendAbove = {
@@ -139,35 +137,11 @@ function outside(filter) {
   return [h('h3', {}, 'Samples too far and too close'), controls(pick), plot];
 }
 
-// The time plot of the filter that is chosen.
-function filterPlot(runs, state, options) {
-  const rows = () => {
-    const chosen = options.layer.of(state.current);
-    return [
-      stateRow(runs, options.state, [options.layer], 170),
-      ...(chosen && chosen.probability ? [probabilityRow(options.layer.of)] : []),
-      innovationRow(runs, options.state, options.layer.of),
-      nisRow(runs, [options.layer]),
-    ];
-  };
-  return timePlot(
-      state, 'Mode probabilities, innovations and NIS of one run over time', rows,
-      `Blue lines about the innovations: ${
-          100 * runs.level} % of a Gaussian of their variance. Dashed lines at the NIS: ` +
-          'both bounds that a true filter’s stays between with 95 %.');
-}
-
-export function drawFilter(filter, runs, state, options, picker) {
+export function drawFilter(filter, runs, state) {
   const absent = 'This archive holds no evaluation: no filter was run over the data.';
   if (!filter) return section('filter', 'The filter', note(absent));
-  const pickState = choiceIfAny('State', runs.states.map((channel) => channel.name), 0, (i) => {
-    options.state = i;
-    state.changed();
-  });
-  const modes = Math.max(0, ...state.runs.map(({filters: {bank}}) => (bank && bank.probability || []).length));
   return section(
-      'filter', 'The filter', controls(picker(), pickState, timeControls(state)),
-      modes > 1 ? options.modeLegend(modes) : null, filterPlot(runs, state, options),
+      'filter', 'The filter',
       h('div', {class: 'pair'}, h('div', {}, histograms(filter)),
         h('div', {}, autocorrelations(filter, runs.states), outside(filter))),
       drawScores(filter), drawFreeRun(filter, runs, state));

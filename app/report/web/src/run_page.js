@@ -7,11 +7,11 @@ import {draw, head, section} from './page.js';
 import {pageData} from './page_data.js';
 import {ink, lineColour, modeColour, palette} from './plots.js';
 import {drawBank} from './run_bank.js';
+import {dataPlot} from './run_data.js';
 import {drawFilter} from './run_filter.js';
 import {drawSelection} from './run_selection.js';
 import {table} from './table.js';
-import {inputRows, probabilityRow, stateRow} from './time_rows.js';
-import {runChoice, timeControls, timePlot, TimeState} from './timeview.js';
+import {runChoice, timeControls, TimeState} from './timeview.js';
 
 const changedColumns = [
   {name: 'Setting', text: true, of: (row) => row.key},
@@ -104,19 +104,10 @@ function dataLegend(runs, filtered) {
 }
 
 function drawData(runs, state, options, picker) {
-  const filtered = Object.keys(runs.runs[0].filters).length > 0;
-  const rows = () => {
-    const chosen = options.layer.of(state.current);
-    return [
-      ...runs.states.map((_, i) => stateRow(runs, i, [options.layer])),
-      ...inputRows(runs),
-      ...(chosen && chosen.probability ? [probabilityRow(options.layer.of)] : []),
-    ];
-  };
-  const plot = timePlot(state, 'State with prediction, and inputs, of one run over time', rows, runs.note);
+  const filters = Object.keys(runs.runs[0].filters), filtered = filters.length > 0;
   section(
       'data', 'The data', filtered ? null : note('No filter was run, so there is no prediction to compare with.'),
-      controls(picker(), timeControls(state)), dataLegend(runs, filtered), plot);
+      controls(picker(), timeControls(state)), dataLegend(runs, filtered), dataPlot(runs, state, filters, options));
 }
 
 async function drawWindows(windows, runs, goTo) {
@@ -164,5 +155,5 @@ draw(async () => {
   });
   drawSelection(data.selection);
   drawBank(data.bank);
-  drawFilter(data.filter, runs, state, options, picker);
+  drawFilter(data.filter, runs, state);
 });

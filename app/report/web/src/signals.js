@@ -1,8 +1,6 @@
 // Runs' signals at the level of detail a plot can show (series.hpp): samples themselves where few enough are in view,
-// else extremes over buckets. Everything is drawn half a view beyond both edges, so that panning shows data at once.
+// else extremes over buckets.
 import {array} from './page_data.js';
-
-const wanted = 800;  // buckets across a plot: about one per pixel pair
 
 // Number of the first sample at or after time t.
 function indexIn(times, t) {
@@ -36,12 +34,13 @@ export async function clock(axis) {
   };
 }
 
-// Which samples a view of `range` shows and how many go into one bucket of the drawing.
-export function view(clockOf, range) {
-  const span = range[1] - range[0];
+// Which samples a view of `range` shows and how many go into one bucket of the drawing, so that a bucket is about a
+// pixel wide. Buckets of a power of two hold whole ones of every stored level and stay the
+// same while the view moves. A bucket beyond both edges is drawn, too: lines go on to the edge.
+export function view(clockOf, range, pixels) {
   const first = clockOf.near(range[0]), last = clockOf.near(range[1]);
-  const per = Math.max(1, Math.floor((last - first + 1) / wanted));
-  return {first: clockOf.near(range[0] - span / 2), last: clockOf.near(range[1] + span / 2), per};
+  const per = 2 ** Math.max(0, Math.round(Math.log2((last - first + 1) / pixels)));
+  return {first: Math.max(0, first - 2 * per), last: Math.min(clockOf.samples - 1, last + 2 * per), per};
 }
 
 // The coarsest stored level whose buckets are not larger than the drawing's.
@@ -174,4 +173,15 @@ function outlines(low, high, time) {
 export async function bounds(half, clockOf, shown) {
   const up = await line(half, clockOf, shown);
   return {up, down: {x: up.x, y: up.y.map((v) => -v)}};
+}
+
+/**
+ * What a signal is at sample k as far as the page holds it: the value itself, or where only extremes of buckets are
+ * stored the least and the greatest there.
+ * @returns {Promise<{low: number, high: number}>}
+ */
+export async function valueAt(signal, k) {
+  const level = signal.raw ? {bucket: 1, low: signal.raw, high: signal.raw} : signal.levels[0];
+  const i = Math.floor(k / level.bucket), low = await array(level.low), high = await array(level.high || level.low);
+  return {low: low[i], high: high[i]};
 }

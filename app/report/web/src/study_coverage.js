@@ -30,6 +30,13 @@ function averageOf(study, rows, score) {
   return values.length ? 100 * mean(values) : null;
 }
 
+/**
+ * @param {any} study
+ * @param {any[]} groups
+ * @param {string} measure
+ * @param {any[]} side
+ * @param {string[]} role
+ */
 function coverageBars(study, groups, measure, [side, sign], [role, name, colour]) {
   const y = groups.map(([, filter, rows]) => averageOf(study, rows, `${filter}_${role}_${sidesOf[measure][side]}`));
   const said = (v, i) => `${plain(groups[i][0])}, ${name}, ${side}: ${v === null ? '–' : v.toPrecision(4)} %`;
@@ -49,6 +56,12 @@ function coverageBars(study, groups, measure, [side, sign], [role, name, colour]
   };
 }
 
+/**
+ * @param {any} study
+ * @param {any} axis
+ * @param {string[]} measure
+ * @param {any[]} rows
+ */
 function coverageDrawing(study, axis, [measure, measureName], rows) {
   const groups = groupsOf(axis, rows), line = {color: ink(), width: 1, dash: 'dash'};
   const traces = sides.flatMap((side) => roles.map((role) => coverageBars(study, groups, measure, side, role)));

@@ -1,4 +1,5 @@
 // Tables with headings that sort.
+import {downloads, tableFile} from './downloads.js';
 import {h, swatch, value} from './elements.js';
 import {sortedRows} from './ordering.js';
 import {meaningOf} from './terms.js';
@@ -28,7 +29,8 @@ export function pressed(order, column) {
 }
 
 export const scrolling = (label, element) =>
-    h('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': label}, element);
+    h('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': label}, element,
+      downloads(label, {csv: () => tableFile(element)}));
 
 // options: caption, chosen: row => bool, sortable.
 export function table(columns, rows, options = {}) {

@@ -2,7 +2,7 @@
 import terms from '../terms.json';
 
 const named = terms.flatMap(({term, also, means}) => [term, ...also].map((name) => [name.toLowerCase(), means]));
-const meanings = new Map(named);
+const meanings = new Map(/** @type {[string, string][]} */ (named));
 
 // The meaning of a heading, whatever unit it has; null for words that need none.
 export const meaningOf = (heading) => {

@@ -1,21 +1,39 @@
 // The rows of plots over time: states with predictions, inputs, mode probabilities, innovations, NIS. What belongs to
-// one filter is drawn by a layer: {of: run => its filter or null, prefix: '', band, line: colours, stroke: more of its
-// lines, symbol}. A page of one run has one layer, a page that compares two runs has two.
+// one filter is drawn by a layer: {of: run => its filter or null, prefix: '', band, line: colours, nis: colour, stroke:
+// {dash}, symbol}. A page of one run has one layer, a page that compares two runs has two.
+//
+// A row is {title, height, draw: async ({run, clock, shown, range}) => traces, read: async (run, k) => entries, range,
+// log, levels}: `read` tells what its signals are at sample k (-1: none, the entries are then a legend).
 import {modeTitle} from './mode_names.js';
 import {array} from './page_data.js';
-import {axisTitle, dashedLine, ink, lineColour, modeColour, palette, plain, translucent} from './plots.js';
-import {band, bounds, line, share} from './signals.js';
+import {ink, lineColour, modeColour, palette, translucent} from './plots.js';
+import {band, bounds, line, share, valueAt} from './signals.js';
 
 const most_outliers = 3000;
 const few_markers = 700;
 const few_nis = 3000;
+const told_modes = 4;
 
-const lines = {
-  type: 'scatter',
-  mode: 'lines'
-};
-const stroke = (color, width = 1.2, dash) => ({color: lineColour(color), width, dash, simplify: true});
-const shapeOf = (per) => (per === 1 ? 'hv' : 'linear');
+/** @typedef {import('./time_drawing.js').Trace} Trace */
+/** @typedef {{name: string, colour: string, unit?: string, value?: {low: number, high: number}}} Entry */
+
+export const titleOf = ({name, unit}) => (unit ? `${name} [${unit}]` : name);
+
+// An entry of a row's readout; k < 0: only its name and colour.
+async function told(signal, k, entry) {
+  return k < 0 || !signal ? entry : {...entry, value: await valueAt(signal, k)};
+}
+
+// The edges of a band at sample k.
+async function toldBand(filter, i, k, entry) {
+  if (k < 0) return entry;
+  const center = await valueAt((filter.center || filter.prediction)[i], k),
+        half = await valueAt(filter.half_width[i], k);
+  const bySample = center.low === center.high;
+  const low = bySample ? center.low - half.low : (await valueAt(filter.lower[i], k)).low;
+  const high = bySample ? center.low + half.low : (await valueAt(filter.upper[i], k)).high;
+  return {...entry, band: true, value: {low, high}};
+}
 
 async function predictionTraces(layer, filter, i, {clock, shown}) {
   const edges = {
@@ -24,136 +42,167 @@ async function predictionTraces(layer, filter, i, {clock, shown}) {
     lowest: filter.lower[i],
     highest: filter.upper[i],
   };
-  const fillcolor = translucent(layer.band, layer.opacity);
+  const colour = lineColour(layer.line), dash = (layer.stroke || {}).dash === 'dash' ? 'dash' : undefined;
   return [
     {
       ...(await band(edges, clock, shown)),
-      ...lines,
-      fill: 'toself',
-      fillcolor,
-      line: {width: 0},
-      hoverinfo: 'skip',
-      name: `${layer.prefix}band`,
+      kind: 'area',
+      colour: translucent(layer.band, layer.opacity),
+      name: `${layer.prefix}band`
     },
     {
       ...(await line(filter.prediction[i], clock, shown)),
-      ...lines,
-      line: {...stroke(layer.line, 1.4), ...layer.stroke},
-      name: `${layer.prefix}predicted`,
+      kind: 'line',
+      colour,
+      dash,
+      width: 1.4,
+      name: `${layer.prefix}predicted`
     },
   ];
 }
 
-async function measuredTrace(signal, {clock, shown}) {
-  const measured = await line(signal, clock, shown), few = measured.per === 1 && measured.y.length < few_markers;
-  const mode = few ? 'lines+markers' : 'lines';
-  return {...measured, ...lines, mode, marker: {size: 3, color: ink()}, line: stroke(ink(), 1), name: 'measured'};
+async function measuredTraces(signal, {clock, shown}) {
+  const measured = await line(signal, clock, shown), look = {colour: ink(), name: 'measured'};
+  const curve = {...measured, ...look, kind: 'line', width: 1};
+  if (measured.per > 1 || measured.y.length > few_markers) return [curve];
+  return [curve, {...measured, ...look, kind: 'dots', size: 1.6}];
 }
 
-// Those in view or half a view beside it.
 async function outlierTrace(outliers, i, range) {
-  const reach = (range[1] - range[0]) / 2;
   const times = await array(outliers.time), values = await array(outliers.values[i]), x = [], y = [];
   for (let k = 0; k < times.length && x.length < most_outliers; ++k) {
-    if (times[k] < range[0] - reach || times[k] > range[1] + reach) continue;
+    if (times[k] < range[0] || times[k] > range[1]) continue;
     x.push(times[k]);
     y.push(values[k]);
   }
-  const marker = {symbol: 'circle-open', size: 9, color: lineColour(palette.outlier), line: {width: 2}};
-  return {x, y, type: 'scatter', mode: 'markers', marker, name: 'outlier'};
+  return {x, y, kind: 'dots', symbol: 'ring', size: 4.5, colour: lineColour(palette.outlier), name: 'outlier'};
+}
+
+async function stateTraces(layers, i, view) {
+  const {run, clock, shown, range} = view, traces = [], filters = layers.map((layer) => layer.of(run));
+  for (const [k, layer] of layers.entries()) {
+    if (filters[k]) traces.push(...(await predictionTraces(layer, filters[k], i, view)));
+  }
+  if (run.truth) {
+    const truth = await line(run.truth[i], clock, shown);
+    traces.push({...truth, kind: 'line', colour: lineColour(palette.truth), width: 1.2, dash: 'dot', name: 'truth'});
+  }
+  traces.push(...(await measuredTraces(run.state[i], view)));
+  const [filter] = filters;
+  if (layers.length === 1 && filter && filter.outliers && filter.outliers.count) {
+    traces.push(await outlierTrace(filter.outliers, i, range));
+  }
+  return traces;
+}
+
+function stateEntries(layers, i, unit, run, k) {
+  const entries = [told(run.state[i], k, {name: 'measured', unit, colour: ink()})];
+  for (const layer of layers) {
+    const filter = layer.of(run);
+    if (!filter) continue;
+    const {prefix} = layer;
+    entries.push(
+        told(filter.prediction[i], k, {name: `${prefix}predicted`, unit, colour: lineColour(layer.line)}),
+        toldBand(filter, i, k, {name: `${prefix}band`, unit, colour: layer.band}));
+  }
+  if (run.truth) entries.push(told(run.truth[i], k, {name: 'truth', unit, colour: lineColour(palette.truth)}));
+  return Promise.all(entries);
 }
 
 // Measured state i with each layer's band and prediction, truth and, for a single layer, outliers.
 export function stateRow(runs, i, layers, height = 230) {
-  const draw = async (view) => {
-    const {run, clock, shown, range} = view, traces = [], filters = layers.map((layer) => layer.of(run));
-    for (const [k, layer] of layers.entries()) {
-      if (filters[k]) traces.push(...(await predictionTraces(layer, filters[k], i, view)));
-    }
-    if (run.truth) {
-      const truth = await line(run.truth[i], clock, shown);
-      traces.push({...truth, ...lines, line: stroke(palette.truth, 1.2, 'dot'), name: 'truth'});
-    }
-    traces.push(await measuredTrace(run.state[i], view));
-    const [filter] = filters;
-    if (layers.length === 1 && filter && filter.outliers && filter.outliers.count) {
-      traces.push(await outlierTrace(filter.outliers, i, range));
-    }
-    return traces;
+  return {
+    title: titleOf(runs.states[i]),
+    height,
+    draw: (view) => stateTraces(layers, i, view),
+    read: (run, k) => stateEntries(layers, i, runs.states[i].unit, run, k),
   };
-  return {title: axisTitle(runs.states[i]), height, draw};
 }
 
 // Inputs that share a unit, in one row; their colours are not those of modes.
 export function inputRows(runs) {
-  const colour = (k) => palette.inputs[k % palette.inputs.length];
-  const dash = (k) => ['solid', 'dash', 'dot'][k % 3];
+  const look = (k) => ({
+    colour: lineColour(palette.inputs[k % palette.inputs.length]),
+    dash: /** @type {'dash'|'dot'|undefined} */ ([undefined, 'dash', 'dot'][k % 3]),
+  });
   return [...new Set(runs.inputs.map((channel) => channel.unit))].map((unit) => {
     const which = runs.inputs.map((_, j) => j).filter((j) => runs.inputs[j].unit === unit);
-    const name = (j) => plain(runs.inputs[j].name);
-    const title = which.length <= 3 ? which.map(name).join(',<br>') : 'inputs';
+    const name = (j) => runs.inputs[j].name;
     const draw = ({run, clock, shown}) => Promise.all(which.map(async (j, k) => {
       const curve = await line(run.input[j], clock, shown);
-      return {...curve, ...lines, line: {...stroke(colour(k), 1.3, dash(k)), shape: shapeOf(curve.per)}, name: name(j)};
+      return {...curve, ...look(k), kind: 'line', width: 1.3, step: curve.per === 1, name: name(j)};
     }));
-    return {title: unit ? `${title} [${plain(unit)}]` : title, height: 130, draw};
+    const read = (run, sample) =>
+        Promise.all(which.map((j, k) => told(run.input[j], sample, {name: name(j), unit, colour: look(k).colour})));
+    return {title: titleOf({name: which.length > 1 ? 'inputs' : 'input', unit}), height: 130, draw, read};
   });
 }
 
+// The likeliest modes at sample k, the likeliest first.
+async function modeEntries(filter, k) {
+  const shares = await Promise.all(
+      filter.probability.map((signal, mode) => told(signal, k, {name: modeTitle(mode), colour: modeColour(mode)})));
+  if (k < 0) return shares.length <= 2 * told_modes ? shares : [];
+  return shares.filter(({value}) => value.low > 0.005).sort((a, b) => b.value.low - a.value.low).slice(0, told_modes);
+}
+
 // `of`: run => the filter; `title` where there are several.
-export function probabilityRow(of, title = 'P(mode)') {
+export function probabilityRow(of, title = 'probability of the modes') {
   const draw = ({run, clock, shown}) => {
     const filter = of(run);
     if (!filter || !filter.probability) return [];
     return Promise.all(filter.probability.map(async (signal, k) => {
-      const curve = await share(signal, clock, shown), name = plain(modeTitle(k));
-      return {
-        ...curve,
-        ...lines,
-        stackgroup: 'modes',
-        line: {width: 0, shape: shapeOf(curve.per)},
-        fillcolor: modeColour(k),
-        name,
-        hovertemplate: '%{fullData.name}: %{y:.3f}<extra></extra>',
-      };
+      const curve = await share(signal, clock, shown);
+      return {...curve, kind: 'shares', step: curve.per === 1, colour: modeColour(k), name: modeTitle(k)};
     }));
   };
-  return {title, height: 110, axis: {range: [0, 1], fixedrange: true, tickvals: [0, 0.5, 1]}, draw};
+  const read = (run, k) => {
+    const filter = of(run);
+    return filter && filter.probability ? modeEntries(filter, k) : [];
+  };
+  return {title, height: 110, range: [0, 1], draw, read};
 }
 
 export function innovationRow(runs, i, of) {
+  const {unit} = runs.states[i], edge = {kind: 'line', colour: lineColour(palette.prediction), width: 1, name: 'bound'};
   const draw = async ({run, clock, shown}) => {
     const filter = of(run);
     if (!filter) return [];
     const {up, down} = await bounds(filter.half_width[i], clock, shown);
-    const edge = {...lines, line: stroke(palette.prediction, 1), hoverinfo: 'skip'};
     const innovation = await line(filter.innovation[i], clock, shown);
     return [
-      {...up, ...edge}, {...down, ...edge}, {...innovation, ...lines, line: stroke(ink(), 0.9), name: 'innovation'}
+      {...up, ...edge}, {...down, ...edge}, {...innovation, kind: 'line', colour: ink(), width: 0.9, name: 'innovation'}
     ];
   };
-  return {title: `innovation<br>${axisTitle(runs.states[i])}`, height: 150, draw};
+  const read = async (run, k) => {
+    const filter = of(run);
+    if (!filter) return [];
+    return Promise.all([
+      told(filter.innovation[i], k, {name: 'innovation', unit, colour: ink()}),
+      told(filter.half_width[i], k, {name: `± ${100 * runs.level} %`, unit, colour: lineColour(palette.prediction)}),
+    ]);
+  };
+  return {title: `innovation of ${titleOf(runs.states[i])}`, height: 130, draw, read};
 }
 
 async function nisTrace(layer, filter, {clock, shown}) {
   const curve = await line(filter.nis, clock, shown), dots = curve.per === 1 && curve.y.length < few_nis;
-  const color = layer.nis || ink();
-  return {
-    ...curve,
-    type: 'scatter',
-    mode: dots ? 'markers' : 'lines',
-    name: `${layer.prefix}NIS`,
-    marker: {size: 3.5, color, symbol: layer.symbol || 'circle', opacity: 0.7},
-    line: {...stroke(color, 0.8), ...layer.stroke},
-  };
+  const look = {colour: lineColour(layer.nis || ink()), name: `${layer.prefix}NIS`};
+  if (dots) return {...curve, ...look, kind: 'dots', size: 1.8, symbol: layer.symbol};
+  return {...curve, ...look, kind: 'line', width: 0.8};
 }
 
 export function nisRow(runs, layers) {
-  const bound = (height) => dashedLine(height, {line: {color: lineColour(palette.outlier), width: 1.2, dash: 'dash'}});
-  const draw = (view) => {
-    const told = layers.map((layer) => [layer, layer.of(view.run)]).filter(([, filter]) => filter);
-    return Promise.all(told.map(([layer, filter]) => nisTrace(layer, filter, view)));
+  const present = (run) => layers.map((layer) => [layer, layer.of(run)]).filter(([, filter]) => filter);
+  return {
+    title: 'normalised innovation squared (NIS)',
+    height: 140,
+    log: true,
+    range: [1e-4, 300],
+    draw: (view) => Promise.all(present(view.run).map(([layer, filter]) => nisTrace(layer, filter, view))),
+    levels: () => runs.nis_bounds.map((height) => ({height, colour: lineColour(palette.outlier)})),
+    read: (run, k) => Promise.all(present(run).map(
+        ([layer, filter]) =>
+            told(filter.nis, k, {name: `${layer.prefix}NIS`, colour: lineColour(layer.nis || ink())}))),
   };
-  const axis = {type: 'log', exponentformat: 'power', dtick: 2, range: [-4, 2.5]};
-  return {title: 'NIS', height: 150, axis, shapes: () => runs.nis_bounds.map(bound), draw};
 }

@@ -4,12 +4,27 @@ import {modeCell, modeTitle} from './mode_names.js';
 
 const few_shells = 6;
 
+/**
+ * @typedef {{run: Int32Array, begin: Float64Array, end: Float64Array, label: Int32Array|null, mode: Int32Array|null,
+ *   values: Float32Array[], covariance: Float32Array[]|null}} WindowArrays
+ */
+
 export class WindowCloud {
-  // `windows`: C++'s windows_section; `arrays`: its arrays as loadWindows gives them; `runs`: names of runs.
+  /**
+   * @param {any} windows C++'s windows_section
+   * @param {WindowArrays} arrays as loadWindows gives them
+   * @param {string[]} runs names
+   */
   constructor(windows, arrays, runs) {
     this.windows = windows;
     this.runs = runs;
-    Object.assign(this, arrays);  // values, run, begin, end, label, mode, covariance
+    this.run = arrays.run;
+    this.begin = arrays.begin;
+    this.end = arrays.end;
+    this.label = arrays.label;
+    this.mode = arrays.mode;
+    this.values = arrays.values;
+    this.covariance = arrays.covariance;
     this.count = this.run.length;
     this.dimensions = Math.min(3, windows.axes.length);
     this.axes = windows.default_axes;
@@ -119,6 +134,7 @@ export class WindowCloud {
       const error = known ? ` ± ${digits(Number(Math.sqrt(this.covarianceOf(i, a, a)).toPrecision(2)))}` : '';
       return `${axis.name} = ${digits(this.values[a][i])}${error}`;
     });
+    /** @type {(name: string, list: Int32Array|null, said?: (k: number) => string) => string} */
     const group = (name, list, said = String) => (list ? `; ${name} ${list[i] < 0 ? 'none' : said(list[i])}` : '');
     return `Window in ${this.place(i)}: ${numbers.join(', ')}${group('component', this.label)}` +
         group('mode of the filter', this.mode, modeCell);

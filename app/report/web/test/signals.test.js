@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {fromPlanes} from '../src/page_data.js';
-import {band, clock, line, share, view} from '../src/signals.js';
+import {band, clock, line, share, valueAt, view} from '../src/signals.js';
 
 const period = 0.01;
 const evenClock = (samples) => clock({samples, start: 0, end: (samples - 1) * period, period});
@@ -24,12 +24,25 @@ test('an uneven clock finds the sample at or after a time', async () => {
   assert.deepEqual([0, 3, 7].map(uneven.at), [0, 9, 9]);
 });
 
-test('few samples are drawn one by one, half a view beyond both edges', async () => {
+test('few samples are drawn one by one, and two beyond both edges', async () => {
   const values = Float32Array.from({length: 1000}, (_, i) => i), even = await evenClock(1000);
-  const shown = view(even, [4, 6]), drawn = await line({raw: values, levels: []}, even, shown);
+  const shown = view(even, [4, 6], 800), drawn = await line({raw: values, levels: []}, even, shown);
   assert.equal(drawn.per, 1);
-  assert.deepEqual([drawn.y[0], drawn.y[drawn.y.length - 1]], [300, 700]);
-  assert.equal(drawn.x[0], 300 * period);
+  assert.deepEqual([drawn.y[0], drawn.y[drawn.y.length - 1]], [398, 602]);
+  assert.equal(drawn.x[0], 398 * period);
+});
+
+test('the buckets of a view that moves stay the same', async () => {
+  const even = await evenClock(1e6), at = (from) => view(even, [from, from + 3000.004], 1000);
+  const sizes = Array.from({length: 200}, (_, i) => at(17.3 * i).per);
+  assert.deepEqual([...new Set(sizes)], [256]);
+  assert.deepEqual(at(0).first, 0);
+});
+
+test('a value at a sample is itself, or the extremes of its bucket', async () => {
+  const raw = Float32Array.of(1, 2, 3, 4), levels = [{bucket: 2, low: raw.subarray(0, 2), high: raw.subarray(2)}];
+  assert.deepEqual(await valueAt({raw, levels}, 2), {low: 3, high: 3});
+  assert.deepEqual(await valueAt({raw: null, levels}, 2), {low: 2, high: 4});
 });
 
 test('many samples are drawn by the extremes of their buckets, no peak lost, unknown ones aside', async () => {
@@ -37,7 +50,7 @@ test('many samples are drawn by the extremes of their buckets, no peak lost, unk
   const values = Float32Array.from({length: n}, (_, i) => (i % 10 === 0 ? NaN : Math.sin(i / 500)));
   values[54321] = 7;
   values[12345] = -7;
-  const drawn = await line({raw: values, levels: []}, even, view(even, [0, (n - 1) * period]));
+  const drawn = await line({raw: values, levels: []}, even, view(even, [0, (n - 1) * period], 800));
   const known = Array.from(drawn.y).filter((v) => !Number.isNaN(v));
   assert.ok(drawn.per > 1 && known.length < 2000 && known.length > 1500);
   assert.deepEqual([Math.min(...known), Math.max(...known)], [-7, 7]);
@@ -48,7 +61,8 @@ test('the coarsest stored level that is fine enough is read', async () => {
   const n = 64000, even = await evenClock(n), of = (length, v) => new Float32Array(length).fill(v);
   const levels =
       [[16, 1], [64, 2], [256, 3]].map(([bucket, v]) => ({bucket, low: of(n / bucket, v), high: of(n / bucket, v)}));
-  const drawn = await line({raw: of(n, 0), levels}, even, view(even, [0, (n - 1) * period]));  // 80 samples per bucket
+  const drawn =
+      await line({raw: of(n, 0), levels}, even, view(even, [0, (n - 1) * period], 1000));  // 64 samples per bucket
   assert.equal(drawn.y[0], 2);
   assert.equal(drawn.per, 64);
 });

@@ -1,0 +1,107 @@
+// What plots over time are drawn with: a pen for the screen (canvas) and one for files (SVG), so that a figure's file
+// is what the screen shows. A path is a function that calls moveTo, lineTo, arc, rect, ... of what it is given.
+import {path as d3Path} from 'd3-path';
+
+import {s} from './elements.js';
+
+export const font = 'system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
+const dashes = {
+  dash: [6, 4],
+  dot: [2, 3]
+};
+
+/**
+ * @typedef {{moveTo: (x: number, y: number) => void, lineTo: (x: number, y: number) => void, closePath: () => void,
+ *   arc: (x: number, y: number, r: number, from: number, to: number) => void,
+ *   rect: (x: number, y: number, w: number, h: number) => void}} PathContext
+ * @typedef {(context: PathContext) => void} Path
+ * @typedef {{colour: string, width?: number, dash?: 'dash'|'dot'}} Stroke
+ * @typedef {{x: number, y: number, width: number, height: number}} Box
+ * @typedef {{colour: string, size?: number, align?: 'left'|'center'|'right', bold?: boolean}} TextLook
+ * @typedef {{line: (path: Path, look: Stroke) => void, area: (path: Path, colour: string) => void,
+ *   text: (text: string, x: number, y: number, look: TextLook) => number,
+ *   within: (box: Box, body: () => void) => void}} Pen
+ */
+
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @returns {Pen}
+ */
+export function canvasPen(context) {
+  const drawn = (path) => {
+    context.beginPath();
+    path(context);
+  };
+  return {
+    line: (path, {colour, width = 1, dash}) => {
+      context.strokeStyle = colour;
+      context.lineWidth = width;
+      context.setLineDash(dashes[dash] || []);
+      drawn(path);
+      context.stroke();
+    },
+    area: (path, colour) => {
+      context.fillStyle = colour;
+      drawn(path);
+      context.fill();
+    },
+    text: (text, x, y, {colour, size = 11, align = 'left', bold}) => {
+      context.font = `${bold ? 'bold ' : ''}${size}px ${font}`;
+      context.fillStyle = colour;
+      context.textAlign = align;
+      context.fillText(text, x, y);
+      return context.measureText(text).width;
+    },
+    within: ({x, y, width, height}, body) => {
+      context.save();
+      drawn((it) => it.rect(x, y, width, height));
+      context.clip();
+      body();
+      context.restore();
+    },
+  };
+}
+
+let clips = 0;
+const anchors = {
+  left: 'start',
+  center: 'middle',
+  right: 'end'
+};
+
+/**
+ * Appends to an SVG element what is drawn.
+ * @param {Element} root
+ * @returns {Pen}
+ */
+export function svgPen(root) {
+  let place = root;
+  const put = (path, attributes) => {
+    const record = d3Path();
+    path(record);
+    place.append(s('path', {d: record.toString(), ...attributes}));
+  };
+  return {
+    line: (path, {colour, width = 1, dash}) => put(path, {
+      fill: 'none',
+      stroke: colour,
+      'stroke-width': width,
+      'stroke-dasharray': dash ? dashes[dash].join(' ') : null,
+      'stroke-linejoin': 'round',
+    }),
+    area: (path, colour) => put(path, {fill: colour}),
+    text: (text, x, y, {colour, size = 11, align = 'left', bold}) => {
+      const attributes = {'font-size': size, 'font-weight': bold ? 'bold' : null, 'text-anchor': anchors[align]};
+      place.append(s('text', {x, y, fill: colour, ...attributes}, text));
+      return 0.58 * size * text.length;
+    },
+    within: (box, body) => {
+      const outer = place, id = `clip${++clips}`;
+      const group = s('g', {'clip-path': `url(#${id})`});
+      outer.append(s('clipPath', {id}, s('rect', {...box})), group);
+      place = group;
+      body();
+      place = outer;
+    },
+  };
+}

@@ -1,0 +1,64 @@
+// What a pointer does to a plot over time: a mouse drags a window of time, with Shift or a finger it moves the view.
+const still_px = 4;  // a press that moves less is a click
+const wheel_rate = 0.0015;
+
+/**
+ * @param {HTMLElement} plot
+ * @param {import('./time_state.js').TimeState} state
+ * @param {{time: (x: number) => number, choose: (span: [number, number]|null) => void}} place pixels of the window to
+ *   times; and a stretch of them that is being chosen
+ */
+export function listenToPointer(plot, state, place) {
+  /** @type {{x: number, t: number, range: [number, number], moves: boolean}|null} */
+  let press = null;
+  const isPicture = (event) => event.target instanceof HTMLCanvasElement;
+  plot.addEventListener('pointerdown', (event) => {
+    if (event.button !== 0 || !isPicture(event)) return;
+    plot.setPointerCapture(event.pointerId);
+    const range = /** @type {[number, number]} */ ([...state.shown()]);
+    press =
+        {x: event.clientX, t: place.time(event.clientX), range, moves: event.shiftKey || event.pointerType === 'touch'};
+  });
+  plot.addEventListener('pointermove', (event) => {
+    if (!press) {
+      if (isPicture(event)) state.point(place.time(event.clientX));
+    } else if (press.moves) {
+      const box = plot.getBoundingClientRect();
+      const per = (press.range[1] - press.range[0]) / box.width, by = (press.x - event.clientX) * per;
+      state.zoom([press.range[0] + by, press.range[1] + by]);
+    } else {
+      place.choose([press.x, event.clientX]);
+    }
+  });
+  plot.addEventListener('pointerup', (event) => {
+    const begun = press;
+    press = null;
+    place.choose(null);
+    if (!begun) return;
+    if (Math.abs(event.clientX - begun.x) < still_px) {
+      state.point(begun.t);
+    } else if (!begun.moves) {
+      const t = place.time(event.clientX);
+      state.zoom([Math.min(t, begun.t), Math.max(t, begun.t)]);
+    }
+  });
+  plot.addEventListener('pointercancel', () => {
+    press = null;
+    place.choose(null);
+  });
+  plot.addEventListener('dblclick', () => state.showAll());
+  listenToWheel(plot, state, place);
+}
+
+// A wheel scrolls the page until the plot was clicked, or with Ctrl.
+function listenToWheel(plot, state, place) {
+  plot.addEventListener('wheel', (event) => {
+    if (!event.ctrlKey && document.activeElement !== plot) return;
+    event.preventDefault();
+    if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) {
+      state.move((event.deltaX || event.deltaY) * wheel_rate);
+    } else {
+      state.scale(Math.exp(event.deltaY * wheel_rate), place.time(event.clientX));
+    }
+  }, {passive: false});
+}

@@ -1,0 +1,98 @@
+// Where to look first: the samples that a filter was most wrong about, and where the likeliest mode changes.
+import {h} from './elements.js';
+import {secondsText, shortNumber} from './number_text.js';
+import {array} from './page_data.js';
+
+const stretches = 2000;  // a run is cut into at most, each of which has one worst sample
+const most_worst = 20;
+
+const finest = (signal) => (signal.raw ? {bucket: 1, low: signal.raw, high: signal.raw} : signal.levels[0]);
+
+/**
+ * The greatest of values and where, of each stretch one, the greatest first. @returns {{at: number, value: number}[]}
+ */
+export function greatest(values, count = most_worst) {
+  const length = Math.max(1, Math.ceil(values.length / stretches)), found = [];
+  for (let from = 0; from < values.length; from += length) {
+    let at = -1;
+    for (let i = from; i < Math.min(values.length, from + length); ++i) {
+      if (!Number.isNaN(values[i]) && (at < 0 || values[i] > values[at])) at = i;
+    }
+    if (at >= 0) found.push({at, value: values[at]});
+  }
+  return found.sort((a, b) => b.value - a.value).slice(0, count);
+}
+
+/** Where another of the shares becomes the greatest. @returns {number[]} */
+export function changes(shares) {
+  const found = [], n = shares[0].length;
+  let last = -1;
+  for (let i = 0; i < n; ++i) {
+    let best = 0;
+    for (let k = 1; k < shares.length; ++k) {
+      if (shares[k][i] > shares[best][i]) best = k;
+    }
+    if (Number.isNaN(shares[best][i])) continue;
+    if (last >= 0 && best !== last) found.push(i);
+    last = best;
+  }
+  return found;
+}
+
+/** Times of a filter's worst samples, the worst first, with their NIS. */
+async function worstOf(filter, clock) {
+  const level = finest(filter.nis), values = await array(level.high);
+  return greatest(values).map(({at, value}) => ({t: clock.at(at * level.bucket), value}));
+}
+
+async function switchesOf(filter, clock) {
+  const levels = filter.probability.map(finest), shares = await Promise.all(levels.map((level) => array(level.low)));
+  return changes(shares).map((i) => clock.at(i * levels[0].bucket));
+}
+
+/** The next of ascending times after t, or the one before; null where there is none. */
+export function beside(times, t, direction) {
+  const list = direction > 0 ? times.find((time) => time > t) : [...times].reverse().find((time) => time < t);
+  return list === undefined ? null : list;
+}
+
+/**
+ * Buttons and keys that go there. `of`: run => its filter.
+ * @returns {{buttons: HTMLElement[], said: HTMLElement, keys: {key: string, name: string, does: string, act: () =>
+ *     unknown}[]}}
+ */
+export function timeJumps(state, of) {
+  const said = h('p', {class: 'soft', 'aria-live': 'polite'});
+  let last = {filter: null, number: 0};
+  const worst = async () => {
+    const filter = of(state.current);
+    if (!filter) return;
+    const list = await worstOf(filter, await state.clock());
+    if (!list.length) return;
+    last = {filter, number: last.filter === filter ? (last.number + 1) % list.length : 0};
+    const {t, value} = list[last.number];
+    await state.jump(t);
+    said.textContent =
+        `Worst sample ${last.number + 1} of ${list.length}: NIS ${shortNumber(value, 4)} at ${secondsText(t)}.`;
+  };
+  const switching = (direction) => async () => {
+    const filter = of(state.current);
+    if (!filter || !filter.probability) return;
+    const times = await switchesOf(filter, await state.clock()), [from, to] = state.shown();
+    const t = beside(times, state.at === null ? (from + to) / 2 : state.at, direction);
+    if (t !== null) await state.jump(t);
+    const which = `${direction > 0 ? 'later' : 'earlier'} change of the likeliest mode`;
+    said.textContent = t === null ? `No ${which}.` : `A ${which}, at ${secondsText(t)}; ${times.length} in this run.`;
+  };
+  const keys = [
+    {key: 'w', name: 'w', does: 'the next of the worst samples, by NIS', act: worst},
+    {key: 'n', name: 'n', does: 'the next change of the likeliest mode', act: switching(1)},
+    {key: 'p', name: 'p', does: 'the previous one', act: switching(-1)},
+  ];
+  const button = (text, act) => h('button', {type: 'button', onclick: act}, text);
+  const buttons = [
+    button('Next worst sample', worst), button('Previous mode switch', switching(-1)),
+    button('Next mode switch', switching(1))
+  ];
+  return {buttons, said, keys};
+}

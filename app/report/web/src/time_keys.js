@@ -1,0 +1,68 @@
+// What keys do to a plot over time that has the focus, and the list of them that the page shows.
+import {details, facts} from './elements.js';
+
+const coarse_steps = 10;
+const pixels_across = 500;
+
+// A step of the crosshair: a sample, or where there are more than pixels a share of the view.
+function step(state, direction, coarse) {
+  const [from, to] = state.shown(), {start, end, samples} = state.current.time;
+  const by = Math.max((end - start) / Math.max(1, samples - 1), (to - from) / pixels_across);
+  const at = state.at === null || state.at < from || state.at > to ? (from + to) / 2 : state.at;
+  state.point(Math.max(from, Math.min(to, at + direction * by * (coarse ? coarse_steps : 1))));
+}
+
+const edge = (state, which) => {
+  if (state.at === null) return;
+  const [from, to] = state.shown();
+  if (which === 'from' && state.at < to) state.zoom([state.at, to]);
+  if (which === 'to' && state.at > from) state.zoom([from, state.at]);
+};
+
+// Keys (as events name them), what they are called, what they do, how.
+/**
+ * @type {[string[], string, string, (state: import('./time_state.js').TimeState, event: KeyboardEvent) => unknown][]}
+ */
+const actions = [
+  [
+    ['ArrowLeft', 'ArrowRight'], '← →', 'move the crosshair; with Shift ten times as far',
+    (state, event) => step(state, event.key === 'ArrowLeft' ? -1 : 1, event.shiftKey)
+  ],
+  [
+    ['[', ']'], '[ ]', 'let the view begin, end at the crosshair',
+    (state, {key}) => edge(state, key === '[' ? 'from' : 'to')
+  ],
+  [
+    ['+', '=', '-'], '+ −', 'zoom in, out about the crosshair',
+    (state, {key}) => state.scale(key === '-' ? 2 : 0.5, state.at)
+  ],
+  [
+    ['PageUp', 'PageDown'], 'Page ↑ ↓', 'half a view earlier, later',
+    (state, {key}) => state.move(key === 'PageUp' ? -0.5 : 0.5)
+  ],
+  [['0'], '0', 'the whole run', (state) => state.showAll()],
+  [['Escape'], 'Esc', 'take the crosshair away', (state) => state.point(null)],
+];
+
+/** Steps on what `jumps` adds: {key, name, does, act}. */
+export function listenToKeys(plot, state, jumps = []) {
+  plot.addEventListener('keydown', (event) => {
+    if (event.target !== plot || event.ctrlKey || event.altKey || event.metaKey) return;
+    const found = actions.find(([keys]) => keys.includes(event.key));
+    const jump = jumps.find(({key}) => key === event.key);
+    if (!found && !jump) return;
+    event.preventDefault();
+    const act = found ? found[3] : jump.act;
+    act(state, event);
+  });
+}
+
+export function keyHelp(jumps = []) {
+  const pointer = [
+    ['drag', 'show a stretch of time; with Shift, or by a finger: move'],
+    ['wheel', 'zoom, once the plot was clicked, or with Ctrl; with Shift: move'],
+    ['double click', 'the whole run'],
+  ];
+  const keys = actions.map(([, name, does]) => [name, does]);
+  return details('Pointer and keys', facts([...pointer, ...keys, ...jumps.map(({name, does}) => [name, does])]));
+}

@@ -1,0 +1,241 @@
+// Panels over time, one above the other, each with the readout of its signals above it.
+import {downloads} from './downloads.js';
+import {h, s, swatch} from './elements.js';
+import {rangeText, secondsText} from './number_text.js';
+import {beforePrint, dark, onTheme} from './page.js';
+import {canvasPen, font, svgPen} from './pens.js';
+import {ground, ink, inTurn, whenNear} from './plots.js';
+import {view} from './signals.js';
+import {margins, timeScale} from './time_axes.js';
+import {axis_px, drawPanel} from './time_drawing.js';
+import {listenToPointer} from './time_gestures.js';
+import {listenToKeys} from './time_keys.js';
+
+const title_px = 22;  // above a panel in a file
+
+const look = () =>
+    ({ink: ink(), faint: dark() ? '#2c313a' : '#e4e7ec', ground: ground(), mark: dark() ? '#e8eaee26' : '#16181d24'});
+
+/** A frame of the screen later, or at once where the page is hidden and draws none. */
+const nextFrame = () => new Promise((done) => (document.hidden ? done() : requestAnimationFrame(() => done())));
+
+/** Calls `work` once per frame however often it is asked to; the last state wins. */
+function oncePerFrame(work) {
+  let wanted = false, running = null;
+  const run = async () => {
+    while (wanted) {
+      await nextFrame();
+      wanted = false;
+      await work();
+    }
+    running = null;
+  };
+  return () => {
+    wanted = true;
+    running = running || run();
+    return running;
+  };
+}
+
+function entryItem({name, colour, unit, value, band}) {
+  const item = h('li', {}, swatch(colour), name, ' ');
+  if (value) {
+    const {low, high} = value, exact = Number.isNaN(low) ? null : JSON.stringify(low === high ? low : [low, high]);
+    item.append(h('span', {class: band ? 'number wide' : 'number', 'data-value': exact}, rangeText(value, unit)));
+  }
+  return item;
+}
+
+class TimePlot {
+  constructor(state, label, rows) {
+    this.state = state;
+    this.rows = rows;
+    this.panels = [];
+    this.crosshair = h('div', {class: 'crosshair', hidden: true});
+    this.chosen = h('div', {class: 'chosen-span', hidden: true});
+    this.time = h('p', {class: 'soft crosshair-time'}, 'Point at the plot to read its signals.');
+    this.plot = h(
+        'div', {class: 'plot timeplot', tabindex: 0, role: 'group', 'aria-label': label}, this.crosshair, this.chosen);
+    this.drawn = false;
+  }
+
+  // A heading with a readout and a canvas for each row; made anew only where the rows are others.
+  fit(rows) {
+    const same = rows.length === this.panels.length && rows.every((row, i) => row.title === this.panels[i].title);
+    if (same) return;
+    this.panels = rows.map((row) => {
+      const readout = h('ul', {class: 'readout', 'aria-label': row.title}),
+            canvas = h('canvas', {'aria-hidden': 'true'});
+      return {
+        title: row.title,
+        readout,
+        canvas,
+        head: h('div', {class: 'panel-head'}, h('span', {class: 'panel-title'}, row.title), readout)
+      };
+    });
+    this.plot.replaceChildren(...this.panels.flatMap(({head, canvas}) => [head, canvas]), this.crosshair, this.chosen);
+  }
+
+  // What the rows show, of a plot so many pixels wide.
+  async contents(rows, width) {
+    const {state} = this, range = state.shown(), clock = await state.clock(), {left, right} = margins(width);
+    const seen = {run: state.current, clock, shown: view(clock, range, width - left - right), range};
+    const all = await Promise.all(rows.map(async (row) => ({
+                                             traces: await row.draw(seen),
+                                             range: row.range || null,
+                                             log: Boolean(row.log),
+                                             levels: row.levels ? row.levels() : [],
+                                           })));
+    const frame = (i) => ({width, height: rows[i].height, last: i === rows.length - 1, range, mark: state.mark});
+    return all.map((content, i) => ({content, frame: frame(i)}));
+  }
+
+  async draw() {
+    const rows = this.rows(), width = this.plot.clientWidth;
+    if (!width) return;
+    const parts = await this.contents(rows, width), colours = look();
+    this.fit(rows);
+    parts.forEach(({content, frame}, i) => this.paint(this.panels[i].canvas, content, frame, colours));
+    this.range = this.state.shown();
+    this.drawn = true;
+    this.plot.dataset.drawn = 'true';
+    this.showCrosshair();
+    await this.read();
+  }
+
+  paint(canvas, content, frame, colours) {
+    const ratio = window.devicePixelRatio || 1, height = frame.height + (frame.last ? axis_px : 0);
+    const size = [Math.round(frame.width * ratio), Math.round(height * ratio)];
+    if (canvas.width !== size[0]) [canvas.width] = size;
+    if (canvas.height !== size[1]) [, canvas.height] = size;
+    const context = canvas.getContext('2d');
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, frame.width, height);
+    drawPanel(canvasPen(context), frame, content, colours);
+  }
+
+  scale() {
+    return timeScale(this.state.shown(), this.plot.clientWidth);
+  }
+
+  showCrosshair() {
+    const {at} = this.state, [from, to] = this.state.shown(), hidden = at === null || at < from || at > to;
+    this.crosshair.hidden = hidden;
+    if (!hidden) this.crosshair.style.left = `${this.scale().to(at)}px`;
+  }
+
+  // The readout at the crosshair: every signal's value there; without one its name alone.
+  async read() {
+    const {at, current} = this.state, clock = await this.state.clock(), k = at === null ? -1 : clock.near(at);
+    const rows = this.rows();
+    const entries = await Promise.all(rows.map((row) => row.read(current, k)));
+    if (rows.length !== this.panels.length) return;
+    entries.forEach((list, i) => this.panels[i].readout.replaceChildren(...list.map(entryItem)));
+    this.time.textContent = at === null ? 'Point at the plot, or focus it and press → , to read its signals.' :
+                                          `Crosshair at ${secondsText(at)}, sample ${k}.`;
+  }
+
+  choose(span) {
+    this.chosen.hidden = !span;
+    if (!span) return;
+    const {left} = this.plot.getBoundingClientRect();
+    this.chosen.style.left = `${Math.min(...span) - left}px`;
+    this.chosen.style.width = `${Math.abs(span[1] - span[0])}px`;
+  }
+
+  // The whole figure by one pen per panel: `begin(top)` gives it, its origin at the panel's corner.
+  async drawFile(width, begin) {
+    const rows = this.rows(), parts = await this.contents(rows, width), colours = look();
+    let top = 0;
+    parts.forEach(({content, frame}, i) => {
+      const pen = begin(top), {left} = margins(width);
+      let x = left + pen.text(rows[i].title, left, 15, {colour: colours.ink, bold: true}) + 16;
+      for (const {name, colour} of uniqueNames(content.traces)) {
+        pen.area((context) => context.rect(x, 7, 9, 9), colour);
+        x += 13 + pen.text(name, x + 13, 15, {colour: colours.ink}) + 14;
+      }
+      drawPanel(begin(top + title_px), frame, content, colours);
+      top += title_px + frame.height + (frame.last ? axis_px : 0);
+    });
+  }
+
+  fileHeight() {
+    return this.rows().reduce((sum, row) => sum + row.height + title_px, axis_px);
+  }
+
+  async svg() {
+    const width = this.plot.clientWidth, height = this.fileHeight();
+    const root =
+        s('svg',
+          {xmlns: 'http://www.w3.org/2000/svg', width, height, viewBox: `0 0 ${width} ${height}`, 'font-family': font},
+          s('rect', {width, height, fill: ground()}));
+    await this.drawFile(width, (top) => {
+      const group = s('g', {transform: `translate(0 ${top})`});
+      root.append(group);
+      return svgPen(group);
+    });
+    return new Blob([new XMLSerializer().serializeToString(root)], {type: 'image/svg+xml'});
+  }
+
+  async png() {
+    const width = this.plot.clientWidth, ratio = 3;
+    const canvas =
+        /** @type {HTMLCanvasElement} */ (h('canvas', {width: width * ratio, height: this.fileHeight() * ratio}));
+    const context = canvas.getContext('2d');
+    context.fillStyle = ground();
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    await this.drawFile(width, (top) => {
+      context.setTransform(ratio, 0, 0, ratio, 0, top * ratio);
+      return canvasPen(context);
+    });
+    return new Promise((done) => canvas.toBlob(done, 'image/png'));
+  }
+}
+
+function uniqueNames(traces) {
+  const seen = new Map(traces.map((trace) => [trace.name, trace]));
+  return [...seen.values()].slice(0, 8);
+}
+
+// `rows()`: rows of time_rows.js, one above the other; `jumps`: more keys (time_keys.js).
+export function timePlot(state, label, rows, caption, jumps = []) {
+  const it = new TimePlot(state, label, rows), {plot} = it;
+  const files = downloads(label, {svg: () => it.svg(), png: () => it.png()});
+  const element =
+      h('figure', {}, plot, h('div', {class: 'below-plot'}, it.time, files),
+        caption ? h('figcaption', {class: 'caption'}, caption) : null);
+  const redraw = oncePerFrame(() => it.draw()), read = oncePerFrame(() => it.read());
+  element.plot = plot;
+  plot.timePlot = it;
+  element.ready = new Promise((resolve, reject) => {
+    element.begin = () => {
+      ignore();
+      element.begin = () => {};
+      inTurn(() => it.draw().then(resolve, (error) => {
+        plot.dataset.failed = 'true';
+        reject(error);
+      }));
+    };
+    plot.style.minHeight = '200px';
+    const ignore = whenNear(plot, () => element.begin());
+  });
+  element.refresh = () => (it.drawn ? redraw() : Promise.resolve());
+  element.point = () => {
+    if (!it.drawn) return;
+    it.showCrosshair();
+    read();
+  };
+  listenToPointer(plot, state, {
+    time: (x) => it.scale().from(x - plot.getBoundingClientRect().left),
+    choose: (span) => it.choose(span),
+  });
+  listenToKeys(plot, state, jumps);
+  new ResizeObserver(() => element.refresh()).observe(plot);
+  beforePrint(() => {
+    element.begin();
+    return element.ready;
+  });
+  onTheme(() => (it.drawn ? it.draw() : undefined));
+  state.plots.push(element);
+  return element;
+}

@@ -1,0 +1,94 @@
+// What all plots over time of a page show together.
+import {clock} from './signals.js';
+
+const fewest_samples = 4;    // that a view holds at least
+const around_samples = 200;  // that are shown on either side of what was jumped to from the whole run
+
+/**
+ * @typedef {{refresh: () => Promise<unknown>, point?: () => void}} View what follows the state: a plot, a field, the
+ * link
+ */
+
+// Run, range: [from, to] in seconds or null for all of the run, mark: [from, to] or null, at: the crosshair's time or
+// null. Changes reach every view through `changed`, the crosshair's through `pointed`.
+export class TimeState {
+  constructor(runs) {
+    this.runs = runs;
+    this.run = Math.max(0, runs.findIndex((run) => run.role === 'test'));
+    /** @type {[number, number]|null} */
+    this.range = null;
+    /** @type {[number, number]|null} */
+    this.mark = null;
+    /** @type {number|null} */
+    this.at = null;
+    /** @type {View[]} */
+    this.plots = [];
+    this.clocks = new Map();
+  }
+  get current() {
+    return this.runs[this.run];
+  }
+  async clock() {
+    if (!this.clocks.has(this.run)) this.clocks.set(this.run, await clock(this.current.time));
+    return this.clocks.get(this.run);
+  }
+  /** @returns {[number, number]} */
+  whole() {
+    const {start, end} = this.current.time;
+    return end > start ? [start, end] : [start - 0.5, start + 0.5];
+  }
+  shown() {
+    return this.range || this.whole();
+  }
+  /** @param {View} [except] */
+  changed(except) {
+    return Promise.all(this.plots.filter((plot) => plot !== except).map((plot) => plot.refresh()));
+  }
+  pointed() {
+    for (const plot of this.plots) {
+      if (plot.point) plot.point();
+    }
+  }
+  select(run, range = null, mark = null) {
+    Object.assign(this, {run, range, mark, at: null});
+    return this.changed();
+  }
+  // Keeps a range inside the run.
+  inside(range) {
+    const [start, end] = this.whole(), samples = Math.max(1, this.current.time.samples);
+    const least = Math.min(end - start, fewest_samples * (end - start) / samples);
+    const width = Math.max(least, Math.min(end - start, range[1] - range[0]));
+    const from = Math.max(start, Math.min(end - width, (range[0] + range[1] - width) / 2));
+    return width >= end - start ? null : /** @type {[number, number]} */ ([from, from + width]);
+  }
+  zoom(range, except) {
+    this.range = this.inside(range);
+    return this.changed(except);
+  }
+  move(share) {
+    const [a, b] = this.shown(), by = share * (b - a);
+    return this.zoom([a + by, b + by]);
+  }
+  // `about`: the time that stays where it is.
+  scale(factor, about = null) {
+    const [a, b] = this.shown(), center = about === null ? (a + b) / 2 : about;
+    return this.zoom([center - factor * (center - a), center + factor * (b - center)]);
+  }
+  showAll() {
+    this.mark = null;
+    return this.zoom(this.whole());
+  }
+  // The crosshair onto the sample next to a time; null: away.
+  async point(t) {
+    const clockOf = await this.clock();
+    this.at = t === null ? null : clockOf.at(clockOf.near(t));
+    this.pointed();
+  }
+  // The crosshair and the middle of the view onto a time.
+  async jump(t) {
+    const [start, end] = this.whole(), period = (end - start) / Math.max(1, this.current.time.samples);
+    const half = this.range ? (this.range[1] - this.range[0]) / 2 : around_samples * period;
+    await this.point(t);
+    return this.zoom([t - half, t + half]);
+  }
+}

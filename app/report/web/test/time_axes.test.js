@@ -1,0 +1,70 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {extent, margins, timeScale, valueScale} from '../src/time_axes.js';
+import {drawPanel, linePath} from '../src/time_drawing.js';
+
+// A pen that notes what it is told.
+function notes() {
+  const list = [];
+  const pathOf = (path) => {
+    const points = [], put = (word) => (...at) => points.push([word, ...at]);
+    path({moveTo: put('M'), lineTo: put('L'), closePath: put('Z'), arc: put('A'), rect: put('R')});
+    return points;
+  };
+  const pen = {
+    line: (path, look) => list.push({kind: 'line', points: pathOf(path), ...look}),
+    area: (path, colour) => list.push({kind: 'area', points: pathOf(path), colour}),
+    text: (text, x, y) => list.push({kind: 'text', text, x, y}),
+    within: (box, body) => body(),
+  };
+  return {pen, list};
+}
+const look = {
+  ink: '#000',
+  faint: '#eee',
+  ground: '#fff',
+  mark: '#ccc'
+};
+
+test('times and pixels are each other\'s inverse inside the margins', () => {
+  const {left, right} = margins(1000), scale = timeScale([10, 20], 1000);
+  assert.deepEqual([scale.to(10), scale.to(20)], [left, 1000 - right]);
+  for (const t of [10, 13.7, 20]) assert.ok(Math.abs(scale.from(scale.to(t)) - t) < 1e-12);
+  assert.ok(scale.ticks.length >= 5 && scale.ticks.every(({at}) => at >= 10 && at <= 20));
+});
+
+test('ticks of a logarithmic axis are powers of ten that do not touch', () => {
+  const {ticks, to} = valueScale([1e-4, 300], 0, 130, true);
+  assert.deepEqual(ticks.map(({text}) => text), ['10⁻⁴', '10⁻²', '10⁰', '10²']);
+  assert.ok(Math.abs(to(1e-4) - 130) < 1e-9 && Math.abs(to(300)) < 1e-9);
+  assert.equal(to(0), to(1e-4));
+});
+
+test('an extent leaves room and survives what is unknown', () => {
+  assert.deepEqual(extent([{y: [NaN, 1, null]}, {y: [3]}]), [1 - 0.1, 3 + 0.1]);
+  assert.deepEqual(extent([{y: [5]}]), [0, 10]);
+  assert.deepEqual(extent([{y: [NaN]}]), [0, 1]);
+});
+
+test('a line is broken where a value is unknown; steps go across, then up', () => {
+  const same = (v) => v;
+  const drawn = (trace) => {
+    const points = [], put = (word) => (x, y) => points.push([word, x, y]);
+    linePath(trace, same, same)({moveTo: put('M'), lineTo: put('L')});
+    return points;
+  };
+  assert.deepEqual(drawn({x: [0, 1, 2, 3], y: [5, 6, NaN, 7]}), [['M', 0, 5], ['L', 1, 6], ['M', 3, 7]]);
+  assert.deepEqual(drawn({x: [0, 1], y: [5, 6], step: true}), [['M', 0, 5], ['L', 1, 5], ['L', 1, 6]]);
+});
+
+test('shares are stacked from the floor of a panel to its top', () => {
+  const {pen, list} = notes();
+  const trace = (y, colour) => ({kind: 'shares', x: [0, 1], y, colour, name: ''});
+  const content = {traces: [trace([0.25, 1], '#111'), trace([0.75, 0], '#222')], range: [0, 1], log: false, levels: []};
+  drawPanel(pen, {width: 1000, height: 112, last: true, range: [0, 1], mark: null}, content, look);
+  const [lower, upper] = list.filter(({kind}) => kind === 'area');
+  assert.deepEqual([lower.colour, lower.points[0][2], lower.points[1][2]], ['#111', 81, 6]);
+  assert.deepEqual([upper.points[0][2], upper.points[1][2]], [6, 6]);
+  assert.ok(list.some(({text}) => text === 'time [s]'));
+});
