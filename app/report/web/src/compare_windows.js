@@ -50,7 +50,7 @@ function links(match, banks, at, k) {
 }
 
 const axisOf = (windows, name) => windows.axes.findIndex((axis) => axis.name === name);
-const alike = ([first, ...others]) =>
+const alike = (/** @type {any[]} */ [first, ...others]) =>
     others.every((list) => list.length === first.length && list.every((v, i) => v === first[i]));
 
 // The modes of the banks with parameters on both axes, and which are matched.
@@ -99,8 +99,8 @@ export function drawWindows(data) {
   const chosen = firstAxes(all[0], shared);
   const element = figure(
       'Local models and modes of all runs in two parameters', () => windowsDrawing(data, chosen),
-      'Small: windows, grey where they are the same in all. Large: modes of the banks, A’s full, the others’ open; lines join those ' +
-          'that are matched.');
+      'Small: windows, grey where they are the same in all. Large: modes of the banks, A’s full, the others’ open; ' +
+          'lines join those that are matched.');
   const pick = (label, key) => choice(label, shared, shared.indexOf(chosen[key]), (i) => {
     chosen[key] = shared[i];
     element.redraw();
