@@ -33,6 +33,8 @@ struct CommandLine {
   bool apply = false;              ///< check: write what it suggests
   bool force = false;              ///< write though something speaks against it (init, demo, export)
   bool yes = false;                ///< init: ask nothing
+  bool open = false;               ///< view: in the browser
+  int port = 0;                    ///< view: 0, the kernel's choice
   std::string form = "increment";  ///< of models that `show` prints: increment or full
   std::string
       output;  ///< -o: the file that `report`, `predict`, `init`, `export` or `check --apply` writes, demo's folder

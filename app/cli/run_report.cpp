@@ -1,8 +1,11 @@
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
 #include "app/report/figures/run_figures.hpp"
+#include "app/report/page/compare_page.hpp"
 #include "app/report/page/run_page.hpp"
 #include "app/report/page/write_page.hpp"
 #include "io/archive/archive.hpp"
@@ -37,15 +40,16 @@ void report_run(const std::filesystem::path& file, const std::filesystem::path& 
 }  // namespace
 
 int run_report(const CommandLine& line) {
-  if (line.files.empty() || line.files.size() > 2)
-    throw ConfigurationError(
-        "report needs an archive, a study's folder, or two archives to compare: modebank report ARCHIVE [ARCHIVE] [-o "
-        "page.html]");
+  if (line.files.empty() || line.files.size() > report::most_compared)
+    throw ConfigurationError(fmt::format(
+        "report needs an archive, a study's folder, or two to {} archives to compare: modebank report ARCHIVE "
+        "[ARCHIVE...] [-o page.html]",
+        report::most_compared));
   const ReportConfig options = stored_config("", line.overrides).report;
   const std::filesystem::path page = page_if_asked(line, options);
-  if (line.files.size() == 2) {
+  if (line.files.size() > 1) {
     if (!options.figures.empty()) throw ConfigurationError("report.figures are drawn of one archive or study");
-    report::report_comparison(line.files[0], line.files[1], page, options);
+    report::report_comparison({line.files.begin(), line.files.end()}, page, options);
   } else if (report::is_study(line.files.front())) {
     report::report_study(line.files.front(), page, options);
   } else {

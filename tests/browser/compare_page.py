@@ -6,7 +6,7 @@ import h5py
 import session
 from session import PageTest, pooled
 
-COMPARE_SECTIONS = ["differences", "verdict", "data", "windows", "selection", "bank", "filter"]
+COMPARE_SECTIONS = ["verdict", "differences", "modes", "windows", "data", "filter", "selection", "bank", "origin"]
 
 
 class ComparePage(PageTest):
@@ -24,15 +24,42 @@ class ComparePage(PageTest):
             a, b = first["bank", role]["log_score"], second["bank", role]["log_score"]
             self.assertEqual((row["A"][1], row["B"][1]), (a, b))
             self.assertEqual(row["B − A"][1], b - a)
+        self.modes_are_drawn()
         session.browser.scheme("dark")
         self.assert_whole(session.work / "compare.html", COMPARE_SECTIONS)
         session.browser.screenshot("compare_dark")
         session.browser.scheme("light")
 
+    def modes_are_drawn(self):
+        """Each bank's modes at their parameters, and those of one mode matched with one of the other's."""
+        drawn = session.browser.run("return Object.fromEntries(document.querySelector('#windows div.plot').data.filter((t) => t.meta).map((t) => [t.meta, t.x]))")
+        for letter, name in (("A", "demo"), ("B", "one_mode")):
+            with h5py.File(session.made[name]) as file:
+                theta = file["bank/A"][:].ravel()
+            self.assertEqual(len(drawn[f"modes of {letter}"]), len(theta))
+            for shown, stored in zip(drawn[f"modes of {letter}"], theta):
+                self.assertAlmostEqual(shown, stored, places=12)
+        rows = self.table("Modes of A and B")
+        matched = [row for row in rows if "–" not in (row["Mode of A"][0], row["Mode of B"][0])]
+        self.assertEqual(len(matched), 1)
+        self.assertEqual(len(rows), len(drawn["modes of A"]))
+
+    def test_the_verdict_has_an_error(self):
+        self.open(session.modebank.page("compare", session.made["demo"], session.made["one_mode"]))
+        first, second = (pooled(session.made[name])["bank", "test"]["log_score"] for name in ("demo", "one_mode"))
+        text = session.browser.run("return document.getElementById('verdict').textContent")
+        self.assertRegex(text, rf"On 6 held-out runs that both hold, .*by {abs(second - first):.3f} ± 0\.\d+ nats per sample")
+        self.assertIn("scores are equal", text)  # folded: the competitors of both are the same
+
+    def test_three_runs(self):
+        self.assert_whole(session.modebank.page("compare_three", session.made["demo"], session.made["one_mode"], session.made["no_truth"]), COMPARE_SECTIONS)
+        self.assertEqual(session.browser.run("return document.querySelectorAll('#verdict .verdict').length"), 2)
+        self.assertEqual(session.browser.run("return document.querySelector('#windows div.plot').data.filter((t) => (t.meta || '').startsWith('modes')).length"), 3)
+
     def test_runs_of_other_data(self):
         if "ice" in session.made:
             self.assert_whole(session.modebank.page("compare_other", session.made["demo"], session.made["ice"]), COMPARE_SECTIONS)
-            self.assertIn("different data", session.browser.run("return document.getElementById('verdict').textContent"))
+            self.assertIn("do not compare", session.browser.run("return document.getElementById('verdict').textContent"))
 
 
 class Refusals(unittest.TestCase):

@@ -28,8 +28,10 @@ if not (os.path.exists("/usr/bin/chromium") and os.path.exists("/usr/bin/chromed
 import session  # noqa: E402
 from compare_page import ComparePage, Refusals  # noqa: E402, F401
 from first_screen import FirstScreen  # noqa: E402, F401
+from looking_around import LookingAround  # noqa: E402, F401
 from run_pages import RunPages  # noqa: E402, F401
 from study_page import StudyPage  # noqa: E402, F401
+from view_pages import ViewPages  # noqa: E402, F401
 
 if __name__ == "__main__":
     program, source, folder = sys.argv[1:4]

@@ -82,24 +82,6 @@ class RunPages(PageTest):
             for heading, key in (("BIC", "bic"), ("ICL", "icl"), ("AIC", "aic"), ("held out", "heldout"), ("log likelihood", "log_likelihood")):
                 self.same(line[heading][1], row[key])
 
-    def test_zoom_is_shared_and_undone(self):
-        self.open(session.modebank.page("demo", session.made["demo"]))
-        session.browser.draw_all("#filter")
-        session.browser.draw_all("#data")
-        whole = self.plot_range("data")
-        area = self.plot_area("data")
-        middle = area["top"] + area["height"] / 2
-        session.browser.drag(area["left"] + 0.3 * area["width"], middle, area["left"] + 0.5 * area["width"], middle)
-        session.browser.wait("const r = document.querySelector('#data div.plot')._fullLayout.xaxis.range; return r[1] - r[0] < 0.5 * arguments[0]", whole[1] - whole[0],
-                     what="the drag to zoom")
-        zoomed = self.plot_range("data")
-        self.assertAlmostEqual((zoomed[1] - zoomed[0]) / (whole[1] - whole[0]), 0.2, delta=0.02)
-        session.browser.wait("const r = document.querySelector('#filter div.plot')._fullLayout.xaxis.range; return Math.abs(r[0] - arguments[0]) < 1e-6 && Math.abs(r[1] - arguments[1]) < 1e-6",
-                     *zoomed, what="the filter's plot to follow")
-        session.browser.run("[...document.querySelectorAll('#data .controls button')].find((b) => b.textContent === 'All').click()")
-        session.browser.wait("const r = document.querySelector('#data div.plot')._fullLayout.xaxis.range; return Math.abs(r[1] - arguments[0]) < 1e-6", whole[1], what="the whole run again")
-        self.assert_quiet()
-
     def window_point(self):
         """Where some window of the flat cloud is drawn, in the window's pixels, and which one it is."""
         return session.browser.run("""
@@ -130,12 +112,13 @@ class RunPages(PageTest):
         told = session.browser.run("return document.getElementById('window-info').textContent")
         self.assertRegex(told, r"Window in run \w+, [\d.]+ to [\d.]+ s: wz <- wz = ")
         session.browser.click(point["left"], point["top"])
-        session.browser.wait("const m = document.querySelector('#data div.plot')._fullLayout.shapes; return m.some((s) => s.xref === 'x' && s.type === 'rect')",
+        session.browser.wait("return document.querySelector('#data div.plot').timePlot.state.mark",
                      what="the click to mark the window's stretch of the data")
-        mark = session.browser.run("return document.querySelector('#data div.plot')._fullLayout.shapes.filter((s) => s.xref === 'x').map((s) => [s.x0, s.x1])[0]")
+        mark = session.browser.run("return document.querySelector('#data div.plot').timePlot.state.mark")
         begin, end = (float(word) for word in told.split(", ")[1].split(" s")[0].split(" to "))
         self.assertAlmostEqual(mark[0], begin, places=2)
         self.assertAlmostEqual(mark[1], end, places=2)
+        session.browser.wait("return document.querySelector('#data div.plot').timePlot.range[0] > 0", what="the view to follow")
         shown = self.plot_range("data")
         self.assertTrue(shown[0] <= begin and end <= shown[1])
         self.assert_quiet()
@@ -152,20 +135,6 @@ class RunPages(PageTest):
             texts = re.findall(r">\s*(?:<!\[CDATA\[)?([^<>\]]+?)(?:\]\]>)?\s*</", (folder / f"{name}.svg").read_text(encoding="utf-8"))
             self.assertIn("mode", texts)
             self.assertIn(str(modes - 1), texts)
-
-    def test_hover_over_the_data_shows_values(self):
-        self.open(session.modebank.page("demo", session.made["demo"]))
-        session.browser.draw_all("#data")
-        point = session.browser.run("""
-            const plot = document.querySelector('#data div.plot');
-            plot.scrollIntoView({block: 'center'});
-            const box = plot.getBoundingClientRect(), x = plot._fullLayout.xaxis, y = plot._fullLayout.yaxis;
-            const trace = plot._fullData.find((t) => t.name === 'measured'), i = Math.floor(trace.x.length / 2);
-            return [box.x + x._offset + x.l2p(trace.x[i]), box.y + y._offset + y.l2p(trace.y[i])];""")
-        time.sleep(0.2)
-        session.browser.move(point[0] + 2, point[1])
-        session.browser.move(*point)
-        session.browser.wait("return document.querySelector('#data div.plot .hoverlayer').children.length > 0", what="a hover label")
 
     def test_light_dark_print_and_phone(self):
         page = session.modebank.page("demo", session.made["demo"])
@@ -230,9 +199,8 @@ class RunPages(PageTest):
         self.assertIn(archives.HOSTILE_STATE, text)
         self.assertIn("漢 ${x} {{data}}", text)
         self.assertIn("0 " + archives.HOSTILE_MODE, text)
-        # Plotly draws texts of its own: they hold the name as well, as text.
-        drawn = session.browser.run("return [...document.querySelectorAll('#data div.plot svg text')].map((t) => t.textContent).join(' | ')")
-        self.assertIn(archives.HOSTILE_STATE, drawn)
+        titles = session.browser.run("return [...document.querySelectorAll('#data .panel-title')].map((t) => t.textContent)")
+        self.assertIn(f"{archives.HOSTILE_STATE} [{archives.HOSTILE_UNIT}]", titles)
         session.browser.screenshot("hostile")
         self.assert_quiet()
 

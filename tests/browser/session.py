@@ -71,15 +71,16 @@ class PageTest(unittest.TestCase):
         return [{name: (text, json.loads(value) if value is not None else None) for name, text, value in row} for row in found]
 
     def plot_range(self, section):
-        return browser.run("return document.querySelector(arguments[0] + ' div.plot')._fullLayout.xaxis.range", f"#{section}")
+        """Of a plot over time: what it shows, from and to."""
+        return browser.run("return [...document.querySelector(arguments[0] + ' div.plot').timePlot.range]", f"#{section}")
 
-    def plot_area(self, section, index=0):
-        """The inside of a drawn plot, in the window."""
+    def plot_area(self, section):
+        """The inside of its first panel, in the window."""
         return browser.run("""
-            const plot = document.querySelectorAll(arguments[0] + ' div.plot')[arguments[1]];
-            plot.scrollIntoView({block: 'center'});
-            const box = plot.getBoundingClientRect(), size = plot._fullLayout._size, y = plot._fullLayout.yaxis, x = plot._fullLayout.xaxis;
-            return {left: box.x + x._offset, top: box.y + y._offset, width: x._length, height: y._length};""", f"#{section}", index)
+            const plot = document.querySelector(arguments[0] + ' div.plot'), canvas = plot.querySelector('canvas');
+            canvas.scrollIntoView({block: 'center'});
+            const box = canvas.getBoundingClientRect(), scale = plot.timePlot.scale(), [from, to] = scale.range.map(scale.to);
+            return {left: box.x + from, top: box.y, width: to - from, height: box.height};""", f"#{section}")
 
     def same(self, shown, stored):
         """A page's exact value and the archive's; what is not finite is null there."""

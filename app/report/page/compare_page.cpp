@@ -2,34 +2,40 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 
 #include "app/chain/judged_runs.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "app/report/page/assets.hpp"
+#include "app/report/page/matched_modes.hpp"
 #include "app/report/page/numbers.hpp"
+#include "app/report/page/paired_runs.hpp"
 #include "app/report/page/run_sections.hpp"
 
 namespace modebank::app::report {
 namespace {
 
 using nlohmann::json;
-using Pair = std::array<ComparedRun, 2>;
+using Runs = std::vector<ComparedRun>;
 
 /// Keys whose values differ, in the table's order; a key that one of them does not know has an empty value there.
-json configuration_differences(const Pair& runs) {
-  const auto first = resolved_values(runs[0].archive.config), second = resolved_values(runs[1].archive.config);
-  const auto text = [](const std::map<std::string, std::string>& values, const std::string& key) {
-    const auto found = values.find(key);
-    return found == values.end() ? std::string() : found->second;
-  };
+json configuration_differences(const Runs& runs) {
+  std::vector<std::map<std::string, std::string>> resolved;
+  for (const ComparedRun& run : runs) resolved.push_back(resolved_values(run.archive.config));
   json differences = json::array();
   for (const Option& option : option_table()) {
-    const std::string a = text(first, option.key), b = text(second, option.key);
-    if (a != b)
+    std::vector<std::string> values;
+    for (const auto& of : resolved) {
+      const auto found = of.find(option.key);
+      values.push_back(found == of.end() ? std::string() : found->second);
+    }
+    if (std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) != values.end())
       differences.push_back(
-          {{"key", option.key}, {"values", {a, b}}, {"help", option.help}, {"decides", decides_numbers(option.key)}});
+          {{"key", option.key}, {"values", values}, {"help", option.help}, {"decides", decides_numbers(option.key)}});
   }
   return differences;
 }
@@ -50,48 +56,104 @@ constexpr ComparedScore compared_scores[] = {
     {"PIT distance", "pit_distance", [](const SummaryRow& row) { return row.pit_distance; }},
 };
 
-/// Positive when the second is better.
-double advantage(const ComparedScore& score, double first, double second) {
+json score_row(const ComparedScore& score, const std::vector<const SummaryRow*>& rows) {
   const ScoreGoal goal = goal_of(score.column, 1).value();
-  return goal.loss(first) - goal.loss(second);
-}
-
-json score_row(const ComparedScore& score, const SummaryRow& first, const SummaryRow& second) {
-  const double a = score.of(first), b = score.of(second), gain = advantage(score, a, b);
   const auto cell = [&](double value) { return score.share ? percent(value) : number(value); };
-  return {{"filter", first.filter},    {"role", name_of(first.role)},
-          {"score", score.name},       {"values", {cell(a), cell(b)}},
-          {"difference", cell(b - a)}, {"better", gain > 0 ? json(1) : gain < 0 ? json(0) : json()}};
+  json values = json::array(), differences = json::array();
+  std::size_t best = 0;
+  bool equal = true;
+  const double first = score.of(*rows[0]);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double value = score.of(*rows[k]);
+    values.push_back(cell(value));
+    if (k > 0) differences.push_back(cell(value - first));
+    if (goal.loss(value) < goal.loss(score.of(*rows[best]))) best = k;
+    equal = equal && value == first;
+  }
+  return {{"filter", rows[0]->filter}, {"role", name_of(rows[0]->role)}, {"score", score.name},
+          {"values", values},          {"differences", differences},     {"better", equal ? json() : json(best)}};
 }
 
-json scores_of(const Pair& runs) {
-  json rows = json::array();
+json scores_of(const Runs& runs) {
+  json list = json::array();
   std::vector<std::string> filters{"bank"};
   filters.insert(filters.end(), competitor_names.begin(), competitor_names.end());
   for (const Role role : {Role::test, Role::train})
     for (const std::string& filter : filters) {
-      const SummaryRow* first = pooled_row(runs[0].archive, filter, role);
-      const SummaryRow* second = pooled_row(runs[1].archive, filter, role);
-      if (!first || !second) continue;
-      for (const ComparedScore& score : compared_scores) rows.push_back(score_row(score, *first, *second));
+      std::vector<const SummaryRow*> rows;
+      for (const ComparedRun& run : runs)
+        if (const SummaryRow* row = pooled_row(run.archive, filter, role)) rows.push_back(row);
+      if (rows.size() != runs.size()) continue;
+      for (const ComparedScore& score : compared_scores) list.push_back(score_row(score, rows));
     }
-  return rows;
+  return list;
 }
 
-/// The finding in one sentence.
-std::string sentence(const Pair& runs) {
-  const Role role = judged_role(runs[0].archive);
-  const SummaryRow* first = pooled_row(runs[0].archive, "bank", role);
-  const SummaryRow* second = pooled_row(runs[1].archive, "bank", role);
-  if (!first || !second || judged_role(runs[1].archive) != role)
-    return "The two were not both scored on the same kind of runs, so neither is the better one.";
-  const double gain = second->log_score - first->log_score;
-  if (runs[0].archive.provenance.data_hash != runs[1].archive.provenance.data_hash)
-    return fmt::format(
-        "The two were made from different data, so their scores do not compare ({:+.3f} nats per sample).", gain);
-  if (gain == 0.0) return fmt::format("On {} runs both banks predict equally well.", words_for(role));
-  return fmt::format("On {} runs the bank of {} predicts better, by {:.3f} nats per sample.", words_for(role),
-                     gain > 0 ? "B" : "A", std::abs(gain));
+/// What the gain of one over another says, in a sentence.
+std::string gain_sentence(const PairedGain& gain, const std::string& first, const std::string& other) {
+  if (gain.gain == 0.0) return fmt::format("the banks of {} and {} predict equally well.", first, other);
+  const std::string &ahead = gain.gain > 0 ? other : first, &behind = gain.gain > 0 ? first : other;
+  const std::string size =
+      fmt::format("{}{}", gain_words(gain), gain.by_blocks ? " (error from blocks of samples)" : "");
+  if (!std::isfinite(gain.margin))
+    return fmt::format("the bank of {} scores higher than that of {}{}; there are too few samples to know the error.",
+                       ahead, behind, size);
+  if (gain.exceeds() || gain.falls_short())
+    return fmt::format("the bank of {} predicts better than that of {},{}.", ahead, behind, size);
+  return fmt::format(
+      "it cannot be told whether {} or {} predicts better: {} is ahead{}, which does not exceed what chance "
+      "makes ({:.3f}).",
+      first, other, ahead, size, gain.margin);
+}
+
+/// Whether the bank of run k predicts better than the first's, with what it is known by.
+json verdict_of(const Runs& runs, std::size_t k) {
+  const std::string letter(1, static_cast<char>('A' + k));
+  const ArchiveGain found = gain_between(runs[k].archive, runs[0].archive);
+  json verdict = {{"runs", found.runs},
+                  {"gain", estimate(found.gain.gain, found.gain.standard_error)},
+                  {"margin", number(found.gain.margin)},
+                  {"told", found.gain.exceeds() || found.gain.falls_short()}};
+  if (found.runs == 0)
+    verdict["text"] = fmt::format("A and {} do not compare: {}.", letter, found.difference);
+  else
+    verdict["text"] =
+        fmt::format("On {} {} run{} that both hold, {}", found.runs, words_for(judged_role(runs[0].archive)),
+                    found.runs == 1 ? "" : "s", gain_sentence(found.gain, "A", letter));
+  return verdict;
+}
+
+json verdicts_of(const Runs& runs) {
+  json verdicts = json::array();
+  for (std::size_t k = 1; k < runs.size(); ++k) verdicts.push_back(verdict_of(runs, k));
+  return verdicts;
+}
+
+json z_cells(const MatchedMode& pair) {
+  json cells = json::array();
+  for (Index i = 0; i < pair.z.size(); ++i) cells.push_back(number(pair.z(i), fmt::format("{:+.1f}", pair.z(i))));
+  return cells;
+}
+
+/// The modes of run k beside the first's.
+json match_of(const Runs& runs, std::size_t k) {
+  const auto &first = runs[0].archive.bank, &other = runs[k].archive.bank;
+  if (!first || !other) return {{"difference", "not both hold a bank"}, {"modes", json::array()}};
+  const ModeMatch match = match_modes(*first, *other);
+  json modes = json::array();
+  for (const MatchedMode& pair : match.modes)
+    modes.push_back({{"first", pair.first},
+                     {"second", pair.second},
+                     {"distance", number(pair.z.size() ? pair.distance : NAN, fmt::format("{:.2g}", pair.distance))},
+                     {"agree", pair.agree()},
+                     {"z", z_cells(pair)}});
+  return {{"difference", match.difference}, {"modes", modes}};
+}
+
+json matches_of(const Runs& runs) {
+  json matches = json::array();
+  for (std::size_t k = 1; k < runs.size(); ++k) matches.push_back(match_of(runs, k));
+  return matches;
 }
 
 json run_json(const ComparedRun& run, PageArrays& arrays, std::size_t room) {
@@ -106,20 +168,28 @@ json run_json(const ComparedRun& run, PageArrays& arrays, std::size_t room) {
 
 }  // namespace
 
-Page compare_page(const std::array<ComparedRun, 2>& runs, const ReportConfig& options) {
-  constexpr double bytes_per_MB = 1e6, share_of_signals = 0.4;  // of the page, for each of both
-  const auto room = static_cast<std::size_t>(share_of_signals * options.size_mb * bytes_per_MB);
+Page compare_page(const std::vector<ComparedRun>& runs, const ReportConfig& options) {
+  constexpr double bytes_per_MB = 1e6, share_of_signals = 0.8;  // of the page, for all together
+  const auto room =
+      static_cast<std::size_t>(share_of_signals / static_cast<double>(runs.size()) * options.size_mb * bytes_per_MB);
   Page page;
-  page.title = fmt::format("{} and {} · modebank", runs[0].name, runs[1].name);
+  std::string names;
+  json all = json::array();
+  bool same_data = true;
+  for (const ComparedRun& run : runs) {
+    names += (names.empty() ? "" : " and ") + run.name;
+    same_data = same_data && run.archive.provenance.data_hash == runs[0].archive.provenance.data_hash;
+    all.push_back(run_json(run, page.arrays, room));
+  }
+  page.title = fmt::format("{} · modebank", names);
   page.script = assets::compare_js();
-  json both = json::array();
-  for (const ComparedRun& run : runs) both.push_back(run_json(run, page.arrays, room));
   page.data = {{"kind", "compare"},
-               {"verdict", sentence(runs)},
-               {"same_data", runs[0].archive.provenance.data_hash == runs[1].archive.provenance.data_hash},
+               {"verdicts", verdicts_of(runs)},
+               {"same_data", same_data},
                {"differences", configuration_differences(runs)},
                {"scores", scores_of(runs)},
-               {"runs", both}};
+               {"matches", matches_of(runs)},
+               {"runs", all}};
   return page;
 }
 

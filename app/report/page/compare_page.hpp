@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <string>
+#include <vector>
 
 #include "app/config/config.hpp"
 #include "app/report/page/html_page.hpp"
@@ -15,8 +15,10 @@ struct ComparedRun {
   std::string name;
 };
 
-/// The page that shows two archives together: how their configurations differ, their scores side by side, their plots
-/// one over the other.
-Page compare_page(const std::array<ComparedRun, 2>& runs, const ReportConfig& options);
+inline constexpr std::size_t most_compared = 6;  ///< more have no letters and colours of their own
+
+/// The page that shows two or more archives together: which predicts better, how their configurations differ, their
+/// modes matched with those of the first, their scores side by side, their plots one over the other.
+Page compare_page(const std::vector<ComparedRun>& runs, const ReportConfig& options);
 
 }  // namespace modebank::app::report

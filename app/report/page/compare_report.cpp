@@ -1,17 +1,25 @@
+#include <set>
+
 #include "app/report/page/compare_page.hpp"
 #include "app/report/page/write_page.hpp"
 #include "io/archive/archive.hpp"
 
 namespace modebank::app::report {
 
-void report_comparison(const std::filesystem::path& first, const std::filesystem::path& second,
-                       const std::filesystem::path& page, const ReportConfig& options) {
-  check_page_path(page, {first, second});
-  const Archive a = read_archive(first), b = read_archive(second);
-  // Names of their own where the files are called the same.
-  const bool alike = first.filename() == second.filename();
-  const auto name = [&](const std::filesystem::path& path) { return (alike ? path : path.filename()).string(); };
-  write_page(page, compare_page({ComparedRun{a, name(first)}, ComparedRun{b, name(second)}}, options));
+void report_comparison(const std::vector<std::filesystem::path>& files, const std::filesystem::path& page,
+                       const ReportConfig& options) {
+  check_page_path(page, files);
+  std::vector<Archive> archives;
+  std::set<std::filesystem::path> names;
+  for (const std::filesystem::path& file : files) {
+    archives.push_back(read_archive(file));
+    names.insert(file.filename());
+  }
+  std::vector<ComparedRun> runs;
+  // Whole paths where files are called the same.
+  for (std::size_t i = 0; i < files.size(); ++i)
+    runs.push_back({archives[i], (names.size() < files.size() ? files[i] : files[i].filename()).string()});
+  write_page(page, compare_page(runs, options));
 }
 
 }  // namespace modebank::app::report

@@ -8,7 +8,6 @@
 #include "app/report/page/assets.hpp"
 
 namespace modebank::app::report {
-namespace {
 
 std::string escaped_html(std::string text) {
   boost::replace_all(text, "&", "&amp;");
@@ -16,6 +15,8 @@ std::string escaped_html(std::string text) {
   boost::replace_all(text, ">", "&gt;");
   return text;
 }
+
+namespace {
 
 /// JSON within a script element: no "<" in it can end or comment out the element. Bytes that are no UTF-8 are replaced.
 std::string json_in_script(const nlohmann::json& data) {

@@ -16,6 +16,9 @@ struct Page {
   std::string_view script;  ///< one of assets.hpp
 };
 
+/// As text between tags.
+std::string escaped_html(std::string text);
+
 /// The self-contained HTML file: nothing in it refers to anything outside.
 std::string html_of(const Page& page);
 

@@ -20,9 +20,9 @@ void write_figures(const FigureSet& set, const ReportConfig& options);
 
 /// A study's figures, where report.figures asks for them, and its page, unless `page` is empty.
 void report_study(const std::filesystem::path& study, const std::filesystem::path& page, const ReportConfig& options);
-/// The page of two archives.
-void report_comparison(const std::filesystem::path& first, const std::filesystem::path& second,
-                       const std::filesystem::path& page, const ReportConfig& options);
+/// The page of two or more archives.
+void report_comparison(const std::vector<std::filesystem::path>& files, const std::filesystem::path& page,
+                       const ReportConfig& options);
 
 /// Whether the path is a study's folder or its study.h5; throws as read_archive does for a file that cannot be opened.
 bool is_study(const std::filesystem::path& path);

@@ -12,6 +12,7 @@
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/series.hpp"
+#include "app/report/page/unit_text.hpp"
 #include "app/text/screen_facts.hpp"
 #include "io/archive/archive.hpp"
 #include "io/files/read_file.hpp"
@@ -65,6 +66,14 @@ std::vector<T> values_of(const PageArrays& arrays, const json& place) {
   std::vector<T> values(bytes.size() / sizeof(T));
   std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
+}
+
+TEST(ReportNumbers, ParametersOfModelsAreWords) {
+  using app::report::parameter_words;
+  EXPECT_EQ(parameter_words("effective_track_m", "m"), "effective track");
+  EXPECT_EQ(parameter_words("slip_left", "1"), "slip left");
+  EXPECT_EQ(parameter_words("mass", ""), "mass");
+  EXPECT_EQ(parameter_words("m", "m"), "m");
 }
 
 TEST(ReportArrays, ComeBackAsTheyWentIn) {

@@ -1,4 +1,4 @@
-// Data of two runs with what both banks predicted.
+// Data of the runs with what all banks predicted.
 import {controls, note} from './elements.js';
 import {section} from './page.js';
 import {colours, letters, pairLegend, stroke, symbols} from './pair.js';
@@ -6,35 +6,36 @@ import {ink} from './plots.js';
 import {inputRows, nisRow, probabilityRow, stateRow} from './time_rows.js';
 import {runChoice, timeControls, timePlot, TimeState} from './timeview.js';
 
-// Runs that both hold, with as many samples: the data are A's.
+// Runs that all hold, with as many samples: the data are A's.
 function commonRuns(data) {
-  const [a, b] = data.runs.map((run) => (run.data ? run.data.runs : []));
+  const [a, ...others] = data.runs.map((run) => (run.data ? run.data.runs : []));
   return a.flatMap((run) => {
     const same = (other) =>
         other.name === run.name && other.time.samples === run.time.samples && other.state.length === run.state.length;
-    const other = b.find(same);
-    return other ? [{...run, truth: null, pair: [run.filters.bank, other.filters.bank]}] : [];
+    const found = others.map((list) => list.find(same));
+    return found.every(Boolean) ? [{...run, truth: null, pair: [run, ...found].map((one) => one.filters.bank)}] : [];
   });
 }
 
-const layers = letters.map((letter, k) => ({
-                             of: (run) => run.pair[k],
-                             prefix: `${letter} `,
-                             band: colours[k],
-                             opacity: 0.2,
-                             line: colours[k],
-                             nis: colours[k],
-                             stroke: {color: stroke(k).color, dash: stroke(k).dash},
-                             symbol: symbols[k],
-                           }));
+const layersOf = (data) => data.runs.map((_, k) => ({
+                                           of: (run) => run.pair[k],
+                                           prefix: `${letters[k]} `,
+                                           band: colours[k],
+                                           opacity: 0.2,
+                                           line: colours[k],
+                                           nis: colours[k],
+                                           // A lies below: broader, so that it is seen beside what covers it.
+                                           stroke: {color: stroke(k).color, dash: stroke(k).dash, width: k ? 1.4 : 3},
+                                           symbol: symbols[k],
+                                         }));
 
 export function drawData(data) {
   const runs = commonRuns(data);
   if (!runs.length) {
-    section('data', 'Data and predictions', note('No run is in both archives with the same samples.'));
+    section('data', 'Data and predictions', note('No run is in all archives with the same samples.'));
     return;
   }
-  const place = data.runs[0].data, state = new TimeState(runs);
+  const place = data.runs[0].data, state = new TimeState(runs), layers = layersOf(data);
   const probabilities = () => layers.filter(({of}) => (of(state.current) || {}).probability)
                                   .map(({of, prefix}) => probabilityRow(of, `P(mode) ${prefix.trim()}`));
   const rows = () =>
@@ -43,7 +44,7 @@ export function drawData(data) {
        ...probabilities(),
        ...inputRows(place),
   ];
-  const label = 'State with the predictions of both banks, their NIS and their mode probabilities over time';
+  const label = 'State with the predictions of all banks, their NIS and their mode probabilities over time';
   const plot = timePlot(
       state, label, rows,
       `Bands: ${

@@ -1,4 +1,4 @@
-// How true the uncertainty of both banks is.
+// How true the uncertainty of all banks is.
 import {choiceIfAny, controls, h, note} from './elements.js';
 import {autocorrelationLayout, autocorrelationTrace, outsideBars, outsideLayout, pitSteps} from './filter_drawings.js';
 import {roleNames} from './filters.js';
@@ -8,7 +8,7 @@ import {figure, greyBand} from './plots.js';
 
 const height = 300;
 
-// `rows`: of A and B.
+// `rows`: of A, B, ...
 function pitDrawing(rows) {
   const traces = rows.map(
       (row, k) =>
@@ -50,8 +50,8 @@ function outsideDrawing(rows, tail) {
 
 export function drawFilter(data) {
   const title = 'The filters', both = data.runs.map((run) => run.filter);
-  if (!both[0] || !both[1]) {
-    section('filter', title, note('Not both were evaluated.'));
+  if (!both.every(Boolean)) {
+    section('filter', title, note('Not all were evaluated.'));
     return;
   }
   const holds = (one, name) => one.histograms.some((row) => row.role === name);
@@ -66,11 +66,11 @@ export function drawFilter(data) {
       both.map((one) => one.scores.find((row) => row.run === '*' && row.filter === 'bank' && row.role === role));
   const figures = [
     figure(
-        'Histogram of probability integral transforms of both banks', () => pitDrawing(banks('histograms', 'filter')),
+        'Histogram of probability integral transforms of all banks', () => pitDrawing(banks('histograms', 'filter')),
         'Grey: where 95 % of a true filter’s bars lie (for A’s number of samples).'),
-    figure('Residual autocorrelation of both banks', () => correlationDrawing(banks('autocorrelations', 'model'))),
+    figure('Residual autocorrelation of all banks', () => correlationDrawing(banks('autocorrelations', 'model'))),
     figure(
-        'Shares of samples whose NIS lies outside its 95 % interval, for both banks',
+        'Shares of samples whose NIS lies outside its 95 % interval, for all banks',
         () => outsideDrawing(pooled(), both[0].tail), 'Dashed: a true filter.'),
   ];
   const pick = choiceIfAny('Runs', roles.map((name) => roleNames[name]), 0, (i) => {

@@ -1,6 +1,7 @@
-// The page of two runs, A and B, side by side.
+// The page of two or more runs, A, B, ..., side by side.
 import {drawData} from './compare_data.js';
 import {drawFilter} from './compare_filter.js';
+import {drawModes} from './compare_modes.js';
 import {drawWindows} from './compare_windows.js';
 import {criteria, criterionTrace} from './criteria.js';
 import {choice, controls, copyButton, details, facts, h, note} from './elements.js';
@@ -11,9 +12,9 @@ import {colours, letters, pairLegend, stroke, symbols} from './pair.js';
 import {figure} from './plots.js';
 import {table} from './table.js';
 
-const settingColumns = [
-  {name: 'Setting', text: true, of: (row) => row.key},
-  ...letters.map((name, k) => ({name, text: true, of: (row) => row.values[k]})),
+const settingColumns = (runs) =>
+    [{name: 'Setting', text: true, of: (row) => row.key},
+     ...runs.map((_, k) => ({name: letters[k], text: true, of: (row) => row.values[k]})),
 ];
 
 function originOf(run, letter) {
@@ -31,32 +32,51 @@ function originOf(run, letter) {
 function drawDifferences(data) {
   const rows = data.differences, deciding = rows.filter((row) => row.decides),
         others = rows.filter((row) => !row.decides);
-  const caption = 'Settings that differ and decide the numbers';
+  const caption = 'Settings that differ and decide the numbers', columns = settingColumns(data.runs);
   section(
-      'differences', 'What differs', pairLegend(data.runs),
-      deciding.length ? table(settingColumns, deciding, {caption}) : note('No setting that decides a number differs.'),
+      'differences', 'What differs',
+      deciding.length ? table(columns, deciding, {caption}) : note('No setting that decides a number differs.'),
       others.length ? details(
                           `${others.length} differing settings that decide no number`,
-                          table(settingColumns, others, {caption: 'Other settings'})) :
+                          table(columns, others, {caption: 'Other settings'})) :
                       null,
-      data.same_data ? null : note('The data differ: their hashes are not the same.', true),
-      data.runs.map((run, k) => originOf(run, letters[k])));
+      data.same_data ? null : note('The data differ: their hashes are not the same.', true));
 }
 
-const scoreColumns = [
-  {name: 'Filter', text: true, of: (row) => shortNames[row.filter]},
-  {name: 'Runs', text: true, of: (row) => roleNames[row.role]},
-  {name: 'Score', text: true, of: (row) => row.score},
-  ...letters.map((name, k) => ({name, of: (row) => row.values[k], swatch: () => colours[k]})),
-  {name: 'B − A', of: (row) => row.difference},
-  {name: 'Better', text: true, of: (row) => (row.better === null ? 'equal' : letters[row.better])},
+function drawOrigins(data) {
+  section('origin', 'Origin', data.runs.map((run, k) => originOf(run, letters[k])));
+}
+
+const scoreColumns = (runs) =>
+    [{name: 'Filter', text: true, of: (row) => shortNames[row.filter]},
+     {name: 'Runs', text: true, of: (row) => roleNames[row.role]},
+     {name: 'Score', text: true, of: (row) => row.score},
+     ...runs.map((_, k) => ({name: letters[k], of: (row) => row.values[k], swatch: () => colours[k]})),
+     ...runs.slice(1).map((_, k) => ({name: `${letters[k + 1]} − A`, of: (row) => row.differences[k]})),
+     {name: 'Better', text: true, of: (row) => (row.better === null ? 'equal' : letters[row.better])},
 ];
 
+// Rows that differ first; those that are equal are a click away.
+function scoreTables(data) {
+  const columns = scoreColumns(data.runs);
+  const differing = data.scores.filter((row) => row.better !== null),
+        equal = data.scores.filter((row) => row.better === null);
+  return [
+    differing.length ?
+        table(columns, differing, {caption: 'Scores side by side, all runs of a role together', sortable: true}) :
+        note('All scores are equal.'),
+    equal.length ? details(
+                       `${equal.length} scores are equal`,
+                       table(columns, equal, {caption: 'Equal scores, all runs of a role together'})) :
+                   null,
+  ];
+}
+
 function drawScores(data) {
-  const options = {caption: 'Scores side by side, all runs of a role together', sortable: true};
   section(
-      'verdict', 'Verdict', h('p', {class: 'verdict'}, data.verdict),
-      data.scores.length ? table(scoreColumns, data.scores, options) : note('Not both hold scores.'));
+      'verdict', 'Verdict', pairLegend(data.runs),
+      data.verdicts.map(({text, told}) => h('p', {class: told ? 'verdict good' : 'verdict'}, text)),
+      data.scores.length ? scoreTables(data) : note('Not all hold scores.'));
 }
 
 /** @param {any[]} both @param {string[]} criterion */
@@ -81,12 +101,12 @@ function drawSelection(data) {
   const known = (key) => both.some((one) => one && one.candidates.some((row) => row[key] && row[key].v !== null));
   const kinds = criteria.filter(([key]) => known(key));
   if (!kinds.length) {
-    section('selection', title, note('Neither holds a mixture.'));
+    section('selection', title, note('None holds a mixture.'));
     return;
   }
   let [kind] = kinds;
   const element = figure(
-      'A criterion over the number of components, for both runs', () => selectionDrawing(both, kind),
+      'A criterion over the number of components, for all runs', () => selectionDrawing(both, kind),
       'Large: the chosen one. Values compare only where windows and features are the same.');
   const pick = choice('Criterion', kinds.map(([, name]) => name), 0, (i) => {
     kind = kinds[i];
@@ -108,24 +128,25 @@ function bankTable(bank, letter) {
   return table(columns, bank.modes, {caption: `Modes of ${letter}`, sortable: true});
 }
 
+// Every bank by itself: what stands side by side above leaves gains and time constants out.
 function drawBanks(data) {
   section(
-      'bank', 'The banks',
+      'bank', 'Each bank',
       data.runs.map(
-          (run, k) =>
-              [h('h3', {}, `${letters[k]}: ${run.name}`),
-               run.bank ? bankTable(run.bank, letters[k]) : note('It holds no bank.'),
-  ]));
+          (run, k) => run.bank ? details(`Modes of ${letters[k]}: ${run.name}`, bankTable(run.bank, letters[k])) :
+                                 note(`${letters[k]} holds no bank.`)));
 }
 
-draw(async () => {
+draw(() => {
   const data = pageData();
-  head(`${data.runs[0].name} and ${data.runs[1].name}`, 'Two runs compared');
-  drawDifferences(data);
+  head(data.runs.map(({name}) => name).join(' and '), `${data.runs.length} runs compared`);
   drawScores(data);
+  drawDifferences(data);
+  drawModes(data);
+  drawWindows(data);
   drawData(data);
-  await drawWindows(data);
+  drawFilter(data);
   drawSelection(data);
   drawBanks(data);
-  drawFilter(data);
+  drawOrigins(data);
 });

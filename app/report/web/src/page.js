@@ -99,6 +99,7 @@ export async function draw(body, first = () => undefined) {
   try {
     first();
     await painted();
+    performance.mark('first screen');
     await parsed();
     await body();
     document.documentElement.dataset.ready = 'true';

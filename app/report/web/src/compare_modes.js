@@ -1,0 +1,57 @@
+// The modes of the banks beside those of A, matched one to one.
+import {details, h, note} from './elements.js';
+import {differingWords, sortedPairs} from './mode_pairs.js';
+import {section} from './page.js';
+import {colours, letters} from './pair.js';
+import {table} from './table.js';
+
+// A mode's parameters as its bank's page shows them.
+const parametersOf = (bank, k) =>
+    (k < 0                        ? null :
+         bank.motion_names.length ? bank.modes[k].motion :
+                                    bank.modes[k].parameters);
+const namesOf = (bank) => (bank.motion_names.length ? bank.motion_names : bank.parameter_names);
+const modeText = (k) => (k < 0 ? '–' : String(k));
+
+function pairColumns(a, b, letter, k) {
+  const names = namesOf(a);
+  const cell = (bank, mode, i) => {
+    const values = parametersOf(bank, mode);
+    return values ? values[i] : null;
+  };
+  return [
+    {name: 'Mode of A', text: true, of: (pair) => modeText(pair.first), swatch: () => colours[0]},
+    {name: `Mode of ${letter}`, text: true, of: (pair) => modeText(pair.second), swatch: () => colours[k]},
+    {name: 'Apart [standard errors]', of: (pair) => (pair.first < 0 || pair.second < 0 ? null : pair.distance)},
+    {name: 'They', text: true, of: (pair) => differingWords(pair, names, letter)},
+    ...names.flatMap(
+        (name, i) =>
+            [{name: `A: ${name}`, of: (pair) => cell(a, pair.first, i)},
+             {name: `${letter}: ${name}`, of: (pair) => cell(b, pair.second, i)},
+  ]),
+  ];
+}
+
+function matchTables(data, match, k) {
+  const letter = letters[k], [a, b] = [data.runs[0].bank, data.runs[k].bank];
+  const heading = h('h3', {}, `A and ${letter}`);
+  if (match.difference) return [heading, note(`They cannot be matched: ${match.difference}.`)];
+  const columns = pairColumns(a, b, letter, k), [differing, agreeing] = sortedPairs(match);
+  const same = agreeing.length ? table(columns, agreeing, {caption: `Modes of A and ${letter} that agree`}) : null;
+  const fold = same && differing.length ? details(`${agreeing.length} pairs agree within their errors`, same) : same;
+  return [
+    data.matches.length > 1 ? heading : null,
+    differing.length ? table(columns, differing, {caption: `Modes of A and ${letter} that differ`, sortable: true}) :
+                       note('All modes agree within their errors.'),
+    fold,
+  ];
+}
+
+export function drawModes(data) {
+  const how =
+      'Matched one to one by their distance: the root mean square difference of the parameters in standard errors, ' +
+      'both errors together. What agrees does so in all parameters together at 95 %.';
+  section(
+      'modes', 'Modes side by side', data.matches.map((match, i) => matchTables(data, match, i + 1)),
+      h('p', {class: 'caption'}, how));
+}
