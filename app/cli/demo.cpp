@@ -90,6 +90,7 @@ CommandLine typed_command(const CommandLine& demo, const std::vector<std::string
   for (const std::string& word : all) argv.push_back(word.c_str());
   CommandLine command = parse_command_line(static_cast<int>(argv.size()), argv.data());
   command.json = demo.json;
+  command.quiet = demo.quiet;
   return command;
 }
 
