@@ -54,11 +54,14 @@ function dataLegend(runs, filtered) {
   ]);
 }
 
+// The plot has a legend of few modes itself.
+const legendOfMany = (bank) => (bank && bank.modes.length > 8 ? modeLegend(bank) : null);
+
 function drawData(runs, state, options, picker) {
   const filters = Object.keys(runs.runs[0].filters), filtered = filters.length > 0;
   section(
       'data', 'The data', filtered ? null : note('No filter was run, so there is no prediction to compare with.'),
-      controls(picker(), timeControls(state)), dataLegend(runs, filtered), options.modeLegend(),
+      controls(picker(), timeControls(state)), dataLegend(runs, filtered), legendOfMany(data.bank),
       dataPlot(runs, state, filters, options));
 }
 
@@ -76,7 +79,7 @@ async function drawWindows(windows, runs, goTo) {
 
 // What all sections with a filter share: which filter and which state are shown.
 function filterOptions(filters) {
-  const options = {chosen: Math.max(0, filters.indexOf('bank')), state: 0, modeLegend: () => modeLegend(data.bank)};
+  const options = {chosen: Math.max(0, filters.indexOf('bank')), state: 0};
   options.layer = {
     prefix: '',
     band: palette.band,
