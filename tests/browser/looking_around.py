@@ -40,7 +40,7 @@ class LookingAround(PageTest):
 
     def wait_range(self, what, test):
         """Until the range that is shown passes; returns it."""
-        end = time.monotonic() + 20
+        end = time.monotonic() + 60
         while not test(shown := self.plot_range("data")):
             self.assertLess(time.monotonic(), end, f"waited for {what}: {shown}")
             time.sleep(0.05)

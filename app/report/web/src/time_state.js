@@ -57,8 +57,9 @@ export class TimeState {
   inside(range) {
     const [start, end] = this.whole(), samples = Math.max(1, this.current.time.samples);
     const least = Math.min(end - start, fewest_samples * (end - start) / samples);
-    const width = Math.max(least, Math.min(end - start, range[1] - range[0]));
-    const from = Math.max(start, Math.min(end - width, (range[0] + range[1] - width) / 2));
+    const asked = range[1] - range[0], width = Math.max(least, Math.min(end - start, asked));
+    const begin = width === asked ? range[0] : (range[0] + range[1] - width) / 2;
+    const from = Math.max(start, Math.min(end - width, begin));
     return width >= end - start ? null : /** @type {[number, number]} */ ([from, from + width]);
   }
   zoom(range, except) {

@@ -4,6 +4,7 @@ import {test} from 'node:test';
 import {csvOf, fileName} from '../src/downloads.js';
 import {rangeText, secondsText, shortNumber} from '../src/number_text.js';
 import {beside, changes, greatest} from '../src/time_jumps.js';
+import {listenToKeys} from '../src/time_keys.js';
 import {TimeState} from '../src/time_state.js';
 import {linkOf, viewIn} from '../src/view_link.js';
 
@@ -49,6 +50,32 @@ test('a view stays inside its run and never gets narrower than a few samples', a
   assert.ok(Math.abs(state.at - 12.3) < 1e-9);
   await state.jump(15.02);
   assert.ok(Math.abs(state.at - 15) < 1e-9 && Math.abs(state.range[0] - 14.52) < 1e-9);
+});
+
+test('keys lead the crosshair and let the view begin and end there', async () => {
+  const run = {role: 'test', time: {samples: 1001, start: 0, end: 10, period: 0.01}}, state = new TimeState([run]);
+  const plot = {addEventListener: (_, listen) => Object.assign(plot, {listen})}, told = [];
+  listenToKeys(plot, state, [{key: 'w', act: () => told.push('worst')}]);
+  const press = async (key, shiftKey = false) => {
+    plot.listen({target: plot, key, shiftKey, preventDefault: () => told.push(key)});
+    await new Promise(setImmediate);
+  };
+  await press('ArrowLeft');
+  assert.ok(Math.abs(state.at - 4.98) < 1e-9);  // a five-hundredth of the view
+  await press('[');
+  assert.deepEqual(state.range, [state.at, 10]);
+  await press('ArrowRight', true);
+  await press(']');
+  assert.ok(Math.abs(state.range[0] - 4.98) < 1e-9 && Math.abs(state.range[1] - state.at) < 1e-9 && state.at > 5);
+  const [from, to] = state.range;
+  await press('PageDown');
+  assert.ok(Math.abs(state.range[0] - (from + to) / 2) < 1e-9);
+  await press('0');
+  await press('Escape');
+  assert.deepEqual([state.range, state.at], [null, null]);
+  await press('x');
+  await press('w');
+  assert.deepEqual(told.slice(-2), ['w', 'worst']);
 });
 
 test('a table as CSV quotes what would be read otherwise', () => {
