@@ -26,7 +26,7 @@ class Server:
         return head
 
     def connect(self):
-        return socket.create_connection(("127.0.0.1", self.port), timeout=60)
+        return socket.create_connection(("127.0.0.1", self.port), timeout=120)
 
     def send(self, request):
         """Raw bytes out; (head, body) back, or None where the server closes without a word."""
@@ -65,7 +65,7 @@ class Server:
     def stop(self, how=signal.SIGINT):
         if self.process.poll() is None:
             self.process.send_signal(how)
-        status = self.process.wait(timeout=20)
+        status = self.process.wait(timeout=120)
         self.process.stdout.close()
         self.process.stderr.close()
         return status
@@ -75,7 +75,7 @@ class Server:
         return listed.stdout.split()
 
 
-def wait_for(condition, seconds=60):
+def wait_for(condition, seconds=300):
     end = time.monotonic() + seconds
     while not (value := condition()):
         assert time.monotonic() < end, "waited in vain"

@@ -50,7 +50,8 @@ class Overview {
   line(row) {
     const cells = columns.map((column) => cellOf(column, row));
     cells[0].replaceChildren(h('a', {href: `/archive/${row.id}`, 'data-id': row.id}, nameOf(row)));
-    if (sentenceOf(row)) cells[2].append(h('div', {class: 'soft sentence'}, sentenceOf(row)));
+    cells[1].title = sentenceOf(row);
+    if (row.problem) cells[1].append(h('div', {class: 'soft sentence'}, row.problem));
     return h('tr', {}, this.tickCell(row), cells);
   }
 

@@ -32,8 +32,8 @@ export const sentenceOf = ({digest, problem}) => problem || (digest && digest.te
 
 export const columns = [
   {name: 'Name', text: true, of: nameOf},
-  {name: 'Data', text: true, of: of((digest) => digest.data)},
   {name: 'Verdict', text: true, of: verdict},
+  {name: 'Data', text: true, of: of((digest) => digest.data)},
   {name: 'Modes', of: of((digest) => digest.modes)},
   {name: 'Gain [nats/sample]', of: of(gain)},
   {name: 'Log score', of: of((digest) => number(digest.log_score))},
