@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/config/config_file.hpp"
+#include "app/study/run/live_page.hpp"
 
 namespace modebank::app {
 
@@ -13,6 +14,7 @@ struct StudyCall {
   std::filesystem::path config_file;  ///< it was read from
   KeyValues overrides;                ///< and these from the command line
   std::string typed;                  ///< the whole command line, for provenance
+  StudyPageWriter write_page;         ///< for study.page
 };
 
 /// Does what study.stage says and prints on standard output what it did. Returns 0 when every run is done, else 1.

@@ -10,6 +10,7 @@
 #include "app/study/space/study_plan.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/inspect.hpp"
+#include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app::report {
@@ -84,6 +85,19 @@ void write_study_page(const fs::path& study, const fs::path& path, const StudyFi
 }
 
 }  // namespace
+
+void write_running_study(const fs::path& folder, const StudyFile& file, const StudyTable& table,
+                         const StudyState& state) {
+  const bool ended = state.seconds == 0.0;
+  const fs::path path = folder / "study.html", name = fs::absolute(folder).lexically_normal();
+  // While it runs, archives are left to those who write them.
+  const std::vector<TrialPlace> places =
+      ended ? archives_of(table, folder) : std::vector<TrialPlace>(table.rows.size());
+  Page page = study_page(file, table, places, (name.has_filename() ? name : name.parent_path()).filename().string());
+  if (ended) return write_page(path, page);
+  page.data["study"]["live"] = {{"finished", state.finished}, {"all", state.all}, {"seconds", state.seconds}};
+  replace_file(path, {html_of(page)});
+}
 
 bool is_study(const fs::path& path) {
   if (fs::is_directory(path)) return true;

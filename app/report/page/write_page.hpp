@@ -5,6 +5,7 @@
 #include "app/config/config.hpp"
 #include "app/report/figures/run_figures.hpp"
 #include "app/report/page/html_page.hpp"
+#include "app/study/run/live_page.hpp"
 
 namespace modebank::app::report {
 
@@ -20,6 +21,11 @@ void write_figures(const FigureSet& set, const ReportConfig& options);
 
 /// A study's figures, where report.figures asks for them, and its page, unless `page` is empty.
 void report_study(const std::filesystem::path& study, const std::filesystem::path& page, const ReportConfig& options);
+/// Writes study.html into a study's folder, by renaming, and says where it is when the study has ended; see
+/// StudyPageWriter.
+void write_running_study(const std::filesystem::path& folder, const StudyFile& file, const StudyTable& table,
+                         const StudyState& state);
+
 /// The page of two or more archives.
 void report_comparison(const std::vector<std::filesystem::path>& files, const std::filesystem::path& page,
                        const ReportConfig& options);
