@@ -138,7 +138,7 @@ std::vector<Command> commands_to_use() {
        "",
        "modebank report robot.h5",
        {"report"},
-       {output("FILE", "the page (named after the archive)")},
+       {as_json(), output("FILE", "the page (named after the archive)")},
        run_report},
       {"Use",
        "view",

@@ -27,14 +27,15 @@ std::filesystem::path page_if_asked(const CommandLine& line, const ReportConfig&
   return options.figures.empty() || !line.output.empty() ? page_path(line) : "";
 }
 
-void report_run(const std::filesystem::path& file, const std::filesystem::path& page, const ReportConfig& options) {
+void report_run(const std::filesystem::path& file, const std::filesystem::path& page, const ReportConfig& options,
+                report::Written& written) {
   if (!page.empty()) report::check_page_path(page, {file});
   const Archive archive = read_archive(file);
   const report::FigureSet figures =
       options.figures.empty() ? report::FigureSet() : report::run_figures(archive, options.run);
-  if (!page.empty()) report::write_page(page, report::run_page(archive, file.filename().string(), options));
+  if (!page.empty()) report::write_page(page, report::run_page(archive, file.filename().string(), options), written);
   // Last: a figure that cannot be drawn must not cost the page.
-  if (!options.figures.empty()) report::write_figures(figures, options);
+  if (!options.figures.empty()) report::write_figures(figures, options, written);
 }
 
 }  // namespace
@@ -47,14 +48,16 @@ int run_report(const CommandLine& line) {
         report::most_compared));
   const ReportConfig options = stored_config("", line.overrides).report;
   const std::filesystem::path page = page_if_asked(line, options);
+  report::Written written{[&](const std::string& text) { print_text(line, text); }, {}};
   if (line.files.size() > 1) {
     if (!options.figures.empty()) throw ConfigurationError("report.figures are drawn of one archive or study");
-    report::report_comparison({line.files.begin(), line.files.end()}, page, options);
+    report::report_comparison({line.files.begin(), line.files.end()}, page, options, written);
   } else if (report::is_study(line.files.front())) {
-    report::report_study(line.files.front(), page, options);
+    report::report_study(line.files.front(), page, options, written);
   } else {
-    report_run(line.files.front(), page, options);
+    report_run(line.files.front(), page, options, written);
   }
+  print_json(line, {{"written", written.files}});
   return 0;
 }
 

@@ -71,15 +71,26 @@ Sampling if_asked(const StudyConfig& study) {
   return study.estimate ? Sampling::make_some_runs : Sampling::what_is_there;
 }
 
+/// A share of a study knows its own runs alone: only the whole study has a page while it runs.
+bool shows_page(const StudyCommand& command) {
+  const StudyConfig& study = command.config.study;
+  return study.page && study.stage == StudyStage::all && study.shard_count == 1 && command.call.write_page;
+}
+
 /// Throws DataError when the study had to stop.
 RunResult run_share(const StudyCommand& command, const StudyPlan& plan) {
   const StudyConfig& study = command.config.study;
   command.store.remove_leftovers();
   const TrialGroups share = shard_of(group_trials(command.config, plan), study.shard_index, study.shard_count);
   StudyProgress progress(plan.table.varied_keys);
-  const RunResult result = run_trials(worker_settings(command, plan), plan, share,
-                                      [&](const TrialRow& row, const TrialReport& report, std::size_t finished,
-                                          std::size_t all) { progress.tell(row, report, finished, all); });
+  std::optional<LivePage> page;
+  if (shows_page(command)) page.emplace(plan, command.store, command.call.write_page);
+  const RunResult result =
+      run_trials(worker_settings(command, plan), plan, share,
+                 [&](const TrialRow& row, const TrialReport& report, std::size_t finished, std::size_t all) {
+                   progress.tell(row, report, finished, all);
+                   if (page) page->tell(row, report, finished, all);
+                 });
   const std::string counts = fmt::format("{} runs made, {} were there, {} failed, in {}", result.computed,
                                          result.present, result.failed.size(), duration_text(result.seconds));
   if (result.broken)
@@ -120,6 +131,9 @@ int merge(const StudyCommand& command, const std::set<std::string>& whole) {
   command.call.say(fmt::format("\n{}\ntable     {}, {}\n", answers_text(table, answers),
                                (command.store.folder() / "study.h5").string(),
                                (command.store.folder() / "study.csv").string()));
+  if (command.config.study.page && command.call.write_page)
+    command.call.write_page(command.store.folder(), study_file_of(plan, table, answers), table,
+                            {table.rows.size(), table.rows.size(), 0.0});
   return is_complete(table) ? 0 : 1;
 }
 

@@ -69,6 +69,8 @@ std::vector<Option> work_options() {
       shard_option(),
       flag("study.flat", "merge: copy the archives into study.h5 instead of linking to them",
            MODEBANK_FIELD(study.flat)),
+      flag("study.page", "study.html in the folder: written anew every few seconds while the study runs",
+           MODEBANK_FIELD(study.page)),
       numeric("study.slurm_tasks", between(0, 1'000'000), "",
               "submit: tasks of the job array, each a share of the runs; 0: one per ten runs, at most 100",
               MODEBANK_FIELD(study.slurm_tasks)),

@@ -7,7 +7,7 @@
 namespace modebank::app::report {
 
 void report_comparison(const std::vector<std::filesystem::path>& files, const std::filesystem::path& page,
-                       const ReportConfig& options) {
+                       const ReportConfig& options, Written& written) {
   check_page_path(page, files);
   std::vector<Archive> archives;
   std::set<std::filesystem::path> names;
@@ -19,7 +19,7 @@ void report_comparison(const std::vector<std::filesystem::path>& files, const st
   // Whole paths where files are called the same.
   for (std::size_t i = 0; i < files.size(); ++i)
     runs.push_back({archives[i], (names.size() < files.size() ? files[i] : files[i].filename()).string()});
-  write_page(page, compare_page(runs, options));
+  write_page(page, compare_page(runs, options), written);
 }
 
 }  // namespace modebank::app::report

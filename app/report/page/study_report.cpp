@@ -10,6 +10,7 @@
 #include "app/study/space/study_plan.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/inspect.hpp"
+#include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app::report {
@@ -59,45 +60,59 @@ std::vector<TrialPlace> archives_of(const StudyTable& table, const fs::path& fol
 
 /// Pages of the best runs, in a folder named after the study's page.
 void write_run_pages(const StudyTable& table, const fs::path& page, const ReportConfig& options,
-                     std::vector<TrialPlace>& places) {
+                     std::vector<TrialPlace>& places, Written& written) {
   const fs::path folder = page.parent_path() / (page.stem().string() + "_runs");
-  Index written = 0;
+  Index pages = 0;
   for (const std::size_t row : ranked_rows(table)) {
-    if (written == options.runs) break;
+    if (pages == options.runs) break;
     if (places[row].archive.empty()) continue;
     const fs::path archive = places[row].archive, file = folder / (table.rows[row].key + ".html");
     const Page run = run_page(read_archive(archive), archive.filename().string(), options);
     fs::create_directories(folder);
-    write_page(file, run);
+    write_page(file, run, written);
     places[row].page = (folder.filename() / file.filename()).string();
-    ++written;
+    ++pages;
   }
 }
 
 void write_study_page(const fs::path& study, const fs::path& path, const StudyFile& file, const StudyTable& table,
-                      const fs::path& page, const ReportConfig& options) {
+                      const fs::path& page, const ReportConfig& options, Written& written) {
   std::vector<TrialPlace> places = archives_of(table, path.parent_path());
-  write_run_pages(table, page, options, places);
+  write_run_pages(table, page, options, places, written);
   const fs::path name = fs::absolute(fs::is_directory(study) ? study : path).lexically_normal();
   write_page(page,
-             study_page(file, table, places, (name.has_filename() ? name : name.parent_path()).filename().string()));
+             study_page(file, table, places, (name.has_filename() ? name : name.parent_path()).filename().string()),
+             written);
 }
 
 }  // namespace
+
+void write_running_study(const fs::path& folder, const StudyFile& file, const StudyTable& table,
+                         const StudyState& state, Written& written) {
+  const bool ended = state.seconds == 0.0;
+  const fs::path path = folder / "study.html", name = fs::absolute(folder).lexically_normal();
+  // While it runs, archives are left to those who write them.
+  const std::vector<TrialPlace> places =
+      ended ? archives_of(table, folder) : std::vector<TrialPlace>(table.rows.size());
+  Page page = study_page(file, table, places, (name.has_filename() ? name : name.parent_path()).filename().string());
+  if (ended) return write_page(path, page, written);
+  page.data["study"]["live"] = {{"finished", state.finished}, {"all", state.all}, {"seconds", state.seconds}};
+  replace_file(path, {html_of(page)});
+}
 
 bool is_study(const fs::path& path) {
   if (fs::is_directory(path)) return true;
   return inspect(path.string(), "/").at("members").contains("study");
 }
 
-void report_study(const fs::path& study, const fs::path& page, const ReportConfig& options) {
+void report_study(const fs::path& study, const fs::path& page, const ReportConfig& options, Written& written) {
   const fs::path path = study_file(study);
   if (!page.empty()) check_page_path(page, {path});
   const StudyFile file = read_study_file(path, "study");
   const StudyTable table = study_table_of(file);
-  if (!page.empty()) write_study_page(study, path, file, table, page, options);
+  if (!page.empty()) write_study_page(study, path, file, table, page, options, written);
   // Last: a figure that cannot be drawn must not cost the page.
-  if (!options.figures.empty()) write_figures(study_figures(table), options);
+  if (!options.figures.empty()) write_figures(study_figures(table), options, written);
 }
 
 }  // namespace modebank::app::report

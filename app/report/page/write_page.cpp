@@ -18,17 +18,21 @@ void check_page_path(const std::filesystem::path& path, const std::vector<std::f
   }
 }
 
-void write_page(const std::filesystem::path& path, const Page& page) {
+void write_page(const std::filesystem::path& path, const Page& page, Written& written) {
   constexpr double bytes_per_MB = 1e6;
   const std::string html = html_of(page);
   replace_file(path, {html});
-  fmt::print("{}: {:.1f} MB; open it in a browser\n", path.string(), static_cast<double>(html.size()) / bytes_per_MB);
+  written.files.push_back(path.string());
+  written.say(fmt::format("{}: {:.1f} MB; open it in a browser\n", path.string(),
+                          static_cast<double>(html.size()) / bytes_per_MB));
 }
 
-void write_figures(const FigureSet& set, const ReportConfig& options) {
+void write_figures(const FigureSet& set, const ReportConfig& options, Written& written) {
   const DrawnFigures drawn = draw_figures(set.figures, {options.figures, options.png, options.sources});
-  if (!drawn.files.empty()) fmt::print("{}: {}\n", options.figures, fmt::join(drawn.files, ", "));
-  for (const std::string& reason : set.left_out) fmt::print("left out: {}\n", reason);
+  for (const std::string& file : drawn.files)
+    written.files.push_back((std::filesystem::path(options.figures) / file).string());
+  if (!drawn.files.empty()) written.say(fmt::format("{}: {}\n", options.figures, fmt::join(drawn.files, ", ")));
+  for (const std::string& reason : set.left_out) written.say(fmt::format("left out: {}\n", reason));
   if (!drawn.failed.empty())
     throw DataError(fmt::format("report.figures: {} of {} figures could not be drawn, the others are there\n{}",
                                 drawn.failed.size(), set.figures.size(), fmt::join(drawn.failed, "\n")));

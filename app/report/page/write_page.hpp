@@ -1,28 +1,44 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
 
 #include "app/config/config.hpp"
 #include "app/report/figures/run_figures.hpp"
 #include "app/report/page/html_page.hpp"
+#include "app/study/run/live_page.hpp"
 
 namespace modebank::app::report {
 
 /// Throws ConfigurationError when the page cannot be written to `path`, or `path` is one of the files it is made from.
 void check_page_path(const std::filesystem::path& path, const std::vector<std::filesystem::path>& sources);
 
-/// Writes the page under a temporary name and renames it; says how large it is.
-void write_page(const std::filesystem::path& path, const Page& page);
+/// What was written, said as soon as it is there.
+struct Written {
+  std::function<void(const std::string& text)> say;
+  std::vector<std::string> files;
+};
 
-/// Draws the figures into report.figures and prints what was written; throws DataError that names those which could not
+/// Writes the page under a temporary name and renames it; says how large it is.
+void write_page(const std::filesystem::path& path, const Page& page, Written& written);
+
+/// Draws the figures into report.figures and says what was written; throws DataError that names those which could not
 /// be drawn, after the others.
-void write_figures(const FigureSet& set, const ReportConfig& options);
+void write_figures(const FigureSet& set, const ReportConfig& options, Written& written);
 
 /// A study's figures, where report.figures asks for them, and its page, unless `page` is empty.
-void report_study(const std::filesystem::path& study, const std::filesystem::path& page, const ReportConfig& options);
+void report_study(const std::filesystem::path& study, const std::filesystem::path& page, const ReportConfig& options,
+                  Written& written);
+/// Writes study.html into a study's folder, by renaming, and says where it is when the study has ended; see
+/// StudyPageWriter.
+void write_running_study(const std::filesystem::path& folder, const StudyFile& file, const StudyTable& table,
+                         const StudyState& state, Written& written);
+
 /// The page of two or more archives.
 void report_comparison(const std::vector<std::filesystem::path>& files, const std::filesystem::path& page,
-                       const ReportConfig& options);
+                       const ReportConfig& options, Written& written);
 
 /// Whether the path is a study's folder or its study.h5; throws as read_archive does for a file that cannot be opened.
 bool is_study(const std::filesystem::path& path);

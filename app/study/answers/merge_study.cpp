@@ -98,6 +98,10 @@ StudyTable collect_table(const TrialStore& store, const StudyPlan& plan, const s
   tbb::parallel_for(std::size_t{0}, table.rows.size(), [&](std::size_t i) {
     if (table.rows[i].status != TrialStatus::dropped) scores[i] = settle(store, whole, table.rows[i]);
   });
+  return with_scores(std::move(table), scores);
+}
+
+StudyTable with_scores(StudyTable table, const std::vector<std::optional<TrialScores>>& scores) {
   table.score_names = score_names(scores);
   std::map<std::string, std::size_t> places;
   for (std::size_t s = 0; s < table.score_names.size(); ++s) places[table.score_names[s]] = s;
@@ -147,9 +151,13 @@ std::string table_csv(const StudyTable& table) {
   return text;
 }
 
+StudyFile study_file_of(const StudyPlan& plan, const StudyTable& table, const Answers& answers) {
+  return {plan.provenance, plan.config, "study", table_columns(table), {}, answer_tables(table, answers)};
+}
+
 void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTable& table, const Answers& answers,
                  ArchiveUse use) {
-  StudyFile file{plan.provenance, plan.config, "study", table_columns(table), {}, answer_tables(table, answers)};
+  StudyFile file = study_file_of(plan, table, answers);
   for (const TrialRow& row : table.rows)
     if (row.status == TrialStatus::done) file.archives.emplace_back(row.key, store.archive(row.key));
   write_study_file(store.folder() / "study.h5", file, use);

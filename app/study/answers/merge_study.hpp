@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "app/study/answers/answers.hpp"
 #include "app/study/run/trial_store.hpp"
@@ -14,6 +16,12 @@ namespace modebank::app {
 /// The plan's rows with what became of them: scores from the archives, failures from their records, the rest missing.
 /// An archive counts when its hash is right; those in `whole` are known to be.
 StudyTable collect_table(const TrialStore& store, const StudyPlan& plan, const std::set<std::string>& whole = {});
+
+/// The rows with these scores, one entry per row, nothing where a trial has none yet.
+StudyTable with_scores(StudyTable table, const std::vector<std::optional<TrialScores>>& scores);
+
+/// What study.h5 holds of a table.
+StudyFile study_file_of(const StudyPlan& plan, const StudyTable& table, const Answers& answers);
 
 /// Writes study.h5 (with the answers, and with links to the archives, or copies of them), study.csv, and the rows'
 /// status into plan.h5.

@@ -82,7 +82,9 @@ TEST_F(Json, CommandsGiveTheMembersThatAreDocumented) {
       {"predict", archive(), "--samples", "5", "-o", file("p.csv").string()},
       {"export", archive(), "--to", "json", "--force"},
       {"export", archive(), "--to", "c", "--force", "-o", file("f.c").string()},
+      {"report", archive(), "-o", file("page.html").string()},
       {"verify", archive()},
+      {"view", archive()},
       {"study", config(), "--study.vary", "window.length = 20 | 25", "--study.output", file("s").string()},
       {"verify", file("s").string()},
   };

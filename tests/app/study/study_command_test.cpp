@@ -2,11 +2,14 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <thread>
 
+#include "app/study/answers/merge_study.hpp"
+#include "app/study/run/live_page.hpp"
 #include "app/study/space/study_plan.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/study_file.hpp"
@@ -126,6 +129,47 @@ TEST_F(StudyCommands, ProcessesOnOneStudyShareTheWork) {
   EXPECT_EQ(count(text("s/log.csv"), ",done,"), 6u);  // nothing was made twice
   ASSERT_EQ(study_six({}, "one").status, 0);
   EXPECT_EQ(text("s/study.csv"), text("one/study.csv"));
+}
+
+TEST_F(StudyCommands, HaveAPageAtTheEnd) {
+  ASSERT_EQ(study_six({"--study.page", "true"}).status, 0);
+  const std::string page = text("s/study.html");
+  EXPECT_NE(page.find("\"kind\":\"study\""), std::string::npos);
+  EXPECT_EQ(page.find("\"live\""), std::string::npos);  // it says nothing of a study that runs
+}
+
+/// After each run that is told the page holds those that are finished, with the scores that the table will have.
+TEST_F(StudyCommands, ThePageOfARunningStudyHoldsWhatIsFinished) {
+  ASSERT_EQ(study_six().status, 0);
+  const app::StudyPlan plan = app::read_plan(file("s"));
+  std::vector<app::StudyTable> written;
+  std::vector<app::StudyState> states;
+  app::LivePage page(
+      plan, app::TrialStore(file("s")),
+      [&](const auto& folder, const StudyFile& study, const app::StudyTable& table, const app::StudyState& state) {
+        EXPECT_EQ(folder, file("s"));
+        EXPECT_EQ(study.columns.size(), app::table_columns(table).size());
+        written.push_back(table);
+        states.push_back(state);
+      });
+  app::TrialReport report;
+  report.outcome = app::TrialOutcome::computed;
+  page.tell(plan.table.rows[4], report, 1, 6);
+  page.tell(plan.table.rows[2], report, 2, 6);  // too soon to write again
+  ASSERT_EQ(written.size(), 1u);
+  EXPECT_EQ(states[0].finished, 1u);
+  EXPECT_GT(states[0].seconds, 0.0);
+  const app::StudyTable whole = app::collect_table(app::TrialStore(file("s")), plan);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(written[0].rows[i].status, i == 4 ? app::TrialStatus::done : app::TrialStatus::planned);
+    EXPECT_TRUE(i == 4 || std::isnan(written[0].rows[i].scores.at(0)));
+  }
+  const auto place = [](const app::StudyTable& table, const char* name) {
+    return std::find(table.score_names.begin(), table.score_names.end(), name) - table.score_names.begin();
+  };
+  const char* score = "bank_test_log_score";
+  EXPECT_EQ(written[0].rows[4].scores.at(static_cast<std::size_t>(place(written[0], score))),
+            whole.rows[4].scores.at(static_cast<std::size_t>(place(whole, score))));
 }
 
 TEST_F(StudyCommands, FlatTablesHoldTheArchives) {

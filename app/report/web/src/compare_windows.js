@@ -50,8 +50,8 @@ function links(match, banks, at, k) {
 }
 
 const axisOf = (windows, name) => windows.axes.findIndex((axis) => axis.name === name);
-const alike = (/** @type {any[]} */ [first, ...others]) =>
-    others.every((list) => list.length === first.length && list.every((v, i) => v === first[i]));
+const alike = (lists) =>
+    lists.every((list) => list.length === lists[0].length && list.every((v, i) => v === lists[0][i]));
 
 // The modes of the banks with parameters on both axes, and which are matched.
 function modeTraces(data, chosen) {

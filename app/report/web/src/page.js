@@ -1,5 +1,6 @@
 // The page around its sections: head, contents, theme, printing.
 import {h} from './elements.js';
+import {finishWhenIdle, holdPrinting} from './finishing.js';
 
 // A section of the page with its entry in the contents.
 export function section(id, title, ...content) {
@@ -34,15 +35,16 @@ const announce = () => {
 
 // What must be done before the page can be printed, e.g. drawing what is still out of sight.
 const unfinished = [];
-export function beforePrint(finish) {
-  unfinished.push(finish);
+// `place`: the element it is drawn in.
+export function beforePrint(finish, place = null) {
+  unfinished.push({finish, place});
 }
 
 async function printPage() {
   const root = document.documentElement, theme = root.dataset.theme;
   root.dataset.theme = 'light';
   root.dataset.printing = 'true';
-  await Promise.all(unfinished.map((finish) => finish()));
+  await Promise.all(unfinished.map(({finish}) => finish()));
   await announce();
   window.print();
   delete root.dataset.printing;
@@ -96,6 +98,7 @@ const painted = () => new Promise((resolve) => {
 // Runs what draws the page: `first` is seen before anything else is read. A failure is shown and thrown on, so that
 // tests see it.
 export async function draw(body, first = () => undefined) {
+  const release = holdPrinting();
   try {
     first();
     await painted();
@@ -103,7 +106,9 @@ export async function draw(body, first = () => undefined) {
     await parsed();
     await body();
     document.documentElement.dataset.ready = 'true';
+    finishWhenIdle(unfinished).then(release);
   } catch (error) {
+    release();
     const text = `This page failed to draw itself: ${error.message}`;
     document.getElementById('main').append(h('p', {class: 'failure note bad', role: 'alert'}, text));
     throw error;

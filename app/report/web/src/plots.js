@@ -160,7 +160,7 @@ export function figure(label, make, caption) {
   beforePrint(() => {
     element.begin();
     return element.ready;
-  });
+  }, plot);
   onTheme(async () => {  // or of the width, when printing
     if (!drawn) return;
     await element.redraw();

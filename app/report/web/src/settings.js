@@ -62,14 +62,12 @@ export function interaction(cells, goal, spread = 0) {
   const bests = cells.map((line) => bestCell([line], goal)).filter(Boolean).map(({value}) => value);
   const losses = cells.flat().filter((value) => value !== null).map(loss).sort((p, q) => p - q);
   const range = losses[Math.floor(losses.length / 2)] - losses[0];
-  /** @type {null|{level: number, best: number, kept: number, cost: number}} */
-  let worst = null;
-  cells.forEach((line, level) => {
+  const costs = cells.flatMap((line, level) => {
     const own = bestCell([line], goal), kept = line[best.a];
-    if (!own || kept === null || own.a === best.a) return;
-    const cost = loss(kept) - loss(own.value);
-    if (!worst || cost > worst.cost) worst = {level, best: own.a, kept: best.a, cost};
+    if (!own || kept === null || own.a === best.a) return [];
+    return [{level, best: own.a, kept: best.a, cost: loss(kept) - loss(own.value)}];
   });
+  const worst = costs.sort((p, q) => q.cost - p.cost)[0];
   return worst && bests.length > 1 && worst.cost > Math.max(worth * range, 2 * spread) ? worst : null;
 }
 
