@@ -42,6 +42,7 @@ class ViewTest(unittest.TestCase):
             if server.process.poll() is None:
                 self.assertEqual(server.stop(), 0)
         self.assertEqual(list(self.temporary.iterdir()), [])
+        shutil.rmtree(self.folder)  # some hold files that look very large
 
     def serve(self, what=None, *options, log_in=True):
         server = Server(program, what or self.folder, *options, environment={**os.environ, "TMPDIR": str(self.temporary)})
