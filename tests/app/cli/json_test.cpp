@@ -40,7 +40,7 @@ std::set<std::string> documented(const std::string& command) {
     const std::size_t end = line.find('|', 1);
     if (line.empty() || line[0] != '|' || line.substr(0, end).find("`" + command + "`") == std::string::npos) continue;
     const std::string rest = line.substr(end);
-    const std::regex word("`([a-z_]+)`");
+    const std::regex word("`([a-z_0-9]+)`");
     for (std::sregex_iterator it(rest.begin(), rest.end(), word), none; it != none; ++it) words.insert((*it)[1]);
   }
   return words;
