@@ -14,8 +14,8 @@
 #include <sstream>
 
 #include "app/config/option_table.hpp"
-#include "ident/base/printable.hpp"
 #include "ident/base/nearest_name.hpp"
+#include "ident/base/printable.hpp"
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 

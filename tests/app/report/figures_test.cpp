@@ -60,7 +60,8 @@ TEST(Figure, TextsAreQuotedAndEmptyBlocksKeepTheirNumber) {
   figure.set("K", Eigen::Index{3});
   figure.add_block("none", {"a", "b"}, Eigen::MatrixXd(0, 2));
   figure.add_block("one", {"a", "b"}, (Eigen::MatrixXd(1, 2) << 1, 0.1).finished());
-  EXPECT_NE(figure.script().find("label = 'it\u2019s `date` \"$x\" next'\nK = 3\n"), std::string::npos) << figure.script();
+  EXPECT_NE(figure.script().find("label = 'it\u2019s `date` \"$x\" next'\nK = 3\n"), std::string::npos)
+      << figure.script();
   EXPECT_EQ(figure.data(), "# none\n# a | b\nNaN NaN\n\n\n# one\n# a | b\n1 0.1\n");
 }
 

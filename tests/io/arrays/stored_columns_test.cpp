@@ -212,7 +212,8 @@ TEST_F(Hdf5Files, BoundDeclaredSizes) {
     TableRequest request;
     request.table = t;
     request.numbers = column_names(table);
-    EXPECT_THAT(message_of<DataError>([&] { reader->read({request}, &described); }), HasSubstr("declares more content"));
+    EXPECT_THAT(message_of<DataError>([&] { reader->read({request}, &described); }),
+                HasSubstr("declares more content"));
   }
 }
 

@@ -5,8 +5,7 @@ import {segments, ticks} from '../src/picture_layout.js';
 
 test('equal neighbours are one segment', () => {
   assert.deepEqual(
-      segments([1, 1, 0, 1]),
-      [{from: 0, to: 2, value: 1}, {from: 2, to: 3, value: 0}, {from: 3, to: 4, value: 1}]);
+      segments([1, 1, 0, 1]), [{from: 0, to: 2, value: 1}, {from: 2, to: 3, value: 0}, {from: 3, to: 4, value: 1}]);
   assert.deepEqual(segments([]), []);
 });
 
