@@ -68,7 +68,7 @@ void Viewer::tend() {
   digests_.tend();
 }
 
-std::uint64_t Viewer::make_page(const std::vector<std::string>& ids, bool head, Reply reply) {
+std::uint64_t Viewer::make_page(const std::vector<std::string>& ids, bool head, const Reply& reply) {
   catalogue_.look();
   std::vector<NamedFile> files;
   std::vector<std::string> arguments{"report"};
@@ -136,10 +136,10 @@ std::string Viewer::overview_json(const std::string& seen) {
   return dumped(overview);
 }
 
-std::uint64_t Viewer::answer(const Request& request, Reply reply) {
+std::uint64_t Viewer::answer(const Request& request, const Reply& reply) {
   const bool head = request.method == "HEAD";
   std::vector<std::string> parts;
-  boost::split(parts, request.target, boost::is_any_of("/?"));  // the first is empty
+  boost::split(parts, request.target, [](char c) { return c == '/' || c == '?'; });  // the first is empty
   const std::string& what = parts.at(1);
   if (request.target == "/" && catalogue_.is_one_archive())
     return make_page({catalogue_.entries().empty() ? "" : catalogue_.entries().begin()->first}, head, reply);

@@ -26,7 +26,7 @@ class Viewer {
   Viewer(const std::filesystem::path& what, const std::filesystem::path& folder);
 
   /// Replies at once or when a page is made; returns the number that gives the page up, 0 for none.
-  std::uint64_t answer(const Request& request, Reply reply);
+  std::uint64_t answer(const Request& request, const Reply& reply);
   void give_up(std::uint64_t page) { pages_.cancel(page); }
 
   /// To be called when a child may have ended, and often while busy().
@@ -34,7 +34,7 @@ class Viewer {
   bool busy() const { return !pages_.idle() || !digests_.idle(); }
 
  private:
-  std::uint64_t make_page(const std::vector<std::string>& ids, bool head, Reply reply);
+  std::uint64_t make_page(const std::vector<std::string>& ids, bool head, const Reply& reply);
   void read_digests();
   void read_digest(const std::string& id, Entry& entry);
   std::string overview_json(const std::string& seen);

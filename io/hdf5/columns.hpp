@@ -20,9 +20,9 @@ struct Column {
   bool optional = false;  ///< archives of earlier minor versions lack it; their rows keep the member's default
   Rule rule = rule::any;  ///< of its values
 
-  Column obeying(Rule other) const {
+  Column obeying(const Rule& other) const {
     Column column = *this;
-    column.rule = std::move(other);
+    column.rule = other;
     return column;
   }
 };
