@@ -1,64 +1,55 @@
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/cli/check_output.hpp"
+#include "app/cli/json_number.hpp"
 
 namespace modebank::app {
 namespace {
 
 using nlohmann::json;
 
-/// JSON has no NaN.
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-json numbers(const Eigen::VectorXd& values) {
-  json list = json::array();
-  for (const double value : values) list.push_back(number(value));
-  return list;
-}
-
 json sampling_json(const SamplingCheck& s) {
   return {{"samples", s.samples},
-          {"duration_s", number(s.duration_s)},
-          {"rate_hz", number(s.rate_hz)},
-          {"jitter", number(s.jitter)},
+          {"duration_s", json_number(s.duration_s)},
+          {"rate_hz", json_number(s.rate_hz)},
+          {"jitter", json_number(s.jitter)},
           {"gaps", s.gaps},
-          {"longest_gap_s", number(s.longest_gap_s)},
+          {"longest_gap_s", json_number(s.longest_gap_s)},
           {"repeated_times", s.repeated_times},
           {"backward_times", s.backward_times},
           {"missing_times", s.missing_times},
           {"missing_samples", s.missing_samples},
-          {"repeated_samples", number(s.repeated_samples)}};
+          {"repeated_samples", json_number(s.repeated_samples)}};
 }
 
 json channel_json(const std::string& name, const ChannelCheck& c, double saturated) {
   return {{"name", name},
           {"missing", c.missing},
-          {"least", number(c.least)},
-          {"largest", number(c.largest)},
-          {"mean", number(c.mean)},
-          {"sd", number(c.sd)},
-          {"quantum", number(c.quantum)},
+          {"least", json_number(c.least)},
+          {"largest", json_number(c.largest)},
+          {"mean", json_number(c.mean)},
+          {"sd", json_number(c.sd)},
+          {"quantum", json_number(c.quantum)},
           {"levels", c.levels},
-          {"repeated", number(c.repeated)},
+          {"repeated", json_number(c.repeated)},
           {"outliers", c.outliers},
-          {"saturated", number(saturated)}};
+          {"saturated", json_number(saturated)}};
 }
 
 json lag_json(const RunLag& lag) {
   return {{"status", name_of(lag.status)},
-          {"lag_s", number(lag.lag_s)},
-          {"lag_standard_error_s", number(lag.lag_standard_error_s)},
-          {"time_constant_s", number(lag.time_constant_s)},
-          {"r_squared", number(lag.r_squared)},
+          {"lag_s", json_number(lag.lag_s)},
+          {"lag_standard_error_s", json_number(lag.lag_standard_error_s)},
+          {"time_constant_s", json_number(lag.time_constant_s)},
+          {"r_squared", json_number(lag.r_squared)},
           {"drift_status", name_of(lag.drift_status)},
-          {"drifting_lag_s", number(lag.drifting_lag_s)},
-          {"drifting_lag_standard_error_s", number(lag.drifting_lag_standard_error_s)},
-          {"clock_drift", number(lag.clock_drift)},
-          {"clock_drift_standard_error", number(lag.clock_drift_standard_error)},
-          {"match_s", number(lag.match_s)},
-          {"match_least_s", number(lag.match_least_s)},
-          {"match_largest_s", number(lag.match_largest_s)},
+          {"drifting_lag_s", json_number(lag.drifting_lag_s)},
+          {"drifting_lag_standard_error_s", json_number(lag.drifting_lag_standard_error_s)},
+          {"clock_drift", json_number(lag.clock_drift)},
+          {"clock_drift_standard_error", json_number(lag.clock_drift_standard_error)},
+          {"match_s", json_number(lag.match_s)},
+          {"match_least_s", json_number(lag.match_least_s)},
+          {"match_largest_s", json_number(lag.match_largest_s)},
           {"match_windows", lag.match_windows}};
 }
 
@@ -75,24 +66,24 @@ json run_json(const DataCheck& check, const RunReport& run) {
           {"states_sampling", sampling_json(run.states)},
           {"states", states},
           {"inputs", inputs},
-          {"still", number(run.commands.still)},
-          {"longest_constant_s", number(run.commands.longest_constant_s)},
-          {"changes", number(run.commands.changes)},
-          {"rest_s", number(run.rest.duration_s)},
-          {"rest_mean", numbers(run.rest.mean)},
-          {"rest_sd", numbers(run.rest.sd)},
+          {"still", json_number(run.commands.still)},
+          {"longest_constant_s", json_number(run.commands.longest_constant_s)},
+          {"changes", json_number(run.commands.changes)},
+          {"rest_s", json_number(run.rest.duration_s)},
+          {"rest_mean", json_numbers(run.rest.mean)},
+          {"rest_sd", json_numbers(run.rest.sd)},
           {"excitation_order", run.excitation},
           {"transitions", run.transitions},
           {"windows", run.windows.windows},
-          {"deficient_windows", number(run.windows.share())},
+          {"deficient_windows", json_number(run.windows.share())},
           {"lag", lag_json(run.lag)},
           {"problem", run.problem}};
 }
 
 json pooled_json(const PooledEstimate& pooled) {
-  return {{"mean", number(pooled.mean)},
-          {"standard_error", number(pooled.standard_error)},
-          {"between_runs_sd", number(pooled.between_sd)},
+  return {{"mean", json_number(pooled.mean)},
+          {"standard_error", json_number(pooled.standard_error)},
+          {"between_runs_sd", json_number(pooled.between_sd)},
           {"runs", pooled.count}};
 }
 
@@ -101,10 +92,10 @@ json lags_json(const LagReport& lag) {
   for (const LagScore& score : lag.scores)
     scores.push_back({{"correction", name_of(score.correction)},
                       {"transitions", score.transitions},
-                      {"log_score", number(score.log_score)},
-                      {"rmse", number(score.rmse)},
-                      {"gain", number(score.gain)},
-                      {"gain_standard_error", number(score.gain_standard_error)}});
+                      {"log_score", json_number(score.log_score)},
+                      {"rmse", json_number(score.rmse)},
+                      {"gain", json_number(score.gain)},
+                      {"gain_standard_error", json_number(score.gain_standard_error)}});
   return {{"correction", name_of(lag.correction)},
           {"lag_s", pooled_json(lag.lag)},
           {"start_lag_s", pooled_json(lag.start_lag)},
@@ -121,8 +112,8 @@ json check_json(const DataCheck& check, const std::vector<std::string>& findings
     json entry = channel_json(channel.channel.name, channel.values, channel.saturated);
     entry["kind"] = channel.is_state ? "state" : "input";
     entry["saturation_soft"] = channel.limits.soft;
-    entry["saturation_low"] = number(channel.limits.low);
-    entry["saturation_high"] = number(channel.limits.high);
+    entry["saturation_low"] = json_number(channel.limits.low);
+    entry["saturation_high"] = json_number(channel.limits.high);
     channels.push_back(entry);
   }
   return {{"usable", check.unusable.empty()},

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/cli/check_output.hpp"
+#include "app/cli/json_number.hpp"
 #include "app/config/option_table.hpp"
 
 namespace modebank::app {
@@ -71,8 +71,9 @@ std::string accepted_text(const Suggestions& s, const Config& config) {
 }
 
 json gain_json(const PairedGain& gain) {
-  const auto number = [](double value) { return std::isfinite(value) ? json(value) : json(nullptr); };
-  return {{"gain", number(gain.gain)}, {"standard_error", number(gain.standard_error)}, {"samples", gain.samples}};
+  return {{"gain", json_number(gain.gain)},
+          {"standard_error", json_number(gain.standard_error)},
+          {"samples", gain.samples}};
 }
 
 }  // namespace

@@ -1,28 +1,19 @@
 #include "app/cli/summary_json.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/chain/mode_names.hpp"
+#include "app/cli/json_number.hpp"
 
 namespace modebank::app {
 namespace {
 
 using nlohmann::json;
 
-/// JSON has no NaN.
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-json numbers(const Eigen::VectorXd& values) {
-  json list = json::array();
-  for (const double value : values) list.push_back(number(value));
-  return list;
-}
-
 json errors_json(const std::vector<ErrorAhead>& errors) {
   json list = json::array();
   for (const ErrorAhead& error : errors)
-    list.push_back({{"steps", error.steps}, {"bank", numbers(error.bank)}, {"other", numbers(error.other)}});
+    list.push_back({{"steps", error.steps}, {"bank", json_numbers(error.bank)}, {"other", json_numbers(error.other)}});
   return list;
 }
 
@@ -31,8 +22,8 @@ json modes_json(const Archive& archive) {
   for (const UsedMode& mode : used_modes(archive))
     list.push_back({{"mode", mode.mode},
                     {"name", mode_cell(archive.mode_names, mode.mode)},
-                    {"use", number(mode.use)},
-                    {"stay_s", number(mode.stay_s)}});
+                    {"use", json_number(mode.use)},
+                    {"stay_s", json_number(mode.stay_s)}});
   return list;
 }
 
@@ -50,16 +41,16 @@ json summary_json(const Archive& archive, const Settings& settings) {
           {"next", screen.next},
           {"answer", answer},
           {"competitor", screen.competitor},
-          {"gain", number(screen.gain)},
-          {"gain_error", number(screen.gain_error)},
-          {"coverage", number(screen.coverage)},
-          {"coverage_lower", number(screen.coverage_lower)},
-          {"coverage_upper", number(screen.coverage_upper)},
+          {"gain", json_number(screen.gain)},
+          {"gain_error", json_number(screen.gain_error)},
+          {"coverage", json_number(screen.coverage)},
+          {"coverage_lower", json_number(screen.coverage_lower)},
+          {"coverage_upper", json_number(screen.coverage_upper)},
           {"verdict", name_of(screen.verdict)},
           {"errors", errors_json(screen.errors)},
           {"free_run_start", screen.free_run_start},
-          {"fit", numbers(screen.fit)},
-          {"other_fit", numbers(screen.other_fit)},
+          {"fit", json_numbers(screen.fit)},
+          {"other_fit", json_numbers(screen.other_fit)},
           {"modes", modes_json(archive)},
           {"role", name_of(screen.role)}};
 }

@@ -149,31 +149,32 @@ void craft(const std::filesystem::path& path, const std::function<void(hid_t fil
   sign(path);
 }
 
+namespace {
+
+/// One element of a dataset, read and written as `type`.
+void patch_element(hid_t file, const std::string& dataset, hid_t type, std::size_t index, double value) {
+  const hid_t data = must(H5Dopen2(file, dataset.c_str(), H5P_DEFAULT)), space = must(H5Dget_space(data));
+  std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  must(H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+  values.at(index) = value;
+  must(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+  H5Sclose(space);
+  H5Dclose(data);
+}
+
+}  // namespace
+
 void patch_number(const std::filesystem::path& path, const std::string& dataset, std::size_t index, double value) {
-  craft(path, [&](hid_t file) {
-    const hid_t data = must(H5Dopen2(file, dataset.c_str(), H5P_DEFAULT)), space = must(H5Dget_space(data));
-    std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-    must(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
-    values.at(index) = value;
-    must(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
-    H5Sclose(space);
-    H5Dclose(data);
-  });
+  craft(path, [&](hid_t file) { patch_element(file, dataset, H5T_NATIVE_DOUBLE, index, value); });
 }
 
 void patch_cell(const std::filesystem::path& path, const std::string& table, const std::string& column, std::size_t row,
                 double value) {
   craft(path, [&](hid_t file) {
-    const hid_t data = must(H5Dopen2(file, table.c_str(), H5P_DEFAULT)), space = must(H5Dget_space(data));
     const hid_t cell = must(H5Tcreate(H5T_COMPOUND, sizeof(double)));
     must(H5Tinsert(cell, column.c_str(), 0, H5T_NATIVE_DOUBLE));
-    std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-    must(H5Dread(data, cell, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
-    values.at(row) = value;
-    must(H5Dwrite(data, cell, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    patch_element(file, table, cell, row, value);
     H5Tclose(cell);
-    H5Sclose(space);
-    H5Dclose(data);
   });
 }
 
