@@ -133,7 +133,7 @@ TEST_F(Help, ZshAndFishTakeTheirScripts) {
 }
 
 TEST_F(Help, ManualPagesAreCleanRoff) {
-  if (!installed("mandoc")) GTEST_SKIP() << "mandoc is not installed";
+  MODEBANK_NEEDS(installed("mandoc"), "mandoc is not installed: apt-get install mandoc");
   for (const app::Command& command : app::command_table()) {
     write("page.1", modebank({"manual", command.name}).out);
     const ProgramResult lint = run_program({"mandoc", "-Tlint", "-Wwarning", file("page.1").string()});
