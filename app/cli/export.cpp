@@ -40,8 +40,7 @@ double input_lag_of(const Archive& archive, const Config& config) {
 ExportedBank read_bank(const CommandLine& line) {
   const std::string& file = line.files.front();
   const Config config = stored_config(load_configuration(file), line.overrides);
-  if (config.track.filter == TrackedFilter::drifting)
-    throw ConfigurationError("track.filter = drifting: a model whose coefficients learn in every run is no bank");
+  require_bank(config, fmt::format("track.filter = {}", name_of(config.track.filter)));
   const Archive archive = read_archive(file);
   ExportedBank bank =
       exported_bank(archive, file, tracked_bank(config), tracked_options(config), input_lag_of(archive, config));

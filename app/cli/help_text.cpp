@@ -69,11 +69,12 @@ std::string options_of(const Command& command) {
 /// The keys that most users set; the sections that hold the others.
 std::string keys_of(const Command& command) {
   if (command.keys.empty()) return "";
+  constexpr std::size_t key_width = 23;  // of "--track.checkpoint" and the like
   std::string text;
   int count = 0;
   for (const Option& option : option_table())
     if (option.basic && command.reads(option.key) && ++count)
-      text += fmt::format("  --{:<22} {} (default: {})\n", option.key, option.range, default_of(option));
+      text += row("--" + option.key, fmt::format("{} (default: {})", option.range, default_of(option)), key_width);
   constexpr int most_on_a_screen = 24;
   if (count > most_on_a_screen) text.clear();
   return fmt::format("\nConfiguration keys, as options they win over the file\n{}  all of them: modebank help {}\n",

@@ -6,12 +6,15 @@
 #include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "app/chain/stage_inputs.hpp"
+#include "app/cli/combined_filter.hpp"
 #include "filter/step/drifting.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/filter_checkpoint.hpp"
+#include "io/archive/load_combination.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -73,12 +76,13 @@ class LiveDrifting final : public LiveOf<DriftingFilter, DriftingSnapshot> {
 
 /// kf is the global model alone, whatever the bank.
 std::string tracked_bank(const Config& config) {
-  const bool single = config.track.filter == TrackedFilter::bank && config.filter.variant == FilterVariant::kf;
-  return std::string(name_of(single ? TrackedFilter::baseline : config.track.filter));
+  TrackedFilter filter = config.track.filter == TrackedFilter::combined ? TrackedFilter::bank : config.track.filter;
+  if (filter == TrackedFilter::bank && config.filter.variant == FilterVariant::kf) filter = TrackedFilter::baseline;
+  return std::string(name_of(filter));
 }
 
 FilterOptions tracked_options(const Config& config) {
-  if (config.track.filter == TrackedFilter::bank) return config.filter;
+  if (tracked_bank(config) == "bank") return config.filter;
   return competitor_filter(std::string(name_of(config.track.filter)), config.filter);
 }
 
@@ -89,17 +93,61 @@ void check_columns(const Config& config, const Bank& bank, const std::string& ar
                   config.data.state.size(), config.data.input.size(), archive, bank.C.rows(), bank.structure.inputs));
 }
 
-OpenedFilter open_filter(const std::string& archive, const Config& config) {
-  const TrackedFilter tracked = config.track.filter;
-  const FilterOptions options = tracked_options(config);
-  if (tracked == TrackedFilter::drifting) {
-    if (!config.track.checkpoint.empty() || !config.track.resume.empty()) LiveDrifting::refuse();
-    const DriftingModel model = load_drifting(archive);
-    return {fixed_bank(model), options, std::make_unique<LiveDrifting>(DriftingFilter(model, options.time_steps))};
-  }
-  Bank bank = load_bank(archive, tracked_bank(config));
+void require_bank(const Config& config, const std::string& what) {
+  if (config.track.filter == TrackedFilter::drifting)
+    throw ConfigurationError(what + ": a model whose coefficients learn in every run is no bank");
+  if (config.track.filter == TrackedFilter::combined)
+    throw ConfigurationError(what + ": several filters together are no bank");
+}
+
+namespace {
+
+bool keeps_checkpoints(const Config& config) {
+  return !config.track.checkpoint.empty() || !config.track.resume.empty();
+}
+
+OpenedFilter open_drifting(const std::string& archive, const FilterOptions& options) {
+  const DriftingModel model = load_drifting(archive);
+  return {fixed_bank(model), options, std::make_unique<LiveDrifting>(DriftingFilter(model, options.time_steps))};
+}
+
+OpenedFilter open_bank(const std::string& archive, const std::string& which, const FilterOptions& options) {
+  Bank bank = load_bank(archive, which);
   auto filter = std::make_unique<LiveBank>(BankFilter(bank, options));
   return {std::move(bank), options, std::move(filter)};
+}
+
+/// The filters that the archive has combined one sample ahead, the bank first, with the weights that training left.
+OpenedFilter open_combined(const std::string& archive, const Config& config) {
+  std::vector<std::unique_ptr<LiveFilter>> filters;
+  std::vector<double> start;
+  std::optional<OpenedFilter> bank;
+  for (const CombinationRow& row : load_combination(archive)) {
+    if (row.role != Role::train || row.horizon != 1) continue;
+    const FilterOptions options = row.filter == "bank" ? config.filter : competitor_filter(row.filter, config.filter);
+    OpenedFilter opened =
+        row.filter == "drifting" ? open_drifting(archive, options) : open_bank(archive, row.filter, options);
+    filters.push_back(std::move(opened.filter));
+    start.push_back(row.weight);
+    if (!bank) bank = std::move(opened);
+  }
+  if (!bank) throw DataError(archive + ": holds no combined forecasts; run with filter.horizon = 1, 10 makes them");
+  return {bank->bank, bank->options, std::make_unique<CombinedFilter>(std::move(filters), start)};
+}
+
+}  // namespace
+
+OpenedFilter open_filter(const std::string& archive, const Config& config) {
+  const FilterOptions options = tracked_options(config);
+  if (config.track.filter == TrackedFilter::combined) {
+    if (keeps_checkpoints(config)) CombinedFilter::refuse();
+    return open_combined(archive, config);
+  }
+  if (config.track.filter == TrackedFilter::drifting) {
+    if (keeps_checkpoints(config)) LiveDrifting::refuse();
+    return open_drifting(archive, options);
+  }
+  return open_bank(archive, tracked_bank(config), options);
 }
 
 }  // namespace modebank::app

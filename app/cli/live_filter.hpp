@@ -36,13 +36,15 @@ struct OpenedFilter {
   FilterOptions options;
   std::unique_ptr<LiveFilter> filter;
 };
-/// Which of an archive's banks the configuration asks for.
+/// Throws ConfigurationError for filters that are no bank: `what` is done with banks alone.
+void require_bank(const Config& config, const std::string& what);
+/// Which of an archive's banks the configuration asks for; of combined the first of them.
 std::string tracked_bank(const Config& config);
 /// How it steps: competitors run as evaluate runs them.
 FilterOptions tracked_options(const Config& config);
 /// Throws ConfigurationError when the columns named are more or fewer than the bank has.
 void check_columns(const Config& config, const Bank& bank, const std::string& archive);
-/// Throws as load_bank does.
+/// Throws as load_bank does, and ConfigurationError for what the filter cannot do.
 OpenedFilter open_filter(const std::string& archive, const Config& config);
 
 }  // namespace modebank::app

@@ -61,6 +61,10 @@ std::vector<FreeRun> predict_all(const std::string& archive, const Config& confi
     check_columns(config, bank, archive);
     if (const std::string remark = period_remark(archive, bank, recording); !remark.empty()) spdlog::warn("{}", remark);
   };
+  if (config.track.filter == TrackedFilter::combined)
+    throw ConfigurationError(
+        "track.filter = combined: its weights follow what is measured, and free runs measure nothing; choose one "
+        "filter");
   if (config.track.filter == TrackedFilter::drifting) {
     const DriftingModel model = load_drifting(archive);
     check(fixed_bank(model));

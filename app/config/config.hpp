@@ -14,7 +14,7 @@
 namespace modebank::app {
 
 /// Which filter of an archive `track` runs.
-enum class TrackedFilter { bank, baseline, noise_only, one_motion, drifting };
+enum class TrackedFilter { bank, baseline, noise_only, one_motion, drifting, combined };
 
 /// Of the lines that `track` reads and writes.
 enum class LineFormat { automatic, csv, ndjson };
@@ -99,7 +99,7 @@ void validate(const Config& config);
 
 template <>
 struct modebank::EnumNames<modebank::app::TrackedFilter> {
-  static constexpr Names<5> values{"bank", "baseline", "noise_only", "one_motion", "drifting"};
+  static constexpr Names<6> values{"bank", "baseline", "noise_only", "one_motion", "drifting", "combined"};
 };
 
 template <>

@@ -19,7 +19,10 @@ std::vector<Option> archive_options() {
 
 std::vector<Option> track_options() {
   return {
-      words("track.filter", "which of the archive's filters runs", MODEBANK_FIELD(track.filter)),
+      words("track.filter",
+            "which of the archive's filters runs; combined: all, their predictions weighted by how well each has "
+            "predicted so far",
+            MODEBANK_FIELD(track.filter)),
       words("track.format", "of lines in and out: CSV under a header, or a JSON object each; auto: by the first line",
             MODEBANK_FIELD(track.format)),
       numeric("track.level", inside(0, 1), "", "probability of the interval about the prediction",

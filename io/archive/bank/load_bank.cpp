@@ -1,6 +1,7 @@
 #include "io/archive/bank/load_bank.hpp"
 
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 
@@ -11,11 +12,7 @@
 
 namespace modebank {
 
-namespace {
-
-/// Runs `body` on the root of a whole archive; messages name the path.
-template <class Body>
-void read_root(const std::filesystem::path& path, Body body) {
+void read_root(const std::filesystem::path& path, const std::function<void(GroupReader&)>& body) {
   const hdf5::Quiet quiet;
   const hdf5::Handle file = open_archive(path, HashCheck::before);
   try {
@@ -25,8 +22,6 @@ void read_root(const std::filesystem::path& path, Body body) {
     throw DataError(path.string() + ": " + error.what());
   }
 }
-
-}  // namespace
 
 Bank load_bank(const std::filesystem::path& path, const std::string& which) {
   std::optional<Bank> bank;

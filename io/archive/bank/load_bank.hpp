@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "filter/step/bank.hpp"
@@ -14,6 +15,10 @@ Bank load_bank(const std::filesystem::path& path, const std::string& which = "ba
 
 /// Its drifting competitor. Throws as load_bank does.
 DriftingModel load_drifting(const std::filesystem::path& path);
+
+class GroupReader;
+/// Runs `body` on the root of an archive whose hash is right; messages name the path. Throws as read_archive does.
+void read_root(const std::filesystem::path& path, const std::function<void(GroupReader&)>& body);
 
 /// The resolved configuration an archive was made with.
 std::string load_configuration(const std::filesystem::path& path);

@@ -111,6 +111,39 @@ TEST_F(Track, CompetitorsSayWhatEvaluateSays) {
   EXPECT_EQ(modebank({"track", archive(), "--track.filter", "drifting", "--track.checkpoint", "c.json"}).status, 2);
 }
 
+/// All filters together say live what evaluate has scored of them one sample ahead.
+TEST_F(Track, CombinedFiltersAreThoseThatWereScored) {
+  const Archive stored = read_archive(archive());
+  const std::vector<std::string> samples = lines("run_01.csv");
+  PipedProgram program(command({"--track.filter", "combined", "--track.format", "csv"}));
+  program.write(samples[0] + "\n");
+  const std::vector<std::string> header = header_of(program.read_line().value());
+  const auto column = [&](const char* name) {
+    return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
+  };
+  double log_density = 0.0, squares = 0.0;
+  Eigen::Index scored = 0;
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    program.write(samples[k] + "\n");
+    const std::vector<double> said = numbers(program.read_line().value());
+    if (std::isnan(said.at(column("log_density")))) continue;
+    ++scored;
+    log_density += said.at(column("log_density"));
+    squares += std::pow(numbers(samples[k])[1] - said.at(column("wz_predicted")), 2);
+  }
+  const auto row = std::find_if(stored.horizons.begin(), stored.horizons.end(), [](const HorizonRow& r) {
+    return r.filter == "combined" && r.horizon == 1 && r.run == "01";
+  });
+  ASSERT_NE(row, stored.horizons.end());
+  EXPECT_EQ(scored, row->samples);
+  EXPECT_NEAR(log_density / static_cast<double>(scored), row->log_score, 1e-9);
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(scored)), row->rmse(0), 1e-9);
+  for (const char* key : {"--track.checkpoint", "--track.resume"})
+    EXPECT_EQ(modebank({"track", archive(), "--track.filter", "combined", key, "c.json"}).status, 2);
+  EXPECT_EQ(modebank({"export", archive(), "--to", "json", "--track.filter", "combined"}).status, 2);
+  EXPECT_EQ(modebank({"predict", archive(), "--samples", "3", "--track.filter", "combined"}).status, 2);
+}
+
 TEST_F(Track, AnswersMalformedLinesOnStderrAndKeepsItsState) {
   const std::vector<std::string> samples = lines("run_01.csv");
   const auto answers = [&](bool disturbed) {
