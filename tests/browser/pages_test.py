@@ -22,6 +22,8 @@ try:
     import selenium  # noqa: F401
 except ImportError as error:
     leave(f"{error.name} is missing (Debian packages python3-h5py, python3-selenium)")
+if not (pathlib.Path(sys.argv[2]) / "build/npm/node_modules/axe-core/axe.min.js").exists():
+    leave("axe-core is missing: sh .ci/install-packages test")
 if not (os.path.exists("/usr/bin/chromium") and os.path.exists("/usr/bin/chromedriver")):
     leave("Chromium is missing (Debian packages chromium, chromium-driver)")
 
