@@ -33,6 +33,7 @@ restarts = 1
 heldout = never
 [bank]
 refine = none
+refine_transitions = 2000
 [report]
 size_mb = 200
 """
