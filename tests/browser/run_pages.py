@@ -171,7 +171,7 @@ class RunPages(PageTest):
         self.assertGreater(len(pdf), 100_000)
         printed = session.browser.run("return window.printed")
         self.assertGreater(printed["inked"], 5000)
-        self.assertLessEqual(max(printed["widths"]), 701)
+        self.assertLessEqual(max(printed["widths"]), 801)
         self.assertEqual(session.browser.run("return document.querySelectorAll('canvas.still').length"), 0)
 
     def test_keyboard_and_names_for_screen_readers(self):
