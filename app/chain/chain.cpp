@@ -199,7 +199,6 @@ void Chain::put(FilterScores scores) {
   evaluation.push_back(std::move(scores.evaluation));
   put_rows(filter, std::move(evaluation), archive_.evaluations);
   put_rows(filter, std::move(scores.summary), archive_.summary);
-  put_rows(filter, std::move(scores.horizons), archive_.horizons);
   put_rows(filter, std::move(scores.free_runs), archive_.free_runs);
   put_rows(filter, std::move(scores.diagnostics), archive_.diagnostics);
 }
@@ -212,8 +211,8 @@ void Chain::put(ResidualTestSet tests) {
 void Chain::put_scores(Archive&& part) {
   for (FilterEvaluation& evaluation : part.evaluations) {
     const std::string filter = evaluation.filter;
-    put({std::move(evaluation), rows_of({filter}, part.summary), rows_of({filter}, part.horizons),
-         rows_of({filter}, part.diagnostics), rows_of({filter}, part.free_runs)});
+    put({std::move(evaluation), rows_of({filter}, part.summary), rows_of({filter}, part.diagnostics),
+         rows_of({filter}, part.free_runs)});
   }
   for (ResidualTestSet& tests : part.residual_tests) put(std::move(tests));
 }
@@ -224,6 +223,7 @@ void Chain::judge(const ChainInputs& inputs) {
   const auto score_bank = [&] { score("bank", inputs.bank_scores.filter, inputs.bank_scores.scoring); };
   const auto copy = [&] { return scores_of({"bank"}, archive_); };
   provide(Stage::bank_scores, {score_bank, copy, [&](Archive&& part) { put_scores(std::move(part)); }});
+  score_ahead(inputs.bank_scores.filter, inputs.bank_scores.scoring, archive_);
   archive_.finding = find_modes(archive_);
   archive_.confusion = confusion_of(archive_);
   listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
@@ -247,6 +247,7 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   const ScoringOptions scoring = scoring_inputs(options);
   score("bank", options.filter, scoring);
   for (const char* filter : competitor_names) score(filter, competitor_filter(filter, options.filter), scoring);
+  score_ahead(options.filter, scoring, archive_);
   archive_.finding = find_modes(archive_);
   archive_.confusion = confusion_of(archive_);
   archive_.mode_names =

@@ -35,7 +35,6 @@ void Chain::forget_competitors() {
   for (const char* filter : competitor_names) {
     put_rows<FilterEvaluation>(filter, {}, archive_.evaluations);
     put_rows<SummaryRow>(filter, {}, archive_.summary);
-    put_rows<HorizonRow>(filter, {}, archive_.horizons);
     put_rows<FreeRunRow>(filter, {}, archive_.free_runs);
     put_rows<DiagnosticsRow>(filter, {}, archive_.diagnostics);
     put_rows<ResidualTestSet>(filter, {}, archive_.residual_tests);

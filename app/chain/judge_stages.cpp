@@ -8,7 +8,6 @@
 #include "filter/judge/diagnostics.hpp"
 #include "filter/judge/drifting.hpp"
 #include "filter/judge/evaluate.hpp"
-#include "filter/judge/horizon.hpp"
 #include "filter/judge/scores.hpp"
 #include "filter/judge/smoother.hpp"
 #include "filter/judge/statistics.hpp"
@@ -102,10 +101,8 @@ void score_role(const Scored& scored, Role role, Evaluate evaluate, FilterScores
          result.diagnostics);
 }
 
-/// `ahead`: empty, or what was predicted of every run by the end of this.
 template <class Evaluate>
-FilterScores score_runs(const Scored& scored, std::vector<FreeRun> free_runs,
-                        const std::vector<HorizonEvaluation>& ahead, Evaluate evaluate) {
+FilterScores score_runs(const Scored& scored, std::vector<FreeRun> free_runs, Evaluate evaluate) {
   const std::vector<Trajectory>& runs = scored.runs;
   FilterScores result;
   FilterEvaluation& said = result.evaluation;
@@ -117,13 +114,10 @@ FilterScores score_runs(const Scored& scored, std::vector<FreeRun> free_runs,
     for (std::size_t i = 0; scored.stream && i < runs.size(); ++i)
       if (runs[i].role == role) keep_for_finding(scored, role == judged, said.runs[i]);
   }
-  if (!ahead.empty()) result.horizons = summarize_horizons(scored.name, runs, ahead);
   if (!said.free_runs.empty())
     result.free_runs = summarize_free_runs(scored.name, runs, said.free_runs, scored.scoring.free_run);
   return result;
 }
-
-bool looks_ahead(const ScoringOptions& scoring) { return scoring.horizon != std::vector<Index>{1}; }
 
 }  // namespace
 
@@ -135,13 +129,11 @@ bool streams_evaluations(const Recording& recording) {
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
                           const FilterOptions& filter, const ScoringOptions& scoring, const EvaluationStream* stream) {
   const std::vector<Trajectory>& runs = recording.runs;
-  std::vector<HorizonEvaluation> ahead(looks_ahead(scoring) ? runs.size() : 0);
-  return score_runs({name, bank, filter, runs, scoring, stream}, free_runs(bank, runs, filter, scoring.free_run), ahead,
+  return score_runs({name, bank, filter, runs, scoring, stream}, free_runs(bank, runs, filter, scoring.free_run),
                     [&](std::size_t i) {
                       RunEvaluation said = evaluate_run(bank, runs[i], filter);
                       draw_pit(runs[i], scoring.seed, said);
                       if (scoring.smooth) smooth_run(bank, runs[i], filter, said);
-                      if (!ahead.empty()) ahead[i] = evaluate_horizons(bank, runs[i], filter, scoring.horizon);
                       return said;
                     });
 }
@@ -149,16 +141,14 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
 FilterScores score_drifting(const DriftingModel& model, const Recording& recording, TimeSteps time_steps,
                             const ScoringOptions& scoring, const EvaluationStream* stream) {
   const std::vector<Trajectory>& runs = recording.runs;
-  std::vector<HorizonEvaluation> ahead(looks_ahead(scoring) ? runs.size() : 0);
   FilterOptions filter;
   filter.noise = FilterNoise::adaptive;  // its variance is learned on the way, so its NIS is not chi-square
   const std::string name = "drifting";
   const Bank bank = fixed_bank(model);
   return score_runs({name, bank, filter, runs, scoring, stream}, free_runs(model, runs, time_steps, scoring.free_run),
-                    ahead, [&](std::size_t i) {
+                    [&](std::size_t i) {
                       RunEvaluation said = evaluate_run(model, runs[i], time_steps);
                       draw_pit(runs[i], scoring.seed, said);
-                      if (!ahead.empty()) ahead[i] = evaluate_horizons(model, runs[i], time_steps, scoring.horizon);
                       return said;
                     });
 }

@@ -52,7 +52,6 @@ inline Archive scores_of(const std::vector<std::string>& models, const Archive& 
   part.recording = archive.recording;
   part.evaluations = rows_of(models, archive.evaluations);
   part.summary = rows_of(models, archive.summary);
-  part.horizons = rows_of(models, archive.horizons);
   part.free_runs = rows_of(models, archive.free_runs);
   part.diagnostics = rows_of(models, archive.diagnostics);
   part.residual_tests = rows_of(models, archive.residual_tests);

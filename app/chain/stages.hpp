@@ -71,7 +71,6 @@ LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const
 struct FilterScores {
   FilterEvaluation evaluation;
   std::vector<SummaryRow> summary;
-  std::vector<HorizonRow> horizons;
   std::vector<DiagnosticsRow> diagnostics;
   std::vector<FreeRunRow> free_runs = {};
   ResidualTestSet residual_tests = {};
@@ -93,6 +92,9 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
 /// The same of the drifting competitor.
 FilterScores score_drifting(const DriftingModel& model, const Recording& recording, TimeSteps time_steps,
                             const ScoringOptions& scoring, const EvaluationStream* stream = nullptr);
+
+/// Adds what all filters of the archive, and their combination, predict as far ahead as is asked for.
+void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive);
 
 /// Free runs of every run, none where none is asked for. Throws ConfigurationError, naming the key, when the model
 /// needs more measured samples than the options have.

@@ -13,7 +13,10 @@ using nlohmann::json;
 json errors_json(const std::vector<ErrorAhead>& errors) {
   json list = json::array();
   for (const ErrorAhead& error : errors)
-    list.push_back({{"steps", error.steps}, {"bank", json_numbers(error.bank)}, {"other", json_numbers(error.other)}});
+    list.push_back({{"steps", error.steps},
+                    {"bank", json_numbers(error.bank)},
+                    {"other", json_numbers(error.other)},
+                    {"combined", json_numbers(error.combined)}});
   return list;
 }
 

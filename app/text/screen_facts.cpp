@@ -72,6 +72,13 @@ std::string rmse_words(const Eigen::VectorXd& rmse, const std::vector<Channel>& 
   return boost::algorithm::join(parts, ", ");
 }
 
+const HorizonRow* horizon_row(const Archive& archive, const std::string& filter, Role role, Index horizon) {
+  const auto found = std::find_if(archive.horizons.begin(), archive.horizons.end(), [&](const HorizonRow& row) {
+    return row.filter == filter && row.role == role && row.run == "*" && row.horizon == horizon;
+  });
+  return found == archive.horizons.end() ? nullptr : &*found;
+}
+
 const HorizonRow* longest_horizon(const Archive& archive, const std::string& filter, Role role) {
   const HorizonRow* longest = nullptr;
   for (const HorizonRow& row : archive.horizons)
@@ -93,12 +100,14 @@ std::vector<ErrorAhead> errors_ahead(const Archive& archive, const std::string& 
   std::vector<ErrorAhead> errors;
   const auto add = [&](Index steps, const auto* bank, const auto* other) {
     if (!bank) return;
-    errors.push_back({steps, bank->rmse, other ? other->rmse : Eigen::VectorXd(), rmse_words(bank->rmse, states),
-                      other ? rmse_words(other->rmse, states) : ""});
+    const auto rmse = [](const auto* row) { return row ? row->rmse : Eigen::VectorXd(); };
+    const HorizonRow* combined = horizon_row(archive, combined_name, role, steps);
+    errors.push_back({steps, bank->rmse, rmse(other), rmse(combined), rmse_words(bank->rmse, states),
+                      rmse_words(rmse(other), states), rmse_words(rmse(combined), states)});
   };
   add(1, pooled_row(archive, "bank", role), pooled_row(archive, competitor, role));
   if (const HorizonRow* far = longest_horizon(archive, "bank", role))
-    add(far->horizon, far, longest_horizon(archive, competitor, role));
+    add(far->horizon, far, horizon_row(archive, competitor, role, far->horizon));
   return errors;
 }
 
@@ -112,14 +121,17 @@ std::string fit_words(const Eigen::VectorXd& fit) {
 /// "RMSE one step ahead 0.03 rad/s (drifting: 0.04 rad/s); 10 steps ahead ...; free run from 3 samples FIT 71.2 %
 /// (...)"
 std::string mean_words(const FirstScreen& screen) {
-  const auto beside = [&](const std::string& words) {
-    return words.empty() ? "" : fmt::format(" ({}: {})", screen.competitor, words);
+  const auto beside = [&](const std::string& words, const std::string& combined = "") {
+    std::vector<std::string> others;
+    if (!words.empty()) others.push_back(fmt::format("{}: {}", screen.competitor, words));
+    if (!combined.empty()) others.push_back(fmt::format("combined: {}", combined));
+    return others.empty() ? "" : fmt::format(" ({})", boost::algorithm::join(others, ", "));
   };
   std::vector<std::string> parts;
   for (const ErrorAhead& error : screen.errors)
     parts.push_back(
         (error.steps == 1 ? std::string("RMSE one step ahead ") : fmt::format("{} steps ahead ", error.steps)) +
-        error.bank_words + beside(error.other_words));
+        error.bank_words + beside(error.other_words, error.combined_words));
   if (screen.free_run_start > 0)
     parts.push_back(fmt::format("free run from {} samples FIT {}{}", screen.free_run_start, fit_words(screen.fit),
                                 beside(fit_words(screen.other_fit))));

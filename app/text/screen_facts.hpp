@@ -16,11 +16,11 @@ namespace modebank::app {
 /// Whether the archive holds what the screen is about: a bank and its scores.
 bool has_first_screen(const Archive& archive);
 
-/// How far predictions are off, beside the best competitor's.
+/// How far predictions are off, beside the best competitor's and those of all filters combined.
 struct ErrorAhead {
   Index steps = 1;
-  Eigen::VectorXd bank, other;          ///< n_y, root mean square [state unit]; other: empty where it is not known
-  std::string bank_words, other_words;  ///< the same with units
+  Eigen::VectorXd bank, other, combined;  ///< n_y, root mean square [state unit]; the last two: empty where not known
+  std::string bank_words, other_words, combined_words;  ///< the same with units
 };
 
 /// What the screen says, computed once: first_screen prints it, the report's page shows it. Sentences are empty where

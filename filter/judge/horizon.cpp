@@ -60,25 +60,6 @@ void look_ahead(const Bank& bank, const Trajectory& run, const FilterOptions& op
   }
 }
 
-/// Sums over the scored samples of one or more runs at one horizon.
-struct HorizonSums {
-  Index samples = 0;
-  double log_density = 0.0;
-  Eigen::ArrayXd squared_error;
-
-  void add(const HorizonEvaluation& run, std::size_t horizon) {
-    const Eigen::MatrixXd& error = run.error[horizon];
-    if (squared_error.size() == 0) squared_error = Eigen::ArrayXd::Zero(error.rows());
-    for (Index k = 0; k < error.cols(); ++k) {
-      const double value = run.log_density(static_cast<Index>(horizon), k);
-      if (std::isnan(value)) continue;
-      ++samples;
-      log_density += value;
-      squared_error += error.col(k).array().square();
-    }
-  }
-};
-
 }  // namespace
 
 HorizonEvaluation empty_horizons(std::vector<Index> horizons, Index n_y, Index samples) {
@@ -101,28 +82,48 @@ HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, con
   return out;
 }
 
+HorizonSums& HorizonSums::operator+=(const HorizonSums& other) {
+  samples += other.samples;
+  log_density += other.log_density;
+  squared_error += other.squared_error;
+  return *this;
+}
+
+std::vector<HorizonSums> sum_horizons(const HorizonEvaluation& run) {
+  std::vector<HorizonSums> sums;
+  for (std::size_t h = 0; h < run.horizons.size(); ++h) {
+    const Eigen::MatrixXd& error = run.error[h];
+    HorizonSums& sum = sums.emplace_back(HorizonSums{run.horizons[h], 0, 0.0, Eigen::ArrayXd::Zero(error.rows())});
+    for (Index k = 0; k < error.cols(); ++k) {
+      const double value = run.log_density(static_cast<Index>(h), k);
+      if (std::isnan(value)) continue;
+      ++sum.samples;
+      sum.log_density += value;
+      sum.squared_error += error.col(k).array().square();
+    }
+  }
+  return sums;
+}
+
 std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std::vector<Trajectory>& runs,
-                                           const std::vector<HorizonEvaluation>& evaluations) {
+                                           const std::vector<std::vector<HorizonSums>>& sums) {
   std::vector<HorizonRow> rows;
-  const auto add_row = [&](Role role, const std::string& run, Index horizon, const HorizonSums& sums) {
-    const double N = sums.samples > 0 ? static_cast<double>(sums.samples) : not_a_number;
-    rows.push_back({filter, role, run, horizon, sums.samples, sums.log_density / N, (sums.squared_error / N).sqrt()});
+  const auto add_row = [&](Role role, const std::string& run, const HorizonSums& of) {
+    const double N = of.samples > 0 ? static_cast<double>(of.samples) : not_a_number;
+    rows.push_back({filter, role, run, of.horizon, of.samples, of.log_density / N, (of.squared_error / N).sqrt()});
   };
   for (const Role role : {Role::train, Role::test}) {
     std::vector<HorizonSums> pooled;
-    std::vector<Index> horizons;
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (runs[i].role != role) continue;
-      horizons = evaluations.at(i).horizons;
-      pooled.resize(horizons.size());
-      for (std::size_t h = 0; h < horizons.size(); ++h) {
-        HorizonSums single;
-        single.add(evaluations[i], h);
-        pooled[h].add(evaluations[i], h);
-        add_row(role, runs[i].run, horizons[h], single);
-      }
+      const std::vector<HorizonSums>& single = sums.at(i);
+      for (const HorizonSums& of : single) add_row(role, runs[i].run, of);
+      if (pooled.empty())
+        pooled = single;
+      else
+        for (std::size_t h = 0; h < pooled.size(); ++h) pooled[h] += single.at(h);
     }
-    for (std::size_t h = 0; h < pooled.size(); ++h) add_row(role, "*", horizons[h], pooled[h]);
+    for (const HorizonSums& of : pooled) add_row(role, "*", of);
   }
   return rows;
 }

@@ -39,8 +39,20 @@ struct HorizonRow {
   Eigen::VectorXd rmse;      ///< n_y [state unit]
 };
 
-/// Rows of one filter, ordered as summarize() orders its own, every horizon in turn.
+/// Sums over the scored samples of one or more runs at one horizon.
+struct HorizonSums {
+  Eigen::Index horizon = 1;  ///< samples ahead
+  Eigen::Index samples = 0;
+  double log_density = 0.0;
+  Eigen::ArrayXd squared_error;  ///< n_y
+
+  HorizonSums& operator+=(const HorizonSums& other);
+};
+/// One per horizon of a run.
+std::vector<HorizonSums> sum_horizons(const HorizonEvaluation& run);
+
+/// Rows of one filter, ordered as summarize() orders its own, every horizon in turn. `sums`: of every run.
 std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std::vector<Trajectory>& runs,
-                                           const std::vector<HorizonEvaluation>& evaluations);
+                                           const std::vector<std::vector<HorizonSums>>& sums);
 
 }  // namespace modebank

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "filter/judge/combination.hpp"
 #include "filter/judge/diagnostics.hpp"
 #include "filter/judge/evaluate.hpp"
 #include "filter/judge/finding.hpp"
@@ -89,7 +90,8 @@ struct Archive {
   std::optional<DriftingModel> drifting;
   std::vector<FilterEvaluation> evaluations;
   std::vector<SummaryRow> summary;
-  std::vector<HorizonRow> horizons;  ///< with filter.horizon
+  std::vector<HorizonRow> horizons;              ///< with filter.horizon
+  std::vector<CombinationRow> combination = {};  ///< how much each filter counted in combined_name's forecasts
   std::vector<DiagnosticsRow> diagnostics;
   std::vector<ResidualTestSet> residual_tests;
   std::vector<MergingCost> merging = {};     ///< with bank.modes, where components were merged

@@ -114,6 +114,14 @@ void exchange_horizon(Io& io, R& rows, const Unit& states) {
 }
 
 template <class Io, class R>
+void exchange_combination(Io& io, R& rows) {
+  io.optional_table("combination", rows, column("role", &CombinationRow::role),
+                    column("horizon", &CombinationRow::horizon, "samples").obeying(rule::at_least_one),
+                    column("filter", &CombinationRow::filter),
+                    column("weight", &CombinationRow::weight).obeying(rule::share_or_missing));
+}
+
+template <class Io, class R>
 void exchange_free_runs(Io& io, R& rows, const Unit& states) {
   using Row = FreeRunRow;
   io.optional_table(
@@ -204,6 +212,7 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
       });
   exchange_summary(io, archive.summary, units.states());
   exchange_horizon(io, archive.horizons, units.states());
+  exchange_combination(io, archive.combination);
   exchange_free_runs(io, archive.free_runs, units.states());
   exchange_diagnostics(io, archive.diagnostics, units.states());
   exchange_confusion(io, archive.confusion);

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <type_traits>
 
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
@@ -95,13 +96,17 @@ void check_mixture(const MixtureResult& result) {
 namespace {
 
 constexpr std::array filters{"bank", "baseline", "noise_only", "one_motion", "drifting"};
+template <class Row>
+bool may_name(const std::string& filter) {
+  return std::find(filters.begin(), filters.end(), filter) != filters.end() ||
+         (std::is_same_v<Row, HorizonRow> && filter == combined_name);
+}
 
 /// Of rows that have a filter and a run.
 template <class Row>
 void check_rows(const std::vector<Row>& rows, const std::set<std::string>& runs, const std::string& table) {
   for (const Row& row : rows) {
-    if (std::find(filters.begin(), filters.end(), row.filter) == filters.end())
-      throw DataError(table + " names the unknown filter '" + row.filter + "'");
+    if (!may_name<Row>(row.filter)) throw DataError(table + " names the unknown filter '" + row.filter + "'");
     if constexpr (requires { row.run; })
       if (!runs.empty() && row.run != "*" && !runs.contains(row.run))
         throw DataError(table + " names the unknown run '" + row.run + "'");
@@ -117,6 +122,7 @@ void check_score_names(const Archive& archive) {
   check_rows(archive.evaluations, {}, "filters");
   check_rows(archive.summary, runs, "summary");
   check_rows(archive.horizons, runs, "horizon");
+  check_rows(archive.combination, runs, "combination");
   check_rows(archive.free_runs, runs, "free_run");
   check_rows(archive.diagnostics, runs, "diagnostics");
   check_rows(archive.confusion, runs, "confusion");

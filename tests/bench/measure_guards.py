@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Switches that see state and input (bank.transition = logit) on systems that are known, over seeds (make guards).
 
-  measure_guards.py build/modebank [DATA] [--seeds 50] [--hybrid-seeds 10] [--first 1] [--jobs N] [--only NAME] [--rows FILE]
+  measure_guards.py build/modebank [DATA] [--seeds 50] [--hybrid-seeds 10] [--first 1] [--jobs N] [--only NAME] [--system NAME] [--rows FILE]
 
 hybrid: the three systems of DATA/hybrid/simulate.py (DATA: else MODEBANK_DATA), beside the true parameters with the true guard.
 soft: two modes drawn by a known multinomial logit; the weights' errors in their own stated ones. hard: the mode is u > 0.4, and no input
@@ -152,6 +152,7 @@ def main():
     parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--only", default="", help="hybrid, soft, hard or markov")
+    parser.add_argument("--system", default="", help="of the hybrid ones this alone: deadzone, contact or yaw")
     parser.add_argument("--rows", help="one line of JSON per seed goes here")
     options = parser.parse_args()
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
@@ -159,7 +160,7 @@ def main():
             made = simulator(pathlib.Path(options.data))
             print("| system | seeds | nats lost to the true guard: median, most | free run, RMSE above the true guard's in sd: median, most | filtered modes right, %: median, "
                   "least | right number of modes | logit chosen | errors stated | failed |\n|" + "---|" * 9, flush=True)
-            for system in made.SYSTEMS:
+            for system in [s for s in made.SYSTEMS if options.system in ("", s.name)]:
                 seeds = range(options.first, options.first + options.hybrid_seeds)
                 show(pool, options, [lambda s=seed, y=system: hybrid_trial(options.program, y, made, s) for seed in seeds],
                      lambda results, y=system: hybrid_row(y.name, results))

@@ -46,7 +46,8 @@ json error_card(const FirstScreen& screen, const ErrorAhead& error) {
   const std::string name = error.steps == 1 ? "RMSE one step ahead" : fmt::format("RMSE {} steps ahead", error.steps);
   json big = number_list(error.bank);
   big["t"] = error.bank_words;
-  return card("error", name, big, "", competitor_words(screen, error.other_words));
+  const std::string combined = error.combined_words.empty() ? "" : "; combined: " + error.combined_words;
+  return card("error", name, big, "", competitor_words(screen, error.other_words) + combined);
 }
 
 std::string fit_words(const Eigen::VectorXd& fit) {

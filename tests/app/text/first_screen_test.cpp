@@ -97,6 +97,15 @@ TEST(FirstScreen, SaysWhatMatters) {
   EXPECT_THAT(screen_of(screen_archive(1, 2, 3, Role::train)), HasSubstr("none held out"));
 }
 
+TEST(FirstScreen, SaysWhatTheFiltersPredictTogether) {
+  Archive archive = screen_archive(1, 2, 3);
+  for (const Index ahead : {1, 10})
+    archive.horizons.push_back(
+        {"combined", Role::test, "*", ahead, 100, 0.0, Eigen::VectorXd::Constant(1, ahead == 1 ? 0.02 : 0.05)});
+  EXPECT_THAT(screen_of(archive), AllOf(HasSubstr("0.03 rad/s (drifting: 0.04 rad/s, combined: 0.02 rad/s)"),
+                                        HasSubstr("(drifting: 0.08 rad/s, combined: 0.05 rad/s)")));
+}
+
 /// Halves and less: 0.5, 0.3, 0.18, ... falls below a hundredth after the eighth.
 /// What the page shows is what the terminal says: both come from here.
 TEST(FirstScreen, ItsFieldsAreTheArchivesNumbers) {

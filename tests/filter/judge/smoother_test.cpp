@@ -251,9 +251,9 @@ TEST(Horizon, SummarisesRunsAndPools) {
   const Bank bank = example_bank(1, 1, 2);
   std::vector<Trajectory> runs{simulate_bank(bank, 30, 28), simulate_bank(bank, 50, 29)};
   runs[1].run = "other";
-  std::vector<HorizonEvaluation> evaluations;
-  for (const Trajectory& run : runs) evaluations.push_back(evaluate_horizons(bank, run, {}, {1, 10}));
-  const std::vector<HorizonRow> rows = summarize_horizons("bank", runs, evaluations);
+  std::vector<std::vector<HorizonSums>> sums;
+  for (const Trajectory& run : runs) sums.push_back(sum_horizons(evaluate_horizons(bank, run, {}, {1, 10})));
+  const std::vector<HorizonRow> rows = summarize_horizons("bank", runs, sums);
   ASSERT_EQ(rows.size(), 6u);
   EXPECT_EQ(rows[5].run, "*");
   EXPECT_EQ(rows[5].horizon, 10);

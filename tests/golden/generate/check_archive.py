@@ -276,6 +276,9 @@ def check_evaluation(file):
     expect("summary run", table["run"], np.array([b"run 2", b"*"] * 4))
     expect("horizon columns", file["evaluation/horizon"].dtype.names,
            ("filter", "role", "run", "horizon", "samples", "log_score", "rmse"))
+    combination = file["evaluation/combination"]
+    expect("combination columns", combination.dtype.names, ("role", "horizon", "filter", "weight"))
+    expect("combination weight", combination["weight"], np.array([0.75, 0.25]))
     free = file["evaluation/free_run"]
     expect("free run columns", free.dtype.names,
            ("filter", "role", "run", "method", "start", "samples", "log_score", "rmse", "nrmse", "fit", "coverage_50", "coverage_90", "coverage_95",

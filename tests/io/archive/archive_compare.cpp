@@ -314,6 +314,10 @@ void expect_same(const Archive& actual, const Archive& expected) {
   for (std::size_t i = 0; i < actual.free_runs.size(); ++i) expect_same(actual.free_runs[i], expected.free_runs[i]);
   ASSERT_EQ(actual.horizons.size(), expected.horizons.size());
   for (std::size_t i = 0; i < actual.horizons.size(); ++i) expect_same(actual.horizons[i], expected.horizons[i]);
+  const auto combined = [](const CombinationRow& r) { return std::tuple(r.role, r.horizon, r.filter, r.weight); };
+  ASSERT_EQ(actual.combination.size(), expected.combination.size());
+  for (std::size_t i = 0; i < actual.combination.size(); ++i)
+    EXPECT_EQ(combined(actual.combination[i]), combined(expected.combination[i]));
   ASSERT_EQ(actual.diagnostics.size(), expected.diagnostics.size());
   for (std::size_t i = 0; i < actual.diagnostics.size(); ++i)
     expect_same(actual.diagnostics[i], expected.diagnostics[i]);

@@ -150,6 +150,8 @@ void add_evaluation(Archive& archive) {
     archive.horizons.push_back({filter, Role::test, "*", 5, 118, 1.5, pattern(n, 1, 84.0)});
     archive.diagnostics.push_back(make_diagnostics(filter, n));
   }
+  archive.horizons.push_back({"combined", Role::test, "*", 5, 118, 1.75, pattern(n, 1, 85.0)});
+  archive.combination = {{Role::test, 5, "bank", 0.75}, {Role::test, 5, "baseline", 0.25}};
   for (const char* model : {"global", "bank"}) {
     archive.residual_tests.push_back({model, {}});
     for (Index r = 0; r < 3; ++r) archive.residual_tests.back().runs.push_back(make_residual_tests(n, m, r));

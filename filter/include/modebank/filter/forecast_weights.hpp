@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace modebank::filter {
+
+/// How much each of several forecasters of one run counts, by how well each has predicted it so far: dynamic model
+/// averaging (Raftery, Karny & Ettler 2010, Technometrics 52(1), equations 15 and 16). What was said is forgotten with
+/// their factor 0.99 per sample. Forecasts h samples ahead overlap, so that h of them say what one does: each counts
+/// as 1/h of a sample. One object per run and horizon.
+class ForecastWeights {
+ public:
+  /// Starts with equal weights. `horizon`: samples ahead, at least 1, else std::invalid_argument, as without
+  /// forecasters.
+  explicit ForecastWeights(std::size_t forecasters, std::ptrdiff_t horizon = 1);
+  /// Starts with these weights, those of other runs, say; none is negative and they need not sum to one, else
+  /// std::invalid_argument.
+  ForecastWeights(const std::vector<double>& start, std::ptrdiff_t horizon);
+
+  /// A sample was measured: `log_densities` [nats] are those that the forecasts made `horizon` samples before had given
+  /// it. One that said nothing (NaN) keeps its weight against the others'. Throws std::invalid_argument for another
+  /// number of them.
+  void observe(const std::vector<double>& log_densities);
+  /// Of the forecasts made now; they sum to one.
+  const std::vector<double>& weights() const { return weights_; }
+  /// The weights at the start again.
+  void restart();
+
+  /// Log of the weighted mean of densities [nats], of those that there are (not NaN), with their weights made to sum to
+  /// one; NaN without any.
+  static double mixed_log_density(const std::vector<double>& weights, const std::vector<double>& log_densities);
+
+ private:
+  double share_of_a_sample_;
+  std::vector<double> start_, log_weights_, weights_;
+
+  void normalise();
+};
+
+}  // namespace modebank::filter

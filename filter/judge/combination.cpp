@@ -1,0 +1,169 @@
+#include "filter/judge/combination.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "ident/base/not_a_number.hpp"
+#include "modebank/filter/forecast_weights.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+using filter::ForecastWeights;
+
+void check_members(const std::vector<const HorizonEvaluation*>& members) {
+  if (members.empty()) throw std::invalid_argument("no forecasts to combine");
+  for (const HorizonEvaluation* member : members)
+    if (member->horizons != members.front()->horizons ||
+        member->log_density.cols() != members.front()->log_density.cols())
+      throw std::invalid_argument("forecasts to combine must be of the same samples and horizons");
+}
+
+/// One horizon of one run.
+class CombinedHorizon {
+ public:
+  CombinedHorizon(const std::vector<const HorizonEvaluation*>& members, std::size_t horizon, std::vector<double> start)
+      : members_(members), horizon_(horizon), start_(std::move(start)), said_(members.size()) {}
+
+  /// Fills in the forecasts of all samples: those of sample k with the weights of sample k - h.
+  void fill(CombinedForecasts& out) {
+    const Index h = members_.front()->horizons[horizon_], N = members_.front()->log_density.cols();
+    ForecastWeights now(start_, h);
+    Eigen::MatrixXd known(std::ssize(said_), N);  // after each sample
+    std::vector<double> weights(said_.size());
+    for (Index k = 0; k < N; ++k) {
+      hear(k);
+      if (!std::isnan(said_.front())) {
+        Eigen::VectorXd::Map(weights.data(), known.rows()) = known.col(k - h);
+        combine(k, weights, out);
+      }
+      now.observe(said_);
+      known.col(k) = Eigen::VectorXd::Map(now.weights().data(), known.rows());
+    }
+  }
+
+ private:
+  const std::vector<const HorizonEvaluation*>& members_;
+  std::size_t horizon_;
+  std::vector<double> start_, said_;
+
+  void hear(Index k) {
+    for (std::size_t i = 0; i < members_.size(); ++i)
+      said_[i] = members_[i]->log_density(static_cast<Index>(horizon_), k);
+  }
+
+  void combine(Index k, const std::vector<double>& weights, CombinedForecasts& out) const {
+    out.predictions.log_density(static_cast<Index>(horizon_), k) = ForecastWeights::mixed_log_density(weights, said_);
+    double present = 0.0;
+    for (std::size_t i = 0; i < members_.size(); ++i) present += std::isnan(said_[i]) ? 0.0 : weights[i];
+    auto error = out.predictions.error[horizon_].col(k);
+    error.setZero();
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      const double weight = std::isnan(said_[i]) ? 0.0 : weights[i] / present;
+      out.weight[horizon_](static_cast<Index>(i), k) = weight;
+      if (weight > 0.0) error += weight * members_[i]->error[horizon_].col(k);
+    }
+  }
+};
+
+}  // namespace
+
+CombinedForecasts combine_forecasts(const std::vector<const HorizonEvaluation*>& members,
+                                    const std::vector<std::vector<double>>& start) {
+  check_members(members);
+  const HorizonEvaluation& first = *members.front();
+  const Index N = first.log_density.cols();
+  CombinedForecasts out;
+  out.predictions = empty_horizons(first.horizons, first.error.empty() ? Index{0} : first.error.front().rows(), N);
+  out.weight.assign(first.horizons.size(), Eigen::MatrixXd::Constant(std::ssize(members), N, not_a_number));
+  for (std::size_t h = 0; h < first.horizons.size(); ++h)
+    CombinedHorizon(members, h, start.empty() ? std::vector<double>(members.size(), 1.0) : start.at(h)).fill(out);
+  return out;
+}
+
+ForecastTables::ForecastTables(std::vector<std::string> filters, const std::vector<Trajectory>& runs)
+    : filters_(std::move(filters)),
+      runs_(runs),
+      sums_(filters_.size() + 1, std::vector<std::vector<HorizonSums>>(runs.size())),
+      weights_(runs.size()) {}
+
+ForecastTables::Weights ForecastTables::sum_weights(const std::vector<Eigen::MatrixXd>& weight) {
+  const auto horizons = static_cast<Index>(weight.size());
+  Weights total{Eigen::MatrixXd::Zero(weight.empty() ? 0 : weight.front().rows(), horizons),
+                Eigen::VectorXd::Zero(horizons)};
+  for (Index h = 0; h < horizons; ++h)
+    for (const auto column : weight[static_cast<std::size_t>(h)].colwise()) {
+      if (std::isnan(column(0))) continue;
+      total.sum.col(h) += column;
+      total.samples(h) += 1.0;
+    }
+  return total;
+}
+
+void ForecastTables::add(std::size_t run, const std::vector<HorizonEvaluation>& of_filters) {
+  std::vector<const HorizonEvaluation*> members;
+  for (std::size_t f = 0; f < of_filters.size(); ++f) {
+    sums_.at(f).at(run) = sum_horizons(of_filters[f]);
+    members.push_back(&of_filters[f]);
+  }
+  if (!combines()) return;
+  const CombinedForecasts combined = combine_forecasts(members, start_);
+  sums_.back().at(run) = sum_horizons(combined.predictions);
+  weights_.at(run) = sum_weights(combined.weight);
+}
+
+std::vector<HorizonRow> ForecastTables::horizons() const {
+  std::vector<HorizonRow> rows;
+  for (std::size_t f = 0; f < filters_.size() + (combines() ? 1 : 0); ++f)
+    for (HorizonRow& row : summarize_horizons(f < filters_.size() ? filters_[f] : combined_name, runs_, sums_[f]))
+      rows.push_back(std::move(row));
+  return rows;
+}
+
+/// Over the runs of a role that are there.
+ForecastTables::Weights ForecastTables::weights_of(Role role) const {
+  Weights total;
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    const Weights& run = weights_[i];
+    if (runs_[i].role != role || run.samples.size() == 0) continue;
+    if (total.samples.size() == 0) {
+      total = run;
+    } else {
+      total.sum += run.sum;
+      total.samples += run.samples;
+    }
+  }
+  return total;
+}
+
+void ForecastTables::start_as_trained() {
+  const Weights trained = weights_of(Role::train);
+  start_.clear();
+  for (Index h = 0; h < trained.samples.size(); ++h) {
+    const bool known = trained.samples(h) > 0.0;
+    const Eigen::VectorXd sum = known ? trained.sum.col(h).eval() : Eigen::VectorXd::Ones(trained.sum.rows()).eval();
+    start_.emplace_back(sum.data(), sum.data() + sum.size());
+  }
+}
+
+std::vector<CombinationRow> ForecastTables::combination() const {
+  std::vector<CombinationRow> rows;
+  const auto any =
+      std::find_if(weights_.begin(), weights_.end(), [](const Weights& w) { return w.samples.size() > 0; });
+  if (any == weights_.end()) return rows;
+  const std::vector<HorizonSums>& horizons = sums_.back()[static_cast<std::size_t>(any - weights_.begin())];
+  for (const Role role : {Role::train, Role::test}) {
+    const Weights total = weights_of(role);
+    for (Index h = 0; h < total.samples.size(); ++h)
+      for (std::size_t f = 0; f < filters_.size(); ++f)
+        rows.push_back({role, horizons[static_cast<std::size_t>(h)].horizon, filters_[f],
+                        total.sum(static_cast<Index>(f), h) / total.samples(h)});
+  }
+  return rows;
+}
+
+}  // namespace modebank

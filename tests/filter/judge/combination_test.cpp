@@ -1,0 +1,145 @@
+// Forecasts of several filters, combined by how well each predicted.
+#include "filter/judge/combination.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "ident/base/not_a_number.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+
+constexpr double digits = 1e-12;
+
+/// Made-up forecasts of N samples, h of them ahead, of Gaussians.
+HorizonEvaluation forecasts(Index N, const std::vector<Index>& horizons, unsigned seed, double deviation) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, deviation);
+  HorizonEvaluation said = empty_horizons(horizons, 1, N);
+  for (std::size_t h = 0; h < horizons.size(); ++h)
+    for (Index k = horizons[h]; k < N; ++k) {
+      const double error = said.error[h](0, k) = normal(random);
+      said.log_density(static_cast<Index>(h), k) = -0.5 * error * error - 0.919;
+    }
+  return said;
+}
+
+TEST(Combination, ALoneFilterAndEqualOnesAreThemselves) {
+  const HorizonEvaluation one = forecasts(50, {1, 7}, 1, 1.0);
+  for (const std::vector<const HorizonEvaluation*>& members :
+       {std::vector<const HorizonEvaluation*>{&one}, {&one, &one, &one}}) {
+    const CombinedForecasts all = combine_forecasts(members);
+    EXPECT_TRUE(test::near(all.predictions.log_density, one.log_density, digits));
+    for (std::size_t h = 0; h < 2; ++h) EXPECT_TRUE(test::near(all.predictions.error[h], one.error[h], digits));
+  }
+}
+
+/// Two filters, written out: the log odds of sample k's forecast are the sum over samples j up to k - h of
+/// 0.99^(k - h - j) times the difference of what was said of j, over h.
+TEST(Combination, AForecastHasTheWeightsOfItsOrigin) {
+  const Index N = 60;
+  const HorizonEvaluation a = forecasts(N, {1, 5}, 2, 1.0), b = forecasts(N, {1, 5}, 3, 1.3);
+  const CombinedForecasts all = combine_forecasts({&a, &b});
+  for (std::size_t at = 0; at < 2; ++at) {
+    const Index h = a.horizons[at];
+    for (Index k = h; k < N; ++k) {
+      double odds = 0.0;
+      for (Index j = h; j <= k - h; ++j)
+        odds += std::pow(0.99, static_cast<double>(k - h - j)) *
+                (a.log_density(static_cast<Index>(at), j) - b.log_density(static_cast<Index>(at), j)) /
+                static_cast<double>(h);
+      const double weight = 1.0 / (1.0 + std::exp(-odds));
+      EXPECT_NEAR(all.weight[at](0, k), weight, digits);
+      EXPECT_NEAR(all.predictions.error[at](0, k), weight * a.error[at](0, k) + (1 - weight) * b.error[at](0, k),
+                  digits);
+      EXPECT_NEAR(all.predictions.log_density(static_cast<Index>(at), k),
+                  std::log(weight * std::exp(a.log_density(static_cast<Index>(at), k)) +
+                           (1 - weight) * std::exp(b.log_density(static_cast<Index>(at), k))),
+                  digits);
+    }
+  }
+}
+
+TEST(Combination, SamplesAreTheFirstFilters) {
+  HorizonEvaluation bank = forecasts(30, {3}, 4, 1.0), other = forecasts(30, {3}, 5, 1.0);
+  bank.log_density(0, 10) = other.log_density(0, 20) = not_a_number;
+  const CombinedForecasts all = combine_forecasts({&bank, &other});
+  EXPECT_TRUE(std::isnan(all.predictions.log_density(0, 10)));
+  EXPECT_EQ(all.weight[0](0, 20), 1.0);
+  EXPECT_NEAR(all.predictions.log_density(0, 20), bank.log_density(0, 20), digits);
+  EXPECT_NEAR(all.predictions.error[0](0, 20), bank.error[0](0, 20), digits);
+}
+
+/// A run that the bank has never seen the like of: the combination finds the competitor that has.
+TEST(Combination, LosesLittleAgainstTheBestOfARun) {
+  const Index N = 400;
+  const HorizonEvaluation bad = forecasts(N, {10}, 6, 4.0), good = forecasts(N, {10}, 7, 1.0);
+  const std::vector<Trajectory> runs(1, [&] {
+    Trajectory run;
+    run.run = "x";
+    run.role = Role::test;
+    run.state.setZero(1, N);
+    return run;
+  }());
+  ForecastTables tables({"bank", "drifting"}, runs);
+  tables.add(0, {bad, good});
+  const std::vector<HorizonRow> rows = tables.horizons();
+  ASSERT_EQ(rows.size(), 6);  // of three filters, the run and all runs
+  const HorizonRow &best = rows[3], &combined = rows[5];
+  EXPECT_EQ(best.filter, "drifting");
+  EXPECT_EQ(combined.filter, "combined");
+  EXPECT_EQ(combined.samples, best.samples);
+  EXPECT_GT(combined.log_score, best.log_score - 0.1);
+  EXPECT_LT(combined.rmse(0), 1.1 * best.rmse(0));
+  const std::vector<CombinationRow> weights = tables.combination();
+  ASSERT_EQ(weights.size(), 2);
+  EXPECT_EQ(weights[1].filter, "drifting");
+  EXPECT_EQ(weights[1].role, Role::test);
+  EXPECT_EQ(weights[1].horizon, 10);
+  EXPECT_GT(weights[1].weight, 0.8);
+  EXPECT_NEAR(weights[0].weight + weights[1].weight, 1.0, digits);
+}
+
+/// A held-out run starts where the training runs were on average.
+TEST(Combination, HeldOutRunsStartAsTrainingRunsEnded) {
+  const Index N = 100;
+  std::vector<Trajectory> runs(2);
+  for (Trajectory& run : runs) run.state.setZero(1, N);
+  runs[0].role = Role::train;
+  runs[1].role = Role::test;
+  const HorizonEvaluation bad = forecasts(N, {1}, 8, 3.0), good = forecasts(N, {1}, 9, 1.0);
+  ForecastTables tables({"bank", "drifting"}, runs);
+  tables.add(0, {bad, good});
+  const std::vector<CombinationRow> trained = tables.combination();
+  tables.start_as_trained();
+  tables.add(1, {bad, good});
+  const double start = trained[1].weight;  // of drifting
+  const CombinedForecasts run = combine_forecasts({&bad, &good}, {{1.0 - start, start}});
+  EXPECT_GT(start, 0.8);
+  EXPECT_NEAR(run.weight[0](1, 1), start, digits);
+  const std::vector<HorizonRow> rows = tables.horizons();
+  EXPECT_NEAR(rows.back().log_score, run.predictions.log_density.row(0).tail(N - 1).mean(), digits);
+}
+
+TEST(Combination, WhatDoesNotFitIsRefused) {
+  const HorizonEvaluation a = forecasts(30, {1}, 1, 1.0), b = forecasts(31, {1}, 1, 1.0),
+                          c = forecasts(30, {2}, 1, 1.0);
+  EXPECT_THROW(combine_forecasts({}), std::invalid_argument);
+  EXPECT_THROW(combine_forecasts({&a, &b}), std::invalid_argument);
+  EXPECT_THROW(combine_forecasts({&a, &c}), std::invalid_argument);
+  const std::vector<Trajectory> one_run(1);
+  ForecastTables alone({"bank"}, one_run);
+  alone.add(0, {a});
+  EXPECT_TRUE(alone.combination().empty());
+  EXPECT_EQ(alone.horizons().back().filter, "bank");
+}
+
+}  // namespace
+}  // namespace modebank

@@ -1,0 +1,88 @@
+// Weights of several forecasters by what they said.
+#include "modebank/filter/forecast_weights.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+namespace modebank::filter {
+namespace {
+
+constexpr double digits = 1e-14;
+constexpr double silent = std::numeric_limits<double>::quiet_NaN();
+
+double log_odds(const ForecastWeights& weights) { return std::log(weights.weights()[0] / weights.weights()[1]); }
+
+/// Raftery et al.: the odds of two are the densities' ratios so far, each to the power of 0.99 per sample since.
+TEST(ForecastWeights, OddsAreForgottenRatiosOfDensities) {
+  ForecastWeights weights(2);
+  EXPECT_EQ(weights.weights(), (std::vector<double>{0.5, 0.5}));
+  weights.observe({1.0, 0.25});
+  EXPECT_NEAR(log_odds(weights), 0.75, digits);
+  weights.observe({-2.0, -1.5});
+  EXPECT_NEAR(log_odds(weights), 0.99 * 0.75 - 0.5, digits);
+  weights.restart();
+  EXPECT_EQ(weights.weights(), (std::vector<double>{0.5, 0.5}));
+}
+
+TEST(ForecastWeights, MayStartUnequal) {
+  ForecastWeights weights({1.0, 3.0}, 1);
+  EXPECT_NEAR(weights.weights()[1], 0.75, digits);
+  weights.observe({0.5, 0.25});
+  EXPECT_NEAR(log_odds(weights), 0.99 * std::log(1.0 / 3.0) + 0.25, digits);
+  weights.restart();
+  EXPECT_NEAR(weights.weights()[1], 0.75, digits);
+}
+
+TEST(ForecastWeights, OverlappingForecastsCountAsOneTogether) {
+  ForecastWeights far(2, 10);
+  far.observe({1.0, 0.0});
+  EXPECT_NEAR(log_odds(far), 0.1, digits);
+}
+
+/// Only what two said of the same sample moves their odds.
+TEST(ForecastWeights, TheSilentKeepTheirWeight) {
+  ForecastWeights weights(3);
+  weights.observe({0.3, -0.2, 0.1});
+  const std::vector<double> before = weights.weights();
+  weights.observe({1.0, 1.0, silent});
+  EXPECT_NEAR(
+      weights.weights()[2],
+      std::pow(before[2], 0.99) / (std::pow(before[0], 0.99) + std::pow(before[1], 0.99) + std::pow(before[2], 0.99)),
+      1e-12);
+  const std::vector<double> once = weights.weights();
+  weights.observe({silent, silent, silent});
+  EXPECT_EQ(weights.weights(), once);
+}
+
+TEST(ForecastWeights, OneOfDensityZeroComesBack) {
+  ForecastWeights weights(2);
+  weights.observe({-std::numeric_limits<double>::infinity(), 0.0});
+  EXPECT_LT(weights.weights()[0], 1e-300);
+  for (int k = 0; k < 100; ++k) weights.observe({10.0, 0.0});
+  EXPECT_GT(weights.weights()[0], 0.99);
+}
+
+TEST(ForecastWeights, DensitiesAreMixedByWeight) {
+  EXPECT_NEAR(ForecastWeights::mixed_log_density({0.25, 0.75}, {std::log(2.0), std::log(4.0)}), std::log(3.5), digits);
+  EXPECT_NEAR(ForecastWeights::mixed_log_density({0.2, 0.3, 0.5}, {std::log(2.0), silent, std::log(4.0)}),
+              std::log((0.2 * 2 + 0.5 * 4) / 0.7), digits);
+  EXPECT_TRUE(std::isnan(ForecastWeights::mixed_log_density({0.5, 0.5}, {silent, silent})));
+  EXPECT_NEAR(ForecastWeights::mixed_log_density({0.5, 0.5}, {-1e6, -1e6}), -1e6, digits);
+}
+
+TEST(ForecastWeights, WhatCannotBeIsRefused) {
+  EXPECT_THROW(ForecastWeights(0), std::invalid_argument);
+  EXPECT_THROW(ForecastWeights(2, 0), std::invalid_argument);
+  EXPECT_THROW(ForecastWeights({0.0, 0.0}, 1), std::invalid_argument);
+  EXPECT_THROW(ForecastWeights({1.0, -1.0}, 1), std::invalid_argument);
+  EXPECT_THROW(ForecastWeights({1.0, silent}, 1), std::invalid_argument);
+  EXPECT_THROW(ForecastWeights(2).observe({0.0}), std::invalid_argument);
+  EXPECT_THROW(ForecastWeights::mixed_log_density({1.0}, {0.0, 0.0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace modebank::filter
