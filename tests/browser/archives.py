@@ -4,6 +4,8 @@ import pathlib
 import random
 import subprocess
 
+# What takes long and adds no kind of number to a page.
+QUICK = ("--bank.refine", "none", "--bank.refine_transitions", "600")
 HOSTILE_STATE = "<script>window.hostile=1</script>"
 HOSTILE_MODE = "<img src=x onerror='window.hostile=5'> %{y} &lt;"
 HOSTILE_INPUT = "\"><img src=x onerror='window.hostile=2'>&amp;"
@@ -47,13 +49,13 @@ def demo_data(modebank):
 
 
 def demo(modebank, data, name, *options, command="run"):
-    quick = [] if command == "identify" else ["--mixture.restarts", "2", "--bank.refine", "none"]  # identify reads neither
+    quick = [] if command == "identify" else ["--mixture.restarts", "2", *QUICK]  # identify reads none of them
     return modebank.run(name, modebank.source / "configs/demo.ini", "--data.root", data, *quick, *options, command=command)
 
 
 def ice(modebank):
-    """The Husky on ice, without refinement, which takes long and adds no kind of number."""
-    return modebank.run("ice", modebank.source / "configs/husky_ice.ini", "--data.root", real_data(), "--bank.refine", "none",
+    """The Husky on ice."""
+    return modebank.run("ice", modebank.source / "configs/husky_ice.ini", "--data.root", real_data(), *QUICK,
                         "--mixture.components", "1..4", "--mixture.restarts", "2")
 
 
@@ -83,5 +85,5 @@ def study(modebank, data):
     config.write_text((modebank.source / "configs/demo.ini").read_text() + "\nrestarts = 1\nheldout = never\n[study]\n"
                       "vary = window.length = 15 | 25\nvary = mixture.components = 1 | 2 | 3\nvary = mixture.covariance = full | diagonal\n",
                       encoding="utf-8")
-    modebank("study", config, "--data.root", data, "--study.output", folder)
+    modebank("study", config, "--data.root", data, "--study.output", folder, *QUICK)
     return folder

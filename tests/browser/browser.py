@@ -24,6 +24,8 @@ class Browser:
         options.set_capability("goog:loggingPrefs", {"performance": "ALL", "browser": "ALL"})
         self.driver = webdriver.Chrome(service=Service(DRIVER), options=options)
         self.driver.set_script_timeout(60)
+        # A page draws what is out of sight when it has nothing else to do; here it would do so while the next test waits.
+        self.cdp("Page.addScriptToEvaluateOnNewDocument", source="window.requestIdleCallback = () => 0;")
         self.size(width, height)
 
     def close(self):

@@ -2,6 +2,7 @@
 import shutil
 import unittest
 
+import accessible
 import h5py
 import session
 from session import PageTest, pooled
@@ -25,6 +26,7 @@ class ComparePage(PageTest):
             self.assertEqual((row["A"][1], row["B"][1]), (a, b))
             self.assertEqual(row["B − A"][1], b - a)
         self.modes_are_drawn()
+        accessible.assert_accessible(self)
         session.browser.scheme("dark")
         self.assert_whole(session.work / "compare.html", COMPARE_SECTIONS)
         session.browser.screenshot("compare_dark")

@@ -12,11 +12,6 @@ PLAIN = {"", "Runs", "Run", "Filter", "Samples", "Shape", "Iterations", "Converg
 
 
 class FirstScreen(PageTest):
-    def setUp(self):
-        for name, options in (("none_held_out", ("--data.train", ",".join(f"{run:02d}" for run in range(12)))), ("many_modes", ("--mixture.components", "20"))):
-            if name not in session.made:
-                session.made[name] = session.archives.demo(session.modebank, session.data, name, *options)
-
     def tearDown(self):
         session.browser.size(1200, 900)
 

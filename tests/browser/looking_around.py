@@ -131,7 +131,7 @@ class LookingAround(PageTest):
         self.press("Next worst sample")
         session.browser.wait(f"return {PLOT}.timePlot.state.at !== null")
         self.assertAlmostEqual(self.crosshair(), times[numpy.nanargmax(nis)], places=6)
-        self.assertIn("Worst sample 1", session.browser.run("return document.getElementById('data').textContent"))
+        session.browser.wait("return document.getElementById('data').textContent.includes('Worst sample 1')")
         likeliest = probability.argmax(1)
         switches = times[1:][numpy.diff(likeliest) != 0]
         before = self.crosshair()

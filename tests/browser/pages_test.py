@@ -22,13 +22,17 @@ try:
     import selenium  # noqa: F401
 except ImportError as error:
     leave(f"{error.name} is missing (Debian packages python3-h5py, python3-selenium)")
-if not (os.path.exists("/usr/bin/chromium") and os.path.exists("/usr/bin/chromedriver")):
-    leave("Chromium is missing (Debian packages chromium, chromium-driver)")
+if not (pathlib.Path(sys.argv[2]) / "build/npm/node_modules/axe-core/axe.min.js").exists():
+    leave("axe-core is missing: sh .ci/install-packages test")
+for program, package in (("chromium", "chromium"), ("chromedriver", "chromium-driver"), ("pdftoppm", "poppler-utils")):
+    if not os.path.exists(f"/usr/bin/{program}"):
+        leave(f"{program} is missing (Debian package {package})")
 
 import session  # noqa: E402
 from compare_page import ComparePage, Refusals  # noqa: E402, F401
 from first_screen import FirstScreen  # noqa: E402, F401
 from looking_around import LookingAround  # noqa: E402, F401
+from printed import Printed  # noqa: E402, F401
 from run_pages import RunPages  # noqa: E402, F401
 from study_page import StudyPage  # noqa: E402, F401
 from view_pages import ViewPages  # noqa: E402, F401

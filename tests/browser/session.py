@@ -10,7 +10,31 @@ import h5py
 from browser import Browser
 
 modebank = browser = data = work = None
-made = {}  # name -> archive
+
+
+class Made(dict):
+    """Archives by name, each made when it is first asked for."""
+
+    recipes = {
+        "demo": lambda name: archives.demo(modebank, data, name, "--mixture.components", "1..4"),
+        "one_mode": lambda name: archives.demo(modebank, data, name, "--mixture.components", "1"),
+        "many_modes": lambda name: archives.demo(modebank, data, name, "--mixture.components", "20"),
+        "no_truth": lambda name: archives.demo(modebank, data, name, "--data.truth=", "--mixture.components", "2", "--filter.simulate", "10"),
+        "none_held_out": lambda name: archives.demo(modebank, data, name, "--data.train", ",".join(f"{run:02d}" for run in range(12))),
+        "windows_only": lambda name: archives.demo(modebank, data, name, command="identify"),
+        "hostile": lambda _: archives.hostile(modebank),
+        "study": lambda _: archives.study(modebank, data),
+    }
+
+    def __missing__(self, name):
+        self[name] = self.recipes[name](name)
+        return self[name]
+
+    def __contains__(self, name):
+        return name in self.recipes
+
+
+made = Made()
 
 
 def start(program, source, folder):
@@ -20,18 +44,12 @@ def start(program, source, folder):
     work.mkdir(parents=True)
     modebank = archives.Modebank(program, source, work)
     data = archives.demo_data(modebank)
-    made["demo"] = archives.demo(modebank, data, "demo", "--mixture.components", "1..4")
-    made["one_mode"] = archives.demo(modebank, data, "one_mode", "--mixture.components", "1")
-    made["no_truth"] = archives.demo(modebank, data, "no_truth", "--data.truth=", "--mixture.components", "2",
-                                     "--filter.simulate", "10")
-    made["hostile"] = archives.hostile(modebank)
     if archives.real_data():
-        made["ice"] = archives.ice(modebank)
+        made.recipes["ice"] = lambda _: archives.ice(modebank)
     elif os.environ.get("CI") == "true":
         raise AssertionError("real data is absent: set MODEBANK_DATA (CI requires it)")
     else:
         print("SKIPPED: the page of ICE, real data is absent: set MODEBANK_DATA")
-    made["study"] = archives.study(modebank, data)
     browser = Browser(work)
 
 

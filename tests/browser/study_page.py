@@ -1,4 +1,5 @@
 """The page of a study."""
+import accessible
 import h5py
 import session
 from session import PageTest
@@ -38,6 +39,7 @@ class StudyPage(PageTest):
             session.browser.scheme(scheme)
             self.assert_whole(page, STUDY_SECTIONS)
             session.browser.screenshot(f"study_{scheme}")
+        accessible.assert_accessible(self)
 
     def test_numbers_are_the_tables(self):
         self.open(self.page())

@@ -88,7 +88,7 @@ void Figure::add_block(const std::string& title, const std::vector<std::string>&
 }
 
 std::string Figure::script() const {
-  const Palette colours = palette(most_shown_groups);
+  const Palette colours = palette();
   return comment("Drawn by gnuplot 5 or later: gnuplot " + name_ + ".gp") + "figure = " + quoted(name_) + "\n" +
          array_text("palette", colours.modes) + "bank_colour = " + quoted(colours.filters.at("bank")) +
          "\nbaseline_colour = " + quoted(colours.filters.at("baseline")) +

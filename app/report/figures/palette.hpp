@@ -8,12 +8,11 @@ namespace modebank::app::report {
 
 /// Colours "#rrggbb" of web/palette.json, which pages and figures share.
 struct Palette {
-  std::vector<std::string> modes;  ///< of mode 0, 1, ...; from where they come again they are darker, then lighter
+  std::vector<std::string> modes;  ///< of the most used mode, the next, ...: as many as figures tell apart
   std::string outlier;
   std::map<std::string, std::string> filters;  ///< by their names in archives
 };
 
-/// For `modes` modes, by the rule of modeColour in web/plots.js.
-Palette palette(int modes);
+Palette palette();
 
 }  // namespace modebank::app::report

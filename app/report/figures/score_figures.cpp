@@ -22,7 +22,7 @@ std::vector<std::string> drawn_filters() {
   return filters;
 }
 
-std::string colour_of(const std::string& filter) { return palette(0).filters.at(filter); }
+std::string colour_of(const std::string& filter) { return palette().filters.at(filter); }
 
 std::string title_of(const Archive& archive, std::string filter) {
   if (filter == "bank") return bank_title(archive);

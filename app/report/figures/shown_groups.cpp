@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "app/chain/judged_runs.hpp"
+#include "app/text/mode_words.hpp"
 
 namespace modebank::app::report {
 
@@ -25,13 +25,12 @@ ShownGroups shown_groups(const Eigen::VectorXd& sizes) {
 }
 
 ShownGroups shown_modes(const Archive& archive) {
-  const Bank& bank = *archive.bank;
-  Eigen::VectorXd sizes(bank.mode_count());
-  for (Index k = 0; k < sizes.size(); ++k) {
-    const DiagnosticsRow* row = diagnosis(archive, "bank", judged_role(archive), k);
-    sizes(k) = row ? row->usage : bank.modes[static_cast<std::size_t>(k)].weight;
-  }
-  return shown_groups(sizes);
+  const std::vector<UsedMode> used = used_modes(archive);
+  const Index told = told_modes(used);
+  ShownGroups groups;
+  for (const UsedMode& mode : used)
+    (std::ssize(groups.shown) < told ? groups.shown : groups.others).push_back(mode.mode);
+  return groups;
 }
 
 }  // namespace modebank::app::report

@@ -8,10 +8,10 @@
 
 namespace modebank::app::report {
 
-/// Which of many modes or components a figure tells apart: no more than eye and palette can, the largest; the others
-/// are drawn alike. Position i among `shown` has colour i of the palette.
+/// Which of many modes or components a figure tells apart: no more than eye and palette can; the others are drawn
+/// alike. Position i among `shown` has colour i of the palette.
 struct ShownGroups {
-  std::vector<Index> shown;   ///< in their own order
+  std::vector<Index> shown;
   std::vector<Index> others;  ///< empty where all are shown
 
   bool any_others() const { return !others.empty(); }
@@ -20,10 +20,10 @@ struct ShownGroups {
 
 inline constexpr std::size_t most_shown_groups = 8;
 
-/// By size, e.g. weights or usage.
+/// The largest, in their own order.
 ShownGroups shown_groups(const Eigen::VectorXd& sizes);
 
-/// The bank's modes by how much the judged runs use them, by weight where no run was judged.
+/// The bank's modes that a page tells one by one (told_modes), most used first, as there: the same colours.
 ShownGroups shown_modes(const Archive& archive);
 
 }  // namespace modebank::app::report

@@ -83,8 +83,9 @@ std::string run_words(const DrawnRun& drawn) {
 }
 
 std::string strip_words(const DrawnRun& drawn) {
-  return shown_modes(drawn.archive).any_others()
-             ? fmt::format(" Bottom: probabilities of the {} most used modes.", most_shown_groups)
+  const ShownGroups modes = shown_modes(drawn.archive);
+  return modes.any_others()
+             ? fmt::format(" Bottom: probabilities of the modes, the {} most used one by one.", modes.shown.size())
              : " Bottom: probabilities of the modes.";
 }
 

@@ -70,7 +70,7 @@ std::string ink_on(const std::string& colour) {
 std::string coordinate(double value) { return fmt::format("{:.6g}", value); }
 
 void set_nodes(const std::vector<Node>& nodes, const std::vector<Index>& modes, Figure& figure) {
-  const Palette colours = palette(most_shown_groups);
+  const Palette colours = palette();
   std::vector<std::string> x, y, radius, titles, inks;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     x.push_back(coordinate(nodes[i].at.x()));
@@ -88,7 +88,7 @@ void set_nodes(const std::vector<Node>& nodes, const std::vector<Index>& modes, 
 }
 
 void set_arrows(const Bank& bank, const std::vector<Node>& nodes, const std::vector<Index>& modes, Figure& figure) {
-  const Palette colours = palette(most_shown_groups);
+  const Palette colours = palette();
   std::vector<Arrow> arrows;
   std::vector<std::string> x, y, widths, edge_colours, titles;
   for (std::size_t i = 0; i < nodes.size(); ++i)

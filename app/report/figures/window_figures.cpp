@@ -108,7 +108,7 @@ std::vector<Index> by_weight(const GaussianMixture& mixture, std::vector<Index> 
 
 void name_components(const GaussianMixture& mixture, const ShownGroups& groups, const std::vector<Index>& order,
                      Figure& figure) {
-  const Palette colours = palette(most_shown_groups);
+  const Palette colours = palette();
   std::vector<std::string> titles, used;
   for (const Index k : order) {
     titles.push_back(fmt::format("{} ({:.0f} %)", k, 100 * mixture.weights(k)));

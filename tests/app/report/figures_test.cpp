@@ -5,7 +5,9 @@
 #include <sstream>
 
 #include "app/report/figures/figure.hpp"
+#include "app/report/figures/palette.hpp"
 #include "app/report/figures/shown_groups.hpp"
+#include "app/report/page/run_sections.hpp"
 #include "ident/base/distributions.hpp"
 #include "io/archive/archive.hpp"
 #include "tests/app/cli_fixture.hpp"
@@ -160,6 +162,20 @@ TEST_F(Figures, OneThatFailsIsNamedAndDoesNotLoseTheOthers) {
   EXPECT_TRUE(drawn().count("pit.pdf") && drawn().count("transition.svg") + drawn().count("coverage.svg") > 0);
   EXPECT_FALSE(drawn().count("nis.svg"));
   EXPECT_TRUE(std::filesystem::exists(file("page.html")));
+}
+
+/// A page colours modes by their place in this order, figures by their place among those that are shown.
+TEST_F(Figures, ModesHaveThePagesOrderAndColours) {
+  ASSERT_EQ(run({"--mixture.components", "12", "--mixture.restarts", "1", "--bank.refine", "none"}).status, 0);
+  const Archive archived = read_archive(archive());
+  const app::report::ShownGroups modes = app::report::shown_modes(archived);
+  const nlohmann::json bank = app::report::bank_section(archived);
+  ASSERT_GT(modes.shown.size(), 1u);
+  EXPECT_EQ(static_cast<Index>(modes.shown.size()), bank["told"].get<Index>());
+  std::vector<Index> all = modes.shown;
+  all.insert(all.end(), modes.others.begin(), modes.others.end());
+  EXPECT_EQ(all, bank["order"].get<std::vector<Index>>());
+  EXPECT_GE(app::report::palette().modes.size(), modes.shown.size());
 }
 
 /// The largest keep their order and their colours; the others are one group.

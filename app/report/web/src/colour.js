@@ -1,4 +1,4 @@
-// Colours as '#rrggbb'. The figures for papers mix the same way (figures/palette.cpp).
+// Colours as '#rrggbb'.
 
 const hex = (byte) => Math.round(byte).toString(16).padStart(2, '0');
 
@@ -10,7 +10,7 @@ export function mixed(colour, other, share) {
 
 export const translucent = (colour, alpha) => colour + hex(255 * alpha);
 
-// Colour of mode k, the same in every plot; where the palette ends it comes again, darker, then lighter.
+// The k-th colour; where the palette ends it comes again, darker, then lighter.
 export function paletteColour(palette, k) {
   if (k < 0) return palette.unclustered;
   const base = palette.modes[k % palette.modes.length];
@@ -19,10 +19,9 @@ export function paletteColour(palette, k) {
   return mixed(base, round === 1 ? '#000000' : '#ffffff', 0.45);
 }
 
-const most_colours = 8;
-
-// Of the mode with `rank` more used ones before it: more than eight colours cannot be told apart.
-export const usedColour = (palette, rank) => paletteColour(palette, rank < most_colours ? rank : -1);
+// Of the mode with `rank` more used ones before it: more colours than the palette's cannot be told apart. C++ says the
+// ranks and which modes are others (used_modes, told_modes of app/text/mode_words.hpp), here and for figures in papers.
+export const usedColour = (palette, rank) => paletteColour(palette, rank < palette.modes.length ? rank : -1);
 
 // For thin lines: lighter on a dark ground.
 export function onGround(colour, dark) {

@@ -1,7 +1,7 @@
 // Data of the runs with what all banks predicted.
 import {controls, note} from './elements.js';
 import {section} from './page.js';
-import {colours, letters, pairLegend, stroke, symbols} from './pair.js';
+import {colours, letters, modeColours, pairLegend, stroke, symbols} from './pair.js';
 import {ink} from './plots.js';
 import {inputRows, nisRow, probabilityRow, stateRow} from './time_rows.js';
 import {runChoice, timeControls, timePlot, TimeState} from './timeview.js';
@@ -36,8 +36,11 @@ export function drawData(data) {
     return;
   }
   const place = data.runs[0].data, state = new TimeState(runs), layers = layersOf(data);
-  const probabilities = () => layers.filter(({of}) => (of(state.current) || {}).probability)
-                                  .map(({of, prefix}) => probabilityRow(of, `P(mode) ${prefix.trim()}`));
+  const ofModes = modeColours(data);
+  const probabilities = () => layers.flatMap(({of, prefix}, k) => {
+    if (!(of(state.current) || {}).probability) return [];
+    return [probabilityRow(of, `probability of the modes of ${prefix.trim()}`, ofModes[k])];
+  });
   const rows = () =>
       [...place.states.map((_, i) => stateRow(place, i, layers, 240)),
        nisRow(place, layers),
@@ -45,10 +48,10 @@ export function drawData(data) {
        ...inputRows(place),
   ];
   const label = 'State with the predictions of all banks, their NIS and their mode probabilities over time';
-  const plot = timePlot(
-      state, label, rows,
-      `Bands: ${
-          100 * place.level} % of each bank's prediction. Dashed lines at the NIS: both bounds of a true filter.`);
+  const caption =
+      `Bands: ${100 * place.level} % of each bank's prediction. Dashed lines at the NIS: both bounds of a ` +
+      'true filter. Modes that are matched have the same colour.';
+  const plot = timePlot(state, label, rows, caption);
   section(
       'data', 'Data and predictions', pairLegend(data.runs, [[ink(), 'measured']]),
       controls(runChoice(state), timeControls(state)), plot);

@@ -2,7 +2,7 @@
 import {details, h, note} from './elements.js';
 import {differingWords, sortedPairs} from './mode_pairs.js';
 import {section} from './page.js';
-import {colours, letters} from './pair.js';
+import {letters, modeColours} from './pair.js';
 import {table} from './table.js';
 
 // A mode's parameters as its bank's page shows them.
@@ -13,15 +13,22 @@ const parametersOf = (bank, k) =>
 const namesOf = (bank) => (bank.motion_names.length ? bank.motion_names : bank.parameter_names);
 const modeText = (k) => (k < 0 ? '–' : String(k));
 
-function pairColumns(a, b, letter, k) {
+/** `ofModes`: the colours of A's modes and of the other's. */
+function pairColumns(a, b, letter, ofModes) {
   const names = namesOf(a);
+  const colourOf = (i, mode) => (mode < 0 ? null : ofModes[i](mode));
   const cell = (bank, mode, i) => {
     const values = parametersOf(bank, mode);
     return values ? values[i] : null;
   };
   return [
-    {name: 'Mode of A', text: true, of: (pair) => modeText(pair.first), swatch: () => colours[0]},
-    {name: `Mode of ${letter}`, text: true, of: (pair) => modeText(pair.second), swatch: () => colours[k]},
+    {name: 'Mode of A', text: true, of: (pair) => modeText(pair.first), swatch: (pair) => colourOf(0, pair.first)},
+    {
+      name: `Mode of ${letter}`,
+      text: true,
+      of: (pair) => modeText(pair.second),
+      swatch: (pair) => colourOf(1, pair.second)
+    },
     {name: 'Apart [standard errors]', of: (pair) => (pair.first < 0 || pair.second < 0 ? null : pair.distance)},
     {name: 'They', text: true, of: (pair) => differingWords(pair, names, letter)},
     ...names.flatMap(
@@ -32,11 +39,11 @@ function pairColumns(a, b, letter, k) {
   ];
 }
 
-function matchTables(data, match, k) {
+function matchTables(data, match, k, ofModes) {
   const letter = letters[k], [a, b] = [data.runs[0].bank, data.runs[k].bank];
   const heading = h('h3', {}, `A and ${letter}`);
   if (match.difference) return [heading, note(`They cannot be matched: ${match.difference}.`)];
-  const columns = pairColumns(a, b, letter, k), [differing, agreeing] = sortedPairs(match);
+  const columns = pairColumns(a, b, letter, [ofModes[0], ofModes[k]]), [differing, agreeing] = sortedPairs(match);
   const same = agreeing.length ? table(columns, agreeing, {caption: `Modes of A and ${letter} that agree`}) : null;
   const fold = same && differing.length ? details(`${agreeing.length} pairs agree within their errors`, same) : same;
   return [
@@ -50,8 +57,9 @@ function matchTables(data, match, k) {
 export function drawModes(data) {
   const how =
       'Matched one to one by their distance: the root mean square difference of the parameters in standard errors, ' +
-      'both errors together. What agrees does so in all parameters together at 95 %.';
+      'both errors together. What agrees does so in all parameters together at 95 %. Matched modes have one colour.';
+  const ofModes = modeColours(data);
   section(
-      'modes', 'Modes side by side', data.matches.map((match, i) => matchTables(data, match, i + 1)),
+      'modes', 'Modes side by side', data.matches.map((match, i) => matchTables(data, match, i + 1, ofModes)),
       h('p', {class: 'caption'}, how));
 }

@@ -1,5 +1,39 @@
 // What is said of modes of two banks that are matched. Draws nothing.
 
+/**
+ * Ranks of colours (usedColour) of the modes of each bank, so that matched modes share A's: those of A by use, the
+ * others told one by one of theirs; what a bank has alone comes after A's, by use. Infinity: others.
+ * @param {({order: number[], told: number}|null)[]} banks
+ * @param {{modes: {first: number, second: number}[], difference: string}[]} matches of the second, third, ... with A
+ * @returns {number[][]}
+ */
+export function matchedRanks(banks, matches) {
+  const byUse = ({order, told}) => {
+    const ranks = [];
+    order.forEach((mode, rank) => {
+      ranks[mode] = rank < told ? rank : Infinity;
+    });
+    return ranks;
+  };
+  const all = banks.map((bank) => (bank ? byUse(bank) : []));
+  matches.forEach(({modes, difference}, i) => {
+    const bank = banks[i + 1];
+    if (!banks[0] || !bank || difference) return;
+    let next = banks[0].told;
+    const partner = new Map(modes.filter(({first}) => first >= 0).map(({first, second}) => [second, first]));
+    bank.order.forEach((mode, rank) => {
+      const first = partner.get(mode);
+      const shared = first === undefined ? Infinity : all[0][first];
+      if (Number.isFinite(shared)) {
+        all[i + 1][mode] = shared;
+      } else {
+        all[i + 1][mode] = rank < bank.told ? next++ : Infinity;
+      }
+    });
+  });
+  return all;
+}
+
 // [differing, agreeing] pairs of a match: the farthest apart first, modes that one bank has alone after all pairs.
 export function sortedPairs({modes}) {
   const distance = ({first, second, distance: cell}) => (first < 0 || second < 0 ? -1 : cell.v);

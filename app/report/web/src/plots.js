@@ -20,7 +20,8 @@ export const ink = () => (dark() ? '#e8eaee' : '#16181d');
 const faint = () => (dark() ? '#343a45' : '#dfe3e8');
 export const ground = () => (dark() ? '#14161a' : '#ffffff');
 // A mode's colour is by its use, so that the modes that matter differ; the ninth and later ones are "others".
-export const modeColour = (k) => usedColour(palette, isOther(k) ? Infinity : rankOf(k));
+export const rankColour = (rank) => usedColour(palette, rank);
+export const modeColour = (k) => rankColour(isOther(k) ? Infinity : rankOf(k));
 export const componentColour = (k) => paletteColour(palette, k);
 export const lineColour = (colour) => onGround(colour, dark());
 export const filterColour = (name) => lineColour(palette.filters[name] || ink());

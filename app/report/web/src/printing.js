@@ -2,7 +2,7 @@
 // it, and figures that were drawn for a wider window are made smaller. Reaches into what plotly.js 2.6 keeps to itself.
 import {h} from './elements.js';
 
-const sheet_px = 700;
+const sheet_px = 800;  // at the page's scale on paper (page.css)
 
 function still(scene) {
   scene.glplot.redraw();

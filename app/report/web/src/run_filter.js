@@ -51,7 +51,7 @@ function histograms(filter) {
   const plot = figure(label, () => {
     const rows = filter.histograms.filter((row) => row.role === role);
     const layout = {
-      height: 200 * rows.length + 40,
+      height: 170 * rows.length + 40,
       margin: {l: 64, r: 12, t: 40, b: 44},
       showlegend: false,
       shapes: [],

@@ -137,14 +137,22 @@ async function edgesOfBuckets(lowest, highest, shown) {
   return {first, per, low, high};
 }
 
-// Closed outlines of a band, one per stretch without gaps: between center - half and center + half, or where samples
-// are not drawn one by one between the lowest and the highest edge of each bucket.
+// A band between center - half and center + half: closed outlines, one per stretch without gaps; where samples are not
+// drawn one by one the lowest and the highest edge of each bucket, as of a line.
 export async function band({center, half, lowest, highest}, clockOf, shown) {
   const bySample = !lowest.levels.length || (center.raw && shown.per < few);
   const {first, per, low, high} = bySample ?
       await edgesOfSamples(center, half, {...shown, per: Math.min(shown.per, few - 1)}) :
       await edgesOfBuckets(lowest, highest, shown);
-  return outlines(low, high, (i) => clockOf.at(Math.min(clockOf.samples - 1, first + i * per)));
+  const time = (i) => clockOf.at(Math.min(clockOf.samples - 1, first + i * per));
+  if (per === 1) return outlines(low, high, time);
+  const x = new Float64Array(2 * low.length), y = new Float32Array(2 * low.length);
+  low.forEach((v, i) => {
+    x.fill(time(i), 2 * i, 2 * i + 2);
+    y[2 * i] = v;
+    y[2 * i + 1] = high[i];
+  });
+  return {x, y, per};
 }
 
 function outlines(low, high, time) {
@@ -172,7 +180,7 @@ function outlines(low, high, time) {
 // + and - a half width, for bounds about zero.
 export async function bounds(half, clockOf, shown) {
   const up = await line(half, clockOf, shown);
-  return {up, down: {x: up.x, y: up.y.map((v) => -v)}};
+  return {up, down: {...up, y: up.y.map((v) => -v)}};
 }
 
 /**

@@ -3,9 +3,11 @@ import {extent, margins, timeScale, valueScale} from './time_axes.js';
 
 /**
  * A curve: x and y of equal length, NaN or null where there is nothing. 'line': through the points; 'area': the inside
- * of closed outlines; 'shares': stacked upon the shares before it; 'dots': the points alone.
+ * of closed outlines; 'shares': stacked upon the shares before it; 'dots': the points alone. `per`: samples per bucket;
+ * of a line or band of more than one, two points each are a bucket's extremes.
  * @typedef {{kind: 'line'|'area'|'shares'|'dots', x: ArrayLike<number|null>, y: ArrayLike<number|null>, colour: string,
- *   name: string, width?: number, dash?: 'dash'|'dot', step?: boolean, symbol?: string, size?: number}} Trace
+ *   name: string, per?: number, width?: number, dash?: 'dash'|'dot', step?: boolean, symbol?: string, size?: number}}
+ * Trace
  * @typedef {{traces: Trace[], range: [number, number]|null, log: boolean,
  *   levels: {height: number, colour: string}[]}} Content
  * @typedef {{width: number, height: number, last: boolean, range: [number, number], mark: [number, number]|null}} Frame
@@ -14,6 +16,7 @@ import {extent, margins, timeScale, valueScale} from './time_axes.js';
 
 export const axis_px = 34;  // below the last panel: the axis of time
 const above = 6, below = 6;
+const least_px = 0.05;  // less of a share is not seen
 
 const known = (v) => v !== null && !Number.isNaN(v);
 
@@ -36,6 +39,30 @@ export function linePath({x, y, step}, toX, toY) {
       last = py;
     }
   };
+}
+
+/** From pixel to pixel, so that what lies beside each other neither overlaps nor gapes. */
+function pixelSpan(x, i, step, toX) {
+  const left = Math.floor(toX(x[i])), next = i + step < x.length ? Math.floor(toX(x[i + step])) : left + 1;
+  return [left, Math.max(1, next - left)];
+}
+
+/**
+ * Buckets of a line or band as boxes of about a pixel's width from the least to the greatest value; those of a line
+ * touch the one before.
+ * @returns {number[]} x, y, width and height of each box
+ */
+export function bucketBoxes({kind, x, y, width = 1}, toX, toY) {
+  const boxes = [], half = kind === 'line' ? width / 2 : 0;
+  let before = NaN;
+  for (let i = 0; i < x.length; i += 2) {
+    const a = toY(y[i]), b = toY(y[i + 1]), from = kind === 'line' && !Number.isNaN(before) ? before : a;
+    before = b;
+    if (!known(y[i])) continue;
+    const [left, wide] = pixelSpan(x, i, 2, toX), top = Math.min(a, b, from) - half;
+    boxes.push(left, top, wide, Math.max(a, b, from) + half - top);
+  }
+  return boxes;
 }
 
 /** Closed outlines, one after the other. */
@@ -71,12 +98,28 @@ function stackPath({x, step}, lower, upper, toX, toY) {
   };
 }
 
+/** The same of buckets. */
+function stackBoxes({x}, lower, upper, toX, toY) {
+  const boxes = [];
+  for (let i = 0; i < x.length; ++i) {
+    const top = toY(upper[i]), bottom = toY(lower[i]);
+    if (bottom - top < least_px) continue;
+    const [left, wide] = pixelSpan(x, i, 1, toX);
+    boxes.push(left, top, wide, bottom - top);
+  }
+  return boxes;
+}
+
 function drawShares(pen, traces, toX, toY) {
   let lower = null;
   for (const trace of traces) {
     if (!lower) lower = new Float32Array(trace.y.length);
     const upper = Float32Array.from(lower, (sum, i) => sum + (trace.y[i] || 0));
-    pen.area(stackPath(trace, lower, upper, toX, toY), trace.colour);
+    if (trace.per > 1) {
+      pen.boxes(stackBoxes(trace, lower, upper, toX, toY), trace.colour);
+    } else {
+      pen.area(stackPath(trace, lower, upper, toX, toY), trace.colour);
+    }
     lower = upper;
   }
 }
@@ -111,9 +154,15 @@ function drawTraces(pen, traces, toX, toY) {
   const shares = traces.filter(({kind}) => kind === 'shares');
   if (shares.length) drawShares(pen, shares, toX, toY);
   for (const trace of traces) {
-    if (trace.kind === 'area') pen.area(outlinePath(trace, toX, toY), trace.colour);
-    if (trace.kind === 'line') pen.line(linePath(trace, toX, toY), trace);
-    if (trace.kind === 'dots') drawDots(pen, trace, toX, toY);
+    if (trace.kind === 'dots') {
+      drawDots(pen, trace, toX, toY);
+    } else if (trace.kind !== 'shares' && trace.per > 1) {
+      pen.boxes(bucketBoxes(trace, toX, toY), trace.colour);
+    } else if (trace.kind === 'area') {
+      pen.area(outlinePath(trace, toX, toY), trace.colour);
+    } else if (trace.kind === 'line') {
+      pen.line(linePath(trace, toX, toY), trace);
+    }
   }
 }
 

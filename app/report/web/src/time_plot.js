@@ -57,6 +57,8 @@ class TimePlot {
     this.plot = h(
         'div', {class: 'plot timeplot', tabindex: 0, role: 'group', 'aria-label': label}, this.crosshair, this.chosen);
     this.drawn = false;
+    this.said = '';  // by the readout, in which panels
+    this.saidIn = null;
   }
 
   // A heading with a readout and a canvas for each row; made anew only where the rows are others.
@@ -130,6 +132,10 @@ class TimePlot {
     const rows = this.rows();
     const entries = await Promise.all(rows.map((row) => row.read(current, k)));
     if (rows.length !== this.panels.length) return;
+    // Only what is new, or the page would be laid out for every frame of a drag.
+    const said = JSON.stringify([at, k, entries]);
+    if (said === this.said && this.panels === this.saidIn) return;
+    Object.assign(this, {said, saidIn: this.panels});
     entries.forEach((list, i) => this.panels[i].readout.replaceChildren(...list.map(entryItem)));
     this.time.textContent = at === null ? 'Point at the plot, or focus it and press → , to read its signals.' :
                                           `Crosshair at ${secondsText(at)}, sample ${k}.`;

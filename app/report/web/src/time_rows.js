@@ -139,26 +139,26 @@ export function inputRows(runs) {
 }
 
 // The likeliest modes at sample k, the likeliest first.
-async function modeEntries(filter, k) {
+async function modeEntries(filter, k, colourOf) {
   const shares = await Promise.all(
-      filter.probability.map((signal, mode) => told(signal, k, {name: modeTitle(mode), colour: modeColour(mode)})));
+      filter.probability.map((signal, mode) => told(signal, k, {name: modeTitle(mode), colour: colourOf(mode)})));
   if (k < 0) return shares.length <= 2 * told_modes ? shares : [];
   return shares.filter(({value}) => value.low > 0.005).sort((a, b) => b.value.low - a.value.low).slice(0, told_modes);
 }
 
-// `of`: run => the filter; `title` where there are several.
-export function probabilityRow(of, title = 'probability of the modes') {
+// `of`: run => the filter; `title` and the modes' colours where there are several.
+export function probabilityRow(of, title = 'probability of the modes', colourOf = modeColour) {
   const draw = ({run, clock, shown}) => {
     const filter = of(run);
     if (!filter || !filter.probability) return [];
     return Promise.all(filter.probability.map(async (signal, k) => {
       const curve = await share(signal, clock, shown);
-      return {...curve, kind: 'shares', step: curve.per === 1, colour: modeColour(k), name: modeTitle(k)};
+      return {...curve, kind: 'shares', step: curve.per === 1, colour: colourOf(k), name: modeTitle(k)};
     }));
   };
   const read = (run, k) => {
     const filter = of(run);
-    return filter && filter.probability ? modeEntries(filter, k) : [];
+    return filter && filter.probability ? modeEntries(filter, k, colourOf) : [];
   };
   return {title, height: 110, range: [0, 1], draw, read};
 }

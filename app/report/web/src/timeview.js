@@ -40,7 +40,7 @@ export function timeControls(state) {
     button('▶', 'Later', () => state.move(0.5)),
     button('+', 'Zoom in', () => state.scale(0.5)),
     button('−', 'Zoom out', () => state.scale(2)),
-    button('All', 'The whole run', () => state.showAll()),
+    button('All', 'All of the run', () => state.showAll()),
     windowFields(state),
   ];
 }

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {differingWords, sortedPairs} from '../src/mode_pairs.js';
+import {differingWords, matchedRanks, sortedPairs} from '../src/mode_pairs.js';
 
 const pair = (first, second, distance, agree, z = []) =>
     ({first, second, agree, distance: {v: distance}, z: z.map((v) => ({v, t: v.toFixed(1)}))});
@@ -20,4 +20,18 @@ test('what a pair differs in', () => {
   assert.equal(differingWords(modes[0], ['A', 'B'], 'B'), 'agree within their errors');
   assert.equal(differingWords(modes[2], ['A', 'B'], 'C'), 'only in A');
   assert.equal(differingWords(modes[3], ['A', 'B'], 'C'), 'only in C');
+});
+
+test('matched modes share the colour of the first bank, others come after it', () => {
+  const banks = [{order: [2, 0, 1, 3], told: 3}, {order: [1, 3, 0, 2], told: 4}, {order: [0], told: 1}];
+  const matches = [
+    {modes: [pair(0, 1), pair(1, 0), pair(2, -1), pair(3, 3), pair(-1, 2)], difference: ''},
+    {modes: [], difference: 'their models differ'},
+  ];
+  const [a, b, c] = matchedRanks(banks, matches);
+  assert.deepEqual(a, [1, 2, 0, Infinity]);
+  // 3 is matched with one of A that is not told, 2 with none: the next colours, by their use.
+  assert.deepEqual(b, [2, 1, 4, 3]);
+  assert.deepEqual(c, [0]);
+  assert.deepEqual(matchedRanks([null, banks[2]], [{modes: [], difference: ''}]), [[], [0]]);
 });

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {extent, margins, timeScale, valueScale} from '../src/time_axes.js';
-import {drawPanel, linePath} from '../src/time_drawing.js';
+import {bucketBoxes, drawPanel, linePath} from '../src/time_drawing.js';
 
 // A pen that notes what it is told.
 function notes() {
@@ -16,6 +16,7 @@ function notes() {
     line: (path, look) => list.push({kind: 'line', points: pathOf(path), ...look}),
     area: (path, colour) => list.push({kind: 'area', points: pathOf(path), colour}),
     text: (text, x, y) => list.push({kind: 'text', text, x, y}),
+    boxes: (boxes, colour) => list.push({kind: 'boxes', boxes, colour}),
     within: (box, body) => body(),
   };
   return {pen, list};
@@ -67,4 +68,25 @@ test('shares are stacked from the floor of a panel to its top', () => {
   assert.deepEqual([lower.colour, lower.points[0][2], lower.points[1][2]], ['#111', 81, 6]);
   assert.deepEqual([upper.points[0][2], upper.points[1][2]], [6, 6]);
   assert.ok(list.some(({text}) => text === 'time [s]'));
+});
+
+test('buckets are boxes beside each other that hold their extremes; a line\'s touch', () => {
+  const toX = (v) => 1.4 * v, toY = (v) => 100 - v, x = [0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5];
+  const y = [10, 20, 50, 40, NaN, NaN, 5, 7];
+  const line = bucketBoxes({kind: 'line', x, y, width: 2}, toX, toY);
+  // From 10 to 20; from 40 to 50 and on down to 20, where the line comes from; after a gap from nowhere.
+  assert.deepEqual(line, [0, 79, 1, 12, 1, 49, 1, 32, 4, 92, 1, 4]);
+  const band = bucketBoxes({kind: 'area', x, y}, toX, toY);
+  assert.deepEqual(band, [0, 80, 1, 10, 1, 50, 1, 10, 4, 93, 1, 2]);
+});
+
+test('shares of buckets fill a panel, too', () => {
+  const {pen, list} = notes();
+  const trace = (y, colour) => ({kind: 'shares', per: 4, x: [0, 0.5], y, colour, name: ''});
+  const content = {traces: [trace([0.25, 1], '#111'), trace([0.75, 0], '#222')], range: [0, 1], log: false, levels: []};
+  drawPanel(pen, {width: 1000, height: 112, last: true, range: [0, 1], mark: null}, content, look);
+  const [lower, upper] = list.filter(({kind}) => kind === 'boxes');
+  const {left} = margins(1000), half = Math.floor(left + (1000 - 10 - left) / 2);
+  assert.deepEqual([...lower.boxes], [left, 81, half - left, 25, half, 6, 1, 100]);
+  assert.deepEqual([...upper.boxes], [left, 6, half - left, 75]);  // nothing of it in the second
 });

@@ -1,0 +1,38 @@
+"""What of a page hinders people who see, hear or move differently, as axe-core (.ci/packages) finds it."""
+import session
+
+PHONE = (390, 844)
+# Each offending element once, with what is wrong with it. Points of plots are left out: thousands, and nothing to a rule.
+CHECK = """
+    const [options, done] = arguments;
+    axe.run({exclude: [['.scatterlayer']]}, {resultTypes: ['violations'], ...options}).then(({violations}) =>
+        done(violations.flatMap(({id, nodes}) => nodes.map(({target, failureSummary}) => `${id}: ${target}: ${failureSummary}`))), (error) => done([String(error)]));"""
+
+
+def script():
+    return session.modebank.source / "build/npm/node_modules/axe-core/axe.min.js"
+
+
+def offences(colours_only=False):
+    """Of the page that is open, its folded parts too."""
+    browser = session.browser
+    browser.run("document.querySelectorAll('details').forEach((part) => { part.open = true; })")
+    if not browser.run("return 'axe' in window"):
+        browser.cdp("Runtime.evaluate", expression=script().read_text(encoding="utf-8"))
+    return browser.driver.execute_async_script(CHECK, {"runOnly": ["cat.color"]} if colours_only else {})
+
+
+def assert_accessible(test):
+    """In light, in dark, where colours alone are others, and on a phone, which it fits."""
+    browser = session.browser
+    test.assertEqual(offences(), [])
+    browser.scheme("dark")
+    browser.wait("return document.documentElement.dataset.drawn === 'dark'")
+    test.assertEqual(offences(colours_only=True), [])
+    browser.scheme("light")
+    browser.size(*PHONE)
+    try:
+        browser.wait("return innerWidth === arguments[0] && document.documentElement.scrollWidth <= innerWidth", PHONE[0], what="the page to fit a phone")
+        test.assertEqual(offences(), [])
+    finally:
+        browser.size(1200, 900)
