@@ -122,11 +122,12 @@ api: packages-check
 	@mkdir -p build/api
 	doxygen Doxyfile
 
-# The pages of docs/, build/docs/index.html: built offline, a warning is an error; and their spelling.
+# The pages of docs/, build/docs/index.html: built offline, a warning is an error; their search as a reader uses it, and their spelling.
 docs: packages-docs build api
 	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank_python
 	/usr/bin/python3 -m sphinx -q -E -a -W --keep-going -b html docs build/docs
+	/usr/bin/python3 docs/check_search.py build/docs
 	/usr/bin/python3 docs/check_spelling.py README.md docs
 	/usr/bin/python3 docs/check_results.py $(if $(wildcard $(DATA)/.),--data $(DATA)) docs/results/*.md
 
