@@ -104,7 +104,7 @@ def spent(command):
 def reading(program, path, folder):
     config = folder / (path.name + ".ini")
     config.write_text(CONFIG.format(file=path))
-    return [program, "identify", str(config), "--job.threads=2", f"--archive.output={folder / 'out.h5'}"]
+    return [program, "identify", str(config), "--job.threads=2", "--force", f"--archive.output={folder / 'out.h5'}"]
 
 
 def main():
