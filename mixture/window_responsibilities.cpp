@@ -40,7 +40,15 @@ WindowResponsibilities::WindowResponsibilities(GaussianMixture mixture, FeatureC
     : windows_(windows) {
   check_order(clustered, windows);
   check_order(assigned, windows);
+  // What they are worked out of takes more room than they do where components are few.
+  const Index kept_of_a_point = clustered.points.rows() + clustered.covariances.rows() + 1;
+  const bool small = mixture.components() * windows <=
+                     kept_of_a_point * static_cast<Index>(clustered.windows.size() + assigned.windows.size());
+  for (FeatureCloud* cloud : {&clustered, &assigned}) std::vector<Index>().swap(cloud->runs);
   source_ = std::make_shared<const Source>(Source{std::move(mixture), {std::move(clustered), std::move(assigned)}});
+  if (!small) return;
+  stored_ = all();
+  source_.reset();
 }
 
 Index WindowResponsibilities::components() const { return sums_.size() > 0 ? sums_.rows() : fitted(); }

@@ -51,7 +51,9 @@ std::vector<Positions> parts_of(const std::vector<Trajectory>& runs, Role role) 
 /// Drops what no judge reads. States and their covariance are judged where the truth is known; without a sequence of
 /// modes a state says whether a sample has a mode.
 void keep_for_judges(const Trajectory& run, RunEvaluation& e) {
-  for (Eigen::MatrixXd* array : {&e.prediction, &e.smoothed_state, &e.smoothed_covariance}) array->resize(0, 0);
+  for (Eigen::MatrixXd* array :
+       {&e.prediction, &e.smoothed_state, &e.smoothed_covariance, &e.mode_probability_predicted})
+    array->resize(0, 0);
   if (run.truth.size() > 0) return;
   e.covariance.resize(0, 0);
   if (e.viterbi_mode.size() > 0) e.state.resize(0, 0);

@@ -41,7 +41,7 @@ class Collector {
     for (Index k = 0; k < e.log_density.size(); ++k) {
       if (std::isnan(e.log_density(k))) continue;
       add_probabilities(e, k);
-      if (!belongs(e, k)) continue;
+      if (mode_ >= 0 && scores.likeliest(k) != mode_) continue;
       add_scores(e, k, scores, z);
       if (run.truth.size() > 0) add_truth(run, e, k);
     }
@@ -65,12 +65,6 @@ class Collector {
   const std::vector<Index>& nees_states_;
   double lower_, upper_;
   std::array<double, coverage_levels.size()> band_edges_ = coverage_band_edges();  ///< of |z|
-
-  bool belongs(const RunEvaluation& e, Index k) const {
-    Index likeliest = 0;
-    if (mode_ >= 0) e.mode_probability_predicted.col(k).maxCoeff(&likeliest);
-    return mode_ < 0 || likeliest == mode_;
-  }
 
   void add_probabilities(const RunEvaluation& e, Index k) {
     const auto mu = e.mode_probability.col(k);

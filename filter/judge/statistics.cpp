@@ -10,8 +10,21 @@
 
 namespace modebank {
 
+namespace {
+
+Eigen::VectorXi likeliest_modes(const RunEvaluation& e) {
+  Eigen::VectorXi modes = Eigen::VectorXi::Zero(e.log_density.size());
+  if (e.mode_probability_predicted.rows() < 2) return modes;
+  for (Eigen::Index k = 0; k < modes.size(); ++k)
+    if (!std::isnan(e.log_density(k))) e.mode_probability_predicted.col(k).maxCoeff(&modes(k));
+  return modes;
+}
+
+}  // namespace
+
 RunScores score_run(const RunEvaluation& e) {
   RunScores scores;
+  scores.likeliest = likeliest_modes(e);
   scores.z = e.pit.unaryExpr([](double pit) { return std::isnan(pit) ? not_a_number : normal_score(pit); });
   OutputSeries z(static_cast<std::size_t>(e.pit.rows()));
   for (Eigen::Index k = 0; k < e.log_density.size(); ++k)

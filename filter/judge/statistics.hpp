@@ -14,6 +14,8 @@ struct RunScores {
   /// n_y x N, Phi^-1(pit): standard normal and white for a true filter of any kind (innovations of a mixture are not
   /// Gaussian); NaN where nothing was measured.
   Eigen::MatrixXd z;
+  /// N, the mode most probable before the measurement; 0 of samples without a score.
+  Eigen::VectorXi likeliest;
   /// p value of "no autocorrelation" of the scored samples' z: Ljung & Box per output, pooled by Fisher's method.
   double whiteness_p = 0.0;
 };

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "io/hdf5/links.hpp"
 #include "io/hdf5/rule.hpp"
 #include "io/hdf5/sizes.hpp"
+#include "io/hdf5/small_group.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -28,6 +30,13 @@ class GroupReader {
         problems_before_(problems ? problems->size() : 0),
         path_(std::move(path)) {}
 
+  /// A group that has been read whole.
+  GroupReader(hdf5::SmallGroup small, std::vector<std::string>* problems, std::string path)
+      : small_(std::move(small)),
+        problems_(problems),
+        problems_before_(problems ? problems->size() : 0),
+        path_(std::move(path)) {}
+
   /// From here on groups whose path `wanted` refuses are left unread. It must outlive the reader.
   void read_groups(const std::function<bool(const std::string& path)>& wanted) { wanted_ = &wanted; }
 
@@ -35,8 +44,7 @@ class GroupReader {
   void group(const std::string& name, const Sizes& known, Body body) {
     if (wanted_ && !(*wanted_)(path_ + "/" + name)) return;
     guarded(name, [&] {
-      GroupReader member(hdf5::open_group(group_.id(), require(name)), problems_, path_ + "/" + name);
-      member.wanted_ = wanted_;
+      GroupReader member = open_member(name);
       member.sizes_ = known;
       body(member);
       member.check_links();
@@ -63,7 +71,7 @@ class GroupReader {
   }
   template <class T>
   void optional_attribute(const std::string& name, T& value, const Rule& rule = rule::any) {
-    if (hdf5::has_attribute(group_.id(), name)) attribute(name, value, rule);
+    if (has_attribute(name)) attribute(name, value, rule);
   }
   template <class T>
   void attribute_unless(const T& /*absent*/, const std::string& name, T& value) {
@@ -72,7 +80,7 @@ class GroupReader {
   void constant_attribute(const std::string& name, const std::string& expected);
   void attribute_texts(const std::string& name, std::vector<std::string>& texts);
   void optional_attribute_texts(const std::string& name, std::vector<std::string>& texts) {
-    if (hdf5::has_attribute(group_.id(), name)) attribute_texts(name, texts);
+    if (has_attribute(name)) attribute_texts(name, texts);
   }
   /// All attributes, in name order.
   void attributes(std::vector<std::pair<std::string, std::string>>& pairs);
@@ -124,7 +132,7 @@ class GroupReader {
   template <class Row, class... T>
   void table(const std::string& name, std::vector<Row>& rows, const Column<Row, T>&... columns) {
     guarded(name, [&] {
-      const hdf5::StoredArray array(group_.id(), hdf5::Place::dataset, require(name));
+      const hdf5::StoredArray array = open_array(name);
       (guarded(name, [&] { decode(array, columns, sizes_, rows); }), ...);
     });
   }
@@ -170,6 +178,10 @@ class GroupReader {
   }
   void guarded(const std::string& name, const std::function<void()>& step);
   const std::string& require(const std::string& name) const;
+  GroupReader open_member(const std::string& name) const;
+  std::optional<hdf5::SmallGroup> small_member(haddr_t address) const;
+  hdf5::StoredArray open_array(const std::string& name) const;
+  bool has_attribute(const std::string& name) const;
   hdf5::StoredArray open_numbers(const std::string& name, const Letters& letters, H5T_class_t kind);
   hdf5::StoredArray open_attribute(const std::string& name, H5T_class_t kind, bool scalar) const;
   void read_attribute(const std::string& name, std::string& value) const;
@@ -179,7 +191,9 @@ class GroupReader {
     open_attribute(name, kind, true).read(hdf5::memory_type<Number>(), &value);
   }
 
-  hdf5::Handle group_;
+  hdf5::Handle group_;  ///< unless it is a small one
+  std::optional<hdf5::SmallGroup> small_;
+  mutable std::shared_ptr<hdf5::FileBytes> file_;  ///< what small groups below are read from, from the first on
   std::vector<std::string>* problems_;
   std::size_t problems_before_;
   std::string path_;
@@ -187,6 +201,7 @@ class GroupReader {
   const std::function<bool(const std::string&)>* wanted_ = nullptr;
   struct Member {
     bool hard;
+    haddr_t address;
     bool asked = false;
   };
   using Members = std::map<std::string, Member>;

@@ -85,6 +85,10 @@ H5FD_class_t description() {
     return 0;
   };
   driver.get_eof = [](const H5FD_t* file, H5FD_mem_t) { return ours(file).size; };
+  driver.get_handle = [](H5FD_t* file, hid_t, void** handle) -> herr_t {
+    *handle = &ours(file).descriptor;
+    return 0;
+  };
   driver.read = read_all;
   driver.write = [](H5FD_t*, H5FD_mem_t, hid_t, haddr_t, std::size_t, const void*) -> herr_t { return -1; };
   constexpr H5FD_mem_t kinds[] = H5FD_FLMAP_SINGLE;

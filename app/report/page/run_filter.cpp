@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <set>
+
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/pit_histogram.hpp"
 #include "app/report/page/residual_pool.hpp"
@@ -121,7 +123,10 @@ nlohmann::json filter_section(const Archive& archive) {
       {"autocorrelations", json::array()}, {"horizons", json::array()},
       {"free_runs", json::array()},        {"verdicts", json::array()},
       {"tail", 0.5 * (1.0 - drawn_level)}, {"rmse_name", with_unit("RMSE", common_unit(archive.recording->states))}};
-  for (const SummaryRow& row : archive.summary) section["scores"].push_back(score_row(row));
+  std::set<std::string> listed{"*"};
+  for (const std::size_t i : drawn_runs(*archive.recording)) listed.insert(archive.recording->runs[i].run);
+  for (const SummaryRow& row : archive.summary)
+    if (listed.contains(row.run)) section["scores"].push_back(score_row(row));
   for (const Role role : {Role::test, Role::train}) {
     for (const FilterEvaluation& evaluation : archive.evaluations) {
       json histogram = histogram_of(archive, evaluation, role);

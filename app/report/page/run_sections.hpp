@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "app/config/config.hpp"
 #include "app/report/page/page_arrays.hpp"
@@ -24,7 +25,9 @@ nlohmann::json picture_of(const Archive& archive);
 struct Detail {
   Index finest = 1, finest_others = 1;
 };
-/// Every run's signals over time, and what each filter said of them.
+/// Positions of the runs that the page draws and lists one by one: of each role the first hundred.
+std::vector<std::size_t> drawn_runs(const Recording& recording);
+/// Those runs' signals over time, and what each filter said of them.
 nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const Detail& detail);
 /// The same in as fine a detail as at most so many bytes allow.
 nlohmann::json affordable_runs_section(const Archive& archive, PageArrays& arrays, std::size_t bytes);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <map>
+
 #include "app/report/page/prediction_band.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/series.hpp"
@@ -68,6 +70,7 @@ json channels_of(const std::vector<Channel>& channels) {
 json run_signals(const Archive& archive, std::size_t i, PageArrays& arrays, const Detail& detail) {
   const Trajectory& run = archive.recording->runs[i];
   json entry = {{"name", run.run},
+                {"position", i},
                 {"role", name_of(run.role)},
                 {"lag_s", run.lag_s},
                 {"time", time_axis(arrays, run.time_s, detail.finest)},
@@ -86,35 +89,53 @@ json run_signals(const Archive& archive, std::size_t i, PageArrays& arrays, cons
   return entry;
 }
 
-/// What the page says of samples it does not draw one by one; empty where it draws all.
-std::string detail_note(const Detail& detail) {
+/// What the page says of runs and samples that it does not draw one by one; empty where it draws all.
+std::string detail_note(const Detail& detail, std::size_t drawn, std::size_t runs) {
   std::string text;
+  if (drawn < runs)
+    text = fmt::format(
+        "Of {} runs {} are drawn and listed, the first of each kind; all are in the tables of all runs "
+        "together. ",
+        runs, drawn);
   if (detail.finest > 1)
-    text = fmt::format("To keep the page small, signals are drawn by the extremes of every {} samples at the finest",
-                       detail.finest);
+    text += fmt::format("To keep the page small, signals are drawn by the extremes of every {} samples at the finest",
+                        detail.finest);
   if (detail.finest_others > detail.finest)
-    text += fmt::format("{} of {} samples",
-                        text.empty() ? "To keep the page small, filters other than the bank are drawn by the extremes"
-                                     : ", other filters' by those",
-                        detail.finest_others);
-  return text.empty() ? text : text + " (report.size_mb).";
+    text +=
+        fmt::format("{} of {} samples",
+                    detail.finest == 1 ? "To keep the page small, filters other than the bank are drawn by the extremes"
+                                       : ", other filters' by those",
+                    detail.finest_others);
+  const bool coarse = detail.finest > 1 || detail.finest_others > 1;
+  return coarse ? text + " (report.size_mb)." : text;
 }
 
 }  // namespace
 
+std::vector<std::size_t> drawn_runs(const Recording& recording) {
+  constexpr std::size_t most_of_a_role = 100;  // beyond, nobody looks for a run in a page, and it takes minutes to make
+  std::map<Role, std::size_t> taken;
+  std::vector<std::size_t> drawn;
+  for (std::size_t i = 0; i < recording.runs.size(); ++i)
+    if (taken[recording.runs[i].role]++ < most_of_a_role) drawn.push_back(i);
+  return drawn;
+}
+
 nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const Detail& detail) {
   if (!archive.recording) return nullptr;
-  json runs = json::array();
-  for (std::size_t i = 0; i < archive.recording->runs.size(); ++i)
-    runs.push_back(run_signals(archive, i, arrays, detail));
+  json runs = json::array(), names = json::array();
+  const std::vector<std::size_t> drawn = drawn_runs(*archive.recording);
+  for (const std::size_t i : drawn) runs.push_back(run_signals(archive, i, arrays, detail));
+  for (const Trajectory& run : archive.recording->runs) names.push_back(run.run);
   constexpr double outer = 0.5 * (1.0 - drawn_level);
   const auto n_y = static_cast<double>(archive.recording->state_count());
   return {{"states", channels_of(archive.recording->states)},
           {"inputs", channels_of(archive.recording->inputs)},
-          {"note", detail_note(detail)},
+          {"note", detail_note(detail, drawn.size(), names.size())},
           {"level", drawn_level},
           {"outlier_level", outlier_level},
           {"nis_bounds", {chi_square_quantile(outer, n_y), chi_square_quantile(1.0 - outer, n_y)}},
+          {"names", names},
           {"runs", runs}};
 }
 

@@ -112,6 +112,19 @@ TEST(ReportSeries, LevelsHoldTheExtremesOfEverySample) {
   EXPECT_EQ(coarse["levels"][0]["bucket"], 64);
 }
 
+TEST(ReportRuns, OfThousandsTheFirstHundredOfEachRoleAreDrawn) {
+  Recording recording;
+  recording.runs.resize(10000);
+  for (std::size_t i = 0; i < recording.runs.size(); ++i)
+    recording.runs[i].role = i % 4 == 0 ? Role::test : Role::train;
+  const std::vector<std::size_t> drawn = app::report::drawn_runs(recording);
+  ASSERT_EQ(drawn.size(), 200u);
+  EXPECT_TRUE(std::is_sorted(drawn.begin(), drawn.end()));
+  EXPECT_EQ(drawn.back(), 4u * 99u);  // the hundredth that is held out
+  recording.runs.resize(40);
+  EXPECT_EQ(app::report::drawn_runs(recording).size(), 40u);
+}
+
 TEST(ReportPage, NamesCannotLeaveTheirPlace) {
   app::report::Page page;
   page.title = "</title><script>alert(1)</script>";

@@ -71,7 +71,7 @@ async function drawWindows(windows, runs, goTo) {
     return;
   }
   const place = section('windows', 'Local models');
-  place.append(...await drawCloud(windows, runs.runs.map((run) => run.name), goTo));
+  place.append(...await drawCloud(windows, runs.names, goTo));
   const all = `${windows.count.t} windows of ${windows.length} transitions`;
   const text = windows.step > 1 ? `${all}; every ${windows.step}th is drawn.` : `${all}.`;
   place.querySelector('h2').after(h('p', {}, text));
@@ -112,8 +112,10 @@ async function drawRest() {
   drawBank(data.bank);
   drawFilter(data.filter, runs, state);
   await drawWindows(data.windows, runs, (run, begin, end) => {
-    const around = 3 * (end - begin), {time} = runs.runs[run];
-    state.select(run, [Math.max(time.start, begin - around), Math.min(time.end, end + around)], [begin, end]);
+    const drawn = runs.runs.findIndex(({position}) => position === run);
+    if (drawn < 0) return;
+    const around = 3 * (end - begin), {time} = runs.runs[drawn];
+    state.select(drawn, [Math.max(time.start, begin - around), Math.min(time.end, end + around)], [begin, end]);
     document.getElementById('data').scrollIntoView();
   });
   drawSelection(data.selection);
