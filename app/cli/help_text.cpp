@@ -44,6 +44,11 @@ std::string option_text(const Option& option) {
                                "\n      "));
 }
 
+std::string when_text(const Option& option) {
+  return fmt::format("      {}\n",
+                     fmt::join(filled("When to touch it: " + option.when + ".", help_width - 6), "\n      "));
+}
+
 /// Two columns; the second is wrapped below itself.
 std::string row(const std::string& left, const std::string& right, std::size_t left_width) {
   std::string text;
@@ -131,7 +136,7 @@ std::string help_on(const std::string& name) {
   if (const std::string section = section_text(name); !section.empty()) return section;
   std::vector<std::string> known;
   if (const std::string term = term_text(name, known); !term.empty()) return term;
-  if (const Option* option = find_option(name)) return option_text(*option);
+  if (const Option* option = find_option(name)) return option_text(*option) + when_text(*option);
   const std::string terms = fmt::format("{}", fmt::join(known.begin(), known.begin() + 8, ", "));
   for (const Command& command : command_table()) known.push_back(command.name);
   for (const Option& option : option_table()) known.push_back(option.key);

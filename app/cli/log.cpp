@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "ident/base/printable.hpp"
 
@@ -48,6 +49,13 @@ bool colours_wanted() {
 }
 
 }  // namespace
+
+std::string error_mark() {
+  const char* terminal = std::getenv("TERM");
+  const bool coloured =
+      colours_wanted() && isatty(STDERR_FILENO) == 1 && terminal != nullptr && std::string_view(terminal) != "dumb";
+  return coloured ? "\x1b[1;31mmodebank:\x1b[0m" : "modebank:";
+}
 
 void set_up_log(Verbosity verbosity) {
   auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>(colours_wanted() ? spdlog::color_mode::automatic

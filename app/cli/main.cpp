@@ -11,6 +11,7 @@
 
 #include "app/cli/command_line.hpp"
 #include "app/cli/commands.hpp"
+#include "app/cli/log.hpp"
 #include "app/cli/result.hpp"
 #include "ident/base/printable.hpp"
 #include "io/files/standard_error.hpp"
@@ -22,7 +23,7 @@ constexpr int usage_error = 2;
 constexpr int run_failure = 1;
 
 int fail(int status, const char* what) {
-  modebank::say(fmt::format("modebank: {}\n", modebank::printable(what)));
+  modebank::say(fmt::format("{} {}\n", modebank::app::error_mark(), modebank::printable(what)));
   return status;
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,12 @@
 namespace modebank::app {
 namespace {
 
+std::vector<std::string> lines_in(const std::string& text) {
+  std::vector<std::string> lines;
+  boost::split(lines, text, [](char c) { return c == '\n'; });
+  return lines;
+}
+
 /// The resolved configuration, each value with where it comes from: a comment, so that the text is a configuration.
 std::string text_with_origins(const Config& config, const Origins& origins) {
   std::string text, section;
@@ -19,11 +26,11 @@ std::string text_with_origins(const Config& config, const Origins& origins) {
     if (option.section() != section) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", option.section());
     section = option.section();
     const auto origin = origins.find(option.key);
-    std::vector<std::string> values;
-    boost::split(values, option.get(config), [](char c) { return c == '\n'; });
-    for (const std::string& value : values)
-      text += fmt::format("{:<40}  # {}\n", option.name() + " =" + (value.empty() ? "" : " " + value),
-                          origin == origins.end() ? "default" : origin->second);
+    const std::vector<std::string> values = lines_in(option.get(config));
+    const std::vector<std::string> from = lines_in(origin == origins.end() ? "default" : origin->second);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      text += fmt::format("{:<40}  # {}\n", option.name() + " =" + (values[i].empty() ? "" : " " + values[i]),
+                          from[std::min(i, from.size() - 1)]);
   }
   return text;
 }
@@ -32,8 +39,9 @@ nlohmann::json keys_json(const Config& config, const Origins& origins) {
   nlohmann::json keys = nlohmann::json::object();
   for (const Option& option : option_table()) {
     const auto origin = origins.find(option.key);
-    keys[option.key] = {{"value", option.get(config)},
-                        {"origin", origin == origins.end() ? "default" : origin->second}};
+    keys[option.key] = {
+        {"value", option.get(config)},
+        {"origin", origin == origins.end() ? "default" : boost::replace_all_copy(origin->second, "\n", ", ")}};
   }
   return keys;
 }
@@ -47,6 +55,7 @@ nlohmann::ordered_json schema_of(const Option& option) {
     schema["description"] = fmt::format("{} ({})", option.help, option.range);
   if (!option.unit.empty()) schema["x-unit"] = option.unit;
   schema["x-basic"] = option.basic;
+  schema["x-when"] = option.when;
   if (!option.repeatable) return schema;
   return {{"oneOf", {schema, {{"type", "array"}, {"items", {{"type", "string"}}}}}}};
 }

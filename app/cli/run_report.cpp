@@ -38,6 +38,19 @@ void report_run(const std::filesystem::path& file, const std::filesystem::path& 
   if (!options.figures.empty()) report::write_figures(figures, options, written);
 }
 
+/// The page or pages, and figures, of what was named.
+void report_files(const CommandLine& line, const std::filesystem::path& page, const ReportConfig& options,
+                  report::Written& written) {
+  if (line.files.size() > 1) {
+    if (!options.figures.empty()) throw ConfigurationError("report.figures are drawn of one archive or study");
+    report::report_comparison({line.files.begin(), line.files.end()}, page, options, written);
+  } else if (report::is_study(line.files.front())) {
+    report::report_study(line.files.front(), page, options, written);
+  } else {
+    report_run(line.files.front(), page, options, written);
+  }
+}
+
 }  // namespace
 
 int run_report(const CommandLine& line) {
@@ -49,13 +62,12 @@ int run_report(const CommandLine& line) {
   const ReportConfig options = stored_config("", line.overrides).report;
   const std::filesystem::path page = page_if_asked(line, options);
   report::Written written{[&](const std::string& text) { print_text(line, text); }, {}};
-  if (line.files.size() > 1) {
-    if (!options.figures.empty()) throw ConfigurationError("report.figures are drawn of one archive or study");
-    report::report_comparison({line.files.begin(), line.files.end()}, page, options, written);
-  } else if (report::is_study(line.files.front())) {
-    report::report_study(line.files.front(), page, options, written);
-  } else {
-    report_run(line.files.front(), page, options, written);
+  try {
+    report_files(line, page, options, written);
+  } catch (const DataError& error) {
+    // One figure that cannot be drawn takes nothing from the others.
+    if (!written.files.empty()) print_json(line, {{"written", written.files}, {"error", error.what()}}, 1);
+    throw;
   }
   print_json(line, {{"written", written.files}});
   return 0;

@@ -15,6 +15,7 @@
 #include "app/cli/track_input.hpp"
 #include "app/cli/track_messages.hpp"
 #include "app/cli/track_output.hpp"
+#include "app/cli/track_thinning.hpp"
 #include "app/cli/track_watchdog.hpp"
 #include "app/config/config_file.hpp"
 #include "filter/step/alarm.hpp"
@@ -35,7 +36,8 @@ class Tracker {
         judge_(bank_, config.track.level, config.track.alarm),
         reader_({config.data.time.empty() ? "time" : config.data.time.front(), config.data.input, config.data.state},
                 config.track.format),
-        watchdog_(config.track.watchdog_s, now_s()) {
+        watchdog_(config.track.watchdog_s, now_s()),
+        thinning_(opened_.options.time_steps == TimeSteps::single ? 0.0 : bank_.dt_s) {
     check_columns(config, bank_, archive);
     const FilterOptions& options = opened_.options;
     identity_ = fmt::format("{} {} {} {} {} {}", archive_digest(archive), name_of(config.track.filter),
@@ -88,6 +90,8 @@ class Tracker {
   std::optional<LineStream> lines_;  ///< while it runs
   LiveMessages messages_;
   Watchdog watchdog_;
+  SampleThinning thinning_;
+  bool thinning_told_ = false;
   bool checkpoint_due_ = false, checkpoint_fails_ = false;
 
   static double now_s() { return std::chrono::duration<double>(LineStream::Clock::now().time_since_epoch()).count(); }
@@ -162,7 +166,8 @@ class Tracker {
       writer_.emplace(config_.data.state, bank_.mode_count(), reader_.format() == LineFormat::ndjson);
       writer_->header(out_);
     }
-    if (kind == SampleReader::Line::sample && comes_in_time(reader_.sample().time_s)) {
+    if (kind == SampleReader::Line::sample && comes_in_time(reader_.sample().time_s) &&
+        is_taken(reader_.sample().time_s)) {
       tell_overlarge(reader_.sample().measurement);
       step(reader_.sample());
     }
@@ -199,6 +204,18 @@ class Tracker {
       return true;
     }
     complain(fmt::format("time {} s is not after {} s", time_s, *last_time_s_));
+    return false;
+  }
+
+  /// A log at 100 Hz, say, for a model that was learned at 10 Hz.
+  bool is_taken(double time_s) {
+    if (thinning_.takes(time_s)) return true;
+    if (!thinning_told_)
+      messages_.say(fmt::format(
+          "line {}: a sample {:.3g} s after the one before, the archive's model steps {:.3g} s: one of each "
+          "step is taken, the others get no line",
+          line_number_, thinning_.since_s(), bank_.dt_s));
+    thinning_told_ = true;
     return false;
   }
 

@@ -228,7 +228,7 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
     if (!fresh && !(option && option->repeatable))
       throw ConfigurationError(fmt::format("{}: {} is already set in line {}", where, entry.key, earlier->second));
     apply(config, where, entry.key, entry.value, entry.has_comment);
-    found[entry.key] = where;
+    found[entry.key] = fresh ? where : found[entry.key] + "\n" + where;
     if (entry.comment_touches_value)
       spdlog::warn("{}: {} is cut to '{}': # starts a comment, so no value can hold one", where, entry.key,
                    entry.value);

@@ -5,6 +5,7 @@
 #include <boost/algorithm/string.hpp>
 
 #include "app/config/options/sections.hpp"
+#include "app/config/options/when_to_touch.hpp"
 
 namespace modebank::app {
 
@@ -57,6 +58,7 @@ const std::vector<Option>& option_table() {
                          study_options, track_options, report_options, simulate_options})
       for (Option& entry : section()) {
         entry.basic = is_basic(entry.key);
+        entry.when = when_to_touch(entry.key);
         all.push_back(std::move(entry));
       }
     return all;

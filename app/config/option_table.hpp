@@ -20,6 +20,7 @@ struct Option {
   std::function<std::string(const Config&)> get;         ///< text that `set` reads back to the same value
   std::optional<SimulatedSystem> only_for = {};          ///< the simulated system that has this key; empty: all
   bool basic = false;                                    ///< among the few that most users set
+  std::string when = {};                                 ///< when to touch it: a sentence without its full stop
   bool repeatable = false;  ///< may stand in several lines of a file; `get` joins them by newlines
 
   /// The words to choose from, of a range such as "auto | point | comma"; empty where other values are allowed.

@@ -286,7 +286,8 @@ Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFil
 
 std::string configuration_text(const Proposal& proposal, const std::string& command) {
   constexpr std::size_t longest = 100;
-  const std::string shown = command.size() > longest ? command.substr(0, longest) + " ..." : command;
+  const std::string shown =
+      command.size() > longest ? command.substr(0, command.rfind(' ', longest)) + " ..." : command;
   std::string text = fmt::format("# Written by {}: a start, to be looked at.\n", shown);
   for (const std::string& doubt : proposal.doubts) text += fmt::format("# ! {}\n", doubt);
   text += "\n[data]\n";

@@ -16,11 +16,20 @@ std::string shown_name(std::string name) {
   return name;
 }
 
-std::string row_text(const SurveyedChannel& channel, const SurveyedTable& table) {
+/// The name of an array's element without its position: covariance[3].
+std::string array_of(const std::string& name) {
+  return name.ends_with("]") ? name.substr(0, name.rfind('[')) : std::string();
+}
+
+struct Row {
+  std::string name, unit, content;
+};
+
+Row row_of(const SurveyedChannel& channel, const SurveyedTable& table) {
   const std::string name = shown_name(channel.name);
   const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
-  if (channel.type == "time" || is_time) return fmt::format("  {:<44} times\n", name);
-  if (!channel.is_number()) return fmt::format("  {:<44} text\n", name);
+  if (channel.type == "time" || is_time) return {name, "", "times"};
+  if (!channel.is_number()) return {name, "", "text"};
   std::string notes;
   if (channel.check.missing > 0) notes += fmt::format("  {} missing", channel.check.missing);
   if (channel.check.quantum > 0.0) notes += fmt::format("  by {:.4g}", channel.check.quantum);
@@ -29,18 +38,13 @@ std::string row_text(const SurveyedChannel& channel, const SurveyedTable& table)
   const std::string range = channel.moves()
                                 ? fmt::format("{:.5g} to {:.5g}", channel.check.least, channel.check.largest)
                                 : fmt::format("constant {:.5g}", channel.check.least);
-  return fmt::format("  {:<44} {:<8} {}{}\n", name, channel.unit, range, notes);
+  return {name, channel.unit, range + notes};
 }
 
-/// The name of an array's element without its position: covariance[3].
-std::string array_of(const std::string& name) {
-  return name.ends_with("]") ? name.substr(0, name.rfind('[')) : std::string();
-}
-
-/// Elements of an array that all stand still share a line.
-std::string rows_text(const SurveyedTable& table) {
+/// Elements of an array that all stand still share a row.
+std::vector<Row> rows_of(const SurveyedTable& table) {
   const std::vector<SurveyedChannel>& channels = table.channels;
-  std::string text;
+  std::vector<Row> rows;
   for (std::size_t first = 0; first < channels.size();) {
     const std::string array = array_of(channels[first].name);
     std::size_t end = first;
@@ -48,11 +52,25 @@ std::string rows_text(const SurveyedTable& table) {
            channels[end].is_number() && !channels[end].moves())
       ++end;
     if (end > first + 1)
-      text += fmt::format("  {:<44} {:<8} {} constants\n", array + "[]", channels[first].unit, end - first);
+      rows.push_back({shown_name(array) + "[]", channels[first].unit, fmt::format("{} constants", end - first)});
     else
-      text += row_text(channels[first], table);
+      rows.push_back(row_of(channels[first], table));
     first = std::max(end, first + 1);
   }
+  return rows;
+}
+
+/// Columns as wide as what stands in them.
+std::string rows_text(const SurveyedTable& table) {
+  const std::vector<Row> rows = rows_of(table);
+  std::size_t name = 0, unit = 0;
+  for (const Row& row : rows) {
+    name = std::max(name, row.name.size());
+    unit = std::max(unit, row.unit.size());
+  }
+  std::string text;
+  for (const Row& row : rows)
+    text += fmt::format("  {:<{}}  {:<{}}{}\n", row.name, name, row.unit, unit == 0 ? 0 : unit + 2, row.content);
   return text;
 }
 
@@ -62,7 +80,9 @@ std::string survey_text(const std::vector<FileSet>& sets, const std::vector<Surv
   std::string text;
   for (std::size_t i = 0; i < surveyed.size(); ++i) {
     text += surveyed[i].path.string();
-    if (sets[i].files.size() > 1) text += fmt::format(" and {} more: ranges are over all", sets[i].files.size() - 1);
+    if (sets[i].files.size() > 1)
+      text +=
+          fmt::format(" and {} more: rows, rate and time are of this one, ranges over all", sets[i].files.size() - 1);
     text += "\n";
     for (const std::string& note : surveyed[i].notes) text += fmt::format("  {}\n", note);
     for (const SurveyedTable& table : surveyed[i].tables) {

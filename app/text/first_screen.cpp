@@ -53,10 +53,22 @@ std::string modes_section(const Archive& archive, const FirstScreen& screen, int
   boost::algorithm::trim_right(table);
   boost::replace_all(table, "\n", "\n" + indent);
   std::string head = fmt::format("{} on {} runs", screen.mode_count, words_for(screen.role));
-  if (!screen.modes.gain_unit.empty()) head += fmt::format("; steady gains in {}", screen.modes.gain_unit);
+  const bool units = !screen.modes.gain_unit.empty();
+  if (units) head += fmt::format("; steady gains in {}", screen.modes.gain_unit);
   if (modes.gains_left_out > 0)
-    head += fmt::format("; `modebank show` has {} more columns of gains", modes.gains_left_out);
+    head += units ? fmt::format(", {} more in `modebank show`", modes.gains_left_out)
+                  : fmt::format("; `modebank show` has {} more column{} of gains", modes.gains_left_out,
+                                modes.gains_left_out == 1 ? "" : "s");
   return section("modes", head, 1, columns) + narrowed(indent + table, columns) + "\n";
+}
+
+/// What to type, as it can be typed: the program as it was called, the archive's own name unless it is long.
+std::string typed(std::string next, const std::string& program, const std::string& file) {
+  constexpr std::size_t short_name = 32;
+  boost::replace_all(next, "`modebank ", "`" + program + " ");
+  if (file.size() <= short_name && file.find(' ') == std::string::npos)
+    boost::replace_all(next, " ARCHIVE", " " + file);
+  return next;
 }
 
 }  // namespace
@@ -70,12 +82,10 @@ std::string first_screen(const Archive& archive, const Settings& settings, const
   };
   const std::string before =
       part("read", screen.read, screen.inputs_ahead ? 3 : 2) + part("finding", screen.finding, finding_lines);
-  const std::string after = part("band", screen.band, 3) +
-                            part("mean", screen.mean, screen.free_run_start == 0 ? 2 : 3) +
-                            part("warning", screen.warning, 2) +
-                            part("next", boost::replace_all_copy(screen.next, "`modebank ", "`" + program + " "),
-                                 program == "modebank" ? 2 : 3) +
-                            file_line(file, columns);
+  const std::string after =
+      part("band", screen.band, 3) + part("mean", screen.mean, screen.free_run_start == 0 ? 2 : 3) +
+      part("warning", screen.warning, 2) +
+      part("next", typed(screen.next, program, file), program == "modebank" ? 2 : 3) + file_line(file, columns);
   return before + modes_section(archive, screen, screen_lines - line_count(before) - line_count(after), columns) +
          after;
 }

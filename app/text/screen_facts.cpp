@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
+#include <cmath>
 #include <cstdlib>
 
 #include "app/chain/judged_runs.hpp"
@@ -19,6 +20,10 @@ double input_lag(const Archive& archive, const Settings& settings) {
   if (archive.lag) return archive.lag->correction == LagCorrection::none ? 0.0 : archive.lag->lag.mean;
   const auto said = settings.find("data.lag_s");
   return said == settings.end() ? 0.0 : std::atof(said->second.c_str());
+}
+
+std::string lag_words(double lag_s) {
+  return fmt::format("{:.3f} s {} than recorded", std::abs(lag_s), lag_s < 0.0 ? "earlier" : "later");
 }
 
 std::string read_words(const Archive& archive, const Settings& settings) {
@@ -37,7 +42,7 @@ std::string read_words(const Archive& archive, const Settings& settings) {
   text += fmt::format(" of {:.3g} s; {}", recording.median_period_s(), fmt::join(names_of(recording.states), ", "));
   if (!recording.inputs.empty()) text += fmt::format(" from {}", fmt::join(names_of(recording.inputs), ", "));
   if (archive.lag && archive.lag->correction != LagCorrection::none)
-    text += fmt::format(", which act {:+.3f} s later", archive.lag->lag.mean);
+    text += fmt::format(", which act {}", lag_words(archive.lag->lag.mean));
   if (const double lag_s = input_lag(archive, settings); lag_s < 0.0)
     text += fmt::format("{}the filter needs inputs {:.3f} s ahead of the states", archive.lag ? ": " : "; ", -lag_s);
   if (archive.learned_transitions > 0)
@@ -49,7 +54,7 @@ std::string read_words(const Archive& archive, const Settings& settings) {
 }
 
 std::string verdict_words(Verdict verdict) {
-  if (verdict == Verdict::undecided) return "undecided, for too few samples";
+  if (verdict == Verdict::undecided) return "undecided, too few independent samples to tell";
   return fmt::format("{}, {}", name_of(verdict), calibration_words(verdict));
 }
 

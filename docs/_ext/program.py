@@ -49,13 +49,10 @@ def command_rows():
             yield group, named[1]
 
 
-def basic_keys():
-    """Keys that most users set: in the schema that editors are given."""
-    def marked(node):
-        return isinstance(node, dict) and (node.get("x-basic", False) or any(marked(part) for part in node.get("oneOf", [])))
-
+def schema_of_keys():
+    """What the schema that editors are given says of each key."""
     sections = json.loads(ask("config", "--schema"))["properties"]
-    return {f"{section}.{name}" for section, content in sections.items() for name, key in content["properties"].items() if marked(key)}
+    return {f"{section}.{name}": key.get("oneOf", [key])[0] for section, content in sections.items() for name, key in content["properties"].items()}
 
 
 def terms():
@@ -68,15 +65,15 @@ def plain(text):
 
 
 def keys_page():
-    lines, section, basic = [], None, basic_keys()
+    lines, section, schema = [], None, schema_of_keys()
     for key, allowed, unit, default, text in key_rows():
         if key.split(".")[0] != section:
             section = key.split(".")[0]
             lines += [f"## {section}", "", SECTIONS.get(section, ""), ""]
         facts = f"allowed: {plain(allowed)}" + (f"; unit: {plain(unit)}" if unit else "")
         facts += f"; default: `{default}`" if default else "; default: empty"
-        facts += "; **basic**" if key in basic else ""
-        lines += [f"````{{confval}} {key}", plain(text[:1].upper() + text[1:]) + ".", "", f"*{facts}*", "````", ""]
+        facts += "; **basic**" if schema[key]["x-basic"] else ""
+        lines += [f"````{{confval}} {key}", plain(text[:1].upper() + text[1:]) + ".", "", f"*{facts}*", "", f"When to touch it: {plain(schema[key]['x-when'])}.", "````", ""]
     return "\n".join(lines)
 
 

@@ -14,8 +14,8 @@ namespace {
 
 /// Four digits, so that the ratio of two such rates is whole to a thousandth.
 double rounded(double value) {
-  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
-  return std::round(value / unit) * unit;
+  const double per_unit = std::pow(10.0, 3.0 - std::floor(std::log10(value)));
+  return std::round(value * per_unit) / per_unit;  // 0.4588 prints so; 4588 * 0.0001 does not
 }
 
 /// The rate next to `wanted_hz` that a lower one goes into, or that goes into a higher one: at least twice.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ident/base/not_a_number.hpp"
+#include "ident/base/work_counter.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
 #include "io/import/csv_dialect.hpp"
@@ -228,6 +229,12 @@ Table parse_rows(std::string_view file, std::string_view text, const Head& head,
     text = prepared.text;
   }
   CsvPass pass(file, sink, head.dialect.delimiter());
+  constexpr std::size_t portion_bytes = 1'000'000;
+  WorkCounter counter("MB of " + std::filesystem::path(file).filename().string(), text.size() / portion_bytes);
+  for (; text.size() > portion_bytes; counter.add()) {
+    pass.feed(text.substr(0, portion_bytes));
+    text.remove_prefix(portion_bytes);
+  }
   pass.feed(text);
   pass.finish();
   if (sink.time_column != TableSink::none) sink.stamps.finish(file, sink.table);

@@ -93,9 +93,10 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
     outcomes[plan] = try_read(plans[plan], options, as_they_stand);
     return plan;
   };
-  WorkCounter counter("files", plans.size());
+  std::optional<WorkCounter> counter;  // of one file its own reading is counted
+  if (plans.size() > 1) counter.emplace("files", plans.size());
   const auto collect = [&](std::size_t plan) {
-    counter.add();
+    if (counter) counter->add();
     Outcome outcome = std::exchange(outcomes[plan], {});
     if (outcome.error && !error) error = outcome.error;
     failed = error != nullptr;

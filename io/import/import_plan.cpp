@@ -67,6 +67,7 @@ void plan_times(FilePlan& plan, ColumnFinder& find, const DataOptions& options) 
     plan.sources[plan.runs_source].run = find.text(plan.runs_source, options.run);
   }
   plan.states_clock = plan.inputs_clock = timed;
+  plan.by_row = true;
 }
 
 void plan_columns(FilePlan& plan, const DataOptions& options, const std::shared_ptr<const DerivedChannels>& derived) {

@@ -48,15 +48,16 @@ struct FilePlan {
   std::vector<ColumnRef> where;   ///< one or none
   std::vector<JointColumn> joint;
   std::vector<Channel> states, inputs;  ///< names, and units where the files say them
-  /// Sources whose times the states and the inputs have; one and the same where rows correspond. What comes from
-  /// another source is brought to these times.
+  bool by_row = false;                  ///< Join::row
+  /// Sources whose times the states and the inputs have; one and the same where rows correspond, or where the first
+  /// state and the first input stand in one table. What comes from another source is brought to these times.
   std::size_t states_clock = 0, inputs_clock = 0;
   std::size_t runs_source = 0;     ///< where rows correspond: whose text column holds the rows' run names, if any
   std::optional<ColumnRef> label;  ///< column of labels, in TableRequest::texts
   std::vector<std::string> notes;
 
   /// Whether row i of every source belongs to row i of the others (one table, or Join::row).
-  bool rows_correspond() const { return states_clock == inputs_clock; }
+  bool rows_correspond() const { return by_row || sources.size() == 1; }
 
   /// What is read of a file, and by which of `sources`.
   struct FileRequests {

@@ -98,7 +98,7 @@ RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::
   Gathered states{plan.state, {}}, inputs{plan.input, {}};
   const auto gather = [&](const std::vector<ColumnRef>& refs, std::vector<RunStreams::Companion>& companions) {
     for (std::size_t i = 0; i < refs.size(); ++i) {
-      companions[i].with_states = plan.rows_correspond() || refs[i].source != plan.inputs_clock;
+      companions[i].with_states = plan.states_clock == plan.inputs_clock || refs[i].source != plan.inputs_clock;
       Gathered& with = companions[i].with_states ? states : inputs;
       with.refs.push_back(refs[i]);
       with.companions.push_back(&companions[i]);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "ident/base/work_counter.hpp"
 #include "io/recording/bag.hpp"
 #include "io/recording/byte_source.hpp"
 #include "io/recording/db3.hpp"
@@ -126,7 +127,12 @@ std::vector<LogRows> RosLog::read(const std::vector<LogRequest>& requests, std::
     for (std::size_t c = 0; c < wanted.size(); ++c)
       if (used != nullptr && wanted[c]) used->add_definition(topic_of(c).name, topic_of(c).type, part.decoders[c]);
     const std::string file = files_[p].string();
+    std::size_t messages = 0;
+    for (std::size_t c = 0; c < wanted.size(); ++c)
+      if (wanted[c]) messages += part.container->connections()[c].messages;
+    WorkCounter counter("messages of " + files_[p].filename().string(), messages);
     std::string failure = part.container->visit(wanted, [&](const RecordedMessage& message) {
+      counter.add();
       if (used != nullptr) used->take(topic_of(message.connection).name, message);
       for (const Route& route : routes[message.connection])
         collectors[route.collector].take(route.reader, message, file);

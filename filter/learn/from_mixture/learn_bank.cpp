@@ -161,7 +161,10 @@ Bank bank_of_all(const Recording& recording, const WindowFits& fits, const Mixtu
   const MixtureResult all = merge_components(whole, 1);
   const ModeEstimate one = estimate_components({recording, fits, all, options.theta}, motion).front().linear;
   if (!screening_reason(fits.structure, one).empty())
-    throw DataError("no mode is left for the bank: " + describe(without_modes.screened));
+    throw DataError(
+        "no mode is left for the bank: " + describe(without_modes.screened) +
+        ". A state that drifts or stays where it is (a position, a held speed) makes modes unstable: leave it "
+        "out, or keep such modes (bank.screen = false)");
   options.modes = 1;
   options.screen = false;
   Bank bank = learn_bank(recording, fits, whole, options, without_modes.R, motion);

@@ -43,6 +43,15 @@ TEST_F(Help, KnowsSectionsAndKeys) {
   EXPECT_NE(modebank({"help", "bank.refine"}).out.find("--bank.refine"), std::string::npos);
 }
 
+TEST_F(Help, OfEveryKeySaysWhenToTouchIt) {
+  for (const app::Option& option : app::option_table()) {
+    EXPECT_FALSE(option.when.empty()) << option.key;
+    EXPECT_FALSE(option.when.ends_with(".")) << option.key << ": the full stop is the printer's";
+  }
+  const std::string help = modebank({"help", "data.split"}).out;
+  EXPECT_NE(help.find("When to touch it: when there is one long run"), std::string::npos) << help;
+}
+
 /// An option that nothing would read is a mistake of the user's, whatever its value.
 TEST_F(Help, OptionsThatACommandDoesNotReadAreRefused) {
   const std::vector<std::vector<std::string>> lines{{"show", archive(), "-o", "x"},
@@ -67,6 +76,17 @@ TEST_F(Help, WithoutACommandThreeLinesSayHowToStart) {
     EXPECT_NE(result.err.find(start), std::string::npos) << result.err;
 }
 
+TEST_F(Help, ErrorsAreColouredOnATerminalAlone) {
+  const auto on_terminal = [](const std::string& variables) {
+    return run_program({"script", "-qc", variables + " TERM=xterm " + MODEBANK_PROGRAM + " run no.ini", "/dev/null"})
+        .out;
+  };
+  const std::string coloured = "\x1b[1;31mmodebank:\x1b[0m no.ini: ";
+  EXPECT_NE(on_terminal("").find(coloured), std::string::npos) << on_terminal("");
+  EXPECT_EQ(on_terminal("NO_COLOR=1").find("\x1b[1"), std::string::npos) << on_terminal("NO_COLOR=1");
+  EXPECT_EQ(modebank({"run", "no.ini"}).err.find("modebank: no.ini: "), 0u);
+}
+
 TEST_F(Help, ConfigSaysWhereEachValueComesFromAndIsAConfiguration) {
   const ProgramResult shown = modebank({"config", config(), "--window.length", "17"});
   ASSERT_EQ(shown.status, 0) << shown.err;
@@ -76,6 +96,15 @@ TEST_F(Help, ConfigSaysWhereEachValueComesFromAndIsAConfiguration) {
   write("again.ini", shown.out);
   EXPECT_EQ(app::resolved_text(app::load_config(file("again.ini"), {})),
             app::resolved_text(app::load_config(config(), {{"window.length", "17"}})));
+}
+
+TEST_F(Help, ConfigNamesTheLineOfEachValueOfARepeatableKey) {
+  write("derived.ini", "[data]\ninputs = run_*.csv\nstate = a\nderive = a = 2 * wz\nderive = b = 3 * wz\n");
+  const std::string shown = modebank({"config", file("derived.ini").string()}).out;
+  EXPECT_NE(shown.find(fmt::format("{:<40}  # {}:4\n", "derive = a = 2 * wz", file("derived.ini").string())),
+            std::string::npos)
+      << shown;
+  EXPECT_NE(shown.find("derived.ini:5\n"), std::string::npos) << shown;
 }
 
 TEST_F(Help, SchemaHasEveryKeyWithItsDefault) {

@@ -1,4 +1,5 @@
 // The live filter's clock from outside: gaps, times that go back, times that are wrong.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -39,6 +40,44 @@ TEST_F(TrackTime, PredictsOverMissingMeasurementsAndGaps) {
   EXPECT_EQ(program.wait(), 0);
   EXPECT_THAT(program.errors(), HasSubstr("898.8 s without a sample: the filter starts anew"));
   EXPECT_THAT(program.errors(), HasSubstr("time goes back from 900 s to 0.5 s"));
+}
+
+TEST_F(TrackTime, TakesOneSampleOfEachStepOfAFasterLog) {
+  const std::vector<std::string> samples = lines("run_01.csv");
+  const auto answers = [&](int times_faster) {
+    PipedProgram program(command());
+    program.write(samples[0] + "\n");
+    std::vector<std::string> result{program.read_line().value()};
+    for (std::size_t k = 1; k < 30; ++k) {
+      program.write(samples[k] + "\n");
+      result.push_back(program.read_line().value());
+      const std::string rest = samples[k].substr(samples[k].find(','));
+      for (int i = 1; i < times_faster; ++i)
+        program.write(fmt::format("{}{}\n", std::stod(samples[k]) + 0.1 * i / times_faster, rest));
+    }
+    program.close_input();
+    EXPECT_EQ(program.wait(), 0);
+    EXPECT_FALSE(program.read_line()) << "none for those between";
+    EXPECT_EQ(program.errors().find("one of each step is taken") == std::string::npos, times_faster == 1);
+    return result;
+  };
+  EXPECT_EQ(answers(10), answers(1));
+}
+
+TEST_F(TrackTime, TakesJitteringSamplesWhole) {
+  const std::vector<std::string> samples = lines("run_01.csv");
+  PipedProgram program(command());
+  program.write(samples[0] + "\n");
+  program.read_line();
+  const double jitter_s[] = {0.0, 0.03, -0.02, 0.04, -0.03};
+  for (std::size_t k = 1; k < 30; ++k) {
+    const std::string rest = samples[k].substr(samples[k].find(','));
+    program.write(fmt::format("{}{}\n", std::stod(samples[k]) + jitter_s[k % 5], rest));
+    EXPECT_TRUE(program.read_line()) << k;
+  }
+  program.close_input();
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_EQ(program.errors(), "");
 }
 
 TEST_F(TrackTime, OneTimeFarAheadCostsNoMoreThanItsOwnSample) {

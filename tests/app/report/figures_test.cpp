@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -154,7 +155,7 @@ TEST_F(Figures, OneThatFailsIsNamedAndDoesNotLoseTheOthers) {
   std::filesystem::permissions(file("bin/gnuplot"), std::filesystem::perms::owner_all);
   const std::string path = std::getenv("PATH");
   setenv("PATH", (file("bin").string() + ":" + path).c_str(), 1);
-  const ProgramResult result = report({"-o", file("page.html").string()});
+  const ProgramResult result = report({"-o", file("page.html").string(), "--json"});
   setenv("PATH", path.c_str(), 1);
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.err.find("1 of "), std::string::npos) << result.err;
@@ -162,6 +163,12 @@ TEST_F(Figures, OneThatFailsIsNamedAndDoesNotLoseTheOthers) {
   EXPECT_TRUE(drawn().count("pit.pdf") && drawn().count("transition.svg") + drawn().count("coverage.svg") > 0);
   EXPECT_FALSE(drawn().count("nis.svg"));
   EXPECT_TRUE(std::filesystem::exists(file("page.html")));
+  const nlohmann::json said = nlohmann::json::parse(result.out);
+  EXPECT_EQ(said.at("status"), 1);
+  EXPECT_NE(said.at("error").get<std::string>().find("1 of "), std::string::npos);
+  const auto written = said.at("written").get<std::set<std::string>>();
+  EXPECT_TRUE(written.count(file("page.html").string()));
+  EXPECT_EQ(written.size(), drawn().size() + 1) << result.out;
 }
 
 /// A page colours modes by their place in this order, figures by their place among those that are shown.

@@ -116,6 +116,26 @@ TEST_F(ImportLabel, MustBeThere) {
   EXPECT_THAT(error<ConfigurationError>(), HasSubstr("no column \"ground\""));
 }
 
+/// The first state and the input are of one topic, the second state of another: its rows are other instants.
+TEST(ImportTopics, AStateOfAnotherTopicIsBroughtToTheOthersTimes) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  const auto imported = [](std::vector<std::string> states) {
+    DataOptions options;
+    options.root = (test::shared_data_dir() / "bags").string();
+    options.inputs = "husky_outdoor_test1.bag";
+    options.state = std::move(states);
+    options.input = {"/husky_velocity_controller/odom.twist.twist.angular.z"};
+    return import_data(options).recording.runs.at(0);
+  };
+  const std::string gyro = "/imu/data.angular_velocity.y";
+  const Trajectory both = imported({"/husky_velocity_controller/odom.twist.twist.linear.x", gyro});
+  const Trajectory alone = imported({gyro});  // input and state are of two topics
+  ASSERT_GT(both.samples(), 3900);
+  EXPECT_EQ(both.input, alone.input);
+  EXPECT_TRUE(near(both.state.row(1), alone.state.row(0), 1e-12));
+  EXPECT_NEAR(both.state.row(0).maxCoeff(), 1.0166, 1e-4) << "the speed, as the odometry says it";
+}
+
 class ImportSplit : public test::ImportFixture {
  protected:
   ImportSplit() {

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace modebank::app {
+
+/// Of samples that come faster than a filter's model steps, those that it takes: the nearest of each step. A stream
+/// that is about as fast as the model, jitter and all, is taken whole. Its clock is the samples'.
+class SampleThinning {
+ public:
+  /// `period_s` of the model; 0: every sample is taken.
+  explicit SampleThinning(double period_s) : period_s_(period_s) {}
+
+  /// Whether the filter takes the next sample.
+  bool takes(double time_s) {
+    since_s_ = time_s - last_s_;
+    last_s_ = time_s;
+    if (!(period_s_ > 0.0)) return true;
+    if (!(since_s_ > 0.0)) return begin(time_s);  // the first, or another clock
+    constexpr double weight = 0.3;                // a source ten times too fast is known by its second sample
+    spacing_s_ += weight * (std::min(since_s_, 2.0 * period_s_) - spacing_s_);  // a gap says little of the rate
+    if (!thins()) return begin(time_s, spacing_s_);                             // jitter alone
+    const double late_s = time_s - due_s_;
+    if (late_s < -0.5 * spacing_s_) return false;
+    constexpr double follows = 0.1;  // the model's clock goes with the samples': 10.1 Hz are no error
+    due_s_ += period_s_ + (std::abs(late_s) > 0.5 * period_s_ ? late_s : follows * late_s);
+    return true;
+  }
+  /// Whether samples come so fast that some are left out.
+  bool thins() const { return spacing_s_ < 0.75 * period_s_; }
+  /// Between the last sample and the one before.
+  double since_s() const { return since_s_; }
+
+ private:
+  double period_s_;
+  double spacing_s_ = period_s_;  ///< between samples, as they come lately
+  double last_s_ = std::nan(""), since_s_ = 0.0, due_s_ = 0.0;
+
+  bool begin(double time_s) { return begin(time_s, period_s_); }
+  bool begin(double time_s, double spacing_s) {
+    spacing_s_ = spacing_s;
+    due_s_ = time_s + period_s_;
+    return true;
+  }
+};
+
+}  // namespace modebank::app
