@@ -168,3 +168,24 @@ class StudyPage(PageTest):
         session.browser.run("document.querySelector('#study-table tbody tr').click()")
         self.assertIn(best["key"].decode(), session.browser.run("return document.getElementById('run-detail').textContent"))  # the best stands first
         self.assert_quiet()
+
+    def test_a_running_studys_page_reloads_and_keeps_its_place(self):
+        page = session.work / "live.html"
+        text = self.page().read_text(encoding="utf-8")
+        head = '"study":{'
+        self.assertIn(head, text)
+        page.write_text(text.replace(head, head + '"live": {"finished": 2, "all": 12, "seconds": 2},', 1), encoding="utf-8")
+        self.open(page)
+        self.assertIn("2 of 12 runs are finished", session.browser.run("return document.getElementById('live').textContent"))
+        session.browser.draw_all("#parallel")
+        session.browser.run("document.getElementById('heatmap').scrollIntoView(); scrollBy(0, 30)")
+        before, began = session.browser.run("return [document.getElementById('heatmap').getBoundingClientRect().top, performance.timeOrigin]")
+        session.browser.wait("return performance.timeOrigin > arguments[0] && document.documentElement.dataset.ready === 'true'", began)
+        session.browser.wait("return Math.abs(document.getElementById('heatmap').getBoundingClientRect().top - arguments[0]) < 3", before,
+                             what="the section that was read to be where it was")
+        self.filter("mixture.components", "3")  # somebody reads: it stays
+        stays = session.browser.run("return performance.timeOrigin")
+        session.browser.driver.execute_async_script("setTimeout(arguments[0], 3000)")
+        self.assertEqual(session.browser.run("return performance.timeOrigin"), stays)
+        self.filter("mixture.components", "")
+        session.browser.driver.get("about:blank")

@@ -103,7 +103,9 @@ json goodness(const FirstScreen& screen) {
 std::string headline(const FirstScreen& screen) {
   if (!screen.answer) return "nothing was judged";
   if (*screen.answer == Answer::one_mode) return answer_words(*screen.answer);
-  return fmt::format("{} ({} modes)", answer_words(*screen.answer), screen.mode_count);
+  // Without evidence their number is the bank's affair.
+  return fmt::format("{} ({}{} modes)", answer_words(*screen.answer),
+                     *screen.answer == Answer::evidence ? "" : "the bank has ", screen.mode_count);
 }
 
 }  // namespace

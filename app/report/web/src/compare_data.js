@@ -8,6 +8,7 @@ import {runChoice, timeControls, timePlot, TimeState} from './timeview.js';
 
 // Runs that all hold, with as many samples: the data are A's.
 function commonRuns(data) {
+  if (data.verdicts.some(({runs}) => runs === 0)) return [];  // alike in name alone
   const [a, ...others] = data.runs.map((run) => (run.data ? run.data.runs : []));
   return a.flatMap((run) => {
     const same = (other) =>

@@ -61,6 +61,10 @@ function scoreTables(data) {
   const columns = scoreColumns(data.runs);
   const differing = data.scores.filter((row) => row.better !== null),
         equal = data.scores.filter((row) => row.better === null);
+  if (data.verdicts.some(({runs}) => runs === 0)) {
+    const all = table(columns.slice(0, -1), data.scores, {caption: 'Scores of different data', sortable: true});
+    return [details('Scores of each, which do not compare', all)];
+  }
   return [
     differing.length ?
         table(columns, differing, {caption: 'Scores side by side, all runs of a role together', sortable: true}) :

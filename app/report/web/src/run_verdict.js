@@ -9,6 +9,9 @@ import {withTips} from './tips.js';
 
 const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
+// A cell breaks where its parts meet, not between a number and its error or unit.
+const breakable = (text) => text.replace(/ (±|%|s\b)/g, '\u00a0$1').replace(/± /g, '±\u00a0');
+
 // Commands in a sentence, `modebank show`, and options, --filter.horizon 10, as such.
 const command = /(`[^`]+`|--[\w.]+(?:[ =](?:'[^']*'|[\d.]+|auto|varx|adaptive))?)/;
 const withCode = (text, other = (part) => part) =>
@@ -32,7 +35,7 @@ function modesTable(modes) {
   const columns = kept.map((i) => ({
                              name: modes.headings[i],
                              text: i === 0,
-                             of: (row) => row.cells[i],
+                             of: (row) => breakable(row.cells[i]),
                              swatch: i === 0 ? (row) => modeColour(row.mode) : null,
                            }));
   const head = h('tr', {}, columns.map((column) => headingOf(column, {}, column.name)));
@@ -52,9 +55,9 @@ export function drawVerdict(verdict) {
         h('p', {}, withTips(verdict.text)));
   const next =
       verdict.next ? h('p', {id: 'next', class: 'note'}, h('strong', {}, 'Next: '), withCode(verdict.next)) : null;
-  const warning = verdict.warning ?
-      h('p', {id: 'warning', class: 'soft'}, h('strong', {}, 'Warning: '), withCode(verdict.warning)) :
-      null;
+  const warning = verdict.warning ? h('p', {id: 'warning', class: 'soft'}, h('strong', {}, 'Warning: '),
+                                      withCode(verdict.warning.replace(/ \+- /g, ' ± '))) :
+                                    null;
   const element = section(
       'verdict', 'Verdict',
       h('div', {class: 'screen'}, said, cardList('coverage', of(true)), next, h('div', {id: 'picture'}),

@@ -55,3 +55,6 @@ export function follow(context, element) {
     if (isDrawn(element)) element.redraw();
   });
 }
+
+// A score's name along a short axis, in two lines.
+export const sideTitle = (score) => ({text: score.label.replace(': ', ':<br>')});

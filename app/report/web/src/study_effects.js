@@ -4,7 +4,7 @@ import {section} from './page.js';
 import {dashedLine, figure, ink, lineColour, palette, plain} from './plots.js';
 import {bestCell, bestSetting, levelOf, reached, settingsOf} from './settings.js';
 import {isNumber} from './statistics.js';
-import {axisOf, follow, levelTicks, namesOf, scoreChoice, wayChoice, wayWords} from './study_axes.js';
+import {axisOf, follow, levelTicks, namesOf, scoreChoice, sideTitle, wayChoice, wayWords} from './study_axes.js';
 
 const many = 4000;    // points
 const spread = 0.16;  // of a level's width, over which runs of one level are strewn
@@ -80,7 +80,7 @@ function panelAxes(axis, score, j, columns, lines) {
       anchor: `x${n}`,
       matches: j ? 'y' : undefined,
       showticklabels: column === 0,
-      title: column === 0 ? {text: score.label} : undefined,
+      title: column === 0 ? sideTitle(score) : undefined,
     },
   };
 }

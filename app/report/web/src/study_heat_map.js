@@ -4,7 +4,7 @@ import {section} from './page.js';
 import {figure, plain} from './plots.js';
 import {bestCell, cellsOver, interaction, repeatSpread, settingsOf} from './settings.js';
 import {isNumber} from './statistics.js';
-import {axisOf, follow, levelTicks, namesOf, scoreChoice, wayChoice, wayWords} from './study_axes.js';
+import {axisOf, follow, levelTicks, namesOf, scoreChoice, sideTitle, wayChoice, wayWords} from './study_axes.js';
 
 const most_labels = 150;
 
@@ -42,7 +42,7 @@ function heatDrawing(x, y, z, rows, by) {
     hoverinfo: 'text',
     text: cells.map((line, b) => line.map((cell, a) => said(cell, a, b))),
     reversescale: Boolean(z.goal && z.goal.kind === 'lower'),
-    colorbar: {title: {text: z.label, side: 'right'}, thickness: 12},
+    colorbar: {title: {...sideTitle(z), side: 'right'}, thickness: 12},
   };
   const axis = (of) => ({...levelTicks(of), title: {text: of.label}, showgrid: false});
   const layout = {

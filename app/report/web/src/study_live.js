@@ -20,6 +20,29 @@ function store(on) {
   }
 }
 
+// Filters would be lost, and with them what somebody looks at.
+const filtered = () => [...document.querySelectorAll('tr.filters input')].some(
+    (input) => /** @type {HTMLInputElement} */ (input).value);
+
+// The section at the top of the window and how far it has been scrolled: heights are others until figures are drawn.
+function placeNow() {
+  const sections = [...document.querySelectorAll('main > section')];
+  const section = sections.find((one) => one.getBoundingClientRect().bottom > 0) || sections[0];
+  return {id: section.id, above: section.getBoundingClientRect().top};
+}
+
+function restorePlace() {
+  const {place} = history.state || {}, section = place && document.getElementById(place.id);
+  if (!section) return;
+  const settle = () => scrollBy(0, section.getBoundingClientRect().top - place.above);
+  // What is drawn above moves it, until somebody scrolls.
+  const watcher = new ResizeObserver(settle);
+  watcher.observe(document.getElementById('main'));
+  const release = () => watcher.disconnect();
+  for (const event of ['pointerdown', 'keydown', 'wheel', 'touchstart']) addEventListener(event, release, {once: true});
+  settle();
+}
+
 // `live`: {finished, all, seconds}.
 export function keepLive({finished, all, seconds}) {
   let on = stored(), touched = -Infinity;
@@ -35,7 +58,11 @@ export function keepLive({finished, all, seconds}) {
   const text =
       `The study is running: ${finished} of ${all} runs are finished; the page is written anew every ${seconds} s.`;
   document.getElementById('verdict').append(h('p', {class: 'note', role: 'status', id: 'live'}, text), controls(box));
+  history.scrollRestoration = 'manual';
+  setTimeout(restorePlace, 0);  // once all sections are there
   setInterval(() => {
-    if (on && performance.now() - touched > quiet_ms) location.reload();
+    if (!on || performance.now() - touched <= quiet_ms || filtered()) return;
+    history.replaceState({place: placeNow()}, '');
+    location.reload();
   }, 1000 * seconds);
 }

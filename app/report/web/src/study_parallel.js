@@ -3,7 +3,7 @@ import {controls} from './elements.js';
 import {section} from './page.js';
 import {figure, ink} from './plots.js';
 import {isNumber} from './statistics.js';
-import {axisOf, isDrawn, levelTicks, namesOf, scoreChoice} from './study_axes.js';
+import {axisOf, isDrawn, levelTicks, namesOf, scoreChoice, sideTitle} from './study_axes.js';
 
 // Levels of keys stand at equal distances: keys such as 1, 10, 100 or words would otherwise crowd.
 function dimensionOf(axis, rows, kept, isScore) {
@@ -20,7 +20,7 @@ function dimensionOf(axis, rows, kept, isScore) {
 
 function parallelDrawing(axes, base, kept) {
   const score = axes[axes.length - 1], rows = base.filter((row) => isNumber(score.of(row)));
-  const colorbar = {title: {text: score.label, side: 'right'}, thickness: 12};
+  const colorbar = {title: {...sideTitle(score), side: 'right'}, thickness: 12};
   const trace = {
     type: 'parcoords',
     dimensions: axes.map((axis) => dimensionOf(axis, rows, kept, axis === score)),

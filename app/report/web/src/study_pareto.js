@@ -4,7 +4,7 @@ import {section} from './page.js';
 import {figure, palette, plain} from './plots.js';
 import {columnTitle} from './score_names.js';
 import {isNumber, lossOf, paretoFront} from './statistics.js';
-import {axisOf, follow, namesOf, numberTicks, scoreChoice} from './study_axes.js';
+import {axisOf, follow, namesOf, numberTicks, scoreChoice, sideTitle} from './study_axes.js';
 
 // `points`: {x, y, row}; `look`: more of the trace.
 function runsTrace(study, points, look) {
@@ -45,7 +45,7 @@ function paretoDrawing(study, x, y, rows) {
     height: 420,
     uirevision: `${x.name} ${y.name}`,
     xaxis: {title: {text: x.label}, ...numberTicks(x)},
-    yaxis: {title: {text: y.label}, ...rangeAround(points, paretoFront(points))},
+    yaxis: {title: sideTitle(y), ...rangeAround(points, paretoFront(points))},
     legend: {orientation: 'h', y: 1.08},
   };
   return {traces: [runsTrace(study, points, grey), runsTrace(study, paretoFront(points), front)], layout};
