@@ -17,14 +17,15 @@ using Eigen::Index;
 constexpr double negligible_R = 1e-6;  // of the innovations' variance
 
 /// A fraction of hits with its interval.
-void set_fraction(const SeriesByRun& hits, double time, double& fraction, double& lower, double& upper) {
-  fraction = mean_of(hits);
-  const Interval interval = fraction_interval(hits, time);
+void set_fraction(const HitsByRun& hits, double time, double& fraction, double& lower, double& upper) {
+  const SeriesByRun numbers = as_numbers(hits);
+  fraction = mean_of(numbers);
+  const Interval interval = fraction_interval(numbers, time);
   lower = interval.lower;
   upper = interval.upper;
 }
 
-void set_coverage(const SeriesByRun& outside, double time, double& coverage, double& lower, double& upper) {
+void set_coverage(const HitsByRun& outside, double time, double& coverage, double& lower, double& upper) {
   set_fraction(outside, time, coverage, upper, lower);
   for (double* share : {&coverage, &lower, &upper}) *share = 1.0 - *share;
 }

@@ -33,9 +33,10 @@ class Collector {
 
   void add(const Trajectory& run, const RunEvaluation& e, const RunScores& scores) {
     Evidence& evidence = sums.evidence;
-    for (SeriesByRun* series : {&evidence.far, &evidence.close, &evidence.sizes}) series->emplace_back();
+    for (HitsByRun* hits : {&evidence.far, &evidence.close}) hits->emplace_back();
+    for (HitsByRun& hits : evidence.outside) hits.emplace_back();
+    evidence.sizes.emplace_back();
     for (SquaredDistances* distances : {&evidence.nis, &sums.nees}) distances->begin_run();
-    for (SeriesByRun& series : evidence.outside) series.emplace_back();
     OutputSeries z(static_cast<std::size_t>(e.pit.rows()));  // of a mode's own samples
     if (mode_ < 0) make_room(e, z);
     for (Index k = 0; k < e.log_density.size(); ++k) {
@@ -55,8 +56,9 @@ class Collector {
   void make_room(const RunEvaluation& e, OutputSeries& z) {
     Evidence& evidence = sums.evidence;
     const auto samples = static_cast<std::size_t>(e.log_density.size()), all = samples * z.size();
-    for (SeriesByRun* series : {&evidence.far, &evidence.close, &evidence.sizes}) series->back().reserve(all);
-    for (SeriesByRun& series : evidence.outside) series.back().reserve(all);
+    for (HitsByRun* hits : {&evidence.far, &evidence.close}) hits->back().reserve(all);
+    for (HitsByRun& hits : evidence.outside) hits.back().reserve(all);
+    evidence.sizes.back().reserve(all);
     for (SeriesByRun* series : {&evidence.nis.value, &evidence.nis.degrees}) series->back().reserve(samples);
     for (std::vector<double>& output : z) output.reserve(samples);
   }
@@ -83,9 +85,9 @@ class Collector {
       if (std::isnan(e.pit(i, k))) continue;
       const double score = scores.z(i, k);
       for (std::size_t b = 0; b < band_edges_.size(); ++b)
-        sums.evidence.outside[b].back().push_back(std::abs(score) > band_edges_[b] ? 1.0 : 0.0);
-      sums.evidence.far.back().push_back(score * score > upper_ ? 1.0 : 0.0);
-      sums.evidence.close.back().push_back(score * score < lower_ ? 1.0 : 0.0);
+        sums.evidence.outside[b].back().push_back(std::abs(score) > band_edges_[b] ? 1 : 0);
+      sums.evidence.far.back().push_back(score * score > upper_ ? 1 : 0);
+      sums.evidence.close.back().push_back(score * score < lower_ ? 1 : 0);
       sums.evidence.sizes.back().push_back(std::abs(score));
       z[static_cast<std::size_t>(i)].push_back(score);
     }

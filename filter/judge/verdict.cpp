@@ -35,6 +35,12 @@ int judge_nis(const Evidence& evidence) {
 
 }  // namespace
 
+SeriesByRun as_numbers(const HitsByRun& hits) {
+  SeriesByRun numbers;
+  for (const std::vector<char>& run : hits) numbers.emplace_back(run.begin(), run.end());
+  return numbers;
+}
+
 Interval binomial_interval(double count, double samples, double level) {
   if (!(samples > 0.0)) return {not_a_number, not_a_number};
   const double misses = std::max(0.0, samples - count), beyond = 0.5 * (1.0 - level);
@@ -58,17 +64,17 @@ std::array<double, coverage_levels.size()> coverage_band_edges() {
 }
 
 Verdict verdict_of(const Evidence& evidence, double time) {
-  const SeriesByRun& misses = evidence.outside[deciding_level];
+  const SeriesByRun misses = as_numbers(evidence.outside[deciding_level]), near = as_numbers(evidence.close);
   if (sample_count(misses) == 0.0) return Verdict::undecided;
   const double outside = mean_of(misses);
   const Interval sure = fraction_interval(misses, time, outside_level);
   if (outside > many_outside && sure.lower > true_outside) return Verdict::overconfident;
-  const Interval close = fraction_interval(evidence.close, time);
+  const Interval close = fraction_interval(near, time);
   if (outside < few_outside && sure.upper < true_outside) return Verdict::underconfident;
   if (outside < true_outside && close.lower > largest_close) return Verdict::underconfident;
   if (const int nis = judge_nis(evidence); nis != 0) return nis > 0 ? Verdict::overconfident : Verdict::underconfident;
   const bool inside =
-      within(outside, least_outside, largest_outside) && within(mean_of(evidence.close), least_close, largest_close);
+      within(outside, least_outside, largest_outside) && within(mean_of(near), least_close, largest_close);
   const Interval likely = fraction_interval(misses, time);
   return inside && !says_nothing(likely, least_outside, largest_outside) &&
                  !says_nothing(close, least_close, largest_close)

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "filter/judge/squared_distances.hpp"
 #include "filter/judge/statistics.hpp"
@@ -41,10 +42,14 @@ inline constexpr double least_outside = 0.025, largest_outside = 0.075, least_cl
 /// Fractions of trials are allowed. NaN without samples.
 Interval binomial_interval(double count, double samples, double level = 0.95);
 
+/// 1 where a signal is a hit, else 0: run by run, in the order of time. In a byte, since there are six of every sample.
+using HitsByRun = std::vector<std::vector<char>>;
+SeriesByRun as_numbers(const HitsByRun& hits);
+
 /// What a verdict rests on, over the scored signals of some samples.
 struct Evidence {
-  std::array<SeriesByRun, coverage_levels.size()> outside;  ///< 1 where a signal lies outside that band, else 0
-  SeriesByRun far, close;       ///< 1 where its z^2 lies above the 97.5 % or below the 2.5 % quantile of chi-square(1)
+  std::array<HitsByRun, coverage_levels.size()> outside;  ///< 1 where a signal lies outside that band, else 0
+  HitsByRun far, close;         ///< 1 where its z^2 lies above the 97.5 % or below the 2.5 % quantile of chi-square(1)
   SeriesByRun sizes;            ///< of the same signals: rises with the distance of the PIT from 1/2
   SquaredDistances nis;         ///< per sample
   double nis_degrees = 1.0;     ///< n_y

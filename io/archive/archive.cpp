@@ -22,6 +22,8 @@ namespace {
 /// Beyond this much an archive is made in the file system rather than in memory.
 bool is_large(const Archive& archive) {
   constexpr Index most_in_memory = Index{32} << 20;  // doubles
+  constexpr std::size_t many_runs = 500;             // whose groups are appended to a file, not made by HDF5 in memory
+  if (archive.recording && archive.recording->runs.size() > many_runs) return true;
   if (!archive.mixture) return false;
   const WindowResponsibilities& responsibilities = archive.mixture->responsibilities;
   return responsibilities.windows() * responsibilities.components() > most_in_memory;

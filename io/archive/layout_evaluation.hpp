@@ -67,7 +67,7 @@ void exchange_filter_run(Io& io, const Trajectory& run, const Sizes& of_bank, E&
                          const Unit& states) {
   Sizes known = of_bank;
   if (run.samples() > 0) known.set("N", static_cast<hsize_t>(run.samples()));
-  io.group(run.run, known, [&](auto& member) {
+  io.small_group(run.run, known, [&](auto& member) {
     exchange_run_evaluation(member, evaluation, states);
     exchange_free_run(member, free_run, states);
   });
@@ -255,7 +255,7 @@ void exchange_residual_tests(Io& io, S& sets, const Recording& recording) {
         throw std::invalid_argument("residual tests of " + std::to_string(set.runs.size()) + " runs of " +
                                     std::to_string(recording.runs.size()));
       for (std::size_t i = 0; i < recording.runs.size(); ++i)
-        member.group(recording.runs[i].run, known, [&](auto& run) { exchange_run_residuals(run, set.runs[i]); });
+        member.small_group(recording.runs[i].run, known, [&](auto& run) { exchange_run_residuals(run, set.runs[i]); });
     });
 }
 

@@ -50,6 +50,10 @@ class GroupReader {
       member.check_links();
     });
   }
+  template <class Body>
+  void small_group(const std::string& name, const Sizes& known, Body body) {
+    group(name, known, body);
+  }
   /// Reads the part if it is there.
   template <class Body>
   void optional_group(const std::string& name, bool /*present*/, const Sizes& known, Body body) {

@@ -5,33 +5,9 @@
 
 namespace modebank {
 
-namespace {
-
-/// Without time stamps. Up to `most_compact` links lie in the group's own header, where HDF5's default of 8 makes a
-/// heap and a tree for every run of a filter, which cost more than its arrays.
-hdf5::Handle group_creation() {
-  constexpr unsigned most_compact = 32, least_dense = 24, links = 14, name_bytes = 16;
-  hdf5::Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, "prepare groups");
-  hdf5::check(H5Pset_obj_track_times(creation.id(), false), "prepare groups");
-  hdf5::check(H5Pset_link_phase_change(creation.id(), most_compact, least_dense), "prepare groups");
-  hdf5::check(H5Pset_est_link_info(creation.id(), links, name_bytes), "prepare groups");
-  return creation;
-}
-
-hdf5::Handle link_creation() {
-  hdf5::Handle link(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "prepare links");
-  hdf5::check(H5Pset_char_encoding(link.id(), H5T_CSET_UTF8), "prepare links");
-  return link;
-}
-
-}  // namespace
-
 hdf5::Handle GroupWriter::make_group(const std::string& name) {
   if (goes_on_ && hdf5::has_link(group_.id(), name)) return hdf5::open_group(group_.id(), name);
-  // Made once, as datasets' (array.cpp).
-  static const hdf5::Handle &creation = *new hdf5::Handle(group_creation()), &link = *new hdf5::Handle(link_creation());
-  return {H5Gcreate2(group_.id(), name.c_str(), link.id(), creation.id(), H5P_DEFAULT), H5Gclose,
-          "create the group '" + name + "'"};
+  return hdf5::make_group(group_.id(), name);
 }
 
 void GroupWriter::write_text_rows(const std::string& name, const std::vector<std::string>& values) {
@@ -86,12 +62,15 @@ hdf5::Handle GroupWriter::open_dataset(const std::string& name) const {
 
 void GroupWriter::write_unit(const hdf5::Handle& dataset, const Unit& unit, const hdf5::Shape& shape) {
   if (unit.empty() || (all_equal(unit) && unit.front().empty())) return;
-  if (all_equal(unit)) {
-    hdf5::write_texts(dataset.id(), hdf5::Place::attribute, "units", {unit.front()}, {});
-    return;
-  }
+  const auto write = [&](const std::vector<std::string>& texts, const hdf5::Shape& extents) {
+    if (small_)
+      small_->add_unit(texts, extents);
+    else
+      hdf5::write_texts(dataset.id(), hdf5::Place::attribute, "units", texts, extents);
+  };
+  if (all_equal(unit)) return write({unit.front()}, {});
   const hdf5::Shape tail = trailing_shape(shape, unit.size());
-  if (!tail.empty()) hdf5::write_texts(dataset.id(), hdf5::Place::attribute, "units", unit, tail);
+  if (!tail.empty()) write(unit, tail);
 }
 
 void GroupWriter::write_column_units(const hdf5::Handle& table, const std::vector<std::string>& units) {

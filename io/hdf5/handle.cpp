@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "io/hdf5/file_driver.hpp"
 #include "io/hdf5/links.hpp"
-#include "io/hdf5/read_driver.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::hdf5 {
@@ -83,7 +83,7 @@ Quiet::~Quiet() {
 Handle open_file(const std::string& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the file access");
   check(H5Pset_file_locking(access.id(), false, true), "switch file locking off");
-  check(H5Pset_driver(access.id(), read_driver(), nullptr), "prepare the file access");
+  check(H5Pset_driver(access.id(), file_driver(), nullptr), "prepare the file access");
   return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, "open the file"};
 }
 

@@ -6,9 +6,9 @@
 #include <cerrno>
 #include <utility>
 
+#include "io/hdf5/file_driver.hpp"
 #include "io/hdf5/handle.hpp"
 #include "io/hdf5/lookup3.hpp"
-#include "io/hdf5/read_driver.hpp"
 
 namespace modebank::hdf5 {
 
@@ -16,12 +16,12 @@ FileBytes::FileBytes(hid_t object) {
   const Handle file(H5Iget_file_id(object), H5Fclose, "find the file"),
       access(H5Fget_access_plist(file.id()), H5Pclose, "read how the file was opened"),
       creation(H5Fget_create_plist(file.id()), H5Pclose, "read how the file was made");
-  if (H5Pget_driver(access.id()) != read_driver()) throw NotKnownHere{};
-  void* descriptor = nullptr;
+  if (H5Pget_driver(access.id()) != file_driver()) throw NotKnownHere{};
+  void* handle = nullptr;
   hsize_t before = 0;
-  if (H5Fget_vfd_handle(file.id(), access.id(), &descriptor) < 0 || H5Pget_userblock(creation.id(), &before) < 0)
+  if (H5Fget_vfd_handle(file.id(), access.id(), &handle) < 0 || H5Pget_userblock(creation.id(), &before) < 0)
     throw NotKnownHere{};
-  descriptor_ = *static_cast<const int*>(descriptor);
+  descriptor_ = descriptor_of(handle);
   base_ = before;
 }
 

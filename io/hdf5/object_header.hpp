@@ -12,7 +12,7 @@ namespace modebank::hdf5 {
 /// What a file holds is not of the kinds that are read here: HDF5 itself has to read it, and to say what is wrong.
 struct NotKnownHere {};
 
-/// The bytes of a file that HDF5 has opened by our driver (read_driver.hpp), a window of them in memory.
+/// The bytes of a file that HDF5 has opened by our driver (file_driver.hpp), a window of them in memory.
 class FileBytes {
  public:
   /// Throws NotKnownHere where another driver has the file. The file must outlive this.

@@ -58,26 +58,34 @@ def write_runs(path, runs, rows=6):
     np.savetxt(path, table, fmt=["%.10g"] * 4 + ["%05d"], delimiter=",", header="time,wz,velL,velR,id", comments="")
 
 
+def processor_seconds(pid):
+    fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def measure(command, folder):
-    """Wall-clock and processor seconds, largest resident memory in MB, and standard error."""
-    start = time.monotonic()
-    with open(folder / "stderr.txt", "w+", encoding="utf-8") as errors, open(folder / "stdout.txt", "w") as output:
-        process = subprocess.Popen(command, cwd=folder, stdout=output, stderr=errors)
+    """Wall-clock and processor seconds, those since the last evaluation, largest resident memory in MB, and standard
+    error."""
+    start, evaluated, text = time.monotonic(), 0.0, ""
+    with open(folder / "stdout.txt", "w") as output:
+        process = subprocess.Popen(command, cwd=folder, stdout=output, stderr=subprocess.PIPE, text=True)
+        for line in process.stderr:
+            text += line
+            if line.startswith("evaluation:"):
+                evaluated = processor_seconds(process.pid)
         _, status, usage = os.wait4(process.pid, 0)
-        wall = time.monotonic() - start
-        errors.seek(0)
-        text = errors.read()
     if status != 0:
         raise SystemExit(f"{' '.join(map(str, command))}: status {status}\n{text}")
-    return wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, text
+    processor = usage.ru_utime + usage.ru_stime
+    return time.monotonic() - start, processor, processor - evaluated, usage.ru_maxrss / 1024, text
 
 
 def row(command, folder, archive=None):
-    wall, processor, memory, text = measure(command, folder)
+    wall, processor, written, memory, text = measure(command, folder)
     size = f"{(folder / archive).stat().st_size / 1e6:.0f}" if archive else ""
     shown = " ".join(["modebank", *map(str, command[1:])])
     print(f"| `{shown}` | {wall:.1f} | {processor:.1f} | {memory:.0f} | {size} |", flush=True)
-    return [line for line in text.splitlines() if "learned from" in line]
+    return [line for line in text.splitlines() if "learned from" in line], written
 
 
 def check_readable(path):
@@ -103,16 +111,16 @@ def main():
     write_rows(folder / "rows.csv", options.rows)
     (folder / "rows.ini").write_text(BLOCK.format(data="rows.csv", split="split = blocks 20", length=10))
     row([program, "run", "rows.ini", "--bank.refine", "none", "--archive.output", "none.h5"], folder, "none.h5")
-    said = row([program, "run", "rows.ini", "--archive.output", "rows.h5"], folder, "rows.h5")
+    said, _ = row([program, "run", "rows.ini", "--archive.output", "rows.h5"], folder, "rows.h5")
     check_readable(folder / "rows.h5")
     row([program, "report", "rows.h5", "-o", "rows.html"], folder)
     write_runs(folder / "runs.csv", options.runs)
     (folder / "runs.ini").write_text(BLOCK.format(data="runs.csv", split="run = id", length=5))
-    row([program, "run", "runs.ini", "--bank.refine", "none", "--archive.output", "runs.h5"], folder, "runs.h5")
+    _, written = row([program, "run", "runs.ini", "--bank.refine", "none", "--archive.output", "runs.h5"], folder, "runs.h5")
     check_readable(folder / "runs.h5")
     for command in (["show", "runs.h5"], ["verify", "runs.h5"], ["report", "runs.h5", "-o", "runs.html"]):
         row([program, *command], folder)
-    print("", *said, sep="\n")
+    print(f"\n{options.runs / written:.0f} runs written per processor second, hash and summary included", *said, sep="\n")
 
 
 if __name__ == "__main__":

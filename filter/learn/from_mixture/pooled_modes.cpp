@@ -134,8 +134,12 @@ std::string screening_reason(const LinearStructure& structure, const ModeEstimat
 std::vector<ModeEstimate> fit_pooled_modes(const TrainingTransitions& transitions, const Eigen::MatrixXd& memberships,
                                            const GlobalModel& global, const ParameterPrior* prior) {
   std::vector<ModeEstimate> modes(memberships.cols());
-  tbb::parallel_for(Index{0}, memberships.cols(),
-                    [&](Index k) { modes[k] = fit_weighted_mode(transitions, memberships.col(k), global, prior); });
+  constexpr Index many_transitions = 1'000'000;  // of which each fit takes several copies
+  const auto fit = [&](Index k) { modes[k] = fit_weighted_mode(transitions, memberships.col(k), global, prior); };
+  if (memberships.rows() > many_transitions)
+    for (Index k = 0; k < memberships.cols(); ++k) fit(k);
+  else
+    tbb::parallel_for(Index{0}, memberships.cols(), fit);
   return modes;
 }
 

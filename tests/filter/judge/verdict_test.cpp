@@ -111,16 +111,17 @@ std::vector<double> related_scores(int samples, double rho, bool sizes_alone, st
 Evidence evidence_of(const std::vector<double>& scores, double scale, bool with_nis) {
   const double upper = chi_square_quantile(0.975, 1.0), lower = chi_square_quantile(0.025, 1.0);
   Evidence evidence;
-  for (SeriesByRun* series : {&evidence.far, &evidence.close, &evidence.sizes}) series->emplace_back();
+  for (HitsByRun* hits : {&evidence.far, &evidence.close}) hits->emplace_back();
+  evidence.sizes.emplace_back();
   evidence.nis.begin_run();
-  for (SeriesByRun& series : evidence.outside) series.emplace_back();
+  for (HitsByRun& hits : evidence.outside) hits.emplace_back();
   const auto edges = coverage_band_edges();
   for (const double score : scores) {
     const double square = score * score * scale * scale;
     for (std::size_t b = 0; b < edges.size(); ++b)
-      evidence.outside[b][0].push_back(square > edges[b] * edges[b] ? 1.0 : 0.0);
-    evidence.far[0].push_back(square > upper ? 1.0 : 0.0);
-    evidence.close[0].push_back(square < lower ? 1.0 : 0.0);
+      evidence.outside[b][0].push_back(square > edges[b] * edges[b] ? 1 : 0);
+    evidence.far[0].push_back(square > upper ? 1 : 0);
+    evidence.close[0].push_back(square < lower ? 1 : 0);
     evidence.sizes[0].push_back(square);
     evidence.nis.add(square, 1);
   }
@@ -173,8 +174,8 @@ TEST(Verdict, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
   std::vector<double> scores;
   for (int k = 0; k < 3000; ++k) scores.push_back((k % 4 == 0 ? 0.3 : 1.2) * normal(generator));
   const Evidence evidence = evidence_of(scores, 1.0, false);
-  EXPECT_GT(mean_of(evidence.outside[deciding_level]), 0.063);
-  EXPECT_GT(mean_of(evidence.close), 0.03);
+  EXPECT_GT(mean_of(as_numbers(evidence.outside[deciding_level])), 0.063);
+  EXPECT_GT(mean_of(as_numbers(evidence.close)), 0.03);
   EXPECT_EQ(verdict_on(evidence), Verdict::overconfident);
 }
 
@@ -186,7 +187,7 @@ TEST(Verdict, BandsOfAStandardNormalHoldTheirShare) {
   std::mt19937_64 generator(6);
   const Evidence evidence = evidence_of(related_scores(200000, 0.0, false, generator), 1.0, false);
   for (std::size_t b = 0; b < edges.size(); ++b)
-    EXPECT_NEAR(mean_of(evidence.outside[b]), 1.0 - coverage_levels[b], 4e-3) << b;
+    EXPECT_NEAR(mean_of(as_numbers(evidence.outside[b])), 1.0 - coverage_levels[b], 4e-3) << b;
 }
 
 /// Of an autoregression it is the coefficient, at lag one.

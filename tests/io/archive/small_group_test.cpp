@@ -1,4 +1,4 @@
-// Groups of small arrays, read without HDF5: with HDF5's own values, or not at all.
+// Groups of small arrays, read and written without HDF5: as HDF5 would, or not at all.
 #include "io/hdf5/small_group.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,9 @@
 #include <iterator>
 
 #include "io/hdf5/array.hpp"
+#include "io/hdf5/file_driver.hpp"
 #include "io/hdf5/lookup3.hpp"
+#include "io/hdf5/small_group_writer.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank::test {
@@ -108,7 +110,7 @@ TEST_F(SmallGroups, NoBitOfWhatIsReadCanChangeUnseen) {
   std::ifstream stream(path(), std::ios::binary);
   const std::string content(std::istreambuf_iterator<char>(stream), {});
   const auto first = content.find("OHDR"), last = content.size();
-  for (std::size_t at = first; at < last; at += 3) {
+  for (std::size_t at = first; at < last; at += 13) {
     std::string changed = content;
     changed[at] = static_cast<char>(changed[at] ^ 16);
     std::ofstream(path(), std::ios::binary) << changed;
@@ -119,6 +121,93 @@ TEST_F(SmallGroups, NoBitOfWhatIsReadCanChangeUnseen) {
     } catch (const std::exception&) {  // HDF5's own refusal of the groups above
     }
   }
+}
+
+/// An array or attribute as HDF5 reads it: numbers as they lie in memory, texts one after another.
+std::string bytes_of(const hdf5::StoredArray& array) {
+  if (array.type_class() == H5T_STRING) {
+    std::string all;
+    for (const std::string& text : array.texts()) all += text + '\n';
+    return all;
+  }
+  const bool real = array.type_class() == H5T_FLOAT;
+  std::string bytes(array.elements() * 8, '\0');
+  array.read(real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, bytes.data());
+  return bytes;
+}
+
+/// What HDF5 says of a group: "path shape bytes" of everything in it.
+std::vector<std::string> content_of(hid_t group) {
+  std::vector<std::string> content;
+  const auto add = [&](hid_t object, Place place, const std::string& name, const std::string& path) {
+    const hdf5::StoredArray array(object, place, name);
+    content.push_back(path + testing::PrintToString(array.shape()) + bytes_of(array));
+  };
+  for (const std::string& name : hdf5::attribute_names(group)) add(group, Place::attribute, name, "@" + name);
+  for (const std::string& name : hdf5::member_names(group)) {
+    add(group, Place::dataset, name, name);
+    const hdf5::StoredArray array(group, Place::dataset, name);
+    for (const std::string& attribute : hdf5::attribute_names(array.object()))
+      add(array.object(), Place::attribute, attribute, name + "@" + attribute);
+  }
+  return content;
+}
+
+hdf5::NewSmallGroup some_group(std::size_t samples) {
+  const std::int64_t origin = -(std::int64_t{1} << 60);
+  const std::vector<double> values(samples, 0.1);
+  hdf5::NewSmallGroup group;
+  group.add_attribute("role", "held out, \u00e4");
+  group.add_attribute("lag_s", H5T_IEEE_F64LE, halves);
+  group.add_attribute("time_origin_ns", H5T_STD_I64LE, &origin);
+  group.add_array("covariance", H5T_IEEE_F64LE, {1, 2, 3}, halves);
+  group.add_unit({"(m/s)^2"}, {});
+  group.add_array("mode", H5T_STD_I32LE, {3}, counts);
+  group.add_array("state", H5T_IEEE_F64LE, {samples, 1}, values.data());
+  group.add_unit({"m", "rad/s"}, {2});
+  return group;
+}
+
+/// Writes so many groups to a file through a driver (none: HDF5's own), and what HDF5 then says of them.
+std::vector<std::string> written(const std::filesystem::path& path, hid_t driver, std::size_t samples, int groups) {
+  {
+    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "prepare"),
+        access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare");
+    H5Pset_userblock(creation.id(), 512);
+    H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
+    if (driver >= 0) H5Pset_driver(access.id(), driver, nullptr);
+    const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose, "create");
+    const Handle runs = hdf5::make_group(file.id(), "runs");
+    for (int i = 0; i < groups; ++i) {
+      some_group(samples).write(hdf5::appendable_file(runs.id()), runs.id(), "run " + std::to_string(i));
+      hdf5::write_array(runs.id(), Place::dataset, "between " + std::to_string(i), H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
+                        {2, 3}, halves);  // HDF5 takes room of its own in between
+    }
+  }
+  const hdf5::Quiet quiet;
+  const Handle file = hdf5::open_file(path), runs = hdf5::open_group(file.id(), "runs");
+  std::vector<std::string> all;
+  for (int i = 0; i < groups; ++i)
+    for (const std::string& line : content_of(hdf5::open_group(runs.id(), "run " + std::to_string(i)).id()))
+      all.push_back(std::to_string(i) + line);
+  return all;
+}
+
+TEST(NewSmallGroups, HoldWhatHDF5WouldHaveWritten) {
+  const TemporaryFolder folder;
+  for (const std::size_t samples : {1, 6, 512}) {  // of which the last has an array as long as a header takes
+    const auto ours = written(folder.path() / "ours.h5", hdf5::file_driver(), samples, 40),
+               theirs = written(folder.path() / "theirs.h5", H5I_INVALID_HID, samples, 40);
+    EXPECT_EQ(ours, theirs);
+    EXPECT_EQ(ours.size(), 40u * 8u);
+  }
+}
+
+TEST(NewSmallGroups, AreHDF5sWhereTheyDoNotFit) {
+  const TemporaryFolder folder;
+  for (const std::size_t samples : {513, 20000})
+    EXPECT_EQ(written(folder.path() / "ours.h5", hdf5::file_driver(), samples, 2),
+              written(folder.path() / "theirs.h5", H5I_INVALID_HID, samples, 2));
 }
 
 TEST(Lookup3, IsTheOneOfItsAuthor) {
