@@ -12,7 +12,7 @@ namespace modebank::app {
 
 using KeyValues = std::vector<std::pair<std::string, std::string>>;
 
-/// Where each key's value comes from: "robot.ini:12", "--window.length", a line each of a repeatable one; missing: the default.
+/// Where each value comes from: "robot.ini:12", "--window.length" (lines for those of a repeatable key); else default.
 using Origins = std::map<std::string, std::string>;
 
 /// Reads a configuration file as Boost.Program_options does, then applies the overrides (the command line wins).

@@ -134,8 +134,10 @@ TEST(FirstScreen, ItsFieldsAreTheArchivesNumbers) {
   const std::string text = screen_of(archive);
   std::string as_one_line = text;
   std::replace(as_one_line.begin(), as_one_line.end(), '\n', ' ');
-  for (const std::string& said : {screen.finding, screen.next, screen.modes.rows[0].cells[4]})
+  for (const std::string& said : {screen.finding, screen.modes.rows[0].cells[4]})
     EXPECT_THAT(as_one_line, HasSubstr(said));
+  EXPECT_EQ(screen.next, "nothing: use it (`modebank track ARCHIVE` filters samples as they come)");
+  EXPECT_THAT(as_one_line, HasSubstr("use it (`modebank track demo.h5` filters")) << "as it can be typed";
 }
 
 TEST(FirstScreen, WhatIsNotKnownIsNoNumber) {
