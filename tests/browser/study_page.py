@@ -174,18 +174,17 @@ class StudyPage(PageTest):
         text = self.page().read_text(encoding="utf-8")
         head = '"study":{'
         self.assertIn(head, text)
-        page.write_text(text.replace(head, head + '"live": {"finished": 2, "all": 12, "seconds": 2},', 1), encoding="utf-8")
+        page.write_text(text.replace(head, head + '"live": {"finished": 2, "all": 12, "seconds": 5},', 1), encoding="utf-8")
         self.open(page)
         self.assertIn("2 of 12 runs are finished", session.browser.run("return document.getElementById('live').textContent"))
         session.browser.draw_all("#parallel")
-        session.browser.run("document.getElementById('heatmap').scrollIntoView(); scrollBy(0, 30)")
-        before, began = session.browser.run("return [document.getElementById('heatmap').getBoundingClientRect().top, performance.timeOrigin]")
+        before, began = session.browser.run("document.getElementById('heatmap').scrollIntoView(); scrollBy(0, 30); return [document.getElementById('heatmap').getBoundingClientRect().top, performance.timeOrigin]")
         session.browser.wait("return performance.timeOrigin > arguments[0] && document.documentElement.dataset.ready === 'true'", began)
-        session.browser.wait("return Math.abs(document.getElementById('heatmap').getBoundingClientRect().top - arguments[0]) < 3", before,
+        session.browser.wait("return Math.abs(document.getElementById('heatmap')?.getBoundingClientRect().top - arguments[0]) < 3", before,
                              what="the section that was read to be where it was")
         self.filter("mixture.components", "3")  # somebody reads: it stays
         stays = session.browser.run("return performance.timeOrigin")
-        session.browser.driver.execute_async_script("setTimeout(arguments[0], 3000)")
+        session.browser.driver.execute_async_script("setTimeout(arguments[0], 6000)")
         self.assertEqual(session.browser.run("return performance.timeOrigin"), stays)
         self.filter("mixture.components", "")
         session.browser.driver.get("about:blank")

@@ -64,6 +64,7 @@ class Recorder : public StageSource {
 
 class StageKey : public ::testing::Test {
  protected:
+  static void SetUpTestSuite() { ::unsetenv("MODEBANK_DATA"); }  // whoever runs it: its files are its own
   StageKey() {
     std::filesystem::create_directory(file("elsewhere"));
     for (unsigned run = 0; run < 3; ++run) {
