@@ -161,12 +161,13 @@ bool GroupReader::has(const std::string& name) const {
 
 void GroupReader::check_links(const hdf5::LinkAllowed& elsewhere) {
   if (small_) return;  // all of it has been read
-  for (const auto& [name, member] : members())
-    guarded(name, [&, hard = member.hard, asked = member.asked] {
-      if (!hard)
-        hdf5::check_link(group_.id(), path_, {name, hard}, elsewhere);
-      else if (problems_ && !asked)
-        hdf5::check_below(group_.id(), path_, name, elsewhere);
+  for (const auto& link : members())
+    guarded(link.first, [&] {
+      const Member& member = link.second;
+      if (!member.hard)
+        hdf5::check_link(group_.id(), path_, {link.first, member.hard}, elsewhere);
+      else if (problems_ && !member.asked)
+        hdf5::check_below(group_.id(), path_, link.first, elsewhere);
     });
 }
 

@@ -130,7 +130,7 @@ HardLink read_link(std::string_view message) {
   if ((flags & 16) != 0) reader.take(1);  // the name's letters
   const auto bytes = static_cast<std::size_t>(reader.number(std::size_t{1} << (flags & 3)));
   const std::string_view name = reader.take(bytes);
-  require(!name.empty() && name.find('\0') == name.npos);
+  require(!name.empty() && name.find('\0') == std::string_view::npos);
   return {std::string(name), reader.number(address_bytes)};
 }
 
