@@ -179,7 +179,9 @@ StoredArray::StoredArray(const SmallArray& small, Place place, const std::string
 
 void StoredArray::check_plausible() const {
   const auto refuse = [&] { throw DataError(quoted(place_, name_) + " declares more content than the file holds"); };
-  const hsize_t bytes = saturating_product(elements_, H5Tget_size(type()));
+  const std::size_t element_bytes = H5Tget_size(type());  // by which HDF5 divides
+  if (element_bytes == 0) throw DataError(quoted(place_, name_) + " has elements of no size");
+  const hsize_t bytes = saturating_product(elements_, element_bytes);
   // Content in the header is as long as that says, and HDF5 copies it without looking.
   const bool in_header = storage_ == Storage::header;
   if (in_header && bytes > H5Dget_storage_size(object())) refuse();
