@@ -22,8 +22,6 @@ try:
     import selenium  # noqa: F401
 except ImportError as error:
     leave(f"{error.name} is missing (Debian packages python3-h5py, python3-selenium)")
-if not (pathlib.Path(sys.argv[2]) / "build/npm/node_modules/axe-core/axe.min.js").exists():
-    leave("axe-core is missing: sh .ci/install-packages test")
 for program, package in (("chromium", "chromium"), ("chromedriver", "chromium-driver"), ("pdftoppm", "poppler-utils")):
     if not os.path.exists(f"/usr/bin/{program}"):
         leave(f"{program} is missing (Debian package {package})")
