@@ -55,15 +55,13 @@ void CombinedFilter::combine() {
   estimate_ = *said_.front();  // modes, steps, and what one filter has alone
   estimate_.log_density = filter::ForecastWeights::mixed_log_density(weights_.weights(), log_densities_);
   if (std::isnan(estimate_.log_density)) return;
-  double present = 0.0;
-  std::vector<double> share = weights_.weights();
-  for (std::size_t i = 0; i < share.size(); ++i) present += share[i] *= std::isnan(log_densities_[i]) ? 0.0 : 1.0;
+  const std::vector<double> share = filter::ForecastWeights::spoken_weights(weights_.weights(), log_densities_);
   FilterEstimate& mixed = estimate_;
   for (auto* vector : {&mixed.prediction, &mixed.innovation, &mixed.state, &mixed.pit}) vector->setZero();
   for (auto* matrix : {&mixed.innovation_covariance, &mixed.covariance}) matrix->setZero();
   const auto each = [&](auto add) {
     for (std::size_t i = 0; i < share.size(); ++i)
-      if (share[i] > 0.0) add(share[i] / present, *said_[i]);
+      if (share[i] > 0.0) add(share[i], *said_[i]);
   };
   each([&](double weight, const FilterEstimate& said) {
     mixed.prediction += weight * said.prediction;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -132,6 +133,8 @@ OpenedFilter open_combined(const std::string& archive, const Config& config) {
     if (!bank) bank = std::move(opened);
   }
   if (!bank) throw DataError(archive + ": holds no combined forecasts; run with filter.horizon = 1, 10 makes them");
+  const double sum = std::accumulate(start.begin(), start.end(), 0.0);
+  if (!(sum > 0.0)) start.assign(start.size(), 1.0);  // no training sample was scored
   return {bank->bank, bank->options, std::make_unique<CombinedFilter>(std::move(filters), start)};
 }
 

@@ -116,12 +116,15 @@ std::vector<ErrorAhead> errors_ahead(const Archive& archive, const std::string& 
   return errors;
 }
 
-/// "71.2 %", or of several states "71.2 %, 65.0 %".
+}  // namespace
+
 std::string fit_words(const Eigen::VectorXd& fit) {
   std::vector<std::string> parts;
   for (const double percent : fit) parts.push_back(fmt::format("{:.1f} %", percent));
   return boost::algorithm::join(parts, ", ");
 }
+
+namespace {
 
 /// "RMSE one step ahead 0.03 rad/s (drifting: 0.04 rad/s); 10 steps ahead ...; free run from 3 samples FIT 71.2 %
 /// (...)"

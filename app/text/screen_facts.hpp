@@ -44,6 +44,8 @@ FirstScreen make_first_screen(const Archive& archive, const Settings& settings);
 
 /// "evidence for modes of motion": the answer as a headline has it.
 std::string answer_words(Answer answer);
+/// "71.2 %", or of several states "71.2 %, 65.0 %".
+std::string fit_words(const Eigen::VectorXd& fit);
 /// What a verdict means: "its stated uncertainty is not found false".
 std::string calibration_words(Verdict verdict);
 

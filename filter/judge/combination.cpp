@@ -58,14 +58,12 @@ class CombinedHorizon {
 
   void combine(Index k, const std::vector<double>& weights, CombinedForecasts& out) const {
     out.predictions.log_density(static_cast<Index>(horizon_), k) = ForecastWeights::mixed_log_density(weights, said_);
-    double present = 0.0;
-    for (std::size_t i = 0; i < members_.size(); ++i) present += std::isnan(said_[i]) ? 0.0 : weights[i];
+    const std::vector<double> spoken = ForecastWeights::spoken_weights(weights, said_);
     auto error = out.predictions.error[horizon_].col(k);
     error.setZero();
     for (std::size_t i = 0; i < members_.size(); ++i) {
-      const double weight = std::isnan(said_[i]) ? 0.0 : weights[i] / present;
-      out.weight[horizon_](static_cast<Index>(i), k) = weight;
-      if (weight > 0.0) error += weight * members_[i]->error[horizon_].col(k);
+      out.weight[horizon_](static_cast<Index>(i), k) = spoken[i];
+      if (spoken[i] > 0.0) error += spoken[i] * members_[i]->error[horizon_].col(k);
     }
   }
 };

@@ -67,20 +67,29 @@ void ForecastWeights::normalise() {
   for (double& weight : weights_) weight /= sum;
 }
 
-double ForecastWeights::mixed_log_density(const std::vector<double>& weights,
-                                          const std::vector<double>& log_densities) {
+std::vector<double> ForecastWeights::spoken_weights(const std::vector<double>& weights,
+                                                    const std::vector<double>& log_densities) {
   if (weights.size() != log_densities.size())
     throw std::invalid_argument(std::to_string(log_densities.size()) + " log densities of " +
                                 std::to_string(weights.size()) + " forecasters");
+  std::vector<double> spoken(weights.size(), 0.0);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    if (!std::isnan(log_densities[i])) sum += spoken[i] = weights[i];
+  if (sum > 0.0)
+    for (double& weight : spoken) weight /= sum;
+  return spoken;
+}
+
+double ForecastWeights::mixed_log_density(const std::vector<double>& weights,
+                                          const std::vector<double>& log_densities) {
+  const std::vector<double> spoken = spoken_weights(weights, log_densities);
   const double most = largest(log_densities);
   if (!std::isfinite(most)) return most;
-  double sum = 0.0, present = 0.0;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    if (std::isnan(log_densities[i])) continue;
-    sum += weights[i] * std::exp(log_densities[i] - most);
-    present += weights[i];
-  }
-  return most + std::log(sum / present);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < spoken.size(); ++i)
+    if (spoken[i] > 0.0) sum += spoken[i] * std::exp(log_densities[i] - most);
+  return most + std::log(sum);
 }
 
 }  // namespace modebank::filter

@@ -152,6 +152,19 @@ hid_t file_driver() {
   return id;
 }
 
+OpenedFile opened_file(hid_t object) {
+  const Handle file(H5Iget_file_id(object), H5Fclose, "find the file"),
+      access(H5Fget_access_plist(file.id()), H5Pclose, "read how the file was opened"),
+      creation(H5Fget_create_plist(file.id()), H5Pclose, "read how the file was made");
+  if (H5Pget_driver(access.id()) != file_driver()) return {};
+  OpenedFile opened;
+  hsize_t before = 0;
+  check(H5Fget_vfd_handle(file.id(), access.id(), &opened.handle), "find the file");
+  check(H5Pget_userblock(creation.id(), &before), "read how the file was made");
+  opened.before = before;
+  return opened;
+}
+
 int descriptor_of(void* handle) { return static_cast<OpenFile*>(handle)->descriptor; }
 bool is_in_the_making(void* handle) { return static_cast<OpenFile*>(handle)->in_the_making; }
 haddr_t end_of(void* handle) { return static_cast<OpenFile*>(handle)->end; }

@@ -13,6 +13,12 @@ namespace modebank::hdf5 {
 hid_t file_driver();
 
 /// A file that the driver has open; `handle` is what H5Fget_vfd_handle says.
+struct OpenedFile {
+  void* handle = nullptr;  ///< none where another driver has the file
+  haddr_t before = 0;      ///< bytes that precede HDF5's own addresses
+};
+/// That of an open object.
+OpenedFile opened_file(hid_t object);
 int descriptor_of(void* handle);
 bool is_in_the_making(void* handle);
 /// Where the next bytes will be appended, from the file's first byte on.

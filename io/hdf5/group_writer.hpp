@@ -197,7 +197,7 @@ class GroupWriter {
 
   hdf5::Handle group_;
   std::optional<hdf5::NewSmallGroup> small_;  ///< instead, until it is whole
-  std::optional<hdf5::AppendableFile> file_;  ///< of the group, from the first small one on
+  std::optional<hdf5::OpenedFile> file_;      ///< of the group, from the first small one on
   std::string path_;
   Sizes sizes_;
   std::optional<Part> part_;

@@ -7,22 +7,15 @@
 #include <utility>
 
 #include "io/hdf5/file_driver.hpp"
-#include "io/hdf5/handle.hpp"
 #include "io/hdf5/lookup3.hpp"
 
 namespace modebank::hdf5 {
 
 FileBytes::FileBytes(hid_t object) {
-  const Handle file(H5Iget_file_id(object), H5Fclose, "find the file"),
-      access(H5Fget_access_plist(file.id()), H5Pclose, "read how the file was opened"),
-      creation(H5Fget_create_plist(file.id()), H5Pclose, "read how the file was made");
-  if (H5Pget_driver(access.id()) != file_driver()) throw NotKnownHere{};
-  void* handle = nullptr;
-  hsize_t before = 0;
-  if (H5Fget_vfd_handle(file.id(), access.id(), &handle) < 0 || H5Pget_userblock(creation.id(), &before) < 0)
-    throw NotKnownHere{};
-  descriptor_ = descriptor_of(handle);
-  base_ = before;
+  const OpenedFile file = opened_file(object);
+  if (!file.handle) throw NotKnownHere{};
+  descriptor_ = descriptor_of(file.handle);
+  base_ = file.before;
 }
 
 std::string_view FileBytes::at(haddr_t address, std::size_t count) {

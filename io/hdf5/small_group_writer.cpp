@@ -120,16 +120,9 @@ hid_t link_creation() {
 
 }  // namespace
 
-AppendableFile appendable_file(hid_t object) {
-  const Handle file(H5Iget_file_id(object), H5Fclose, "find the file"),
-      access(H5Fget_access_plist(file.id()), H5Pclose, "read how the file was opened"),
-      creation(H5Fget_create_plist(file.id()), H5Pclose, "read how the file was made");
-  void* handle = nullptr;
-  hsize_t before = 0;
-  if (H5Pget_driver(access.id()) != file_driver()) return {};
-  check(H5Fget_vfd_handle(file.id(), access.id(), &handle), "find the file");
-  check(H5Pget_userblock(creation.id(), &before), "read how the file was made");
-  return is_in_the_making(handle) ? AppendableFile{handle, before} : AppendableFile();
+OpenedFile appendable_file(hid_t object) {
+  const OpenedFile file = opened_file(object);
+  return file.handle && is_in_the_making(file.handle) ? file : OpenedFile();
 }
 
 void NewSmallGroup::add_attribute(const std::string& name, hid_t file_type, const void* value) {
@@ -183,7 +176,7 @@ std::string NewSmallGroup::block(haddr_t address, std::size_t& group_begins) con
   return text + header(messages);
 }
 
-void NewSmallGroup::write(const AppendableFile& file, hid_t parent, const std::string& name) const {
+void NewSmallGroup::write(const OpenedFile& file, hid_t parent, const std::string& name) const {
   if (!file.handle || !fits()) return write_by_hdf5(parent, name);
   const haddr_t address = end_of(file.handle) - file.before;
   std::size_t group_begins = 0;

@@ -2,18 +2,14 @@
 
 #include <utility>
 
+#include "io/hdf5/file_driver.hpp"
 #include "io/hdf5/handle.hpp"
 #include "io/hdf5/small_group.hpp"
 
 namespace modebank::hdf5 {
 
-/// A file that others than HDF5 can append to (file_driver.hpp), or, without a handle, one that they cannot.
-struct AppendableFile {
-  void* handle = nullptr;
-  haddr_t before = 0;  ///< bytes that precede HDF5's own addresses
-};
-/// That of an open object.
-AppendableFile appendable_file(hid_t object);
+/// The file of an open object if others than HDF5 can append to it; without a handle where they cannot.
+OpenedFile appendable_file(hid_t object);
 
 /// A group of small arrays in the making: what read_small_group reads. HDF5 takes sixteen microseconds to make an
 /// array; this one lays out the group and its arrays as the file format has them and appends them in one piece.
@@ -27,7 +23,7 @@ class NewSmallGroup {
   void add_unit(const std::vector<std::string>& texts, const std::vector<hsize_t>& shape);
 
   /// Makes the group as a member of `parent`, which is in `file`.
-  void write(const AppendableFile& file, hid_t parent, const std::string& name) const;
+  void write(const OpenedFile& file, hid_t parent, const std::string& name) const;
 
  private:
   struct Named {

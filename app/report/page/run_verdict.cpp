@@ -50,12 +50,6 @@ json error_card(const FirstScreen& screen, const ErrorAhead& error) {
   return card("error", name, big, "", competitor_words(screen, error.other_words) + combined);
 }
 
-std::string fit_words(const Eigen::VectorXd& fit) {
-  std::vector<std::string> parts;
-  for (const double percent : fit) parts.push_back(fmt::format("{:.1f} %", percent));
-  return fmt::format("{}", fmt::join(parts, ", "));
-}
-
 json fit_card(const FirstScreen& screen) {
   json big = number_list(screen.fit);
   big["t"] = fit_words(screen.fit);

@@ -27,8 +27,10 @@ class ForecastWeights {
   /// The weights at the start again.
   void restart();
 
-  /// Log of the weighted mean of densities [nats], of those that there are (not NaN), with their weights made to sum to
-  /// one; NaN without any.
+  /// Weights of those that said something (not NaN), made to sum to one; 0 for the others, and for all without any.
+  static std::vector<double> spoken_weights(const std::vector<double>& weights,
+                                            const std::vector<double>& log_densities);
+  /// Log of the weighted mean of densities [nats] by spoken_weights; NaN without any.
   static double mixed_log_density(const std::vector<double>& weights, const std::vector<double>& log_densities);
 
  private:
