@@ -20,6 +20,7 @@ namespace {
 constexpr Index most_modes = 8;
 constexpr double least_use = 0.01;  // modes used less are "others" in a short table
 constexpr int longest_name = 16;    // columns of a channel's name in a heading
+constexpr double standard_errors_95 = 1.96;
 
 std::string seconds(double value) { return std::isnan(value) ? "-" : fmt::format("{:.3g} s", value); }
 
@@ -94,6 +95,13 @@ GainNames gains_of(const Archive& archive) {
   return gain_names(*archive.bank, recording.states, recording.inputs);
 }
 
+/// The lower end of its 95 % interval where that is all that is known: where the interval of the rate 1 / tau, which is
+/// what the data tell, reaches a mode that never dies out; else zero.
+double least_time_constant(const Decay& decay) {
+  const double time = decay.time_constant_s, reach = standard_errors_95 * decay.time_constant_error_s;
+  return time != 0.0 && std::abs(time) <= reach ? time * time / (time + reach) : 0.0;
+}
+
 int widest_line(const std::string& text) {
   int widest = 0;
   for (const std::string& line : lines_of(text)) widest = std::max(widest, columns_of(line));
@@ -103,8 +111,9 @@ int widest_line(const std::string& text) {
 }  // namespace
 
 std::string decay_words(const Decay& decay, const char* plus_minus) {
-  const double time = decay.time_constant_s;
+  const double time = decay.time_constant_s, least = least_time_constant(decay);
   std::string text = std::isinf(time) ? "integrates"
+                     : least > 0.0    ? fmt::format("over {:.2g} s", least)
                      : time < 0.0     ? fmt::format("unstable: grows e-fold in {:.3g} s", -time)
                      : time == 0.0    ? "at once"
                                       : estimate_text(time, decay.time_constant_error_s, plus_minus) + " s";

@@ -10,7 +10,8 @@
 /// they settle. app/text/summary_tables.hpp has their parameters.
 namespace modebank::app {
 
-/// "0.163 +- 0.004 s", "integrates", "unstable: grows e-fold in 2 s"; "... , period 0.5 s" of what oscillates.
+/// "0.163 +- 0.004 s", "integrates", "unstable: grows e-fold in 2 s", "over 3 s" where the standard error reaches a
+/// mode that never dies out; "... , period 0.5 s" of what oscillates.
 std::string decay_words(const Decay& decay, const char* plus_minus = "+-");
 /// What is left after a sample, of each eigenvalue or pair; the slowest first.
 std::string per_sample_words(const std::vector<Decay>& decays);

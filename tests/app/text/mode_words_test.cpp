@@ -24,6 +24,9 @@ TEST(ModeWords, DecaysAreTold) {
   EXPECT_EQ(decay_words({1.0, std::numeric_limits<double>::infinity(), 0.0, unknown}), "integrates");
   EXPECT_EQ(decay_words({1.1, -3.0, 0.0, 0.1}), "unstable: grows e-fold in 3 s");
   EXPECT_EQ(decay_words({0.0, 0.0, 0.0, unknown}), "at once");
+  // Rates of 0.5 +- 0.5 and -0.5 +- 1 per second: at most 1.48 and 1.46 of them.
+  EXPECT_EQ(decay_words({0.95, 2.0, 0.0, 2.0}), "over 0.68 s");
+  EXPECT_EQ(decay_words({1.05, -2.0, 0.0, 4.0}), "over 0.68 s");
 }
 
 /// A scalar AR(1) of decay 0.6 per sample of 0.1 s under a held input: tau = -0.1 / log 0.6 s, gain -B / A.
