@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "ident/base/not_a_number.hpp"
 #include "io/archive/archive.hpp"
 #include "tests/app/cli/track_fixture.hpp"
 
@@ -142,6 +143,37 @@ TEST_F(Track, CombinedFiltersAreThoseThatWereScored) {
     EXPECT_EQ(modebank({"track", archive(), "--track.filter", "combined", key, "c.json"}).status, 2);
   EXPECT_EQ(modebank({"export", archive(), "--to", "json", "--track.filter", "combined"}).status, 2);
   EXPECT_EQ(modebank({"predict", archive(), "--samples", "3", "--track.filter", "combined"}).status, 2);
+}
+
+/// Where no training sample was scored nothing tells filters apart: each has the same weight.
+TEST_F(Track, CombinedFiltersStartEquallyWhereTrainingScoredNothing) {
+  Archive unscored = read_archive(archive());
+  std::vector<std::string> filters{"combined"};
+  for (CombinationRow& row : unscored.combination) {
+    if (row.role != Role::train) continue;
+    if (row.horizon == 1) filters.push_back(row.filter);
+    row.weight = not_a_number;
+  }
+  write_archive(archive(), unscored);
+  const std::vector<std::string> samples = lines("run_01.csv");
+  std::vector<double> densities;  // of the first sample that is scored
+  for (const std::string& filter : filters) {
+    PipedProgram program(command({"--track.filter", filter, "--track.format", "csv"}));
+    program.write(samples[0] + "\n");
+    const std::vector<std::string> header = header_of(program.read_line().value());
+    const auto at = static_cast<std::size_t>(std::find(header.begin(), header.end(), "log_density") - header.begin());
+    double density = not_a_number;
+    for (std::size_t k = 1; std::isnan(density); ++k) {
+      program.write(samples.at(k) + "\n");
+      density = numbers(program.read_line().value()).at(at);
+    }
+    densities.push_back(density);
+  }
+  ASSERT_GT(densities.size(), 2U);
+  double mean = 0.0;
+  for (std::size_t i = 1; i < densities.size(); ++i)
+    mean += std::exp(densities[i]) / static_cast<double>(densities.size() - 1);
+  EXPECT_NEAR(densities[0], std::log(mean), 1e-9);
 }
 
 TEST_F(Track, AnswersMalformedLinesOnStderrAndKeepsItsState) {
