@@ -58,6 +58,9 @@ class Search {
 
   Settings& held() { return found_.suggested; }
 
+  /// Without, the rate is a fact that the configuration states, and no choice.
+  bool has_times() const { return !options_.data.time.empty(); }
+
   double wanted_hz() const { return check_.advice.rate.rate_hz; }
   double present_hz() const {
     return found_.present.rate_hz > 0.0 ? found_.present.rate_hz : check_.advice.rate_facts.inputs_hz;
@@ -122,7 +125,7 @@ class Search {
   }
 
   void try_rate() {
-    if (wanted_hz() == held().rate_hz) return;
+    if (wanted_hz() == held().rate_hz || !has_times()) return;
     Settings to = held();
     to.rate_hz = wanted_hz();
     DataCheck then = checked(to, to.lag_s);

@@ -36,12 +36,13 @@ bool is_lost(const Situation& s) {
   return counts.of(FitStatus::failed) > 0;
 }
 
+constexpr int most_lags_tried = 4;  // by `auto`
+
 int state_lags(const Situation& s) { return std::atoi(s.setting("window.state_lags").c_str()); }
 
 /// What is dropped between blocks of a run.
 Index window_and_lags(const Situation& s) {
-  constexpr int most_lags = 4;  // that `auto` tries
-  const int lags = s.setting("window.state_lags") == "auto" ? most_lags : state_lags(s);
+  const int lags = s.setting("window.state_lags") == "auto" ? most_lags_tried : state_lags(s);
   return std::atoi(s.setting("window.length").c_str()) + lags;
 }
 
@@ -90,17 +91,19 @@ const Rule rules[] = {
        return fmt::format("more held-out runs than {}: record some, or name more of them with --data.test",
                           s.finding.runs);
      }},
+    {[](const Situation& s) { return is_not_white(s) && may_have_more_lags(s); },
+     [](const Situation& s) {
+       const std::string lags =
+           state_lags(s) < most_lags_tried ? "auto --window.input_lags auto" : fmt::to_string(state_lags(s) + 1);
+       return fmt::format(
+           "errors follow a pattern, so the model lacks memory: repeat with --window.model varx --window.state_lags "
+           "{}{}",
+           lags, s.setting("data.lag_s") == "auto" ? "" : ", or with --data.lag_s auto");
+     }},
     {[](const Situation& s) { return s.says(Answer::no_evidence) && !s.finding.better_description.empty(); },
      [](const Situation& s) {
        return fmt::format("use the simpler {0} ({1}): `modebank track ARCHIVE --track.filter {0}`",
                           s.finding.better_description, description_of(s.finding.better_description));
-     }},
-    {[](const Situation& s) { return is_not_white(s) && may_have_more_lags(s); },
-     [](const Situation& s) {
-       return fmt::format(
-           "errors follow a pattern, so the model lacks memory: repeat with --window.model varx "
-           "--window.state_lags {}{}",
-           state_lags(s) + 1, s.setting("data.lag_s") == "auto" ? "" : ", or with --data.lag_s auto");
      }},
     {is_not_white,
      [](const Situation&) -> std::string {

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
+#include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "mixture/criteria.hpp"
 
 namespace modebank::app {
@@ -34,6 +38,17 @@ std::string refinement_warning(MeasuredFit fit) {
   return "";
 }
 
+std::string stability_warning(const Bank& bank) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Mode& mode : bank.modes) least = std::min(least, spectral_radius(mode.model));
+  if (bank.modes.empty() || least <= 1.0 + spectral_radius_slack) return "";
+  return fmt::format(
+      "no mode of the bank is stable (spectral radius {:.4g}): predictions many samples ahead grow; a state that "
+      "drifts "
+      "or stays where it is (a position, a held speed) makes modes so, and is better left out",
+      least);
+}
+
 std::vector<std::string> archive_warnings(const Archive& archive) {
   std::vector<std::string> warnings;
   const auto add = [&](const std::vector<std::string>& more) {
@@ -47,6 +62,8 @@ std::vector<std::string> archive_warnings(const Archive& archive) {
   if (archive.mixture) add(selection_warnings(archive.mixture->candidates));
   if (const std::string refined = refinement_warning(archive.measured_fit); archive.bank && !refined.empty())
     add({refined});
+  if (const std::string unstable = archive.bank ? stability_warning(*archive.bank) : ""; !unstable.empty())
+    add({unstable});
   return warnings;
 }
 

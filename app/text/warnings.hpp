@@ -23,6 +23,9 @@ std::vector<std::string> window_warnings(const WindowFits& fits, const WindowCou
 /// What of the bank's refinement needs a look; empty where nothing does.
 std::string refinement_warning(MeasuredFit fit);
 
+/// That no mode of the bank is stable; empty where one is.
+std::string stability_warning(const Bank& bank);
+
 /// Every warning of an archive: of its windows, mixture and bank. `show` prints each where it belongs.
 std::vector<std::string> archive_warnings(const Archive& archive);
 

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -16,7 +14,6 @@
 #include "filter/learn/learn.hpp"
 #include "filter/learn/refine/learning_part.hpp"
 #include "mixture/select.hpp"
-#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
@@ -106,15 +103,6 @@ std::vector<Index> screen(const LinearStructure& structure, const std::vector<Co
   return kept;
 }
 
-/// "component 2 unstable (weight 0.1, spectral radius 1.31), ...".
-std::string describe(const std::vector<ScreenedMode>& screened) {
-  std::string text;
-  for (const ScreenedMode& mode : screened)
-    text += fmt::format("{}component {} {} (weight {:.3g}, spectral radius {:.6g})", text.empty() ? "" : ", ",
-                        mode.component, mode.reason, mode.weight, mode.spectral_radius);
-  return text;
-}
-
 /// Where Q of the bank's modes comes from. theta and its errors always rest on the mode's own noise.
 void set_process_noise(std::vector<ComponentEstimate>& modes, const BankOptions& options) {
   const Index n = modes.front().linear.Q.rows();
@@ -155,16 +143,10 @@ std::vector<Index> all_positions(Index count) {
   return positions;
 }
 
-/// Where no component can be a mode, all of them together may: the bank of one mode that is left.
+/// Where no component can be a mode, all of them together are one, an unstable one, too: so is the global model that it
+/// competes with, one step ahead it may be right, and the summary warns of the rest.
 Bank bank_of_all(const Recording& recording, const WindowFits& fits, const MixtureResult& whole, BankOptions options,
                  const Bank& without_modes, const MotionModel* motion) {
-  const MixtureResult all = merge_components(whole, 1);
-  const ModeEstimate one = estimate_components({recording, fits, all, options.theta}, motion).front().linear;
-  if (!screening_reason(fits.structure, one).empty())
-    throw DataError(
-        "no mode is left for the bank: " + describe(without_modes.screened) +
-        ". A state that drifts or stays where it is (a position, a held speed) makes modes unstable: leave it "
-        "out, or keep such modes (bank.screen = false)");
   options.modes = 1;
   options.screen = false;
   Bank bank = learn_bank(recording, fits, whole, options, without_modes.R, motion);

@@ -57,6 +57,14 @@ class Suggest : public Check {
   }
 };
 
+/// Rows without times have the rate that the configuration states: no other can be tried.
+TEST_F(Suggest, WithoutTimesTheRateIsNoChoice) {
+  write_config("[data]\ntime =\nrate_hz = 10\n");
+  const json said = check_json(config()).at("suggestions");
+  EXPECT_EQ(said.at("training_runs"), 6);
+  for (const json& trial : said.at("trials")) EXPECT_FALSE(trial.at("keys").contains("data.rate_hz")) << trial.dump(1);
+}
+
 TEST_F(Suggest, ARobustLossWhereErrorsAreGross) {
   write_runs(0.05);
   write_config("[window]\nloss = trivial\n");

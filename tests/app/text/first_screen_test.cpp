@@ -9,6 +9,7 @@
 
 #include "app/cli/help_text.hpp"
 #include "app/text/terminal.hpp"
+#include "app/text/warnings.hpp"
 #include "tests/app/text/screen_archive.hpp"
 
 namespace modebank::test {
@@ -16,7 +17,9 @@ namespace {
 
 using app::first_screen;
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
 
 const app::Settings defaults{
@@ -224,7 +227,9 @@ TEST_F(NextStep, AnswersHaveTheirs) {
 TEST_F(NextStep, ColouredErrorsAskForMemory) {
   row().flags = "innovations not white: autocorrelation 0.45 at lag 1";
   settings["window.state_lags"] = "2";
-  EXPECT_THAT(advice(), HasSubstr("--window.state_lags 3"));
+  EXPECT_THAT(advice(), HasSubstr("--window.model varx --window.state_lags auto --window.input_lags auto"));
+  settings["window.state_lags"] = "4";  // the most that auto tries
+  EXPECT_THAT(advice(), HasSubstr("--window.state_lags 5"));
   EXPECT_THAT(advice(), HasSubstr("--data.lag_s auto"));
   settings["data.lag_s"] = "auto";
   EXPECT_THAT(advice(), Not(HasSubstr("lag_s")));
@@ -232,6 +237,16 @@ TEST_F(NextStep, ColouredErrorsAskForMemory) {
   EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("state_lags"))));
   settings["window.model"] = "slip";
   EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("state_lags"))));
+}
+
+/// Which of two models that both lack memory predicts better says little.
+TEST_F(NextStep, MemoryComesBeforeASimplerModel) {
+  row().flags = "innovations not white: autocorrelation -0.92 at lag 4";
+  archive.finding->answer = Answer::no_evidence;
+  archive.finding->better_description = "one_motion";
+  EXPECT_THAT(advice(), HasSubstr("--window.state_lags auto"));
+  settings["window.state_lags"] = "auto";
+  EXPECT_THAT(advice(), HasSubstr("use the simpler one_motion"));
 }
 
 TEST_F(NextStep, AFalseBandAsksForAdaptiveNoiseOnce) {
@@ -244,6 +259,14 @@ TEST_F(NextStep, AFalseBandAsksForAdaptiveNoiseOnce) {
   }
   row().verdict = Verdict::undecided;
   EXPECT_THAT(advice(), HasSubstr("more held-out samples"));
+}
+
+TEST_F(NextStep, ABankWithoutAStableModeWarns) {
+  for (Mode& mode : archive.bank->modes) mode.model.A(0, 0) = 0.01;
+  EXPECT_THAT(app::archive_warnings(archive),
+              ElementsAre(HasSubstr("no mode of the bank is stable (spectral radius 1.01)")));
+  archive.bank->modes.back().model.A(0, 0) = -0.2;
+  EXPECT_THAT(app::archive_warnings(archive), IsEmpty());
 }
 
 /// Refined or not: what a warning asks for comes before any use.
