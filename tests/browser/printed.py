@@ -116,9 +116,12 @@ class Printed(PageTest):
             self.assertGreaterEqual(len(figures), least)
             for i, (label, box) in enumerate(figures):
                 with self.subTest(label):
-                    printed, seen = ink(self.printed_figure(sheets, i)), ink(self.seen_figure(box))
+                    figure = self.printed_figure(sheets, i)
+                    printed, seen = ink(figure), ink(self.seen_figure(box))
                     self.assertGreater(printed.mean(), 0.003)
                     self.assertGreater(likeness(printed, seen), 0.8)
+                    if "graph" not in label:
+                        self.assertGreater(figure.shape[1], 0.7 * box["width"], "something wider than the sheet has shrunk all of the page")
         finally:
             session.browser.size(1200, 900)
         for number, sheet in enumerate(sheets):
