@@ -120,8 +120,7 @@ class Printed(PageTest):
                     printed, seen = ink(figure), ink(self.seen_figure(box))
                     self.assertGreater(printed.mean(), 0.003)
                     self.assertGreater(likeness(printed, seen), 0.8)
-                    if "graph" not in label:
-                        self.assertGreater(figure.shape[1], 0.7 * box["width"], "something wider than the sheet has shrunk all of the page")
+                    self.assertGreater(figure.shape[1], 0.7 * box["width"], "something wider than the sheet has shrunk all of the page")
         finally:
             session.browser.size(1200, 900)
         for number, sheet in enumerate(sheets):
