@@ -40,7 +40,7 @@ class LargePages(PageTest):
         ranked = sorted(means, key=means.get, reverse=True)
         # What the verdict calls the best stands first in the table, and no rival is ahead of it.
         first = session.browser.run("return [...document.querySelectorAll('#study-table tbody tr:first-child td')].slice(0, 3).map((td) => td.textContent)")
-        self.assertEqual(first, [str(ranked[0][0]), str(ranked[0][1]), ranked[0][2].decode()])
+        self.assertEqual(first, [f"{ranked[0][0]:g}", f"{ranked[0][1]:g}", ranked[0][2].decode()])
         rivals = self.table("The next best settings")
         for rival, setting in zip(rivals, ranked[1:9], strict=True):
             self.assertAlmostEqual(rival["Best is ahead by [nats/sample]"][1], means[ranked[0]] - means[setting], places=9)
