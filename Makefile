@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag firefox
+.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
 
 all: build
 
@@ -204,6 +204,10 @@ coverage: packages-build packages-test
 # How evenly a page's plot follows a drag over a million samples; docs/results/speed.md.
 page-drag: packages-test build
 	/usr/bin/python3 tests/bench/page_drag.py build/modebank build/page_drag
+
+# Pages of a study of 200 runs and of a million samples in Chromium; `make test` has all others.
+pages-large: packages-test build
+	/usr/bin/python3 tests/browser/pages_test.py build/modebank . build/pages_large LargePages
 
 # A page of every kind in Debian's Firefox; `make test` has Chromium.
 firefox: packages-firefox build

@@ -47,12 +47,16 @@ std::string instead_words(const Finding& finding) {
   const bool better = std::any_of(finding.gains.begin(), finding.gains.end(), [&](const PairedGain& gain) {
     return gain.competitor == finding.better_description && gain.falls_short();
   });
+  // A reader has just been told of the best one, which is another where a simpler one scores as well.
+  const std::string apart = finding.better_description == finding.best_competitor
+                                ? ""
+                                : ", the simplest that is not told apart from " + finding.best_competitor;
   // Only a gain beyond its margin is known: what cannot be told apart may be as good, or not.
-  return fmt::format(" These runs {} by {} ({}).",
+  return fmt::format(" These runs {} by {} ({}){}.",
                      !better                                 ? "may be described as well"
                      : finding.answer == Answer::cannot_tell ? "may be described better"
                                                              : "are described better",
-                     description_of(finding.better_description), finding.better_description);
+                     description_of(finding.better_description), finding.better_description, apart);
 }
 
 std::string why_not_told(const Finding& finding) {

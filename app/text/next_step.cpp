@@ -102,8 +102,11 @@ const Rule rules[] = {
      }},
     {[](const Situation& s) { return s.says(Answer::no_evidence) && !s.finding.better_description.empty(); },
      [](const Situation& s) {
-       return fmt::format("use the simpler {0} ({1}): `modebank track ARCHIVE --track.filter {0}`",
-                          s.finding.better_description, description_of(s.finding.better_description));
+       const std::string& simpler = s.finding.better_description;
+       return fmt::format(
+           "use the simpler {0} ({1}){2}: `modebank track ARCHIVE --track.filter {0}`", simpler,
+           description_of(simpler),
+           simpler == s.finding.best_competitor ? "" : ", which is not told apart from " + s.finding.best_competitor);
      }},
     {is_not_white,
      [](const Situation&) -> std::string {

@@ -6,6 +6,7 @@
 #include <boost/algorithm/string.hpp>
 
 #include "app/report/page/assets.hpp"
+#include "app/report/page/html_page.hpp"
 #include "app/view/digest.hpp"
 #include "ident/base/printable.hpp"
 
@@ -18,11 +19,11 @@ using nlohmann::json;
 constexpr std::size_t pages_at_once = 2, digests_at_once = 2, digests_waiting = 16;
 constexpr std::size_t longest_digest = 64 * 1024;
 
-// A report is one file with its scripts inside, and Plotly makes functions of texts; it may fetch nothing and send
-// nothing.
-const char* const report_policy =
-    "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:; "
-    "font-src data:; worker-src blob:";
+/// Of a run or a comparison; what their file says of itself holds, too.
+const std::string& report_policy() {
+  static const std::string policy = report::page_policy({assets::run_js(), assets::compare_js()});
+  return policy;
+}
 const char* const overview_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; style-src-attr 'unsafe-inline'; connect-src 'self'; "
     "img-src data:";
@@ -38,7 +39,7 @@ Answer text(const std::string& type, std::string_view body, const std::string& p
 Answer page_in(const fs::path& folder) {
   const int file = ::open((folder / "page.html").c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
   if (file < 0) return sentence(500, "The page is not there.", true);
-  Answer answer = text("text/html", "", report_policy);
+  Answer answer = text("text/html", "", report_policy());
   answer.file = OpenFile(file);
   return answer;
 }
@@ -84,7 +85,7 @@ std::uint64_t Viewer::make_page(const std::vector<std::string>& ids, bool head, 
     arguments.push_back("./" + file.name.string());
   }
   if (head) {
-    reply(text("text/html", "", report_policy));
+    reply(text("text/html", "", report_policy()));
     return 0;
   }
   const std::vector<std::string> written{"-o", "../page.html", "--report.runs", "0"};

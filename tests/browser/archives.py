@@ -4,6 +4,8 @@ import pathlib
 import random
 import subprocess
 
+import numpy
+
 # What takes long and adds no kind of number to a page.
 QUICK = ("--bank.refine", "none", "--bank.refine_transitions", "600")
 HOSTILE_STATE = "<script>window.hostile=1</script>"
@@ -59,6 +61,38 @@ def ice(modebank):
                         "--mixture.components", "1..4", "--mixture.restarts", "2")
 
 
+def held_out(file):
+    """Names of the runs of an open archive that were held out."""
+    return [row["run"].decode() for row in file["evaluation/summary"][:] if row["filter"] == b"bank" and row["role"] == b"test" and row["run"] != b"*"]
+
+
+def drive(modebank):
+    """DRIVE's Husky: 201 runs, more than a page draws."""
+    return modebank.run("drive", modebank.source / "configs/drive_husky.ini", "--data.root", real_data(), *QUICK, "--bank.transition", "labels",
+                        "--mixture.components", "4", "--mixture.restarts", "1", "--mixture.heldout", "never")
+
+
+GUARD_BORDER = 0.4  # of the input: no input lies within 0.1 of it
+
+
+def guard(modebank):
+    """A hybrid system of two modes, the second where u > GUARD_BORDER; switches learn to see that."""
+    folder = modebank.work / "guard"
+    folder.mkdir(exist_ok=True)
+    generator = numpy.random.default_rng(1)
+    for run in range(4):
+        u, x = generator.normal(0, 1, 300), numpy.zeros(300)
+        u += numpy.where(abs(u - GUARD_BORDER) < 0.1, numpy.where(u > GUARD_BORDER, 0.1, -0.1), 0.0)
+        for k in range(299):
+            decay, gain, sd = (-0.1, -0.3, 0.1) if u[k] > GUARD_BORDER else (-0.5, 0.4, 0.05)
+            x[k + 1] = x[k] + decay * x[k] + gain * u[k] + sd * generator.normal()
+        numpy.savetxt(folder / f"run_{run}.csv", numpy.c_[0.1 * numpy.arange(300), x, u], "%.9g", ",", header="time,x,u", comments="")
+    config = folder / "guard.ini"
+    config.write_text("[data]\ninputs = run_*.csv\nstate = x\ninput = u\ninput_unit = m/s\ntime = time\ntrain = 0, 1\ntest = 2, 3\n"
+                      "[mixture]\ncomponents = 2\nrestarts = 2\n[bank]\ntransition = logit\n", encoding="utf-8")
+    return modebank.run("guard", config, "--data.root", folder)
+
+
 def hostile(modebank):
     """Two runs in one file whose names, channels and units are made to break out of a page."""
     folder = modebank.work / "hostile"
@@ -86,4 +120,15 @@ def study(modebank, data):
                       "vary = window.length = 15 | 25\nvary = mixture.components = 1 | 2 | 3\nvary = mixture.covariance = full | diagonal\n",
                       encoding="utf-8")
     modebank("study", config, "--data.root", data, "--study.output", folder, *QUICK)
+    return folder
+
+
+def large_study(modebank):
+    """Of 200 runs over short data: 50 settings with four seeds each."""
+    data, folder, config = modebank.work / "short", modebank.work / "large_study", modebank.work / "large_study.ini"
+    modebank("simulate", modebank.source / "configs/simulate_ice.ini", "--simulate.output", data, "--simulate.runs", "4", "--simulate.samples", "200")
+    text = (modebank.source / "configs/demo.ini").read_text().replace("components = 1..8", "restarts = 1\nheldout = never")
+    config.write_text(text + "\n[study]\nvary = window.length = 10 | 15 | 20 | 25 | 30\nvary = mixture.components = 1 | 2 | 3 | 4 | 5\n"
+                             "vary = mixture.covariance = full | diagonal\nrepeats = 4\n", encoding="utf-8")
+    modebank("study", config, "--data.root", data, "--study.output", folder, *QUICK, "--bank.transition", "labels")
     return folder

@@ -5,6 +5,7 @@ import h5py
 import session
 from session import PageTest, pooled
 
+MAY_BE_USED = {"calibrated": "use it", "overconfident": "do not rely on it", "underconfident": "usable, wider than need be", "undecided": "cannot tell yet"}
 DESKTOP, PHONE = (1440, 900), (390, 844)
 # Headings that say what they are.
 PLAIN = {"", "Runs", "Run", "Filter", "Samples", "Shape", "Iterations", "Converged", "Status", "Setting", "Value", "Default", "File", "Bytes", "SHA-256",
@@ -39,7 +40,23 @@ class FirstScreen(PageTest):
                 self.assertLessEqual(max(self.bottoms("#said", "#coverage", "#next", "#picture canvas")), PHONE[1])
                 session.browser.screenshot(f"first_{name}_phone", whole=False)
                 self.assertLessEqual(session.browser.run("return document.documentElement.scrollWidth"), PHONE[0])
+                self.commands_are_not_torn(name)
                 self.assert_quiet()
+
+    def commands_are_not_torn(self, name):
+        """No line ends behind the hyphens of an option."""
+        tops = session.browser.run("""
+            return [...document.querySelectorAll('#next code')].flatMap((code) => [...code.textContent.matchAll(/--[\\w.]+/g)].map(({0: word}) => {
+              const walk = document.createTreeWalker(code, NodeFilter.SHOW_TEXT), range = document.createRange();
+              while (walk.nextNode() && !walk.currentNode.data.includes(word));
+              range.setStart(walk.currentNode, walk.currentNode.data.indexOf(word));
+              range.setEnd(walk.currentNode, walk.currentNode.data.indexOf(word) + word.length);
+              return [word, new Set([...range.getClientRects()].map((box) => box.top)).size];
+            }));""")
+        if name != "none_held_out":
+            self.assertTrue(tops)
+        for word, lines in tops:
+            self.assertEqual(lines, 1, word)
 
     def test_its_numbers_are_the_archives(self):
         self.open_run("demo")
@@ -51,6 +68,10 @@ class FirstScreen(PageTest):
         best = max((row for (_, role), row in rows.items() if role == "test" and row["filter"] != b"bank"), key=lambda row: row["log_score"])
         competitor = best["filter"].decode()
         self.assertEqual(shown["In the 95 % band"][0], bank["coverage_95"])
+        with h5py.File(session.made["demo"]) as file:
+            (verdict,) = {row["verdict"].decode() for row in file["evaluation/diagnostics"][:]
+                          if (row["filter"], row["role"], row["mode"]) == (b"bank", b"test", -1)}
+        self.assertIn(f"{MAY_BE_USED[verdict]}: {verdict}", shown["In the 95 % band"][1])
         self.assertAlmostEqual(shown[f"Gain over {competitor}"][0], bank["log_score"] - best["log_score"], places=9)
         self.assertIn("±", shown[f"Gain over {competitor}"][1])
         self.assertEqual(shown["RMSE one step ahead"][0], float(bank["rmse"].ravel()[0]))

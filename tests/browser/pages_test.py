@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """The report's pages in headless Chromium: pages_test.py PROGRAM SOURCE_FOLDER WORK_FOLDER [TEST...]
 
+Without a TEST all of them but LargePages, which takes minutes and is `make pages-large`.
+
 Makes pages of every kind and checks that each section draws without a console error or a request, that zoom, hover,
 click-through, sorting and filtering work, and that the numbers shown are the archive's. Pages and screenshots stay in
 WORK_FOLDER/pages.
@@ -29,17 +31,21 @@ for program, package in (("chromium", "chromium"), ("chromedriver", "chromium-dr
 import session  # noqa: E402
 from compare_page import ComparePage, Refusals  # noqa: E402, F401
 from first_screen import FirstScreen  # noqa: E402, F401
+from large_pages import LargePages  # noqa: E402, F401
 from looking_around import LookingAround  # noqa: E402, F401
+from mode_pages import ModePages  # noqa: E402, F401
 from printed import Printed  # noqa: E402, F401
 from run_pages import RunPages  # noqa: E402, F401
 from study_page import StudyPage  # noqa: E402, F401
 from view_pages import ViewPages  # noqa: E402, F401
 
+TESTS = ["ComparePage", "FirstScreen", "LookingAround", "ModePages", "Printed", "Refusals", "RunPages", "StudyPage", "ViewPages"]
+
 if __name__ == "__main__":
-    program, source, folder = sys.argv[1:4]
+    program, source, folder = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
     try:
-        session.start(program, source, pathlib.Path(folder) / "pages")
-        result = unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2, exit=False).result
+        session.start(program, source, folder / "pages")
+        result = unittest.main(argv=[sys.argv[0], *(sys.argv[4:] or TESTS)], verbosity=2, exit=False).result
     finally:
         session.stop()
     sys.exit(not result.wasSuccessful())

@@ -1,5 +1,7 @@
 """What `chromium --print-to-pdf` puts on paper: every figure as the screen shows it, and no empty sheet."""
 import base64
+import hashlib
+import shutil
 import subprocess
 
 import numpy
@@ -12,7 +14,7 @@ ROWS, COLUMNS = 12, 24  # cells of a figure whose ink is compared
 SCREEN = (800, 600)     # of the window that Chromium prints from
 # In two corners of every figure that is seen a mark in a colour of its own: 255, number of the figure, 1 or 2.
 FIGURES = "[...document.querySelectorAll('div.plot, canvas.picture, svg.graph')].filter((it) => it.checkVisibility())"
-MARKS = """<script>addEventListener('beforeprint', () => FIGURES.forEach((it, i) => {
+MARKS = """addEventListener('beforeprint', () => FIGURES.forEach((it, i) => {
   let frame = it, end = 'right:0;bottom:0';
   const svg = it.querySelector('.main-svg');  // Plotly's is as wide as the window was
   if (svg) end = `left:${svg.getAttribute('width') - 6}px;top:${svg.getAttribute('height') - 6}px`;
@@ -27,7 +29,7 @@ MARKS = """<script>addEventListener('beforeprint', () => FIGURES.forEach((it, i)
     mark.style = `position:absolute;z-index:99;width:6px;height:6px;${place};background:rgb(255,${i},${corner});print-color-adjust:exact`;
     frame.append(mark);
   }
-}));</script>""".replace("FIGURES", FIGURES)
+}));""".replace("FIGURES", FIGURES)
 # The pixels of a picture as a list of bytes, by a canvas.
 PIXELS = """
     const [data, done] = arguments, image = new Image();
@@ -65,10 +67,14 @@ def sheets_of(pdf):
 
 
 class Printed(PageTest):
-    def print_page(self, name):
+    def print_page(self, made):
         """Sheets of the page as headless Chromium prints it by itself, and the page that it printed."""
-        page = session.work / f"printed_{name}.html"
-        page.write_text(session.modebank.page(name, session.made[name]).read_text(encoding="utf-8").replace("</body>", MARKS + "</body>"), encoding="utf-8")
+        page, text = session.work / f"printed_{made.name}", made.read_text(encoding="utf-8")
+        allowed = base64.b64encode(hashlib.sha256(MARKS.encode()).digest()).decode()  # by the page's policy
+        for old, new in (("script-src ", f"script-src 'sha256-{allowed}' "), ("</body>", f"<script>{MARKS}</script></body>")):
+            self.assertIn(old, text)
+            text = text.replace(old, new, 1) if old != "</body>" else new.join(text.rsplit(old, 1))
+        page.write_text(text, encoding="utf-8")
         pdf = page.with_suffix(".pdf")
         subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--enable-unsafe-swiftshader",
                         "--no-pdf-header-footer", f"--print-to-pdf={pdf}", page.as_uri()], check=True, timeout=300, capture_output=True)
@@ -89,7 +95,16 @@ class Printed(PageTest):
         return numpy.frombuffer(base64.b64decode(data), numpy.uint8).reshape(height, width, 4)[:, :, :3]
 
     def test_every_figure_is_printed_as_it_is_seen(self):
-        sheets, page = self.print_page("demo")
+        demo, other = session.made["demo"], session.made["one_mode"]
+        pages = (("run", session.modebank.page("demo", demo), 9),
+                 ("comparison", session.modebank.page("compare", demo, other), 6),
+                 ("study", session.modebank.page("study", session.made["study"], options=("--report.runs", "2")), 5))
+        for kind, made, least in pages:
+            with self.subTest(kind):
+                self.check_printed(made, least)
+
+    def check_printed(self, made, least):
+        sheets, page = self.print_page(made)
         session.browser.size(*SCREEN)
         try:
             self.open(page)
@@ -98,13 +113,31 @@ class Printed(PageTest):
             figures = session.browser.run(f"""return {FIGURES}.map((it) => {{
                 const box = it.getBoundingClientRect();
                 return [it.getAttribute('aria-label') || it.getAttribute('class'), {{x: box.x + scrollX, y: box.y + scrollY, width: box.width, height: box.height}}];}})""")
-            self.assertGreaterEqual(len(figures), 9)
+            self.assertGreaterEqual(len(figures), least)
             for i, (label, box) in enumerate(figures):
                 with self.subTest(label):
-                    printed, seen = ink(self.printed_figure(sheets, i)), ink(self.seen_figure(box))
+                    figure = self.printed_figure(sheets, i)
+                    printed, seen = ink(figure), ink(self.seen_figure(box))
                     self.assertGreater(printed.mean(), 0.003)
                     self.assertGreater(likeness(printed, seen), 0.8)
+                    self.assertGreater(figure.shape[1], 0.7 * box["width"], "something wider than the sheet has shrunk all of the page")
         finally:
             session.browser.size(1200, 900)
         for number, sheet in enumerate(sheets):
             self.assertGreater((sheet.min(2) < 128).mean(), 0.0002, f"sheet {number + 1} of {len(sheets)} is empty")
+
+    def test_figures_carry_their_fonts(self):
+        if not shutil.which("gnuplot"):
+            self.skipTest("gnuplot is missing (Debian package gnuplot-nox)")
+        for name, options in (("demo", ()), ("study", ("--report.runs", "0"))):
+            folder = session.work / f"fonts_{name}"
+            session.modebank("report", session.made[name], "-o", session.work / "with_fonts.html", "--report.figures", folder, *options)
+            figures = sorted(folder.glob("*.pdf"))
+            self.assertGreaterEqual(len(figures), 3)
+            for figure in figures:
+                with self.subTest(figure.name):
+                    lines = subprocess.run(["pdffonts", figure], capture_output=True, text=True, check=True).stdout.splitlines()
+                    embedded = lines[0].index("emb")
+                    self.assertGreater(len(lines), 2, "a figure without words")
+                    for line in lines[2:]:
+                        self.assertEqual(line[embedded:].split()[0], "yes", line)

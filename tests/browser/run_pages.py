@@ -15,15 +15,26 @@ RUN_SECTIONS = ["verdict", "data", "bank", "filter", "windows", "selection", "or
 class RunPages(PageTest):
     def test_every_section_of_every_page_draws(self):
         """Those of the demo and of hostile names, too: in tests below."""
-        for name in ("one_mode", "no_truth", "ice"):
+        for name in ("one_mode", "no_truth", "none_held_out", "ice", "drive"):
             if name not in session.made:
                 continue
             with self.subTest(name):
                 plots = self.assert_whole(session.modebank.page(name, session.made[name]), RUN_SECTIONS)
                 self.assertGreaterEqual(plots, 6)
 
+    def test_all_runs_are_counted_where_not_all_are_drawn(self):
+        if "drive" not in session.made:
+            self.skipTest("real data is absent")
+        self.open(session.modebank.page("drive", session.made["drive"]))
+        with h5py.File(session.made["drive"]) as file:
+            runs = len(file["data"].attrs["runs"])
+        drawn = session.browser.run("return document.querySelector('#data select').options.length")
+        self.assertLess(drawn, runs)
+        self.assertIn(f"Of {runs} runs {drawn} are drawn", session.browser.run("return document.getElementById('data').textContent"))
+        self.assertIn("6 of 100 held-out runs", session.browser.run("return document.querySelector('#picture canvas').ariaLabel"))
+
     def test_numbers_are_the_archives(self):
-        for name in ("demo", "ice"):
+        for name in ("demo", "ice", "drive"):
             if name not in session.made:
                 continue
             with self.subTest(name):
@@ -53,6 +64,23 @@ class RunPages(PageTest):
             row = rows[line["Filter"][0].replace(" ", "_"), "test" if line["Runs"][0].startswith("held") else "train"]
             for heading, key in (("Samples", "samples"), ("Log score [nats]", "log_score"), ("NRMSE", "nrmse"), ("FIT [%]", "fit"), ("in 95 %", "coverage_95")):
                 self.same(line[heading][1], float(row[key].ravel()[0]))
+
+    def test_every_filter_has_a_name(self):
+        self.open(session.modebank.page("demo", session.made["demo"]))
+        with h5py.File(session.made["demo"]) as file:
+            filters = {row["filter"].decode().replace("_", " ") for row in file["evaluation/horizon"][:]}
+        self.assertIn("combined", filters)
+        self.assertEqual({row["Filter"][0] for row in self.table("Predictions several samples ahead")}, filters)
+
+    def test_histograms_of_all_filters_are_of_one_height(self):
+        self.open(session.modebank.page("demo", session.made["demo"]))
+        session.browser.draw_all("#filter")
+        heights = session.browser.run("""
+            const plot = [...document.querySelectorAll('#filter div.plot')].find((p) => p.ariaLabel.startsWith('Histogram'));
+            return Object.entries(plot._fullLayout).filter(([key]) => key.startsWith('yaxis')).map(([, axis]) => axis._length);""")
+        self.assertEqual(len(heights), 5)
+        self.assertLess(max(heights) - min(heights), 1)
+        self.assertGreater(min(heights), 60)
 
     def check_bank(self, archive):
         with h5py.File(archive) as file:
@@ -207,6 +235,16 @@ class RunPages(PageTest):
         self.assertIn(f"{archives.HOSTILE_STATE} [{archives.HOSTILE_UNIT}]", titles)
         session.browser.screenshot("hostile")
         self.assert_quiet()
+
+    def test_scripts_of_others_do_not_run(self):
+        """Nor may a page that somebody has written one into."""
+        page = session.work / "written_into.html"
+        text = session.modebank.page("demo", session.made["demo"]).read_text(encoding="utf-8")
+        page.write_text(text.replace("</body>", "<script>window.hostile = 7</script><img src='data:,' onerror='window.hostile = 8'></body>"), encoding="utf-8")
+        self.open(page)
+        self.assertIsNone(session.browser.run("return window.hostile ?? null"))
+        refused, _ = session.browser.messages()
+        self.assertGreaterEqual(len([message for message in refused if "Content Security Policy" in message]), 1)
 
     def test_what_an_archive_lacks_is_said(self):
         plots = self.assert_whole(session.modebank.page("windows_only", session.made["windows_only"]), RUN_SECTIONS)

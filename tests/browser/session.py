@@ -23,7 +23,9 @@ class Made(dict):
         "none_held_out": lambda name: archives.demo(modebank, data, name, "--data.train", ",".join(f"{run:02d}" for run in range(12))),
         "windows_only": lambda name: archives.demo(modebank, data, name, command="identify"),
         "hostile": lambda _: archives.hostile(modebank),
+        "guard": lambda _: archives.guard(modebank),
         "study": lambda _: archives.study(modebank, data),
+        "large_study": lambda _: archives.large_study(modebank),
     }
 
     def __missing__(self, name):
@@ -46,10 +48,11 @@ def start(program, source, folder):
     data = archives.demo_data(modebank)
     if archives.real_data():
         made.recipes["ice"] = lambda _: archives.ice(modebank)
+        made.recipes["drive"] = lambda _: archives.drive(modebank)
     elif os.environ.get("CI") == "true":
         raise AssertionError("real data is absent: set MODEBANK_DATA (CI requires it)")
     else:
-        print("SKIPPED: the page of ICE, real data is absent: set MODEBANK_DATA")
+        print("SKIPPED: the pages of ICE and DRIVE, real data is absent: set MODEBANK_DATA")
     browser = Browser(work)
 
 

@@ -8,6 +8,7 @@ namespace modebank::app::assets {
 std::string_view page_html();  ///< the skeleton of every page, see html_page.hpp
 std::string_view page_css();
 std::string_view plotly_packed();  ///< Plotly with its licence: gzip in base64
+std::string_view plotly_sha256();  ///< of Plotly as it is unpacked, as sha256sum prints it
 std::string_view run_js();         ///< what draws the page of a run
 std::string_view study_js();       ///< that of a study
 std::string_view compare_js();     ///< that of two runs

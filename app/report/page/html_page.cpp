@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "app/report/page/assets.hpp"
+#include "io/files/sha256.hpp"
 
 namespace modebank::app::report {
 
@@ -33,8 +34,17 @@ std::string array_elements(const PageArrays& arrays) {
   return text;
 }
 
+/// As a policy names an element's text by its hash, whose digits are hexadecimal here.
+std::string hash_source(std::string_view hex) {
+  std::string bytes;
+  for (std::size_t i = 0; i < hex.size(); i += 2)
+    bytes += static_cast<char>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16));
+  return fmt::format(" 'sha256-{}'", base64(bytes));
+}
+
 std::string part(std::string_view name, const Page& page) {
   if (name == "title") return escaped_html(page.title);
+  if (name == "policy") return page_policy({page.script});
   if (name == "css") return std::string(assets::page_css());
   if (name == "data") return json_in_script(page.data);
   if (name == "arrays") return array_elements(page.arrays);
@@ -44,6 +54,19 @@ std::string part(std::string_view name, const Page& page) {
 }
 
 }  // namespace
+
+std::string page_policy(const std::vector<std::string_view>& scripts) {
+  constexpr std::size_t hash_digits = 64;  // what follows them is the file's name
+  // Plotly is unpacked into an element of its own; where it draws by WebGL it makes functions of texts.
+  std::string runs = hash_source(assets::plotly_sha256().substr(0, hash_digits)) + " 'unsafe-eval'";
+  for (const std::string_view script : scripts) runs += hash_source(sha256_hex(script));
+  // Plotly fills an element of style, empty at first, rule by rule; elements that are made by a script have attributes
+  // of style.
+  return fmt::format(
+      "default-src 'none'; script-src{}; style-src{}{}; style-src-attr 'unsafe-inline'; img-src data: blob:; "
+      "font-src data:; worker-src blob:",
+      runs, hash_source(sha256_hex(assets::page_css())), hash_source(sha256_hex("")));
+}
 
 std::string html_of(const Page& page) {
   std::string html;

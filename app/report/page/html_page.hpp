@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "app/report/page/page_arrays.hpp"
 
@@ -18,6 +19,10 @@ struct Page {
 
 /// As text between tags.
 std::string escaped_html(std::string text);
+
+/// What browsers let a page with one of these scripts do (Content Security Policy): run its own scripts and use its own
+/// style, which it names by their hashes, and fetch or send nothing.
+std::string page_policy(const std::vector<std::string_view>& scripts);
 
 /// The self-contained HTML file: nothing in it refers to anything outside.
 std::string html_of(const Page& page);

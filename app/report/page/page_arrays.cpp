@@ -32,7 +32,8 @@ std::string deflated(const std::string& bytes) {
 
 std::size_t base64_size(std::size_t bytes) { return 4 * ((bytes + 2) / 3); }
 
-/// RFC 4648, section 4.
+}  // namespace
+
 std::string base64(const std::string& bytes) {
   constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text(base64_size(bytes.size()), '=');
@@ -45,8 +46,6 @@ std::string base64(const std::string& bytes) {
   }
   return text;
 }
-
-}  // namespace
 
 template <class T>
 nlohmann::json PageArrays::store(const T* values, std::size_t count, const char* type) {

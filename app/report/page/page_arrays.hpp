@@ -8,6 +8,9 @@
 
 namespace modebank::app::report {
 
+/// RFC 4648, section 4.
+std::string base64(const std::string& bytes);
+
 /// The arrays a page draws. Each is stored by byte planes (all first bytes, all second bytes, ...; neighbours are alike
 /// there), deflated and in base64; the page unpacks one when it first needs it.
 class PageArrays {

@@ -30,16 +30,40 @@ json gain_card(const FirstScreen& screen) {
   if (std::isnan(screen.gain)) return nullptr;
   const std::string known =
       std::isfinite(screen.gain_error) ? "above 0 the bank predicts better" : "its error is not known";
-  json gain = estimate(screen.gain, screen.gain_error);
-  if (screen.gain > 0.0) gain["t"] = "+" + gain["t"].get<std::string>();
+  // In the sentence's digits (finding_text): one number is not written in two ways on one screen.
+  const std::string error = std::isfinite(screen.gain_error) ? fmt::format(" ± {:.3f}", screen.gain_error) : "";
+  const json gain = number(screen.gain, fmt::format("{:+.3f}{}", screen.gain, error));
   return card("gain", "Gain over " + screen.competitor, gain, "nats per sample", known);
+}
+
+/// Whether one may go by the band, which is what is asked first; of training runs nobody can tell.
+std::string use_words(const FirstScreen& screen) {
+  const bool held_out = screen.role == Role::test;
+  switch (screen.verdict) {
+    case Verdict::calibrated:
+      return held_out ? "use it" : "nothing was held out";
+    case Verdict::overconfident:
+      return "do not rely on it";
+    case Verdict::underconfident:
+      return held_out ? "usable, wider than need be" : "nothing was held out";
+    case Verdict::undecided:
+      break;
+  }
+  return "cannot tell yet";
+}
+
+/// "use it: calibrated, its stated uncertainty is not found false"
+std::string band_advice(const FirstScreen& screen) {
+  const std::string why =
+      screen.verdict == Verdict::undecided ? "too few independent samples" : calibration_words(screen.verdict);
+  return fmt::format("{}: {}, {}", use_words(screen), name_of(screen.verdict), why);
 }
 
 json coverage_card(const FirstScreen& screen) {
   if (std::isnan(screen.coverage)) return nullptr;
   return card("coverage", "In the 95 % band", number(screen.coverage, fmt::format("{:.1f} %", 100 * screen.coverage)),
               fmt::format("[{:.1f}, {:.1f}]", 100 * screen.coverage_lower, 100 * screen.coverage_upper),
-              fmt::format("{}: {}", name_of(screen.verdict), calibration_words(screen.verdict)));
+              band_advice(screen));
 }
 
 json error_card(const FirstScreen& screen, const ErrorAhead& error) {

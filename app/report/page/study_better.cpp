@@ -68,12 +68,33 @@ nlohmann::json gain_cell(double gain, double error) {
                 std::isfinite(error) ? fmt::format("{:+.4f} ± {:.4f}", gain, error) : fmt::format("{:+.4f}", gain));
 }
 
-json row_json(const StudyTable& table, std::size_t row, double gain, double error, double margin) {
+/// What the best gains over a rival, and where its error comes from.
+struct JudgedGain {
+  double gain, standard_error, margin;
+  std::string by;
+};
+
+JudgedGain judged(const ArchiveGain& by_run, const RepeatGain& by_repeat) {
+  const std::string repeats = fmt::format("{} repeats", by_repeat.repeats);
+  if (by_run.runs == 0)
+    return {by_repeat.gain, by_repeat.standard_error, by_repeat.margin,
+            by_repeat.repeats < 2 ? "nothing to pair by" : repeats};
+  const PairedGain& first = by_run.gain;
+  const std::string runs = first.by_blocks ? "blocks of samples" : fmt::format("{} runs", by_run.runs);
+  if (by_repeat.repeats < 2) return {first.gain, first.standard_error, first.margin, runs};
+  // The best is so by the mean over its repeats; its first repeat alone may well fall behind.
+  return {by_repeat.gain, std::hypot(first.standard_error, by_repeat.standard_error),
+          std::hypot(first.margin, by_repeat.margin), runs + " and " + repeats};
+}
+
+json row_json(const StudyTable& table, std::size_t row, const JudgedGain& gain) {
   return {{"row", row},
           {"varied", table.rows[row].varied},
-          {"gain", gain_cell(gain, error)},
-          {"margin", std::isfinite(margin) ? number(margin, fmt::format("{:.4f}", margin)) : number(margin)},
-          {"verdict", verdict_of(gain, margin)}};
+          {"gain", gain_cell(gain.gain, gain.standard_error)},
+          {"margin",
+           std::isfinite(gain.margin) ? number(gain.margin, fmt::format("{:.4f}", gain.margin)) : number(gain.margin)},
+          {"verdict", verdict_of(gain.gain, gain.margin)},
+          {"by", gain.by}};
 }
 
 }  // namespace
@@ -106,19 +127,9 @@ nlohmann::json better_section(const StudyTable& table, const std::vector<TrialPl
   json rivals = json::array();
   for (std::size_t s = 1; s < std::min(settings.size(), most_rivals + 1); ++s) {
     const std::size_t row = settings[s].front();
-    json rival;
     const std::optional<Archive> other = best ? archive_of(places[row]) : std::nullopt;
     const ArchiveGain by_run = other ? gain_between(*best, *other) : ArchiveGain();
-    const RepeatGain by_repeat = repeat_gain(table, settings[0], settings[s], score);
-    if (by_run.runs > 0) {
-      rival = row_json(table, row, by_run.gain.gain, by_run.gain.standard_error, by_run.gain.margin);
-      rival["by"] = by_run.gain.by_blocks ? "blocks of samples" : fmt::format("{} runs", by_run.runs);
-    } else {
-      rival = row_json(table, row, by_repeat.gain, by_repeat.standard_error, by_repeat.margin);
-      rival["by"] = by_repeat.repeats < 2 ? "nothing to pair by" : fmt::format("{} repeats", by_repeat.repeats);
-    }
-    rival["repeats"] = by_repeat.repeats < 2 ? json() : gain_cell(by_repeat.gain, by_repeat.standard_error);
-    rivals.push_back(rival);
+    rivals.push_back(row_json(table, row, judged(by_run, repeat_gain(table, settings[0], settings[s], score))));
   }
   return {{"best", settings[0].front()}, {"settings", settings.size()}, {"rivals", rivals}};
 }

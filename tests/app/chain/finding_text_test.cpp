@@ -36,10 +36,13 @@ TEST(FindingText, EvidenceNamesGainErrorAndTheOtherExplanation) {
 TEST(FindingText, NoEvidenceNamesWhatDescribesTheRunsInstead) {
   Finding finding = finding_of(Answer::no_evidence);
   finding.better_description = "drifting";
-  EXPECT_THAT(finding_text(finding),
-              AllOf(HasSubstr("no evidence for modes of motion"),
-                    HasSubstr("These runs may be described as well by one motion whose parameters drift (drifting).")));
+  EXPECT_THAT(
+      finding_text(finding),
+      AllOf(HasSubstr("no evidence for modes of motion"),
+            HasSubstr("These runs may be described as well by one motion whose parameters drift (drifting), the "
+                      "simplest that is not told apart from one_motion.")));
   finding.better_description = "one_motion";
+  EXPECT_THAT(finding_text(finding), HasSubstr("as well by one motion with changing noise (one_motion)."));
   finding.gains.front().gain = -0.2;
   EXPECT_THAT(finding_text(finding), HasSubstr("These runs are described better by one motion with changing noise"));
   finding.modes_differ = false;

@@ -221,7 +221,11 @@ TEST_F(NextStep, AnswersHaveTheirs) {
   archive.finding->role = Role::test;
   archive.finding->answer = Answer::no_evidence;
   archive.finding->better_description = "one_motion";
-  EXPECT_THAT(advice(), HasSubstr("use the simpler one_motion (one motion with changing noise)"));
+  archive.finding->best_competitor = "one_motion";
+  EXPECT_THAT(advice(), HasSubstr("use the simpler one_motion (one motion with changing noise): `modebank track"));
+  archive.finding->best_competitor = "drifting";
+  EXPECT_THAT(advice(),
+              HasSubstr("(one motion with changing noise), which is not told apart from drifting: `modebank"));
 }
 
 TEST_F(NextStep, ColouredErrorsAskForMemory) {

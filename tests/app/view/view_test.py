@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """modebank view under attack: view_test.py PROGRAM SOURCE_FOLDER WORK_FOLDER [TEST...]"""
+import base64
+import hashlib
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import socket
@@ -147,6 +150,22 @@ class Requests(ViewTest):
             self.assertEqual(nothing, b"")
         self.assertIn("frame-ancestors 'none'", server.get("/", cookie=None)[0])
         self.assertNotIn("unsafe-inline'; style-src '", server.get("/")[0])
+
+    def test_a_page_runs_its_own_scripts_alone(self):
+        """Named by their hashes, in the header and in the page, which is opened from a file, too."""
+        self.add()
+        server = self.serve()
+        (row,) = self.rows(server).values()
+        head, body = server.get(f"/archive/{row['id']}")
+        page = body.decode()
+        in_page = re.search(r'http-equiv="Content-Security-Policy" content="([^"]*)"', page)[1]
+        for policy in (re.search(r"Content-Security-Policy: (.*)", head)[1], in_page):
+            allowed = dict(rule.strip().split(" ", 1) for rule in policy.split(";") if rule.strip())
+            self.assertNotIn("unsafe-inline", allowed["script-src"])
+            self.assertNotIn("unsafe-inline", allowed["style-src"])
+            for kind, texts in (("script-src", re.findall(r"<script>(.*?)</script>", page, re.S)), ("style-src", re.findall(r"<style>(.*?)</style>", page, re.S))):
+                self.assertEqual(len(texts), 1)
+                self.assertIn(f"'sha256-{base64.b64encode(hashlib.sha256(texts[0].encode()).digest()).decode()}'", allowed[kind])
 
     def test_bodies_long_headers_and_nonsense(self):
         server = self.serve()

@@ -61,5 +61,5 @@ export function drawModes(data) {
   const ofModes = modeColours(data);
   section(
       'modes', 'Modes side by side', data.matches.map((match, i) => matchTables(data, match, i + 1, ofModes)),
-      h('p', {class: 'caption'}, how));
+      data.matches.some(({difference}) => !difference) ? h('p', {class: 'caption'}, how) : null);
 }

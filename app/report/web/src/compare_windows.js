@@ -99,8 +99,9 @@ export function drawWindows(data) {
   const chosen = firstAxes(all[0], shared);
   const element = figure(
       'Local models and modes of all runs in two parameters', () => windowsDrawing(data, chosen),
-      'Small: windows, grey where they are the same in all. Large: modes of the banks, A’s full, the others’ open; ' +
-          'lines join those that are matched.');
+      'Small: windows, grey where they are the same in all. ' +
+          'Large, where both axes are parameters of modes: those of the banks, A’s full, the others’ open; lines ' +
+          'join those that are matched.');
   const pick = (label, key) => choice(label, shared, shared.indexOf(chosen[key]), (i) => {
     chosen[key] = shared[i];
     element.redraw();

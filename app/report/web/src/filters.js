@@ -5,6 +5,7 @@ export const filterNames = {
   noise_only: 'Noise only',
   one_motion: 'One motion, changing noise',
   drifting: 'One drifting motion',
+  combined: 'All filters combined',
   global: 'Global model',
 };
 export const shortNames = {
@@ -13,6 +14,7 @@ export const shortNames = {
   noise_only: 'noise only',
   one_motion: 'one motion',
   drifting: 'drifting',
+  combined: 'combined',
   global: 'global model'
 };
 // The scores that count samples on either side of what a true filter has, by kind.

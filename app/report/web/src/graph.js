@@ -26,7 +26,10 @@ function arrow(from, to, width, colour, title) {
           'stroke-opacity': 0.75,
         }),
         s('path', {d: `M${corners.map(put).join('L')}Z`, fill: colour}));
-  return {element, at: {x: (start.x + 2 * middle.x + end.x) / 4, y: (start.y + 2 * middle.y + end.y) / 4}};
+  // Nearer to where it comes from: in the middle the labels of all would meet.
+  const t = 0.3, share = [(1 - t) ** 2, 2 * t * (1 - t), t ** 2];
+  const on = (axis) => share[0] * start[axis] + share[1] * middle[axis] + share[2] * end[axis];
+  return {element, at: {x: on('x'), y: on('y')}};
 }
 
 function edgesOf(transition, nodes, places) {

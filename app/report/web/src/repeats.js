@@ -1,6 +1,8 @@
 // Runs that differ in their seed alone, as one line of a table.
 import {isNumber, mean} from './statistics.js';
 
+const rounding = 1e-5;  // of the mean: what is apart by less shows no difference in a table
+
 const known = (cell) => Boolean(cell) && typeof cell === 'object' && isNumber(cell.v);
 
 // Mean ± standard deviation of a score's cells; {t, v} as C++ writes numbers.
@@ -10,7 +12,7 @@ function meanCell(cells) {
   const middle = mean(values);
   if (values.length === 1) return {t: cells.find(known).t, v: middle};
   const sd = Math.sqrt(values.reduce((sum, v) => sum + (v - middle) ** 2, 0) / (values.length - 1));
-  if (sd === 0) return {t: cells.find(known).t, v: middle};
+  if (sd < rounding * Math.abs(middle)) return {t: cells.find(known).t, v: middle};
   return {t: `${Number(middle.toPrecision(4))} ± ${Number(sd.toPrecision(2))}`, v: middle};
 }
 

@@ -14,11 +14,14 @@ const legendAbove = {
   yanchor: 'bottom'
 };
 
+const panel_px = 84, between_px = 58, above_px = 40, below_px = 44;  // between: numbers of one, name of the next
+
 // Adds the histogram of row i of `count` to the drawing.
 function addHistogram({traces, layout}, row, i, count) {
-  const n = i ? i + 1 : '', top = 1 - i / count, bottom = 1 - (i + 1) / count, last = i === count - 1;
+  const n = i ? i + 1 : '', last = i === count - 1;
   const axes = {xref: `x${n}`, yref: `y${n}`};
-  const domain = [bottom + (last ? 0 : 0.1), top - 0.02];
+  const all = count * panel_px + (count - 1) * between_px, top = 1 - (i * (panel_px + between_px)) / all;
+  const domain = [Math.max(0, top - panel_px / all), top];
   layout[`yaxis${n}`] = {title: {text: 'samples'}, domain, rangemode: 'tozero', nticks: 4};
   layout[`xaxis${n}`] = {range: [0, 1], anchor: `y${n}`, title: last ? {text: 'PIT'} : undefined, nticks: 6};
   traces.push({
@@ -51,8 +54,8 @@ function histograms(filter) {
   const plot = figure(label, () => {
     const rows = filter.histograms.filter((row) => row.role === role);
     const layout = {
-      height: 170 * rows.length + 40,
-      margin: {l: 64, r: 12, t: 40, b: 44},
+      height: above_px + rows.length * (panel_px + between_px) - between_px + below_px,
+      margin: {l: 64, r: 12, t: above_px, b: below_px},
       showlegend: false,
       shapes: [],
       annotations: [],

@@ -90,7 +90,7 @@ function drawNames(pen, picture, at) {
   pen.restore();
   pen.textAlign = 'left';
   for (const {run, x, width} of at.places) {
-    if (width > 40) pen.fillText(run.name, x, 8, width);
+    if (pen.measureText(run.name).width <= Math.max(width, 40)) pen.fillText(run.name, x, 8, width);
     pen.textAlign = 'right';
     if (width > least_px) pen.fillText(`${Number(run.seconds.toPrecision(3))} s`, x + width, at.bottom + 12);
     pen.textAlign = 'left';

@@ -41,6 +41,7 @@ const verdictColumns = [
   whose,
   whichRuns,
   {name: 'Uncertainty', text: true, of: (row) => row.verdict},
+  {name: 'Stands out', prose: true, of: (row) => row.flags},
   number('in 50 % band', 'coverage_50'),
   number('in 90 %', 'coverage_90'),
   number('in 95 %', 'coverage_95'),
@@ -48,7 +49,6 @@ const verdictColumns = [
   number('too far', 'too_far'),
   number('too close', 'too_close'),
   number('mean NIS [true filter]', 'nis_mean'),
-  {name: 'Stands out', prose: true, of: (row) => row.flags},
 ];
 
 const horizonColumns = (filter) =>

@@ -41,11 +41,13 @@ function stayBars(rows, key, name, hatched) {
   };
 }
 
+const logTicks = [-3, -2, -1, 0, 1, 2, 3, 4].flatMap((power) => [1, 2, 5].map((k) => Number(`${k}e${power}`)));
+
 function stayFigure(bank) {
   const {told} = byUse(bank);
   const stays = told.flatMap((row) => [row.stay, row.stay_model]).map((cell) => cell && cell.v).filter((v) => v > 0);
   const wide = Math.max(...stays) > 20 * Math.min(...stays);
-  const scale = wide ? {type: 'log', dtick: 1} : {type: 'linear'};
+  const scale = wide ? {type: 'log', tickvals: logTicks, ticktext: logTicks.map(String)} : {type: 'linear'};
   return figure(
       'Mean stay in each mode; the table below holds the same numbers',
       () => ({
@@ -104,24 +106,25 @@ function transitionMap(nodes, folded) {
   const layout = {
     height: 400,
     margin: {l: 70, r: 10, t: 32, b: 56},
-    xaxis: {title: {text: 'to'}, type: 'category', tickangle: nodes.length > 4 ? -90 : 0},
+    xaxis: {title: {text: 'to', standoff: 8}, type: 'category', tickangle: nodes.length > 4 ? -90 : 0},
     yaxis: {title: {text: 'from'}, type: 'category', autorange: 'reversed'},
   };
   return figure(
       'Transition probabilities as a map; the matrix in numbers stands below', () => ({traces: [trace], layout}));
 }
 
+// Said before what is drawn: a switch that never happens at the mean may happen all the time elsewhere.
+const movedSwitches = () => note(
+    'State and input move these switches: graph, map and matrix hold where they are at their training mean, and ' +
+    'each unit more adds the weights in the table to the log odds of a mode. Where no error stands, data say that a ' +
+    'weight is large and no more: a hard border.');
+
 /** The weights of switches that see state and input. */
 function switchWeights(weights) {
   const first = {name: 'to', text: true, of: (row) => modeTitle(row.k), swatch: (row) => modeColour(row.k)};
   const columns = [first, ...weights.names.map((name, i) => ({name, of: (row) => row.cells[i]}))];
-  return [
-    note(
-        'State and input move these switches: the matrix holds where they are at their training mean, and each unit ' +
-        'more adds the weights to the log odds of a mode. Where no error stands, data say that a weight is large and ' +
-        'no more: a hard border.'),
-    table(columns, weights.rows.map((cells, k) => ({cells, k})), {caption: 'Log odds per unit of state and input'}),
-  ];
+  const rows = weights.rows.map((cells, k) => ({cells, k}));
+  return table(columns, rows, {caption: 'Log odds per unit of state and input'});
 }
 
 function guard(bank) {
@@ -139,6 +142,7 @@ export function switching(bank) {
     guard(bank),
     h('h3', {}, 'How modes follow each other'),
     folded ? h('p', {class: 'caption'}, 'Modes that are hardly used are taken as one; the matrix has each.') : null,
+    bank.switch_weights ? movedSwitches() : null,
     pair,
     bank.switch_weights ? switchWeights(bank.switch_weights) : null,
     details('The transition matrix in numbers', transitionTable(bank)),

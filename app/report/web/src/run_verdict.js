@@ -10,12 +10,14 @@ import {withTips} from './tips.js';
 const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 // A cell breaks where its parts meet, not between a number and its error or unit.
-const breakable = (text) => text.replace(/ (±|%|s\b)/g, '\u00a0$1').replace(/± /g, '±\u00a0');
+const breakable = (text) => text.replace(/ (±|%|s\b)/g, '\u00a0$1').replace(/(±|period) /g, '$1\u00a0');
 
 // Commands in a sentence, `modebank show`, and options, --filter.horizon 10, as such.
 const command = /(`[^`]+`|--[\w.]+(?:[ =](?:'[^']*'|[\d.]+|auto|varx|adaptive))?)/;
+// A browser breaks lines behind hyphens, which would tear `--filter.horizon`.
+const words = (text) => text.split(' ').flatMap((word, i) => [i ? ' ' : null, h('span', {class: 'word'}, word)]);
 const withCode = (text, other = (part) => part) =>
-    text.split(command).map((part, i) => (i % 2 ? h('code', {}, part.replace(/`/g, '')) : other(part)));
+    text.split(command).map((part, i) => (i % 2 ? h('code', {}, words(part.replace(/`/g, ''))) : other(part)));
 
 function card(row) {
   return h(

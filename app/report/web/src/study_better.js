@@ -18,14 +18,12 @@ function columnsOf(study, showRun) {
   const show = (rival) => h(
       'button', {type: 'button', 'aria-label': `Show run ${rival.row}`, onclick: () => showRun(study.rows[rival.row])},
       `run ${rival.row}`);
-  const repeats = study.better.rivals.some((rival) => rival.repeats);
   return [
     {name: 'Best is ahead by [nats/sample]', of: (rival) => rival.gain},
     {name: 'needed for 95 %', of: (rival) => rival.margin},
     {name: 'It is', text: true, of: (rival) => verdicts[rival.verdict] || rival.verdict},
     ...settingColumn(study),
     {name: 'error from', text: true, of: (rival) => rival.by},
-    ...(repeats ? [{name: 'ahead over repeats', of: (rival) => rival.repeats}] : []),
     {name: 'Look', text: true, of: show},
   ];
 }
@@ -48,7 +46,8 @@ export function drawBetter(study, showRun) {
   }
   const how =
       'Differences of the log score, each sample against the same sample; the error is clustered by run (of the ' +
-      'first repeat), so that long runs do not count as many. Settings were chosen as the best by these very scores: ' +
+      'first repeat), so that long runs do not count as many. Of repeats the mean counts, and their spread is in the ' +
+      'error. Settings were chosen as the best by these very scores: ' +
       'the best of many is a little too good.';
   section(
       'better', title, h('p', {class: 'verdict'}, sentence(better)),

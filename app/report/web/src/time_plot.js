@@ -137,7 +137,7 @@ class TimePlot {
     if (said === this.said && this.panels === this.saidIn) return;
     Object.assign(this, {said, saidIn: this.panels});
     entries.forEach((list, i) => this.panels[i].readout.replaceChildren(...list.map(entryItem)));
-    this.time.textContent = at === null ? 'Point at the plot, or focus it and press → , to read its signals.' :
+    this.time.textContent = at === null ? 'Point at the plot, or focus it and press → or ←, to read its signals.' :
                                           `Crosshair at ${secondsText(at)}, sample ${k}.`;
   }
 

@@ -4,7 +4,7 @@
 //
 // A row is {title, height, draw: async ({run, clock, shown, range}) => traces, read: async (run, k) => entries, range,
 // log, levels}: `read` tells what its signals are at sample k (-1: none, the entries are then a legend).
-import {modeTitle} from './mode_names.js';
+import {modeTitle, rankOf} from './mode_names.js';
 import {array} from './page_data.js';
 import {ink, lineColour, modeColour, palette, translucent} from './plots.js';
 import {band, bounds, line, share, valueAt} from './signals.js';
@@ -151,8 +151,10 @@ export function probabilityRow(of, title = 'probability of the modes', colourOf 
   const draw = ({run, clock, shown}) => {
     const filter = of(run);
     if (!filter || !filter.probability) return [];
-    return Promise.all(filter.probability.map(async (signal, k) => {
-      const curve = await share(signal, clock, shown);
+    // The most used first, as in tables and legends.
+    const order = filter.probability.map((_, k) => k).sort((a, b) => rankOf(a) - rankOf(b));
+    return Promise.all(order.map(async (k) => {
+      const curve = await share(filter.probability[k], clock, shown);
       return {...curve, kind: 'shares', step: curve.per === 1, colour: colourOf(k), name: modeTitle(k)};
     }));
   };
