@@ -14,6 +14,13 @@ const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filte
 
 Role judged_role(const Archive& archive) { return modebank::judged_role(archive.summary); }
 
+std::vector<std::size_t> positions_of(const Recording& recording, Role role) {
+  std::vector<std::size_t> positions;
+  for (std::size_t i = 0; i < recording.runs.size(); ++i)
+    if (recording.runs[i].role == role) positions.push_back(i);
+  return positions;
+}
+
 const char* words_for(Role role) { return role == Role::test ? "held-out" : "training"; }
 
 namespace {

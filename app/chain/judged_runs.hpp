@@ -15,6 +15,9 @@ const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filte
 /// The runs that filters are judged on: those held out, or, where nothing was, those they learned from.
 Role judged_role(const Archive& archive);
 
+/// Positions of the runs that have the role.
+std::vector<std::size_t> positions_of(const Recording& recording, Role role);
+
 /// "held-out" or "training".
 const char* words_for(Role role);
 

@@ -5,6 +5,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -96,7 +97,16 @@ DerivedNumbers derived_numbers(const Bank& bank, Eigen::Index mode, const Number
   const Eigen::MatrixXd covariance = covariance_of(chosen, bank.structure.parameters());
   if (covariance.size() == 0) return {values, Eigen::VectorXd::Constant(values.size(), not_a_number)};
   const Eigen::MatrixXd J = derivatives(bank, bank.theta(mode), values.size(), numbers);
-  return {values, (J * covariance * J.transpose()).diagonal().cwiseSqrt()};
+  Eigen::VectorXd errors(values.size());
+  for (Eigen::Index i = 0; i < errors.size(); ++i) {
+    // A parameter that has no error matters to the numbers alone that it moves.
+    std::vector<Eigen::Index> moving;
+    for (Eigen::Index j = 0; j < J.cols(); ++j)
+      if (J(i, j) != 0.0) moving.push_back(j);
+    const Eigen::RowVectorXd slope = J(i, moving);
+    errors(i) = std::sqrt((slope * covariance(moving, moving) * slope.transpose()).value());
+  }
+  return {values, errors};
 }
 
 ModeDynamics mode_dynamics(const Bank& bank, Eigen::Index mode) {

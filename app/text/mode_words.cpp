@@ -31,27 +31,12 @@ std::string heading(const std::string& name) {
   return first_columns(name, longest_name - 2) + "..";
 }
 
-/// Per gain (states x inputs, a state's in a row) whether the training runs leave it open: some effect of the input on
-/// the state has no standard error in the global model.
-std::vector<bool> open_gains(const Archive& archive) {
-  const LinearStructure& s = archive.bank->structure;
-  std::vector<bool> open(static_cast<std::size_t>(s.states * s.inputs), false);
-  if (!archive.windows || !archive.windows->model_parameters.empty() || !(archive.windows->structure == s)) return open;
-  const Eigen::VectorXd variance = archive.windows->global.covariance.diagonal();
-  if (variance.size() != s.parameters()) return open;
-  for (Index i = 0; i < s.states; ++i)
-    for (Index j = 0; j < s.acting_inputs(); ++j)
-      if (std::isnan(variance(i * s.regressors() + s.dimension() + j)))
-        open[static_cast<std::size_t>(i * s.inputs + j % s.inputs)] = true;
-  return open;
-}
-
 std::vector<std::string> gain_cells(const ModeDynamics& dynamics, const std::vector<bool>& open) {
   std::vector<std::string> cells;
   const Eigen::VectorXd gains = dynamics.gain.transpose().reshaped(),
                         errors = dynamics.gain_error.transpose().reshaped();
   for (Index i = 0; i < gains.size(); ++i)
-    cells.push_back(open[static_cast<std::size_t>(i)] ? "not identifiable" : estimate_text(gains(i), errors(i)));
+    cells.push_back(open[static_cast<std::size_t>(i)] ? not_identifiable : estimate_text(gains(i), errors(i)));
   return cells;
 }
 
@@ -63,7 +48,7 @@ std::vector<std::string> headings_of(const GainNames& gains) {
 
 /// With all decays of each, or the slowest alone.
 std::vector<ModeTable::Row> rows_of(const Archive& archive, const std::vector<UsedMode>& modes, bool all_decays) {
-  const std::vector<bool> open = open_gains(archive);
+  const std::vector<bool> open = open_gains(archive, archive.bank->structure);
   std::vector<ModeTable::Row> rows;
   for (const UsedMode& used : modes) {
     ModeDynamics dynamics = mode_dynamics(*archive.bank, used.mode);
@@ -109,6 +94,25 @@ int widest_line(const std::string& text) {
 }
 
 }  // namespace
+
+std::vector<bool> open_parameters(const Archive& archive, const LinearStructure& s) {
+  std::vector<bool> open(static_cast<std::size_t>(s.parameters()), false);
+  if (!archive.windows || !archive.windows->model_parameters.empty() || !(archive.windows->structure == s)) return open;
+  const Eigen::ArrayXd variance = archive.windows->global.covariance.diagonal().array();
+  if (variance.size() != s.parameters() || variance.isNaN().all()) return open;
+  for (Index j = 0; j < variance.size(); ++j) open[static_cast<std::size_t>(j)] = std::isnan(variance(j));
+  return open;
+}
+
+std::vector<bool> open_gains(const Archive& archive, const LinearStructure& s) {
+  const std::vector<bool> parameters = open_parameters(archive, s);
+  std::vector<bool> open(static_cast<std::size_t>(s.states * s.inputs), false);
+  for (Index i = 0; i < s.states; ++i)
+    for (Index j = 0; j < s.acting_inputs(); ++j)
+      if (parameters[static_cast<std::size_t>(i * s.regressors() + s.dimension() + j)])
+        open[static_cast<std::size_t>(i * s.inputs + j % s.inputs)] = true;
+  return open;
+}
 
 std::string decay_words(const Decay& decay, const char* plus_minus) {
   const double time = decay.time_constant_s, least = least_time_constant(decay);

@@ -7,6 +7,7 @@
 
 #include "app/chain/judged_runs.hpp"
 #include "app/chain/mode_names.hpp"
+#include "app/text/mode_words.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/summary_text.hpp"
 #include "app/text/text_table.hpp"
@@ -122,11 +123,16 @@ std::string window_parameters_text(const Archive& archive, int width) {
   const WindowFits& fits = *archive.windows;
   const std::vector<std::string> labels = window_labels(archive);
   const WindowSummary summary = summarize(fits);
+  const std::vector<bool> open = open_parameters(archive, fits.structure);
   TextTable table({{"parameter", 9}, {"median", 12}, {"standard error", 16}, {"|t| > 2", 12}});
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const auto j = static_cast<Index>(i);
-    table.add({labels[i], fmt::format("{:.4g}", summary.parameter(j)), fmt::format("{:.3g}", summary.standard_error(j)),
-               fmt::format("{:.0f} %", 100 * summary.significant(j))});
+    if (i < open.size() && open[i])
+      table.add({labels[i], "", not_identifiable, ""});
+    else
+      table.add({labels[i], fmt::format("{:.4g}", summary.parameter(j)),
+                 fmt::format("{:.3g}", summary.standard_error(j)),
+                 fmt::format("{:.0f} %", 100 * summary.significant(j))});
   }
   return table.text(width) + fmt::format("R^2 of the increments {:.3f}, AIC {:.2f} (medians)\n",
                                          fmt::join(summary.r_squared, " "), summary.aic);
@@ -207,6 +213,7 @@ std::string modes_text(const Archive& archive, bool full_form, int width) {
   for (std::size_t i = 0; i < labels.size(); ++i)
     columns.push_back({labels[i] + (full_form && parameters[i][0] == 'A' ? " (full)" : ""), 20});
   columns.push_back({"sqrt diag Q", 12});
+  const std::vector<bool> open = open_parameters(archive, bank.structure);
   TextTable table(std::move(columns));
   for (Index k = 0; k < bank.mode_count(); ++k) {
     const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
@@ -215,7 +222,9 @@ std::string modes_text(const Archive& archive, bool full_form, int width) {
     const Eigen::VectorXd theta = pack(bank.structure, model);
     std::vector<std::string> cells{mode_cell(names, k), fmt::format("{:.3f}", mode.weight)};
     for (Index i = 0; i < theta.size(); ++i)
-      cells.push_back(estimate(theta(i), mode.standard_error.size() > 0 ? mode.standard_error(i) : NAN));
+      cells.push_back(open[static_cast<std::size_t>(i)]
+                          ? not_identifiable
+                          : estimate(theta(i), mode.standard_error.size() > 0 ? mode.standard_error(i) : NAN));
     cells.push_back(fmt::format("{:.4g}", fmt::join(mode.Q.diagonal().cwiseSqrt().eval(), " ")));
     table.add(std::move(cells));
   }

@@ -10,6 +10,7 @@
 #include "app/text/confusion_text.hpp"
 #include "app/text/lag_counts_text.hpp"
 #include "app/text/lag_text.hpp"
+#include "app/text/mode_words.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/summary_tables.hpp"
 #include "app/text/terminal.hpp"
@@ -231,7 +232,7 @@ std::string windows_text(const WindowFits& fits, const WindowCounts& counts, con
     const double variance = fits.global.covariance(k, k);
     text += i == 0 ? "" : ", ";
     text += std::isnan(variance)
-                ? labels[i] + " not identifiable"
+                ? labels[i] + " " + not_identifiable
                 : fmt::format("{} = {:.4g} +- {:.2g}", labels[i], fits.global.theta(k), std::sqrt(variance));
   }
   return text + fmt::format("; residual variance {:.4g}\n", fmt::join(fits.global.noise_variance(), " "));

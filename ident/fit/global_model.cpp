@@ -5,6 +5,7 @@
 
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "ident/base/stacked_triangle.hpp"
 #include "ident/fit/motion_fit.hpp"
 #include "ident/fit/open_regressors.hpp"
 #include "ident/model/transitions.hpp"
@@ -12,10 +13,6 @@
 
 namespace modebank {
 
-namespace {
-
-/// The columns of X whose coefficients no row of it sees alone: their unit vectors, with columns scaled to unit norm,
-/// lie outside the row space.
 std::vector<Index> open_columns(const Eigen::MatrixXd& X, const Decomposition& d) {
   constexpr double rounding = 1e-6;  // of a squared length: far below any part that a dependence has
   const Index q = d.basis.rows();
@@ -30,6 +27,8 @@ std::vector<Index> open_columns(const Eigen::MatrixXd& X, const Decomposition& d
     if (1.0 - rows.row(j).squaredNorm() > rounding) open.push_back(j);
   return open;
 }
+
+namespace {
 
 /// S (x) (X'X)^+ for theta row-major; NaN where the transitions leave it open.
 Eigen::MatrixXd least_squares_covariance(const Eigen::MatrixXd& X, const Decomposition& d,
@@ -56,14 +55,9 @@ std::pair<Transitions, Index> reduce(const Recording& recording, const LinearStr
   Index count = 0;
   for_each_training_block(recording, structure, [&](const Transitions& block) {
     count += block.count();
-    Eigen::MatrixXd rows(triangle.rows() + block.count(), q + n);
-    rows.topRows(triangle.rows()) = triangle;
-    rows.bottomRows(block.count()) << block.regressors, block.increments;
-    if (rows.rows() <= q + n) {
-      triangle = rows;
-      return;
-    }
-    triangle = qr_triangle(rows);
+    Eigen::MatrixXd rows(block.count(), q + n);
+    rows << block.regressors, block.increments;
+    triangle = stacked_triangle(triangle, rows);
   });
   return {{triangle.leftCols(q), triangle.rightCols(n)}, count};
 }

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/covariance.hpp"
 #include "ident/fit/minimise.hpp"
+#include "ident/fit/open_regressors.hpp"
 #include "ident/fit/scale.hpp"
 
 namespace modebank {
@@ -37,15 +39,20 @@ struct ResponseFit {
   bool converged = false;
 };
 
-/// Of a problem at scale 1.
+/// Of a problem at scale 1; where its rank is deficient, of what the regressors determine.
 VectorXd standard_errors(const WhitenedProblem& problem, const RobustLoss& loss, const VectorXd& residuals,
                          double scale) {
-  const Index q = problem.basis.rows();
-  const bool determined = problem.unknowns() == q && (problem.samples > q || scale == 0.0);
-  if (!determined || scale == 0.0) return VectorXd::Constant(q, determined ? 0.0 : not_a_number);
+  const Index q = problem.basis.rows(), rank = problem.unknowns();
+  if (problem.samples <= rank && scale != 0.0) return VectorXd::Constant(q, not_a_number);
+  if (scale == 0.0) return VectorXd::Zero(q);
   const RobustTerms terms = evaluate_at(problem, loss, residuals / scale);
-  const CovarianceInput input{problem, terms, q, VectorXd::Zero(1)};
-  return scale * theta_covariance(input, CovarianceKind::model).diagonal().cwiseSqrt();
+  const auto covariance = [&](const WhitenedProblem& of) {
+    return theta_covariance({of, terms, rank, VectorXd::Zero(1)}, CovarianceKind::model);
+  };
+  if (rank == q) return scale * covariance(problem).diagonal().cwiseSqrt();
+  WhitenedProblem determined = problem;
+  determined.basis = MatrixXd::Identity(rank, rank);
+  return scale * (problem.basis * covariance(determined) * problem.basis.transpose()).diagonal().cwiseSqrt();
 }
 
 /// Steps of reweighted least squares on one problem whose scale moves along.
@@ -75,12 +82,14 @@ RobustRegression huber_regression(const Transitions& transitions) {
   if (transitions.count() == 0) throw std::invalid_argument("a regression needs at least one transition");
   if (!transitions.finite()) throw std::invalid_argument("a regression needs finite transitions");
   const Decomposition design = decompose(transitions.regressors, excitation_tolerance);
+  const std::vector<Index> open = open_columns(transitions.regressors, design);
   const Index q = transitions.regressors.cols(), n = transitions.increments.cols();
   RobustRegression result{MatrixXd(q, n), MatrixXd(q, n), VectorXd(n), true};
   for (Index i = 0; i < n; ++i) {
     const ResponseFit fit = fit_response(one_response(transitions, i), design);
     result.coefficients.col(i) = fit.coefficients;
     result.standard_error.col(i) = fit.standard_error;
+    for (const Index j : open) result.standard_error(j, i) = not_a_number;
     result.scale(i) = fit.scale;
     result.converged = result.converged && fit.converged;
   }

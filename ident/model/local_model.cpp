@@ -1,5 +1,7 @@
 #include "ident/model/local_model.hpp"
 
+#include <cmath>
+
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -74,7 +76,13 @@ LocalModel WindowFits::at(Index i) const {
 Eigen::MatrixXd WindowFits::standard_errors() const {
   const Index p = parameter_count();
   Eigen::MatrixXd errors(p, count());
-  for (Index j = 0; j < p; ++j) errors.row(j) = covariance.row(j * (p + 1)).cwiseSqrt();
+  const bool known = global.covariance.rows() == p && !global.covariance.diagonal().array().isNaN().all();
+  for (Index j = 0; j < p; ++j) {
+    if (known && std::isnan(global.covariance(j, j)))
+      errors.row(j).setConstant(not_a_number);
+    else
+      errors.row(j) = covariance.row(j * (p + 1)).cwiseSqrt();
+  }
   return errors;
 }
 

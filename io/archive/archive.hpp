@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,6 +48,15 @@ struct FilterEvaluation {
   std::vector<RunEvaluation> runs;
   std::vector<FreeRun> free_runs = {};  ///< with filter.simulate; archives hold neither pit nor log_density nor notes
   bool streamed = false;                ///< the runs are in the file in the making; here is what later stages read
+
+  using Fields = std::set<std::string>;  ///< names of arrays in the archive
+  /// Reads these of a run; its other arrays stay empty.
+  using Reading = std::function<void(std::size_t run, const Fields& fields, RunEvaluation& said, FreeRun& free_run)>;
+  Reading in_file = {};  ///< where read_archive_by_runs left the runs in their file
+
+  /// Hands on what the filter said of a run: what is in memory, or these fields of what is in the file.
+  void with_run(std::size_t run, const Fields& fields, const std::function<void(const RunEvaluation&)>& body) const;
+  void with_free_run(std::size_t run, const std::function<void(const FreeRun&)>& body) const;
 };
 
 /// Takes what a filter said of a run, by its position in the recording, so that not all of it need be in memory.
@@ -129,9 +139,14 @@ void stream_archive(const std::filesystem::path& path, const Recording& recordin
 /// when it does not exist.
 Archive read_archive(const std::filesystem::path& path);
 
-/// The same, but of the filters' evaluations only the bank's of the first `runs` judged runs are read, and residual
-/// tests of the global model and the bank alone; what is not read is empty. For overviews: of many runs these take most
-/// of the time and memory.
+/// The same, but what filters said of runs stays in the file where the runs have more samples than so many together,
+/// and is read when it is asked for (FilterEvaluation::with_run); and of windows what no page tells is left empty then.
+/// All of it is judged here as read_archive does, array by array.
+Archive read_archive_by_runs(const std::filesystem::path& path, Index most_in_memory = 100'000);
+
+/// The same as read_archive, but of the filters' evaluations only the bank's of the first `runs` judged runs are read,
+/// and residual tests of the global model and the bank alone; what is not read is empty. For overviews: of many runs
+/// these take most of the time and memory.
 Archive read_overview(const std::filesystem::path& path, Index runs);
 
 /// What verification found; empty `problems` means the archive is whole.

@@ -43,7 +43,7 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   if constexpr (Io::reads)
     io.finish([&] {
       check_together("smoothed_state and smoothed_covariance",
-                     {evaluation.smoothed_state.size(), evaluation.smoothed_covariance.size()});
+                     {evaluation.smoothed_state.rows(), evaluation.smoothed_covariance.rows()});
     });
 }
 
@@ -57,17 +57,17 @@ void exchange_free_run(Io& io, F& run, const Unit& states) {
   if constexpr (Io::reads)
     io.finish([&] {
       check_together("free_run_mean, free_run_sd, free_run_lower and free_run_upper",
-                     {run.mean.size(), run.deviation.size(), run.lower.size(), run.upper.size()});
+                     {run.mean.rows(), run.deviation.rows(), run.lower.rows(), run.upper.rows()});
     });
 }
 
 /// One run of one filter.
 template <class Io, class E, class F>
-void exchange_filter_run(Io& io, const Trajectory& run, const Sizes& of_bank, E& evaluation, F& free_run,
-                         const Unit& states) {
+void exchange_filter_run(Io& io, const std::string& run, Index samples, const Sizes& of_bank, E& evaluation,
+                         F& free_run, const Unit& states) {
   Sizes known = of_bank;
-  if (run.samples() > 0) known.set("N", static_cast<hsize_t>(run.samples()));
-  io.small_group(run.run, known, [&](auto& member) {
+  if (samples > 0) known.set("N", static_cast<hsize_t>(samples));
+  io.small_group(run, known, [&](auto& member) {
     exchange_run_evaluation(member, evaluation, states);
     exchange_free_run(member, free_run, states);
   });
@@ -84,9 +84,10 @@ void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Si
                                 std::to_string(evaluation.runs.size()) + " runs of " +
                                 std::to_string(recording.runs.size()));
   for (std::size_t i = 0; i < recording.runs.size(); ++i)
-    exchange_filter_run(io, recording.runs[i], of_bank, evaluation.runs[i], free_runs[i], states);
+    exchange_filter_run(io, recording.runs[i].run, recording.runs[i].samples(), of_bank, evaluation.runs[i],
+                        free_runs[i], states);
   if constexpr (Io::reads)
-    if (std::any_of(free_runs.begin(), free_runs.end(), [](const FreeRun& run) { return run.mean.size() > 0; }))
+    if (std::any_of(free_runs.begin(), free_runs.end(), [](const FreeRun& run) { return run.mean.rows() > 0; }))
       evaluation.free_runs = std::move(free_runs);
 }
 

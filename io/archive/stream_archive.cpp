@@ -32,7 +32,8 @@ class StreamedFile {
     root.group("evaluation", {}, [&](GroupWriter& evaluations) {
       evaluations.go_on_with_groups();
       evaluations.group(filter, {}, [&](GroupWriter& runs) {
-        layout::exchange_filter_run(runs, recording_.runs.at(run), Sizes(), said, free_run ? *free_run : none, states_);
+        const Trajectory& of = recording_.runs.at(run);
+        layout::exchange_filter_run(runs, of.run, of.samples(), Sizes(), said, free_run ? *free_run : none, states_);
       });
     });
   }

@@ -217,6 +217,31 @@ void StoredArray::read(hid_t memory_type, void* data) const {
   check(H5Dread(object(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), what);
 }
 
+namespace {
+
+/// Whether values of the type are bytes side by side, which point nowhere.
+bool is_plain(hid_t type) {
+  const H5T_class_t kind = H5Tget_class(type);
+  if (kind == H5T_ARRAY) return is_plain(Handle(H5Tget_super(type), H5Tclose, "read a type").id());
+  if (kind != H5T_COMPOUND)
+    return kind == H5T_INTEGER || kind == H5T_FLOAT || (kind == H5T_STRING && H5Tis_variable_str(type) == 0);
+  for (unsigned i = 0; i < static_cast<unsigned>(H5Tget_nmembers(type)); ++i)
+    if (!is_plain(Handle(H5Tget_member_type(type, i), H5Tclose, "read a type").id())) return false;
+  return true;
+}
+
+}  // namespace
+
+const std::string& StoredArray::bytes() const {
+  if (bytes_.empty()) {
+    if (!is_plain(type()))
+      throw DataError(quoted(place_, name_) + " holds values that are neither numbers nor texts of fixed length");
+    bytes_.resize(static_cast<std::size_t>(elements_) * H5Tget_size(type()));
+    read(type(), bytes_.data());
+  }
+  return bytes_;
+}
+
 std::vector<std::string> StoredArray::texts() const {
   if (small_ && type_class() == H5T_STRING) return unpack_texts(small_->bytes, small_->element_bytes);
   if (type_class() != H5T_STRING || H5Tis_variable_str(type()) != 0)

@@ -77,6 +77,9 @@ class StoredArray {
   const Shape& shape() const { return shape_; }
   hsize_t elements() const { return elements_; }
   void read(hid_t memory_type, void* data) const;
+  /// The elements as the file has them, of `type()`; read once. DataError where any of it is neither a number nor a
+  /// text of fixed length.
+  const std::string& bytes() const;
   /// All texts in order; DataError unless the type is a fixed-length string.
   std::vector<std::string> texts() const;
 
@@ -92,6 +95,7 @@ class StoredArray {
   Handle type_;
   Shape shape_;
   hsize_t elements_ = 0;
+  mutable std::string bytes_;
 };
 
 }  // namespace modebank::hdf5

@@ -65,6 +65,7 @@ GroupReader GroupReader::open_member(const std::string& name) const {
                              : GroupReader(hdf5::open_group(group_.id(), name), problems_, path);
   member.file_ = file_;
   member.wanted_ = wanted_;
+  member.use_ = use_;
   return member;
 }
 

@@ -40,6 +40,12 @@ class GroupReader {
   /// From here on groups whose path `wanted` refuses are left unread. It must outlive the reader.
   void read_groups(const std::function<bool(const std::string& path)>& wanted) { wanted_ = &wanted; }
 
+  /// What becomes of an array's values. Those that are judged alone leave a matrix its rows, without columns.
+  enum class Values { kept, judged, unread };
+  using ValuesOf = std::function<Values(const std::string& path)>;
+  /// From here on fields fare as `use` says of their paths. It must outlive the reader.
+  void read_fields(const ValuesOf& use) { use_ = &use; }
+
   template <class Body>
   void group(const std::string& name, const Sizes& known, Body body) {
     if (wanted_ && !(*wanted_)(path_ + "/" + name)) return;
@@ -95,6 +101,8 @@ class GroupReader {
   template <class Derived>
   void field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters, const Unit& = {},
              const Rule& rule = rule::any) {
+    const Values use = use_ ? (*use_)(path_ + "/" + name) : Values::kept;
+    if (use == Values::unread) return;
     guarded(name, [&] {
       using Stored = decltype(to_stored(std::declval<typename Derived::Scalar>()));
       constexpr bool real = std::is_floating_point_v<Stored>;
@@ -107,6 +115,9 @@ class GroupReader {
       array.read(hdf5::memory_type<Stored>(), values.data());
       const std::string problem = broken(rule, sizes_, array.shape(), stored_values(values));
       if (!problem.empty()) throw DataError(problem);
+      if (use == Values::judged)
+        values.derived() =
+            Derived(Derived::IsVectorAtCompileTime ? 0 : values.rows(), Derived::IsVectorAtCompileTime ? 1 : 0);
     });
   }
   /// One that is written block by block.
@@ -203,6 +214,7 @@ class GroupReader {
   std::string path_;
   Sizes sizes_;
   const std::function<bool(const std::string&)>* wanted_ = nullptr;
+  const ValuesOf* use_ = nullptr;
   struct Member {
     bool hard;
     haddr_t address;

@@ -42,12 +42,6 @@ CellTypes cell_types(const Eigen::MatrixXd& values) {
   return {array_type(H5T_IEEE_F64LE, array_length(values)), array_type(H5T_NATIVE_DOUBLE, array_length(values))};
 }
 
-Handle compound_of(const std::string& name, hid_t cell) {
-  Handle type(H5Tcreate(H5T_COMPOUND, H5Tget_size(cell)), H5Tclose, "make a table type");
-  check(H5Tinsert(type.id(), name.c_str(), 0, cell), "add the column '" + name + "'");
-  return type;
-}
-
 /// Members side by side; a number takes as many bytes in memory as in the file.
 Handle row_type(const std::vector<TableColumn>& columns, const std::vector<CellTypes>& cells,
                 Handle CellTypes::*where) {
@@ -72,46 +66,73 @@ std::string raw_bytes(const Eigen::MatrixXd& values) {
   return {reinterpret_cast<const char*>(values.data()), static_cast<std::size_t>(values.size()) * sizeof(double)};
 }
 
-/// The member's own type, after its kind has been checked.
-Handle member_type(const StoredArray& table, const std::string& name, H5T_class_t expected) {
+/// A column's cells side by side, as they are in the file.
+struct StoredColumn {
+  Handle type;
+  std::size_t cell_bytes = 0;
+  std::string cells;
+};
+
+/// Of a member, after its kind has been checked. Whole rows are read, once for all columns: member by member HDF5 would
+/// take and clear a megabyte for each.
+StoredColumn stored_column(const StoredArray& table, const std::string& name, H5T_class_t expected) {
   if (table.type_class() != H5T_COMPOUND || table.shape().size() != 1) throw DataError("it is not a table");
   const int index = H5Tget_member_index(table.type(), name.c_str());
   if (index < 0) throw DataError("column '" + name + "' is missing");
   const auto member = static_cast<unsigned>(index);
   if (H5Tget_member_class(table.type(), member) != expected)
     throw DataError("column '" + name + "' holds another kind of value");
-  return {H5Tget_member_type(table.type(), member), H5Tclose, "read the type of column '" + name + "'"};
+  StoredColumn column{
+      {H5Tget_member_type(table.type(), member), H5Tclose, "read the type of column '" + name + "'"}, 0, {}};
+  column.cell_bytes = H5Tget_size(column.type.id());
+  const std::size_t row_bytes = H5Tget_size(table.type()), offset = H5Tget_member_offset(table.type(), member);
+  if (column.cell_bytes == 0 || offset > row_bytes || column.cell_bytes > row_bytes - offset)
+    throw DataError("column '" + name + "' lies outside its row");
+  const auto rows = static_cast<std::size_t>(table.elements());
+  column.cells.resize(rows * column.cell_bytes);
+  for (std::size_t row = 0; row < rows; ++row)
+    table.bytes().copy(column.cells.data() + row * column.cell_bytes, column.cell_bytes, row * row_bytes + offset);
+  return column;
+}
+
+/// The cells, which are `count` of the stored type, turned into ones of another type of the same size.
+const std::string& converted(StoredColumn& column, hid_t stored, hid_t wanted, std::size_t count) {
+  if (H5Tequal(stored, wanted) <= 0)
+    check(H5Tconvert(stored, wanted, count, column.cells.data(), nullptr, H5P_DEFAULT), "convert a column");
+  return column.cells;
 }
 
 template <class T>
 void read_values(const StoredArray& table, const std::string& name, Vector<T>& values) {
-  const H5T_class_t expected = std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INTEGER;
-  const Handle stored = member_type(table, name, expected);
+  StoredColumn stored = stored_column(table, name, std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INTEGER);
   // A narrower number would let a small file ask for much memory.
-  if (H5Tget_size(stored.id()) != sizeof(T)) throw DataError("column '" + name + "' holds numbers of another width");
+  if (stored.cell_bytes != sizeof(T)) throw DataError("column '" + name + "' holds numbers of another width");
   values.resize(static_cast<std::size_t>(table.elements()));
-  table.read(compound_of(name, memory_type<T>()).id(), values.data());
+  const std::string& cells = converted(stored, stored.type.id(), memory_type<T>(), values.size());
+  std::copy_n(cells.data(), cells.size(), reinterpret_cast<char*>(values.data()));
 }
 
 void read_values(const StoredArray& table, const std::string& name, Vector<std::string>& values) {
-  const Handle stored = member_type(table, name, H5T_STRING);
-  if (H5Tis_variable_str(stored.id()) != 0) throw DataError("column '" + name + "' holds strings of variable length");
-  check(H5Tset_strpad(stored.id(), H5T_STR_NULLPAD), "pad a string type");
-  const std::size_t bytes = H5Tget_size(stored.id());
-  std::string cells(static_cast<std::size_t>(table.elements()) * bytes, '\0');
-  table.read(compound_of(name, stored.id()).id(), cells.data());
-  values = unpack_texts(cells, bytes);
+  StoredColumn stored = stored_column(table, name, H5T_STRING);
+  const Handle padded(H5Tcopy(stored.type.id()), H5Tclose, "copy a string type");
+  check(H5Tset_strpad(padded.id(), H5T_STR_NULLPAD), "pad a string type");
+  values = unpack_texts(converted(stored, stored.type.id(), padded.id(), static_cast<std::size_t>(table.elements())),
+                        stored.cell_bytes);
 }
 
 void read_values(const StoredArray& table, const std::string& name, Eigen::MatrixXd& values) {
-  const Handle stored = member_type(table, name, H5T_ARRAY);
-  const Handle element(H5Tget_super(stored.id()), H5Tclose, "read an array type");
+  StoredColumn stored = stored_column(table, name, H5T_ARRAY);
+  const Handle element(H5Tget_super(stored.type.id()), H5Tclose, "read an array type");
   hsize_t length = 0;
-  if (H5Tget_array_ndims(stored.id()) != 1 || H5Tget_class(element.id()) != H5T_FLOAT)
+  if (H5Tget_array_ndims(stored.type.id()) != 1 || H5Tget_class(element.id()) != H5T_FLOAT)
     throw DataError("column '" + name + "' does not hold arrays of numbers");
-  check(H5Tget_array_dims2(stored.id(), &length), "read an array type");
+  check(H5Tget_array_dims2(stored.type.id(), &length), "read an array type");
+  if (H5Tget_size(element.id()) != sizeof(double) || length != stored.cell_bytes / sizeof(double))
+    throw DataError("column '" + name + "' holds numbers of another width");
   values.resize(static_cast<Eigen::Index>(length), static_cast<Eigen::Index>(table.elements()));
-  table.read(compound_of(name, array_type(H5T_NATIVE_DOUBLE, length).id()).id(), values.data());
+  const std::string& cells =
+      converted(stored, element.id(), H5T_NATIVE_DOUBLE, static_cast<std::size_t>(values.size()));
+  std::copy_n(cells.data(), cells.size(), reinterpret_cast<char*>(values.data()));
 }
 
 }  // namespace

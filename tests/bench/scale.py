@@ -1,16 +1,18 @@
 #!/usr/bin/python3
 """Time and memory of long recordings and of many runs: a table for docs/results/scale.md.
 
-scale.py MODEBANK FOLDER [--rows N] [--runs N]
+scale.py MODEBANK FOLDER [--rows N] [--runs N] [--page N]
 
 One run of so many rows and three channels, cut into twenty blocks (data.split), with bank.refine = none and with the
-default; so many runs of six rows in one file (data.run), run, shown, verified and reported. Data are simulated with a
+default, and its report; the page of one whole run, made with the limits that `modebank view` gives each page; so many
+runs of six rows in one file (data.run), run, shown, verified and reported. Data are simulated with a
 fixed seed: two motions that change every 50 samples in the mean.
 """
 
 import argparse
 import os
 import platform
+import resource
 import subprocess
 import time
 from pathlib import Path
@@ -63,12 +65,18 @@ def processor_seconds(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def measure(command, folder):
+def limit_as_view():
+    """What app/view/child.hpp allows a page."""
+    resource.setrlimit(resource.RLIMIT_AS, (512 << 20, 512 << 20))
+    resource.setrlimit(resource.RLIMIT_CPU, (20, 20))
+
+
+def measure(command, folder, limit=None):
     """Wall-clock and processor seconds, those since the last evaluation, largest resident memory in MB, and standard
     error."""
     start, evaluated, text = time.monotonic(), 0.0, ""
     with open(folder / "stdout.txt", "w") as output:
-        process = subprocess.Popen(command, cwd=folder, stdout=output, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(command, cwd=folder, stdout=output, stderr=subprocess.PIPE, text=True, preexec_fn=limit)
         for line in process.stderr:
             text += line
             if line.startswith("evaluation:"):
@@ -80,11 +88,12 @@ def measure(command, folder):
     return time.monotonic() - start, processor, processor - evaluated, usage.ru_maxrss / 1024, text
 
 
-def row(command, folder, archive=None):
-    wall, processor, written, memory, text = measure(command, folder)
+def row(command, folder, archive=None, limit=None):
+    wall, processor, written, memory, text = measure(command, folder, limit)
     size = f"{(folder / archive).stat().st_size / 1e6:.0f}" if archive else ""
     shown = " ".join(["modebank", *map(str, command[1:])])
-    print(f"| `{shown}` | {wall:.1f} | {processor:.1f} | {memory:.0f} | {size} |", flush=True)
+    limited = " within the limits of `view`" if limit else ""
+    print(f"| `{shown}`{limited} | {wall:.1f} | {processor:.1f} | {memory:.0f} | {size} |", flush=True)
     return [line for line in text.splitlines() if "learned from" in line], written
 
 
@@ -102,6 +111,7 @@ def main():
     parser.add_argument("folder", type=Path)
     parser.add_argument("--rows", type=int, default=5_000_000)
     parser.add_argument("--runs", type=int, default=10_000)
+    parser.add_argument("--page", type=int, default=1_000_000)
     options = parser.parse_args()
     folder, program = options.folder.resolve(), options.modebank.resolve()
     folder.mkdir(parents=True, exist_ok=True)
@@ -114,6 +124,10 @@ def main():
     said, _ = row([program, "run", "rows.ini", "--archive.output", "rows.h5"], folder, "rows.h5")
     check_readable(folder / "rows.h5")
     row([program, "report", "rows.h5", "-o", "rows.html"], folder)
+    write_rows(folder / "page.csv", options.page)
+    (folder / "page.ini").write_text(BLOCK.format(data="page.csv", split="", length=10))
+    row([program, "run", "page.ini", "--bank.refine", "none", "--archive.output", "page.h5"], folder, "page.h5")
+    row([program, "report", "page.h5", "-o", "page.html"], folder, limit=limit_as_view)
     write_runs(folder / "runs.csv", options.runs)
     (folder / "runs.ini").write_text(BLOCK.format(data="runs.csv", split="run = id", length=5))
     _, written = row([program, "run", "runs.ini", "--bank.refine", "none", "--archive.output", "runs.h5"], folder, "runs.h5")

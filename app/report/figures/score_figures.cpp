@@ -31,10 +31,7 @@ std::string title_of(const Archive& archive, std::string filter) {
 }
 
 PitHistogram judged_histogram(const Archive& archive, const FilterEvaluation& evaluation) {
-  std::vector<const RunEvaluation*> runs;
-  for (std::size_t i = 0; i < evaluation.runs.size(); ++i)
-    if (archive.recording->runs[i].role == judged_role(archive)) runs.push_back(&evaluation.runs[i]);
-  return pit_histogram(runs, bins_of_figure);
+  return pit_histogram(evaluation, positions_of(*archive.recording, judged_role(archive)), bins_of_figure);
 }
 
 Figure pit(const Archive& archive) {

@@ -26,12 +26,12 @@ std::string json_in_script(const nlohmann::json& data) {
   return text;
 }
 
-std::string array_elements(const PageArrays& arrays) {
-  std::string text;
-  text.reserve(arrays.bytes() + 64 * arrays.stored().size());
-  for (std::size_t i = 0; i < arrays.stored().size(); ++i)
-    text += fmt::format("<script type=\"text/plain\" id=\"a{}\">{}</script>\n", i, arrays.stored()[i]);
-  return text;
+void append_arrays(const PageArrays& arrays, std::string& html) {
+  for (std::size_t i = 0; i < arrays.stored().size(); ++i) {
+    html += fmt::format("<script type=\"text/plain\" id=\"a{}\">", i);
+    html += arrays.stored()[i];
+    html += "</script>\n";
+  }
 }
 
 /// As a policy names an element's text by its hash, whose digits are hexadecimal here.
@@ -42,15 +42,23 @@ std::string hash_source(std::string_view hex) {
   return fmt::format(" 'sha256-{}'", base64(bytes));
 }
 
-std::string part(std::string_view name, const Page& page) {
-  if (name == "title") return escaped_html(page.title);
-  if (name == "policy") return page_policy({page.script});
-  if (name == "css") return std::string(assets::page_css());
-  if (name == "data") return json_in_script(page.data);
-  if (name == "arrays") return array_elements(page.arrays);
-  if (name == "plotly") return std::string(assets::plotly_packed());
-  if (name == "script") return std::string(page.script);
-  throw std::logic_error(fmt::format("page.html has a part {} that nobody fills", name));
+void append_part(std::string_view name, const Page& page, std::string& html) {
+  if (name == "title")
+    html += escaped_html(page.title);
+  else if (name == "policy")
+    html += page_policy({page.script});
+  else if (name == "css")
+    html += assets::page_css();
+  else if (name == "data")
+    html += json_in_script(page.data);
+  else if (name == "arrays")
+    append_arrays(page.arrays, html);
+  else if (name == "plotly")
+    html += assets::plotly_packed();
+  else if (name == "script")
+    html += page.script;
+  else
+    throw std::logic_error(fmt::format("page.html has a part {} that nobody fills", name));
 }
 
 }  // namespace
@@ -69,13 +77,15 @@ std::string page_policy(const std::vector<std::string_view>& scripts) {
 }
 
 std::string html_of(const Page& page) {
+  constexpr std::size_t tables = 4'000'000;
   std::string html;
+  html.reserve(page.arrays.bytes() + assets::plotly_packed().size() + page.script.size() + tables);
   std::string_view rest = assets::page_html();
   constexpr std::string_view open = "{{", close = "}}";
   for (auto at = rest.find(open); at != std::string_view::npos; at = rest.find(open)) {
     const auto end = rest.find(close, at);
     html += rest.substr(0, at);
-    html += part(rest.substr(at + open.size(), end - at - open.size()), page);
+    append_part(rest.substr(at + open.size(), end - at - open.size()), page, html);
     rest.remove_prefix(end + close.size());
   }
   return html += rest;

@@ -24,10 +24,11 @@ Estimates estimates_of(const Bank& bank, Index k) {
   Estimates estimates{motion ? mode.motion_theta : bank.theta(k), {}};
   const Eigen::VectorXd& stated = motion ? mode.motion_standard_error : mode.standard_error;
   estimates.errors = Eigen::VectorXd::Zero(estimates.values.size());
+  const bool some = std::any_of(stated.begin(), stated.end(), usable);  // the others are not identifiable then
   for (Index i = 0; i < estimates.errors.size(); ++i) {
     if (i < stated.size() && usable(stated(i)))
       estimates.errors(i) = stated(i);
-    else if (!motion && i < mode.spread.rows() && usable(mode.spread(i, i)))
+    else if (!some && !motion && i < mode.spread.rows() && usable(mode.spread(i, i)))
       estimates.errors(i) = std::sqrt(mode.spread(i, i));
   }
   return estimates;

@@ -32,6 +32,8 @@ std::string deflated(const std::string& bytes) {
 
 std::size_t base64_size(std::size_t bytes) { return 4 * ((bytes + 2) / 3); }
 
+constexpr std::size_t bytes_around = 100;  // an array in the page: of the element that holds it, and of its mention
+
 }  // namespace
 
 std::string base64(const std::string& bytes) {
@@ -50,14 +52,13 @@ std::string base64(const std::string& bytes) {
 template <class T>
 nlohmann::json PageArrays::store(const T* values, std::size_t count, const char* type) {
   nlohmann::json place = {{"id", fmt::format("a{}", stored_.size())}, {"type", type}, {"size", count}};
-  constexpr std::size_t element = 100;  // of the page that holds it, and where it is mentioned
-  if (kind_ == Kind::measure) {
-    bytes_ += base64_size(compressBound(static_cast<uLong>(count * sizeof(T)))) + element;
-  } else {
-    stored_.push_back(base64(deflated(byte_planes(values, count))));
-    bytes_ += stored_.back().size() + element;
-  }
+  stored_.push_back(base64(deflated(byte_planes(values, count))));
+  bytes_ += stored_.back().size() + bytes_around;
   return place;
+}
+
+std::size_t PageArrays::most_bytes(Eigen::Index values, std::size_t width) {
+  return base64_size(compressBound(static_cast<uLong>(values) * width)) + bytes_around;
 }
 
 nlohmann::json PageArrays::add(const Eigen::Ref<const Eigen::VectorXd>& values) {

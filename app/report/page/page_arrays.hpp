@@ -15,9 +15,6 @@ std::string base64(const std::string& bytes);
 /// there), deflated and in base64; the page unpacks one when it first needs it.
 class PageArrays {
  public:
-  enum class Kind { store, measure };  ///< measure: only how much room the arrays would take at most
-  explicit PageArrays(Kind kind = Kind::store) : kind_(kind) {}
-
   /// Each returns what the page finds the array by: {"id", "type": "f4" | "f8" | "i4" | "share", "size"}.
   nlohmann::json add(const Eigen::Ref<const Eigen::VectorXd>& values);        ///< as float32: for drawing
   nlohmann::json add_exact(const Eigen::Ref<const Eigen::VectorXd>& values);  ///< as float64: times
@@ -27,14 +24,15 @@ class PageArrays {
 
   /// The stored arrays in order; array i has the id "a<i>".
   const std::vector<std::string>& stored() const { return stored_; }
-  /// Bytes that all of them take in the page; when measuring, those they take at most.
+  /// Bytes that all of them take in the page.
   std::size_t bytes() const { return bytes_; }
+  /// Those that an array of so many values of this width takes at most.
+  static std::size_t most_bytes(Eigen::Index values, std::size_t width);
 
  private:
   template <class T>
   nlohmann::json store(const T* values, std::size_t count, const char* type);
 
-  Kind kind_;
   std::vector<std::string> stored_;
   std::size_t bytes_ = 0;
 };

@@ -17,6 +17,12 @@ const FilterEvaluation* bank_of(const Archive& archive) {
   return nullptr;
 }
 
+Eigen::VectorXd log_density(const FilterEvaluation& evaluation, std::size_t run) {
+  Eigen::VectorXd density;
+  evaluation.with_run(run, {"log_density"}, [&](const RunEvaluation& said) { density = said.log_density; });
+  return density;
+}
+
 bool same_samples(const Trajectory& a, const Trajectory& b) {
   return a.run == b.run && a.role == b.role && a.time_s == b.time_s && a.state == b.state;
 }
@@ -34,8 +40,8 @@ CommonRuns common_runs(const Archive& better, const Archive& other) {
     const auto found =
         std::find_if(second.begin(), second.end(), [&](const Trajectory& run) { return same_samples(first[i], run); });
     if (found == second.end()) continue;
-    common.better.push_back(bank_of(better)->runs[i].log_density);
-    common.other.push_back(bank_of(other)->runs[static_cast<std::size_t>(found - second.begin())].log_density);
+    common.better.push_back(log_density(*bank_of(better), i));
+    common.other.push_back(log_density(*bank_of(other), static_cast<std::size_t>(found - second.begin())));
   }
   return common;
 }

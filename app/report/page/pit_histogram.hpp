@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "filter/judge/diagnostics.hpp"
+#include "io/archive/archive.hpp"
 
 namespace modebank {
 
@@ -15,7 +16,7 @@ struct PitHistogram {
   Interval band{0.0, 0.0};   ///< a bin of a true filter has a count from `lower` to `upper` with 95 %, each on its own
 };
 
-/// Over all outputs of all given evaluations. Throws std::invalid_argument unless bins >= 2.
-PitHistogram pit_histogram(const std::vector<const RunEvaluation*>& evaluations, Eigen::Index bins);
+/// Over all outputs of these runs. Throws std::invalid_argument unless bins >= 2.
+PitHistogram pit_histogram(const FilterEvaluation& evaluation, const std::vector<std::size_t>& runs, Eigen::Index bins);
 
 }  // namespace modebank

@@ -25,9 +25,13 @@ json decays_cell(const std::vector<Decay>& decays) {
   return number(decays.empty() ? 0.0 : decays.front().time_constant_s, text);
 }
 
-json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors) {
+/// `open`: which of them the training runs say nothing of; empty: none.
+json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors, const std::vector<bool>& open = {}) {
   json cells = json::array();
-  for (Index i = 0; i < values.size(); ++i) cells.push_back(estimate(values(i), i < errors.size() ? errors(i) : NAN));
+  for (Index i = 0; i < values.size(); ++i) {
+    const bool is_open = static_cast<std::size_t>(i) < open.size() && open[static_cast<std::size_t>(i)];
+    cells.push_back(is_open ? number(NAN, not_identifiable) : estimate(values(i), i < errors.size() ? errors(i) : NAN));
+  }
   return cells;
 }
 
@@ -50,22 +54,20 @@ json label_section(const Archive& archive, const std::vector<Index>& told) {
   return {{"role", name_of(archive.confusion.front().role)}, {"rows", rows}};
 }
 
-json mode_row(const Bank& bank, Index k) {
+json mode_row(const Archive& archive, const Bank& bank, Index k) {
   const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
   const ModeDynamics dynamics = mode_dynamics(bank, k);
-  json gains = json::array();
   const Eigen::VectorXd gain = dynamics.gain.transpose().reshaped(), error = dynamics.gain_error.transpose().reshaped();
-  for (Index i = 0; i < gain.size(); ++i) gains.push_back(estimate(gain(i), error(i)));
   const Index n_y = bank.C.rows();
   return {{"mode", k},
           {"weight", number(mode.weight, fmt::format("{:.3f}", mode.weight))},
-          {"parameters", estimates(bank.theta(k), mode.standard_error)},
+          {"parameters", estimates(bank.theta(k), mode.standard_error, open_parameters(archive, bank.structure))},
           {"motion", estimates(mode.motion_theta, mode.motion_standard_error)},
           {"noise_sd", number_list(mode.Q.diagonal().head(std::min(n_y, mode.Q.rows())).cwiseSqrt())},
           {"per_sample", number(dynamics.decays.empty() ? NAN : dynamics.decays.front().per_sample,
                                 per_sample_words(dynamics.decays))},
           {"decays", decays_cell(dynamics.decays)},
-          {"gains", gains}};
+          {"gains", estimates(gain, error, open_gains(archive, bank.structure))}};
 }
 
 void add_diagnosis(json& row, const DiagnosticsRow& diagnosis, double dt_s) {
@@ -182,7 +184,7 @@ nlohmann::json bank_section(const Archive& archive) {
   const std::vector<Index> told(order.begin(), order.begin() + told_modes(used));
   json modes = json::array();
   for (Index k = 0; k < bank.mode_count(); ++k) {
-    modes.push_back(mode_row(bank, k));
+    modes.push_back(mode_row(archive, bank, k));
     modes.back()["name"] = name_of_mode(archive.mode_names, k);
     if (const DiagnosticsRow* row = diagnosis(archive, "bank", role, k)) add_diagnosis(modes.back(), *row, bank.dt_s);
   }
@@ -191,7 +193,7 @@ nlohmann::json bank_section(const Archive& archive) {
     row["use"] = number(mode.use, fmt::format("{:.1f} %", 100 * mode.use));
   }
   return {{"modes", modes},
-          {"baseline", archive.baseline ? mode_row(*archive.baseline, 0) : json()},
+          {"baseline", archive.baseline ? mode_row(archive, *archive.baseline, 0) : json()},
           {"role", name_of(role)},
           {"model", bank.model},
           {"dt_s", number(bank.dt_s)},

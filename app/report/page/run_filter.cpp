@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "app/chain/judged_runs.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/pit_histogram.hpp"
 #include "app/report/page/residual_pool.hpp"
@@ -36,10 +37,7 @@ json score_row(const SummaryRow& row) {
 }
 
 json histogram_of(const Archive& archive, const FilterEvaluation& evaluation, Role role) {
-  std::vector<const RunEvaluation*> runs;
-  for (std::size_t i = 0; i < evaluation.runs.size(); ++i)
-    if (archive.recording->runs[i].role == role) runs.push_back(&evaluation.runs[i]);
-  const PitHistogram histogram = pit_histogram(runs, pit_bins);
+  const PitHistogram histogram = pit_histogram(evaluation, positions_of(*archive.recording, role), pit_bins);
   return {{"filter", evaluation.filter},
           {"role", name_of(role)},
           {"counts", std::vector<int>(histogram.counts.begin(), histogram.counts.end())},

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <vector>
 
@@ -29,32 +30,40 @@ struct SeenSamples {
   std::vector<Index> mode;
 };
 
-void add_run(const Bank& bank, const Trajectory& run, const RunEvaluation& evaluation, SeenSamples& seen) {
+using Visit = std::function<void(const Eigen::VectorXd& z, Index mode)>;
+
+void visit_run(const Bank& bank, const Trajectory& run, const RunEvaluation& said, const Visit& visit) {
+  Eigen::VectorXd z(bank.transition_logit.weights.cols());
   RunSamples(bank, run, TimeSteps::repeat).for_each([&](const SampleFeed& feed, Index k, bool starts) {
     if (starts || feed.steps() != 1) return;
-    Eigen::VectorXd z(bank.transition_logit.weights.cols());
-    z << evaluation.state.col(k - 1), feed.inputs();
-    if (!z.allFinite() || !evaluation.mode_probability.col(k).allFinite()) return;
+    z << said.state.col(k - 1), feed.inputs();
+    if (!z.allFinite() || !said.mode_probability.col(k).allFinite()) return;
     Index mode = 0;
-    evaluation.mode_probability.col(k).maxCoeff(&mode);
-    seen.z.push_back(z);
-    seen.mode.push_back(mode);
+    said.mode_probability.col(k).maxCoeff(&mode);
+    visit(z, mode);
   });
+}
+
+void visit_all(const Archive& archive, const FilterEvaluation& evaluation, const Visit& visit) {
+  for (std::size_t i = 0; i < evaluation.runs.size(); ++i)
+    evaluation.with_run(i, {"state", "mode_probability"}, [&](const RunEvaluation& said) {
+      visit_run(*archive.bank, archive.recording->runs[i], said, visit);
+    });
 }
 
 /// Of all runs, evenly thinned.
 SeenSamples seen_samples(const Archive& archive) {
-  SeenSamples all;
-  const FilterEvaluation* const evaluation = evaluation_of(archive, "bank");
-  if (!evaluation) return all;
-  for (std::size_t i = 0; i < evaluation->runs.size(); ++i)
-    add_run(*archive.bank, archive.recording->runs[i], evaluation->runs[i], all);
-  const std::size_t every = (all.z.size() + most_samples - 1) / most_samples;
   SeenSamples thin;
-  for (std::size_t i = 0; i < all.z.size(); i += every) {
-    thin.z.push_back(all.z[i]);
-    thin.mode.push_back(all.mode[i]);
-  }
+  const FilterEvaluation* const evaluation = evaluation_of(archive, "bank");
+  if (!evaluation) return thin;
+  Index count = 0, i = 0;
+  visit_all(archive, *evaluation, [&](const Eigen::VectorXd&, Index) { ++count; });
+  const Index every = std::max<Index>(1, (count + most_samples - 1) / most_samples);
+  visit_all(archive, *evaluation, [&](const Eigen::VectorXd& z, Index mode) {
+    if (i++ % every != 0) return;
+    thin.z.push_back(z);
+    thin.mode.push_back(mode);
+  });
   return thin;
 }
 

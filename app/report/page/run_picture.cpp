@@ -84,7 +84,9 @@ json run_of(const Archive& archive, std::size_t i, Index bucket, const Range& ra
                 {"low", heights(extremes.low, range)}};
   if (bucket > 1) entry["high"] = heights(extremes.high, range);
   const FilterEvaluation* const bank = evaluation_of(archive, "bank");
-  if (bank && i < bank->runs.size()) entry["mode"] = modes_over(bank->runs[i].mode_probability, bucket);
+  if (bank && i < bank->runs.size())
+    bank->with_run(i, {"mode_probability"},
+                   [&](const RunEvaluation& said) { entry["mode"] = modes_over(said.mode_probability, bucket); });
   if (archive.labels && i < archive.labels->of_runs.size() && archive.labels->of_runs[i].size() > 0)
     entry["label"] = labels_over(archive.labels->of_runs[i], bucket, archive.labels->names.size());
   return entry;

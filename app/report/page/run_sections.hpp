@@ -29,6 +29,8 @@ struct Detail {
 std::vector<std::size_t> drawn_runs(const Recording& recording);
 /// Those runs' signals over time, and what each filter said of them.
 nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const Detail& detail);
+/// Bytes that these take in the page at most, but for outliers.
+std::size_t most_signal_bytes(const Archive& archive, const Detail& detail);
 /// The same in as fine a detail as at most so many bytes allow.
 nlohmann::json affordable_runs_section(const Archive& archive, PageArrays& arrays, std::size_t bytes);
 

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <limits>
 #include <map>
+#include <optional>
 
 #include "app/report/page/prediction_band.hpp"
 #include "app/report/page/run_sections.hpp"
@@ -38,19 +40,37 @@ json outliers_of(PageArrays& arrays, const RunEvaluation& evaluation, const Traj
   return {{"count", count}, {"time", arrays.add_exact(times)}, {"values", values}};
 }
 
-json filter_signals(PageArrays& arrays, const Bank& bank, const RunEvaluation& evaluation, const Trajectory& run,
-                    Index finest) {
-  const PredictionBand band = prediction_band(bank, evaluation, drawn_level);
-  json signals = {{"prediction", rows_of(arrays, band.center, finest)},
-                  {"half_width", rows_of(arrays, band.half_width, finest)},
-                  {"innovation", rows_of(arrays, evaluation.innovation, finest)},
-                  {"nis", series(arrays, nis_of_all_signals(evaluation), finest)},
-                  {"outliers", outliers_of(arrays, evaluation, run)},
-                  {"lower", rows_of(arrays, band.center - band.half_width, finest, Bucket::lowest)},
-                  {"upper", rows_of(arrays, band.center + band.half_width, finest, Bucket::highest)}};
+json filter_signals(PageArrays& arrays, const Bank& bank, const FilterEvaluation& evaluation, std::size_t i,
+                    const Trajectory& run, Index finest) {
+  json signals;
+  // One after the other: of a long run they may be in a file, and all together are much.
+  evaluation.with_run(i, {"prediction", "innovation_covariance"}, [&](const RunEvaluation& said) {
+    const PredictionBand band = prediction_band(bank, said, drawn_level);
+    signals["prediction"] = rows_of(arrays, band.center, finest);
+    signals["half_width"] = rows_of(arrays, band.half_width, finest);
+    signals["lower"] = rows_of(arrays, band.center - band.half_width, finest, Bucket::lowest);
+    signals["upper"] = rows_of(arrays, band.center + band.half_width, finest, Bucket::highest);
+  });
+  evaluation.with_run(i, {"innovation"}, [&](const RunEvaluation& said) {
+    signals["innovation"] = rows_of(arrays, said.innovation, finest);
+  });
+  evaluation.with_run(i, {"nis", "pit"}, [&](const RunEvaluation& said) {
+    signals["nis"] = series(arrays, nis_of_all_signals(said), finest);
+    signals["outliers"] = outliers_of(arrays, said, run);
+  });
   if (bank.mode_count() > 1)
-    signals["probability"] = rows_of(arrays, evaluation.mode_probability, finest, Bucket::share);
+    evaluation.with_run(i, {"mode_probability"}, [&](const RunEvaluation& said) {
+      signals["probability"] = rows_of(arrays, said.mode_probability, finest, Bucket::share);
+    });
   return signals;
+}
+
+/// Of filter_signals, but for the outliers.
+std::size_t most_filter_bytes(const Bank& bank, Index samples, Index finest) {
+  const auto n_y = static_cast<std::size_t>(bank.C.rows()), K = static_cast<std::size_t>(bank.mode_count());
+  return (3 * n_y + 1) * most_series_bytes(samples, finest) +
+         2 * n_y * most_series_bytes(samples, finest, Bucket::lowest) +
+         (K > 1 ? K * most_series_bytes(samples, finest, Bucket::share) : 0);
 }
 
 json free_run_signals(PageArrays& arrays, const FreeRun& run, Index finest) {
@@ -61,10 +81,26 @@ json free_run_signals(PageArrays& arrays, const FreeRun& run, Index finest) {
           {"upper", rows_of(arrays, run.upper, finest, Bucket::highest)}};
 }
 
+std::size_t most_free_run_bytes(const Bank& bank, Index samples, Index finest) {
+  const auto n_y = static_cast<std::size_t>(bank.C.rows());
+  return 3 * n_y * most_series_bytes(samples, finest) + 2 * n_y * most_series_bytes(samples, finest, Bucket::lowest);
+}
+
 json channels_of(const std::vector<Channel>& channels) {
   json list = json::array();
   for (const Channel& channel : channels) list.push_back({{"name", channel.name}, {"unit", channel.unit}});
   return list;
+}
+
+/// Calls visit(evaluation, bank, finest) for every filter that is drawn over run i.
+template <class Visit>
+void for_each_filter(const Archive& archive, std::size_t i, const Detail& detail, Visit visit) {
+  for (const FilterEvaluation& evaluation : archive.evaluations) {
+    const std::optional<Bank> bank = archive.bank_of(evaluation.filter);
+    if (!bank || i >= evaluation.runs.size()) continue;
+    visit(evaluation, *bank,
+          evaluation.filter == "bank" ? detail.finest : std::max(detail.finest, detail.finest_others));
+  }
 }
 
 json run_signals(const Archive& archive, std::size_t i, PageArrays& arrays, const Detail& detail) {
@@ -78,15 +114,26 @@ json run_signals(const Archive& archive, std::size_t i, PageArrays& arrays, cons
                 {"input", rows_of(arrays, run.input, detail.finest)},
                 {"filters", json::object()}};
   if (run.truth.size() > 0) entry["truth"] = rows_of(arrays, run.truth, detail.finest);
-  for (const FilterEvaluation& evaluation : archive.evaluations) {
-    const std::optional<Bank> bank = archive.bank_of(evaluation.filter);
-    if (!bank || i >= evaluation.runs.size()) continue;
-    const Index finest = evaluation.filter == "bank" ? detail.finest : std::max(detail.finest, detail.finest_others);
-    entry["filters"][evaluation.filter] = filter_signals(arrays, *bank, evaluation.runs[i], run, finest);
+  for_each_filter(archive, i, detail, [&](const FilterEvaluation& evaluation, const Bank& bank, Index finest) {
+    entry["filters"][evaluation.filter] = filter_signals(arrays, bank, evaluation, i, run, finest);
     if (!evaluation.free_runs.empty())
-      entry["free_runs"][evaluation.filter] = free_run_signals(arrays, evaluation.free_runs[i], finest);
-  }
+      evaluation.with_free_run(i, [&](const FreeRun& free_run) {
+        entry["free_runs"][evaluation.filter] = free_run_signals(arrays, free_run, finest);
+      });
+  });
   return entry;
+}
+
+std::size_t most_run_bytes(const Archive& archive, std::size_t i, const Detail& detail) {
+  const Trajectory& run = archive.recording->runs[i];
+  const auto rows = static_cast<std::size_t>(run.state.rows() + run.input.rows() + run.truth.rows());
+  std::size_t bytes =
+      most_time_bytes(run.time_s, detail.finest) + rows * most_series_bytes(run.samples(), detail.finest);
+  for_each_filter(archive, i, detail, [&](const FilterEvaluation& evaluation, const Bank& bank, Index finest) {
+    bytes += most_filter_bytes(bank, run.samples(), finest);
+    if (!evaluation.free_runs.empty()) bytes += most_free_run_bytes(bank, run.samples(), finest);
+  });
+  return bytes;
 }
 
 /// What the page says of runs and samples that it does not draw one by one; empty where it draws all.
@@ -121,41 +168,56 @@ std::vector<std::size_t> drawn_runs(const Recording& recording) {
   return drawn;
 }
 
-nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const Detail& detail) {
-  if (!archive.recording) return nullptr;
+namespace {
+
+/// Nothing where the arrays take more than so many bytes then.
+std::optional<json> runs_within(const Archive& archive, PageArrays& arrays, const Detail& detail, std::size_t most) {
   json runs = json::array(), names = json::array();
   const std::vector<std::size_t> drawn = drawn_runs(*archive.recording);
-  for (const std::size_t i : drawn) runs.push_back(run_signals(archive, i, arrays, detail));
+  for (const std::size_t i : drawn) {
+    runs.push_back(run_signals(archive, i, arrays, detail));
+    if (arrays.bytes() > most) return std::nullopt;
+  }
   for (const Trajectory& run : archive.recording->runs) names.push_back(run.run);
   constexpr double outer = 0.5 * (1.0 - drawn_level);
   const auto n_y = static_cast<double>(archive.recording->state_count());
-  return {{"states", channels_of(archive.recording->states)},
-          {"inputs", channels_of(archive.recording->inputs)},
-          {"note", detail_note(detail, drawn.size(), names.size())},
-          {"level", drawn_level},
-          {"outlier_level", outlier_level},
-          {"nis_bounds", {chi_square_quantile(outer, n_y), chi_square_quantile(1.0 - outer, n_y)}},
-          {"names", names},
-          {"runs", runs}};
+  return json{{"states", channels_of(archive.recording->states)},
+              {"inputs", channels_of(archive.recording->inputs)},
+              {"note", detail_note(detail, drawn.size(), names.size())},
+              {"level", drawn_level},
+              {"outlier_level", outlier_level},
+              {"nis_bounds", {chi_square_quantile(outer, n_y), chi_square_quantile(1.0 - outer, n_y)}},
+              {"names", names},
+              {"runs", runs}};
+}
+
+}  // namespace
+
+std::size_t most_signal_bytes(const Archive& archive, const Detail& detail) {
+  std::size_t bytes = 0;
+  for (const std::size_t i : drawn_runs(*archive.recording)) bytes += most_run_bytes(archive, i, detail);
+  return bytes;
+}
+
+nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const Detail& detail) {
+  if (!archive.recording) return nullptr;
+  return runs_within(archive, arrays, detail, std::numeric_limits<std::size_t>::max()).value();
 }
 
 nlohmann::json affordable_runs_section(const Archive& archive, PageArrays& arrays, std::size_t bytes) {
   constexpr Index coarser_others = 16, coarsest = Index{1} << 40;
   // Signals of noise compress to no less than this share: below it only trying tells whether they fit.
   constexpr double least_share = 0.5;
-  const auto may_fit = [&](const Detail& detail) {
-    PageArrays most(PageArrays::Kind::measure);
-    runs_section(archive, most, detail);
-    return least_share * static_cast<double>(most.bytes()) <= static_cast<double>(bytes);
-  };
+  if (!archive.recording) return nullptr;
   for (Detail detail;; detail = {detail.finest * (detail.finest_others > 1 ? 2 : 1),
                                  detail.finest_others > 1 ? detail.finest_others * 2 : coarser_others}) {
-    if (!may_fit(detail) && detail.finest < coarsest) continue;
+    if (detail.finest >= coarsest) return runs_section(archive, arrays, detail);
+    if (least_share * static_cast<double>(most_signal_bytes(archive, detail)) > static_cast<double>(bytes)) continue;
     PageArrays with_runs = arrays;
-    json section = runs_section(archive, with_runs, detail);
-    if (with_runs.bytes() - arrays.bytes() > bytes && detail.finest < coarsest) continue;
+    std::optional<json> section = runs_within(archive, with_runs, detail, arrays.bytes() + bytes);
+    if (!section) continue;
     arrays = std::move(with_runs);
-    return section;
+    return *std::move(section);
   }
 }
 

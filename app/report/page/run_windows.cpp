@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "app/report/figures/run_figures.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
@@ -20,7 +21,7 @@ constexpr Index most_windows = 100'000;
 constexpr Index most_covariances = 2'000'000;
 
 Unit units_of_parameters(const Archive& archive) {
-  const Units units(archive.recording.value_or(Recording()));
+  const Units units(*archive.recording);
   const WindowFits& fits = *archive.windows;
   return fits.model_parameters.empty() ? parameter_units(fits.structure, units.states(), units.inputs())
                                        : unit_of(fits.model_parameters);
@@ -105,6 +106,14 @@ json labels_of(PageArrays& arrays, const Eigen::VectorXi& labels, const std::vec
   return arrays.add(std::vector<std::int32_t>(chosen.begin(), chosen.end()));
 }
 
+json modes_of_windows(PageArrays& arrays, const WindowFits& fits, const FilterEvaluation& evaluation,
+                      const std::vector<Index>& drawn) {
+  std::vector<Window> windows;
+  for (const Index i : drawn) windows.push_back(fits.windows[static_cast<std::size_t>(i)]);
+  const Eigen::VectorXi modes = window_modes(windows, fits.length, evaluation);
+  return arrays.add(std::vector<std::int32_t>(modes.begin(), modes.end()));
+}
+
 /// The windows that are drawn, and which point of the cloud each is.
 struct Drawn {
   Index step = 1;
@@ -136,12 +145,6 @@ void add_places(json& section, PageArrays& arrays, const Archive& archive, const
   section["run"] = arrays.add(run);
   section["begin"] = arrays.add_exact(begin);
   section["end"] = arrays.add_exact(end);
-}
-
-const FilterEvaluation* bank_evaluation(const Archive& archive) {
-  for (const FilterEvaluation& evaluation : archive.evaluations)
-    if (evaluation.filter == "bank") return &evaluation;
-  return nullptr;
 }
 
 }  // namespace
@@ -177,8 +180,8 @@ nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
     section["components"] = components_of(archive);
   }
   if (archive.bank) section["bank"] = modes_of(*archive.bank);
-  if (const FilterEvaluation* evaluation = bank_evaluation(archive))
-    section["mode"] = labels_of(arrays, window_modes(fits.windows, fits.length, evaluation->runs), drawn.windows);
+  if (const FilterEvaluation* evaluation = evaluation_of(archive, "bank"))
+    section["mode"] = modes_of_windows(arrays, fits, *evaluation, drawn.windows);
   return section;
 }
 

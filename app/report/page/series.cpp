@@ -35,6 +35,14 @@ json level(PageArrays& arrays, const Eigen::Ref<const Eigen::VectorXd>& values, 
   return entry;
 }
 
+Index buckets_of(Index samples, Index size) { return (samples + size - 1) / size; }
+
+/// Of a regular clock.
+double period_of(const Eigen::VectorXd& time_s) {
+  const Index N = time_s.size();
+  return N > 1 ? (time_s(N - 1) - time_s(0)) / static_cast<double>(N - 1) : 1.0;
+}
+
 /// Whether every time is where a clock of this period would have it, to a ten-thousandth of a period.
 bool regular(const Eigen::VectorXd& time_s, double period) {
   constexpr double slack = 1e-4;
@@ -54,13 +62,30 @@ nlohmann::json series(PageArrays& arrays, const Eigen::Ref<const Eigen::VectorXd
   return {{"raw", raw}, {"levels", levels}};
 }
 
+std::size_t most_series_bytes(Index samples, Index finest, Bucket kind) {
+  const bool edge = kind == Bucket::lowest || kind == Bucket::highest;
+  const std::size_t width = kind == Bucket::share ? sizeof(std::uint16_t) : sizeof(float);
+  std::size_t bytes = finest == 1 && !edge ? PageArrays::most_bytes(samples, width) : 0;
+  for (const Index size : level_buckets(samples, finest))
+    bytes += (kind == Bucket::extremes ? 2 : 1) * PageArrays::most_bytes(buckets_of(samples, size), width);
+  return bytes;
+}
+
+std::size_t most_time_bytes(const Eigen::VectorXd& time_s, Index finest) {
+  if (regular(time_s, period_of(time_s))) return 0;
+  std::size_t bytes = finest == 1 ? PageArrays::most_bytes(time_s.size(), sizeof(double)) : 0;
+  for (const Index size : level_buckets(time_s.size(), finest))
+    bytes += PageArrays::most_bytes(buckets_of(time_s.size(), size), sizeof(double));
+  return bytes;
+}
+
 nlohmann::json time_axis(PageArrays& arrays, const Eigen::VectorXd& time_s, Index finest) {
   const Index N = time_s.size();
   json axis = {{"samples", N},
                {"finest", finest},
                {"start", N ? json(time_s(0)) : json()},
                {"end", N ? json(time_s(N - 1)) : json()}};
-  const double period = N > 1 ? (time_s(N - 1) - time_s(0)) / static_cast<double>(N - 1) : 1.0;
+  const double period = period_of(time_s);
   if (regular(time_s, period)) {
     axis["period"] = period;
     return axis;

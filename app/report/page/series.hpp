@@ -17,6 +17,10 @@ enum class Bucket { extremes, lowest, highest, share };
 nlohmann::json series(PageArrays& arrays, const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::Index finest,
                       Bucket bucket = Bucket::extremes);
 
+/// Bytes that series() and time_axis() of so many samples take in a page at most: what does not compress.
+std::size_t most_series_bytes(Eigen::Index samples, Eigen::Index finest, Bucket bucket = Bucket::extremes);
+std::size_t most_time_bytes(const Eigen::VectorXd& time_s, Eigen::Index finest);
+
 /// The run's times: {"start", "period"} of a regular clock, else {"raw", "levels"} of exact times (a bucket's is that
 /// of its first sample); both with "samples", "end" and "finest".
 nlohmann::json time_axis(PageArrays& arrays, const Eigen::VectorXd& time_s, Eigen::Index finest);

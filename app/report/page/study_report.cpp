@@ -67,7 +67,7 @@ void write_run_pages(const StudyTable& table, const fs::path& page, const Report
     if (pages == options.runs) break;
     if (places[row].archive.empty()) continue;
     const fs::path archive = places[row].archive, file = folder / (table.rows[row].key + ".html");
-    const Page run = run_page(read_archive(archive), archive.filename().string(), options);
+    const Page run = run_page(read_archive_by_runs(archive), archive.filename().string(), options);
     fs::create_directories(folder);
     write_page(file, run, written);
     places[row].page = (folder.filename() / file.filename()).string();

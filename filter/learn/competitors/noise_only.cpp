@@ -107,7 +107,9 @@ namespace {
 Bank by_intervals(Bank bank, const Recording& recording) {
   const Recording unweighted = unweighted_training_part(recording);
   FreeParameters free;
-  free.theta_unit = bank.modes.front().standard_error.unaryExpr(&positive_variance);
+  // What the runs leave open may have any unit: nothing depends on it.
+  free.theta_unit = bank.modes.front().standard_error.unaryExpr(
+      [](double error) { return std::isnan(error) ? 1.0 : positive_variance(error); });
   free.transition = false;
   return maximise_likelihood({unweighted, FilterOptions{}, std::nullopt, true}, free, bank, {60, 1e-6}).bank;
 }

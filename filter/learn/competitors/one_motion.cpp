@@ -2,6 +2,7 @@
 #include <utility>
 #include <vector>
 
+#include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -47,7 +48,9 @@ Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const 
                        ? Eigen::MatrixXd(*options.measurement_variance * Eigen::MatrixXd::Identity(R.rows(), R.cols()))
                        : R,
                    most_levels, em.tuning.modes_kept);
-  return refine_bank(recording, linear_frame(fits, global), starts, em, filter).bank;
+  Bank bank = refine_bank(recording, linear_frame(fits, global), starts, em, filter).bank;
+  leave_open(bank, global.covariance);
+  return bank;
 }
 
 NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& recording, const FilterOptions& filter,

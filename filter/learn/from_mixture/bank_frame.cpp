@@ -1,9 +1,11 @@
 #include "filter/learn/from_mixture/bank_frame.hpp"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
 #include "filter/learn/from_mixture/training_transitions.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 namespace {
@@ -51,6 +53,14 @@ Mode make_mode(const LinearStructure& structure, const Eigen::VectorXd& theta, c
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(structure.dimension(), structure.dimension());
   whole.topLeftCorner(structure.states, structure.states) = Q;
   return {unpack(structure, theta), whole, spread, standard_error, weight};
+}
+
+void leave_open(Bank& bank, const Eigen::MatrixXd& global_covariance) {
+  const Eigen::VectorXd variance = global_covariance.diagonal();
+  if (variance.array().isNaN().all()) return;
+  for (Mode& mode : bank.modes)
+    for (Eigen::Index j = 0; j < variance.size() && mode.standard_error.size() == variance.size(); ++j)
+      if (std::isnan(variance(j))) mode.standard_error(j) = not_a_number;
 }
 
 void set_mode_sequence(Bank& bank, const TransitionMatrix& transition) {

@@ -22,6 +22,10 @@ std::vector<std::string> input_names(const Recording& recording, const LinearStr
 Mode make_mode(const LinearStructure& structure, const Eigen::VectorXd& theta, const Eigen::MatrixXd& Q,
                const Eigen::MatrixXd& spread, const Eigen::VectorXd& standard_error, double weight);
 
+/// Takes standard errors from parameters that have none in the global model of the same covariance, where others do: no
+/// training run says anything of them, whatever a prior does.
+void leave_open(Bank& bank, const Eigen::MatrixXd& global_covariance);
+
 /// Sets how the modes follow each other, with uniform initial probabilities.
 void set_mode_sequence(Bank& bank, const TransitionMatrix& transition);
 

@@ -225,8 +225,12 @@ Refinement learn_as_asked(const Recording& recording, const WindowFits& fits, co
   const bool refined = refinement_asked(options, motion == nullptr) == Refine::em;
   if (refined && motion)
     throw std::invalid_argument("refine = em fits linear modes, not those of the motion model " + fits.model);
-  if (refined) return learn_refined_bank(recording, fits, mixture, options, R, filter.value());
-  return {learn_bank(recording, fits, mixture, options, R, motion), {}, {}, {}, {}};
+  Refinement learned = refined ? learn_refined_bank(recording, fits, mixture, options, R, filter.value())
+                               : Refinement{learn_bank(recording, fits, mixture, options, R, motion), {}, {}, {}, {}};
+  if (motion) return learned;
+  leave_open(learned.bank, fits.global.covariance);
+  leave_open(learned.start, fits.global.covariance);
+  return learned;
 }
 
 }  // namespace modebank

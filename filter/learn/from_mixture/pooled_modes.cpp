@@ -9,6 +9,7 @@
 
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "ident/base/stacked_triangle.hpp"
 #include "mixture/gaussian_mixture.hpp"
 
 namespace modebank {
@@ -24,15 +25,33 @@ struct WeightedRegression {
   RegressionSums sums;   // H is zero but for rounding and directions without data
 };
 
+/// Transitions that are decomposed at once: of a long recording a fit needs no copy.
+constexpr Index block_rows = Index{1} << 18;
+
 WeightedRegression regress(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
                            const Eigen::VectorXd& global_theta) {
-  const Eigen::MatrixXd& X = transitions.data.regressors;
+  const Index N = transitions.count(), q = transitions.data.regressors.cols(), n = transitions.data.increments.cols();
+  const auto X = [&](Index first) {
+    return transitions.data.regressors.middleRows(first, std::min(block_rows, N - first));
+  };
+  const auto residuals = [&](Index first, const Eigen::MatrixXd& beta) -> Eigen::MatrixXd {
+    return transitions.data.increments.middleRows(first, X(first).rows()) - X(first) * beta;
+  };
   const Eigen::MatrixXd beta_global = coefficients(transitions.structure, global_theta);
-  Eigen::MatrixXd r = transitions.data.increments - X * beta_global;
-  const Eigen::VectorXd root = weights.cwiseSqrt();
-  const Eigen::MatrixXd delta = solve(decompose(root.asDiagonal() * X, excitation_tolerance), root.asDiagonal() * r);
-  r -= X * delta;
-  return {beta_global + delta, regression_sums(X, weights, r)};
+  const auto weighted_rows = [&](Index first) {
+    const Eigen::VectorXd root = weights.segment(first, X(first).rows()).cwiseSqrt();
+    Eigen::MatrixXd rows(root.size(), q + n);
+    rows << root.asDiagonal() * X(first), root.asDiagonal() * residuals(first, beta_global);
+    return rows;
+  };
+  Eigen::MatrixXd rows = weighted_rows(0);
+  for (Index first = block_rows; first < N; first += block_rows) rows = stacked_triangle(rows, weighted_rows(first));
+  const Eigen::MatrixXd delta = solve(decompose(rows.leftCols(q), excitation_tolerance), rows.rightCols(n));
+  RegressionSums sums = regression_sums(X(0), weights.head(X(0).rows()), residuals(0, beta_global) - X(0) * delta);
+  for (Index first = block_rows; first < N; first += block_rows)
+    sums = sums + regression_sums(X(first), weights.segment(first, X(first).rows()),
+                                  residuals(first, beta_global) - X(first) * delta);
+  return {beta_global + delta, sums};
 }
 
 /// Inverse prior covariance, p x p; zero without a prior.
@@ -134,12 +153,8 @@ std::string screening_reason(const LinearStructure& structure, const ModeEstimat
 std::vector<ModeEstimate> fit_pooled_modes(const TrainingTransitions& transitions, const Eigen::MatrixXd& memberships,
                                            const GlobalModel& global, const ParameterPrior* prior) {
   std::vector<ModeEstimate> modes(memberships.cols());
-  constexpr Index many_transitions = 1'000'000;  // of which each fit takes several copies
-  const auto fit = [&](Index k) { modes[k] = fit_weighted_mode(transitions, memberships.col(k), global, prior); };
-  if (memberships.rows() > many_transitions)
-    for (Index k = 0; k < memberships.cols(); ++k) fit(k);
-  else
-    tbb::parallel_for(Index{0}, memberships.cols(), fit);
+  tbb::parallel_for(Index{0}, memberships.cols(),
+                    [&](Index k) { modes[k] = fit_weighted_mode(transitions, memberships.col(k), global, prior); });
   return modes;
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <sstream>
 
+#include "app/text/mode_dynamics.hpp"
 #include "filter/step/equations/bounds.hpp"
 #include "ident/data/streams.hpp"
 #include "ident/fit/global_model.hpp"
@@ -162,6 +163,20 @@ TEST_F(ClocksAndNumbers, Finding_D9_AZeroInputLeavesTheOthersTheirErrors) {
   EXPECT_GT(variance(0), 0.0);
   EXPECT_TRUE(std::isnan(variance(1)));
   EXPECT_GT(variance(2), 0.0);
+  // What a prior says of it is nowhere told as if it had been found.
+  for (const std::optional<Bank>& bank :
+       {archive.bank, archive.unrefined, archive.baseline, archive.noise_only, archive.one_motion})
+    for (const Mode& mode : bank.value().modes) {
+      EXPECT_GT(mode.standard_error(0), 0.0);
+      EXPECT_TRUE(std::isnan(mode.standard_error(1))) << mode.standard_error.transpose();
+      EXPECT_GT(mode.standard_error(2), 0.0);
+    }
+  const Eigen::MatrixXd of_windows = archive.windows->standard_errors();
+  EXPECT_TRUE(of_windows.row(1).array().isNaN().all());
+  EXPECT_TRUE((of_windows.row(2).array() > 0.0).all());
+  const ModeDynamics dynamics = mode_dynamics(*archive.bank, 0);
+  EXPECT_GT(dynamics.gain_error(0, 1), 0.0);
+  EXPECT_TRUE(std::isnan(dynamics.gain_error(0, 0)));
   const ProgramResult shown = modebank({"show", this->archive()});
   EXPECT_THAT(shown.out, HasSubstr("wz <- left not identifiable"));
   EXPECT_THAT(shown.out, Not(HasSubstr("+- nan")));

@@ -35,11 +35,11 @@ RunEvaluation with_pit(const Eigen::RowVectorXd& pit) {
 TEST(PitHistogram, EveryKnownTransformIsCountedOnce) {
   const RunEvaluation first = with_pit((Eigen::RowVectorXd(5) << std::nan(""), 0.0, 0.1, 0.25, 0.5).finished());
   const RunEvaluation second = with_pit((Eigen::RowVectorXd(2) << 0.99, 1.0).finished());
-  const PitHistogram histogram = pit_histogram({&first, &second}, 4);
+  const PitHistogram histogram = pit_histogram({"bank", {first, second}}, {0, 1}, 4);
   EXPECT_EQ(histogram.counts, Eigen::Vector4i(2, 1, 1, 2));
   EXPECT_EQ(histogram.samples, 6);
   EXPECT_EQ(histogram.expected, 1.5);
-  EXPECT_THROW(pit_histogram({}, 1), std::invalid_argument);
+  EXPECT_THROW(pit_histogram({}, {}, 1), std::invalid_argument);
 }
 
 /// The binomial's distribution function, summed up in Python: P(X <= 4) = 0.0237, P(X <= 15) = 0.9601, P(X <= 16) =
@@ -47,11 +47,11 @@ TEST(PitHistogram, EveryKnownTransformIsCountedOnce) {
 /// 2394 in 20. Quantiles are rounded outwards.
 TEST(PitHistogram, BandIsTheBinomials) {
   const RunEvaluation hundred = with_pit(Eigen::RowVectorXd::Constant(100, 0.5));
-  EXPECT_EQ(pit_histogram({&hundred}, 10).band.lower, 4.0);
-  EXPECT_EQ(pit_histogram({&hundred}, 10).band.upper, 16.0);
+  EXPECT_EQ(pit_histogram({"bank", {hundred}}, {0}, 10).band.lower, 4.0);
+  EXPECT_EQ(pit_histogram({"bank", {hundred}}, {0}, 10).band.upper, 16.0);
   const RunEvaluation many = with_pit(Eigen::RowVectorXd::Constant(2394, 0.5));
-  EXPECT_EQ(pit_histogram({&many}, 20).band.lower, 98.0);
-  EXPECT_EQ(pit_histogram({&many}, 20).band.upper, 141.0);
+  EXPECT_EQ(pit_histogram({"bank", {many}}, {0}, 20).band.lower, 98.0);
+  EXPECT_EQ(pit_histogram({"bank", {many}}, {0}, 20).band.upper, 141.0);
 }
 
 }  // namespace

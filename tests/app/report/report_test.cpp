@@ -10,6 +10,7 @@
 #include "app/report/page/guard_map.hpp"
 #include "app/report/page/html_page.hpp"
 #include "app/report/page/numbers.hpp"
+#include "app/report/page/run_page.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/series.hpp"
 #include "app/report/page/unit_text.hpp"
@@ -21,6 +22,7 @@
 namespace modebank::test {
 namespace {
 
+using app::report::Detail;
 using app::report::PageArrays;
 using nlohmann::json;
 
@@ -78,7 +80,7 @@ TEST(ReportNumbers, ParametersOfModelsAreWords) {
 
 TEST(ReportArrays, ComeBackAsTheyWentIn) {
   const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(1001, -3.7, 1e5);
-  PageArrays arrays, measured(PageArrays::Kind::measure);
+  PageArrays arrays;
   const json exact = arrays.add_exact(values), rounded = arrays.add(values), shares = arrays.add_shares(values / 1e5);
   const auto doubles = values_of<double>(arrays, exact);
   EXPECT_TRUE(std::equal(doubles.begin(), doubles.end(), values.begin(), values.end()));
@@ -89,11 +91,8 @@ TEST(ReportArrays, ComeBackAsTheyWentIn) {
   EXPECT_EQ(steps.front(), 0);  // below zero is zero
   EXPECT_EQ(steps.back(), 65534);
   EXPECT_NEAR(steps[500] / 65534.0, values(500) / 1e5, 1e-5);
-  measured.add_exact(values);
-  measured.add(values);
-  measured.add_shares(values);
-  EXPECT_GE(measured.bytes(), arrays.bytes());  // the bound holds
-  EXPECT_TRUE(measured.stored().empty());
+  const auto most = [&](std::size_t width) { return PageArrays::most_bytes(values.size(), width); };
+  EXPECT_GE(most(8) + most(4) + most(2), arrays.bytes());  // the bound holds
 }
 
 TEST(ReportSeries, LevelsHoldTheExtremesOfEverySample) {
@@ -170,6 +169,42 @@ TEST_F(Report, PageHoldsTheArchivesNumbersAndReachesNowhere) {
   EXPECT_FALSE(std::regex_search(html.substr(0, 4000), std::regex("(src|href)=\"(https?:)?//")));
   EXPECT_NE(html.find("default-src 'none'"), std::string::npos);  // the browser itself keeps it from the network
   EXPECT_LE(html.size(), 64e6);
+}
+
+TEST_F(Report, IsTheSameOfRunsThatStayInTheFile) {
+  ASSERT_EQ(run({"--filter.simulate", "10"}).status, 0);
+  const Archive by_runs = read_archive_by_runs(archive(), 0);
+  ASSERT_TRUE(by_runs.evaluations.front().in_file && !by_runs.evaluations.front().free_runs.empty());
+  app::ReportConfig options;
+  for (options.size_mb = 64.0; options.size_mb >= 8.0; options.size_mb /= 8.0)
+    EXPECT_TRUE(html_of(app::report::run_page(by_runs, "a.h5", options)) ==
+                html_of(app::report::run_page(read_archive(archive()), "a.h5", options)));
+}
+
+/// Most bytes of all arrays that a section mentions, but for the outliers.
+std::size_t most_bytes_of(const json& section) {
+  std::size_t bytes = 0;
+  if (section.is_object() && section.contains("id") && section.contains("type")) {
+    const std::map<std::string, std::size_t> widths{{"f4", 4}, {"f8", 8}, {"i4", 4}, {"share", 2}};
+    return PageArrays::most_bytes(section["size"].get<Index>(), widths.at(section["type"].get<std::string>()));
+  }
+  if (section.is_structured())
+    for (const auto& [key, part] : section.items()) bytes += key == "outliers" ? 0 : most_bytes_of(part);
+  return bytes;
+}
+
+TEST_F(Report, KnowsBeforehandHowLargeItsSignalsAreAtMost) {
+  ASSERT_EQ(run({"--filter.simulate", "10"}).status, 0);
+  Archive stored = read_archive(archive());
+  for (const bool irregular : {false, true}) {
+    if (irregular)
+      for (Trajectory& one : stored.recording->runs) one.time_s.tail(1).array() += 0.5;
+    for (const Detail detail : {Detail{}, Detail{1, 16}, Detail{4, 64}}) {
+      PageArrays arrays;
+      EXPECT_EQ(app::report::most_signal_bytes(stored, detail),
+                most_bytes_of(app::report::runs_section(stored, arrays, detail)));
+    }
+  }
 }
 
 TEST_F(Report, NamesModesAndComparesThemWithLabels) {

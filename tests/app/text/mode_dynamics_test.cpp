@@ -118,11 +118,11 @@ TEST(WindowModes, TheMostProbableOverTheTransitions) {
   evaluation.mode_probability.resize(2, 5);
   evaluation.mode_probability << 0.9, 0.2, 0.3, std::nan(""), 0.9,  //
       0.1, 0.8, 0.7, std::nan(""), 0.1;
-  const Eigen::VectorXi modes = window_modes({{0, 0}, {0, 2}, {0, 1}}, 2, {evaluation});
+  const Eigen::VectorXi modes = window_modes({{0, 0}, {0, 2}, {0, 1}}, 2, {"bank", {evaluation}});
   EXPECT_EQ(modes(0), 1);  // samples 1 and 2; the window's first sample is no transition's end
   EXPECT_EQ(modes(1), 0);  // sample 4, because 3 is unknown
   EXPECT_EQ(modes(2), 1);
-  EXPECT_EQ(window_modes({{0, 2}}, 1, {evaluation})(0), -1);
+  EXPECT_EQ(window_modes({{0, 2}}, 1, {"bank", {evaluation}})(0), -1);
 }
 
 }  // namespace

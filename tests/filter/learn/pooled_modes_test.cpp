@@ -41,6 +41,20 @@ TEST(WeightedMode, AgreesWithFrequencyWeightedRegression) {
   EXPECT_NEAR(mode.effective_transitions, data.weights.sum(), exact);
 }
 
+TEST(WeightedMode, OfManyTransitionsIsTheSame) {
+  WeightedGolden data;
+  const nlohmann::json& expected = data.golden.at("plain");
+  Transitions& rows = data.transitions.data;
+  const Index copies = 600'000 / rows.count();  // several blocks, the last of which is not full
+  rows.regressors = rows.regressors.replicate(copies, 1).eval();
+  rows.increments = rows.increments.replicate(copies, 1).eval();
+  const Eigen::VectorXd weights = data.weights.replicate(copies, 1) / static_cast<double>(copies);
+  const ModeEstimate mode = fit_weighted_mode(data.transitions, weights, data.global, nullptr);
+  EXPECT_TRUE(near(mode.theta, test::golden_rows(expected.at("theta")), exact));
+  EXPECT_TRUE(near(mode.Q, test::golden_rows(expected.at("Q")), exact));
+  EXPECT_TRUE(near(mode.standard_error, test::golden_rows(expected.at("standard_error")), exact));
+}
+
 TEST(WeightedMode, PriorMaximisesThePenalisedLikelihood) {
   const WeightedGolden data;
   const nlohmann::json& expected = data.golden.at("penalised");
