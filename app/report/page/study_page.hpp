@@ -30,8 +30,8 @@ struct RepeatGain {
 RepeatGain repeat_gain(const StudyTable& table, const std::vector<std::size_t>& best,
                        const std::vector<std::size_t>& other, std::size_t score);
 
-/// Whether the best setting is better than the next ones: its gain in log score over each, the mean over repeats, with an
-/// error paired by run where the archives hold the same runs (of the first repeat), and by repeat. Null without two
+/// Whether the best setting is better than the next ones: its gain in log score over each, the mean over repeats, with
+/// an error paired by run where the archives hold the same runs (of the first repeat), and by repeat. Null without two
 /// settings.
 nlohmann::json better_section(const StudyTable& table, const std::vector<TrialPlace>& places,
                               const std::string& headline);
