@@ -111,6 +111,7 @@ void Chain::count_lags(const std::optional<LagCountInputs>& inputs) {
 }
 
 void Chain::identify_windows(const WindowInputs& inputs) {
+  constexpr double written_per_s = 1e5;  // with their samples and a copy of both, on a slow disk
   const auto compute = [&] {
     if (const std::string open = open_effects(*archive_.recording, inputs.window); !open.empty())
       listener_.warning(open);
@@ -124,7 +125,10 @@ void Chain::identify_windows(const WindowInputs& inputs) {
     part.windows = archive_.windows;
     return part;
   };
-  provide(Stage::windows, {compute, copy, [&](Archive&& part) { archive_.windows = std::move(part.windows); }});
+  const auto take = [&](Archive&& part) { archive_.windows = std::move(part.windows); };
+  const double windows =
+      static_cast<double>(archive_.recording->transitions(Role::train)) / static_cast<double>(inputs.window.step);
+  provide(Stage::windows, {compute, copy, take, windows / written_per_s});
 }
 
 void Chain::cluster_windows(const MixtureInputs& inputs) {

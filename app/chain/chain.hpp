@@ -17,6 +17,7 @@ struct StagePart {
   std::function<void()> compute;
   std::function<Archive()> copy;        ///< an archive of the result alone
   std::function<void(Archive&&)> take;  ///< puts the result that such an archive holds in place
+  double writing_s = 0.0;  ///< about how long its writing takes: what is computed faster is not worth keeping
 };
 
 /// Decides where stages' results come from. This one computes them all.

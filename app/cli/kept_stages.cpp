@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <csignal>
@@ -60,7 +61,7 @@ void KeptStages::provide(Stage stage, const std::string& key, const StagePart& p
   if (load(file, part)) return;
   const Stopwatch watch;
   part.compute();
-  if (watch.seconds() > worth_a_file_s) store(file, part);
+  if (watch.seconds() > std::max(worth_a_file_s, part.writing_s)) store(file, part);
 }
 
 bool KeptStages::load(const fs::path& file, const StagePart& part) const {

@@ -100,5 +100,19 @@ TEST_F(StoppedRun, ASignalThatIsIgnoredStaysIgnored) {
   EXPECT_EQ(at_end, SIG_DFL);
 }
 
+/// Millions of windows are fitted in a second; to keep them took seconds more, and a gigabyte.
+TEST_F(StoppedRun, KeepsWhatTakesLongerThanItsWritingAlone) {
+  app::KeptStages kept(output());
+  const fs::path folder = output().parent_path() / ".robot.h5.stages";
+  SlowStage stage;
+  StagePart part = stage.part(3.0);
+  part.writing_s = 5.0;
+  kept.provide(Stage::lag_counts, "large", part);
+  EXPECT_FALSE(fs::exists(folder / "lag_counts-large.h5"));
+  part.writing_s = 0.5;
+  kept.provide(Stage::lag_counts, "small", part);
+  EXPECT_TRUE(fs::exists(folder / "lag_counts-small.h5"));
+}
+
 }  // namespace
 }  // namespace modebank::test
