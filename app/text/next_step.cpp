@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "app/chain/judged_runs.hpp"
+#include "app/chain/options.hpp"
 #include "app/text/warnings.hpp"
 #include "io/import/split.hpp"
 
@@ -36,13 +37,11 @@ bool is_lost(const Situation& s) {
   return counts.of(FitStatus::failed) > 0;
 }
 
-constexpr int most_lags_tried = 4;  // by `auto`
-
 int state_lags(const Situation& s) { return std::atoi(s.setting("window.state_lags").c_str()); }
 
 /// What is dropped between blocks of a run.
 Index window_and_lags(const Situation& s) {
-  const int lags = s.setting("window.state_lags") == "auto" ? most_lags_tried : state_lags(s);
+  const Index lags = s.setting("window.state_lags") == "auto" ? most_automatic_lags : state_lags(s);
   return std::atoi(s.setting("window.length").c_str()) + lags;
 }
 
@@ -93,8 +92,10 @@ const Rule rules[] = {
      }},
     {[](const Situation& s) { return is_not_white(s) && may_have_more_lags(s); },
      [](const Situation& s) {
-       const std::string lags =
-           state_lags(s) < most_lags_tried ? "auto --window.input_lags auto" : fmt::to_string(state_lags(s) + 1);
+       const bool acted_on = !s.archive.recording || !s.archive.recording->inputs.empty();
+       const std::string lags = state_lags(s) >= most_automatic_lags ? fmt::to_string(state_lags(s) + 1)
+                                : acted_on                           ? "auto --window.input_lags auto"
+                                                                     : "auto";
        return fmt::format(
            "errors follow a pattern, so the model lacks memory: repeat with --window.model varx --window.state_lags "
            "{}{}",

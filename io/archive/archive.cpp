@@ -25,11 +25,11 @@ bool is_large(const Archive& archive) {
   constexpr Index numbers_per_parameter = 8;  // of a window: value, error, covariances and what describes the fit
   constexpr std::size_t many_runs = 500;      // whose groups are appended to a file, not made by HDF5 in memory
   if (archive.recording && archive.recording->runs.size() > many_runs) return true;
-  const Index of_windows = archive.windows ? archive.windows->count() * archive.windows->parameter_count() : 0;
-  if (!archive.mixture) return of_windows > most_in_memory / numbers_per_parameter;
+  const Index parameters = archive.windows ? archive.windows->count() * archive.windows->parameter_count() : 0;
+  if (parameters > most_in_memory / numbers_per_parameter) return true;
+  if (!archive.mixture) return false;
   const WindowResponsibilities& responsibilities = archive.mixture->responsibilities;
-  return of_windows > most_in_memory / numbers_per_parameter ||
-         responsibilities.windows() * responsibilities.components() > most_in_memory;
+  return responsibilities.windows() * responsibilities.components() > most_in_memory;
 }
 
 }  // namespace

@@ -232,6 +232,8 @@ TEST_F(NextStep, ColouredErrorsAskForMemory) {
   row().flags = "innovations not white: autocorrelation 0.45 at lag 1";
   settings["window.state_lags"] = "2";
   EXPECT_THAT(advice(), HasSubstr("--window.model varx --window.state_lags auto --window.input_lags auto"));
+  archive.recording->inputs.clear();  // input_lags = auto is refused without any
+  EXPECT_THAT(advice(), AllOf(HasSubstr("--window.state_lags auto"), Not(HasSubstr("input_lags"))));
   settings["window.state_lags"] = "4";  // the most that auto tries
   EXPECT_THAT(advice(), HasSubstr("--window.state_lags 5"));
   EXPECT_THAT(advice(), HasSubstr("--data.lag_s auto"));
