@@ -74,9 +74,9 @@ MODEBANK_KEY_FIELDS(RefineTuning, checkpoints, falls, forgettings, noise_prior_s
                     shortest_stretch, most_loss, Q_transitions, other_Q_transitions, Q_transitions_unvalidated,
                     Q_transitions_with_R, least_information, alternations, start_stay, modes_kept,
                     duplicate_significance, growth_slack, iterations_after_screening, weight_width, other_weight_widths,
-                    theta_transitions, one_motion_iterations, shrinkage_digits, drift_rates, drift_starts, drift_leaks,
-                    drift_forgettings, drift_noise_prior_samples, least_R_share, R_start_shares,
-                    R_start_share_with_theta, least_gain)
+                    little_memory_sd, theta_transitions, one_motion_iterations, shrinkage_digits, drift_rates,
+                    drift_starts, drift_leaks, drift_forgettings, drift_noise_prior_samples, least_R_share,
+                    R_start_shares, R_start_share_with_theta, least_gain)
 MODEBANK_KEY_FIELDS(DriftOptions, how, rate, start, leak)
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, members, look_ahead, folds,
                     measurement_noise, screen, guards, one_theta, seed, drift, tuning, transitions)

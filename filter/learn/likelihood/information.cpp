@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <cmath>
+
 #include "filter/judge/look_ahead.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 
@@ -46,6 +48,13 @@ Eigen::VectorXd information_of_noise_and_switches(const BankCoordinates& around,
   return information;
 }
 
+/// What the prior on a guard's memory says of T.
+Eigen::MatrixXd information_of_memory(const BankCoordinates& around, const SwitchingPrior& prior) {
+  const Eigen::MatrixXd T = around.origin().transition.matrix().cwiseMax(least_probability);
+  const Eigen::VectorXd of_log = T.transpose().reshaped().cwiseInverse() / prior.memory_sd;
+  return of_log.asDiagonal() * memory_projection(T.rows()) * of_log.asDiagonal();
+}
+
 }  // namespace
 
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
@@ -75,6 +84,10 @@ Eigen::MatrixXd prior_information(const BankCoordinates& around, const Switching
   for (Index j = 0; j < thetas; ++j) {
     const auto of_theta = J.middleRows(at.theta(j), at.parameters);
     information.noalias() += of_theta.transpose() * prior.information * of_theta;
+  }
+  if (at.transition && at.regressors > 0 && std::isfinite(prior.memory_sd)) {
+    const auto of_T = J.middleRows(at.T(0), at.modes * at.modes);
+    information.noalias() += of_T.transpose() * information_of_memory(around, prior) * of_T;
   }
   // The logit's weights are the last coordinates, and their prior is one of them themselves.
   for (Index a = 0; a < at.regressors; ++a) {

@@ -26,7 +26,8 @@ SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::Vec
                                  const Recording& recording, const FilterOptions& filter, Eigen::Index look_ahead = 1);
 
 /// What the prior adds to the information about the coordinates, at their origin: of theta exactly, of Q as so many
-/// observations of a normal scatter, of T as so many counts. A prior on one theta of all modes counts once.
+/// observations of a normal scatter, of T as so many counts, of a guard's memory
+/// exactly. A prior on one theta of all modes counts once.
 Eigen::MatrixXd prior_information(const BankCoordinates& around, const SwitchingPrior& prior);
 
 }  // namespace modebank

@@ -62,7 +62,7 @@ void CrossValidation::consider(const std::vector<RefineStart>& candidates) {
     fits_.back().row = fits_.size() - 1;
     counter.add();
   }
-  if (possible()) chosen_ = fewest_modes_as_good(scores_of(fits_), samples_, in_.options.tuning.most_loss);
+  if (possible()) chosen_ = fewest_modes_as_good(scores_of(fits_), samples_, in_.options.tuning);
 }
 
 ScoredFit CrossValidation::best_iterations(const RefineStart& start) const {

@@ -108,7 +108,7 @@ std::optional<DriftChoice> choose_drift(const RefineInput& in, const CrossValida
     sizes.push_back(climbed(in, validation, start_of(in, fit, scale)));
     scores.push_back(sizes.back().scores);
   }
-  const DriftTrial& best = sizes[fewest_modes_as_good(scores, validation.samples(), in.options.tuning.most_loss)];
+  const DriftTrial& best = sizes[fewest_modes_as_good(scores, validation.samples(), in.options.tuning)];
   const Eigen::VectorXd without = scores_without(validation, steady);
   const PairedLoss gain = paired_loss(best.scores.log_likelihood, without, validation.samples());
   const DriftRates& rates = best.choice.drift.rates;

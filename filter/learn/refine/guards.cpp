@@ -1,34 +1,79 @@
 #include "filter/learn/refine/guards.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <utility>
 
-#include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/refine/split_fits.hpp"
+#include "filter/learn/switching/em.hpp"
+#include "filter/learn/switching/mode_screening.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
 
 namespace modebank {
 namespace {
 
-/// Every split's own fit with a constant T, to go on as a logit whose weights have a prior that wide.
-SplitFits logit_fits(const RefineInput& in, const CrossValidation& validation, const ScoredFit& constant,
-                     double width) {
-  const std::vector<SplitData>& splits = validation.splits();
-  std::vector<SwitchingPrior> priors;
-  std::vector<SwitchingRegression> starts;
-  for (std::size_t s = 0; s < splits.size(); ++s) {
-    const TrainingTransitions& transitions = splits[s].transitions;
-    priors.push_back(with_weights(prior_of_split(in, splits[s], constant.start), transitions, width));
-    starts.push_back(switching_model(constant.banks[s]));
-    starts.back().logit = no_effect(transitions, starts.back().modes());
-  }
-  return {in, splits, std::move(priors), std::move(starts)};
+/// A model with guards, fitted to all training runs.
+struct GuardStart {
+  const ScoredFit* constant;  ///< the fit with a constant T that it goes on from, whose priors it keeps
+  SwitchingRegression model;
+  double log_likelihood;
+};
+
+GuardStart gone_on(const RefineInput& in, const ScoredFit& constant, SwitchingRegression model) {
+  const SwitchingPrior prior = with_guard(in.prior(constant.start), in.transitions, {in.options.tuning.weight_width});
+  ExpectationMaximisation em(in.transitions, prior, em_options(in.options), std::move(model));
+  for (Index i = 0; i < in.options.max_iterations && !em.converged(); ++i) em.step();
+  return {&constant, em.model(), em.posterior().log_likelihood};
 }
 
-/// The best number of iterations of one fit and width.
-Guards scored(const RefineInput& in, const CrossValidation& validation, const ScoredFit& constant, double width) {
-  SplitFits fits = logit_fits(in, validation, constant, width);
-  Guards best{constant, width, 0};
+/// Every start's fit with a constant T taken on as a logit; empty for one mode, where nothing switches.
+std::vector<GuardStart> from_constant_fits(const RefineInput& in, const std::vector<ScoredFit>& fits) {
+  std::vector<std::optional<GuardStart>> all(fits.size());
+  tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t f) {
+    const RefineStart& start = fits[f].start;
+    SwitchingRegression model = fit_training_runs(in, start, in.prior(start), fits[f].iterations).model;
+    if (model.modes() == 1) return;
+    model.logit = no_effect(in.transitions, model.modes());
+    all[f] = gone_on(in, fits[f], std::move(model));
+  });
+  std::vector<GuardStart> starts;
+  for (std::optional<GuardStart>& start : all)
+    if (start) starts.push_back(std::move(*start));
+  return starts;
+}
+
+bool likelier(const GuardStart& a, const GuardStart& b) { return a.log_likelihood > b.log_likelihood; }
+
+/// The likeliest of each number of modes, the most modes first: of the constant fits that were taken on, and of the
+/// likeliest of these with one pair of its modes after another merged.
+std::vector<GuardStart> guard_starts(const RefineInput& in, const std::vector<ScoredFit>& fits) {
+  std::vector<GuardStart> all = from_constant_fits(in, fits);
+  if (all.empty()) return all;
+  GuardStart last = *std::min_element(all.begin(), all.end(), likelier);
+  while (last.model.modes() > 2) {
+    const ModePosterior posterior = smooth_modes(in.transitions, last.model);
+    last = gone_on(in, *last.constant, with_closest_pair_merged(in.transitions, posterior, last.model));
+    all.push_back(last);
+  }
+  std::sort(all.begin(), all.end(), likelier);
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.model.modes() > b.model.modes(); });
+  const auto as_many = [](const auto& a, const auto& b) { return a.model.modes() == b.model.modes(); };
+  all.erase(std::unique(all.begin(), all.end(), as_many), all.end());
+  return all;
+}
+
+/// Goes on from a start on every split; the best number of iterations.
+Guards scored(const RefineInput& in, const CrossValidation& validation, const GuardStart& start,
+              const GuardPrior& prior) {
+  const std::vector<SplitData>& splits = validation.splits();
+  std::vector<SwitchingPrior> priors;
+  for (const SplitData& split : splits)
+    priors.push_back(with_guard(prior_of_split(in, split, start.constant->start), split.transitions, prior));
+  SplitFits fits(in, splits, std::move(priors), std::vector<SwitchingRegression>(splits.size(), start.model));
+  Guards best{*start.constant, prior, 0};
+  best.fit.start.model = start.model;
   for (const Index checkpoint : in.options.tuning.checkpoints) {
     if (checkpoint > in.options.max_iterations) break;
     fits.advance_to(checkpoint);
@@ -55,51 +100,33 @@ std::optional<Guards> choose_guards(const RefineInput& in, const CrossValidation
   const RefineTuning& tuning = in.options.tuning;
   std::vector<Guards> sizes;
   std::vector<LeftOutScores> scores;
-  for (const ScoredFit& fit : validation.best_of_each_size()) {
-    if (fit.start.model.modes() == 1) continue;  // nothing switches
-    sizes.push_back(scored(in, validation, fit, tuning.weight_width));
+  const std::vector<ScoredFit> constant = validation.best_of_starts();
+  const std::vector<GuardStart> starts = guard_starts(in, constant);
+  for (const GuardStart& start : starts) {
+    sizes.push_back(scored(in, validation, start, {tuning.weight_width}));
     scores.push_back(sizes.back().fit.scores);
   }
   if (sizes.empty()) return std::nullopt;
-  Guards best = sizes[fewest_modes_as_good(scores, validation.samples(), tuning.most_loss)];
-  const ScoredFit& constant = validation.of_start(best.fit.row);
+  const std::size_t size = fewest_modes_as_good(scores, validation.samples(), tuning);
+  Guards best = sizes[size];
   for (const double width : tuning.other_weight_widths)
-    if (Guards other = scored(in, validation, constant, width); higher(other, best)) best = std::move(other);
+    if (Guards other = scored(in, validation, starts[size], {width}); higher(other, best)) best = std::move(other);
+  Guards memoryless = scored(in, validation, starts[size], {best.prior.width, tuning.little_memory_sd});
+  if (as_good(memoryless.fit.scores, best.fit.scores, validation.samples(), tuning)) best = std::move(memoryless);
 
   const LeftOutScores& without = validation.chosen().scores;
   const PairedLoss gain = paired_loss(best.fit.scores.log_likelihood, without.log_likelihood, validation.samples());
-  stage = {0.0, without.log_likelihood.sum() / validation.samples().sum(), gain.mean, gain.standard_error};
+  stage.score_before = without.log_likelihood.sum() / validation.samples().sum();
+  stage.gain = gain.mean;
+  stage.gain_standard_error = gain.standard_error;
   if (!(gain.mean > std::max(gain.standard_error, tuning.least_gain))) return std::nullopt;
-  stage.width = best.width;
+  stage.width = best.prior.width;
+  stage.memory_sd = best.prior.memory_sd;
   return best;
 }
 
-namespace {
-
-double likelihood_of(const RefineInput& in, const TrainingFit& fit) {
-  return training_log_likelihood(with_modes(in.frame, fit.model), in.recording, exact_filter(in.filter));
-}
-
-}  // namespace
-
-TrainingFit fit_guards(const RefineInput& in, const Guards& guards, const SwitchingPrior& prior,
-                       const TrainingFit& constant) {
-  RefineStart start = guards.fit.start;
-  start.model = constant.model;
-  start.model.logit = no_effect(in.transitions, start.model.modes());
-  TrainingFit fit = fit_training_runs(in, start, prior, guards.iterations);
-  fit.screened.insert(fit.screened.begin(), constant.screened.begin() + std::ssize(in.frame.screened),
-                      constant.screened.end());
-  double likelihood = likelihood_of(in, fit);
-  const double clearly = in.options.tuning.least_gain * in.transitions.usable.sum();
-  for (const Bank& of_split : guards.fit.banks) {
-    start.model = switching_model(of_split);
-    TrainingFit other = fit_training_runs(in, start, prior, guards.iterations);
-    const double others = likelihood_of(in, other);
-    if (!(others > likelihood + clearly)) continue;
-    likelihood = others;
-    fit = std::move(other);
-  }
+TrainingFit fit_guards(const RefineInput& in, const Guards& guards, const SwitchingPrior& prior) {
+  TrainingFit fit = fit_training_runs(in, guards.fit.start, prior, guards.iterations);
   fit.model.logit.weights.rowwise() -= fit.model.logit.weights.colwise().mean().eval();  // changes no probability
   return fit;
 }

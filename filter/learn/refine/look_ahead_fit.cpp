@@ -61,7 +61,7 @@ std::optional<Bank> fit_looking_ahead(const RefineInput& in, const CrossValidati
     const SplitData& split = validation.splits()[s];
     SwitchingPrior of_split =
         prior_of_split(in, split, {"", switching_model(banks[s]), chosen.noise_transitions, chosen.theta_transitions});
-    if (chosen.weight_width > 0.0) of_split = with_weights(std::move(of_split), split.transitions, chosen.weight_width);
+    of_split = with_guard(std::move(of_split), split.transitions, chosen.guard);
     banks[s] = taken_on({split.runs.training, filter, of_split, in.options.one_theta, in.options.look_ahead}, in,
                         R_estimated, banks[s]);
   });

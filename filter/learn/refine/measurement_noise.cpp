@@ -114,7 +114,7 @@ class MeasuredSplits {
       SwitchingPrior exact = prior_of_split(in_, split, chosen_.noise_transitions);
       exact = towards_one_motion(std::move(exact), split.transitions, switching_model(bank), chosen_.theta_transitions,
                                  in_.options.tuning);
-      if (chosen_.weight_width > 0.0) exact = with_weights(std::move(exact), split.transitions, chosen_.weight_width);
+      exact = with_guard(std::move(exact), split.transitions, chosen_.guard);
       const LikelihoodTarget target{split.runs.training, learning_filter(in_.filter),
                                     prior_with_states_unknown(exact, bank, in_.options.tuning), in_.options.one_theta};
       bank = maximise_everything(target, in_, split.transitions, bank, with_R).bank;

@@ -6,6 +6,7 @@
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/refine/cross_validation.hpp"
 #include "filter/learn/refine/refine.hpp"
+#include "filter/learn/switching/transition_regression.hpp"
 
 namespace modebank {
 
@@ -41,7 +42,7 @@ struct MeasuredBank {
 struct ChosenFit {
   const std::vector<Bank>& of_splits;
   double noise_transitions = 0.0;  ///< of the prior
-  double weight_width = 0.0;       ///< of the prior on a logit's weights; 0: there is none
+  GuardPrior guard = {};           ///< of the prior
   double theta_transitions = 0.0;  ///< of the pull towards one motion
 };
 

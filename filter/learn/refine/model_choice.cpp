@@ -1,5 +1,6 @@
 #include "filter/learn/refine/model_choice.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -28,13 +29,18 @@ std::size_t best_candidate(const std::vector<LeftOutScores>& candidates) {
   return best;
 }
 
+bool as_good(const LeftOutScores& candidate, const LeftOutScores& best, const Eigen::VectorXd& samples,
+             const RefineTuning& tuning) {
+  const PairedLoss loss = paired_loss(best.log_likelihood, candidate.log_likelihood, samples);
+  return loss.mean <= std::max(std::min(loss.standard_error, tuning.most_loss), tuning.least_gain);
+}
+
 std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples,
-                                 double most_loss) {
+                                 const RefineTuning& tuning) {
   const std::size_t best = best_candidate(candidates);
   std::size_t chosen = best;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const PairedLoss loss = paired_loss(candidates[best].log_likelihood, candidates[i].log_likelihood, samples);
-    if (!(loss.mean <= loss.standard_error && loss.mean <= most_loss)) continue;
+    if (!as_good(candidates[i], candidates[best], samples, tuning)) continue;
     const Eigen::Index fewer = candidates[chosen].modes - candidates[i].modes;
     if (fewer > 0 || (fewer == 0 && total(candidates[i]) > total(candidates[chosen]))) chosen = i;
   }

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "modebank/learn/tuning.hpp"
+
 namespace modebank {
 
 /// What a candidate says of the runs left out.
@@ -25,10 +27,15 @@ PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& wor
 /// The candidate with the highest sum of scores; of equal ones the first.
 std::size_t best_candidate(const std::vector<LeftOutScores>& candidates);
 
-/// The candidate that people look at: the fewest modes whose paired loss against the best candidate is within one
-/// standard error of that difference (Breiman et al. 1984, section 3.4.3) and at most `most_loss` nats per sample; of
-/// as many modes the best. samples: of each run left out.
+/// Whether the simpler candidate may stand for the best: its paired loss is within one standard error of that
+/// difference (Breiman et al. 1984, section 3.4.3) and at most tuning.most_loss, or too small to matter, at most
+/// tuning.least_gain, however well it is known. samples: of each run left out.
+bool as_good(const LeftOutScores& candidate, const LeftOutScores& best, const Eigen::VectorXd& samples,
+             const RefineTuning& tuning);
+
+/// The candidate that people look at: the fewest modes that are as good as the best candidate; of as many modes the
+/// best.
 std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples,
-                                 double most_loss);
+                                 const RefineTuning& tuning);
 
 }  // namespace modebank

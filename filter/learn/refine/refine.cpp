@@ -118,14 +118,12 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   if (options.drift.how != Drift::none) drift = choose_drift(in, validation, steady, !guards, drift_stage);
   const ScoredFit& chosen = validation.of_start(drift ? drift->fit.row : steady.row);
   SwitchingPrior prior = in.prior(chosen.start);
-  TrainingFit fit = fit_training_runs(in, chosen.start, prior, chosen.iterations);
-  if (guards) {
-    prior = with_weights(std::move(prior), transitions, guards->width);
-    fit = fit_guards(in, *guards, prior, fit);
-  }
+  if (guards) prior = with_guard(std::move(prior), transitions, guards->prior);
+  const TrainingFit fit =
+      guards ? fit_guards(in, *guards, prior) : fit_training_runs(in, chosen.start, prior, chosen.iterations);
   if (drift) return drifting_refinement(in, validation, *drift, prior, fit, banks.front(), switching, drift_stage);
   const ChosenFit on_splits{guards ? guards->fit.banks : chosen.banks, chosen.start.noise_transitions,
-                            guards ? guards->width : 0.0, chosen.start.theta_transitions};
+                            guards ? guards->prior : GuardPrior{}, chosen.start.theta_transitions};
   const Bank exact = bank_of_fit(in, fit, validation.adaptation(on_splits.of_splits));
   const MeasuredBank measured = fit_with_measurement_noise(in, validation, on_splits, prior, exact);
 

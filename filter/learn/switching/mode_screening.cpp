@@ -47,11 +47,9 @@ Index free_parameters(const LinearStructure& structure, bool one_theta) {
   return (one_theta ? 0 : theta) + noise;
 }
 
-/// The pair of modes that is closest, if it is closer than a test of this significance can tell.
-std::optional<Twins> closest_twins(const LinearStructure& structure, const std::vector<RegressionSums>& modes,
-                                   bool one_theta, double significance) {
+/// The pair of modes that loses least by being pooled, if it loses less than `least` nats.
+std::optional<Twins> closest_twins(const std::vector<RegressionSums>& modes, double least) {
   std::optional<Twins> twins;
-  double least = 0.5 * chi_square_quantile(significance, static_cast<double>(free_parameters(structure, one_theta)));
   for (std::size_t i = 0; i < modes.size(); ++i)
     for (std::size_t j = i + 1; j < modes.size(); ++j) {
       const double loss = cost(modes[i] + modes[j]) - cost(modes[i]) - cost(modes[j]);
@@ -82,7 +80,7 @@ void drop_mode(Index mode, SwitchingRegression& model) {
 }
 
 /// Gives the twin what belonged to the dropped mode, weighted as the modes are.
-void merge_sequence(const Twins& twins, const std::vector<RegressionSums>& modes, SwitchingRegression& model) {
+void merge(const Twins& twins, const std::vector<RegressionSums>& modes, SwitchingRegression& model) {
   const double kept = modes[static_cast<std::size_t>(twins.kept)].weight;
   const double dropped = modes[static_cast<std::size_t>(twins.dropped)].weight;
   Eigen::MatrixXd& T = model.transition;
@@ -91,6 +89,7 @@ void merge_sequence(const Twins& twins, const std::vector<RegressionSums>& modes
   if (Eigen::MatrixXd& w = model.logit.weights; !model.logit.empty())
     w.row(twins.kept) = ((kept * w.row(twins.kept) + dropped * w.row(twins.dropped)) / (kept + dropped)).eval();
   model.initial(twins.kept) += model.initial(twins.dropped);
+  drop_mode(twins.dropped, model);
 }
 
 double radius(const LinearStructure& structure, const SwitchingRegression& model, Index j) {
@@ -164,11 +163,20 @@ std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& trans
     drop_mode(*useless, rest.model);
     return rest;
   }
-  const std::optional<Twins> twins = closest_twins(structure, modes, one_theta, tuning.duplicate_significance);
+  const auto freedom = static_cast<double>(free_parameters(structure, one_theta));
+  const std::optional<Twins> twins =
+      closest_twins(modes, 0.5 * chi_square_quantile(tuning.duplicate_significance, freedom));
   if (!twins) return std::nullopt;
   ScreenedModel rest = without_mode(twins->dropped, fmt::format("duplicate of mode {}", twins->kept));
-  merge_sequence(*twins, modes, rest.model);
-  drop_mode(twins->dropped, rest.model);
+  merge(*twins, modes, rest.model);
+  return rest;
+}
+
+SwitchingRegression with_closest_pair_merged(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                                             const SwitchingRegression& model) {
+  const std::vector<RegressionSums> modes = sums_of_modes(transitions, posterior, model);
+  SwitchingRegression rest = model;
+  if (const auto twins = closest_twins(modes, std::numeric_limits<double>::infinity())) merge(*twins, modes, rest);
   return rest;
 }
 

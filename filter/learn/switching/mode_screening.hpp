@@ -27,6 +27,11 @@ std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& trans
                                                 const SwitchingRegression& model, bool one_theta,
                                                 const RefineTuning& tuning);
 
+/// The model without the mode that it can best do without: the pair of modes that loses least by being pooled (as under
+/// "duplicate" above, however much that is) is merged. Two modes at least.
+SwitchingRegression with_closest_pair_merged(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                                             const SwitchingRegression& model);
+
 /// Growth per step of the second moment of x[k+1] = F_j x[k] under switching by T: the spectral radius of the operator
 /// X_j -> sum_i T_ij F_i X_i F_i' (Costa, Fragoso & Marques 2005, "Discrete-Time Markov Jump Linear Systems", chapter
 /// 3). The system is mean-square stable below 1. By power iteration, to about 1e-6.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "filter/learn/from_mixture/training_transitions.hpp"
@@ -37,6 +38,9 @@ struct SwitchingPrior {
   double noise_transitions = 0.0;  ///< >= 0
   double counts = 0.0;             ///< >= 0, added to every expected count of switches and of first modes
   Eigen::VectorXd weight_sd = {};  ///< d, of the logit's weights, normal about zero; empty: T is the same everywhere
+  /// Of what rows and columns of a logit's log T do not explain (memory_of), normal about zero: where it is small, the
+  /// mode before hardly matters and modes are a function of state and input, as in a piecewise affine system.
+  double memory_sd = std::numeric_limits<double>::infinity();
 };
 
 /// Smoothed mode probabilities given all transitions of the runs.
@@ -68,6 +72,11 @@ SwitchingSums sum_transitions(const TrainingTransitions& transitions, const Mode
 /// NaN of a mode whose Q or information is not definite: nothing is known of its errors.
 std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, const SwitchingPrior& prior,
                                                    const SwitchingRegression& model);
+
+/// What the mode before adds to the log odds of the next: log T without the means of its rows and columns. K x K.
+Eigen::MatrixXd memory_of(const Eigen::MatrixXd& log_T);
+/// The matrix that takes log T, row by row, to that. K^2 x K^2.
+Eigen::MatrixXd memory_projection(Index modes);
 
 /// Log density of the prior at `model`, up to a constant; minus infinity where a Q is not definite.
 double log_prior(const SwitchingPrior& prior, bool one_theta, const SwitchingRegression& model);

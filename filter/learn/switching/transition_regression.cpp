@@ -26,6 +26,7 @@ class SwitchObjective {
         prior_(prior),
         K_(model.modes()),
         d_(regressor_count(transitions.structure)),
+        memory_information_(1.0 / (prior.memory_sd * prior.memory_sd)),
         z_((transitions.data.regressors.leftCols(d_).rowwise() - model.logit.reference.transpose()).transpose()) {
     // A transition that misses a sample switched by T alone.
     for (Index k = 0; k < z_.cols(); ++k)
@@ -48,7 +49,8 @@ class SwitchObjective {
     const Eigen::MatrixXd T = rows_of_T(at);
     const auto W = at.tail(K_ * d_).reshaped(K_, d_);
     double sum = -0.5 * (W * prior_.weight_sd.cwiseInverse().asDiagonal()).squaredNorm();
-    sum += prior_.counts * T.array().log().sum();
+    sum +=
+        prior_.counts * T.array().log().sum() - 0.5 * memory_information_ * memory_of(rows_of_log_T(at)).squaredNorm();
     Eigen::MatrixXd P(K_, K_);
     for (Index k = 0; k < z_.cols(); ++k) {
       set_probabilities(T, W * z_.col(k), P);
@@ -65,6 +67,7 @@ class SwitchObjective {
     gradient.setZero(size());
     curvature.setZero(size(), size());
     add_prior(T, W, gradient, curvature);
+    add_memory_prior(at, gradient, curvature);
     Eigen::MatrixXd P(K_, K_), of_row(K_, K_), of_weights(K_, K_);
     Eigen::VectorXd surprise(K_);
     for (Index k = 0; k < z_.cols(); ++k) {
@@ -99,12 +102,17 @@ class SwitchObjective {
   const Eigen::MatrixXd& pairs_;
   const SwitchingPrior& prior_;
   Index K_, d_;
+  double memory_information_;
   Eigen::MatrixXd z_;  ///< d x N, about the reference
 
   Index weights_at(Index regressor) const { return K_ * K_ + regressor * K_; }
 
+  Eigen::MatrixXd rows_of_log_T(const Eigen::VectorXd& at) const {
+    return at.head(K_ * K_).reshaped(K_, K_).transpose();
+  }
+
   Eigen::MatrixXd rows_of_T(const Eigen::VectorXd& at) const {
-    Eigen::MatrixXd T = at.head(K_ * K_).reshaped(K_, K_).transpose();
+    Eigen::MatrixXd T = rows_of_log_T(at);
     for (Index i = 0; i < K_; ++i) {
       T.row(i) = (T.row(i).array() - T.row(i).maxCoeff()).exp();
       T.row(i) /= T.row(i).sum();
@@ -119,6 +127,11 @@ class SwitchObjective {
       P.row(i) = T.row(i).cwiseProduct(factor);
       P.row(i) /= P.row(i).sum();
     }
+  }
+
+  void add_memory_prior(const Eigen::VectorXd& at, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature) const {
+    gradient.head(K_ * K_) -= memory_information_ * memory_of(rows_of_log_T(at)).transpose().reshaped();
+    curvature.topLeftCorner(K_ * K_, K_ * K_) += memory_information_ * memory_projection(K_);
   }
 
   template <class Weights>
@@ -162,8 +175,10 @@ Eigen::VectorXd regressor_spread(const TrainingTransitions& transitions) {
   return spread;
 }
 
-SwitchingPrior with_weights(SwitchingPrior prior, const TrainingTransitions& transitions, double width) {
-  prior.weight_sd = width * regressor_spread(transitions).cwiseInverse();
+SwitchingPrior with_guard(SwitchingPrior prior, const TrainingTransitions& transitions, const GuardPrior& guard) {
+  if (guard.width == 0.0) return prior;
+  prior.weight_sd = guard.width * regressor_spread(transitions).cwiseInverse();
+  prior.memory_sd = guard.memory_sd;
   return prior;
 }
 

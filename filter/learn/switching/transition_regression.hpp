@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "filter/learn/from_mixture/training_transitions.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 
@@ -13,12 +15,18 @@ TransitionLogit no_effect(const TrainingTransitions& transitions, Index modes);
 /// constant to rounding, which no weight can use. d.
 Eigen::VectorXd regressor_spread(const TrainingTransitions& transitions);
 
-/// The prior with normal weights, their standard deviations `width` in units of the regressors' spread.
-SwitchingPrior with_weights(SwitchingPrior prior, const TrainingTransitions& transitions, double width);
+/// What is believed of a guard.
+struct GuardPrior {
+  double width = 0.0;  ///< standard deviation of the weights in units of the regressors' spread; 0: there is no guard
+  double memory_sd = std::numeric_limits<double>::infinity();  ///< SwitchingPrior::memory_sd
+};
+
+/// The prior with that of a guard's weights and memory.
+SwitchingPrior with_guard(SwitchingPrior prior, const TrainingTransitions& transitions, const GuardPrior& guard);
 
 /// Raises the expected log posterior of the switches, T and the logit's weights together: sum over transitions of
-/// posterior.pairs log P(j | i, z), prior.counts on every log T_ij, weights normal with prior.weight_sd. One step of
-/// Newton's method on the concave objective (McCullagh & Nelder 1989, section 5.2), halved until it rises: a
+/// posterior.pairs log P(j | i, z), prior.counts on every log T_ij, weights and memory with their normal priors. One
+/// step of Newton's method on the concave objective (McCullagh & Nelder 1989, section 5.2), halved until it rises: a
 /// generalised maximisation (Dempster, Laird & Rubin 1977), which suffices for the likelihood never to fall. Returns
 /// what is gained [nats].
 double raise_switching(const TrainingTransitions& transitions, const ModePosterior& posterior,

@@ -11,6 +11,12 @@ namespace {
 
 const Eigen::VectorXd hundreds = Eigen::Vector4d(100.0, 100.0, 100.0, 100.0);
 
+RefineTuning losing(double most) {
+  RefineTuning tuning;
+  tuning.most_loss = most;
+  return tuning;
+}
+
 /// A candidate whose runs score so many nats below 200 each.
 LeftOutScores below(Eigen::Index modes, const Eigen::Vector4d& losses) {
   return {modes, Eigen::VectorXd::Constant(4, 200.0) - losses};
@@ -36,7 +42,7 @@ TEST(ModelChoice, ACandidateWithoutAScoreLosesInfinitely) {
   Eigen::VectorXd broken = Eigen::VectorXd::Zero(4);
   broken(2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(std::isinf(paired_loss(Eigen::VectorXd::Zero(4), broken, hundreds).mean));
-  EXPECT_EQ(fewest_modes_as_good({{1, broken}, below(2, {0, 0, 0, 0})}, hundreds, 0.02), 1u);
+  EXPECT_EQ(fewest_modes_as_good({{1, broken}, below(2, {0, 0, 0, 0})}, hundreds, losing(0.02)), 1u);
 }
 
 TEST(ModelChoice, FewestModesWithinOneStandardError) {
@@ -44,22 +50,29 @@ TEST(ModelChoice, FewestModesWithinOneStandardError) {
   const std::vector<LeftOutScores> candidates{below(4, {0, 0, 0, 0}), below(3, {4, -2, 2, -2}),
                                               below(2, {1, 1.5, 0.5, 1}), below(1, {50, 50, 50, 50})};
   EXPECT_EQ(best_candidate(candidates), 0u);
-  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, 0.02), 1u);
+  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, losing(0.02)), 1u);
 }
 
 /// Few runs know differences badly: a standard error alone would excuse any loss.
 TEST(ModelChoice, ALossAboveTheLimitIsNotExcusedByItsError) {
   // One mode loses 0.025 +- 0.095.
   const std::vector<LeftOutScores> candidates{below(2, {0, 0, 0, 0}), below(1, {30, -10, 0, -10})};
-  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, 0.02), 0u);
-  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, 0.03), 1u);
+  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, losing(0.02)), 0u);
+  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, losing(0.03)), 1u);
+}
+
+/// Four modes gain 0.0008 +- 0.0001 nats per sample over three: sure, and nothing that three should grow to four for.
+TEST(ModelChoice, AGainTooSmallToMatterAddsNoMode) {
+  const std::vector<LeftOutScores> candidates{below(4, {0, 0, 0, 0}), below(3, {0.08, 0.06, 0.1, 0.08}),
+                                              below(2, {0.2, 0.22, 0.18, 0.2})};
+  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, losing(0.02)), 1u);
 }
 
 TEST(ModelChoice, OfAsManyModesTheBestThatQualifies) {
   const std::vector<LeftOutScores> candidates{below(3, {0, 0, 0, 0}), below(2, {4, -2, 2, -2}),
                                               below(2, {3, -2, 1, -1})};
-  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, 0.02), 2u);
-  EXPECT_EQ(fewest_modes_as_good({candidates[0], candidates[0]}, hundreds, 0.02), 0u);
+  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, losing(0.02)), 2u);
+  EXPECT_EQ(fewest_modes_as_good({candidates[0], candidates[0]}, hundreds, losing(0.02)), 0u);
 }
 
 }  // namespace

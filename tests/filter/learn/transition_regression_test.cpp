@@ -7,12 +7,16 @@
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "filter/judge/evaluate.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/likelihood/information.hpp"
+#include "filter/learn/likelihood/standard_errors.hpp"
 #include "filter/learn/refine/refine.hpp"
 #include "filter/learn/switching/em.hpp"
+#include "filter/learn/switching/mode_screening.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
@@ -118,24 +122,61 @@ TEST(TransitionRegression, NoEffectIsTheConstantTransitionMatrix) {
   EXPECT_TRUE(near(logit.pairs.rowwise().sum().reshaped(2, 2), constant.switches, 1e-11));
 }
 
-SwitchingPrior prior_of(const Recording& recording, const TrainingTransitions& t, double width) {
-  SwitchingPrior prior = switching_prior(t, fit_global(recording, t.structure), {}, 4.0);
-  prior.weight_sd = width * regressor_spread(t).cwiseInverse();
-  return prior;
+constexpr double any = std::numeric_limits<double>::infinity();
+
+SwitchingPrior prior_of(const Recording& recording, const TrainingTransitions& t, const GuardPrior& guard) {
+  return with_guard(switching_prior(t, fit_global(recording, t.structure), {}, 4.0), t, guard);
+}
+
+/// Of two modes it is a quarter of the difference between what is more likely after the one and after the other.
+TEST(TransitionRegression, MemoryIsWhatRowsAndColumnsDoNotExplain) {
+  const Eigen::Matrix2d log_T = Eigen::Matrix2d{{0.7, 0.3}, {0.1, 0.9}}.array().log();
+  const double m = (std::log(0.7) - std::log(0.3) - std::log(0.1) + std::log(0.9)) / 4.0;
+  EXPECT_TRUE(near(memory_of(log_T), Eigen::Matrix2d{{m, -m}, {-m, m}}, 1e-15));
+  const Eigen::Matrix3d alike = Eigen::Vector3d(0.1, 2.0, -3.0) * Eigen::RowVector3d::Ones() +
+                                Eigen::Vector3d::Ones() * Eigen::RowVector3d(-1.0, -2.0, -0.5);
+  EXPECT_TRUE(near(memory_of(alike), Eigen::Matrix3d::Zero(), 1e-15));
+  const Eigen::Matrix3d some{{0.3, -1.0, 2.0}, {0.0, 0.4, -0.7}, {1.5, 0.2, 0.9}};
+  EXPECT_TRUE(near(memory_projection(3) * some.transpose().reshaped(), memory_of(some).transpose().reshaped(), 1e-14));
+}
+
+/// The prior's information about T is the curvature of its log density along rows of T.
+TEST(TransitionRegression, InformationOfMemoryIsTheCurvatureOfItsPrior) {
+  const Recording recording = guarded_runs(soft, 2, 100, 2);
+  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+  SwitchingPrior prior = prior_of(recording, t, {1.0, any});
+  SwitchingRegression model = true_model(soft);
+  model.transition = Eigen::Matrix2d{{0.6, 0.4}, {0.6, 0.4}};  // no memory: of the log density nothing but a square
+  const Bank bank = bank_of(recording, t, model);
+  const BankCoordinates around(
+      bank, all_parameters(bank, sum_transitions(t, smooth_modes(t, model), prior), prior, false, false, {}));
+  const Eigen::MatrixXd without = prior_information(around, prior);
+  const auto of_memory = [&](const Eigen::VectorXd& at) {
+    return memory_of(around.decode(at).transition.matrix().array().log()).squaredNorm();
+  };
+  prior.memory_sd = 0.5;
+  const Eigen::MatrixXd added = prior_information(around, prior) - without;
+  constexpr double step = 1e-3;
+  for (Index c = 0; c < around.size(); ++c) {
+    const Eigen::VectorXd moved = step * Eigen::VectorXd::Unit(around.size(), c);
+    EXPECT_NEAR(added(c, c), of_memory(moved) / (step * step) / (prior.memory_sd * prior.memory_sd), 1e-3) << c;
+  }
+  EXPECT_GT(added.trace(), 1.0);
 }
 
 TEST(TransitionRegression, EveryIterationRaisesThePenalisedLikelihood) {
-  for (const double width : {1.0, 300.0}) {
+  for (const GuardPrior& guard : {GuardPrior{1.0, any}, GuardPrior{300.0, any}, GuardPrior{300.0, 0.1}}) {
     const Recording recording = guarded_runs({{-20.0, -20.0}, 100.0}, 3, 200, 3);
     const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
-    const SwitchingPrior prior = prior_of(recording, t, width);
+    const SwitchingPrior prior = prior_of(recording, t, guard);
     SwitchingRegression start = true_model(soft);
     start.logit = no_effect(t, 2);
     ExpectationMaximisation em(t, prior, {}, start);
     for (int i = 0; i < 40; ++i) em.step();
     const std::vector<double>& objective = em.objective();
     for (std::size_t i = 1; i < objective.size(); ++i)
-      EXPECT_GE(objective[i], objective[i - 1] - 1e-9 * std::abs(objective[i - 1])) << width << ", iteration " << i;
+      EXPECT_GE(objective[i], objective[i - 1] - 1e-9 * std::abs(objective[i - 1]))
+          << guard.width << ", " << guard.memory_sd << ", iteration " << i;
     EXPECT_GT(objective.back(), objective.front() + 50.0);
   }
 }
@@ -145,12 +186,14 @@ TEST(TransitionRegression, EveryIterationRaisesThePenalisedLikelihood) {
 TEST(TransitionRegression, EndsWhereTheExpectedLogPosteriorIsLargest) {
   const Recording recording = guarded_runs(soft, 2, 300, 4);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
-  const SwitchingPrior prior = prior_of(recording, t, 3.0);
+  const SwitchingPrior prior = prior_of(recording, t, {3.0, 0.7});
   SwitchingRegression model = true_model(soft);
   const ModePosterior posterior = smooth_modes(t, model);
   for (int i = 0; i < 30; ++i) raise_switching(t, posterior, prior, model);
   const auto value = [&](const SwitchingRegression& at) {
-    double sum = prior.counts * at.transition.array().log().sum();
+    const Eigen::Matrix2d log_T = at.transition.array().log();
+    const double memory = (log_T(0, 0) - log_T(0, 1) - log_T(1, 0) + log_T(1, 1)) / 4.0;
+    double sum = prior.counts * log_T.sum() - 0.5 * 4.0 * memory * memory / (0.7 * 0.7);
     for (Index c = 0; c < 2; ++c)
       for (Index j = 0; j < 2; ++j) sum -= 0.5 * std::pow(at.logit.weights(j, c) / prior.weight_sd(c), 2);
     for (Index k = 0; k < t.count(); ++k)
@@ -177,6 +220,27 @@ TEST(TransitionRegression, EndsWhereTheExpectedLogPosteriorIsLargest) {
       moved.transition(i, 1) = 1.0 - moved.transition(i, 0);
       EXPECT_LT(value(moved), best);
     }
+}
+
+/// Mode 1 twice, drawn alike: what is closest becomes one mode again, with the probabilities of both.
+TEST(TransitionRegression, TheClosestPairIsMerged) {
+  const Recording recording = guarded_runs(soft, 4, 300, 11);
+  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+  const SwitchingRegression two = true_model(soft);
+  SwitchingRegression three = two;
+  three.theta.conservativeResize(Eigen::NoChange, 3);
+  three.theta.col(2) = two.theta.col(1) + Eigen::Vector2d(1e-3, -1e-3);
+  three.Q.push_back(two.Q[1]);
+  three.transition = two.transition(Eigen::Vector3i(0, 1, 1), Eigen::Vector3i(0, 1, 1));
+  three.transition.rightCols(2) *= 0.5;
+  three.initial = Eigen::Vector3d(0.5, 0.25, 0.25);
+  three.logit.weights = two.logit.weights(Eigen::Vector3i(0, 1, 1), Eigen::all);
+  const SwitchingRegression merged = with_closest_pair_merged(t, smooth_modes(t, three), three);
+  ASSERT_EQ(merged.modes(), 2);
+  EXPECT_TRUE(near(merged.transition, two.transition, 1e-12));
+  EXPECT_TRUE(near(merged.initial, two.initial, 1e-12));
+  EXPECT_TRUE(near(merged.logit.weights, two.logit.weights, 1e-12));
+  EXPECT_TRUE(near(merged.theta, two.theta, 2e-3));
 }
 
 RefineOptions quick() {
@@ -207,6 +271,21 @@ TEST(Guards, ASoftGuardIsFoundWithinItsErrors) {
   EXPECT_NEAR(logit.weights(1, 1), 0.5 * soft.slope, 3.0 * error(1, 1));
   EXPECT_NEAR(logit.weights(1, 0), 0.0, 3.0 * error(1, 0));
   EXPECT_LT(error(1, 1), 0.3);
+}
+
+double log_odds_of_staying(const Bank& bank) {
+  const Eigen::MatrixXd& T = bank.transition.matrix();
+  return std::log(T(0, 0) / T(0, 1)) + std::log(T(1, 1) / T(1, 0));
+}
+
+/// Where input alone says the mode, borders do not depend on the mode before; where the mode before matters, they do.
+TEST(Guards, TheModeBeforeCountsWhereItMatters) {
+  const Refinement without = refined(guarded_runs({{-0.4e6, -0.4e6}, 1e6}, 8, 400, 7), {{-3.0, 3.0}, 0.0});
+  EXPECT_LT(without.switching.memory_sd, 1.0);
+  EXPECT_LT(std::abs(log_odds_of_staying(without.bank)), 0.5);
+  const Refinement with = refined(guarded_runs(soft, 8, 500, 5), soft);
+  EXPECT_TRUE(std::isinf(with.switching.memory_sd));
+  EXPECT_NEAR(log_odds_of_staying(with.bank), 3.0, 1.0);
 }
 
 TEST(Guards, AMarkovChainKeepsItsTransitionMatrix) {

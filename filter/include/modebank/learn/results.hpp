@@ -47,6 +47,7 @@ struct MeasurementStage {
 /// Whether switches see state and input, by cross-validation inside the training runs.
 struct SwitchingStage {
   double width = 0.0;  ///< prior standard deviation of the weights in units of the regressors' spread; 0: they do not
+  double memory_sd = std::numeric_limits<double>::infinity();      ///< prior of what the mode before adds to log odds
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out, constant T
   double gain = std::numeric_limits<double>::quiet_NaN();  ///< of the logit over it, nats per sample; NaN: not asked
   double gain_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< clustered by run

@@ -57,6 +57,7 @@ struct RefineTuning {
   double weight_width =
       30.0;  ///< prior sd of its weights in units of the regressors' spread: a border a thirtieth wide
   std::array<double, 2> other_weight_widths{3.0, 300.0};  ///< tried for the chosen number of modes
+  double little_memory_sd = 0.1;  ///< of log odds, tried with the chosen width: the mode before hardly matters
 
   // Modes that drift: values tried, the middle ones first.
   std::array<double, 5> drift_rates{1e-5, 1e-4, 1e-3, 1e-2, 1e-1};       ///< of DriftOptions::rate
@@ -73,8 +74,9 @@ struct RefineTuning {
   std::array<double, 4> R_start_shares{0.05, 0.005, 0.2, 0.45};
   /// The same where theta is searched, too, because with the theta of exact states no R was likelier than none.
   double R_start_share_with_theta = 0.2;
-  double least_gain = 1e-3;  ///< nats per sample for R, for its fit and for one more member: less would not survive
-                             ///< on other runs (seeds move held-out scores by 0.03 to 0.07)
+  /// Nats per sample for R, for its fit, for one more member and for more modes: less would not survive on other runs
+  /// (seeds move held-out scores by 0.03 to 0.07).
+  double least_gain = 1e-3;
 };
 
 }  // namespace modebank
