@@ -30,8 +30,7 @@ std::filesystem::path page_if_asked(const CommandLine& line, const ReportConfig&
 void report_run(const std::filesystem::path& file, const std::filesystem::path& page, const ReportConfig& options,
                 report::Written& written) {
   if (!page.empty()) report::check_page_path(page, {file});
-  // Figures are made of all of it, a page run by run.
-  const Archive archive = options.figures.empty() ? read_archive_by_runs(file) : read_archive(file);
+  const Archive archive = read_archive_by_runs(file);
   const report::FigureSet figures =
       options.figures.empty() ? report::FigureSet() : report::run_figures(archive, options.run);
   if (!page.empty()) report::write_page(page, report::run_page(archive, file.filename().string(), options), written);

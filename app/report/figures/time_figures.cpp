@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "app/chain/judged_runs.hpp"
 #include "app/report/figures/run_figures.hpp"
@@ -25,8 +26,8 @@ constexpr double band_level = 0.95;
 struct DrawnRun {
   const Archive& archive;
   const Trajectory& run;
-  const RunEvaluation& bank;
-  const RunEvaluation* baseline;
+  RunEvaluation bank;
+  std::optional<RunEvaluation> baseline;
   Index samples() const { return std::min(most_samples, run.samples()); }
 };
 
@@ -38,6 +39,13 @@ std::size_t index_of_run(const Archive& archive, const std::string& name) {
     names.push_back(runs[i].run);
   }
   throw ConfigurationError(fmt::format("report.run = {}: the archive's runs are {}", name, fmt::join(names, ", ")));
+}
+
+RunEvaluation what_is_drawn(const FilterEvaluation& evaluation, std::size_t run) {
+  RunEvaluation drawn;
+  evaluation.with_run(run, {"prediction", "innovation", "innovation_covariance", "nis", "pit", "mode_probability"},
+                      [&](const RunEvaluation& said) { drawn = said; });
+  return drawn;
 }
 
 Eigen::MatrixXd with_time(const DrawnRun& drawn, const Eigen::MatrixXd& rows) {
@@ -185,7 +193,8 @@ void add_time_figures(const Archive& archive, const std::string& run, FigureSet&
   }
   const std::size_t i = index_of_run(archive, run);
   const FilterEvaluation* baseline = archive.baseline ? evaluation_of(archive, "baseline") : nullptr;
-  const DrawnRun drawn{archive, archive.recording->runs[i], bank->runs[i], baseline ? &baseline->runs[i] : nullptr};
+  DrawnRun drawn{archive, archive.recording->runs[i], what_is_drawn(*bank, i), std::nullopt};
+  if (baseline) drawn.baseline = what_is_drawn(*baseline, i);
   for (Index state = 0; state < archive.recording->state_count(); ++state) {
     set.figures.push_back(estimates(drawn, state));
     set.figures.push_back(prediction(drawn, state));
