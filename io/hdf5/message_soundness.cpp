@@ -128,6 +128,16 @@ void require_sound_layout(std::string_view content, const Widths& widths) {
   if (kind == compact) reader.take(static_cast<std::size_t>(reader.number(4)));
 }
 
+/// Where links or attributes lie, and in which order.
+void require_sound_info(std::string_view content, std::size_t order_bytes, const Widths& widths) {
+  constexpr std::uint64_t ordered_flag = 1, indexed_flag = 2;
+  ByteReader reader(content);
+  reader.take(1);
+  const std::uint64_t flags = reader.number(1);
+  if ((flags & ordered_flag) != 0) reader.take(order_bytes);
+  reader.take((flags & indexed_flag) != 0 ? 3 * widths.address : 2 * widths.address);
+}
+
 void require_sound_datatype(const RawMessage& message, const Widths& widths, const TypeAt& type_at) {
   ByteReader reader(message.content);
   if (!message.shared) {
@@ -142,26 +152,38 @@ void require_sound_datatype(const RawMessage& message, const Widths& widths, con
 void require_sound_message(const RawMessage& message, const Widths& widths, const TypeAt& type_at) {
   enum : std::uint64_t {
     dataspace = 1,
+    link_info = 2,
     datatype = 3,
     old_fill = 4,
     fill = 5,
     layout = 8,
     filters = 11,
-    attribute = 12
+    attribute = 12,
+    comment = 13,
+    symbols = 17,
+    attribute_info = 21,
+    cache_image = 24
   };
-  ByteReader reader(message.content);
+  const std::string_view content = message.content;
+  ByteReader reader(content);
+  // From there, HDF5 would take whole headers that nobody judges.
+  require_sound(message.kind != cache_image, "the file holds an image of HDF5's memory, which is not read");
   try {
     if (message.kind == attribute) {
       require_sound(!message.shared, "an attribute is in a table of shared messages, which is not read");
-      return require_sound_attribute(message.content, widths, type_at);
+      return require_sound_attribute(content, widths, type_at);
     }
     if (message.kind == datatype) return require_sound_datatype(message, widths, type_at);
     if (message.shared) return;
     if (message.kind == dataspace) take_sound_space(reader, widths);
+    if (message.kind == link_info) require_sound_info(content, 8, widths);
     if (message.kind == old_fill) reader.take(static_cast<std::size_t>(reader.number(4)));
-    if (message.kind == fill) require_sound_fill_value(message.content);
-    if (message.kind == filters) require_sound_filters(message.content);
-    if (message.kind == layout) require_sound_layout(message.content, widths);
+    if (message.kind == fill) require_sound_fill_value(content);
+    if (message.kind == layout) require_sound_layout(content, widths);
+    if (message.kind == filters) require_sound_filters(content);
+    if (message.kind == comment && content.find('\0') == std::string_view::npos) throw NotKnownHere{};
+    if (message.kind == symbols) reader.take(2 * widths.address);
+    if (message.kind == attribute_info) require_sound_info(content, 2, widths);
   } catch (const NotKnownHere&) {
     throw Unsound{"a message in an object header is longer than it is"};
   }

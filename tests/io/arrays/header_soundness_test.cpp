@@ -170,7 +170,8 @@ TEST(MessageSoundness, CommittedTypesAreLookedAt) {
 }
 
 TEST(MessageSoundness, ValuesAndNamesInOtherMessagesEnd) {
-  constexpr std::uint64_t dataspace = 1, old_fill = 4, fill = 5, layout = 8, filters = 11;
+  constexpr std::uint64_t dataspace = 1, old_fill = 4, fill = 5, layout = 8, filters = 11, comment = 13, symbols = 17,
+                          attribute_info = 21, cache_image = 24;
   const std::string longer = "a message in an object header is longer than it is";
   EXPECT_EQ(reason(dataspace, numbers({{2, 1}, {1, 1}, {0, 1}, {1, 1}, {7, 8}})), "sound");
   EXPECT_EQ(reason(dataspace, numbers({{2, 1}, {1, 1}, {1, 1}, {1, 1}, {7, 8}})), longer);
@@ -183,7 +184,13 @@ TEST(MessageSoundness, ValuesAndNamesInOtherMessagesEnd) {
   EXPECT_EQ(reason(layout, numbers({{3, 1}, {0, 1}, {3, 2}, {7, 2}})), longer);
   EXPECT_EQ(reason(filters, numbers({{2, 1}, {1, 1}, {1, 2}, {0, 2}, {1, 2}, {6, 4}})), "sound");
   EXPECT_EQ(reason(filters, numbers({{2, 1}, {1, 1}, {1, 2}, {0, 2}, {9, 2}, {6, 4}})), longer);
+  EXPECT_EQ(reason(comment, "no end"), longer);
+  EXPECT_EQ(reason(symbols, std::string(16, 'x')), "sound");
+  EXPECT_EQ(reason(symbols, std::string(15, 'x')), longer);
+  EXPECT_EQ(reason(attribute_info, numbers({{0, 1}, {3, 1}, {0, 2}, {0, 8}, {0, 8}, {0, 8}})), "sound");
+  EXPECT_EQ(reason(attribute_info, numbers({{0, 1}, {3, 1}, {0, 2}, {0, 8}, {0, 8}, {0, 7}})), longer);
   EXPECT_EQ(reason(99, "anything"), "sound");
+  EXPECT_EQ(reason(cache_image, "anything"), "the file holds an image of HDF5's memory, which is not read");
 }
 
 }  // namespace
