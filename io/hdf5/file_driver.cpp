@@ -28,7 +28,12 @@ struct OpenFile {
   haddr_t size = 0, end = 0;  ///< of the file; of what HDF5 uses of it
   dev_t device = 0;
   ino_t number = 0;
-  std::unique_ptr<HeaderGuard> guard;  ///< of what others wrote
+  HeaderGuard* guard = nullptr;  ///< of what others wrote; ours, as a smart pointer need not have standard layout
+
+  OpenFile() = default;
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() { delete guard; }
 };
 static_assert(std::is_standard_layout_v<OpenFile>);
 
@@ -61,7 +66,7 @@ H5FD_t* open_file_of_ours(const char* name, unsigned flags, hid_t, haddr_t) {
   file->size = static_cast<haddr_t>(about.st_size);
   file->device = about.st_dev;
   file->number = about.st_ino;
-  if (!file->in_the_making) file->guard = std::make_unique<HeaderGuard>(file->descriptor, file->size);
+  if (!file->in_the_making) file->guard = new HeaderGuard(file->descriptor, file->size);
   return &file.release()->known;
 }
 
