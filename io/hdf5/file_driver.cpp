@@ -9,9 +9,12 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <new>
+#include <string>
 #include <type_traits>
 
 #include "io/hdf5/handle.hpp"
+#include "io/hdf5/header_guard.hpp"
 
 namespace modebank::hdf5 {
 
@@ -25,6 +28,12 @@ struct OpenFile {
   haddr_t size = 0, end = 0;  ///< of the file; of what HDF5 uses of it
   dev_t device = 0;
   ino_t number = 0;
+  HeaderGuard* guard = nullptr;  ///< of what others wrote; ours, as a smart pointer need not have standard layout
+
+  OpenFile() = default;
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() { delete guard; }
 };
 static_assert(std::is_standard_layout_v<OpenFile>);
 
@@ -57,6 +66,7 @@ H5FD_t* open_file_of_ours(const char* name, unsigned flags, hid_t, haddr_t) {
   file->size = static_cast<haddr_t>(about.st_size);
   file->device = about.st_dev;
   file->number = about.st_ino;
+  if (!file->in_the_making) file->guard = new HeaderGuard(file->descriptor, file->size);
   return &file.release()->known;
 }
 
@@ -71,10 +81,9 @@ int compare(const H5FD_t* a, const H5FD_t* b) {
   return left.number == right.number ? 0 : left.number < right.number ? -1 : 1;
 }
 
-herr_t read_all(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t count, void* buffer) {
-  const OpenFile& opened = ours(file);
+herr_t read_bytes(const OpenFile& opened, haddr_t at, std::size_t count, char* to) {
   if (!opened.in_the_making && (at > opened.size || count > opened.size - at)) return -1;
-  for (char* to = static_cast<char*>(buffer); count > 0;) {
+  while (count > 0) {
     const ssize_t got = ::pread(opened.descriptor, to, count, static_cast<off_t>(at));
     if (got < 0 && errno == EINTR) continue;
     if (got == 0 && opened.in_the_making) {  // room that HDF5 has taken and not yet written to
@@ -87,6 +96,28 @@ herr_t read_all(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t count, 
     count -= static_cast<std::size_t>(got);
   }
   return 0;
+}
+
+/// HDF5 gets no object header that it would read beyond; the reason is then its innermost one.
+herr_t judge(OpenFile& opened, H5FD_mem_t kind, haddr_t at, std::string_view bytes) {
+  std::string reason = "there is too little memory";
+  try {
+    if (kind == H5FD_MEM_SUPER) opened.guard->see_superblock(at, bytes);
+    if (kind == H5FD_MEM_OHDR) opened.guard->judge(at, bytes, opened.end);
+    return 0;
+  } catch (const Unsound& unsound) {
+    reason = unsound.reason;
+  } catch (const std::bad_alloc&) {
+  }
+  H5Epush2(H5E_DEFAULT, __FILE__, "judge", __LINE__, H5E_ERR_CLS, H5E_IO, H5E_READERROR, "%s", reason.c_str());
+  return -1;
+}
+
+herr_t read_all(H5FD_t* file, H5FD_mem_t kind, hid_t, haddr_t at, std::size_t count, void* buffer) {
+  OpenFile& opened = ours(file);
+  char* const to = static_cast<char*>(buffer);
+  if (read_bytes(opened, at, count, to) < 0) return -1;
+  return opened.guard ? judge(opened, kind, at, std::string_view(to, count)) : 0;
 }
 
 herr_t write_all(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t count, const void* buffer) {

@@ -8,8 +8,9 @@ namespace modebank::hdf5 {
 
 /// How archives are read and made, a driver for H5Pset_driver; negative where HDF5 takes none. Files that others wrote:
 /// HDF5's own ways to a file gather metadata in a buffer, and HDF5 1.10 copies from far outside of that where a damaged
-/// file has an address near the largest number. This one reads what is asked for, if it lies in the file. Files in the
-/// making: others than HDF5 may append to them, too.
+/// file has an address near the largest number. This one reads what is asked for, if it lies in the file, and
+/// judges object headers before HDF5 decodes them (header_guard.hpp). Files in the making: others than HDF5 may append
+/// to them, too.
 hid_t file_driver();
 
 /// A file that the driver has open; `handle` is what H5Fget_vfd_handle says.

@@ -1,0 +1,154 @@
+#include "io/hdf5/header_guard.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <optional>
+#include <set>
+
+namespace modebank::hdf5 {
+
+namespace {
+
+constexpr std::uint64_t continuation_kind = 16, datatype_kind = 3;
+/// What one header may take; attributes of 64 kB, a thousand of them, are less.
+constexpr std::uint64_t most_header_bytes = std::uint64_t{1} << 26;
+constexpr char damaged[] = "an object header is damaged";
+
+/// HDF5's first read of a header takes as much, or all there is.
+constexpr std::size_t first_read_bytes = 512;
+
+}  // namespace
+
+void HeaderGuard::see_superblock(haddr_t at, std::string_view bytes) {
+  constexpr std::string_view signature("\x89HDF\r\n\x1a\n", 8);
+  constexpr std::size_t enough = 16, version_at = 8, old_widths_at = 13, widths_at = 9;
+  if (bytes.substr(0, signature.size()) != signature) return;
+  base_ = at;
+  if (bytes.size() < enough) return;
+  const std::size_t place = bytes[version_at] < 2 ? old_widths_at : widths_at;
+  widths_ = {static_cast<unsigned char>(bytes[place]), static_cast<unsigned char>(bytes[place + 1])};
+}
+
+std::string HeaderGuard::bytes_at(haddr_t at, std::uint64_t count) const {
+  require_sound(at <= size_ && count <= size_ - at && count <= most_header_bytes, damaged);
+  std::string bytes(static_cast<std::size_t>(count), '\0');
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t got = ::pread(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(at + done));
+    if (got < 0 && errno == EINTR) continue;
+    require_sound(got > 0, damaged);
+    done += static_cast<std::size_t>(got);
+  }
+  return bytes;
+}
+
+/// None where the bytes are no header; HDF5 tells all other kinds by their letters.
+std::optional<HeaderGuard::FirstChunk> HeaderGuard::first_chunk(std::string_view bytes) const {
+  constexpr std::size_t old_begin = 16, times_bytes = 16, limits_bytes = 4;
+  constexpr std::string_view letters = "OHDR";
+  ByteReader reader(bytes);
+  if (bytes.substr(0, letters.size()) == letters) {
+    reader.take(letters.size());
+    require_sound(reader.number(1) == 2, "an object header is of an unknown version");
+    const std::uint64_t flags = reader.number(1);
+    if ((flags & 0x20) != 0) reader.take(times_bytes);
+    if ((flags & 0x10) != 0) reader.take(limits_bytes);
+    const std::uint64_t count = reader.number(std::size_t{1} << (flags & 3));
+    require_sound(count <= most_header_bytes, damaged);
+    return FirstChunk{false, (flags & 4) != 0, bytes.size() - reader.rest().size(), count};
+  }
+  if (bytes.empty() || bytes[0] != 1) return std::nullopt;
+  reader.take(8);
+  const std::uint64_t count = reader.number(4);
+  return FirstChunk{true, false, old_begin, count};
+}
+
+void HeaderGuard::see_messages(const FirstChunk& header, std::string_view messages, std::vector<Chunk>& chunks,
+                               const See& see) const {
+  const std::size_t start_bytes = header.is_old ? 8 : header.ordered ? 6 : 4;
+  constexpr std::uint64_t shared_flag = 2;
+  require_sound(messages.empty() || messages.size() >= start_bytes, damaged);
+  for (ByteReader reader(messages); reader.rest().size() >= start_bytes;) {
+    RawMessage message;
+    message.kind = reader.number(header.is_old ? 2 : 1);
+    const std::uint64_t bytes = reader.number(2);
+    message.shared = (reader.number(1) & shared_flag) != 0;
+    reader.take(header.is_old ? 3 : header.ordered ? 2 : 0);
+    message.content = reader.take(static_cast<std::size_t>(bytes));
+    if (message.kind == continuation_kind) {
+      ByteReader place(message.content);
+      const haddr_t address = place.number(widths_.address);
+      const std::uint64_t count = place.number(widths_.size);
+      require_sound(address <= size_ && count <= most_header_bytes, damaged);
+      chunks.push_back({base_ + address, count});
+    }
+    see(message);
+  }
+}
+
+/// The chunks after the first `begin` bytes of it, in HDF5's order; `see` gets all messages.
+std::vector<HeaderGuard::Chunk> HeaderGuard::walk(haddr_t at, std::string_view begin, const See& see) const {
+  constexpr std::size_t letters_bytes = 4, checksum_bytes = 4;
+  const std::optional<FirstChunk> header = first_chunk(begin);
+  if (!header) return {};
+  std::vector<Chunk> chunks;
+  const std::uint64_t all = header->all();
+  const std::string read = begin.size() < all ? bytes_at(at, all) : std::string();
+  const std::string_view first = read.empty() ? begin : std::string_view(read);
+  see_messages(*header, first.substr(static_cast<std::size_t>(header->begin), static_cast<std::size_t>(header->bytes)),
+               chunks, see);
+  std::set<haddr_t> known{at};
+  std::uint64_t taken = all;
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    require_sound(known.insert(chunks[i].address).second && (taken += chunks[i].bytes) <= most_header_bytes, damaged);
+    const std::string bytes = bytes_at(chunks[i].address, chunks[i].bytes);
+    std::string_view messages = bytes;
+    if (!header->is_old) {
+      require_sound(messages.size() >= letters_bytes + checksum_bytes, damaged);
+      messages = messages.substr(letters_bytes, messages.size() - letters_bytes - checksum_bytes);
+    }
+    see_messages(*header, messages, chunks, see);
+  }
+  if (begin.size() < all) chunks.insert(chunks.begin(), {at + begin.size(), all - begin.size()});
+  return chunks;
+}
+
+std::uint64_t HeaderGuard::type_at(haddr_t address) {
+  if (const auto found = type_bytes_.find(address); found != type_bytes_.end()) return found->second;
+  require_sound(address <= size_ && base_ + address <= size_, damaged);
+  const haddr_t at = base_ + address;
+  std::optional<std::uint64_t> bytes;
+  walk(at, bytes_at(at, std::min<haddr_t>(first_read_bytes, size_ - at)), [&](const RawMessage& message) {
+    if (message.kind != datatype_kind) return;
+    require_sound(!message.shared, "a committed datatype refers to another one");
+    ByteReader reader(message.content);
+    const std::uint64_t taken = take_sound_type(reader, widths_);
+    if (!bytes) bytes = taken;
+  });
+  require_sound(bytes.has_value(), "a reference to a datatype leads to none");
+  return type_bytes_[address] = *bytes;
+}
+
+void HeaderGuard::judge(haddr_t at, std::string_view bytes, haddr_t end) {
+  // A header whose chunks are still in HDF5's memory is read without them.
+  const auto next = std::find_if(expected_.begin(), expected_.end(), [&](const Chunk& chunk) {
+    return chunk.address == at && chunk.bytes == bytes.size();
+  });
+  if (next != expected_.end()) return void(expected_.erase(expected_.begin(), next + 1));
+  expected_.clear();
+  // A chunk of version 1 that continues a header may begin as a header does.
+  if (bytes.size() != first_read_bytes && at + bytes.size() < std::min(end, size_)) return;
+  const auto is_known = [](std::size_t width) { return width == 2 || width == 4 || width == 8; };
+  try {
+    if (!first_chunk(bytes)) return;
+    require_sound(is_known(widths_.address) && is_known(widths_.size), "the file's addresses are of an unknown width");
+    expected_ = walk(at, bytes, [this](const RawMessage& message) {
+      require_sound_message(message, widths_, [this](haddr_t address) { return type_at(address); });
+    });
+  } catch (const NotKnownHere&) {
+    throw Unsound{damaged};
+  }
+}
+
+}  // namespace modebank::hdf5

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/hdf5/message_soundness.hpp"
+
+namespace modebank::hdf5 {
+
+/// Judges the object headers of a file that others wrote before HDF5 1.10 decodes them: it decodes attributes and
+/// datatypes from their messages without knowing where those end. Versions 1 and 2 are judged, the latter also without
+/// a checksum that fits, which HDF5 looks at. Attributes outside of headers (many of one object) are not.
+///
+/// HDF5 reads a header with up to 512 bytes at its address, then what is left of its first chunk, then the chunks that
+/// continue it, and nothing else in between. All of them are judged at the first of these reads.
+class HeaderGuard {
+ public:
+  /// Of an open file with `size` bytes; both must outlive this.
+  HeaderGuard(int descriptor, haddr_t size) : descriptor_(descriptor), size_(size) {}
+  /// Bytes in which HDF5 looks for the file's superblock, which says how wide addresses are and where they count from.
+  void see_superblock(haddr_t at, std::string_view bytes);
+  /// Metadata of the kind that object headers are; `end` is that of what HDF5 uses of the file. Addresses count from
+  /// the file's first byte. Throws Unsound.
+  void judge(haddr_t at, std::string_view bytes, haddr_t end);
+
+ private:
+  struct Chunk {
+    haddr_t address;
+    std::uint64_t bytes;
+  };
+  struct FirstChunk {
+    bool is_old;          ///< of version 1
+    bool ordered;         ///< messages have a number of their order
+    std::uint64_t begin;  ///< of the messages
+    std::uint64_t bytes;  ///< of the messages
+    std::uint64_t all() const { return begin + bytes + (is_old ? 0 : 4); }
+  };
+  using See = std::function<void(const RawMessage&)>;
+
+  std::optional<FirstChunk> first_chunk(std::string_view bytes) const;
+  std::vector<Chunk> walk(haddr_t at, std::string_view begin, const See& see) const;
+  void see_messages(const FirstChunk& header, std::string_view messages, std::vector<Chunk>& chunks,
+                    const See& see) const;
+  std::string bytes_at(haddr_t at, std::uint64_t count) const;
+  std::uint64_t type_at(haddr_t address);
+
+  int descriptor_;
+  haddr_t size_;
+  haddr_t base_ = 0;  ///< of addresses in the file
+  Widths widths_;
+  std::vector<Chunk> expected_;                  ///< what HDF5 is to read next of a header that was judged
+  std::map<haddr_t, std::uint64_t> type_bytes_;  ///< of headers with a datatype
+};
+
+}  // namespace modebank::hdf5
