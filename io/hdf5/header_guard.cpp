@@ -43,39 +43,11 @@ std::string HeaderGuard::bytes_at(haddr_t at, std::uint64_t count) const {
   return bytes;
 }
 
-/// None where the bytes are no header; HDF5 tells all other kinds by their letters.
-std::optional<HeaderGuard::FirstChunk> HeaderGuard::first_chunk(std::string_view bytes) const {
-  constexpr std::size_t old_begin = 16, times_bytes = 16, limits_bytes = 4;
-  constexpr std::string_view letters = "OHDR";
-  ByteReader reader(bytes);
-  if (bytes.substr(0, letters.size()) == letters) {
-    reader.take(letters.size());
-    require_sound(reader.number(1) == 2, "an object header is of an unknown version");
-    const std::uint64_t flags = reader.number(1);
-    if ((flags & 0x20) != 0) reader.take(times_bytes);
-    if ((flags & 0x10) != 0) reader.take(limits_bytes);
-    const std::uint64_t count = reader.number(std::size_t{1} << (flags & 3));
-    require_sound(count <= most_header_bytes, damaged);
-    return FirstChunk{false, (flags & 4) != 0, bytes.size() - reader.rest().size(), count};
-  }
-  if (bytes.empty() || bytes[0] != 1) return std::nullopt;
-  reader.take(8);
-  const std::uint64_t count = reader.number(4);
-  return FirstChunk{true, false, old_begin, count};
-}
-
-void HeaderGuard::see_messages(const FirstChunk& header, std::string_view messages, std::vector<Chunk>& chunks,
+void HeaderGuard::see_messages(const HeaderStart& header, std::string_view messages, std::vector<Chunk>& chunks,
                                const See& see) const {
-  const std::size_t start_bytes = header.is_old ? 8 : header.ordered ? 6 : 4;
-  constexpr std::uint64_t shared_flag = 2;
-  require_sound(messages.empty() || messages.size() >= start_bytes, damaged);
-  for (ByteReader reader(messages); reader.rest().size() >= start_bytes;) {
-    RawMessage message;
-    message.kind = reader.number(header.is_old ? 2 : 1);
-    const std::uint64_t bytes = reader.number(2);
-    message.shared = (reader.number(1) & shared_flag) != 0;
-    reader.take(header.is_old ? 3 : header.ordered ? 2 : 0);
-    message.content = reader.take(static_cast<std::size_t>(bytes));
+  // HDF5 looks for a message's header in any chunk that is not empty.
+  require_sound(messages.empty() || messages.size() >= header.message_start_bytes(), damaged);
+  each_message(header, messages, [&](const RawMessage& message) {
     if (message.kind == continuation_kind) {
       ByteReader place(message.content);
       const haddr_t address = place.number(widths_.address);
@@ -84,13 +56,13 @@ void HeaderGuard::see_messages(const FirstChunk& header, std::string_view messag
       chunks.push_back({base_ + address, count});
     }
     see(message);
-  }
+  });
 }
 
 /// The chunks after the first `begin` bytes of it, in HDF5's order; `see` gets all messages.
 std::vector<HeaderGuard::Chunk> HeaderGuard::walk(haddr_t at, std::string_view begin, const See& see) const {
   constexpr std::size_t letters_bytes = 4, checksum_bytes = 4;
-  const std::optional<FirstChunk> header = first_chunk(begin);
+  const std::optional<HeaderStart> header = header_start(begin);
   if (!header) return {};
   std::vector<Chunk> chunks;
   const std::uint64_t all = header->all();
@@ -141,7 +113,7 @@ void HeaderGuard::judge(haddr_t at, std::string_view bytes, haddr_t end) {
   if (bytes.size() != first_read_bytes && at + bytes.size() < std::min(end, size_)) return;
   const auto is_known = [](std::size_t width) { return width == 2 || width == 4 || width == 8; };
   try {
-    if (!first_chunk(bytes)) return;
+    if (!header_start(bytes)) return;
     require_sound(is_known(widths_.address) && is_known(widths_.size), "the file's addresses are of an unknown width");
     expected_ = walk(at, bytes, [this](const RawMessage& message) {
       require_sound_message(message, widths_, [this](haddr_t address) { return type_at(address); });

@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,18 +33,10 @@ class HeaderGuard {
     haddr_t address;
     std::uint64_t bytes;
   };
-  struct FirstChunk {
-    bool is_old;          ///< of version 1
-    bool ordered;         ///< messages have a number of their order
-    std::uint64_t begin;  ///< of the messages
-    std::uint64_t bytes;  ///< of the messages
-    std::uint64_t all() const { return begin + bytes + (is_old ? 0 : 4); }
-  };
   using See = std::function<void(const RawMessage&)>;
 
-  std::optional<FirstChunk> first_chunk(std::string_view bytes) const;
   std::vector<Chunk> walk(haddr_t at, std::string_view begin, const See& see) const;
-  void see_messages(const FirstChunk& header, std::string_view messages, std::vector<Chunk>& chunks,
+  void see_messages(const HeaderStart& header, std::string_view messages, std::vector<Chunk>& chunks,
                     const See& see) const;
   std::string bytes_at(haddr_t at, std::uint64_t count) const;
   std::uint64_t type_at(haddr_t address);

@@ -6,13 +6,6 @@
 
 namespace modebank::hdf5 {
 
-/// A message of an object header of any version.
-struct RawMessage {
-  std::uint64_t kind = 0;
-  bool shared = false;  ///< it says where the message is
-  std::string_view content;
-};
-
 /// Bytes of an element of the datatype that an object header holds; throws Unsound where it holds none of its own.
 using TypeAt = std::function<std::uint64_t(haddr_t)>;
 

@@ -72,44 +72,55 @@ Kind known_kind(std::uint64_t type) {
   return *found;
 }
 
-/// A chunk's messages; what is left at its end is less than a message's own header.
-void append_messages(ByteReader chunk, bool ordered, std::vector<HeaderMessage>& messages) {
-  constexpr std::uint64_t shared_flag = 2;
-  const std::size_t header = ordered ? 6 : 4;
-  while (chunk.rest().size() >= header) {
-    const Kind kind = known_kind(chunk.number(1));
-    const std::size_t bytes = static_cast<std::size_t>(chunk.number(2));
-    const std::uint64_t flags = chunk.number(1);
-    if (ordered) chunk.take(2);
-    messages.push_back({kind, (flags & shared_flag) != 0, std::string(chunk.take(bytes))});
-  }
-}
-
-/// The first chunk with its checksum, and where in it messages begin.
-std::pair<std::string_view, std::size_t> first_chunk(FileBytes& file, haddr_t address, std::uint64_t& flags) {
-  constexpr std::size_t signature_bytes = 4, times_bytes = 16, limits_bytes = 4;
-  ByteReader start(file.at(address, signature_bytes + 2));
-  if (start.take(signature_bytes) != "OHDR" || start.number(1) != 2) throw NotKnownHere{};
-  flags = start.number(1);
-  const std::size_t width = std::size_t{1} << (flags & 3), before = signature_bytes + 2 +
-                                                                    ((flags & 0x20) != 0 ? times_bytes : 0) +
-                                                                    ((flags & 0x10) != 0 ? limits_bytes : 0);
-  const std::uint64_t bytes = ByteReader(file.at(address + before, width)).number(width);
-  constexpr std::uint64_t most = std::uint64_t{1} << 16;
-  if (bytes > most) throw NotKnownHere{};
-  const std::size_t begin = before + width;
-  return {file.at(address, begin + static_cast<std::size_t>(bytes) + checksum_bytes), begin};
+void append_messages(const HeaderStart& header, std::string_view chunk, std::vector<HeaderMessage>& messages) {
+  each_message(header, chunk, [&](const RawMessage& message) {
+    messages.push_back({known_kind(message.kind), message.shared, std::string(message.content)});
+  });
 }
 
 }  // namespace
 
+std::optional<HeaderStart> header_start(std::string_view bytes) {
+  constexpr std::size_t old_begin = 16, times_bytes = 16, limits_bytes = 4;
+  constexpr std::uint64_t most = std::uint64_t{1} << 32;
+  constexpr std::string_view letters = "OHDR";
+  ByteReader reader(bytes);
+  if (bytes.substr(0, letters.size()) != letters) {
+    if (bytes.empty() || bytes[0] != 1) return std::nullopt;
+    reader.take(8);
+    return HeaderStart{true, false, old_begin, reader.number(4)};
+  }
+  reader.take(letters.size());
+  if (reader.number(1) != 2) throw NotKnownHere{};
+  const std::uint64_t flags = reader.number(1);
+  if ((flags & 0x20) != 0) reader.take(times_bytes);
+  if ((flags & 0x10) != 0) reader.take(limits_bytes);
+  const std::uint64_t count = reader.number(std::size_t{1} << (flags & 3));
+  if (count > most) throw NotKnownHere{};
+  return HeaderStart{false, (flags & 4) != 0, bytes.size() - reader.rest().size(), count};
+}
+
+void each_message(const HeaderStart& header, std::string_view messages,
+                  const std::function<void(const RawMessage&)>& see) {
+  constexpr std::uint64_t shared_flag = 2;
+  for (ByteReader reader(messages); reader.rest().size() >= header.message_start_bytes();) {
+    RawMessage message;
+    message.kind = reader.number(header.is_old ? 2 : 1);
+    const auto bytes = static_cast<std::size_t>(reader.number(2));
+    message.shared = (reader.number(1) & shared_flag) != 0;
+    reader.take(header.is_old ? 3 : header.ordered ? 2 : 0);
+    message.content = reader.take(bytes);
+    see(message);
+  }
+}
+
 std::vector<HeaderMessage> header_messages(FileBytes& file, haddr_t address) {
   constexpr std::size_t most_messages = 256, address_bytes = 8, signature_bytes = 4;
-  std::uint64_t flags = 0;
-  const auto [chunk, begin] = first_chunk(file, address, flags);
-  const bool ordered = (flags & 4) != 0;
+  const std::optional<HeaderStart> start = header_start(file.at(address, longest_header_start));
+  if (!start || start->is_old) throw NotKnownHere{};
   std::vector<HeaderMessage> messages;
-  append_messages(ByteReader(checked(chunk).substr(begin)), ordered, messages);
+  const std::string_view first = checked(file.at(address, static_cast<std::size_t>(start->all())));
+  append_messages(*start, first.substr(static_cast<std::size_t>(start->begin)), messages);
   for (std::size_t i = 0; i < messages.size(); ++i) {
     if (messages.size() > most_messages) throw NotKnownHere{};
     if (messages[i].kind != Kind::continuation) continue;
@@ -120,7 +131,7 @@ std::vector<HeaderMessage> header_messages(FileBytes& file, haddr_t address) {
     if (bytes > most || bytes < signature_bytes + checksum_bytes) throw NotKnownHere{};
     ByteReader next(checked(file.at(where, static_cast<std::size_t>(bytes))));
     if (next.take(signature_bytes) != "OCHK") throw NotKnownHere{};
-    append_messages(next, ordered, messages);
+    append_messages(*start, next.rest(), messages);
   }
   return messages;
 }

@@ -3,6 +3,8 @@
 #include <hdf5.h>
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,7 +41,35 @@ class ByteReader {
   std::string_view rest_;
 };
 
-/// One message of an object's header.
+/// How an object header of version 1 (old) or 2 begins.
+struct HeaderStart {
+  bool is_old;
+  bool ordered;         ///< messages have a number of their order
+  std::uint64_t begin;  ///< of the messages of the first chunk
+  std::uint64_t bytes;  ///< of these messages
+  std::uint64_t all() const { return begin + bytes + (is_old ? 0 : 4); }
+  std::size_t message_start_bytes() const { return is_old ? 8 : ordered ? 6 : 4; }
+};
+/// Enough of a header's bytes for that.
+inline constexpr std::size_t longest_header_start = 34;
+
+/// From the bytes at a header's address; none where they are no header's. Throws NotKnownHere where they end too early,
+/// or it is of another version.
+std::optional<HeaderStart> header_start(std::string_view bytes);
+
+/// A message of an object header of any version.
+struct RawMessage {
+  std::uint64_t kind = 0;
+  bool shared = false;  ///< it says where the message is
+  std::string_view content;
+};
+
+/// Hands on the messages of a chunk; what is left at its end is less than a message's own header. Throws NotKnownHere
+/// where one does not end in it.
+void each_message(const HeaderStart& header, std::string_view messages,
+                  const std::function<void(const RawMessage&)>& see);
+
+/// One message of an object's header, of a kind that is known here.
 struct HeaderMessage {
   enum class Kind : std::uint8_t {
     nothing = 0,
