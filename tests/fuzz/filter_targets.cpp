@@ -1,5 +1,7 @@
 // What `track` reads: lines of samples, and checkpoints.
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <stdexcept>
 
 #include "app/cli/live_filter.hpp"
@@ -84,12 +86,23 @@ std::vector<std::string> checkpoints() {
 
 void read_checkpoint(std::string_view text) { resume(scratch_file("fuzz.json", text), chances_of(text).below(4)); }
 
-/// JSON wherever it comes from outside: a line of samples, a checkpoint, a text of an archive.
+/// JSON wherever it comes from outside: a line of samples, a text of an archive, a checkpoint. Each reader sees every
+/// text; taken is what one of them takes.
 void read_json(std::string_view text) {
-  app::SampleReader reader({"time", {"u0"}, {"x0"}}, app::LineFormat::ndjson);
-  reader.read(text);
-  hdf5::text_json(std::string(text)).dump();
-  read_checkpoint(text);
+  const std::function<void()> readers[] = {
+      [&] {
+        app::SampleReader({"time", {"u0"}, {"x0"}}, app::LineFormat::ndjson).read(text);
+      },
+      [&] { hdf5::text_json(std::string(text)).dump(); }, [&] { read_checkpoint(text); }};
+  std::optional<DataError> refusal;
+  bool taken = false;
+  for (const auto& read : readers) try {
+      read();
+      taken = true;
+    } catch (const DataError& error) {
+      refusal = error;
+    }
+  if (!taken && refusal) throw *refusal;
 }
 
 const std::vector<std::string> json_tokens{
