@@ -17,8 +17,6 @@ std::string quoted(Place place, const std::string& name) {
   return (place == Place::dataset ? "the dataset '" : "the attribute '") + name + "'";
 }
 
-hsize_t saturating_product(hsize_t a, hsize_t b) { return a != 0 && b > largest / a ? largest : a * b; }
-
 bool is_ascii(const std::vector<std::string>& texts) {
   const auto ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
   return std::all_of(texts.begin(), texts.end(),
@@ -78,6 +76,8 @@ std::vector<std::string> unpack_texts(const std::string& cells, std::size_t byte
   }
   return texts;
 }
+
+hsize_t saturating_product(hsize_t a, hsize_t b) { return a != 0 && b > largest / a ? largest : a * b; }
 
 hsize_t element_count(const Shape& shape) {
   hsize_t count = 1;

@@ -43,6 +43,8 @@ std::size_t longest(const std::vector<std::string>& texts);
 std::string pack_texts(const std::vector<std::string>& texts, std::size_t bytes);
 std::vector<std::string> unpack_texts(const std::string& cells, std::size_t bytes);
 
+/// The largest number where the product is larger.
+hsize_t saturating_product(hsize_t a, hsize_t b);
 /// Number of elements; the largest hsize_t when the product does not fit.
 hsize_t element_count(const Shape& shape);
 

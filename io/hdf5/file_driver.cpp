@@ -10,11 +10,13 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <type_traits>
 
 #include "io/hdf5/handle.hpp"
 #include "io/hdf5/header_guard.hpp"
+#include "io/hdf5/read_at.hpp"
 
 namespace modebank::hdf5 {
 
@@ -83,18 +85,9 @@ int compare(const H5FD_t* a, const H5FD_t* b) {
 
 herr_t read_bytes(const OpenFile& opened, haddr_t at, std::size_t count, char* to) {
   if (!opened.in_the_making && (at > opened.size || count > opened.size - at)) return -1;
-  while (count > 0) {
-    const ssize_t got = ::pread(opened.descriptor, to, count, static_cast<off_t>(at));
-    if (got < 0 && errno == EINTR) continue;
-    if (got == 0 && opened.in_the_making) {  // room that HDF5 has taken and not yet written to
-      std::memset(to, 0, count);
-      return 0;
-    }
-    if (got <= 0) return -1;
-    to += got;
-    at += static_cast<haddr_t>(got);
-    count -= static_cast<std::size_t>(got);
-  }
+  const std::optional<std::size_t> got = read_at(opened.descriptor, at, count, to);
+  if (!got || (*got < count && !opened.in_the_making)) return -1;
+  std::memset(to + *got, 0, count - *got);  // room that HDF5 has taken and not yet written to
   return 0;
 }
 

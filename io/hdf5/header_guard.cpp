@@ -1,11 +1,10 @@
 #include "io/hdf5/header_guard.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <optional>
 #include <set>
+
+#include "io/hdf5/read_at.hpp"
 
 namespace modebank::hdf5 {
 
@@ -34,12 +33,7 @@ void HeaderGuard::see_superblock(haddr_t at, std::string_view bytes) {
 std::string HeaderGuard::bytes_at(haddr_t at, std::uint64_t count) const {
   require_sound(at <= size_ && count <= size_ - at && count <= most_header_bytes, damaged);
   std::string bytes(static_cast<std::size_t>(count), '\0');
-  for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t got = ::pread(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(at + done));
-    if (got < 0 && errno == EINTR) continue;
-    require_sound(got > 0, damaged);
-    done += static_cast<std::size_t>(got);
-  }
+  require_sound(read_at(descriptor_, at, bytes.size(), bytes.data()) == bytes.size(), damaged);
   return bytes;
 }
 

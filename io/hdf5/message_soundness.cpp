@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "io/hdf5/array.hpp"
+
 namespace modebank::hdf5 {
 
 namespace {
@@ -69,7 +71,7 @@ void require_sound_attribute(std::string_view content, const Widths& widths, con
     require_sound((start.flags & shared_space) == 0,
                   "an attribute's extents are in a table of shared messages, which is not read");
     ByteReader space(take_part(reader, start.space_bytes, padded));
-    if (product(take_sound_space(space, widths), bytes) > reader.rest().size()) throw NotKnownHere{};
+    if (saturating_product(take_sound_space(space, widths), bytes) > reader.rest().size()) throw NotKnownHere{};
   } catch (const NotKnownHere&) {
     throw Unsound{name + " in an object header is larger than its message"};
   }

@@ -1,13 +1,11 @@
 #include "io/hdf5/object_header.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <utility>
 
 #include "io/hdf5/file_driver.hpp"
 #include "io/hdf5/lookup3.hpp"
+#include "io/hdf5/read_at.hpp"
 
 namespace modebank::hdf5 {
 
@@ -25,10 +23,7 @@ std::string_view FileBytes::at(haddr_t address, std::size_t count) {
   if (address < first_ || address + count > first_ + window_.size()) {
     first_ = address - std::min<haddr_t>(address, before);
     window_.resize(window_bytes);
-    ssize_t got = -1;
-    do got = ::pread(descriptor_, window_.data(), window_bytes, static_cast<off_t>(base_ + first_));
-    while (got < 0 && errno == EINTR);
-    window_.resize(got < 0 ? 0 : static_cast<std::size_t>(got));
+    window_.resize(read_at(descriptor_, base_ + first_, window_bytes, window_.data()).value_or(0));
     if (address + count > first_ + window_.size()) throw NotKnownHere{};
   }
   return std::string_view(window_).substr(static_cast<std::size_t>(address - first_), count);

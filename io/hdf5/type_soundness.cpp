@@ -1,16 +1,11 @@
 #include "io/hdf5/type_soundness.hpp"
 
-#include <limits>
+#include "io/hdf5/array.hpp"
 
 namespace modebank::hdf5 {
 
 void require_sound(bool sound, const char* reason) {
   if (!sound) throw Unsound{reason};
-}
-
-std::uint64_t product(std::uint64_t a, std::uint64_t b) {
-  constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
-  return b != 0 && a > most / b ? most : a * b;
 }
 
 namespace {
@@ -30,15 +25,17 @@ TypeStart take_start(ByteReader& reader) {
 /// HDF5 copies these bits from the value, wherever they are said to be.
 void take_bits(ByteReader& reader, const TypeStart& type) {
   const std::uint64_t offset = reader.number(2), precision = reader.number(2);
-  require_sound(precision > 0 && offset + precision <= product(8, type.bytes), "a number's bits lie outside of it");
+  require_sound(precision > 0 && offset + precision <= saturating_product(8, type.bytes),
+                "a number's bits lie outside of it");
 }
 
 /// Fields count from the value's first bit, not from its offset, as the n-bit filter's types do.
 void take_real(ByteReader& reader, const TypeStart& type) {
   constexpr std::uint64_t most_exponent_bits = 63;  // HDF5 copies them into a number of 64
   take_bits(reader, type);
-  const std::uint64_t bits = product(8, type.bytes), sign = type.flags >> 8 & 0xff, exponent = reader.number(1),
-                      exponent_bits = reader.number(1), mantissa = reader.number(1), mantissa_bits = reader.number(1);
+  const std::uint64_t bits = saturating_product(8, type.bytes), sign = type.flags >> 8 & 0xff,
+                      exponent = reader.number(1), exponent_bits = reader.number(1), mantissa = reader.number(1),
+                      mantissa_bits = reader.number(1);
   reader.take(4);  // the exponent's bias
   require_sound(sign < bits && exponent_bits > 0 && exponent_bits <= most_exponent_bits &&
                     exponent + exponent_bits <= bits && mantissa_bits > 0 && mantissa + mantissa_bits <= bits,
@@ -67,7 +64,7 @@ std::uint64_t take_member_extents(ByteReader& reader) {
   std::uint64_t elements = 1;
   for (std::uint64_t i = 0; i < most_dimensions; ++i) {
     const std::uint64_t extent = reader.number(4);
-    if (i < dimensions) elements = product(elements, extent);
+    if (i < dimensions) elements = saturating_product(elements, extent);
   }
   return elements;
 }
@@ -80,7 +77,7 @@ void take_members(ByteReader& reader, const TypeStart& type, const Widths& width
     take_name(reader, type.version);
     const std::uint64_t offset = reader.number(offset_bytes);
     const std::uint64_t elements = type.version == 1 ? take_member_extents(reader) : 1;
-    const std::uint64_t bytes = product(elements, take_sound_type(reader, widths, depth + 1));
+    const std::uint64_t bytes = saturating_product(elements, take_sound_type(reader, widths, depth + 1));
     require_sound(offset <= type.bytes && bytes <= type.bytes - offset, "a compound's member lies outside of it");
   }
 }
@@ -99,9 +96,9 @@ void take_array(ByteReader& reader, const TypeStart& type, const Widths& widths,
   require_sound(dimensions > 0 && dimensions <= most_dimensions, "an array has no or too many dimensions");
   if (type.version < 3) reader.take(3);
   std::uint64_t elements = 1;
-  for (std::uint64_t i = 0; i < dimensions; ++i) elements = product(elements, reader.number(4));
+  for (std::uint64_t i = 0; i < dimensions; ++i) elements = saturating_product(elements, reader.number(4));
   if (type.version < 3) reader.take(static_cast<std::size_t>(4 * dimensions));
-  require_sound(product(elements, take_sound_type(reader, widths, depth + 1)) == type.bytes,
+  require_sound(saturating_product(elements, take_sound_type(reader, widths, depth + 1)) == type.bytes,
                 "an array has another size than its elements");
 }
 
@@ -121,7 +118,7 @@ std::uint64_t take_sound_type(ByteReader& reader, const Widths& widths, int dept
       take_real(reader, type);
       break;
     case time:
-      require_sound(reader.number(2) <= product(8, type.bytes), "a time's bits lie outside of it");
+      require_sound(reader.number(2) <= saturating_product(8, type.bytes), "a time's bits lie outside of it");
       break;
     case text:
       break;
@@ -159,7 +156,7 @@ std::uint64_t take_sound_space(ByteReader& reader, const Widths& widths) {
   require_sound(dimensions <= most_dimensions, "a dataspace has too many dimensions");
   if (version == 1) reader.take(4);
   std::uint64_t elements = 1;
-  for (std::uint64_t i = 0; i < dimensions; ++i) elements = product(elements, reader.number(widths.size));
+  for (std::uint64_t i = 0; i < dimensions; ++i) elements = saturating_product(elements, reader.number(widths.size));
   if ((flags & largest_flag) != 0) reader.take(static_cast<std::size_t>(dimensions) * widths.size);
   return version == 2 && kind == nothing ? 0 : elements;
 }

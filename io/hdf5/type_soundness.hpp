@@ -21,9 +21,6 @@ struct Unsound {
 /// Throws Unsound with the reason.
 void require_sound(bool sound, const char* reason);
 
-/// The largest number where the product is larger.
-std::uint64_t product(std::uint64_t a, std::uint64_t b);
-
 /// Takes a datatype as HDF5 1.10 decodes it, which knows no end of it, and returns the bytes of an element on disk.
 /// Throws Unsound where its parts do not fit each other, NotKnownHere where it does not end.
 std::uint64_t take_sound_type(ByteReader& reader, const Widths& widths, int depth = 0);
