@@ -1,76 +1,30 @@
-// Switches that see state and input: closed forms, the filter's likelihood, laws of the fit, and recovery of a soft
-// guard.
+// Switches that see state and input: closed forms, the filter's likelihood, laws of the fit.
 #include "filter/learn/switching/transition_regression.hpp"
 
 #include <gtest/gtest.h>
 
-#include <boost/random/normal_distribution.hpp>
-#include <boost/random/uniform_01.hpp>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "filter/judge/evaluate.hpp"
-#include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/likelihood/information.hpp"
 #include "filter/learn/likelihood/standard_errors.hpp"
-#include "filter/learn/refine/refine.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/mode_screening.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "filter/step/bank_filter.hpp"
-#include "tests/filter/learn/learn_test_support.hpp"
+#include "tests/filter/learn/guarded_runs.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
 namespace {
 
+using test::bank_of;
+using test::Guard;
+using test::guarded_runs;
 using test::near;
-
-constexpr double a[] = {-0.5, -0.1}, b[] = {0.4, -0.3}, sd[] = {0.05, 0.1};
-
-/// Mode 1 after mode i has the log odds offset(i) + slope u.
-struct Guard {
-  Eigen::Vector2d offset;
-  double slope;
-};
-
-/// x+ = x + a_m x + b_m u + w, the mode of a step drawn by the guard. No input lies within `gap` of `border`.
-Recording guarded_runs(const Guard& guard, Index runs, Index samples, std::uint64_t seed, double border = 0.0,
-                       double gap = 0.0) {
-  std::mt19937_64 generator(seed);
-  boost::random::normal_distribution<double> normal;
-  boost::random::uniform_01<double> uniform;
-  Recording recording = test::empty_recording(1, 1);
-  for (Index r = 0; r < runs; ++r) {
-    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, samples), u(1, samples);
-    int mode = 0;
-    for (Index k = 0; k < samples; ++k) {
-      u(k) = normal(generator);
-      if (std::abs(u(k) - border) < gap) u(k) += u(k) > border ? gap : -gap;
-      mode = uniform(generator) < 1.0 / (1.0 + std::exp(-guard.offset(mode) - guard.slope * u(k))) ? 1 : 0;
-      if (k + 1 < samples) x(k + 1) = x(k) + a[mode] * x(k) + b[mode] * u(k) + sd[mode] * normal(generator);
-    }
-    test::add_run(recording, x, u);
-  }
-  return recording;
-}
-
-SwitchingRegression true_model(const Guard& guard) {
-  SwitchingRegression model;
-  model.theta = Eigen::MatrixXd{{a[0], a[1]}, {b[0], b[1]}};
-  model.Q = {Eigen::MatrixXd::Constant(1, 1, sd[0] * sd[0]), Eigen::MatrixXd::Constant(1, 1, sd[1] * sd[1])};
-  model.transition.resize(2, 2);
-  for (Index i = 0; i < 2; ++i) {
-    const double p = 1.0 / (1.0 + std::exp(-guard.offset(i)));
-    model.transition.row(i) << 1.0 - p, p;
-  }
-  model.initial = Eigen::Vector2d(0.5, 0.5);
-  model.logit = {Eigen::MatrixXd{{0.0, -0.5 * guard.slope}, {0.0, 0.5 * guard.slope}}, Eigen::VectorXd::Zero(2)};
-  return model;
-}
-
-const Guard soft{{-2.0, 1.0}, 1.5};
+using test::soft;
+using test::true_model;
 
 TEST(TransitionLogit, IsTheLogisticFunctionForTwoModes) {
   const TransitionLogit logit = true_model(soft).logit;
@@ -91,10 +45,6 @@ TEST(TransitionLogit, IsTWithoutWeightsAndWhereTheStateIsNotKnown) {
   TransitionWorkspace none(2, {}), some(2, model.logit);
   EXPECT_EQ(transition_at(model.transition, {}, one, one, none), model.transition);
   EXPECT_EQ(transition_at(model.transition, model.logit, one, unknown, some), model.transition);
-}
-
-Bank bank_of(const Recording& recording, const TrainingTransitions& t, const SwitchingRegression& model) {
-  return with_modes(bank_frame(recording, t.structure, Eigen::MatrixXd::Zero(1, 1)), model);
 }
 
 TEST(TransitionRegression, LikelihoodIsTheFiltersWithoutMeasurementNoise) {
@@ -241,90 +191,6 @@ TEST(TransitionRegression, TheClosestPairIsMerged) {
   EXPECT_TRUE(near(merged.initial, two.initial, 1e-12));
   EXPECT_TRUE(near(merged.logit.weights, two.logit.weights, 1e-12));
   EXPECT_TRUE(near(merged.theta, two.theta, 2e-3));
-}
-
-RefineOptions quick() {
-  RefineOptions options;
-  options.restarts = 0;
-  options.folds = 4;
-  options.measurement_noise = false;
-  options.guards = true;
-  return options;
-}
-
-Refinement refined(const Recording& recording, const Guard& start) {
-  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
-  SwitchingRegression constant = true_model(start);
-  constant.logit = {};
-  WindowFits fits = test::windows_of(recording, 10, 10);
-  return refine_bank(recording, fits, {bank_of(recording, t, constant)}, quick(), {});
-}
-
-TEST(Guards, ASoftGuardIsFoundWithinItsErrors) {
-  const Recording recording = guarded_runs(soft, 8, 500, 5);
-  const Refinement result = refined(recording, soft);
-  ASSERT_GT(result.switching.width, 0.0);
-  EXPECT_GT(result.switching.gain, result.switching.gain_standard_error);
-  const TransitionLogit& logit = result.bank.transition_logit;
-  const Eigen::MatrixXd& error = result.bank.transition_weight_error;
-  ASSERT_TRUE(error.allFinite());
-  EXPECT_NEAR(logit.weights(1, 1), 0.5 * soft.slope, 3.0 * error(1, 1));
-  EXPECT_NEAR(logit.weights(1, 0), 0.0, 3.0 * error(1, 0));
-  EXPECT_LT(error(1, 1), 0.3);
-}
-
-double log_odds_of_staying(const Bank& bank) {
-  const Eigen::MatrixXd& T = bank.transition.matrix();
-  return std::log(T(0, 0) / T(0, 1)) + std::log(T(1, 1) / T(1, 0));
-}
-
-/// Where input alone says the mode, borders do not depend on the mode before; where the mode before matters, they do.
-TEST(Guards, TheModeBeforeCountsWhereItMatters) {
-  const Refinement without = refined(guarded_runs({{-0.4e6, -0.4e6}, 1e6}, 8, 400, 7), {{-3.0, 3.0}, 0.0});
-  EXPECT_LT(without.switching.memory_sd, 1.0);
-  EXPECT_LT(std::abs(log_odds_of_staying(without.bank)), 0.5);
-  const Refinement with = refined(guarded_runs(soft, 8, 500, 5), soft);
-  EXPECT_TRUE(std::isinf(with.switching.memory_sd));
-  EXPECT_NEAR(log_odds_of_staying(with.bank), 3.0, 1.0);
-}
-
-TEST(Guards, AMarkovChainKeepsItsTransitionMatrix) {
-  const Recording recording = guarded_runs({{-3.0, 3.0}, 0.0}, 8, 400, 6);
-  const Refinement result = refined(recording, {{-3.0, 3.0}, 0.0});
-  EXPECT_EQ(result.switching.width, 0.0);
-  EXPECT_FALSE(std::isnan(result.switching.gain));
-  EXPECT_TRUE(result.bank.transition_logit.empty());
-}
-
-TEST(Guards, OfAHardGuardNoErrorIsStatedAndTheBorderLiesInTheGap) {
-  const double border = 0.4;
-  const Recording recording = guarded_runs({{-1e6 * border, -1e6 * border}, 1e6}, 8, 400, 7);
-  const Refinement result = refined(recording, {{-3.0, 3.0}, 0.0});
-  ASSERT_GT(result.switching.width, 0.0);
-  EXPECT_TRUE(result.bank.transition_weight_error.array().isNaN().all());
-  const TransitionLogit& logit = result.bank.transition_logit;
-  const Eigen::MatrixXd& T = result.bank.transition.matrix();
-  for (Index i = 0; i < 2; ++i) {
-    const double odds = std::log(T(i, 1) / T(i, 0)) - (logit.weights.row(1) - logit.weights.row(0)) * logit.reference;
-    EXPECT_NEAR(-odds / (logit.weights(1, 1) - logit.weights(0, 1)), border, 0.05);
-  }
-}
-
-/// There the prior alone curves the likelihood: of that no error may be made.
-TEST(Guards, OfAHardGuardNoErrorIsStatedWhereInputsLeaveAGap) {
-  const double border = 0.4, gap = 0.1;
-  for (const std::uint64_t seed : {8, 9, 10}) {
-    const Recording recording = guarded_runs({{-1e6 * border, -1e6 * border}, 1e6}, 4, 500, seed, border, gap);
-    const Refinement result = refined(recording, {{-3.0, 3.0}, 0.0});
-    ASSERT_GT(result.switching.width, 0.0);
-    EXPECT_TRUE(result.bank.transition_weight_error.array().isNaN().all()) << seed;
-    const TransitionLogit& logit = result.bank.transition_logit;
-    const Eigen::MatrixXd& T = result.bank.transition.matrix();
-    for (Index i = 0; i < 2; ++i) {
-      const double odds = std::log(T(i, 1) / T(i, 0)) - (logit.weights.row(1) - logit.weights.row(0)) * logit.reference;
-      EXPECT_NEAR(-odds / (logit.weights(1, 1) - logit.weights(0, 1)), border, gap);
-    }
-  }
 }
 
 }  // namespace

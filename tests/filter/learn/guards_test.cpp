@@ -1,0 +1,103 @@
+// Switches that see state and input, chosen by cross-validation: soft and hard guards found, a Markov chain left alone.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filter/learn/refine/refine.hpp"
+#include "tests/filter/learn/guarded_runs.hpp"
+
+namespace modebank {
+namespace {
+
+using test::bank_of;
+using test::Guard;
+using test::guarded_runs;
+using test::soft;
+using test::true_model;
+
+RefineOptions quick() {
+  RefineOptions options;
+  options.restarts = 0;
+  options.folds = 4;
+  options.measurement_noise = false;
+  options.guards = true;
+  return options;
+}
+
+Refinement refined(const Recording& recording, const Guard& start) {
+  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
+  SwitchingRegression constant = true_model(start);
+  constant.logit = {};
+  WindowFits fits = test::windows_of(recording, 10, 10);
+  return refine_bank(recording, fits, {bank_of(recording, t, constant)}, quick(), {});
+}
+
+TEST(Guards, ASoftGuardIsFoundWithinItsErrors) {
+  const Recording recording = guarded_runs(soft, 8, 500, 5);
+  const Refinement result = refined(recording, soft);
+  ASSERT_GT(result.switching.width, 0.0);
+  EXPECT_GT(result.switching.gain, result.switching.gain_standard_error);
+  const TransitionLogit& logit = result.bank.transition_logit;
+  const Eigen::MatrixXd& error = result.bank.transition_weight_error;
+  ASSERT_TRUE(error.allFinite());
+  EXPECT_NEAR(logit.weights(1, 1), 0.5 * soft.slope, 3.0 * error(1, 1));
+  EXPECT_NEAR(logit.weights(1, 0), 0.0, 3.0 * error(1, 0));
+  EXPECT_LT(error(1, 1), 0.3);
+}
+
+double log_odds_of_staying(const Bank& bank) {
+  const Eigen::MatrixXd& T = bank.transition.matrix();
+  return std::log(T(0, 0) / T(0, 1)) + std::log(T(1, 1) / T(1, 0));
+}
+
+/// Where input alone says the mode, borders do not depend on the mode before; where the mode before matters, they do.
+TEST(Guards, TheModeBeforeCountsWhereItMatters) {
+  const Refinement without = refined(guarded_runs({{-0.4e6, -0.4e6}, 1e6}, 8, 400, 7), {{-3.0, 3.0}, 0.0});
+  EXPECT_LT(without.switching.memory_sd, 1.0);
+  EXPECT_LT(std::abs(log_odds_of_staying(without.bank)), 0.5);
+  const Refinement with = refined(guarded_runs(soft, 8, 500, 5), soft);
+  EXPECT_TRUE(std::isinf(with.switching.memory_sd));
+  EXPECT_NEAR(log_odds_of_staying(with.bank), 3.0, 1.0);
+}
+
+TEST(Guards, AMarkovChainKeepsItsTransitionMatrix) {
+  const Recording recording = guarded_runs({{-3.0, 3.0}, 0.0}, 8, 400, 6);
+  const Refinement result = refined(recording, {{-3.0, 3.0}, 0.0});
+  EXPECT_EQ(result.switching.width, 0.0);
+  EXPECT_FALSE(std::isnan(result.switching.gain));
+  EXPECT_TRUE(result.bank.transition_logit.empty());
+}
+
+TEST(Guards, OfAHardGuardNoErrorIsStatedAndTheBorderLiesInTheGap) {
+  const double border = 0.4;
+  const Recording recording = guarded_runs({{-1e6 * border, -1e6 * border}, 1e6}, 8, 400, 7);
+  const Refinement result = refined(recording, {{-3.0, 3.0}, 0.0});
+  ASSERT_GT(result.switching.width, 0.0);
+  EXPECT_TRUE(result.bank.transition_weight_error.array().isNaN().all());
+  const TransitionLogit& logit = result.bank.transition_logit;
+  const Eigen::MatrixXd& T = result.bank.transition.matrix();
+  for (Index i = 0; i < 2; ++i) {
+    const double odds = std::log(T(i, 1) / T(i, 0)) - (logit.weights.row(1) - logit.weights.row(0)) * logit.reference;
+    EXPECT_NEAR(-odds / (logit.weights(1, 1) - logit.weights(0, 1)), border, 0.05);
+  }
+}
+
+/// There the prior alone curves the likelihood: of that no error may be made.
+TEST(Guards, OfAHardGuardNoErrorIsStatedWhereInputsLeaveAGap) {
+  const double border = 0.4, gap = 0.1;
+  for (const std::uint64_t seed : {8, 9, 10}) {
+    const Recording recording = guarded_runs({{-1e6 * border, -1e6 * border}, 1e6}, 4, 500, seed, border, gap);
+    const Refinement result = refined(recording, {{-3.0, 3.0}, 0.0});
+    ASSERT_GT(result.switching.width, 0.0);
+    EXPECT_TRUE(result.bank.transition_weight_error.array().isNaN().all()) << seed;
+    const TransitionLogit& logit = result.bank.transition_logit;
+    const Eigen::MatrixXd& T = result.bank.transition.matrix();
+    for (Index i = 0; i < 2; ++i) {
+      const double odds = std::log(T(i, 1) / T(i, 0)) - (logit.weights.row(1) - logit.weights.row(0)) * logit.reference;
+      EXPECT_NEAR(-odds / (logit.weights(1, 1) - logit.weights(0, 1)), border, gap);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace modebank
