@@ -113,12 +113,12 @@ void tell_of(const Refinement& refined, const Listener& listener) {
     listener.progress(fmt::format("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
                                   measured.iterations, measured.score_before, measured.score));
   if (const SwitchingStage& s = refined.switching; !std::isnan(s.gain))
-    listener.progress(fmt::format(
-        "refine: switches that see state and input gain {:.4f} +- {:.4f} nats/sample left out{}", s.gain,
-        s.gain_standard_error,
-        s.width > 0.0
-            ? fmt::format(" (taken, width {}{})", s.width, std::isinf(s.memory_sd) ? "" : ", whatever the mode before")
-            : ": not taken"));
+    listener.progress(
+        fmt::format("refine: switches that see state and input gain {:.4f} +- {:.4f} nats/sample left out{}", s.gain,
+                    s.gain_standard_error,
+                    s.width > 0.0 ? fmt::format(" (taken, width {}{})", s.width,
+                                                std::isinf(s.memory_sd) ? "" : ", the mode before hardly matters")
+                                  : ": not taken"));
   if (const DriftStage& s = refined.drift; !std::isnan(s.gain))
     listener.progress(fmt::format(
         "refine: {} modes that drift (rate {:g}, start {:g}, leak {:g}) gain {:.4f} +- {:.4f} nats/sample left out: {}",
