@@ -92,6 +92,15 @@ std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& i
   return merging_costs(whole, limited, components, from.recording, inputs.filter.value());
 }
 
+std::string worth_of(const LookAheadStage& stage) {
+  if (stage.score == stage.score_before) return "taken, no runs are left out to ask";
+  const std::string gain = stage.of_errors
+                               ? fmt::format("errors of the runs left out {:+.1f} %",
+                                             100.0 * (std::sqrt(stage.score / stage.score_before) - 1.0))
+                               : fmt::format("{:.4f} -> {:.4f} nats/sample left out", stage.score_before, stage.score);
+  return gain + (stage.taken ? "" : ": not taken");
+}
+
 void tell_of(const Refinement& refined, const Listener& listener) {
   for (const RefineCandidate& c : refined.candidates)
     listener.detail(fmt::format(
@@ -123,10 +132,8 @@ void tell_of(const Refinement& refined, const Listener& listener) {
     listener.progress(fmt::format(
         "refine: {} modes that drift (rate {:g}, start {:g}, leak {:g}) gain {:.4f} +- {:.4f} nats/sample left out: {}",
         s.modes, s.rate, s.start, s.leak, s.gain, s.gain_standard_error, s.taken ? "taken" : "not taken"));
-  if (const LookAheadStage& ahead = refined.look_ahead; ahead.score != ahead.score_before)
-    listener.progress(
-        fmt::format("refine: fit to predictions up to the look-ahead: {:.4f} -> {:.4f} nats/sample left out{}",
-                    ahead.score_before, ahead.score, ahead.taken ? "" : ": not taken"));
+  if (const LookAheadStage& ahead = refined.look_ahead; ahead.taken || ahead.score != ahead.score_before)
+    listener.progress("refine: fit to predictions up to the look-ahead: " + worth_of(ahead));
   const Averaging& averaged = refined.averaging;
   if (!std::isnan(averaged.score))
     listener.progress(fmt::format("refine: {} fits averaged: {:.4f} -> {:.4f} nats/sample left out", averaged.members,

@@ -78,8 +78,9 @@ MODEBANK_KEY_FIELDS(RefineTuning, checkpoints, falls, forgettings, noise_prior_s
                     drift_starts, drift_leaks, drift_forgettings, drift_noise_prior_samples, least_R_share,
                     R_start_shares, R_start_share_with_theta, least_gain)
 MODEBANK_KEY_FIELDS(DriftOptions, how, rate, start, leak)
-MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, members, look_ahead, folds,
-                    measurement_noise, screen, guards, one_theta, seed, drift, tuning, transitions)
+MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, members, look_ahead,
+                    look_ahead_score, folds, measurement_noise, screen, guards, one_theta, seed, drift, tuning,
+                    transitions)
 MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, modes,
                     refine, em)
 MODEBANK_KEY_FIELDS(FilterOptions, variant, parameter_noise, time_steps, noise)

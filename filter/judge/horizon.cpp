@@ -17,9 +17,10 @@ using Eigen::Index;
 
 /// Looks ahead from the filter's state at one moment.
 template <int N, int NY>
-class LookAhead {
+class HorizonScores {
  public:
-  LookAhead(const FilterModel<N, NY>& model, const RunInstants& instants, const Trajectory& run, HorizonEvaluation& out)
+  HorizonScores(const FilterModel<N, NY>& model, const RunInstants& instants, const Trajectory& run,
+                HorizonEvaluation& out)
       : instants_(instants), run_(run), out_(out), forecast_(model) {}
 
   void from(Index t, const FilterState<N>& state) {
@@ -53,7 +54,7 @@ void look_ahead(const Bank& bank, const Trajectory& run, const FilterOptions& op
   const RunInstants instants(bank, run, options.time_steps);
   FilterStep<N, NY> step(model);
   FilterState<N> state = initial_state(model);
-  LookAhead<N, NY> look(model, instants, run, out);
+  HorizonScores<N, NY> look(model, instants, run, out);
   for (Index t = 0; t < instants.count(); ++t) {
     step_to(model, instants, t, run, state, step);
     if (instants.instants[static_cast<std::size_t>(t)].sample >= 0) look.from(t, state);

@@ -41,6 +41,11 @@ std::vector<Option> bank_options() {
       numeric("bank.look_ahead", between(1, 1000), "samples",
               "what em chooses by: the mean log score of predictions 1 to so many samples ahead of the runs left out",
               MODEBANK_FIELD(bank.em.look_ahead)),
+      words("bank.look_ahead_score",
+            "what is counted of these predictions: their log density; error: their squared error, which the "
+            "parameters of a bank of at most 50 free numbers then minimise where the runs left out gain by it, for "
+            "forecasts and free runs; em chooses by one step",
+            MODEBANK_FIELD(bank.em.look_ahead_score)),
       numeric(
           "bank.folds", between(1, 1000), "",
           "parts of the training runs that em leaves out in turn to choose start, number of modes and of iterations; "

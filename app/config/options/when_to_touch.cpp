@@ -99,6 +99,7 @@ const std::unordered_map<std::string_view, std::string_view>& learning_keys() {
       {"bank.restarts", "more, when repeated runs with other seeds differ by more than the gain's standard error"},
       {"bank.members", "more, when only prediction matters and modes need no meaning"},
       {"bank.look_ahead", "when predictions several samples ahead matter (control): the number of samples"},
+      {"bank.look_ahead_score", "error, when the mean of long predictions matters (free run), not their spread"},
       {"bank.folds", "1, to save time when you choose the number of modes yourself"},
       {"bank.refine_transitions",
        "less, when learning from a long recording takes too long; 0, when time is no matter"},

@@ -24,15 +24,15 @@ BankCoordinates::BankCoordinates(Bank origin, FreeParameters free)
 
 Index BankCoordinates::size() const {
   const Index K = origin_.mode_count();
-  const Index noise = free_.Q_by_one_factor ? 1 : K * places().triangle;
+  const Index noise = free_.Q && free_.Q_by_one_factor ? 1 : K * places().triangle;
   return free_.theta_unit.size() + noise + std::ssize(free_.R) + (free_.transition ? K * (K - 1) : 0) +
          K * free_.weight_unit.size();
 }
 
 ParameterPlaces BankCoordinates::places() const {
   const Index n = origin_.structure.states;
-  return {free_.theta_unit.rows(), n * (n + 1) / 2,  origin_.mode_count(),
-          std::ssize(free_.R),     free_.transition, free_.weight_unit.size()};
+  return {free_.theta_unit.rows(), free_.Q ? n * (n + 1) / 2 : 0, origin_.mode_count(), std::ssize(free_.R),
+          free_.transition,        free_.weight_unit.size()};
 }
 
 Bank BankCoordinates::decode(const Eigen::VectorXd& at) const {
@@ -58,6 +58,7 @@ const double* BankCoordinates::set_theta(const double* at, Bank& bank) const {
 
 const double* BankCoordinates::set_process_noise(const double* at, Bank& bank) const {
   const Index n = origin_.structure.states;
+  if (!free_.Q) return at;
   if (free_.Q_by_one_factor) {
     for (Mode& mode : bank.modes) mode.Q *= bounded_exp(*at);
     return at + 1;
@@ -110,7 +111,7 @@ Eigen::VectorXd BankCoordinates::parameters_of(const Bank& bank) const {
     if (at.parameters > 0) all.segment(at.theta(j), at.parameters) = bank.theta(j);
     const Eigen::MatrixXd& Q = bank.modes[static_cast<std::size_t>(j)].Q;
     Index next = at.Q(j);
-    for (Index b = 0; b < n; ++b)
+    for (Index b = 0; at.triangle > 0 && b < n; ++b)
       for (Index a = b; a < n; ++a) all(next++) = Q(a, b);
     if (at.transition) all.segment(at.T(j), at.modes) = bank.transition.matrix().row(j);
   }

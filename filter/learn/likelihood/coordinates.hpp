@@ -10,6 +10,7 @@ namespace modebank {
 /// What of a bank is to be estimated, and in which units.
 struct FreeParameters {
   Eigen::MatrixXd theta_unit = {};   ///< p x K, or p x 1: one theta of all modes; positive; empty: theta is known
+  bool Q = true;                     ///< false: every Q is known
   bool Q_by_one_factor = false;      ///< every Q by the same factor, instead of each by itself
   Eigen::VectorXd least_Q = {};      ///< n, lower bounds of every Q's diagonal [state unit^2]; empty: none
   std::vector<Eigen::Index> R = {};  ///< outputs whose variance is estimated
@@ -23,7 +24,7 @@ struct FreeParameters {
 /// about their mean over the modes, which changes no probability.
 struct ParameterPlaces {
   Eigen::Index parameters = 0;  ///< p; 0: theta is known
-  Eigen::Index triangle = 0;    ///< n (n + 1) / 2
+  Eigen::Index triangle = 0;    ///< n (n + 1) / 2; 0: Q is known
   Eigen::Index modes = 0;
   Eigen::Index outputs = 0;  ///< whose R is estimated
   bool transition = false;

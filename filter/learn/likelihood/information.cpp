@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "filter/judge/look_ahead.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 
 namespace modebank {
@@ -14,12 +13,12 @@ constexpr double least_probability = 1e-100;  // its square can be divided by
 
 /// One row per sample, one column per coordinate; zero where a sample has no density.
 Eigen::MatrixXd gradients_of_run(const BankCoordinates& around, const Eigen::VectorXd& steps, const Trajectory& run,
-                                 const FilterOptions& filter, Index look_ahead) {
+                                 const FilterOptions& filter, const LookAhead& look) {
   Eigen::MatrixXd gradients(run.samples(), around.size());
   tbb::parallel_for(Index{0}, around.size(), [&](Index c) {
     const Eigen::VectorXd step = steps(c) * Eigen::VectorXd::Unit(around.size(), c);
-    gradients.col(c) = (look_ahead_densities(around.decode(step), run, filter, look_ahead) -
-                        look_ahead_densities(around.decode(-step), run, filter, look_ahead)) /
+    gradients.col(c) = (look_ahead_scores(around.decode(step), run, filter, look) -
+                        look_ahead_scores(around.decode(-step), run, filter, look)) /
                        (2.0 * steps(c));
   });
   return gradients.array().isNaN().select(0.0, gradients);
@@ -35,7 +34,7 @@ Eigen::VectorXd information_of_noise_and_switches(const BankCoordinates& around,
   for (Index j = 0; j < at.modes; ++j) {
     const Eigen::MatrixXd& Q = bank.modes[static_cast<std::size_t>(j)].Q;
     Index next = at.Q(j);
-    for (Index b = 0; b < n; ++b)
+    for (Index b = 0; at.triangle > 0 && b < n; ++b)
       for (Index a = b; a < n; ++a)
         information(next++) = (a == b ? 0.5 : 1.0) * prior.noise_transitions / (Q(a, a) * Q(b, b));
     if (!at.transition || at.modes == 1) continue;
@@ -58,12 +57,12 @@ Eigen::MatrixXd information_of_memory(const BankCoordinates& around, const Switc
 }  // namespace
 
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
-                                 const Recording& recording, const FilterOptions& filter, Index look_ahead) {
+                                 const Recording& recording, const FilterOptions& filter, const LookAhead& look) {
   SampleGradients result{Eigen::VectorXd::Zero(around.size()), Eigen::MatrixXd::Zero(around.size(), around.size())};
   const double unit = mean_training_weight(recording);
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train || run.samples() < 2) continue;
-    const Eigen::MatrixXd gradients = gradients_of_run(around, steps, run, filter, look_ahead);
+    const Eigen::MatrixXd gradients = gradients_of_run(around, steps, run, filter, look);
     if (run.weight.size() == 0) {
       result.sum += gradients.colwise().sum().transpose();
       result.information.noalias() += gradients.transpose() * gradients;

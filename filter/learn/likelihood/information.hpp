@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "filter/judge/look_ahead.hpp"
 #include "filter/learn/likelihood/coordinates.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "ident/data/trajectory.hpp"
@@ -21,9 +22,9 @@ struct SampleGradients {
 };
 
 /// By central differences of `steps` (one per coordinate) in the filter that will run the bank. A sample of weight w,
-/// in units of their mean, counts as w samples. `look_ahead`: of what learning counts that looks so far.
+/// in units of their mean, counts as w samples. `look`: of what learning counts that looks ahead.
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
-                                 const Recording& recording, const FilterOptions& filter, Eigen::Index look_ahead = 1);
+                                 const Recording& recording, const FilterOptions& filter, const LookAhead& look = {});
 
 /// What the prior adds to the information about the coordinates, at their origin: of theta exactly, of Q as so many
 /// observations of a normal scatter, of T as so many counts, of a guard's memory

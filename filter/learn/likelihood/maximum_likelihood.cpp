@@ -37,7 +37,7 @@ class Neighbourhood {
 
   /// Where the value is wanted besides: back over the filter's steps where they know the way, else by differences.
   Eigen::VectorXd gradient(const Eigen::VectorXd& at) const {
-    if (target_.look_ahead > 1 || !has_likelihood_gradient(coordinates_.origin(), target_.filter))
+    if (!target_.look.is_likelihood() || !has_likelihood_gradient(coordinates_.origin(), target_.filter))
       return differences(at, [this](const Bank& bank) { return target_.value(bank); });
     const BankGradient by_bank = training_gradient(decode(at), target_.recording, target_.filter);
     Eigen::VectorXd result(size());
@@ -53,8 +53,7 @@ class Neighbourhood {
 
   /// Gradient and information of likelihood and prior at the origin.
   SampleGradients gradients() const {
-    SampleGradients result =
-        sample_gradients(coordinates_, steps_, target_.recording, target_.filter, target_.look_ahead);
+    SampleGradients result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter, target_.look);
     if (!target_.prior) return result;
     result.sum +=
         differences(Eigen::VectorXd::Zero(size()), [this](const Bank& bank) { return target_.log_prior(bank); });
@@ -155,7 +154,7 @@ bool is_finite(const Bank& bank) {
 
 double LikelihoodTarget::value(const Bank& bank) const {
   if (!is_finite(bank)) return -std::numeric_limits<double>::infinity();
-  const double likelihood = weighted_training_log_likelihood(bank, recording, filter, look_ahead);
+  const double likelihood = weighted_training_log_likelihood(bank, recording, filter, look);
   return prior ? likelihood + log_prior(bank) : likelihood;
 }
 

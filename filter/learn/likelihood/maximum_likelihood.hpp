@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "filter/judge/look_ahead.hpp"
 #include "filter/learn/likelihood/coordinates.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "filter/step/bank.hpp"
@@ -19,7 +20,7 @@ struct LikelihoodTarget {
   FilterOptions filter;                 ///< variant imm for several modes
   std::optional<SwitchingPrior> prior;  ///< empty: the likelihood alone
   bool one_theta = false;               ///< the prior on theta counts once
-  Index look_ahead = 1;                 ///< densities 1 to so many samples ahead, their mean (judge/look_ahead.hpp)
+  LookAhead look = {};                  ///< what is counted instead of the likelihood, if learning looks ahead
 
   /// Minus infinity of a bank that is not all numbers, which no filter can run.
   double value(const Bank& bank) const;

@@ -6,29 +6,26 @@
 #include <utility>
 #include <vector>
 
-#include "filter/judge/look_ahead.hpp"
-
 namespace modebank {
 
 double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
-                               Eigen::Index look_ahead) {
+                               const LookAhead& look) {
   std::vector<double> of_run(recording.runs.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, of_run.size(), [&](std::size_t i) {
-    if (recording.runs[i].role == Role::train)
-      of_run[i] = look_ahead_likelihood(bank, recording.runs[i], options, look_ahead);
+    if (recording.runs[i].role == Role::train) of_run[i] = look_ahead_score(bank, recording.runs[i], options, look);
   });
   return std::accumulate(of_run.begin(), of_run.end(), 0.0);
 }
 
 double weighted_training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
-                                        Eigen::Index look_ahead) {
-  if (!recording.weighted()) return training_log_likelihood(bank, recording, options, look_ahead);
+                                        const LookAhead& look) {
+  if (!recording.weighted()) return training_log_likelihood(bank, recording, options, look);
   const double unit = mean_training_weight(recording);
   double sum = 0.0;
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train) continue;
-    const Eigen::ArrayXd densities = look_ahead_densities(bank, run, options, look_ahead);
-    const Eigen::ArrayXd known = densities.isNaN().select(0.0, densities);
+    const Eigen::ArrayXd scores = look_ahead_scores(bank, run, options, look);
+    const Eigen::ArrayXd known = scores.isNaN().select(0.0, scores);
     sum += run.weight.size() > 0 ? (known * run.weight.array()).sum() / unit : known.sum();
   }
   return sum;

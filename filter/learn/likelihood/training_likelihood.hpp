@@ -1,6 +1,7 @@
 #pragma once
 
 #include "filter/judge/evaluate.hpp"
+#include "filter/judge/look_ahead.hpp"
 #include "filter/step/bank.hpp"
 #include "filter/step/likelihood_gradient.hpp"
 #include "ident/data/trajectory.hpp"
@@ -8,14 +9,14 @@
 namespace modebank {
 
 /// Log-likelihood of all training runs [nats], each from its second sample, whatever the samples' weights; runs in
-/// parallel, summed in an order of their own. `look_ahead`: what learning counts that looks so far
-/// (judge/look_ahead.hpp).
+/// parallel, summed in an order of their own. `look`: what is counted
+/// instead by learning that looks ahead.
 double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
-                               Eigen::Index look_ahead = 1);
+                               const LookAhead& look = {});
 
 /// The same with every sample's density to the power of its weight in units of mean_training_weight.
 double weighted_training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
-                                        Eigen::Index look_ahead = 1);
+                                        const LookAhead& look = {});
 
 /// The gradient of weighted_training_log_likelihood; requires has_likelihood_gradient (filter/step).
 BankGradient training_gradient(const Bank& bank, const Recording& recording, const FilterOptions& options);

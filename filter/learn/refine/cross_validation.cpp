@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "filter/judge/look_ahead.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/work_counter.hpp"
 
@@ -47,7 +46,8 @@ std::vector<LeftOutScores> scores_of(const std::vector<ScoredFit>& fits) {
 
 }  // namespace
 
-CrossValidation::CrossValidation(const RefineInput& in) : in_(in), splits_(split_data(in)) {
+CrossValidation::CrossValidation(const RefineInput& in)
+    : in_(in), look_{in.options.densities_ahead()}, splits_(split_data(in)) {
   std::vector<double> samples;
   for (const SplitData& split : splits_)
     for (const Trajectory& run : split.runs.left_out.runs) samples.push_back(static_cast<double>(run.transitions()));
@@ -73,7 +73,7 @@ ScoredFit CrossValidation::best_iterations(const RefineStart& start) const {
   for (const Index checkpoint : checkpoints_up_to(in_.options.max_iterations, in_.options.tuning)) {
     fits.advance_to(checkpoint);
     std::vector<Bank> banks = fits.banks();
-    const LeftOutScores scores{modes, run_scores(banks)};
+    const LeftOutScores scores{modes, run_scores(banks, look_)};
     const double gain = mean_score(scores) - mean_score(best.scores);
     falls = gain < -in_.options.tuning.least_gain ? falls + 1 : 0;
     if (best.iterations == 0 || gain > 0.0) best = {start, 0, checkpoint, scores, std::move(banks)};
@@ -139,12 +139,12 @@ NoiseAdaptation CrossValidation::adaptation(const std::vector<Bank>& of_splits) 
   tbb::parallel_for(std::size_t{0}, ways.size(), [&](std::size_t w) {
     std::vector<Bank> banks = of_splits;
     for (Bank& bank : banks) bank.noise_adaptation = ways[w];
-    scores[w] = run_scores(banks);
+    scores[w] = run_scores(banks, look_);
   });
   return ways[soonest_of_the_good(ways, scores, samples_)];
 }
 
-Eigen::VectorXd CrossValidation::run_scores(const std::vector<Bank>& banks) const {
+Eigen::VectorXd CrossValidation::run_scores(const std::vector<Bank>& banks, const LookAhead& look) const {
   std::vector<const Bank*> bank_of;
   std::vector<const Trajectory*> runs;
   for (std::size_t s = 0; s < splits_.size(); ++s)
@@ -154,13 +154,14 @@ Eigen::VectorXd CrossValidation::run_scores(const std::vector<Bank>& banks) cons
     }
   Eigen::VectorXd scores(std::ssize(runs));
   tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
-    scores(static_cast<Eigen::Index>(i)) =
-        look_ahead_likelihood(*bank_of[i], *runs[i], in_.filter, in_.options.look_ahead);
+    scores(static_cast<Eigen::Index>(i)) = look_ahead_score(*bank_of[i], *runs[i], in_.filter, look);
   });
   return scores;
 }
 
-double CrossValidation::score(const std::vector<Bank>& banks) const { return mean_score({0, run_scores(banks)}); }
+double CrossValidation::score(const std::vector<Bank>& banks, const LookAhead& look) const {
+  return mean_score({0, run_scores(banks, look)});
+}
 
 double CrossValidation::mean_score(const LeftOutScores& scores) const {
   const double sum = scores.log_likelihood.sum();

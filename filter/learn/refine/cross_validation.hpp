@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "filter/judge/look_ahead.hpp"
 #include "filter/learn/refine/folds.hpp"
 #include "filter/learn/refine/model_choice.hpp"
 #include "filter/learn/refine/refine.hpp"
@@ -47,21 +48,26 @@ class CrossValidation {
   std::vector<ScoredFit> best_of_each_size() const;
 
   /// Log-likelihoods of the runs left out; `banks`: one per split.
-  LeftOutScores scores(const std::vector<Bank>& banks) const { return {banks.front().mode_count(), run_scores(banks)}; }
+  LeftOutScores scores(const std::vector<Bank>& banks) const {
+    return {banks.front().mode_count(), run_scores(banks, look_)};
+  }
   /// Mean log score of the runs left out, nats per sample; `banks`: one per split. Minus infinity where there is none.
-  double score(const std::vector<Bank>& banks) const;
+  double score(const std::vector<Bank>& banks) const { return score(banks, look_); }
+  /// The same of what is counted by learning that looks ahead so.
+  double score(const std::vector<Bank>& banks, const LookAhead& look) const;
 
   /// How the noise scale should move in the filter of these banks, one per split: of ways that the runs left out do not
   /// tell apart, the one that soonest leaves its start.
   NoiseAdaptation adaptation(const std::vector<Bank>& of_splits) const;
 
  private:
-  /// Log-likelihood of each run left out.
-  Eigen::VectorXd run_scores(const std::vector<Bank>& banks) const;
+  /// Of each run left out.
+  Eigen::VectorXd run_scores(const std::vector<Bank>& banks, const LookAhead& look) const;
   double mean_score(const LeftOutScores& scores) const;
   ScoredFit best_iterations(const RefineStart& start) const;
 
   RefineInput in_;
+  LookAhead look_;  ///< at which densities
   std::vector<SplitData> splits_;
   Eigen::VectorXd samples_;  ///< of each run left out
   std::vector<ScoredFit> fits_;

@@ -3,10 +3,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "filter/learn/likelihood/standard_errors.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/refine/split_fits.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -18,6 +21,7 @@ constexpr Index most_iterations = 40;
 // Each is differenced at every gradient: with 200 (twelve modes on ice) a fit would take ten minutes, and there are as
 // many as folds.
 constexpr Index most_coordinates = 50;
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// What is searched, with units from the sums of expectation-maximisation.
 FreeParameters free_parameters(const RefineInput& in, const Recording& recording, const SwitchingPrior& prior,
@@ -28,10 +32,53 @@ FreeParameters free_parameters(const RefineInput& in, const Recording& recording
                         least_measurement_noise(in.fits, in.options.tuning));
 }
 
-Bank taken_on(const LikelihoodTarget& target, const RefineInput& in, bool R_estimated, const Bank& bank) {
-  return maximise_likelihood(target, free_parameters(in, target.recording, *target.prior, R_estimated, bank), bank,
-                             {std::min(most_iterations, in.options.max_iterations), in.options.tolerance})
-      .bank;
+/// What is to be fitted, and how.
+struct LookAheadFit {
+  const RefineInput& in;
+  LookAhead look;
+  bool R_estimated = false;
+
+  Bank climbed(const Recording& recording, const SwitchingPrior& prior, const LookAhead& counted,
+               const FreeParameters& free, const Bank& bank) const {
+    return maximise_likelihood({recording, learning_filter(in.filter), prior, in.options.one_theta, counted}, free,
+                               bank, {std::min(most_iterations, in.options.max_iterations), in.options.tolerance})
+        .bank;
+  }
+
+  /// Densities ask for everything. Errors ask for theta, and nothing about the noise and how modes follow each other,
+  /// of which the likelihood says what they are beside that theta.
+  Bank taken_on(const Recording& recording, const SwitchingPrior& prior, const Bank& bank) const {
+    const FreeParameters all = free_parameters(in, recording, prior, R_estimated, bank);
+    if (!look.counts_errors()) return climbed(recording, prior, look, all, bank);
+    FreeParameters rest = all;
+    rest.theta_unit.resize(0, 0);
+    return climbed(
+        recording, prior, {}, rest,
+        climbed(recording, prior, look, {.theta_unit = all.theta_unit, .Q = false, .transition = false}, bank));
+  }
+};
+
+/// Root mean square of the errors that count, of the bank as it is: every signal weighs as much, and what is gained is
+/// about in nats.
+Eigen::VectorXd error_unit(const RefineInput& in, const Bank& bank) {
+  const Index outputs = bank.C.rows();
+  Eigen::VectorXd unit(outputs);
+  for (Index i = 0; i < outputs; ++i) {
+    LookAhead of_one{in.options.look_ahead, Eigen::VectorXd::Constant(outputs, infinite)};
+    of_one.error_unit(i) = 1.0;
+    const double half_squares =
+        -weighted_training_log_likelihood(bank, in.recording, learning_filter(in.filter), of_one);
+    unit(i) = std::sqrt(2.0 * half_squares / static_cast<double>(in.recording.transitions(Role::train)));
+  }
+  return unit;
+}
+
+/// Empty: there is nothing to be looked at.
+std::optional<LookAhead> look_of(const RefineInput& in, const Bank& bank) {
+  if (in.options.look_ahead_score == LookAheadScore::density)
+    return in.options.look_ahead > 1 ? std::optional<LookAhead>{{in.options.look_ahead}} : std::nullopt;
+  const LookAhead look{in.options.look_ahead, error_unit(in, bank)};
+  return look.error_unit.allFinite() && (look.error_unit.array() > 0.0).all() ? std::optional(look) : std::nullopt;
 }
 
 Bank without_errors(Bank bank) {
@@ -45,31 +92,38 @@ Bank without_errors(Bank bank) {
   return bank;
 }
 
+/// Whether the runs left out, each scored by a fit that has not seen it, gain enough.
+bool gains(const LookAheadFit& fit, const CrossValidation& validation, const ChosenFit& chosen, const Bank& bank,
+           LookAheadStage& stage) {
+  std::vector<Bank> banks = chosen.of_splits;
+  for (Bank& of_split : banks) of_split.noise_adaptation = bank.noise_adaptation;
+  stage.score_before = validation.score(banks, fit.look);
+  tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
+    const SplitData& split = validation.splits()[s];
+    SwitchingPrior of_split = prior_of_split(
+        fit.in, split, {"", switching_model(banks[s]), chosen.noise_transitions, chosen.theta_transitions});
+    of_split = with_guard(std::move(of_split), split.transitions, chosen.guard);
+    banks[s] = fit.taken_on(split.runs.training, of_split, banks[s]);
+  });
+  stage.score = validation.score(banks, fit.look);
+  return stage.score > stage.score_before + fit.in.options.tuning.least_gain;
+}
+
 }  // namespace
 
 std::optional<Bank> fit_looking_ahead(const RefineInput& in, const CrossValidation& validation, const ChosenFit& chosen,
                                       const SwitchingPrior& prior, bool R_estimated, const Bank& bank,
                                       LookAheadStage& stage) {
-  if (in.options.look_ahead == 1 || !validation.possible()) return std::nullopt;
-  if (BankCoordinates(bank, free_parameters(in, in.recording, prior, R_estimated, bank)).size() > most_coordinates)
+  if (!validation.possible() && in.options.folds > 1) return std::nullopt;
+  const std::optional<LookAhead> look = look_of(in, bank);
+  if (!look ||
+      BankCoordinates(bank, free_parameters(in, in.recording, prior, R_estimated, bank)).size() > most_coordinates)
     return std::nullopt;
-  const FilterOptions filter = learning_filter(in.filter);
-  std::vector<Bank> banks = chosen.of_splits;
-  for (Bank& of_split : banks) of_split.noise_adaptation = bank.noise_adaptation;
-  stage.score_before = validation.score(banks);
-  tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
-    const SplitData& split = validation.splits()[s];
-    SwitchingPrior of_split =
-        prior_of_split(in, split, {"", switching_model(banks[s]), chosen.noise_transitions, chosen.theta_transitions});
-    of_split = with_guard(std::move(of_split), split.transitions, chosen.guard);
-    banks[s] = taken_on({split.runs.training, filter, of_split, in.options.one_theta, in.options.look_ahead}, in,
-                        R_estimated, banks[s]);
-  });
-  stage.score = validation.score(banks);
-  if (!(stage.score > stage.score_before + in.options.tuning.least_gain)) return std::nullopt;
-  stage.taken = true;
-  return without_errors(
-      taken_on({in.recording, filter, prior, in.options.one_theta, in.options.look_ahead}, in, R_estimated, bank));
+  const LookAheadFit fit{in, *look, R_estimated};
+  stage.of_errors = look->counts_errors();
+  stage.taken = !validation.possible() || gains(fit, validation, chosen, bank, stage);
+  if (!stage.taken) return std::nullopt;
+  return without_errors(fit.taken_on(in.recording, prior, bank));
 }
 
 }  // namespace modebank

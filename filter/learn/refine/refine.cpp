@@ -76,7 +76,7 @@ CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& b
   validation.consider(
       all_starts(in, banks, validation.possible() ? tuning.Q_transitions : tuning.Q_transitions_unvalidated));
   if (validation.possible()) validation.consider(other_priors(validation.chosen().start, tuning));
-  if (validation.possible() && in.options.look_ahead > 1 && !in.options.one_theta &&
+  if (validation.possible() && in.options.densities_ahead() > 1 && !in.options.one_theta &&
       validation.chosen().start.model.modes() > 1)
     validation.consider(towards_one_motion(validation.chosen().start, tuning));
   return validation;

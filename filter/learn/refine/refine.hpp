@@ -18,6 +18,7 @@ struct LookAheadStage {
   double score_before = 0.0;  ///< mean look-ahead score of the runs left out [nats per sample]
   double score = 0.0;         ///< the same of the fits taken on; equal to the other where that was not tried
   bool taken = false;
+  bool of_errors = false;  ///< scores are minus half of mean squared errors, in no unit
 };
 
 struct Refinement {

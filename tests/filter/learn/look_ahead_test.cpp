@@ -14,6 +14,7 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/global_model.hpp"
 #include "tests/filter/filter_test_support.hpp"
+#include "tests/filter/free_run_test_support.hpp"
 #include "tests/filter/learn/refine_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -31,8 +32,8 @@ TEST(LookAhead, OneSampleIsTheLikelihoodBitForBit) {
   Trajectory run = simulate_bank(bank, 150, 3);
   run.state(0, 40) = not_a_number;
   for (const FilterOptions& options : {FilterOptions{}, test::adaptive_imm()}) {
-    EXPECT_EQ(look_ahead_likelihood(bank, run, options, 1), log_likelihood(bank, run, options));
-    const Eigen::VectorXd ahead = look_ahead_densities(bank, run, options, 1), one = log_densities(bank, run, options);
+    EXPECT_EQ(look_ahead_score(bank, run, options, {}), log_likelihood(bank, run, options));
+    const Eigen::VectorXd ahead = look_ahead_scores(bank, run, options, {}), one = log_densities(bank, run, options);
     EXPECT_TRUE(((ahead.array() == one.array()) || (ahead.array().isNaN() && one.array().isNaN())).all());
   }
 }
@@ -49,10 +50,44 @@ TEST(LookAhead, IsTheMeanOfTheHorizonsDensities) {
     for (Index k = 1; k < run.samples(); ++k)
       for (Index j = 2; j <= std::min(h, k); ++j)
         if ((k - j) % stride == 0) expected(k) += static_cast<double>(stride) * density(j - 1, k);
-    const Eigen::VectorXd counted = look_ahead_densities(bank, run, {}, h);
+    const Eigen::VectorXd counted = look_ahead_scores(bank, run, {}, {h});
     EXPECT_TRUE(near(counted.tail(89), expected.tail(89) / static_cast<double>(h), 1e-10)) << h;
   }
-  EXPECT_THROW(look_ahead_densities(bank, run, {}, 0), std::invalid_argument);
+  EXPECT_THROW(look_ahead_scores(bank, run, {}, {0}), std::invalid_argument);
+}
+
+TEST(LookAhead, OrMinusHalfTheSquaresOfTheHorizonsErrors) {
+  const Bank bank = example_bank(2, 1, 3);
+  const Trajectory run = simulate_bank(bank, 60, 5);
+  const LookAhead look{4, Eigen::Vector2d(0.5, 2.0)};
+  const HorizonEvaluation horizons = evaluate_horizons(bank, run, {}, {1, 2, 3, 4});
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(60);
+  for (Index k = 1; k < 60; ++k)
+    for (Index j = 1; j <= std::min<Index>(4, k); ++j)
+      expected(k) -=
+          0.5 / 4.0 *
+          horizons.error[static_cast<std::size_t>(j - 1)].col(k).cwiseQuotient(look.error_unit).squaredNorm();
+  EXPECT_TRUE(near(look_ahead_scores(bank, run, {}, look), expected, 1e-10));
+  EXPECT_NEAR(look_ahead_score(bank, run, {}, look), expected.sum(), 1e-9);
+}
+
+TEST(LookAhead, OfLaggedModelsIsThePlainRecursions) {
+  const LinearStructure s{1, 1, true, 3, 2};
+  const Eigen::VectorXd theta = test::stable_theta(s);
+  const Trajectory run = test::any_run(s, 50);
+  const Index h = 9, stride = look_ahead_stride(h);
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(50);
+  for (Index origin = s.first_transition(); origin + 1 < 50; origin += stride) {
+    Eigen::VectorXd y = run.state.row(0).transpose();
+    for (Index k = origin + 1; k < std::min<Index>(50, origin + h + 1); ++k) {
+      Eigen::VectorXd z(6);
+      z << y(k - 1), y(k - 2), y(k - 3), run.input(0, k - 1), run.input(0, k - 2), 1.0;
+      y(k) = y(k - 1) + theta.dot(z);
+      expected(k) -= 0.5 * static_cast<double>(stride) / static_cast<double>(h) * std::pow(run.state(0, k) - y(k), 2);
+    }
+  }
+  const LookAhead look{h, Eigen::VectorXd::Ones(1)};
+  EXPECT_TRUE(near(look_ahead_scores(test::arx_bank(s, theta), run, {}, look), expected, 1e-10));
 }
 
 /// Largest eigenvalue of the second moments' operator as one matrix: its blocks are T_ij (F_i (x) F_i).
@@ -164,6 +199,29 @@ TEST(LookAheadFit, PredictsFartherOnRunsItHasNotSeen) {
     return sum / static_cast<double>(recording.transitions(Role::test));
   };
   EXPECT_GT(score(8), score(1) + 0.05);
+}
+
+TEST(LookAheadFit, ByErrorsFindsTheSystemBehindNoiseThatIsNoStates) {
+  const Recording recording = measured_with_noise(11, 12);
+  const WindowFits fits = test::windows_of(recording, 25, 5);
+  RefineOptions options = quick();
+  options.measurement_noise = false;
+  const auto pole_and_gain = [&](Index look_ahead, Index folds) {
+    options.look_ahead = look_ahead;
+    options.look_ahead_score = look_ahead > 1 ? LookAheadScore::error : LookAheadScore::density;
+    options.folds = folds;
+    const Refinement refined = refine_bank(recording, fits, {start_bank(recording, fits.global.theta)}, options, {});
+    EXPECT_EQ(refined.look_ahead.taken, look_ahead > 1);
+    const Mode& mode = refined.bank.modes.front();
+    const double one_step = mode.Q(0, 0);
+    EXPECT_GT(one_step, 0.25) << "Q is what is left one step ahead, all noise together";
+    EXPECT_LT(one_step, 0.6);
+    return Eigen::Vector2d(mode.model.A(0, 0), mode.model.B(0, 0));
+  };
+  const Eigen::Vector2d truth(-0.05, 0.1);
+  EXPECT_GT((pole_and_gain(1, 3) - truth).norm(), 0.2) << "errors in variables";
+  EXPECT_LT((pole_and_gain(40, 3) - truth).norm(), 0.02);
+  EXPECT_LT((pole_and_gain(40, 1) - truth).norm(), 0.02) << "asks nobody";
 }
 
 }  // namespace

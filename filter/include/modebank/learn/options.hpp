@@ -65,6 +65,14 @@ struct DriftOptions {
   double leak = 1.0;        ///< for Drift::fixed: what a step leaves of the difference from the mode's, in (0, 1]
 };
 
+/// What learning that looks ahead counts of a prediction: its log density, or its squared error.
+enum class LookAheadScore { density, error };
+
+template <>
+struct EnumNames<LookAheadScore> {
+  static constexpr Names<2> values{"density", "error"};
+};
+
 /// How a bank is refined. Defaults are the recommended method.
 struct RefineOptions {
   std::ptrdiff_t max_iterations = 100;  ///< of expectation-maximisation
@@ -76,7 +84,8 @@ struct RefineOptions {
   std::ptrdiff_t members = 1;           ///< fits from different starts that become one bank at most, if the runs left
                                         ///< out like it
   std::ptrdiff_t look_ahead = 1;        ///< samples: fits are judged by predictions 1 to so many samples ahead
-  std::ptrdiff_t folds = 6;             ///< parts of the cross-validation; 1: none, every start runs to convergence
+  LookAheadScore look_ahead_score = LookAheadScore::density;  ///< density: of starts, modes and iterations, too
+  std::ptrdiff_t folds = 6;       ///< parts of the cross-validation; 1: none, every start runs to convergence
   bool measurement_noise = true;  ///< R by maximum likelihood of the filter on the training runs; false: the start's R
   bool screen = true;             ///< take unstable, starved and duplicate modes out
   bool guards = false;            ///< switches may see state and input (TransitionSource::logit)
@@ -86,6 +95,9 @@ struct RefineOptions {
   RefineTuning tuning;            ///< what has no key in configurations
   std::ptrdiff_t transitions = 200000;  ///< learn from so many at most, stretches of the runs drawn with the seed; 0:
                                         ///< from all
+
+  /// How far ahead densities decide.
+  std::ptrdiff_t densities_ahead() const { return look_ahead_score == LookAheadScore::density ? look_ahead : 1; }
 };
 
 /// How a mixture of windows becomes a bank. Defaults are the recommended method.
