@@ -10,6 +10,7 @@
 #include "app/cli/command_table.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
+#include "app/study/launch/shell.hpp"
 #include "modebank/base/error.hpp"
 
 namespace po = boost::program_options;
@@ -73,8 +74,11 @@ std::string program_as_called(const std::string& typed) {
   return by_name ? std::filesystem::path(typed).filename().string() : shell_quoted(typed);
 }
 
+/// Behind it all words are files, whatever they look like.
+const std::string end_of_options = "--";
+
 bool takes_a_value(const po::options_description& description, const std::string& word) {
-  if (word.rfind("--", 0) != 0) return false;
+  if (word.rfind("--", 0) != 0 || word == end_of_options) return false;
   const po::option_description* option = description.find_nothrow(word.substr(2), false);
   return option && option->semantic()->max_tokens() > 0;
 }
@@ -84,7 +88,7 @@ bool takes_a_value(const po::options_description& description, const std::string
 bool is_option(const po::options_description& description, const std::string& word) {
   const std::string key = word.substr(0, word.find('='));
   const std::string name = key.find('.') == std::string::npos ? word : key;
-  return name.rfind("--", 0) == 0 && description.find_nothrow(name.substr(2), false);
+  return name.rfind("--", 0) == 0 && name != end_of_options && description.find_nothrow(name.substr(2), false);
 }
 
 /// The words with each key and its value as Boost takes them for what they are, whatever the value holds: --key=value,
@@ -99,6 +103,10 @@ std::vector<std::string> joined_values(int argc, const char* const* argv, const 
   };
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
+    if (word == end_of_options) {
+      words.insert(words.end(), argv + i, argv + argc);
+      break;
+    }
     const auto equal_sign = word.find('=');
     if (word.rfind("--", 0) == 0 && equal_sign != std::string::npos)
       push(word.substr(0, equal_sign), word.substr(equal_sign + 1));
@@ -114,9 +122,7 @@ std::vector<std::string> joined_values(int argc, const char* const* argv, const 
 
 }  // namespace
 
-std::string shell_quoted(const std::string& word) {
-  return word.find_first_of(" \t*|'\"#$&;()<>") == std::string::npos ? word : "'" + word + "'";
-}
+std::string shell_quoted(const std::string& word) { return shell_word(word); }
 
 CommandLine parse_command_line(int argc, const char* const* argv) {
   CommandLine line;

@@ -105,7 +105,7 @@ std::vector<Command> commands_to_identify() {
        "run a chain for many settings, on one machine or on a Slurm cluster",
        "Plans, runs and merges; what is done is not done again. --study.stage does one step.",
        "modebank study robot.ini --study.vary 'window.length = 20 | 40 | 80'",
-       {"data", "window", "mixture", "bank", "filter", "archive", "job", "study"},
+       {"data", "window", "mixture", "bank", "filter", "job", "study"},
        written,
        run_study},
       {"Identify",
@@ -114,7 +114,7 @@ std::vector<Command> commands_to_identify() {
        "write runs with known truth, in a layout that run reads",
        "",
        "modebank simulate vehicle.ini",
-       {"data", "job", "simulate"},
+       {"data.state", "data.input", "job", "simulate"},
        written,
        run_simulate},
   };
@@ -161,7 +161,8 @@ std::vector<Command> commands_to_use() {
        "sample each; a state that was not measured stays empty. Lines out: the estimate, its interval, the modes' "
        "probabilities, the prediction for the next sample, an alarm.",
        "modebank track robot.h5 < log.csv",
-       {"data", "filter", "track", "job"},
+       {"data.time", "data.state", "data.input", "filter.variant", "filter.noise", "filter.parameter_noise",
+        "filter.time_steps", "track"},
        {},
        run_track},
       {"Use",
@@ -177,7 +178,8 @@ std::vector<Command> commands_to_use() {
         {"horizon", "H", "steps from there on, short for --filter.simulate_horizon"},
         {"filter", "NAME", "which model, short for --track.filter"},
         output("FILE", "CSV file (standard output)")},
-       run_predict},
+       run_predict,
+       {"data.truth", "data.weight", "data.label", "filter.horizon", "filter.smooth"}},
       {"Use",
        "export",
        "ARCHIVE --to FORM",
@@ -233,15 +235,35 @@ std::vector<Command> commands_about() {
   };
 }
 
-/// "-o" and "--window.length x" are refused alike where nothing would read them.
-[[noreturn]] void refuse(const Command& command, const std::string& option) {
+/// The key that says where a command writes what it has no -o for; empty where it has none.
+std::string output_key(const Command& command) {
+  for (const char* key : {"archive.output", "study.output", "simulate.output"})
+    if (command.reads(key)) return key;
+  return {};
+}
+
+/// What it has in place of an option that it does not read.
+std::string instead_of(const Command& command, const std::string& option) {
+  const std::string key = option == "output" ? output_key(command) : "";
+  return key.empty() ? "" : fmt::format("--{} PATH says where it writes; ", key);
+}
+
+/// "--data.*, --track.filter", and of the sections what is left out.
+std::string known_words(const Command& command) {
   std::vector<std::string> known;
   for (const CommandOption& each : command.options) known.push_back("--" + each.long_name());
   for (const std::string& keys : command.keys)
     known.push_back(keys.find('.') == std::string::npos ? "--" + keys + ".*" : "--" + keys);
-  throw ConfigurationError(
-      fmt::format("{0} does not read --{1}; {2} (modebank help {0})", command.name, option,
-                  known.empty() ? "it has no options" : fmt::format("it reads {}", fmt::join(known, ", "))));
+  if (known.empty()) return "it has no options";
+  const std::string but =
+      command.not_keys.empty() ? "" : fmt::format(", but for --{}", fmt::join(command.not_keys, ", --"));
+  return fmt::format("it reads {}{}", fmt::join(known, ", "), but);
+}
+
+/// "-o" and "--window.length x" are refused alike where nothing would read them.
+[[noreturn]] void refuse(const Command& command, const std::string& option) {
+  throw ConfigurationError(fmt::format("{0} does not read --{1}; {2}{3} (modebank help {0})", command.name, option,
+                                       instead_of(command, option), known_words(command)));
 }
 
 }  // namespace
@@ -254,6 +276,7 @@ std::string CommandOption::typed() const {
 }
 
 bool Command::reads(const std::string& key) const {
+  if (std::find(not_keys.begin(), not_keys.end(), key) != not_keys.end()) return false;
   return std::any_of(keys.begin(), keys.end(),
                      [&](const std::string& known) { return key == known || key.rfind(known + ".", 0) == 0; });
 }

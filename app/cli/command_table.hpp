@@ -28,6 +28,7 @@ struct Command {
   std::vector<std::string> keys;  ///< sections, or single keys, of the configuration that it reads
   std::vector<CommandOption> options;
   int (*run)(const CommandLine&);
+  std::vector<std::string> not_keys = {};  ///< keys of those sections that it does not read after all
 
   bool reads(const std::string& key) const;
   const CommandOption* find_option(const std::string& long_name) const;

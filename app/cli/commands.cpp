@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/chain/build_info.hpp"
@@ -19,6 +20,8 @@ namespace modebank::app {
 namespace {
 
 void print_help(const CommandLine& line) {
+  if (line.markdown && !line.files.empty())
+    throw ConfigurationError("help --markdown is a table of all keys, and takes no name: " + line.files.front());
   // `run --help` and `help run` are the same.
   std::vector<std::string> names = line.files;
   if (line.help) names.assign(!line.command.empty(), line.command);
@@ -30,6 +33,7 @@ void print_help(const CommandLine& line) {
 }
 
 void print_version(const CommandLine& line) {
+  if (!line.version && !line.files.empty()) throw ConfigurationError("version takes no name: " + line.files.front());
   print_text(line, fmt::format("modebank {} ({})\n", build_info::version, build_info::git_revision));
   print_json(line, {{"revision", build_info::git_revision}});
 }
@@ -64,13 +68,18 @@ namespace {
 
 using nlohmann::json;
 
+/// A problem behind the name of its file, which most begin with already.
+std::string named_problem(const std::string& file, const std::string& what) {
+  return what.rfind(file + ": ", 0) == 0 ? what : fmt::format("{}: {}", file, what);
+}
+
 /// Of one archive or study: its problems, and what else there is to say.
 json report_archive(const CommandLine& line, const std::string& file) {
   const Verification result = verify_archive(file);
   if (result.ok()) print_text(line, fmt::format("{}: ok\n", file));
   json problems = json::array();
   for (const std::string& problem : result.problems) {
-    print_text(line, fmt::format("{}: {}\n", file, problem));
+    print_text(line, named_problem(file, problem) + "\n");
     problems.push_back({{"what", problem}});
   }
   return {{"file", file}, {"problems", problems}};
@@ -81,7 +90,7 @@ json report_study(const CommandLine& line, const std::string& folder) {
   json problems = json::array();
   for (const StudyProblem& problem : result.problems) {
     const bool removed = line.repair && problem.removable;
-    print_text(line, fmt::format("{}: {}{}{}\n", problem.file.string(), problem.what,
+    print_text(line, fmt::format("{}{}{}\n", named_problem(problem.file.string(), problem.what),
                                  problem.redo.empty() ? "" : "; to redo: " + problem.redo, removed ? "; removed" : ""));
     problems.push_back(
         {{"file", problem.file.string()}, {"what", problem.what}, {"redo", problem.redo}, {"removed", removed}});
@@ -96,6 +105,8 @@ json report_study(const CommandLine& line, const std::string& folder) {
 
 int run_verify(const CommandLine& line) {
   if (line.files.empty()) throw ConfigurationError("verify needs at least one archive: modebank verify ARCHIVE...");
+  if (line.repair && std::none_of(line.files.begin(), line.files.end(), is_study_folder))
+    throw ConfigurationError("--repair: verify repairs folders of studies alone; " + line.files.front() + " is none");
   json files = json::array();
   bool all_good = true;
   for (const std::string& file : line.files) {

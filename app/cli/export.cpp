@@ -150,6 +150,16 @@ const std::map<std::string, json (*)(const CommandLine&)> forms{{"c", export_c},
                                                                 {"csv", export_csv}, {"json", export_json},
                                                                 {"mat", export_mat}, {"ros2", export_ros2}};
 
+/// Options that belong to one form.
+void check_form_options(const CommandLine& line) {
+  const std::map<std::string, std::string> belongs{
+      {"table", "csv"}, {"float", "c"}, {"wheel_separation_m", "ros2"}, {"wheel_radius_m", "ros2"}};
+  for (const std::string& option : line.given)
+    if (const auto only = belongs.find(option); only != belongs.end() && only->second != line.exported.to)
+      throw ConfigurationError(
+          fmt::format("--{} belongs to export --to {}, not to --to {}", option, only->second, line.exported.to));
+}
+
 }  // namespace
 
 int run_export(const CommandLine& line) {
@@ -159,6 +169,7 @@ int run_export(const CommandLine& line) {
         fmt::format("export needs one archive and one of the forms json, mat, c, casadi, ros2 and csv{}: modebank "
                     "export ARCHIVE --to FORM",
                     line.exported.to.empty() || form != forms.end() ? "" : ", not " + line.exported.to));
+  check_form_options(line);
   json result = form->second(line);
   result["form"] = line.exported.to;
   print_json(line, result);

@@ -82,8 +82,9 @@ std::string keys_of(const Command& command) {
       text += row("--" + option.key, fmt::format("{} (default: {})", option.range, default_of(option)), key_width);
   constexpr int most_on_a_screen = 24;
   if (count > most_on_a_screen) text.clear();
-  return fmt::format("\nConfiguration keys, as options they win over the file\n{}  all of them: modebank help {}\n",
-                     text, fmt::join(command.keys, " "));
+  const std::string all = fmt::format("all of them: modebank help {}", fmt::join(command.keys, " "));
+  return fmt::format("\nConfiguration keys, as options they win over the file\n{}  {}\n", text,
+                     fmt::join(filled(all, help_width - 4), "\n    "));
 }
 
 std::string command_text(const Command& command) {

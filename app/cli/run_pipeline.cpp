@@ -115,6 +115,15 @@ Result identify_many(const Config& config, const Chain& chain, const Archive& da
   return {data_text(*data.recording) + windows_text(common, counts, labels) + archive_line(config), written(config)};
 }
 
+/// A stored bank is judged as it is: options of how one is learned would change nothing.
+void refuse_learning_options(const CommandLine& line, const Config& config) {
+  if (config.archive.bank.empty()) return;
+  for (const auto& [key, value] : line.overrides)
+    if (key.starts_with("mixture.") || (key.starts_with("bank.") && key != "bank.mode_names"))
+      throw ConfigurationError(
+          fmt::format("--{}: with archive.bank nothing is learned, the bank is that of {}", key, config.archive.bank));
+}
+
 Stage last_stage(const std::string& command) {
   return command == "identify" ? Stage::windows : command == "cluster" ? Stage::mixture : Stage::bank_scores;
 }
@@ -148,6 +157,7 @@ Result do_pipeline(const CommandLine& line) {
         fmt::format("{} needs one configuration file: modebank {} CONFIG", line.command, line.command));
   const Config config = load_valid_config(line.files.front(), line.overrides);
   check_request(line.command, config, line.files.front());
+  refuse_learning_options(line, config);
   if (line.dry_run) return dry_run(config, {config.archive.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   const ProgressMeter meter(!line.quiet);

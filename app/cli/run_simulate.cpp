@@ -80,7 +80,7 @@ Result do_simulate(const CommandLine& line) {
     throw ConfigurationError("simulate needs one configuration file: modebank simulate CONFIG");
   const Config config = load_config(line.files.front(), line.overrides);
   check_keys_apply(config);
-  if (line.dry_run) return dry_run(config, {config.simulate.output});
+  if (line.dry_run) return dry_run({}, {config.simulate.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   simulate_system(config);
   const SimulationOptions& made = config.simulate.system;

@@ -39,6 +39,9 @@ int run_view(const CommandLine& line) {
     throw ConfigurationError("view needs an archive or a folder of archives: modebank view ARCHIVE|FOLDER");
   const std::string& what = line.files.front();
   if (line.json) {
+    for (const std::string& option : line.given)
+      if (option == "open" || option == "port")
+        throw ConfigurationError(fmt::format("--{}: view --json prints and stops, so nothing is served", option));
     print_json(line, view::digest_of(what));
     return 0;
   }
