@@ -19,7 +19,6 @@
 #include "app/cli/track_watchdog.hpp"
 #include "app/config/config_file.hpp"
 #include "filter/step/alarm.hpp"
-#include "filter/step/equations/bounds.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
@@ -168,17 +167,10 @@ class Tracker {
     }
     if (kind == SampleReader::Line::sample && comes_in_time(reader_.sample().time_s) &&
         is_taken(reader_.sample().time_s)) {
-      tell_overlarge(reader_.sample().measurement);
+      for (const std::string& remark : reader_.remarks())
+        messages_.say(fmt::format("line {}: {}", line_number_, remark));
       step(reader_.sample());
     }
-  }
-
-  void tell_overlarge(const Eigen::VectorXd& measurement) {
-    for (Eigen::Index i = 0; i < measurement.size(); ++i)
-      if (std::isfinite(measurement(i)) && is_missing(measurement(i)))
-        messages_.say(fmt::format("line {}: {} = {} is beyond {:g}, and taken as missing", line_number_,
-                                  config_.data.state[static_cast<std::size_t>(i)], measurement(i),
-                                  largest_measurement));
   }
 
   bool is_gap(double from_s, double to_s) const {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "filter/step/equations/bounds.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "io/import/csv.hpp"
 #include "io/table/number.hpp"
@@ -24,12 +25,29 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+/// Where a field that begins at `start` ends: at a comma that is not within quotes.
+std::size_t end_of_field(std::string_view line, std::size_t start) {
+  const std::size_t first = line.find_first_not_of(" \t", start);
+  if (first == std::string_view::npos || line[first] != '"') return line.find(',', start);
+  std::size_t quote = line.find('"', first + 1);
+  while (quote != std::string_view::npos && quote + 1 < line.size() && line[quote + 1] == '"')
+    quote = line.find('"', quote + 2);
+  return line.find(',', quote == std::string_view::npos ? start : quote);  // quotes that nobody closed are text
+}
+
+/// Of a quoted name the quotes inside, which are written twice.
+std::string unquoted(std::string_view field) {
+  std::string name(field);
+  for (std::size_t k = name.find("\"\""); k != std::string::npos; k = name.find("\"\"", k + 1)) name.erase(k, 1);
+  return name;
+}
+
 /// Calls visit(position, field) for every field of a CSV line; returns how many there were.
 template <class Visit>
 std::size_t for_each_field(std::string_view line, Visit visit) {
   std::size_t position = 0;
   for (std::size_t start = 0;; ++position) {
-    const std::size_t comma = line.find(',', start);
+    const std::size_t comma = end_of_field(line, start);
     visit(position, trimmed(line.substr(start, comma == std::string_view::npos ? comma : comma - start)));
     if (comma == std::string_view::npos) return position + 1;
     start = comma + 1;
@@ -103,7 +121,7 @@ SampleReader::Line SampleReader::read(std::string_view line) {
 
 SampleReader::Line SampleReader::read_header(std::string_view line) {
   std::vector<std::string> names;
-  fields_ = for_each_field(line, [&](std::size_t, std::string_view field) { names.emplace_back(field); });
+  fields_ = for_each_field(line, [&](std::size_t, std::string_view field) { names.push_back(unquoted(field)); });
   std::vector<std::size_t> positions;
   for (std::size_t i = 0; i < slots(); ++i) positions.push_back(column_position("standard input", names, name(i)));
   positions_ = std::move(positions);
@@ -137,8 +155,17 @@ bool SampleReader::read_json(std::string_view line) {
   return true;
 }
 
+void SampleReader::leave_out(double& value, const std::string& name, const char* instead) {
+  if (!std::isfinite(value) || !is_missing(value)) return;
+  remarks_.push_back(fmt::format("{} = {} is beyond {:g}, and {}", name, value, largest_measurement, instead));
+  value = not_a_number;
+}
+
 /// A missing input is the last known one, as the command that still acts.
 SampleReader::Line SampleReader::accept() {
+  remarks_.clear();
+  for (std::size_t i = 1; i < slots(); ++i)
+    leave_out(slot(i), name(i), i <= columns_.inputs.size() ? "the last known one still acts" : "taken as missing");
   if (!std::isfinite(next_.time_s)) return malformed(fmt::format("{} is missing", columns_.time));
   for (Eigen::Index i = 0; i < next_.input.size(); ++i) {
     if (std::isfinite(next_.input(i))) continue;

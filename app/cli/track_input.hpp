@@ -36,6 +36,8 @@ class SampleReader {
   /// What acts where the next sample misses an input: that of a sample before the first line.
   void remember(const Eigen::VectorXd& input);
   const std::string& reason() const { return reason_; }
+  /// Of the last sample's numbers those that are too large to reckon with, and what becomes of them.
+  const std::vector<std::string>& remarks() const { return remarks_; }
   LineFormat format() const { return format_; }
 
  private:
@@ -45,6 +47,7 @@ class SampleReader {
   std::vector<std::size_t> positions_;  ///< in a CSV line: time, inputs, states; empty before the header
   std::size_t fields_ = 0;              ///< per CSV line
   std::string reason_;
+  std::vector<std::string> remarks_;
   bool any_input_ = false;
 
   Line malformed(std::string reason);
@@ -56,6 +59,8 @@ class SampleReader {
   const std::string& name(std::size_t i) const;
   std::size_t slots() const { return 1 + columns_.inputs.size() + columns_.states.size(); }
   Line accept();
+  /// Of a number that no filter can reckon with: it is missing.
+  void leave_out(double& value, const std::string& name, const char* instead);
 };
 
 }  // namespace modebank::app

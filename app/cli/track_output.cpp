@@ -4,6 +4,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "app/study/answers/csv_field.hpp"
+
 namespace modebank::app {
 
 namespace {
@@ -37,7 +39,9 @@ void EstimateWriter::header(fmt::memory_buffer& out) const {
   if (json_) return;
   auto to = std::back_inserter(out);
   fmt::format_to(to, "time,steps");
-  for (const std::string& s : states_) fmt::format_to(to, ",{0}_predicted,{0}_lower,{0}_upper,{0},{0}_sd", s);
+  for (const std::string& s : states_)
+    for (const char* what : {"_predicted", "_lower", "_upper", "", "_sd"})
+      fmt::format_to(to, ",{}", csv_field(s + what));
   fmt::format_to(to, ",nis,log_density,alarm,mode");
   for (Index j = 0; j < modes_; ++j) fmt::format_to(to, ",p{}", j);
   fmt::format_to(to, "\n");

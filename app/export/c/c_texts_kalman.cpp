@@ -7,7 +7,7 @@ const char* const steps_repeat = R"c(/* ---- Samples ---- */
 /* Model steps from one time to the next; without a clock one. */
 static int steps_between(double from_s, double to_s) {
   const double periods = (to_s - from_s) / DT_S;
-  if (!(to_s - from_s >= 1.25 * DT_S) || !isfinite(periods)) return 1;
+  if (!(to_s - from_s >= 1.25 * DT_S) || isnan(periods)) return 1;
   if (periods >= LONGEST_GAP + 1) return LONGEST_GAP + 1;
   return (int)(periods + 0.5);
 }

@@ -21,7 +21,7 @@ SampleFeed::SampleFeed(const Bank& bank, TimeSteps time_steps)
       measurements_(Eigen::MatrixXd::Zero(bank.C.rows(), bank.structure.state_lags)) {}
 
 Index SampleFeed::whole_steps(double periods, TimeSteps time_steps) {
-  if (time_steps == TimeSteps::single || !std::isfinite(periods)) return 1;
+  if (time_steps == TimeSteps::single || std::isnan(periods)) return 1;
   return std::lround(std::clamp(periods, 1.0, static_cast<double>(longest_gap_steps + 1)));
 }
 

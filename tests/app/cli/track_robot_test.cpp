@@ -107,6 +107,26 @@ TEST_F(TrackRobot, Finding_D7_TellsOfAMeasurementThatCountsAsMissing) {
 
 /// Every kill at another distance from the last checkpoint; inputs are missing here and there. What the processes
 /// wrote, each cut where the next says it goes on, is what one process writes.
+/// The command that still acts is the last that was one.
+TEST_F(TrackRobot, TellsOfAnInputThatIsNoNumberToReckonWith) {
+  const char* const header = "time,wz,left,right\\n0,0.1,0.1,0.2\\n0.1,0.2,0.1,0.2\\n";
+  const std::string before = header;
+  const ProgramResult held = shell("printf '" + before + "0.2,0.2,0.1,0.2\\n' | $M track out.h5");
+  const ProgramResult wild = shell("printf '" + before + "0.2,0.2,1e200,0.2\\n' | $M track out.h5");
+  EXPECT_EQ(wild.out, held.out);
+  EXPECT_THAT(wild.err, HasSubstr("line 4: left = 1e+200 is beyond 1e+30, and the last known one still acts"));
+}
+
+TEST_F(TrackRobot, AStampBeyondAllOthersIsAGap) {
+  const ProgramResult result = shell(
+      "printf 'time,wz,left,right\\n0,0.1,0.1,0.2\\n0.1,0.2,0.1,0.2\\n1e308,0.2,0.1,0.2\\n0.2,0.2,0.1,0.2\\n' | $M "
+      "track "
+      "out.h5");
+  EXPECT_THAT(result.out, HasSubstr("\n1e+308,0,"));
+  EXPECT_THAT(result.out, HasSubstr("\n0.2,1,"));
+  EXPECT_THAT(result.err, HasSubstr("which follows 0.1 s: the filter goes on from there"));
+}
+
 TEST_F(TrackRobot, WritesTheSameBitsThroughKillsAsWithoutThem) {
   std::vector<std::string> samples = lines("run_01.csv");
   for (std::size_t k = 3; k < samples.size(); k += 7)  // the last field, an input, is missing
