@@ -39,19 +39,23 @@ void refuse_constant_states(const Recording& recording) {
   }
 }
 
-std::string open_effects(const Recording& recording, const FitOptions& options) {
-  if (!is_linear(options)) return {};
-  const LinearStructure structure = linear_structure(recording.state_count(), recording.input_count(), options);
+std::string open_effects(const Recording& recording, const LinearStructure& structure) {
   const std::vector<Index> open = open_regressors(recording, structure);
   if (open.empty()) return {};
   std::vector<std::string> labels = regressor_labels(structure, names_of(recording.states), names_of(recording.inputs));
   labels.emplace_back("the intercept");
   std::vector<std::string> named;
-  for (const Index j : open) named.push_back(labels[static_cast<std::size_t>(j)]);
+  for (const Index j : open)
+    named.push_back((j < structure.dimension() ? "the state " : "") + labels[static_cast<std::size_t>(j)]);
   return fmt::format(
       "not identifiable from the training runs: the effect of {}, which {} throughout; the other parameters keep their "
       "standard errors",
       fmt::join(named, ", "), named.size() == 1 ? "is zero" : "are zero or sums of multiples of each other");
+}
+
+std::string open_effects(const Recording& recording, const FitOptions& options) {
+  if (!is_linear(options)) return {};
+  return open_effects(recording, linear_structure(recording.state_count(), recording.input_count(), options));
 }
 
 }  // namespace modebank

@@ -14,6 +14,8 @@ namespace modebank {
 void refuse_constant_states(const Recording& recording);
 
 /// A line on regressors of the linear model that they leave open; empty: none.
+std::string open_effects(const Recording& recording, const LinearStructure& structure);
+/// The same of the model that is fitted.
 std::string open_effects(const Recording& recording, const FitOptions& options);
 
 }  // namespace modebank

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/chain/training_check.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/scale.hpp"
 #include "ident/lag/choice.hpp"
@@ -167,8 +168,17 @@ double repeated_inputs(const Material& material) {
   return most;
 }
 
+Recording training_of(const Material& material, const DataCheck& check) {
+  Recording training;
+  for (const ChannelSummary& summary : check.channels)
+    (summary.is_state ? training.states : training.inputs).push_back(summary.channel);
+  for (const Trajectory& part : material.parts)
+    if (part.role == Role::train) training.runs.push_back(part);
+  return training;
+}
+
 /// By the training runs alone: what is held out must not decide how it is looked at.
-void advise(const Material& material, DataCheck& check) {
+void advise(const Material& material, const Recording& training, DataCheck& check) {
   std::vector<double> inputs_hz, states_hz, jitter, time_constants;
   for (const RunReport& run : check.runs) {
     if (run.role != Role::train) continue;
@@ -182,9 +192,6 @@ void advise(const Material& material, DataCheck& check) {
   advice.rate_facts = {median_of(inputs_hz), median_of(states_hz), median_of(jitter), repeated_inputs(material),
                        median_of(time_constants)};
   advice.rate = advise_rate(advice.rate_facts);
-  Recording training;
-  for (const Trajectory& part : material.parts)
-    if (part.role == Role::train) training.runs.push_back(part);
   advice.length = advise_length(training.runs, material.structure);
   if (!training.runs.empty()) advice.loss = advise_loss(training, material.structure);
 }
@@ -197,15 +204,17 @@ Index longest_training_stretch(const Material& material) {
 }
 
 /// Why identification would fail; empty: it would not.
-std::string find_unusable(const DataCheck& check) {
+std::string find_unusable(const DataCheck& check, const Recording& training) {
   for (const RunReport& run : check.runs)
     if (!run.problem.empty()) return run.problem;
   if (check.longest_stretch < check.window_length)
     return fmt::format("the longest stretch of the training runs has {} transitions, fewer than one window",
                        check.longest_stretch);
-  for (const ChannelSummary& channel : check.channels)
-    if (channel.is_state && channel.values.levels == 1)
-      return fmt::format("the state {} is constant: {:g} in every sample", channel.channel.name, channel.values.least);
+  try {
+    refuse_constant_states(training);
+  } catch (const DataError& error) {
+    return error.what();
+  }
   return "";
 }
 
@@ -231,9 +240,11 @@ DataCheck check_data(const CheckOptions& options) {
   check_all_channels(options.data, material, check);
   check_runs(material, check);
   check_lags(options, material, check);
-  advise(material, check);
+  const Recording training = training_of(material, check);
+  advise(material, training, check);
   check.longest_stretch = longest_training_stretch(material);
-  check.unusable = find_unusable(check);
+  check.open_effects = open_effects(training, material.structure);
+  check.unusable = find_unusable(check, training);
   return check;
 }
 

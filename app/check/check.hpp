@@ -52,6 +52,7 @@ struct DataCheck {
   Advice advice;
   Index longest_stretch = 0;            ///< transitions without a gap in the training runs
   std::vector<std::string> dominating;  ///< lines on values that least squares would follow alone
+  std::string open_effects;             ///< a line on effects that the training runs leave open; empty: none
   std::string unusable;                 ///< why nothing can be identified; empty: something can
 };
 

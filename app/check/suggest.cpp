@@ -125,7 +125,7 @@ class Search {
   }
 
   void try_rate() {
-    if (wanted_hz() == held().rate_hz || !has_times()) return;
+    if (wanted_hz() == held().rate_hz || wanted_hz() > highest_rate_hz || !has_times()) return;
     Settings to = held();
     to.rate_hz = wanted_hz();
     DataCheck then = checked(to, to.lag_s);

@@ -53,6 +53,8 @@ void Adviser::done(Stage stage, const Archive& archive) const {
     for (const std::string& text : selection_warnings(archive.mixture->candidates)) warning("mixture: " + text);
   if (const std::string text = refinement_warning(archive.measured_fit); stage == Stage::bank && !text.empty())
     warning("refine: " + text);
+  if (stage == Stage::bank_scores)
+    if (const std::string text = unscored_warning(archive); !text.empty()) warning("scores: " + text);
 }
 
 void Adviser::warn_of_windows(const WindowFits& windows, const WindowCounts& counts) const {

@@ -49,6 +49,7 @@ std::vector<std::string> headings_of(const GainNames& gains) {
 /// With all decays of each, or the slowest alone.
 std::vector<ModeTable::Row> rows_of(const Archive& archive, const std::vector<UsedMode>& modes, bool all_decays) {
   const std::vector<bool> open = open_gains(archive, archive.bank->structure);
+  const bool no_decays = open_decays(archive, archive.bank->structure);
   std::vector<ModeTable::Row> rows;
   for (const UsedMode& used : modes) {
     ModeDynamics dynamics = mode_dynamics(*archive.bank, used.mode);
@@ -57,7 +58,8 @@ std::vector<ModeTable::Row> rows_of(const Archive& archive, const std::vector<Us
     for (const Decay& decay : dynamics.decays) times.push_back(decay_words(decay));
     ModeTable::Row row{used.mode,
                        {heading(mode_cell(archive.mode_names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
-                        seconds(used.stay_s), per_sample_words(dynamics.decays), boost::algorithm::join(times, "; ")}};
+                        seconds(used.stay_s), no_decays ? "-" : per_sample_words(dynamics.decays),
+                        no_decays ? not_identifiable : boost::algorithm::join(times, "; ")}};
     const std::vector<std::string> gains = gain_cells(dynamics, open);
     row.cells.insert(row.cells.end(), gains.begin(), gains.end());
     rows.push_back(std::move(row));
@@ -104,9 +106,17 @@ std::vector<bool> open_parameters(const Archive& archive, const LinearStructure&
   return open;
 }
 
+bool open_decays(const Archive& archive, const LinearStructure& s) {
+  const std::vector<bool> parameters = open_parameters(archive, s);
+  for (Index i = 0; i < s.states; ++i)
+    for (Index j = 0; j < s.dimension(); ++j)
+      if (parameters[static_cast<std::size_t>(i * s.regressors() + j)]) return true;
+  return false;
+}
+
 std::vector<bool> open_gains(const Archive& archive, const LinearStructure& s) {
   const std::vector<bool> parameters = open_parameters(archive, s);
-  std::vector<bool> open(static_cast<std::size_t>(s.states * s.inputs), false);
+  std::vector<bool> open(static_cast<std::size_t>(s.states * s.inputs), open_decays(archive, s));
   for (Index i = 0; i < s.states; ++i)
     for (Index j = 0; j < s.acting_inputs(); ++j)
       if (parameters[static_cast<std::size_t>(i * s.regressors() + s.dimension() + j)])

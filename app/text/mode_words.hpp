@@ -29,6 +29,8 @@ std::vector<UsedMode> used_modes(const Archive& archive);
 inline constexpr const char* not_identifiable = "not identifiable";
 /// Per parameter of a linear model of that structure whether they do: it has no standard error in the global model.
 std::vector<bool> open_parameters(const Archive& archive, const LinearStructure& structure);
+/// Whether how fast a mode decays is open: the effect of a state is. Every gain rests on it.
+bool open_decays(const Archive& archive, const LinearStructure& structure);
 /// The same per gain (states x inputs, a state's in a row): some effect of the input on the state is open.
 std::vector<bool> open_gains(const Archive& archive, const LinearStructure& structure);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "mixture/criteria.hpp"
@@ -49,6 +50,33 @@ std::string stability_warning(const Bank& bank) {
       least);
 }
 
+std::string unscored_warning(const Archive& archive, double least_share) {
+  if (!archive.bank || !archive.recording) return "";
+  const Index start = archive.bank->structure.first_transition() + 1;
+  std::map<std::string, Index> scored;
+  for (const SummaryRow& row : archive.summary)
+    if (row.filter == "bank") scored[row.run] = row.samples;
+  Index all = 0, lost = 0, most = 0;
+  std::string worst;
+  for (const Trajectory& run : archive.recording->runs) {
+    const auto row = scored.find(run.run);
+    if (row == scored.end()) continue;
+    const Index measured = run.state.array().isFinite().colwise().any().count();
+    const Index unscored = std::max<Index>(0, measured - start - row->second);
+    all += measured;
+    lost += unscored;
+    if (unscored > most) most = unscored, worst = run.run;
+  }
+  if (lost == 0 || static_cast<double>(lost) < least_share * static_cast<double>(all)) return "";
+  return fmt::format(
+      "{} of {} measured samples have no score, most of them in run {}: the filter starts, and starts anew after a "
+      "long "
+      "gap, where {} whole samples follow each other",
+      lost, all, worst, archive.bank->structure.state_lags);
+}
+
+constexpr double many_unscored = 0.05;  // fewer are no reason to look at the warning before the result
+
 std::vector<std::string> archive_warnings(const Archive& archive) {
   std::vector<std::string> warnings;
   const auto add = [&](const std::vector<std::string>& more) {
@@ -64,6 +92,7 @@ std::vector<std::string> archive_warnings(const Archive& archive) {
     add({refined});
   if (const std::string unstable = archive.bank ? stability_warning(*archive.bank) : ""; !unstable.empty())
     add({unstable});
+  if (const std::string unscored = unscored_warning(archive, many_unscored); !unscored.empty()) add({unscored});
   return warnings;
 }
 

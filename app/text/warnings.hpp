@@ -26,6 +26,10 @@ std::string refinement_warning(MeasuredFit fit);
 /// That no mode of the bank is stable; empty where one is.
 std::string stability_warning(const Bank& bank);
 
+/// That the bank's filter said nothing of samples that were measured, for it starts where the samples that its lags
+/// need are whole; empty where it did, or for a smaller share of them. Those that every run starts with are not meant.
+std::string unscored_warning(const Archive& archive, double least_share = 0.0);
+
 /// Every warning of an archive: of its windows, mixture and bank. `show` prints each where it belongs.
 std::vector<std::string> archive_warnings(const Archive& archive);
 

@@ -4,6 +4,18 @@ namespace modebank {
 
 namespace {
 
+/// U+2028 .. U+202E and U+2066 .. U+2069, each three bytes of UTF-8: what makes a line read otherwise than it is.
+const char* misleading(std::string_view text) {
+  constexpr std::string_view first_bytes = "\xe2\x80", second_bytes = "\xe2\x81";
+  constexpr const char* first[]{"\\u2028", "\\u2029", "\\u202a", "\\u202b", "\\u202c", "\\u202d", "\\u202e"};
+  constexpr const char* second[]{"\\u2066", "\\u2067", "\\u2068", "\\u2069"};
+  if (text.size() < 3) return nullptr;
+  const auto last = static_cast<unsigned char>(text[2]);
+  if (text.starts_with(first_bytes) && last >= 0xa8 && last <= 0xae) return first[last - 0xa8];
+  if (text.starts_with(second_bytes) && last >= 0xa6 && last <= 0xa9) return second[last - 0xa6];
+  return nullptr;
+}
+
 std::string shown(std::string_view text, bool lines) {
   constexpr std::string_view digits = "0123456789abcdef";
   std::string result;
@@ -17,7 +29,10 @@ std::string shown(std::string_view text, bool lines) {
     // U+0080 .. U+009F, which terminals obey as well, are two bytes of UTF-8.
     const bool second_set =
         c == '\xc2' && i + 1 < text.size() && (static_cast<unsigned char>(text[i + 1]) & 0xe0) == 0x80;
-    if (second_set)
+    if (const char* const escaped = misleading(text.substr(i))) {
+      result += escaped;
+      i += 2;
+    } else if (second_set)
       add(static_cast<unsigned char>(text[++i]));
     else if (is_control(c) && !(lines && (c == '\n' || c == '\t')))
       add(static_cast<unsigned char>(c));

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "ident/base/nearest_name.hpp"
+#include "ident/base/printable.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -93,9 +94,10 @@ void ColumnFinder::fail(const std::string& column, const std::vector<std::size_t
   }
   for (const std::string& known : derived_->names()) all.push_back(known);
   const std::string meant = did_you_mean(column, all);
-  if (files.size() > 1) throw ConfigurationError(fmt::format("no column \"{}\"{}{}", column, meant, each));
-  throw ConfigurationError(fmt::format("{} has no column \"{}\"{}; columns: {}", names_[files.front()], column, meant,
-                                       listing(tables_[files.front()])));
+  if (files.size() > 1)
+    throw ConfigurationError(printable_name(fmt::format("no column \"{}\"{}{}", column, meant, each)));
+  throw ConfigurationError(printable_name(fmt::format("{} has no column \"{}\"{}; columns: {}", names_[files.front()],
+                                                      column, meant, listing(tables_[files.front()]))));
 }
 
 std::size_t ColumnFinder::source_with(const std::string& column, const std::vector<std::size_t>& files) {

@@ -1,6 +1,7 @@
 #include "io/import/import.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -146,6 +147,31 @@ void split_runs(std::vector<RunStreams>& runs, const DataOptions& options, std::
   check_run_names(run_names(runs));
 }
 
+/// What was measured of the joined runs, and how much of it is in none of their parts.
+class LeftOut {
+ public:
+  void count(const Trajectory& run, const std::vector<Trajectory>& parts) {
+    measured_ += measured(run);
+    for (const Trajectory& part : parts) kept_ += measured(part);
+  }
+  /// Empty where nothing is left out.
+  std::string note(const DataOptions& options) const {
+    if (kept_ == measured_) return "";
+    std::vector<std::string> reasons;
+    if (!options.where.empty()) reasons.emplace_back("data.where is not so");
+    if (options.missing == Missing::gap) reasons.emplace_back("values are missing beside them (data.missing = gap)");
+    if (options.missing == Missing::predict) reasons.emplace_back("no input is known before them");
+    reasons.emplace_back("they stand alone between gaps");
+    return fmt::format("{} of {} measured samples are left out: {}", measured_ - kept_, measured_,
+                       fmt::join(reasons, ", or "));
+  }
+
+ private:
+  Index measured_ = 0, kept_ = 0;
+
+  static Index measured(const Trajectory& run) { return run.state.array().isFinite().colwise().any().count(); }
+};
+
 /// After the roles are set: data.train and data.test name whole runs, or blocks of them.
 std::vector<Trajectory> without_missing_values(const Trajectory& run, const std::vector<bool>& kept, Missing missing,
                                                std::vector<std::string>& notes) {
@@ -192,15 +218,19 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory)
   auto& runs = data.recording.runs;
   Quanta quanta(options);
   LabelHolder labels;
+  LeftOut left_out;
   for (std::size_t i = 0; i < streams.size(); ++i) {
+    for (std::string& line : columns_without_value(streams[i], options)) data.notes.push_back(std::move(line));
     const Trajectory run = join_run(streams[i], options, data.lag ? data.lag->runs[i].applied() : InputClock{});
     quanta.look_at(streams[i], run);
     std::vector<Trajectory> parts =
         without_missing_values(run, kept_samples(streams[i], run), options.missing, data.notes);
+    left_out.count(run, parts);
     if (!options.label.empty()) labels.hold(streams[i].label, parts);
     std::move(parts.begin(), parts.end(), std::back_inserter(runs));
     streams[i] = {};
   }
+  if (const std::string note = left_out.note(options); !note.empty()) data.notes.push_back(note);
   sort_by_name(runs);
   check_run_names(run_names(runs));
   if (!options.label.empty()) {

@@ -28,7 +28,6 @@ void check_names(const char* key, const ColumnNames& names) {
 }
 
 void check_options(const DataOptions& options) {
-  constexpr double highest_rate_hz = 1e6;
   if (options.state.empty()) throw ConfigurationError("data.state is not set: name the state columns");
   if (options.time.empty() && options.rate_hz == 0.0)
     throw ConfigurationError(

@@ -47,6 +47,9 @@ struct SplitOptions {
 };
 
 /// What to read and how: the [data] section.
+/// Of data.rate_hz.
+inline constexpr double highest_rate_hz = 1e6;
+
 struct DataOptions {
   std::string root;    ///< absolute prefix of relative patterns
   std::string inputs;  ///< one file per run; the part matched by * names the run (io/import/file_patterns.hpp)

@@ -31,16 +31,24 @@ void check_row(const RunStreams& run, const FileStream& source, const Eigen::Ref
                       place(source, k), name, values(k), largest_value, run.run));
 }
 
-/// Calls visit(run, source, k, value) for every value of a column in the training runs that data.where leaves.
+/// A column of the runs of a role.
+struct Column {
+  Role role;
+  bool of_states;
+  Index row;
+  std::string name;
+};
+
+/// Calls visit(run, source, k, value) for every value of a column that data.where leaves.
 template <class Visit>
-void for_each_value(const std::vector<RunStreams>& runs, bool of_states, Index row, Visit visit) {
+void for_each_value(const std::vector<RunStreams>& runs, const Column& column, Visit visit) {
   for (const RunStreams& run : runs) {
-    if (run.role != Role::train) continue;
-    const FileStream& source = of_states ? run.states : run.inputs;
+    if (run.role != column.role) continue;
+    const FileStream& source = column.of_states ? run.states : run.inputs;
     const Index N = source.stream.values.cols();
     const bool chosen = !run.where.empty() && run.where.front().values.size() == N;
     for (Index k = 0; k < N; ++k)
-      if (const double value = source.stream.values(row, k);
+      if (const double value = source.stream.values(column.row, k);
           std::isfinite(value) && !(chosen && run.where.front().values(k) == 0.0))
         visit(run, source, k, value);
   }
@@ -54,40 +62,45 @@ struct Furthest {
 
 /// The fewest that hold more than half of the spread, and stand far off all others; count 0: there are none so few.
 Furthest furthest_of(const VectorXd& values) {
-  constexpr Index fewest = 50, one_in = 1000;
+  constexpr Index fewest = 50, one_in = 1000, few = 5, one_in_short = 25;
   constexpr double half = 0.5, beyond = 10.0;
   Furthest found;
   if (values.size() < fewest) return found;
   found.median = median(values);
   VectorXd distance = (values.array() - found.median).abs();
   const double squares = distance.squaredNorm();
-  const Index most = std::max<Index>(1, values.size() / one_in);
+  const Index most = std::max(values.size() / one_in, std::min(few, values.size() / one_in_short));
   std::partial_sort(distance.begin(), distance.begin() + most + 1, distance.end(), std::greater<>());
   double held = 0.0;
-  Index count = 0;
-  while (count < most && !(held > half * squares)) held += std::pow(distance(count++), 2);
-  if (!(held > half * squares) || !(distance(count - 1) > beyond * distance(count))) return found;
-  found.largest = distance(0);
-  found.held = held / squares;
-  found.count = count;
+  for (Index count = 1; count <= most; ++count) {
+    held += std::pow(distance(count - 1), 2);
+    if (!(held > half * squares) || !(distance(count - 1) > beyond * distance(count))) continue;
+    found.largest = distance(0);
+    found.held = held / squares;
+    found.count = count;
+    break;
+  }
   return found;
 }
 
 /// The line about one column; empty where no few values own it.
-std::string dominating_in(const std::vector<RunStreams>& runs, bool of_states, Index row, const std::string& name) {
+std::string dominating_in(const std::vector<RunStreams>& runs, const Column& column) {
   std::vector<double> all;
-  for_each_value(runs, of_states, row,
+  for_each_value(runs, column,
                  [&](const RunStreams&, const FileStream&, Index, double value) { all.push_back(value); });
   const Furthest found = furthest_of(VectorXd::Map(all.data(), std::ssize(all)));
   if (found.count == 0) return {};
+  const bool trains = column.role == Role::train;
   std::string line;
-  for_each_value(runs, of_states, row, [&](const RunStreams& run, const FileStream& source, Index k, double value) {
+  for_each_value(runs, column, [&](const RunStreams& run, const FileStream& source, Index k, double value) {
     if (!line.empty() || std::abs(value - found.median) != found.largest) return;
     line = fmt::format(
-        "{}: run \"{}\": {} = {:g}{} {:.4g} % of the spread of {} in the training runs: a least-squares model follows "
-        "it alone; if it is wrong, leave the field empty (data.missing) or leave the sample out (data.where)",
-        place(source, k), run.run, name, value,
-        found.count > 1 ? fmt::format(" and {} more hold", found.count - 1) : " holds", 100.0 * found.held, name);
+        "{}: run \"{}\": {} = {:g}{} {:.4g} % of the spread of {} in the {} runs: {}; if it is wrong, leave the field "
+        "empty (data.missing) or leave the sample out (data.where)",
+        place(source, k), run.run, column.name, value,
+        found.count > 1 ? fmt::format(" and {} more hold", found.count - 1) : " holds", 100.0 * found.held, column.name,
+        trains ? "training" : "held-out",
+        trains ? "a least-squares model follows it alone" : "scores and errors are about it");
   });
   return line;
 }
@@ -104,12 +117,29 @@ void check_values(const RunStreams& run, const DataOptions& options) {
               options.truth[i]);
 }
 
+std::vector<std::string> columns_without_value(const RunStreams& run, const DataOptions& options) {
+  std::vector<std::string> lines;
+  const auto look = [&](const std::vector<std::string>& names, const FileStream& source, bool needed) {
+    if (source.stream.values.cols() == 0) return;  // said by who needs two samples
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (source.stream.values.row(static_cast<Index>(i)).array().isFinite().any()) continue;
+      lines.push_back(fmt::format("{}: run \"{}\": column {} has no value in any of its {} samples", source.file,
+                                  run.run, names[i], source.stream.values.cols()));
+      if (needed || options.missing != Missing::predict) throw DataError(lines.back());
+    }
+  };
+  look(options.state, run.states, false);
+  look(options.input, run.inputs, true);
+  return lines;
+}
+
 std::vector<std::string> dominating_values(const std::vector<RunStreams>& runs, const DataOptions& options) {
   std::vector<std::string> lines;
   const auto look = [&](const std::vector<std::string>& names, bool of_states) {
     for (std::size_t i = 0; i < names.size(); ++i)
-      if (std::string line = dominating_in(runs, of_states, static_cast<Index>(i), names[i]); !line.empty())
-        lines.push_back(std::move(line));
+      for (const Role role : {Role::train, Role::test})
+        if (std::string line = dominating_in(runs, {role, of_states, static_cast<Index>(i), names[i]}); !line.empty())
+          lines.push_back(std::move(line));
   };
   look(options.state, true);
   look(options.input, false);

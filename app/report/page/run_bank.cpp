@@ -54,20 +54,26 @@ json label_section(const Archive& archive, const std::vector<Index>& told) {
   return {{"role", name_of(archive.confusion.front().role)}, {"rows", rows}};
 }
 
+/// What is left of the slowest after a sample, and all time constants.
+void add_decays(json& row, const std::vector<Decay>& decays, bool open) {
+  const double slowest = decays.empty() || open ? NAN : decays.front().per_sample;
+  row["per_sample"] = number(slowest, open ? "-" : per_sample_words(decays));
+  row["decays"] = open ? number(NAN, not_identifiable) : decays_cell(decays);
+}
+
 json mode_row(const Archive& archive, const Bank& bank, Index k) {
   const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
   const ModeDynamics dynamics = mode_dynamics(bank, k);
   const Eigen::VectorXd gain = dynamics.gain.transpose().reshaped(), error = dynamics.gain_error.transpose().reshaped();
   const Index n_y = bank.C.rows();
-  return {{"mode", k},
-          {"weight", number(mode.weight, fmt::format("{:.3f}", mode.weight))},
-          {"parameters", estimates(bank.theta(k), mode.standard_error, open_parameters(archive, bank.structure))},
-          {"motion", estimates(mode.motion_theta, mode.motion_standard_error)},
-          {"noise_sd", number_list(mode.Q.diagonal().head(std::min(n_y, mode.Q.rows())).cwiseSqrt())},
-          {"per_sample", number(dynamics.decays.empty() ? NAN : dynamics.decays.front().per_sample,
-                                per_sample_words(dynamics.decays))},
-          {"decays", decays_cell(dynamics.decays)},
-          {"gains", estimates(gain, error, open_gains(archive, bank.structure))}};
+  json row{{"mode", k},
+           {"weight", number(mode.weight, fmt::format("{:.3f}", mode.weight))},
+           {"parameters", estimates(bank.theta(k), mode.standard_error, open_parameters(archive, bank.structure))},
+           {"motion", estimates(mode.motion_theta, mode.motion_standard_error)},
+           {"noise_sd", number_list(mode.Q.diagonal().head(std::min(n_y, mode.Q.rows())).cwiseSqrt())},
+           {"gains", estimates(gain, error, open_gains(archive, bank.structure))}};
+  add_decays(row, dynamics.decays, open_decays(archive, bank.structure));
+  return row;
 }
 
 void add_diagnosis(json& row, const DiagnosticsRow& diagnosis, double dt_s) {
