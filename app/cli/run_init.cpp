@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <boost/algorithm/string/trim.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -10,6 +11,7 @@
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
+#include "app/config/path_text.hpp"
 #include "app/init/confirm.hpp"
 #include "app/init/init_json.hpp"
 #include "app/init/proposal.hpp"
@@ -37,6 +39,20 @@ void check_target(const std::string& file, bool force) {
     throw ConfigurationError(fmt::format("{} exists: name another file (-o FILE), or overwrite it with --force", file));
 }
 
+/// Of data.inputs and data.states, which are lists of patterns: what would read as something else in them.
+void refuse_unnameable(const std::vector<FileSet>& sets) {
+  for (const FileSet& set : sets)
+    for (const std::filesystem::path& file : set.files) {
+      const std::string name = file.filename().string();
+      if (printable_name(name) != name || boost::trim_copy(name) != name ||
+          name.find_first_of("#,*") != std::string::npos)
+        throw ConfigurationError(
+            fmt::format("{}: no configuration can name it: it holds a comma, a '#', a '*', a blank at an end or a "
+                        "control character; rename it",
+                        printable_name(file.string())));
+    }
+}
+
 /// Whether someone can answer.
 bool is_asked(const CommandLine& line) {
   return !line.yes && !line.json && isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1;
@@ -48,6 +64,7 @@ int run_init(const CommandLine& line) {
   if (line.files.empty()) throw ConfigurationError("init needs one or more logs: modebank init FILE...");
   if (!line.output.empty()) check_target(line.output, line.force);
   const std::vector<FileSet> sets = file_sets(line.files);
+  refuse_unnameable(sets);
   const std::string target = line.output.empty() ? default_name(sets) : line.output;
   check_target(target, line.force);
   std::vector<SurveyedFile> surveyed;
@@ -58,6 +75,8 @@ int run_init(const CommandLine& line) {
   if (is_asked(line)) confirm_roles(surveyed, guess, std::cin, std::cout);
   Proposal proposal = propose(sets, surveyed, guess, folder.string());
   std::erase_if(proposal.keys, [](const ProposedKey& key) { return find_option("data." + key.key) == nullptr; });
+  for (ProposedKey& key : proposal.keys)
+    if (key.key == "root") key.value = path_text(key.value);
   const std::string text = configuration_text(proposal, line.typed);
   replace_file(target, {text});
   print_text(line, fmt::format("\n{}:\n{}\n", target, text));

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "app/config/option_table.hpp"
+#include "app/config/path_text.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "ident/base/printable.hpp"
 #include "io/files/sha256.hpp"
@@ -36,24 +37,6 @@ struct FileEntry {
 bool takes_quotes(const std::string& key) {
   return key == "data.root" || key == "archive.output" || key == "archive.input" || key == "archive.bank" ||
          key == "study.output" || key == "simulate.output" || key == "mixture.start";
-}
-
-/// As resolved_text writes such a value: plain wherever that reads back the same.
-std::string path_text(const std::string& value) {
-  const std::string shown = printable_name(value);
-  if (shown == value && boost::trim_copy(value) == value && value.find('#') == std::string::npos &&
-      !value.starts_with('"'))
-    return value;
-  std::string text = "\"";
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    const char c = value[i];
-    constexpr char second_set = '\xc2';  // the first of two bytes of more control characters
-    if (is_control(c) || c == second_set || (i > 0 && value[i - 1] == second_set))
-      text += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
-    else
-      text += (c == '"' || c == '\\' ? "\\" : "") + std::string(1, c);
-  }
-  return text + "\"";
 }
 
 /// What stands in quotes from `begin` on, if nothing but a comment follows.

@@ -9,6 +9,7 @@
 
 #include "app/init/words.hpp"
 #include "ident/base/characters.hpp"
+#include "ident/base/printable.hpp"
 #include "io/import/split.hpp"
 #include "modebank/base/error.hpp"
 #include "modebank/ident/options.hpp"
@@ -288,8 +289,8 @@ std::string configuration_text(const Proposal& proposal, const std::string& comm
   constexpr std::size_t longest = 100;
   const std::string shown =
       command.size() > longest ? command.substr(0, command.rfind(' ', longest)) + " ..." : command;
-  std::string text = fmt::format("# Written by {}: a start, to be looked at.\n", shown);
-  for (const std::string& doubt : proposal.doubts) text += fmt::format("# ! {}\n", doubt);
+  std::string text = fmt::format("# Written by {}: a start, to be looked at.\n", printable_name(shown));
+  for (const std::string& doubt : proposal.doubts) text += fmt::format("# ! {}\n", printable_name(doubt));
   text += "\n[data]\n";
   for (const ProposedKey& key : proposal.keys) {
     if (key.value.empty()) {
@@ -297,7 +298,7 @@ std::string configuration_text(const Proposal& proposal, const std::string& comm
       continue;
     }
     const std::string line = fmt::format("{} = {}", key.key, key.value == " " ? "" : key.value);
-    text += key.why.empty() ? line + "\n" : fmt::format("{:<40}  # {}\n", line, key.why);
+    text += key.why.empty() ? line + "\n" : fmt::format("{:<40}  # {}\n", line, printable_name(key.why));
   }
   text +=
       "\n# What is not named stands at its default; `modebank help KEY` says what a key means, `modebank check` on "

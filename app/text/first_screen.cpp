@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <cstdlib>
+#include <string_view>
 
 #include "app/chain/judged_runs.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/warnings.hpp"
+#include "ident/base/characters.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank::app {
@@ -66,7 +68,10 @@ std::string modes_section(const Archive& archive, const FirstScreen& screen, int
 std::string typed(std::string next, const std::string& program, const std::string& file) {
   constexpr std::size_t short_name = 32;
   boost::replace_all(next, "`modebank ", "`" + program + " ");
-  if (file.size() <= short_name && file.find(' ') == std::string::npos)
+  const auto plain = [](char c) {
+    return is_letter(c) || is_digit(c) || std::string_view("_-./").find(c) != std::string_view::npos;
+  };
+  if (file.size() <= short_name && std::all_of(file.begin(), file.end(), plain))  // a shell reads others otherwise
     boost::replace_all(next, " ARCHIVE", " " + file);
   return next;
 }

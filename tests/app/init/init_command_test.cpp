@@ -71,5 +71,36 @@ TEST_F(InitCommand, IsWhatRunAsksForWhenGivenALog) {
   EXPECT_EQ(modebank({"init"}).status, 2);
 }
 
+/// A name must not become a line of the configuration, nor more than a word of the commands that are proposed.
+TEST_F(InitCommand, NamesOfFoldersAndFilesStayWhatTheyAre) {
+  const std::filesystem::path folder = file("nl\nstate = oops # \x1b[31m");
+  std::filesystem::create_directory(folder);
+  write_file(folder / "one.csv", csv_run(300, 1));
+  const std::string ini = file("it's $(touch pwned)`touch pwned`.ini").string();
+  const ProgramResult made = modebank({"init", (folder / "one.csv").string(), "-o", ini, "--yes"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const std::string text = read_file(ini);
+  EXPECT_THAT(text, HasSubstr("state = wz"));
+  EXPECT_EQ(text.find("\nstate = oops"), std::string::npos);
+  EXPECT_EQ((made.out + text).find('\x1b'), std::string::npos);
+  const ProgramResult ran = modebank({"run", ini, "--archive.output", archive()});
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  const std::size_t next = made.out.find("next: ") + 6;
+  const std::string command = made.out.substr(next, made.out.find('\n', next) - next);
+  const ProgramResult pasted = run_program({"/bin/sh", "-c", "cd '" + file("").string() + "'; " + command});
+  EXPECT_EQ(pasted.status, 0) << command << pasted.err;
+  EXPECT_FALSE(std::filesystem::exists(file("pwned")));
+}
+
+TEST_F(InitCommand, AFileThatNoConfigurationCanNameIsRefused) {
+  for (const char* name : {"a#b.csv", "a,b.csv", "a*b.csv", " a.csv", "a\nb.csv"}) {
+    write(name, csv_run(50, 1));
+    const ProgramResult result = modebank({"init", file(name).string(), "-o", file("x.ini").string(), "--yes"});
+    EXPECT_EQ(result.status, 2) << name;
+    EXPECT_THAT(result.err, HasSubstr("no configuration can name it")) << name;
+    EXPECT_FALSE(std::filesystem::exists(file("x.ini"))) << name;
+  }
+}
+
 }  // namespace
 }  // namespace modebank::test

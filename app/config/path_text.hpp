@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace modebank::app {
+
+/// A path as a configuration file states it: plain wherever that reads back the same, else in double quotes.
+std::string path_text(const std::string& path);
+
+}  // namespace modebank::app
