@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@
 #include "app/report/page/assets.hpp"
 #include "io/files/memory_file.hpp"
 #include "io/files/replace_file.hpp"
+#include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
 
 // NOLINTNEXTLINE(readability-redundant-declaration): POSIX leaves its declaration to the user, glibc gives one.
@@ -31,13 +33,14 @@ namespace fs = std::filesystem;
   throw ConfigurationError(what);
 }
 
-/// A folder inside the one that figures go to, so that finished files only have to be renamed; gone at the end.
+/// A folder inside the one that figures go to, so that finished files only have to be renamed; gone at the end, or, of
+/// a process that was killed, when the next one draws there.
 class WorkFolder {
  public:
-  explicit WorkFolder(const fs::path& parent) {
-    std::string pattern = (fs::absolute(parent) / ".figures-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) fail(parent, {errno, std::generic_category()});
-    path_ = pattern;
+  explicit WorkFolder(const fs::path& parent) : path_(temporary_path(fs::absolute(parent) / "figures")) {
+    remove_leftovers(parent);
+    constexpr mode_t mine_alone = 0700;
+    if (::mkdir(path_.c_str(), mine_alone) != 0) fail(parent, {errno, std::generic_category()});
   }
   ~WorkFolder() {
     std::error_code ignored;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -169,6 +170,25 @@ TEST_F(Figures, OneThatFailsIsNamedAndDoesNotLoseTheOthers) {
   const auto written = said.at("written").get<std::set<std::string>>();
   EXPECT_TRUE(written.count(file("page.html").string()));
   EXPECT_EQ(written.size(), drawn().size() + 1) << result.out;
+}
+
+TEST_F(Figures, TheNextOnesTakeAwayWhatAKilledProcessLeft) {
+  MODEBANK_NEEDS_GNUPLOT();
+  ASSERT_EQ(run().status, 0);
+  std::filesystem::create_directory(file("bin"));
+  write("bin/gnuplot", "#!/bin/sh\nkill -9 $PPID\n");
+  std::filesystem::permissions(file("bin/gnuplot"), std::filesystem::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (file("bin").string() + ":" + path).c_str(), 1);
+  report();
+  setenv("PATH", path.c_str(), 1);
+  const auto hidden = [&] {
+    const std::set<std::string> names = drawn();
+    return std::count_if(names.begin(), names.end(), [](const std::string& name) { return name[0] == '.'; });
+  };
+  ASSERT_EQ(hidden(), 1);
+  ASSERT_EQ(report().status, 0);
+  EXPECT_EQ(hidden(), 0);
 }
 
 /// A page colours modes by their place in this order, figures by their place among those that are shown.
