@@ -12,6 +12,7 @@
 #include "app/text/number_text.hpp"
 #include "app/text/terminal.hpp"
 #include "ident/base/distributions.hpp"
+#include "ident/base/printable.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/study_file.hpp"
 #include "io/files/read_file.hpp"
@@ -198,6 +199,67 @@ TEST_F(Robustness, P8WhatACommandDoesNotReadIsRefused) {
   refuses({"run", config(), "--repair"}, "--repair", "--force");
   refuses({"track", "none.h5", "--json"}, "--json", "--track.*");
   refuses({"report", "none.h5", "--to", "c"}, "--to", "--output");
+  // A section's keys that would change nothing, too.
+  refuses({"track", "none.h5", "--data.inputs", "x.csv"}, "--data.inputs", "--data.time");
+  refuses({"track", "none.h5", "--filter.horizon", "9"}, "--filter.horizon", "--filter.variant");
+  refuses({"track", "none.h5", "--job.threads", "1"}, "--job.threads", "--track.*");
+  refuses({"predict", "none.h5", "--data.label", "x"}, "--data.label", "but for --data.truth, --data.weight");
+  refuses({"simulate", config(), "--data.inputs", "x.csv"}, "--data.inputs", "--data.state");
+  refuses({"study", config(), "--archive.bank", "none.h5"}, "--archive.bank", "--study.*");
+}
+
+TEST_F(Robustness, P8WhereToWriteIsSaidWhereThereIsNoShortOption) {
+  EXPECT_THAT(modebank({"run", config(), "-o", "x.h5"}).err, HasSubstr("--archive.output PATH says where it writes"));
+  EXPECT_THAT(modebank({"study", config(), "-o", "x"}).err, HasSubstr("--study.output PATH says where it writes"));
+  EXPECT_THAT(modebank({"simulate", config(), "-o", "x"}).err, HasSubstr("--simulate.output PATH says where"));
+  EXPECT_THAT(modebank({"track", "none.h5", "-o", "x"}).err, HasSubstr("--output; it reads --data.time"));
+}
+
+TEST_F(Robustness, P8WhatOneFormOfACommandDoesNotReadIsRefused) {
+  ASSERT_EQ(identify(config()).status, 0);
+  const auto refuses = [&](std::vector<std::string> words, const std::string& why) {
+    const ProgramResult result = modebank(words);
+    EXPECT_EQ(result.status, 2) << why;
+    EXPECT_THAT(result.err, HasSubstr(why));
+  };
+  refuses({"verify", archive(), "--repair"}, "--repair: verify repairs folders of studies alone");
+  refuses({"export", archive(), "--to", "json", "--float"}, "--float belongs to export --to c");
+  refuses({"export", archive(), "--to", "c", "--table", "/bank"}, "--table belongs to export --to csv");
+  refuses({"export", archive(), "--to", "mat", "--wheel_radius_m", "1"},
+          "--wheel_radius_m belongs to export --to ros2");
+  refuses({"view", archive(), "--json", "--port", "8000"}, "--port: view --json prints and stops");
+  refuses({"evaluate", config(), "--archive.bank", archive(), "--archive.output", file("o.h5").string(),
+           "--bank.refine", "none"},
+          "--bank.refine: with archive.bank nothing is learned");
+  refuses({"version", "x"}, "version takes no name");
+  refuses({"help", "run", "--markdown"}, "takes no name");
+}
+
+TEST_F(Robustness, P8WordsBehindTwoDashesAreFiles) {
+  write("--force.ini", app::resolved_text(app::Config()));
+  EXPECT_EQ(modebank({"--", "config", config()}).status, 0);
+  EXPECT_THAT(modebank({"run", "--", "--force"}).err, HasSubstr("--force"));
+  EXPECT_THAT(modebank({"run", "--", config(), "--force"}).err, HasSubstr("run needs one configuration file"));
+}
+
+TEST_F(Robustness, SimulationsThatWouldBeWrittenReadNoData) {
+  const ProgramResult result = modebank({"simulate", config(), "--dry-run", "--simulate.output", file("sim").string()});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("writes"), Not(HasSubstr("reads"))));
+}
+
+TEST_F(Robustness, VerifyNamesAFileOnce) {
+  const fs::path study = study_of("../../victim");
+  const std::string plan = app::plan_file(study).string();
+  EXPECT_THAT(modebank({"verify", study.string()}).out, Not(HasSubstr(plan + ": " + plan)));
+}
+
+/// What makes a line of a log, of a table or of C read otherwise than it is.
+TEST_F(Robustness, D15CharactersThatTurnTheDirectionAreShown) {
+  EXPECT_EQ(printable("a\u202eb\u2066c\u2028d\u2029"), "a\\u202eb\\u2066c\\u2028d\\u2029");
+  EXPECT_EQ(printable("\u2027\u202f\u2065\u206a \u05d0"), "\u2027\u202f\u2065\u206a \u05d0");
+  write("run_00.csv", "time,\"wz\nmodebank: all is well\",left,right\n");
+  EXPECT_THAT(identify(config()).err, HasSubstr("time, wz\\x0amodebank: all is well, left"));
 }
 
 }  // namespace
