@@ -12,6 +12,7 @@
 #include "app/config/config_file.hpp"
 #include "app/export/forms.hpp"
 #include "app/export/names.hpp"
+#include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
@@ -84,6 +85,7 @@ json export_csv(const CommandLine& line) {
   if (table.empty())
     throw ConfigurationError(
         "export --to csv needs --table PATH, such as /evaluation/summary (modebank show ARCHIVE /)");
+  judge_archive(line.files.front());
   return write_text(line, [&] { return to_csv(inspect(line.files.front(), table), table); });
 }
 

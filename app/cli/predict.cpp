@@ -77,6 +77,7 @@ std::vector<FreeRun> predict_all(const std::string& archive, const Config& confi
 
 Config predict_config(const CommandLine& line) {
   const std::string& archive = line.files.front();
+  judge_archive(archive);
   Config config = stored_config(load_configuration(archive), line.overrides);
   if (config.scoring.free_run.samples == 0)
     throw ConfigurationError(

@@ -82,6 +82,7 @@ int run_show(const CommandLine& line) {
     return 0;
   }
   const std::string path = line.files.size() == 2 ? line.files[1] : "/";
+  judge_archive(file);
   json object = inspect(file, path);
   if (line.form == "full") convert_to_full_form(file, path, object);
   if (line.json)

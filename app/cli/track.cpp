@@ -19,6 +19,7 @@
 #include "app/cli/track_watchdog.hpp"
 #include "app/config/config_file.hpp"
 #include "filter/step/alarm.hpp"
+#include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
@@ -236,6 +237,7 @@ class Tracker {
 int run_track(const CommandLine& line) {
   if (line.files.size() != 1) throw ConfigurationError("track needs one archive: modebank track ARCHIVE");
   const std::string& archive = line.files.front();
+  judge_archive(archive);
   const Config config = stored_config(load_configuration(archive), line.overrides);
   Tracker(archive, config).run();
   return 0;

@@ -10,8 +10,7 @@ namespace modebank::app {
 
 std::string path_text(const std::string& path) {
   const std::string shown = printable_name(path);
-  if (shown == path && boost::trim_copy(path) == path && path.find('#') == std::string::npos &&
-      !path.starts_with('"'))
+  if (shown == path && boost::trim_copy(path) == path && path.find('#') == std::string::npos && !path.starts_with('"'))
     return path;
   std::string text = "\"";
   for (std::size_t i = 0; i < path.size(); ++i) {

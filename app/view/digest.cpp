@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "io/archive/archive.hpp"
 #include "io/archive/inspect.hpp"
 #include "modebank/base/error.hpp"
 
@@ -54,6 +55,7 @@ void add_scores(const fs::path& archive, json& digest) {
 }  // namespace
 
 json digest_of(const fs::path& archive) {
+  judge_archive(archive);
   const json root = inspect(archive, "/");
   json digest = {{"created", text_in(root.at("attributes"), "created")}, {"data", data_name(archive)}};
   const bool is_study = root.at("members").contains("study");

@@ -112,7 +112,7 @@ Archive read_stages(const hdf5::Handle& file, std::vector<std::string>* problems
   Archive archive;
   GroupReader root(open_root(file), problems);
   layout::exchange_archive(root, archive);
-  root.check_links(archive.recording ? hdf5::LinkAllowed() : is_trial_link);
+  root.check_links(links_of(archive));
   return archive;
 }
 

@@ -144,10 +144,14 @@ Archive read_archive(const std::filesystem::path& path);
 /// All of it is judged here as read_archive does, array by array.
 Archive read_archive_by_runs(const std::filesystem::path& path, Index most_in_memory = 100'000);
 
-/// The same as read_archive, but of the filters' evaluations only the bank's of the first `runs` judged runs are read,
-/// and residual tests of the global model and the bank alone; what is not read is empty. For overviews: of many runs
-/// these take most of the time and memory.
+/// The same as read_archive, but of the filters' evaluations only the bank's of the first `runs` judged runs are kept,
+/// and residual tests of the global model and the bank alone; what is judged alone is empty. For overviews: of many
+/// runs these take most of the memory.
 Archive read_overview(const std::filesystem::path& path, Index runs);
+
+/// Throws as read_archive does and keeps nothing: for whoever then reads a part of an archive, so that all parts of the
+/// program take the same archives.
+void judge_archive(const std::filesystem::path& path);
 
 /// What verification found; empty `problems` means the archive is whole.
 struct Verification {

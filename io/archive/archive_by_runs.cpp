@@ -100,7 +100,7 @@ Archive read_archive_by_runs(const std::filesystem::path& path, Index most_in_me
     GroupReader root(open_root(file), nullptr);
     root.read_fields(use);
     layout::exchange_archive(root, archive);
-    root.check_links();
+    root.check_links(links_of(archive));
     if (!stay.value_or(false)) return archive;
     const auto runs = std::make_shared<RunsInFile>(std::move(file), path.string(), archive);
     for (FilterEvaluation& evaluation : archive.evaluations)
@@ -113,6 +113,8 @@ Archive read_archive_by_runs(const std::filesystem::path& path, Index most_in_me
     throw DataError(path.string() + ": " + error.what());
   }
 }
+
+void judge_archive(const std::filesystem::path& path) { read_archive_by_runs(path, 0); }
 
 void FilterEvaluation::with_run(std::size_t run, const Fields& fields,
                                 const std::function<void(const RunEvaluation&)>& body) const {

@@ -18,12 +18,12 @@ namespace modebank::layout {
 
 template <class Io, class G>
 void exchange_global(Io& io, G& global, const Unit& parameters, const Unit& states) {
-  io.attribute("transitions", global.transitions, rule::not_negative);
+  io.attribute("transitions", global.transitions, rule::count_of("samples"));
   io.field("parameters", global.theta, {"p"}, parameters, rule::finite_or_missing);
-  io.field("covariance", global.covariance, {"p", "p"}, outer(parameters));
-  io.field("residual_covariance", global.residual_covariance, {"n", "n"}, outer(states));
+  io.field("covariance", global.covariance, {"p", "p"}, outer(parameters), rule::spreads);
+  io.field("residual_covariance", global.residual_covariance, {"n", "n"}, outer(states), rule::spreads);
   const Eigen::VectorXd noise_variance = Io::reads ? Eigen::VectorXd() : global.noise_variance();
-  io.derived_field("noise_variance", noise_variance, {"n"}, squared(states));
+  io.derived_field("noise_variance", noise_variance, {"n"}, squared(states), rule::not_negative_or_missing);
 }
 
 inline Unit window_units(const WindowFits& fits, const Units& units) {
@@ -65,19 +65,19 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
         io.field("start", stored.start, {"M"}, {}, rule::not_negative);
       });
   io.field("parameters", fits.parameters, {"M", "p"}, parameters);
-  io.field("covariance", fits.covariance, {"M", "p", "p"}, outer(parameters));
+  io.field("covariance", fits.covariance, {"M", "p", "p"}, outer(parameters), rule::spreads);
   io.field("noise_variance", fits.noise_variance, {"M", "n"}, squared(units.states()), rule::not_negative_or_missing);
   io.field("condition", fits.condition, {"M"}, {}, rule::not_negative_or_missing);
   io.field("rank", fits.rank, {"M"}, {}, rule::count_of("p"));
   io.field("information", fits.information, {"M", "p"});
   io.field("inlier_fraction", fits.inlier_fraction, {"M"}, {}, rule::share_or_missing);
   io.field("status", fits.status, {"M"}, {}, rule::between(0, static_cast<int>(FitStatus::failed)));
-  io.optional_field("r_squared", fits.r_squared, {"M", "n"});
+  io.optional_field("r_squared", fits.r_squared, {"M", "n"}, {}, rule::at_most_one);
   io.optional_field("aic", fits.aic, {"M"}, {"nat"});
-  io.optional_field("transitions", fits.transitions, {"M"}, {}, rule::not_negative);
+  io.optional_field("transitions", fits.transitions, {"M"}, {}, rule::between(0.0, static_cast<double>(fits.length)));
   io.optional_field("weighed_information", fits.weighed_information, {"M", "n"});
   io.optional_derived_field(
-      "standard_error", [&] { return fits.standard_errors(); }, {"M", "p"}, parameters);
+      "standard_error", [&] { return fits.standard_errors(); }, {"M", "p"}, parameters, rule::not_negative_or_missing);
   io.optional_derived_field("t_value", [&] { return fits.t_values(); }, {"M", "p"});
   io.optional_field("prior_sd", fits.prior_sd, {"p"}, parameters, rule::not_negative_or_missing);
   if constexpr (Io::reads) io.finish([&] { restore_window_structure(fits, io.size("n"), io.size("p")); });
@@ -86,7 +86,7 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
   if constexpr (!Io::reads)
     io.attribute_texts("parameter_labels",
                        parameter_labels(fits, names_of(recording.states), names_of(recording.inputs)));
-  io.group("global", io.known({"n", "p"}),
+  io.group("global", io.known({"n", "p", "samples"}),
            [&](auto& member) { exchange_global(member, fits.global, parameters, units.states()); });
 }
 
@@ -94,8 +94,9 @@ template <class Io, class C>
 void exchange_candidates(Io& io, C& candidates) {
   io.table("candidates", candidates, column("components", &Candidate::components).obeying(rule::at_least_one),
            column("covariance", &Candidate::covariance), column("log_likelihood", &Candidate::log_likelihood, "nat"),
-           column("parameters", &Candidate::parameters), column("effective_samples", &Candidate::effective_samples),
-           column("bic", &Candidate::bic), column("aic", &Candidate::aic), column("icl", &Candidate::icl),
+           column("parameters", &Candidate::parameters).obeying(rule::not_negative),
+           amount_column("effective_samples", &Candidate::effective_samples), column("bic", &Candidate::bic),
+           column("aic", &Candidate::aic), column("icl", &Candidate::icl),
            column("heldout", &Candidate::heldout, "nat"),
            column("iterations", &Candidate::iterations).obeying(rule::not_negative),
            column("converged", &Candidate::converged),
@@ -103,7 +104,8 @@ void exchange_candidates(Io& io, C& candidates) {
            column("selected", &Candidate::selected), later_column("bic_naive", &Candidate::bic_naive),
            later_column("restarts", &Candidate::restarts).obeying(rule::not_negative),
            later_column("floor_active", &Candidate::floor_active), later_column("status", &Candidate::status),
-           later_column("heldout_error", &Candidate::heldout_error), later_column("failed", &Candidate::failed));
+           later_column("heldout_error", &Candidate::heldout_error).obeying(rule::not_negative_or_missing),
+           later_column("failed", &Candidate::failed));
 }
 
 /// `parameters`: units of theta, the first features; the others are logarithms, without unit.
@@ -122,14 +124,15 @@ void exchange_mixture(Io& io, X& result, const Unit& parameters) {
       [&](auto& stored) {
         io.field("covariances", stored, {"K", "F", "F"}, outer(features), rule::covariances);
       });
-  io.optional_field("weights_standard_error", result.weights_standard_error, {"K"});
-  io.optional_field("means_standard_error", result.means_standard_error, {"K", "F"}, features);
-  io.optional_attribute("clustered_windows", result.clustered, rule::not_negative);
+  io.optional_field("weights_standard_error", result.weights_standard_error, {"K"}, {}, rule::not_negative_or_missing);
+  io.optional_field("means_standard_error", result.means_standard_error, {"K", "F"}, features,
+                    rule::not_negative_or_missing);
+  io.optional_attribute("clustered_windows", result.clustered, rule::count_of("M"));
   io.optional_attribute("noise_weight", result.mixture.noise.weight, rule::share);
   io.optional_field("noise_lower", result.mixture.noise.lower, {"F"}, features, rule::finite);
   io.optional_field("noise_upper", result.mixture.noise.upper, {"F"}, features, rule::finite);
   io.field("labels", result.labels, {"M"}, {}, rule::position_or_none("K"));
-  io.through_rows("responsibilities", result.responsibilities, {"M", "K"}, rule::share_or_missing);
+  io.through_rows("responsibilities", result.responsibilities, {"M", "K"}, rule::parts_or_missing);
   if constexpr (Io::reads)
     io.finish([&] {
       check_mixture(result);
@@ -151,6 +154,7 @@ void exchange_archive(Io& io, A& archive) {
   const Units units(recording);
   Sizes channels;
   if (archive.recording) channels.set("n", recording.states.size());
+  if (archive.recording) set_samples(channels, recording);
   exchange_part(io, "windows", archive.windows, channels,
                 [&](auto& member, auto& part) { exchange_windows(member, part, recording, units); });
   Sizes known;
@@ -165,7 +169,7 @@ void exchange_archive(Io& io, A& archive) {
   exchange_part(io, "bank", archive.bank, {}, [&](auto& member, auto& part) {
     exchange_one(member, part);
     member.optional_attribute("measured_fit", archive.measured_fit);
-    member.attribute_unless(Index{0}, "learned_transitions", archive.learned_transitions);
+    member.attribute_unless(Index{0}, "learned_transitions", archive.learned_transitions, rule::not_negative);
     member.optional_attribute_texts("mode_names", archive.mode_names);
     if constexpr (Io::reads) member.finish([&] { check_count("mode_names", archive.mode_names, part.modes.size()); });
     exchange_part(member, "unrefined", archive.unrefined, {}, exchange_one);

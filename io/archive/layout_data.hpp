@@ -48,6 +48,7 @@ void exchange_recording(Io& io, R& recording, L& labels) {
   channels(recording.states, "state");
   channels(recording.inputs, "input");
   const auto named_runs = [](const std::vector<std::string>& names) {
+    check_run_names(names);
     std::vector<Trajectory> runs(names.size());
     for (std::size_t i = 0; i < names.size(); ++i) runs[i].run = names[i];
     return runs;
@@ -89,9 +90,9 @@ void exchange_recording(Io& io, R& recording, L& labels) {
 template <class Io, class P>
 void exchange_pooled(Io& io, const std::string& name, P& pooled) {
   io.attribute(name, pooled.mean);
-  io.attribute(name + "_standard_error", pooled.standard_error);
-  io.attribute(name + "_between_runs_sd", pooled.between_sd);
-  io.attribute(name + "_runs", pooled.count);
+  io.attribute(name + "_standard_error", pooled.standard_error, rule::not_negative_or_missing);
+  io.attribute(name + "_between_runs_sd", pooled.between_sd, rule::not_negative_or_missing);
+  io.attribute(name + "_runs", pooled.count, rule::not_negative);
 }
 
 template <class Io, class L>
@@ -102,16 +103,18 @@ void exchange_lag(Io& io, L& lag) {
   exchange_pooled(io, "clock_drift", lag.drift);
   io.table("scores", lag.scores, column("correction", &LagScore::correction),
            column("transitions", &LagScore::transitions).obeying(rule::not_negative),
-           column("log_score", &LagScore::log_score, "nat"), column("rmse", &LagScore::rmse),
+           column("log_score", &LagScore::log_score, "nat"), amount_column("rmse", &LagScore::rmse),
            column("gain", &LagScore::gain, "nat"),
-           column("gain_standard_error", &LagScore::gain_standard_error, "nat"));
+           amount_column("gain_standard_error", &LagScore::gain_standard_error, "nat"));
   io.table("runs", lag.runs, column("run", &RunLag::run), column("status", &RunLag::status),
-           column("lag_s", &RunLag::lag_s, "s"), column("lag_standard_error_s", &RunLag::lag_standard_error_s, "s"),
-           column("time_constant_s", &RunLag::time_constant_s, "s"), column("r_squared", &RunLag::r_squared),
+           column("lag_s", &RunLag::lag_s, "s"),
+           amount_column("lag_standard_error_s", &RunLag::lag_standard_error_s, "s"),
+           column("time_constant_s", &RunLag::time_constant_s, "s"),
+           column("r_squared", &RunLag::r_squared).obeying(rule::at_most_one),
            column("drift_status", &RunLag::drift_status), column("drifting_lag_s", &RunLag::drifting_lag_s, "s"),
-           column("drifting_lag_standard_error_s", &RunLag::drifting_lag_standard_error_s, "s"),
+           amount_column("drifting_lag_standard_error_s", &RunLag::drifting_lag_standard_error_s, "s"),
            column("clock_drift", &RunLag::clock_drift),
-           column("clock_drift_standard_error", &RunLag::clock_drift_standard_error),
+           amount_column("clock_drift_standard_error", &RunLag::clock_drift_standard_error),
            column("match_s", &RunLag::match_s, "s"), column("match_least_s", &RunLag::match_least_s, "s"),
            column("match_largest_s", &RunLag::match_largest_s, "s"),
            column("match_windows", &RunLag::match_windows).obeying(rule::not_negative),
@@ -130,7 +133,7 @@ void exchange_lag_counts(Io& io, L& counts) {
            column("input_lags", &LagCountScore::input_lags).obeying(rule::lags),
            column("samples", &LagCountScore::samples).obeying(rule::not_negative),
            column("log_score", &LagCountScore::log_score, "nat"), column("loss", &LagCountScore::loss, "nat"),
-           column("loss_standard_error", &LagCountScore::loss_standard_error, "nat"),
+           amount_column("loss_standard_error", &LagCountScore::loss_standard_error, "nat"),
            column("chosen", &LagCountScore::chosen));
 }
 

@@ -28,17 +28,20 @@ template <class Io, class E>
 void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.field("prediction", evaluation.prediction, {"N", "n"}, states);
   io.field("innovation", evaluation.innovation, {"N", "n_y"}, states);
-  io.field("innovation_covariance", evaluation.innovation_covariance, {"N", "n_y", "n_y"}, outer(states));
+  io.field("innovation_covariance", evaluation.innovation_covariance, {"N", "n_y", "n_y"}, outer(states),
+           rule::spreads);
   io.field("state", evaluation.state, {"N", "n"}, states);
-  io.field("covariance", evaluation.covariance, {"N", "n", "n"}, outer(states));
+  io.field("covariance", evaluation.covariance, {"N", "n", "n"}, outer(states), rule::spreads);
   io.field("nis", evaluation.nis, {"N"}, {}, rule::not_negative_or_missing);
   io.field("pit", evaluation.pit, {"N", "n_y"}, {}, rule::share_or_missing);
   io.field("log_density", evaluation.log_density, {"N"}, {"nat"});
-  io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"N", "K"}, {}, rule::share_or_missing);
-  io.field("mode_probability", evaluation.mode_probability, {"N", "K"}, {}, rule::share_or_missing);
-  io.optional_field("spread_share", evaluation.spread_share, {"N"});
+  io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"N", "K"}, {},
+           rule::probabilities_or_missing);
+  io.field("mode_probability", evaluation.mode_probability, {"N", "K"}, {}, rule::probabilities_or_missing);
+  io.optional_field("spread_share", evaluation.spread_share, {"N"}, {}, rule::share_or_missing);
   io.optional_field("smoothed_state", evaluation.smoothed_state, {"N", "n"}, states);
-  io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"N", "n", "n"}, outer(states));
+  io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"N", "n", "n"}, outer(states),
+                    rule::spreads);
   io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"N"}, {}, rule::position_or_none("K"));
   if constexpr (Io::reads)
     io.finish([&] {
@@ -50,7 +53,7 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
 template <class Io, class F>
 void exchange_free_run(Io& io, F& run, const Unit& states) {
   io.optional_field("free_run_mean", run.mean, {"N", "n_y"}, states);
-  io.optional_field("free_run_sd", run.deviation, {"N", "n_y"}, states);
+  io.optional_field("free_run_sd", run.deviation, {"N", "n_y"}, states, rule::not_negative_or_missing);
   io.optional_field("free_run_lower", run.lower, {"N", "n_y"}, states);
   io.optional_field("free_run_upper", run.upper, {"N", "n_y"}, states);
   io.optional_field("free_run_mode", run.mode, {"N"}, {}, rule::position_or_none("K"));
@@ -93,16 +96,16 @@ void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Si
 
 template <class Io, class S>
 void exchange_summary(Io& io, S& summary, const Unit& states) {
-  io.optional_table("summary", summary, column("filter", &SummaryRow::filter), column("role", &SummaryRow::role),
-                    column("run", &SummaryRow::run),
-                    column("samples", &SummaryRow::samples).obeying(rule::not_negative),
-                    column("log_score", &SummaryRow::log_score, "nat"),
-                    column("rmse", &SummaryRow::rmse, joined(states)), column("nis_mean", &SummaryRow::nis_mean),
-                    column("nis_above", &SummaryRow::nis_above), column("nis_below", &SummaryRow::nis_below),
-                    column("coverage_50", &SummaryRow::coverage_50), column("coverage_90", &SummaryRow::coverage_90),
-                    column("coverage_95", &SummaryRow::coverage_95), column("coverage_99", &SummaryRow::coverage_99),
-                    column("too_far", &SummaryRow::too_far), column("too_close", &SummaryRow::too_close),
-                    column("pit_distance", &SummaryRow::pit_distance), column("whiteness_p", &SummaryRow::whiteness_p));
+  io.optional_table(
+      "summary", summary, column("filter", &SummaryRow::filter), column("role", &SummaryRow::role),
+      column("run", &SummaryRow::run), column("samples", &SummaryRow::samples).obeying(rule::count_of("samples")),
+      column("log_score", &SummaryRow::log_score, "nat"), amount_column("rmse", &SummaryRow::rmse, joined(states)),
+      amount_column("nis_mean", &SummaryRow::nis_mean), share_column("nis_above", &SummaryRow::nis_above),
+      share_column("nis_below", &SummaryRow::nis_below), share_column("coverage_50", &SummaryRow::coverage_50),
+      share_column("coverage_90", &SummaryRow::coverage_90), share_column("coverage_95", &SummaryRow::coverage_95),
+      share_column("coverage_99", &SummaryRow::coverage_99), share_column("too_far", &SummaryRow::too_far),
+      share_column("too_close", &SummaryRow::too_close), share_column("pit_distance", &SummaryRow::pit_distance),
+      share_column("whiteness_p", &SummaryRow::whiteness_p));
 }
 
 template <class Io, class R>
@@ -110,29 +113,29 @@ void exchange_horizon(Io& io, R& rows, const Unit& states) {
   io.optional_table(
       "horizon", rows, column("filter", &HorizonRow::filter), column("role", &HorizonRow::role),
       column("run", &HorizonRow::run), column("horizon", &HorizonRow::horizon, "samples").obeying(rule::at_least_one),
-      column("samples", &HorizonRow::samples).obeying(rule::not_negative),
-      column("log_score", &HorizonRow::log_score, "nat"), column("rmse", &HorizonRow::rmse, joined(states)));
+      column("samples", &HorizonRow::samples).obeying(rule::count_of("samples")),
+      column("log_score", &HorizonRow::log_score, "nat"), amount_column("rmse", &HorizonRow::rmse, joined(states)));
 }
 
 template <class Io, class R>
 void exchange_combination(Io& io, R& rows) {
   io.optional_table("combination", rows, column("role", &CombinationRow::role),
                     column("horizon", &CombinationRow::horizon, "samples").obeying(rule::at_least_one),
-                    column("filter", &CombinationRow::filter),
-                    column("weight", &CombinationRow::weight).obeying(rule::share_or_missing));
+                    column("filter", &CombinationRow::filter), share_column("weight", &CombinationRow::weight));
 }
 
 template <class Io, class R>
 void exchange_free_runs(Io& io, R& rows, const Unit& states) {
   using Row = FreeRunRow;
-  io.optional_table(
-      "free_run", rows, column("filter", &Row::filter), column("role", &Row::role), column("run", &Row::run),
-      column("method", &Row::method), column("start", &Row::start, "samples").obeying(rule::not_negative),
-      column("samples", &Row::samples).obeying(rule::not_negative), column("log_score", &Row::log_score, "nat"),
-      column("rmse", &Row::rmse, joined(states)), column("nrmse", &Row::nrmse), column("fit", &Row::fit, "%"),
-      column("coverage_50", &Row::coverage_50), column("coverage_90", &Row::coverage_90),
-      column("coverage_95", &Row::coverage_95), column("coverage_99", &Row::coverage_99),
-      column("lost_paths", &Row::lost_paths).obeying(rule::not_negative));
+  io.optional_table("free_run", rows, column("filter", &Row::filter), column("role", &Row::role),
+                    column("run", &Row::run), column("method", &Row::method),
+                    column("start", &Row::start, "samples").obeying(rule::not_negative),
+                    column("samples", &Row::samples).obeying(rule::count_of("samples")),
+                    column("log_score", &Row::log_score, "nat"), amount_column("rmse", &Row::rmse, joined(states)),
+                    amount_column("nrmse", &Row::nrmse), column("fit", &Row::fit, "%"),
+                    share_column("coverage_50", &Row::coverage_50), share_column("coverage_90", &Row::coverage_90),
+                    share_column("coverage_95", &Row::coverage_95), share_column("coverage_99", &Row::coverage_99),
+                    column("lost_paths", &Row::lost_paths).obeying(rule::not_negative));
 }
 
 template <class Io, class R>
@@ -141,22 +144,25 @@ void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
   io.optional_table(
       "diagnostics", rows, column("filter", &Row::filter), column("role", &Row::role),
       column("mode", &Row::mode).obeying(rule::position_or_none("K")),
-      column("samples", &Row::samples).obeying(rule::not_negative), column("usage", &Row::usage),
-      column("entropy", &Row::entropy), column("dwell", &Row::dwell, "samples"),
-      column("dwell_model", &Row::dwell_model, "samples"), column("coverage_50", &Row::coverage_50),
-      column("coverage_50_lower", &Row::coverage_50_lower), column("coverage_50_upper", &Row::coverage_50_upper),
-      column("coverage_90", &Row::coverage_90), column("coverage_90_lower", &Row::coverage_90_lower),
-      column("coverage_90_upper", &Row::coverage_90_upper), column("coverage_95", &Row::coverage_95),
-      column("coverage_95_lower", &Row::coverage_95_lower), column("coverage_95_upper", &Row::coverage_95_upper),
-      column("coverage_99", &Row::coverage_99), column("coverage_99_lower", &Row::coverage_99_lower),
-      column("coverage_99_upper", &Row::coverage_99_upper), column("too_far", &Row::too_far),
-      column("too_far_lower", &Row::too_far_lower), column("too_far_upper", &Row::too_far_upper),
-      column("too_close", &Row::too_close), column("too_close_lower", &Row::too_close_lower),
-      column("too_close_upper", &Row::too_close_upper), column("nis_mean", &Row::nis_mean),
-      column("nis_lower", &Row::nis_lower), column("nis_upper", &Row::nis_upper), column("nees_mean", &Row::nees_mean),
-      column("nees_lower", &Row::nees_lower), column("nees_upper", &Row::nees_upper),
-      column("state_rmse", &Row::state_rmse, joined(states)), column("whiteness_p", &Row::whiteness_p),
-      column("spread_share", &Row::spread_share), column("verdict", &Row::verdict), column("flags", &Row::flags));
+      column("samples", &Row::samples).obeying(rule::count_of("samples")), share_column("usage", &Row::usage),
+      share_column("entropy", &Row::entropy), amount_column("dwell", &Row::dwell, "samples"),
+      amount_column("dwell_model", &Row::dwell_model, "samples"), share_column("coverage_50", &Row::coverage_50),
+      share_column("coverage_50_lower", &Row::coverage_50_lower),
+      share_column("coverage_50_upper", &Row::coverage_50_upper), share_column("coverage_90", &Row::coverage_90),
+      share_column("coverage_90_lower", &Row::coverage_90_lower),
+      share_column("coverage_90_upper", &Row::coverage_90_upper), share_column("coverage_95", &Row::coverage_95),
+      share_column("coverage_95_lower", &Row::coverage_95_lower),
+      share_column("coverage_95_upper", &Row::coverage_95_upper), share_column("coverage_99", &Row::coverage_99),
+      share_column("coverage_99_lower", &Row::coverage_99_lower),
+      share_column("coverage_99_upper", &Row::coverage_99_upper), share_column("too_far", &Row::too_far),
+      share_column("too_far_lower", &Row::too_far_lower), share_column("too_far_upper", &Row::too_far_upper),
+      share_column("too_close", &Row::too_close), share_column("too_close_lower", &Row::too_close_lower),
+      share_column("too_close_upper", &Row::too_close_upper), amount_column("nis_mean", &Row::nis_mean),
+      amount_column("nis_lower", &Row::nis_lower), amount_column("nis_upper", &Row::nis_upper),
+      amount_column("nees_mean", &Row::nees_mean), amount_column("nees_lower", &Row::nees_lower),
+      amount_column("nees_upper", &Row::nees_upper), amount_column("state_rmse", &Row::state_rmse, joined(states)),
+      share_column("whiteness_p", &Row::whiteness_p), share_column("spread_share", &Row::spread_share),
+      column("verdict", &Row::verdict), column("flags", &Row::flags));
 }
 
 /// /evaluation/evidence: what was found, in words and in the numbers that decided.
@@ -169,19 +175,19 @@ void exchange_finding(Io& io, F& finding) {
   io.attribute("modes_differ", finding.modes_differ);
   io.attribute("best_competitor", finding.best_competitor);
   io.attribute("gain", finding.gain);
-  io.attribute("standard_error", finding.standard_error);
+  io.attribute("standard_error", finding.standard_error, rule::not_negative_or_missing);
   io.attribute("better_description", finding.better_description);
   io.attribute("text", finding.text);
   io.optional_table("gains", finding.gains, column("competitor", &PairedGain::competitor),
-                    column("samples", &PairedGain::samples).obeying(rule::not_negative),
+                    column("samples", &PairedGain::samples).obeying(rule::count_of("samples")),
                     column("gain", &PairedGain::gain, "nat"),
-                    column("standard_error", &PairedGain::standard_error, "nat"),
-                    column("degrees_of_freedom", &PairedGain::degrees_of_freedom),
-                    column("margin", &PairedGain::margin, "nat"), column("by_blocks", &PairedGain::by_blocks));
+                    amount_column("standard_error", &PairedGain::standard_error, "nat"),
+                    amount_column("degrees_of_freedom", &PairedGain::degrees_of_freedom),
+                    amount_column("margin", &PairedGain::margin, "nat"), column("by_blocks", &PairedGain::by_blocks));
   io.optional_table("better_means", finding.better_means, column("competitor", &BetterMean::competitor),
                     column("horizon", &BetterMean::horizon, "samples").obeying(rule::not_negative),
-                    column("state", &BetterMean::state), column("rmse_bank", &BetterMean::rmse_bank),
-                    column("rmse", &BetterMean::rmse));
+                    column("state", &BetterMean::state), amount_column("rmse_bank", &BetterMean::rmse_bank),
+                    amount_column("rmse", &BetterMean::rmse));
 }
 
 template <class Io, class R>
@@ -189,8 +195,8 @@ void exchange_confusion(Io& io, R& rows) {
   using Row = ConfusionRow;
   io.optional_table("confusion", rows, column("filter", &Row::filter), column("role", &Row::role),
                     column("label", &Row::label), column("mode", &Row::mode).obeying(rule::position("K")),
-                    column("samples", &Row::samples).obeying(rule::not_negative),
-                    column("share", &Row::share).obeying(rule::share_or_missing));
+                    column("samples", &Row::samples).obeying(rule::count_of("samples")),
+                    share_column("share", &Row::share));
 }
 
 template <class Io, class A>
@@ -201,6 +207,7 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
     return filters;
   };
   const auto named = [](const std::vector<std::string>& filters) {
+    check_different("filters", filters);
     std::vector<FilterEvaluation> list;
     for (const std::string& filter : filters) list.push_back({filter, {}});
     return list;
@@ -217,19 +224,20 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
   exchange_free_runs(io, archive.free_runs, units.states());
   exchange_diagnostics(io, archive.diagnostics, units.states());
   exchange_confusion(io, archive.confusion);
-  exchange_part(io, "evidence", archive.finding, {}, [](auto& member, auto& part) { exchange_finding(member, part); });
+  exchange_part(io, "evidence", archive.finding, io.known({"samples"}),
+                [](auto& member, auto& part) { exchange_finding(member, part); });
   if constexpr (Io::reads) io.finish([&] { check_score_names(archive); });
 }
 
 template <class Io, class R>
 void exchange_run_residuals(Io& io, R& tests) {
-  io.attribute("samples", tests.samples, rule::not_negative);
+  io.attribute("samples", tests.samples, rule::count_of("samples"));
   io.attribute("level", tests.level, rule::share);
-  io.attribute("autocorrelation_band", tests.autocorrelation_band);
-  io.field("autocorrelation", tests.autocorrelation, {"T", "n"});
-  io.field("cross_correlation", tests.cross_correlation, {"T", "n", "m"});
-  io.field("cross_correlation_band", tests.cross_correlation_band, {"n", "m"});
-  io.field("ljung_box_p", tests.ljung_box_p, {"n"});
+  io.attribute("autocorrelation_band", tests.autocorrelation_band, rule::not_negative_or_missing);
+  io.field("autocorrelation", tests.autocorrelation, {"T", "n"}, {}, rule::finite_or_missing);
+  io.field("cross_correlation", tests.cross_correlation, {"T", "n", "m"}, {}, rule::finite_or_missing);
+  io.field("cross_correlation_band", tests.cross_correlation_band, {"n", "m"}, {}, rule::not_negative_or_missing);
+  io.field("ljung_box_p", tests.ljung_box_p, {"n"}, {}, rule::share_or_missing);
 }
 
 /// residual_tests/<model>/<run>/, every run of the recording in its order.
@@ -241,6 +249,7 @@ void exchange_residual_tests(Io& io, S& sets, const Recording& recording) {
     return models;
   };
   const auto named = [](const std::vector<std::string>& models) {
+    check_different("models", models);
     std::vector<ResidualTestSet> list;
     for (const std::string& model : models) list.push_back({model, {}});
     return list;
@@ -255,8 +264,10 @@ void exchange_residual_tests(Io& io, S& sets, const Recording& recording) {
       if (set.runs.size() != recording.runs.size())
         throw std::invalid_argument("residual tests of " + std::to_string(set.runs.size()) + " runs of " +
                                     std::to_string(recording.runs.size()));
-      for (std::size_t i = 0; i < recording.runs.size(); ++i)
+      for (std::size_t i = 0; i < recording.runs.size(); ++i) {
+        known.set("samples", static_cast<hsize_t>(recording.runs[i].samples()));
         member.small_group(recording.runs[i].run, known, [&](auto& run) { exchange_run_residuals(run, set.runs[i]); });
+      }
     });
 }
 

@@ -91,6 +91,8 @@ void check_mixture(const MixtureResult& result) {
     throw DataError("the weights sum to " + std::to_string(sum) + ", must be 1");
   check_count("feature_names", result.feature_names, static_cast<std::size_t>(mixture.features()));
   if (mixture.noise.lower.size() != mixture.noise.upper.size()) throw DataError("the box of the noise has one corner");
+  if ((mixture.noise.lower.array() > mixture.noise.upper.array()).any())
+    throw DataError("the lower corner of the noise's box lies above the upper one");
 }
 
 namespace {
@@ -113,7 +115,52 @@ void check_rows(const std::vector<Row>& rows, const std::set<std::string>& runs,
   }
 }
 
+/// None where it could not be read: verification goes on without.
+std::optional<Bank> whole_bank(const Archive& archive, const std::string& filter) try {
+  if (filter == "drifting" && archive.drifting) validate(*archive.drifting);
+  return archive.bank_of(filter);
+} catch (const std::invalid_argument&) {
+  return std::nullopt;
+}
+
+/// Of rows that have a filter and one of its modes.
+template <class Row>
+void check_modes(const std::vector<Row>& rows, const Archive& archive, const std::string& table) {
+  std::map<std::string, Index> modes;
+  for (const char* filter : filters)
+    if (const auto bank = whole_bank(archive, filter)) modes[filter] = bank->mode_count();
+  for (const Row& row : rows)
+    if (const auto found = modes.find(row.filter); found != modes.end() && row.mode >= found->second)
+      throw DataError(table + " names mode " + std::to_string(row.mode) + " of the " + std::to_string(found->second) +
+                      " of " + row.filter);
+}
+
+void check_labels(const Archive& archive) {
+  if (!archive.labels) return;
+  const std::set<std::string> known(archive.labels->names.begin(), archive.labels->names.end());
+  for (const ConfusionRow& row : archive.confusion)
+    if (!known.contains(row.label)) throw DataError("confusion names the unknown label '" + row.label + "'");
+}
+
+void check_finding(const Archive& archive) {
+  if (!archive.finding) return;
+  const auto compare = [](Index said, Index there, bool fits, const char* of) {
+    if (!fits)
+      throw DataError("evidence speaks of " + std::to_string(said) + " " + of + ", there are " + std::to_string(there));
+  };
+  const Index runs = archive.recording ? std::ssize(archive.recording->runs) : archive.finding->runs;
+  const Index modes = archive.bank ? archive.bank->mode_count() : archive.finding->modes;
+  compare(archive.finding->runs, runs, archive.finding->runs <= runs, "runs");
+  compare(archive.finding->modes, modes, archive.finding->modes == modes, "modes");
+}
+
 }  // namespace
+
+void check_different(const std::string& what, const std::vector<std::string>& names) {
+  std::set<std::string> seen;
+  for (const std::string& name : names)
+    if (!seen.insert(name).second) throw DataError(what + " names '" + name + "' twice");
+}
 
 void check_score_names(const Archive& archive) {
   std::set<std::string> runs;
@@ -126,25 +173,25 @@ void check_score_names(const Archive& archive) {
   check_rows(archive.free_runs, runs, "free_run");
   check_rows(archive.diagnostics, runs, "diagnostics");
   check_rows(archive.confusion, runs, "confusion");
+  check_modes(archive.diagnostics, archive, "diagnostics");
+  check_modes(archive.confusion, archive, "confusion");
+  check_labels(archive);
+  check_finding(archive);
 }
-
-namespace {
-
-/// None where it could not be read: verification goes on without.
-std::optional<Bank> whole_bank(const Archive& archive, const std::string& filter) try {
-  if (filter == "drifting" && archive.drifting) validate(*archive.drifting);
-  return archive.bank_of(filter);
-} catch (const std::invalid_argument&) {
-  return std::nullopt;
-}
-
-}  // namespace
 
 bool is_trial_link(const std::string& place, const std::string& file, const std::string& object) {
   constexpr std::string_view folder = "trials/", suffix = ".h5";
   if (!file.starts_with(folder) || !file.ends_with(suffix) || object != "/") return false;
   const std::string key = file.substr(folder.size(), file.size() - folder.size() - suffix.size());
   return is_sha256(key) && place.starts_with("/trials/");
+}
+
+hdf5::LinkAllowed links_of(const Archive& archive) { return archive.recording ? hdf5::LinkAllowed() : is_trial_link; }
+
+void set_samples(Sizes& sizes, const Recording& recording) {
+  Index samples = 0;
+  for (const Trajectory& run : recording.runs) samples += run.samples();
+  if (samples > 0) sizes.set("samples", static_cast<hsize_t>(samples));
 }
 
 Sizes sizes_of_filter(const Archive& archive, const std::string& filter) {
@@ -160,6 +207,7 @@ Sizes sizes_of_filter(const Archive& archive, const std::string& filter) {
 Sizes sizes_of_evaluation(const Archive& archive, const Recording& recording) {
   Sizes sizes;
   if (!recording.states.empty()) sizes.set("n_y", recording.states.size());
+  set_samples(sizes, recording);
   std::size_t modes = 0;
   for (const char* filter : filters)
     if (const auto bank = whole_bank(archive, filter)) modes = std::max(modes, bank->modes.size());

@@ -10,6 +10,7 @@
 #include "ident/model/local_model.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/stored_bank.hpp"
+#include "io/hdf5/links.hpp"
 #include "io/hdf5/sizes.hpp"
 
 namespace modebank {
@@ -41,9 +42,13 @@ void check_mixture(const MixtureResult& result);
 
 /// The members of these sizes, which may be missing, are all there or none is.
 void check_together(const char* what, std::initializer_list<Eigen::Index> sizes);
-/// Tables speak of runs that are there and of filters that are known.
+/// Tables speak of runs, labels and modes that are there and of filters that are known.
 void check_score_names(const Archive& archive);
+/// Groups of these names are there once each.
+void check_different(const std::string& what, const std::vector<std::string>& names);
 
+/// How many samples all runs have together, which no count of them exceeds.
+void set_samples(Sizes& sizes, const Recording& recording);
 /// Extents that a filter's evaluation has from its bank and from the data, as far as the archive holds them.
 Sizes sizes_of_filter(const Archive& archive, const std::string& filter);
 /// Of the tables over all filters.
@@ -51,6 +56,8 @@ Sizes sizes_of_evaluation(const Archive& archive, const Recording& recording);
 
 /// Whether a link to another file is one of a study's to its trials: /trials/KEY to the root of trials/KEY.h5.
 bool is_trial_link(const std::string& place, const std::string& file, const std::string& object);
+/// The links to other files that what was read may have: runs' archives have none.
+hdf5::LinkAllowed links_of(const Archive& archive);
 
 /// Throws DataError for a label of the run that none of so many names belongs to; -1: nothing is known.
 void check_label_positions(const Eigen::VectorXi& label, std::size_t names, const std::string& run);

@@ -32,6 +32,18 @@ Column<Row, T> column(std::string name, T Row::*member, std::string unit = {}) {
   return {std::move(name), member, std::move(unit)};
 }
 
+/// Of shares and probabilities.
+template <class Row, class T>
+Column<Row, T> share_column(std::string name, T Row::*member, std::string unit = {}) {
+  return column(std::move(name), member, std::move(unit)).obeying(rule::share_or_missing);
+}
+
+/// Of what is never negative: errors, distances, lengths.
+template <class Row, class T>
+Column<Row, T> amount_column(std::string name, T Row::*member, std::string unit = {}) {
+  return column(std::move(name), member, std::move(unit)).obeying(rule::not_negative_or_missing);
+}
+
 template <class Row, class T>
 Column<Row, T> later_column(std::string name, T Row::*member) {
   return {std::move(name), member, {}, true};

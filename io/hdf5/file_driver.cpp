@@ -49,6 +49,7 @@ herr_t fail(const char* call, H5E_minor_t kind) {
   return -1;
 }
 
+template <FileOf of>
 H5FD_t* open_file_of_ours(const char* name, unsigned flags, hid_t, haddr_t) {
   constexpr mode_t everybody = 0666;
   auto file = std::make_unique<OpenFile>();
@@ -68,7 +69,7 @@ H5FD_t* open_file_of_ours(const char* name, unsigned flags, hid_t, haddr_t) {
   file->size = static_cast<haddr_t>(about.st_size);
   file->device = about.st_dev;
   file->number = about.st_ino;
-  if (!file->in_the_making) file->guard = new HeaderGuard(file->descriptor, file->size);
+  if (!file->in_the_making) file->guard = new HeaderGuard(file->descriptor, file->size, of);
   return &file.release()->known;
 }
 
@@ -136,12 +137,13 @@ herr_t cut(H5FD_t* file, hid_t, hbool_t) {
   return 0;
 }
 
+template <FileOf of>
 H5FD_class_t description() {
   H5FD_class_t driver{};
-  driver.name = "modebank";
+  driver.name = of == FileOf::archive ? "modebank_archive" : "modebank";
   driver.maxaddr = static_cast<haddr_t>(std::numeric_limits<off_t>::max());
   driver.fc_degree = H5F_CLOSE_WEAK;
-  driver.open = open_file_of_ours;
+  driver.open = open_file_of_ours<of>;
   driver.close = close_file;
   driver.cmp = compare;
   driver.query = [](const H5FD_t* file, unsigned long* features) -> herr_t {
@@ -170,17 +172,27 @@ H5FD_class_t description() {
 
 }  // namespace
 
-hid_t file_driver() {
-  static const H5FD_class_t driver = description();
+namespace {
+
+template <FileOf of>
+hid_t registered() {
+  static const H5FD_class_t driver = description<of>();
   static const hid_t id = H5FDregister(&driver);
   return id;
+}
+
+}  // namespace
+
+hid_t file_driver(FileOf of) {
+  return of == FileOf::archive ? registered<FileOf::archive>() : registered<FileOf::anybody>();
 }
 
 OpenedFile opened_file(hid_t object) {
   const Handle file(H5Iget_file_id(object), H5Fclose, "find the file"),
       access(H5Fget_access_plist(file.id()), H5Pclose, "read how the file was opened"),
       creation(H5Fget_create_plist(file.id()), H5Pclose, "read how the file was made");
-  if (H5Pget_driver(access.id()) != file_driver()) return {};
+  const hid_t driver = H5Pget_driver(access.id());
+  if (driver != file_driver() && driver != file_driver(FileOf::archive)) return {};
   OpenedFile opened;
   hsize_t before = 0;
   check(H5Fget_vfd_handle(file.id(), access.id(), &opened.handle), "find the file");

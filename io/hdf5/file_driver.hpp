@@ -4,6 +4,8 @@
 
 #include <string_view>
 
+#include "io/hdf5/handle.hpp"
+
 namespace modebank::hdf5 {
 
 /// How archives are read and made, a driver for H5Pset_driver; negative where HDF5 takes none. Files that others wrote:
@@ -11,7 +13,7 @@ namespace modebank::hdf5 {
 /// file has an address near the largest number. This one reads what is asked for, if it lies in the file, and
 /// judges object headers before HDF5 decodes them (header_guard.hpp). Files in the making: others than HDF5 may append
 /// to them, too.
-hid_t file_driver();
+hid_t file_driver(FileOf of = FileOf::anybody);
 
 /// A file that the driver has open; `handle` is what H5Fget_vfd_handle says.
 struct OpenedFile {

@@ -64,7 +64,6 @@ GroupReader GroupReader::open_member(const std::string& name) const {
   GroupReader member = small ? GroupReader(std::move(*small), problems_, path)
                              : GroupReader(hdf5::open_group(group_.id(), name), problems_, path);
   member.file_ = file_;
-  member.wanted_ = wanted_;
   member.use_ = use_;
   return member;
 }
@@ -167,7 +166,7 @@ void GroupReader::check_links(const hdf5::LinkAllowed& elsewhere) {
       const Member& member = link.second;
       if (!member.hard)
         hdf5::check_link(group_.id(), path_, {link.first, member.hard}, elsewhere);
-      else if (problems_ && !member.asked)
+      else if (!member.asked)
         hdf5::check_below(group_.id(), path_, link.first, elsewhere);
     });
 }

@@ -37,9 +37,6 @@ class GroupReader {
         problems_before_(problems ? problems->size() : 0),
         path_(std::move(path)) {}
 
-  /// From here on groups whose path `wanted` refuses are left unread. It must outlive the reader.
-  void read_groups(const std::function<bool(const std::string& path)>& wanted) { wanted_ = &wanted; }
-
   /// What becomes of an array's values. Those that are judged alone leave a matrix its rows, without columns.
   enum class Values { kept, judged, unread };
   using ValuesOf = std::function<Values(const std::string& path)>;
@@ -48,7 +45,6 @@ class GroupReader {
 
   template <class Body>
   void group(const std::string& name, const Sizes& known, Body body) {
-    if (wanted_ && !(*wanted_)(path_ + "/" + name)) return;
     guarded(name, [&] {
       GroupReader member = open_member(name);
       member.sizes_ = known;
@@ -66,7 +62,7 @@ class GroupReader {
     if (has(name)) group(name, known, body);
   }
   bool has(const std::string& name) const;
-  /// Reports members that lie elsewhere, and in verification also what lies below members that nobody asked for.
+  /// Reports members that lie elsewhere, also below members that nobody asked for.
   /// `elsewhere`: whether a link to another file may be there, by its place, the file and the place in that.
   void check_links(const hdf5::LinkAllowed& elsewhere = {});
 
@@ -84,8 +80,8 @@ class GroupReader {
     if (has_attribute(name)) attribute(name, value, rule);
   }
   template <class T>
-  void attribute_unless(const T& /*absent*/, const std::string& name, T& value) {
-    optional_attribute(name, value);
+  void attribute_unless(const T& /*absent*/, const std::string& name, T& value, const Rule& rule = rule::any) {
+    optional_attribute(name, value, rule);
   }
   void constant_attribute(const std::string& name, const std::string& expected);
   void attribute_texts(const std::string& name, std::vector<std::string>& texts);
@@ -102,7 +98,7 @@ class GroupReader {
   void field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters, const Unit& = {},
              const Rule& rule = rule::any) {
     const Values use = use_ ? (*use_)(path_ + "/" + name) : Values::kept;
-    if (use == Values::unread) return;
+    if (use == Values::unread) return void(has(name));  // asked for all the same
     guarded(name, [&] {
       using Stored = decltype(to_stored(std::declval<typename Derived::Scalar>()));
       constexpr bool real = std::is_floating_point_v<Stored>;
@@ -129,14 +125,15 @@ class GroupReader {
   }
   template <class Derived>
   void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>&, const Letters& letters,
-                     const Unit& = {}) {
+                     const Unit& = {}, const Rule& rule = rule::any) {
     Derived unused;
-    field(name, unused, letters);
+    field(name, unused, letters, {}, rule);
   }
   template <class Make>
-  void optional_derived_field(const std::string& name, Make, const Letters& letters, const Unit& = {}) {
+  void optional_derived_field(const std::string& name, Make, const Letters& letters, const Unit& = {},
+                              const Rule& rule = rule::any) {
     std::invoke_result_t<Make> unused;
-    if (has(name)) field(name, unused, letters);
+    if (has(name)) field(name, unused, letters, {}, rule);
   }
   template <class Derived>
   void optional_field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
@@ -213,7 +210,6 @@ class GroupReader {
   std::size_t problems_before_;
   std::string path_;
   Sizes sizes_;
-  const std::function<bool(const std::string&)>* wanted_ = nullptr;
   const ValuesOf* use_ = nullptr;
   struct Member {
     bool hard;

@@ -67,7 +67,7 @@ class GroupWriter {
   }
   /// What is left out where it says nothing.
   template <class T>
-  void attribute_unless(const T& absent, const std::string& name, const T& value) {
+  void attribute_unless(const T& absent, const std::string& name, const T& value, const Rule& = rule::any) {
     if (value != absent) attribute(name, value);
   }
   template <class T>
@@ -133,12 +133,13 @@ class GroupWriter {
   /// An array computed from others: for readers of the file, ignored when read back.
   template <class Derived>
   void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
-                     const Unit& unit = {}) {
+                     const Unit& unit = {}, const Rule& = rule::any) {
     field(name, values, letters, unit);
   }
   /// One that older files lack; `make` computes it only when it is written.
   template <class Make>
-  void optional_derived_field(const std::string& name, Make make, const Letters& letters, const Unit& unit = {}) {
+  void optional_derived_field(const std::string& name, Make make, const Letters& letters, const Unit& unit = {},
+                              const Rule& = rule::any) {
     optional_field(name, make(), letters, unit);
   }
   /// An empty array is left out.

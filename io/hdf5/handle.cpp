@@ -80,10 +80,10 @@ Quiet::~Quiet() {
   if (!failed) H5Eset_auto2(H5E_DEFAULT, function_, data_);
 }
 
-Handle open_file(const std::string& path) {
+Handle open_file(const std::string& path, FileOf of) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the file access");
   check(H5Pset_file_locking(access.id(), false, true), "switch file locking off");
-  check(H5Pset_driver(access.id(), file_driver(), nullptr), "prepare the file access");
+  check(H5Pset_driver(access.id(), file_driver(of), nullptr), "prepare the file access");
   return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, "open the file"};
 }
 

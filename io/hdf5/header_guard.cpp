@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 
 #include "io/hdf5/read_at.hpp"
 
@@ -96,6 +95,53 @@ std::uint64_t HeaderGuard::type_at(haddr_t address) {
   return type_bytes_[address] = *bytes;
 }
 
+std::string HeaderGuard::content_at(haddr_t address, std::uint64_t count) const {
+  require_sound(address <= size_, damaged);
+  return bytes_at(base_ + address, count);
+}
+
+/// What a record says: where its identifier of a message begins, behind which an attribute's flags follow.
+struct HeaderGuard::DenseTree {
+  RecordKind records;
+  std::size_t id_at;
+};
+
+void HeaderGuard::judge_tree(haddr_t address, const DenseTree& tree, std::uint64_t kind, MessageHeap& heap) {
+  constexpr std::uint64_t shared_flag = 2;
+  const std::size_t id_bytes = (kind == link_kind ? link_heap : attribute_heap).id_bytes;
+  const BytesAt bytes = [this](haddr_t at, std::uint64_t count) { return content_at(at, count); };
+  each_record(bytes, widths_, address, tree.records, [&](std::string_view record) {
+    const bool shared = kind == attribute_kind && (static_cast<unsigned char>(record[id_bytes]) & shared_flag) != 0;
+    const std::string content = heap.at(record.substr(tree.id_at, id_bytes));
+    require_sound((dense_bytes_ += content.size()) <= 4 * size_,
+                  damaged);  // in the file each is once, and in two trees
+    judge_message({kind, shared, content});
+  });
+}
+
+void HeaderGuard::judge_dense(const RawMessage& message) {
+  const bool links = message.kind == link_info_kind;
+  const haddr_t none = HADDR_UNDEF >> 8 * (sizeof(haddr_t) - widths_.address);
+  const DensePlaces places = dense_places(message, widths_);
+  const std::array key{places.heap, places.by_name, places.by_order};
+  if (places.heap == none || dense_.contains(key)) return;
+  const BytesAt bytes = [this](haddr_t at, std::uint64_t count) { return content_at(at, count); };
+  MessageHeap heap(bytes, widths_, places.heap, links ? link_heap : attribute_heap);
+  const DenseTree by_name = links ? DenseTree{{5, 11}, 4} : DenseTree{{8, 17}, 0},
+                  by_order = links ? DenseTree{{6, 15}, 8} : DenseTree{{9, 13}, 0};
+  const std::uint64_t kind = links ? link_kind : attribute_kind;
+  judge_tree(places.by_name, by_name, kind, heap);
+  if (places.by_order != none && places.by_order != HADDR_UNDEF) judge_tree(places.by_order, by_order, kind, heap);
+  dense_.insert(key);
+}
+
+void HeaderGuard::judge_message(const RawMessage& message) {
+  if (of_ == FileOf::archive) require_of_an_archive(message);
+  require_sound_message(message, widths_, [this](haddr_t address) { return type_at(address); });
+  const bool info = message.kind == link_info_kind || message.kind == attribute_info_kind;
+  if (info && !message.shared) judge_dense(message);
+}
+
 void HeaderGuard::judge(haddr_t at, std::string_view bytes, haddr_t end) {
   // A header whose chunks are still in HDF5's memory is read without them.
   const auto next = std::find_if(expected_.begin(), expected_.end(), [&](const Chunk& chunk) {
@@ -107,11 +153,12 @@ void HeaderGuard::judge(haddr_t at, std::string_view bytes, haddr_t end) {
   if (bytes.size() != first_read_bytes && at + bytes.size() < std::min(end, size_)) return;
   const auto is_known = [](std::size_t width) { return width == 2 || width == 4 || width == 8; };
   try {
-    if (!header_start(bytes)) return;
+    const std::optional<HeaderStart> start = header_start(bytes);
+    if (!start) return;
+    require_sound(of_ == FileOf::anybody || !start->is_old,
+                  "not a modebank archive (its object headers are of an older kind)");
     require_sound(is_known(widths_.address) && is_known(widths_.size), "the file's addresses are of an unknown width");
-    expected_ = walk(at, bytes, [this](const RawMessage& message) {
-      require_sound_message(message, widths_, [this](haddr_t address) { return type_at(address); });
-    });
+    expected_ = walk(at, bytes, [this](const RawMessage& message) { judge_message(message); });
   } catch (const NotKnownHere&) {
     throw Unsound{damaged};
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "io/hdf5/array.hpp"
 
@@ -130,14 +131,17 @@ void require_sound_layout(std::string_view content, const Widths& widths) {
   if (kind == compact) reader.take(static_cast<std::size_t>(reader.number(4)));
 }
 
-/// Where links or attributes lie, and in which order.
-void require_sound_info(std::string_view content, std::size_t order_bytes, const Widths& widths) {
-  constexpr std::uint64_t ordered_flag = 1, indexed_flag = 2;
+void require_sound_link(std::string_view content, const Widths& widths) {
+  constexpr std::uint64_t length_flags = 3, ordered_flag = 4, kind_flag = 8, letters_flag = 16;
+  constexpr std::uint64_t hard = 0, soft = 1, first_named = 64;
   ByteReader reader(content);
-  reader.take(1);
+  require_sound(reader.number(1) == 1, "a link is of an unknown version");
   const std::uint64_t flags = reader.number(1);
-  if ((flags & ordered_flag) != 0) reader.take(order_bytes);
-  reader.take((flags & indexed_flag) != 0 ? 3 * widths.address : 2 * widths.address);
+  const std::uint64_t kind = (flags & kind_flag) != 0 ? reader.number(1) : hard;
+  require_sound(kind == hard || kind == soft || kind >= first_named, "a link is of an unknown kind");
+  reader.take(((flags & ordered_flag) != 0 ? 8 : 0) + ((flags & letters_flag) != 0 ? 1 : 0));
+  reader.take(static_cast<std::size_t>(reader.number(std::size_t{1} << (flags & length_flags))));
+  reader.take(kind == hard ? widths.address : static_cast<std::size_t>(reader.number(2)));
 }
 
 void require_sound_datatype(const RawMessage& message, const Widths& widths, const TypeAt& type_at) {
@@ -151,19 +155,50 @@ void require_sound_datatype(const RawMessage& message, const Widths& widths, con
 
 }  // namespace
 
+DensePlaces dense_places(const RawMessage& message, const Widths& widths) {
+  constexpr std::uint64_t ordered_flag = 1, indexed_flag = 2;
+  ByteReader reader(message.content);
+  reader.take(1);
+  const std::uint64_t flags = reader.number(1);
+  if ((flags & ordered_flag) != 0) reader.take(message.kind == link_info_kind ? 8 : 2);
+  const haddr_t heap = reader.number(widths.address), by_name = reader.number(widths.address);
+  return {heap, by_name, (flags & indexed_flag) != 0 ? reader.number(widths.address) : HADDR_UNDEF};
+}
+
+void require_of_an_archive(const RawMessage& message) {
+  enum : std::uint64_t {
+    nothing = 0,
+    dataspace = 1,
+    datatype = 3,
+    fill = 5,
+    outside = 7,
+    layout = 8,
+    group_info = 10,
+    continuation = 16,
+    reference_count = 22
+  };
+  constexpr std::uint64_t layout_version = 3, contiguous = 1;
+  static const std::set<std::uint64_t> known{
+      nothing,        dataspace,    link_info_kind,      datatype,       fill, link_kind, layout, group_info,
+      attribute_kind, continuation, attribute_info_kind, reference_count};
+  require_sound(message.kind != outside, "an array keeps its content in another file");
+  require_sound(!message.shared && known.contains(message.kind), "it holds what no archive does");
+  if (message.kind != layout) return;
+  const bool in_one_piece = message.content.size() > 1 && message.content[0] == layout_version &&
+                            static_cast<unsigned char>(message.content[1]) <= contiguous;
+  require_sound(in_one_piece, "an array lies in pieces, as none of an archive does");
+}
+
 void require_sound_message(const RawMessage& message, const Widths& widths, const TypeAt& type_at) {
   enum : std::uint64_t {
     dataspace = 1,
-    link_info = 2,
     datatype = 3,
     old_fill = 4,
     fill = 5,
     layout = 8,
     filters = 11,
-    attribute = 12,
     comment = 13,
     symbols = 17,
-    attribute_info = 21,
     cache_image = 24
   };
   const std::string_view content = message.content;
@@ -171,21 +206,21 @@ void require_sound_message(const RawMessage& message, const Widths& widths, cons
   // From there, HDF5 would take whole headers that nobody judges.
   require_sound(message.kind != cache_image, "the file holds an image of HDF5's memory, which is not read");
   try {
-    if (message.kind == attribute) {
+    if (message.kind == attribute_kind) {
       require_sound(!message.shared, "an attribute is in a table of shared messages, which is not read");
       return require_sound_attribute(content, widths, type_at);
     }
     if (message.kind == datatype) return require_sound_datatype(message, widths, type_at);
     if (message.shared) return;
     if (message.kind == dataspace) take_sound_space(reader, widths);
-    if (message.kind == link_info) require_sound_info(content, 8, widths);
+    if (message.kind == link_kind) require_sound_link(content, widths);
     if (message.kind == old_fill) reader.take(static_cast<std::size_t>(reader.number(4)));
     if (message.kind == fill) require_sound_fill_value(content);
     if (message.kind == layout) require_sound_layout(content, widths);
     if (message.kind == filters) require_sound_filters(content);
     if (message.kind == comment && content.find('\0') == std::string_view::npos) throw NotKnownHere{};
     if (message.kind == symbols) reader.take(2 * widths.address);
-    if (message.kind == attribute_info) require_sound_info(content, 2, widths);
+    if (message.kind == link_info_kind || message.kind == attribute_info_kind) dense_places(message, widths);
   } catch (const NotKnownHere&) {
     throw Unsound{"a message in an object header is longer than it is"};
   }

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <sstream>
+#include <type_traits>
 
 #include "ident/base/covariance.hpp"
 #include "ident/base/printable.hpp"
@@ -67,36 +69,67 @@ std::size_t stretch(const hdf5::Shape& shape, std::size_t dimensions) {
   return count;
 }
 
-std::string broken_form(const Rule& rule, const hdf5::Shape& shape, const std::vector<double>& values) {
-  constexpr double sum_tolerance = 1e-6;
-  switch (rule.form) {
+std::string not_increasing(const hdf5::Shape& shape, std::span<const double> values) {
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (!(values[i] > values[i - 1]))
+      return "does not increase" + place(shape, i) + ": " + number_text(values[i]) + " after " +
+             number_text(values[i - 1]);
+  return {};
+}
+
+std::string broken_sums(Rule::Form form, const hdf5::Shape& shape, std::span<const double> values) {
+  constexpr double tolerance = 1e-6;
+  const std::size_t row = stretch(shape, 1);
+  for (std::size_t begin = 0; row > 0 && begin < values.size(); begin += row) {
+    double sum = 0.0;
+    for (std::size_t i = begin; i < begin + row; ++i) sum += values[i];
+    const bool above = sum > 1.0 + tolerance, below = sum < 1.0 - tolerance;  // neither where one is missing
+    if (above || (below && form == Rule::Form::probabilities))
+      return "holds probabilities that sum to " + number_text(sum) + place(shape, begin);
+  }
+  return {};
+}
+
+using MatrixOfFile = Eigen::Map<const RowMajor>;
+
+/// Whether a matrix could be a covariance where it is known, rounding allowed for: what was computed and is only shown.
+bool is_spread(const MatrixOfFile& matrix) {
+  constexpr double rounding = 1e-6;
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < matrix.size(); ++i)
+    if (std::isfinite(matrix.data()[i])) largest = std::max(largest, std::abs(matrix.data()[i]));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    if (matrix(i, i) < -rounding * largest) return false;
+    for (Eigen::Index j = 0; j < i; ++j)
+      if (std::abs(matrix(i, j) - matrix(j, i)) > rounding * largest) return false;
+  }
+  return true;
+}
+
+std::string broken_matrices(Rule::Form form, const hdf5::Shape& shape, std::span<const double> values) {
+  const std::size_t matrix = stretch(shape, 2);
+  const auto side = static_cast<Eigen::Index>(shape.empty() ? 1 : shape.back());
+  for (std::size_t begin = 0; matrix > 0 && begin + matrix <= values.size(); begin += matrix) {
+    const MatrixOfFile here(values.data() + begin, side, side);
+    const bool square = static_cast<std::size_t>(side * side) == matrix;
+    if (!square || !(form == Rule::Form::covariances ? is_covariance(here) : is_spread(here)))
+      return "holds a matrix" + place(shape, begin) + " that is no covariance: not symmetric or not definite";
+  }
+  return {};
+}
+
+std::string broken_form(Rule::Form form, const hdf5::Shape& shape, std::span<const double> values) {
+  switch (form) {
     case Rule::Form::none:
       return {};
     case Rule::Form::increasing:
-      for (std::size_t i = 1; i < values.size(); ++i)
-        if (!(values[i] > values[i - 1]))
-          return "does not increase" + place(shape, i) + ": " + number_text(values[i]) + " after " +
-                 number_text(values[i - 1]);
-      return {};
-    case Rule::Form::probabilities: {
-      const std::size_t row = stretch(shape, 1);
-      for (std::size_t begin = 0; row > 0 && begin < values.size(); begin += row) {
-        double sum = 0.0;
-        for (std::size_t i = begin; i < begin + row; ++i) sum += values[i];
-        if (std::abs(sum - 1.0) > sum_tolerance)
-          return "holds probabilities that sum to " + number_text(sum) + place(shape, begin);
-      }
-      return {};
-    }
-    case Rule::Form::covariances: {
-      const std::size_t matrix = stretch(shape, 2);
-      const auto side = static_cast<Eigen::Index>(shape.empty() ? 1 : shape.back());
-      for (std::size_t begin = 0; matrix > 0 && begin + matrix <= values.size(); begin += matrix)
-        if (static_cast<std::size_t>(side * side) != matrix ||
-            !is_covariance(Eigen::Map<const RowMajor>(values.data() + begin, side, side)))
-          return "holds a matrix" + place(shape, begin) + " that is no covariance: not symmetric or not definite";
-      return {};
-    }
+      return not_increasing(shape, values);
+    case Rule::Form::probabilities:
+    case Rule::Form::parts:
+      return broken_sums(form, shape, values);
+    case Rule::Form::covariances:
+    case Rule::Form::spreads:
+      return broken_matrices(form, shape, values);
   }
   return {};
 }
@@ -111,7 +144,10 @@ std::string broken(const Rule& given, const Sizes& sizes, const hdf5::Shape& sha
     if (!holds(rule, static_cast<double>(values[i])))
       return "holds " + number_text(static_cast<double>(values[i])) + place(shape, i) + ", " + demand(rule);
   if (rule.form == Rule::Form::none) return {};
-  return broken_form(rule, shape, std::vector<double>(values, values + count));
+  if constexpr (std::is_same_v<Number, double>)
+    return broken_form(rule.form, shape, {values, count});
+  else
+    return broken_form(rule.form, shape, std::vector<double>(values, values + count));
 }
 
 template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const double*);

@@ -17,8 +17,10 @@ struct Rule {
   enum class Form {
     none,
     increasing,     ///< each above the one before
-    probabilities,  ///< each stretch of the last extent sums to 1
-    covariances     ///< each stretch of the last two extents is a symmetric, positive semidefinite matrix
+    probabilities,  ///< each stretch of the last extent sums to 1, unless some of it is missing
+    parts,          ///< each stretch of the last extent sums to at most 1
+    covariances,    ///< each stretch of the last two extents is a symmetric, positive semidefinite matrix
+    spreads         ///< the same as it was computed: symmetric, of variances that are not negative, as far as known
   };
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
@@ -43,10 +45,16 @@ inline const Rule not_negative_or_missing{.least = 0.0, .finite = false, .may_be
 inline constexpr double one = 1.0 + 1e-9;  ///< but for rounding
 inline const Rule share{.least = 0.0, .most = one};
 inline const Rule share_or_missing{.least = 0.0, .most = one, .may_be_missing = true};
+/// Infinite, too: what divides by it may be zero.
+inline const Rule at_most_one{.most = one, .finite = false, .may_be_missing = true};
 inline const Rule at_least_one{.least = 1.0};
 inline const Rule increasing{.form = Rule::Form::increasing};
 inline const Rule probabilities{.least = 0.0, .most = one, .form = Rule::Form::probabilities};
+inline const Rule probabilities_or_missing{
+    .least = 0.0, .most = one, .may_be_missing = true, .form = Rule::Form::probabilities};
+inline const Rule parts_or_missing{.least = 0.0, .most = one, .may_be_missing = true, .form = Rule::Form::parts};
 inline const Rule covariances{.form = Rule::Form::covariances};
+inline const Rule spreads{.finite = false, .may_be_missing = true, .form = Rule::Form::spreads};
 
 /// Of a model, and of its channels: more than anybody asks for, and few enough that sizes made of them are numbers.
 inline const Rule lags{.least = 1.0, .most = 1000.0};

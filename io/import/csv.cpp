@@ -25,6 +25,8 @@ namespace {
 constexpr std::size_t probed_bytes = 1 << 16;  // of a file, at first, to find its dialect and header
 constexpr std::size_t shown_bytes = 60;        // of an offending field in a message
 
+std::string too_many_columns() { return fmt::format("more than {} columns", most_csv_columns); }
+
 /// Collects the first rows that are not empty.
 struct HeaderSink {
   std::size_t wanted = 1;
@@ -37,6 +39,7 @@ struct HeaderSink {
   bool done() const { return complete == wanted; }
   void field(std::string_view text) {
     if (fields++ == 0) rows.emplace_back();
+    if (fields > most_csv_columns) return void(error = too_many_columns());
     rows.back().emplace_back(text);
   }
   void row() { complete += fields > 0 ? 1 : 0; }
@@ -161,6 +164,7 @@ Head read_head(std::string_view file, std::string_view text, bool complete, cons
     if (sink.rows.size() > 1 && head.dialect.header_rows > 1) head.units = sink.rows[1];
   }
   if (head.names.empty()) throw ConfigurationError(fmt::format("{} is empty: no header", file));
+  if (head.names.size() > most_csv_columns) throw DataError(fmt::format("{}: {}", file, too_many_columns()));
   head.units.resize(head.names.size());
   for (std::size_t i = 0; i < head.names.size(); ++i)
     head.units[i] = head.units[i].empty() ? split_unit(head.names[i]).unit : bare_unit(head.units[i]);

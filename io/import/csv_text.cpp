@@ -122,7 +122,7 @@ std::vector<std::string> fields_of(std::string_view record, char separator) {
     record = without_blanks(record);
   std::vector<std::string> fields(1);
   bool quoted = false, fresh = true;
-  for (std::size_t i = 0; i < record.size(); ++i) {
+  for (std::size_t i = 0; i < record.size() && fields.size() <= most_csv_columns; ++i) {
     const char c = record[i];
     if (c == '"' && (quoted || fresh)) {
       quoted = !quoted;

@@ -24,7 +24,11 @@ std::vector<TextRecord> first_records(std::string_view text, bool complete, std:
 /// A comment: '#' or '%' comes first.
 bool is_comment(std::string_view record);
 
-/// The fields of a record, without blanks and quotes around them. `separator` ' ': runs of blanks and tabs.
+/// More than any log has, and few enough that names made of every second byte do not fill the memory.
+inline constexpr std::size_t most_csv_columns = 100'000;
+
+/// The fields of a record, without blanks and quotes around them, one more than most_csv_columns at most. `separator`
+/// ' ': runs of blanks and tabs.
 std::vector<std::string> fields_of(std::string_view record, char separator);
 
 /// What libcsv is given where it would not understand the text: comments become empty lines, which are noted, and runs

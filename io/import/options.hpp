@@ -46,10 +46,10 @@ struct SplitOptions {
   std::ptrdiff_t gap_samples = 0;
 };
 
-/// What to read and how: the [data] section.
 /// Of data.rate_hz.
 inline constexpr double highest_rate_hz = 1e6;
 
+/// What to read and how: the [data] section.
 struct DataOptions {
   std::string root;    ///< absolute prefix of relative patterns
   std::string inputs;  ///< one file per run; the part matched by * names the run (io/import/file_patterns.hpp)

@@ -46,29 +46,31 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   const Unit parameters = parameter_units(stored.structure, states, inputs);
   const bool measured = static_cast<std::size_t>(stored.C.cols()) == states.size();
   const Unit outputs(states.begin(), states.begin() + (measured ? stored.C.rows() : 0));
+  const Rule& error = rule::not_negative_or_missing;
   io.field("weight", stored.weight, {"K"}, {}, rule::share);
   io.field("c", stored.c, {"K", "n"}, states, rule::finite);
   io.field("A", stored.A, {"K", "n", "n"}, ratios(states, states), rule::finite);
   io.field("B", stored.B, {"K", "n", "m"}, ratios(states, inputs), rule::finite);
   io.field("Q", stored.Q, {"K", "n", "n"}, outer(states), rule::covariances);
   io.field("parameters", stored.parameters, {"K", "p"}, parameters, rule::finite_or_missing);
-  io.optional_field("parameter_covariance", stored.spread, {"K", "p", "p"}, outer(parameters));
-  io.optional_field("parameter_standard_error", stored.standard_error, {"K", "p"}, parameters);
-  io.optional_field("Q_standard_error", stored.Q_standard_error, {"K", "n", "n"}, outer(states));
-  io.optional_field("R_standard_error", stored.R_standard_error, {"n_y", "n_y"}, measured ? outer(outputs) : Unit());
-  io.optional_field("transition_standard_error", stored.transition_standard_error, {"K", "K"});
+  io.optional_field("parameter_covariance", stored.spread, {"K", "p", "p"}, outer(parameters), rule::spreads);
+  io.optional_field("parameter_standard_error", stored.standard_error, {"K", "p"}, parameters, error);
+  io.optional_field("Q_standard_error", stored.Q_standard_error, {"K", "n", "n"}, outer(states), error);
+  io.optional_field("R_standard_error", stored.R_standard_error, {"n_y", "n_y"}, measured ? outer(outputs) : Unit(),
+                    error);
+  io.optional_field("transition_standard_error", stored.transition_standard_error, {"K", "K"}, {}, error);
   io.field("C", stored.C, {"n_y", "n"}, measured ? ratios(outputs, states) : Unit(), rule::finite);
   io.field("R", stored.R, {"n_y", "n_y"}, measured ? outer(outputs) : Unit(), rule::covariances);
   io.optional_field("quantum", stored.quantum, {"n_y"}, outputs, rule::not_negative);
   io.field("transition", stored.transition, {"K", "K"}, {}, rule::probabilities);
   io.optional_field("transition_weights", stored.transition_weights, {"K", "K", "features"}, {}, rule::finite);
   io.optional_field("transition_reference", stored.transition_reference, {"features"}, {}, rule::finite);
-  io.optional_field("transition_weight_standard_error", stored.transition_weight_error, {"K", "features"});
+  io.optional_field("transition_weight_standard_error", stored.transition_weight_error, {"K", "features"}, {}, error);
   io.field("initial_probability", stored.initial_probability, {"K"}, {}, rule::probabilities);
   io.optional_field("drift_scale", stored.drift_scale, {"regressors"}, {}, rule::positive);
   io.optional_field("drift_rates", stored.drift_rates, {"rates"}, {}, rule::not_negative);
   io.optional_field("motion_parameters", stored.motion_parameters, {"K", "p_motion"}, motion, rule::finite);
-  io.optional_field("motion_standard_error", stored.motion_standard_error, {"K", "p_motion"}, motion);
+  io.optional_field("motion_standard_error", stored.motion_standard_error, {"K", "p_motion"}, motion, error);
   exchange_structure(io, stored.structure, stored.model);
   if constexpr (Io::reads)
     io.finish([&] { stored.structure = restore_structure(stored.structure, io.size("n"), io.size("p")); });
@@ -86,8 +88,8 @@ void exchange_bank(Io& io, B& bank, const Units& units) {
   io.optional_attribute("noise_prior_samples", bank.noise_adaptation.prior_samples, rule::positive);
   exchange_model_parameters(io, bank.motion_parameters, "motion_parameter");
   io.table("screened", bank.screened, column("component", &ScreenedMode::component).obeying(rule::not_negative),
-           column("weight", &ScreenedMode::weight), column("spectral_radius", &ScreenedMode::spectral_radius),
-           column("reason", &ScreenedMode::reason));
+           share_column("weight", &ScreenedMode::weight),
+           amount_column("spectral_radius", &ScreenedMode::spectral_radius), column("reason", &ScreenedMode::reason));
   const Unit states = units.states(bank.state_names), inputs = units.inputs(bank.input_names);
   io.through(
       bank, store_bank, [&](const StoredBank& stored) { return restore_bank(stored, bank); },

@@ -64,7 +64,7 @@ WindowFits make_windows_fits(const LinearStructure& structure) {
   fits.loss = Loss::tukey;
   for (Index i = 0; i < count; ++i) fits.windows.push_back({i % 3 == 2 ? 2 : 0, i % 7});
   fits.parameters = pattern(p, count, 1.0);
-  fits.covariance = pattern(p * p, count, 2.0);
+  fits.covariance = spread_pattern(p, count, 2.0);
   fits.noise_variance = pattern(n, count, 3.0);
   fits.condition = pattern(count, 1, 4.0);
   fits.condition(2) = std::numeric_limits<double>::infinity();
@@ -74,13 +74,16 @@ WindowFits make_windows_fits(const LinearStructure& structure) {
   fits.information.col(1).setConstant(not_a_number);
   fits.inlier_fraction = share_pattern(count, 1, 6.0);
   fits.status = Eigen::VectorXi::LinSpaced(count, 0, 3);
-  fits.r_squared = pattern(n, count, 12.0);
+  fits.r_squared = share_pattern(n, count, 12.0);
   fits.r_squared(0, 1) = not_a_number;
   fits.aic = pattern(count, 1, 13.0);
   fits.transitions = Eigen::VectorXi::Constant(count, length);
   fits.weighed_information = pattern(fits.structure.states, count, 14.0);
   fits.prior_sd = pattern(p, 1, 8.0);
-  fits.global = {pattern(p, 1, 9.0), pattern(p, p, 10.0), pattern(n, n, 11.0), 35};
+  const auto spread = [](Index side, double base) {
+    return Eigen::MatrixXd(pattern(side, side, base).selfadjointView<Eigen::Upper>());
+  };
+  fits.global = {pattern(p, 1, 9.0), spread(p, 10.0), spread(n, 11.0), 35};
   return fits;
 }
 
@@ -132,7 +135,7 @@ Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
     mode.Q = scale * Eigen::MatrixXd::Identity(n, n);
     mode.Q(0, n - 1) += 0.125;
     mode.Q(n - 1, 0) += 0.125;
-    if (uncertain) mode.spread = pattern(p, p, 50.0);
+    if (uncertain) mode.spread = pattern(p, p, 50.0).selfadjointView<Eigen::Upper>();
     if (uncertain) mode.standard_error = pattern(p, 1, 60.0 + scale);
     if (uncertain) mode.Q_standard_error = pattern(n, n, 70.0 + scale);
     mode.weight = 1.0 / scale;
@@ -172,6 +175,19 @@ Eigen::MatrixXd pattern(Index rows, Index cols, double base) {
 }
 
 Eigen::MatrixXd share_pattern(Index rows, Index cols, double base) { return pattern(rows, cols, base) / 1e4; }
+
+Eigen::MatrixXd probability_pattern(Index rows, Index cols, double base) {
+  Eigen::MatrixXd result = share_pattern(rows, cols, base);
+  result.bottomRows(1) = Eigen::RowVectorXd::Ones(cols) - result.topRows(rows - 1).colwise().sum();
+  return result;
+}
+
+Eigen::MatrixXd spread_pattern(Index side, Index count, double base) {
+  Eigen::MatrixXd result = pattern(side * side, count, base);
+  for (Index i = 0; i < side; ++i)
+    for (Index j = 0; j < i; ++j) result.row(i * side + j) = result.row(j * side + i);
+  return result;
+}
 
 namespace {
 

@@ -19,6 +19,10 @@ Eigen::MatrixXd pattern(Index rows, Index cols, double base);
 
 /// The same over 10^4: what lies in 0 .. 1.
 Eigen::MatrixXd share_pattern(Index rows, Index cols, double base);
+/// The same, but the last row makes each column sum to 1.
+Eigen::MatrixXd probability_pattern(Index rows, Index cols, double base);
+/// side^2 x count: pattern, but each column is a symmetric matrix, whose lower half is its upper one.
+Eigen::MatrixXd spread_pattern(Index side, Index count, double base);
 
 /// All fields of both archives are the same bits (NaN included).
 void expect_same(const Archive& actual, const Archive& expected);

@@ -124,12 +124,41 @@ void keep_columns(const std::filesystem::path& path, const std::string& table, u
 void replace_by_zeros(const std::filesystem::path& path, const std::string& member,
                       const std::vector<unsigned long long>& shape, Kind kind) {
   const hid_t creation = must(H5Pcreate(H5P_DATASET_CREATE));
-  if (std::find(shape.begin(), shape.end(), 0) == shape.end()) {
-    // Chunks that nobody wrote take no room, however large the declared shape is.
-    const std::vector<hsize_t> chunk(shape.size(), 1);
-    must(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()));
-  }
+  // What nobody wrote takes no room, however large the declared shape is.
+  must(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_LATE));
   replace(path, member, kind, shape, creation);
+  H5Pclose(creation);
+  sign(path);
+}
+
+void patch_text_in_list(const std::filesystem::path& path, const std::string& object, const std::string& name,
+                        std::size_t index, const std::string& value) {
+  craft(path, [&](hid_t file) {
+    const hid_t attribute = must(H5Aopen_by_name(file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+    const hid_t type = must(H5Aget_type(attribute)), space = must(H5Aget_space(attribute));
+    const std::size_t bytes = H5Tget_size(type);
+    std::string texts(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)) * bytes, '\0');
+    must(H5Aread(attribute, type, texts.data()));
+    std::string text = value.substr(0, bytes);
+    text.resize(bytes, '\0');
+    texts.replace(index * bytes, bytes, text);
+    H5Aclose(attribute);
+    must(H5Adelete_by_name(file, object.c_str(), name.c_str(), H5P_DEFAULT));  // where many are, none is overwritten
+    const hid_t made =
+        must(H5Acreate_by_name(file, object.c_str(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    must(H5Awrite(made, type, texts.data()));
+    H5Aclose(made);
+    H5Tclose(type);
+    H5Sclose(space);
+  });
+}
+
+void replace_by_chunks(const std::filesystem::path& path, const std::string& member,
+                       const std::vector<unsigned long long>& shape) {
+  const hid_t creation = must(H5Pcreate(H5P_DATASET_CREATE));
+  const std::vector<hsize_t> chunk(shape.size(), 1);
+  must(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()));
+  replace(path, member, Kind::real, shape, creation);
   H5Pclose(creation);
   sign(path);
 }

@@ -18,6 +18,9 @@ enum class Kind { real, integer, text };
 void write_foreign_hdf5(const std::filesystem::path& path, unsigned long long user_block_bytes);
 void patch_text_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name,
                           const std::string& value);
+/// One text of an attribute that is a list of them, cut to their length.
+void patch_text_in_list(const std::filesystem::path& path, const std::string& object, const std::string& name,
+                        std::size_t index, const std::string& value);
 /// The attribute becomes a list of no texts.
 void empty_text_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name);
 void remove_member(const std::filesystem::path& path, const std::string& member);
@@ -37,6 +40,10 @@ void patch_number_attribute(const std::filesystem::path& path, const std::string
 /// The member becomes a link to the root of another file, or to another place in this one.
 void link_to_file(const std::filesystem::path& path, const std::string& member, const std::string& file);
 void link_to_place(const std::filesystem::path& path, const std::string& member, const std::string& place, bool hard);
+
+/// The member becomes an array of as many values, all zero, in chunks that nobody wrote.
+void replace_by_chunks(const std::filesystem::path& path, const std::string& member,
+                       const std::vector<unsigned long long>& shape);
 
 /// The member becomes nine doubles that lie in another file.
 void replace_by_external(const std::filesystem::path& path, const std::string& member, const std::string& elsewhere);

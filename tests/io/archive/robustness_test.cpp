@@ -111,6 +111,105 @@ TEST_F(Robustness, D2TimesAndNamesThatCannotBe) {
       "mode_probability: has shape (14, 2), but K is 3");
 }
 
+TEST_F(Robustness, ComputedSpreadsSharesAndAmountsThatCannotBe) {
+  for (const std::string spread :
+       {"/windows/covariance", "/windows/global/covariance", "/windows/global/residual_covariance",
+        "/bank/parameter_covariance", "/evaluation/bank/10/covariance", "/evaluation/bank/10/innovation_covariance",
+        "/evaluation/bank/10/smoothed_covariance"})
+    refuses_number(spread, 0, -1.0, spread + ": holds a matrix at (0");
+  refuses_number("/windows/covariance", 1, 1e6, "that is no covariance");  // not symmetric
+  for (const std::string error :
+       {"/windows/standard_error", "/windows/global/noise_variance", "/mixture/weights_standard_error",
+        "/mixture/means_standard_error", "/bank/parameter_standard_error", "/bank/Q_standard_error",
+        "/bank/R_standard_error", "/bank/transition_standard_error", "/bank/transition_weight_standard_error",
+        "/evaluation/bank/10/free_run_sd", "/residual_tests/bank/10/cross_correlation_band"})
+    refuses_number(error, 0, -0.5, error + ": holds -0.5 at (0");
+  for (const std::string share : {"/evaluation/bank/10/spread_share", "/residual_tests/bank/10/ljung_box_p"})
+    refuses_number(share, 1, 1.5, share + ": holds 1.5 at (1");
+  refuses_number("/windows/r_squared", 2, 1.5, "/windows/r_squared: holds 1.5");
+  for (const std::string column : {"coverage_95", "too_far", "whiteness_p", "nis_mean"})
+    refuses([&] { patch_cell(path, "/evaluation/summary", column, 1, -0.5); }, "holds -0.5 at (1)");
+  refuses([&] { patch_cell(path, "/evaluation/diagnostics", "usage", 0, 2.0); }, "column 'usage' holds 2 at (0)");
+  refuses([&] { patch_cell(path, "/lag/runs", "lag_standard_error_s", 0, -1.0); }, "holds -1 at (0)");
+}
+
+TEST_F(Robustness, ProbabilitiesOfModesThatDoNotSumToOne) {
+  refuses_number("/evaluation/bank/10/mode_probability", 1, 0.9, "mode_probability: holds probabilities that sum to");
+  refuses_number("/evaluation/bank/10/mode_probability_predicted", 0, 0.9, "holds probabilities that sum to");
+  refuses_number("/mixture/responsibilities", 0, 0.999, "responsibilities: holds probabilities that sum to");
+  patch_number(path, "/evaluation/bank/10/mode_probability", 1, nan);  // not known
+  EXPECT_NO_THROW(read_archive(path));
+}
+
+TEST_F(Robustness, CountsOfMoreThanThereIs) {
+  for (const std::string table : {"summary", "horizon", "free_run", "diagnostics", "confusion", "evidence/gains"})
+    refuses([&] { patch_cell(path, "/evaluation/" + table, "samples", 0, 40); }, "must lie in 0 .. 39");
+  refuses_attribute("/residual_tests/bank/10", "samples", 15);
+  refuses_attribute("/mixture", "clustered_windows", 10);
+  refuses_attribute("/windows/global", "transitions", 40);
+  refuses_attribute("/bank", "learned_transitions", -1);
+  refuses_number("/windows/transitions", 0, 6, "/windows/transitions: holds 6 at (0), must lie in 0 .. 5");
+  refuses([&] { patch_number_attribute(path, "/evaluation/evidence", "runs", 4); }, "speaks of 4 runs, there are 3");
+  refuses([&] { patch_number_attribute(path, "/evaluation/evidence", "modes", 4); }, "speaks of 4 modes, there are 3");
+}
+
+TEST_F(Robustness, AModeIsOneOfItsOwnFilter) {
+  refuses([&] { patch_cell(path, "/evaluation/diagnostics", "mode", 1, 2); },
+          "diagnostics names mode 2 of the 1 of baseline");
+}
+
+TEST_F(Robustness, GroupsAreNamedOnce) {
+  const auto names = [&](const std::string& object, const std::string& attribute, std::size_t index,
+                         const std::string& text, const std::string& reason) {
+    refuses([&] { patch_text_in_list(path, object, attribute, index, text); }, reason);
+  };
+  names("/data", "runs", 0, "10", "two runs are named \"10\"");
+  names("/evaluation", "filters", 1, "bank", "filters names 'bank' twice");
+  names("/residual_tests", "models", 1, "global", "models names 'global' twice");
+  names("/data", "label_names", 0, "snow", "confusion names the unknown label 'ice'");
+}
+
+/// What an overview leaves out, and what a robot's filter does not need, is judged all the same.
+TEST_F(Robustness, EveryReaderJudgesTheWholeArchive) {
+  const std::vector<std::pair<std::string, std::function<void()>>> readers{
+      {"overview", [&] { read_overview(path, 1); }},
+      {"by runs", [&] { read_archive_by_runs(path, 0); }},
+      {"judged alone", [&] { judge_archive(path); }},
+      {"whole", [&] { read_archive(path); }}};
+  const std::vector<std::function<void()>> changes{
+      [&] { patch_number(path, "/evaluation/baseline/10/free_run_mode", 0, 1); },
+      [&] { patch_number(path, "/evaluation/bank/10/viterbi_mode", 2, 3); },
+      [&] { patch_number(path, "/residual_tests/global/10/ljung_box_p", 0, 2); },
+      [&] { patch_number(path, "/windows/status", 3, 255); },
+      [&] { link_to_file(path, "/extra", "/etc/passwd"); },
+      [&] {
+        craft(path, [](hid_t file) {
+          H5Gclose(H5Gcreate2(file, "/mine", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+          H5Lcreate_external("a.h5", "/", file, "/mine/far", H5P_DEFAULT, H5P_DEFAULT);
+        });
+      }};
+  for (const auto& change : changes) {
+    change();
+    EXPECT_FALSE(verify_archive(path).ok());
+    for (const auto& [name, read] : readers) EXPECT_THROW(read(), DataError) << name;
+    write_archive(path, full_archive(2, 1));
+  }
+  for (const auto& [name, read] : readers) EXPECT_NO_THROW(read()) << name;
+}
+
+/// HDF5's indices of chunks, its filters and its older headers are not reached by way of an archive.
+TEST_F(Robustness, WhatNoArchiveIsMadeOfIsNotRead) {
+  refuses(
+      [&] {
+        replace_by_chunks(path, "/bank/A", {3, 2, 2});
+      },
+      "an array lies in pieces, as none of an archive does");
+  refuses([&] { replace_by_external(path, "/bank/A", "elsewhere"); }, "keeps its content in another file");
+  write_foreign_hdf5(path, 512);
+  sign(path);
+  expect_unreadable("not a modebank archive (its object headers are of an older kind)");
+}
+
 TEST_F(Robustness, D2ABankAloneIsJudgedAlike) {
   patch_number_attribute(path, "/bank", "dt_s", -0.1);
   EXPECT_THAT([&] { load_bank(path); }, ThrowsMessage<DataError>(HasSubstr("/bank/dt_s: holds -0.1")));
