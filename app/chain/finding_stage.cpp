@@ -73,9 +73,10 @@ std::optional<Finding> find_modes(const Archive& archive) {
       competitors.push_back(densities_of(evaluation, *archive.recording, role));
   }
   if (!bank || !archive.bank) return {};
-  Finding finding = judge_modes(
-      {*archive.bank, role, densities_of(*bank, *archive.recording, role), competitors, archive.summary,
-       archive.horizons, resolutions(*bank, archive.bank->quantum, *archive.recording, role), archive.free_runs});
+  Finding finding =
+      judge_modes({*archive.bank, role, densities_of(*bank, *archive.recording, role), competitors, archive.summary,
+                   archive.horizons, resolutions(*bank, archive.bank->quantum, *archive.recording, role),
+                   archive.free_runs, archive.one_motion_drifts()});
   finding.text = finding_text(finding);
   return finding;
 }

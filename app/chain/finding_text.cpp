@@ -38,7 +38,7 @@ std::string least_gain_words(const Finding& finding) {
       std::isfinite(finding.standard_error) ? fmt::format(" +- {:.3f}", finding.standard_error) : " (of unknown error)";
   return fmt::format(" The bank of {} gains {:+.3f}{} nats per sample over {} ({}), its best competitor{}.",
                      counted(finding.modes, "mode"), finding.gain, error, finding.best_competitor,
-                     description_of(finding.best_competitor), blocks_words(finding));
+                     description_of(finding.best_competitor, finding.one_motion_drifts), blocks_words(finding));
 }
 
 /// What describes the runs instead, better or as well.
@@ -56,7 +56,8 @@ std::string instead_words(const Finding& finding) {
                      !better                                 ? "may be described as well"
                      : finding.answer == Answer::cannot_tell ? "may be described better"
                                                              : "are described better",
-                     description_of(finding.better_description), finding.better_description, apart);
+                     description_of(finding.better_description, finding.one_motion_drifts), finding.better_description,
+                     apart);
 }
 
 std::string why_not_told(const Finding& finding) {

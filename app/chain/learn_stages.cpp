@@ -29,7 +29,12 @@ Bank one_motion(const Recording& recording, const WindowFits& windows, const Ban
   const Stopwatch watch;
   Bank bank = learn_one_motion(recording, windows, linear_global(recording, windows, inputs.window), baseline.R,
                                std::max(fewest_levels, components), *inputs.one_motion, inputs.filter);
-  listener.progress(fmt::format("one_motion: {} noise levels in {:.2f} s", bank.mode_count(), watch.seconds()));
+  const DriftRates& rates = bank.drift.rates;
+  listener.progress(fmt::format("one_motion: {} noise levels{} in {:.2f} s", bank.mode_count(),
+                                bank.drift.empty() ? ""
+                                                   : fmt::format(", theta drifts (rate {:g}, start {:g}, leak {:g})",
+                                                                 rates.q, rates.p0, rates.leak),
+                                watch.seconds()));
   return bank;
 }
 

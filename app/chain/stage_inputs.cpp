@@ -31,7 +31,6 @@ CompetitorInputs competitor_inputs(const ChainOptions& options, const FitOptions
   learned.measurement_variance = options.bank.measurement_variance;
   learned.em = options.bank.em;
   learned.em.seed = options.seed;
-  learned.em.drift = {};  // what learns within a run is the bank or the competitor `drifting`
   inputs.one_motion = learned;
   return inputs;
 }

@@ -106,7 +106,7 @@ const Rule rules[] = {
        const std::string& simpler = s.finding.better_description;
        return fmt::format(
            "use the simpler {0} ({1}){2}: `modebank track ARCHIVE --track.filter {0}`", simpler,
-           description_of(simpler),
+           description_of(simpler, s.archive.one_motion_drifts()),
            simpler == s.finding.best_competitor ? "" : ", which is not told apart from " + s.finding.best_competitor);
      }},
     {is_not_white,

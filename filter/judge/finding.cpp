@@ -117,7 +117,8 @@ std::vector<BetterMean> better_means(const FindingInputs& in) {
 
 }  // namespace
 
-const char* description_of(const std::string& competitor) {
+const char* description_of(const std::string& competitor, bool one_motion_drifts) {
+  if (competitor == "one_motion" && one_motion_drifts) return "one drifting motion with changing noise";
   if (competitor == "baseline") return "one linear model with constant noise";
   if (competitor == "noise_only" || competitor == "one_motion") return "one motion with changing noise";
   if (competitor == "drifting") return "one motion whose parameters drift";
@@ -146,6 +147,7 @@ Finding judge_modes(const FindingInputs& in) {
   finding.runs = scored_runs(in.bank_densities);
   finding.modes = in.bank.mode_count();
   finding.modes_differ = modes_differ(in.bank);
+  finding.one_motion_drifts = in.one_motion_drifts;
   std::copy_if(in.states.begin(), in.states.end(), std::back_inserter(finding.coarse), is_coarse);
   for (const Densities& competitor : in.competitors)
     finding.gains.push_back(paired_gain(competitor.filter, in.bank_densities.of_runs, competitor.of_runs));

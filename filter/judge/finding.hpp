@@ -28,7 +28,8 @@ struct EnumNames<Answer> {
 /// The competitors that a bank is asked to beat, the simplest description first.
 inline constexpr std::array<const char*, 4> competitor_names{"baseline", "noise_only", "one_motion", "drifting"};
 /// What a competitor says that the runs are, "one linear model with constant noise"; empty for other names.
-const char* description_of(const std::string& competitor);
+/// `one_motion_drifts`: whether the theta of `one_motion` does.
+const char* description_of(const std::string& competitor, bool one_motion_drifts);
 
 /// What a filter said of the judged runs.
 struct Densities {
@@ -63,6 +64,7 @@ struct Finding {
   Eigen::Index modes = 0;                   ///< of the bank
   bool modes_differ = false;                ///< in theta, beyond their errors
   std::vector<Resolution> coarse;           ///< states for which densities are not comparable
+  bool one_motion_drifts = false;           ///< the competitor of that name learns within a run, as the bank does
   std::vector<PairedGain> gains;            ///< of the bank over each competitor
   std::string best_competitor;              ///< of highest log score; empty without competitors
   double gain = 0.0, standard_error = 0.0;  ///< over that one [nats/sample]; NaN where it is not known
@@ -86,6 +88,7 @@ struct FindingInputs {
   const std::vector<HorizonRow>& horizons;
   const std::vector<Resolution>& states;
   const std::vector<FreeRunRow>& free_runs;
+  bool one_motion_drifts = false;
 };
 
 /// evidence: the gain over each competitor exceeds its margin (paired_gain.hpp) and the modes differ. no evidence: a

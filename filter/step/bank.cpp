@@ -69,6 +69,13 @@ void check_drift(const Bank& bank) {
   require(bank.motion_parameters.empty(), "drift needs linear modes, not those of " + bank.model);
   require((bank.R.array() == 0.0).all(), "drift needs states measured exactly: R must be 0");
   require(bank.C.isIdentity(0.0) && bank.C.rows() == s.states, "drift needs each state measured by itself");
+  if (!has_one_theta(bank)) return;
+  double weight = 0.0;
+  for (const Mode& mode : bank.modes) {
+    require(mode.weight >= 0.0, "modes of one theta that drifts need weights that are none below 0");
+    weight += mode.weight;
+  }
+  require(weight > 0.0 && std::isfinite(weight), "modes of one theta that drifts need weights, not all of them 0");
 }
 
 StartMoments measured_lags(const Bank& bank) {
@@ -126,6 +133,12 @@ void check_sizes(const Bank& bank) {
   if (bank.structure.state_lags > 1 && n_y != bank.structure.states)
     throw std::invalid_argument("a bank with lagged states must measure each of its " +
                                 std::to_string(bank.structure.states) + " states");
+}
+
+bool has_one_theta(const Bank& bank) {
+  for (Eigen::Index k = 1; k < bank.mode_count(); ++k)
+    if (bank.theta(k) != bank.theta(0)) return false;
+  return bank.mode_count() > 1;
 }
 
 void validate(const Bank& bank) {

@@ -81,6 +81,9 @@ struct Bank {
   Eigen::VectorXd theta(Eigen::Index mode) const { return pack(structure, modes[mode].model); }
 };
 
+/// Whether these are several modes of the very same theta, which differ in noise alone.
+bool has_one_theta(const Bank& bank);
+
 /// Throws std::invalid_argument naming the first thing that no filter can work with: a size that does not fit the
 /// others, a number that is not finite, a variance below zero, probabilities that are none, a noise adaptation out of
 /// its range.

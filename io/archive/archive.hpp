@@ -111,6 +111,7 @@ struct Archive {
 
   /// By the name of its filter, where there is one; of drifting its fixed_bank, whose states and measurements are its.
   std::optional<Bank> bank_of(const std::string& filter) const;
+  bool one_motion_drifts() const { return one_motion && !one_motion->drift.empty(); }
 };
 
 /// Throws ConfigurationError when `path` cannot become an archive: its folder is missing or not writable, or it is a

@@ -15,6 +15,9 @@
 /// Where nothing was measured the state's error is correlated with theta's (`cross`), which predictions several steps
 /// ahead take into account to first order: the extended Kalman filter of (theta, x). W = P0 = 0 is the bank that does
 /// not drift. One mode of diagonal Q is DriftingRecursion.
+/// Modes of one theta, which differ in noise alone (`one_motion`), keep one Gaussian of it: with g_k and D_k what it
+/// would move and know had mode k ruled the step,
+///   m + sum_k mu_k g_k,   P + sum_k mu_k ((g_k - g)(g_k - g)' / s - D_k),  g = sum_k mu_k g_k.
 namespace modebank::drift {
 
 /// [A B (c)] of a mode from its theta; companion rows stay.
@@ -31,23 +34,38 @@ void set_coefficients(const LinearStructure& s, const Theta& theta, Mode& mode) 
   }
 }
 
-/// What errors of theta add to the prediction of mode j that was made with its mean; `share`: of the state that the
-/// prediction starts from, what is the mode's own.
+/// step.drift.mixed: of mode j's theta, the covariance with the error of the state that its prediction starts from. Of
+/// that state what mode j made goes with its theta; where modes have one theta, all of it.
+template <int N, int NY>
+void mix_cross(const FilterModel<N, NY>& model, const FilterState<N>& state, std::size_t j, FilterStep<N, NY>& step) {
+  const auto k = static_cast<Eigen::Index>(j);
+  Eigen::MatrixXd& mixed = step.drift.mixed;
+  if (model.mode_count() == 1)
+    mixed = state.drift.cross[j];
+  else if (model.drift.shared) {
+    mixed.setZero();
+    for (std::size_t i = 0; i < state.drift.cross.size(); ++i)
+      mixed += step.mixing.matrix(static_cast<Eigen::Index>(i), k) * state.drift.cross[i];
+  } else
+    mixed = step.mixing.matrix(k, k) * state.drift.cross[j];
+}
+
+/// What errors of theta add to the prediction of mode j that was made with its mean; after mix_cross.
 template <int N, int NY, class U>
-void add_errors(const FilterModel<N, NY>& model, const FilterState<N>& state, std::size_t j, double share,
-                const Gaussian<N>& from, const U& u, FilterStep<N, NY>& step) {
+void add_errors(const FilterModel<N, NY>& model, const FilterState<N>& state, std::size_t j, const Gaussian<N>& from,
+                const U& u, FilterStep<N, NY>& step) {
   const LinearStructure& s = model.structure;
   const Eigen::Index n_s = s.states, n = s.dimension(), r = s.regressors();
   DriftWorkspace<N, NY>& at = step.drift;
   KalmanStep<N, NY>& kalman = step.kalman[j];
   const auto& F = at.modes[j].F;
+  const Eigen::MatrixXd& theta_P = state.drift.P[model.drift.owner(j)];
   fill_regressor(s, from.mean, u, at.regressor);
   for (Eigen::Index a = 0; a < n_s; ++a) {
-    at.PG.col(a).noalias() = state.noise_scale * (state.drift.P[j].middleCols(a * r, r) * at.regressor);
-    at.through.row(a).noalias() = share * (at.regressor.transpose() * state.drift.cross[j].middleRows(a * r, r));
+    at.PG.col(a).noalias() = state.noise_scale * (theta_P.middleCols(a * r, r) * at.regressor);
+    at.through.row(a).noalias() = at.regressor.transpose() * at.mixed.middleRows(a * r, r);
   }
-  small::multiply_transposed(at.cross[j], state.drift.cross[j], F);
-  at.cross[j] *= share;
+  small::multiply_transposed(at.cross[j], at.mixed, F);
   at.cross[j].leftCols(n_s) += at.PG;
   auto& P = kalman.predicted.covariance;
   for (Eigen::Index b = 0; b < n_s; ++b) {
@@ -72,11 +90,11 @@ template <int N, int NY, class U>
 void predict_modes(const FilterModel<N, NY>& model, const FilterState<N>& state, const std::vector<Gaussian<N>>& from,
                    const U& u, FilterStep<N, NY>& step) {
   for (std::size_t j = 0; j < model.modes.size(); ++j) {
-    const auto k = static_cast<Eigen::Index>(j);
-    set_coefficients(model.structure, state.drift.theta.col(k), step.drift.modes[j]);
+    const auto owner = static_cast<Eigen::Index>(model.drift.owner(j));
+    set_coefficients(model.structure, state.drift.theta.col(owner), step.drift.modes[j]);
     step.kalman[j].predict(from[j], model, step.drift.modes[j], u, state.noise_scale);
-    const double share = model.mode_count() == 1 ? 1.0 : step.mixing.matrix(k, k);
-    add_errors(model, state, j, share, from[j], u, step);
+    mix_cross(model, state, j, step);
+    add_errors(model, state, j, from[j], u, step);
     step.kalman[j].expect(model);
   }
 }
@@ -84,13 +102,12 @@ void predict_modes(const FilterModel<N, NY>& model, const FilterState<N>& state,
 /// Between two samples: coefficients leak to where they came from, and wander.
 inline void pass_time(const DriftModel& model, DriftState& state) {
   if (model.leak != 1.0) state.theta = model.theta0 + model.leak * (state.theta - model.theta0);
-  for (std::size_t j = 0; j < state.P.size(); ++j) {
-    if (model.leak != 1.0) {
-      state.P[j] *= model.leak * model.leak;
-      state.cross[j] *= model.leak;
-    }
-    state.P[j] += model.W[j];
+  for (std::size_t k = 0; k < state.P.size(); ++k) {
+    if (model.leak != 1.0) state.P[k] *= model.leak * model.leak;
+    state.P[k] += model.W[k];
   }
+  if (model.leak != 1.0)
+    for (Eigen::MatrixXd& cross : state.cross) cross *= model.leak;
 }
 
 /// Nothing was measured: theta is what it was, and the predicted state's error goes with its error.
@@ -107,10 +124,9 @@ inline void make_usable(Eigen::MatrixXd& P) {
     for (Eigen::Index i = 0; i < P.rows(); ++i) P(i, j) = i == j ? std::max(0.0, P(i, i)) : 0.0;
 }
 
-/// Mode j's theta after a measurement which it made with probability mu; `scale`: of the noise in its prediction.
+/// step.drift.gain and .move: what mode j's theta learns of the measurement had the mode made it.
 template <int N, int NY, class Sensor>
-void learn_mode(const Sensor& sensor, std::size_t j, double mu, double scale, FilterStep<N, NY>& step,
-                DriftState& state) {
+void match(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step) {
   DriftWorkspace<N, NY>& at = step.drift;
   const KalmanStep<N, NY>& kalman = step.kalman[j];
   small::multiply_transposed(at.G, at.cross[j], sensor.C);
@@ -120,30 +136,79 @@ void learn_mode(const Sensor& sensor, std::size_t j, double mu, double scale, Fi
     at.gain.row(i) = at.row;
   }
   small::multiply(at.move, at.gain, kalman.innovation);
-  state.cross[j] = at.cross[j];
-  if (!at.move.allFinite()) return;  // an overflowing correction is no information
-  state.theta.col(static_cast<Eigen::Index>(j)) += mu * at.move;
-  Eigen::MatrixXd& P = state.P[j];
+}
+
+/// P + weight (spread move move' - gain G'), after match.
+template <int N, int NY>
+void learn_covariance(const DriftWorkspace<N, NY>& at, double weight, double spread, Eigen::MatrixXd& P) {
   for (Eigen::Index b = 0; b < P.cols(); ++b)
     for (Eigen::Index a = b; a < P.rows(); ++a) {
       double known = 0.0;
       for (Eigen::Index i = 0; i < at.G.cols(); ++i) known += at.gain(a, i) * at.G(b, i);
-      P(a, b) += mu / scale * ((1.0 - mu) * at.move(a) * at.move(b) - known);
+      P(a, b) += weight * (spread * at.move(a) * at.move(b) - known);
       P(b, a) = P(a, b);
     }
-  make_usable(P);
-  small::multiply_transposed(at.seen, kalman.predicted.covariance, sensor.C);
+}
+
+/// What the error of mode j's state has to do with theta once both have learned, after match.
+template <int N, int NY, class Sensor>
+void learn_cross(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step, DriftState& state) {
+  DriftWorkspace<N, NY>& at = step.drift;
+  small::multiply_transposed(at.seen, step.kalman[j].predicted.covariance, sensor.C);
+  state.cross[j] = at.cross[j];
   for (Eigen::Index i = 0; i < at.gain.cols(); ++i)
     state.cross[j].noalias() -= at.gain.col(i) * at.seen.col(i).transpose();
+}
+
+/// Mode j's theta after a measurement which it made with probability mu; `scale`: of the noise in its prediction.
+template <int N, int NY, class Sensor>
+void learn_mode(const Sensor& sensor, std::size_t j, double mu, double scale, FilterStep<N, NY>& step,
+                DriftState& state) {
+  match(sensor, j, step);
+  if (!step.drift.move.allFinite()) {  // an overflowing correction is no information
+    state.cross[j] = step.drift.cross[j];
+    return;
+  }
+  state.theta.col(static_cast<Eigen::Index>(j)) += mu * step.drift.move;
+  learn_covariance(step.drift, mu / scale, 1.0 - mu, state.P[j]);
+  make_usable(state.P[j]);
+  learn_cross(sensor, j, step, state);
+}
+
+/// The one theta of all modes after a measurement which they made with probabilities mu.
+template <int N, int NY, class Sensor>
+void learn_together(const Sensor& sensor, const Eigen::VectorXd& mu, double scale, FilterStep<N, NY>& step,
+                    DriftState& state) {
+  DriftWorkspace<N, NY>& at = step.drift;
+  at.together.setZero();
+  for (std::size_t j = 0; j < state.cross.size(); ++j) {
+    match(sensor, j, step);
+    at.together += mu(static_cast<Eigen::Index>(j)) * at.move;
+  }
+  if (!at.together.allFinite()) {
+    for (std::size_t j = 0; j < state.cross.size(); ++j) state.cross[j] = at.cross[j];
+    return;
+  }
+  state.theta.col(0) += at.together;
+  for (std::size_t j = 0; j < state.cross.size(); ++j) {
+    match(sensor, j, step);
+    at.move -= at.together;
+    learn_covariance(at, mu(static_cast<Eigen::Index>(j)) / scale, 1.0, state.P[0]);
+    learn_cross(sensor, j, step, state);
+  }
+  make_usable(state.P[0]);
 }
 
 /// After Bayes' rule: every mode's theta learns by its probability.
 template <int N, int NY, class Sensor>
 void learn(const FilterModel<N, NY>& model, const Sensor& sensor, double scale, FilterStep<N, NY>& step,
            FilterState<N>& state) {
-  for (std::size_t j = 0; j < model.modes.size(); ++j)
-    learn_mode(sensor, j, model.mode_count() == 1 ? 1.0 : state.mode_probability(static_cast<Eigen::Index>(j)), scale,
-               step, state.drift);
+  if (model.drift.shared)
+    learn_together(sensor, state.mode_probability, scale, step, state.drift);
+  else
+    for (std::size_t j = 0; j < model.modes.size(); ++j)
+      learn_mode(sensor, j, model.mode_count() == 1 ? 1.0 : state.mode_probability(static_cast<Eigen::Index>(j)), scale,
+                 step, state.drift);
   pass_time(model.drift, state.drift);
 }
 

@@ -11,7 +11,8 @@ namespace modebank {
 template <int N, int NY>
 struct FilterModel;
 
-/// What a filter knows of the modes' coefficients; covariances of coefficients in units of the noise scale.
+/// What a filter knows of the modes' coefficients; covariances of coefficients in units of the noise scale. Modes of
+/// one theta (DriftModel::shared) have one column and one P.
 struct DriftState {
   Eigen::MatrixXd theta;               ///< p x K
   std::vector<Eigen::MatrixXd> P;      ///< K of p x p
@@ -21,40 +22,58 @@ struct DriftState {
 /// How the bank's coefficients wander, laid out for stepping.
 struct DriftModel {
   double leak = 1.0;
-  Eigen::MatrixXd theta0;           ///< p x K; empty: nothing drifts
-  std::vector<Eigen::MatrixXd> W;   ///< K of p x p, what a step adds to P
-  std::vector<Eigen::MatrixXd> P0;  ///< K of p x p, P at a start
+  bool shared = false;              ///< modes that differ in noise alone: what one of them learns of theta all know
+  Eigen::MatrixXd theta0;           ///< p x K, p x 1 where shared; empty: nothing drifts
+  std::vector<Eigen::MatrixXd> W;   ///< K (1) of p x p, what a step adds to P
+  std::vector<Eigen::MatrixXd> P0;  ///< K (1) of p x p, P at a start
 
-  /// W_k = q Q_k (x) D^-2 and P0_k the same with p0: D the regressors' scales, Q_k of the measured states.
-  explicit DriftModel(const Bank& bank) {
+  /// W_k = q Q_k (x) D^-2 and P0_k the same with p0: D the regressors' scales, Q_k of the measured states; for modes of
+  /// one theta their mean Q, weighted as the modes are.
+  explicit DriftModel(const Bank& bank) : modes_(bank.modes.size()) {
     if (bank.drift.empty()) return;
-    const LinearStructure& s = bank.structure;
-    const Eigen::Index r = s.regressors(), p = s.parameters();
     leak = bank.drift.rates.leak;
-    theta0.resize(p, bank.mode_count());
-    for (Eigen::Index k = 0; k < bank.mode_count(); ++k) {
-      theta0.col(k) = bank.theta(k);
-      Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(p, p);
-      for (Eigen::Index b = 0; b < s.states; ++b)
-        for (Eigen::Index a = 0; a < s.states; ++a)
-          unit.block(a * r, b * r, r, r).diagonal() =
-              bank.modes[static_cast<std::size_t>(k)].Q(a, b) * bank.drift.scale.array().square().inverse();
-      W.push_back(bank.drift.rates.q * unit);
-      P0.push_back(bank.drift.rates.p0 * unit);
+    shared = has_one_theta(bank);
+    if (shared) {
+      Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(bank.modes[0].Q.rows(), bank.modes[0].Q.cols());
+      double weight = 0.0;
+      for (const Mode& mode : bank.modes) {
+        sum += mode.weight * mode.Q;
+        weight += mode.weight;
+      }
+      add(bank, 0, sum / weight);
+    } else {
+      for (std::size_t k = 0; k < modes_; ++k) add(bank, k, bank.modes[k].Q);
     }
   }
 
   bool on() const { return theta0.size() > 0; }
+  /// Which theta mode k has.
+  std::size_t owner(std::size_t k) const { return shared ? 0 : k; }
 
   void restart(DriftState& state) const {
     state.theta = theta0;
-    for (std::size_t k = 0; k < P0.size(); ++k) {
-      state.P[k] = P0[k];
-      state.cross[k].setZero();
-    }
+    for (std::size_t k = 0; k < P0.size(); ++k) state.P[k] = P0[k];
+    for (Eigen::MatrixXd& cross : state.cross) cross.setZero();
   }
   DriftState start(Eigen::Index dimension) const {
-    return {theta0, P0, std::vector<Eigen::MatrixXd>(P0.size(), Eigen::MatrixXd::Zero(theta0.rows(), dimension))};
+    if (!on()) return {};
+    return {theta0, P0, std::vector<Eigen::MatrixXd>(modes_, Eigen::MatrixXd::Zero(theta0.rows(), dimension))};
+  }
+
+ private:
+  std::size_t modes_;
+
+  void add(const Bank& bank, std::size_t k, const Eigen::MatrixXd& Q) {
+    const LinearStructure& s = bank.structure;
+    const Eigen::Index r = s.regressors(), p = s.parameters();
+    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(p, p);
+    for (Eigen::Index b = 0; b < s.states; ++b)
+      for (Eigen::Index a = 0; a < s.states; ++a)
+        unit.block(a * r, b * r, r, r).diagonal() = Q(a, b) * bank.drift.scale.array().square().inverse();
+    theta0.conservativeResize(p, static_cast<Eigen::Index>(k) + 1);
+    theta0.rightCols<1>() = bank.theta(static_cast<Eigen::Index>(k));
+    W.push_back(bank.drift.rates.q * unit);
+    P0.push_back(bank.drift.rates.p0 * unit);
   }
 };
 
@@ -63,10 +82,11 @@ template <int N, int NY>
 struct DriftWorkspace {
   std::vector<typename FilterModel<N, NY>::Mode> modes;  ///< K, as their coefficients stand
   std::vector<Eigen::MatrixXd> cross;                    ///< K of p x n, of theta with the predicted state's error
-  Eigen::VectorXd regressor, move;                       ///< r, p
-  Eigen::MatrixXd through;                               ///< states x n, (I (x) phi') cross
-  Eigen::MatrixXd PG, G, gain, seen;                     ///< p x states, p x n_y, p x n_y, n x n_y
-  Eigen::VectorXd row;                                   ///< n_y
+  Eigen::VectorXd regressor, move, together;             ///< r, p, p
+  Eigen::MatrixXd mixed;              ///< p x n, of theta with the state that a prediction starts from
+  Eigen::MatrixXd through;            ///< states x n, (I (x) phi') cross
+  Eigen::MatrixXd PG, G, gain, seen;  ///< p x states, p x n_y, p x n_y, n x n_y
+  Eigen::VectorXd row;                ///< n_y
 
   explicit DriftWorkspace(const FilterModel<N, NY>& model) {
     if (!model.drift.on()) return;
@@ -75,6 +95,8 @@ struct DriftWorkspace {
     cross.assign(modes.size(), Eigen::MatrixXd::Zero(p, n));
     regressor.resize(model.structure.regressors());
     move.resize(p);
+    together.resize(p);
+    mixed.resize(p, n);
     through.resize(model.structure.states, n);
     PG.resize(p, model.structure.states);
     G.resize(p, n_y);

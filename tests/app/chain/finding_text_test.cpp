@@ -49,6 +49,15 @@ TEST(FindingText, NoEvidenceNamesWhatDescribesTheRunsInstead) {
   EXPECT_THAT(finding_text(finding), HasSubstr("The modes do not differ in their parameters beyond their errors"));
 }
 
+TEST(FindingText, OneMotionThatDriftsIsCalledSo) {
+  Finding finding = finding_of(Answer::no_evidence);
+  finding.one_motion_drifts = true;
+  finding.better_description = "one_motion";
+  EXPECT_THAT(finding_text(finding),
+              AllOf(HasSubstr("over one_motion (one drifting motion with changing noise), its best competitor."),
+                    HasSubstr("as well by one drifting motion with changing noise (one_motion).")));
+}
+
 TEST(FindingText, WhatCannotBeToldSaysWhy) {
   Finding finding = finding_of(Answer::cannot_tell);
   EXPECT_THAT(finding_text(finding), HasSubstr("cannot be told: the gain does not exceed what chance makes"));
