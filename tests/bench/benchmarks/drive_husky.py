@@ -8,7 +8,7 @@ far and too close [%]. The data's authors publish steady-state models of slip, n
 
 
 def main():
-    both_halves(Arguments(__doc__), "DRIVE Husky", PROTOCOL, "drive_husky.ini")
+    both_halves(Arguments(__doc__), "DRIVE Husky", PROTOCOL, "drive_husky.ini", more=MORE)
 
 
 if __name__ == "__main__":

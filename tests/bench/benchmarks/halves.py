@@ -7,13 +7,13 @@ from benchmark import SOURCES, preamble
 from ablation import FEATURES, Bench, Stages, cells, halves, outcome, replaced, table
 
 
-def both_halves(given, title, protocol, config, old="", new="", recipe=None):
+def both_halves(given, title, protocol, config, old="", new="", recipe=None, more=()):
     """`old`, `new`: what the configuration's data paths say, and what to put in its place. `recipe`: name and configuration of a published
-    recipe that gets a row of its own."""
+    recipe that gets a row of its own. `more`: further rows, as ablation.py's FEATURES."""
     os.environ["MODEBANK_DATA"] = str(given.data)
     preamble(given.program, title, protocol)
     with concurrent.futures.ThreadPoolExecutor(1) as pool:
-        of_config(given, config, old, new, lambda stages, folds: table(stages, title, folds, FEATURES[:1], pool))
+        of_config(given, config, old, new, lambda stages, folds: table(stages, title, folds, [*FEATURES[:1], *more], pool))
         if recipe:
             of_config(given, recipe[1], old, new, lambda stages, folds: recipe_row(stages, folds, recipe[0], pool))
 
