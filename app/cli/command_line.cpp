@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "app/cli/check_options.hpp"
 #include "app/cli/command_table.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"

@@ -43,7 +43,4 @@ const std::vector<CommandOption>& common_options();
 /// Null when there is none of that name.
 const Command* find_command(const std::string& name);
 
-/// Throws ConfigurationError for an option that the command does not read, saying which it does.
-void check_options(const Command& command, const CommandLine& line);
-
 }  // namespace modebank::app

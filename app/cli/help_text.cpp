@@ -72,7 +72,7 @@ std::string options_of(const Command& command) {
 }
 
 /// The keys that most users set; the sections that hold the others.
-std::string keys_of(const Command& command) {
+std::string keys_paragraph(const Command& command) {
   if (command.keys.empty()) return "";
   constexpr std::size_t key_width = 23;  // of "--track.checkpoint" and the like
   std::string text;
@@ -91,7 +91,7 @@ std::string command_text(const Command& command) {
   const std::string details = command.details.empty() ? "" : " " + command.details;
   const std::string what = static_cast<char>(std::toupper(command.summary.front())) + command.summary.substr(1) + ".";
   return heading_of(command) + fmt::format("{}\n", fmt::join(filled(what + details, help_width), "\n")) +
-         options_of(command) + keys_of(command) + fmt::format("\nExample\n  {}\n", command.example);
+         options_of(command) + keys_paragraph(command) + fmt::format("\nExample\n  {}\n", command.example);
 }
 
 std::string section_text(const std::string& section) {

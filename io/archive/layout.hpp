@@ -80,7 +80,11 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
       "standard_error", [&] { return fits.standard_errors(); }, {"M", "p"}, parameters, rule::not_negative_or_missing);
   io.optional_derived_field("t_value", [&] { return fits.t_values(); }, {"M", "p"});
   io.optional_field("prior_sd", fits.prior_sd, {"p"}, parameters, rule::not_negative_or_missing);
-  if constexpr (Io::reads) io.finish([&] { restore_window_structure(fits, io.size("n"), io.size("p")); });
+  if constexpr (Io::reads)
+    io.finish([&] {
+      restore_window_structure(fits, io.size("n"), io.size("p"));
+      check_audit(fits);
+    });
   std::vector<std::string> names = fits.parameter_names();
   io.attribute_texts("parameter_names", names);
   if constexpr (!Io::reads)

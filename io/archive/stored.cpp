@@ -64,6 +64,14 @@ void restore_window_structure(WindowFits& fits, Index states, Index parameters) 
   if (fits.parameter_count() != parameters) parameters_do_not_fit(parameters, states);
 }
 
+void check_audit(const WindowFits& fits) {
+  const WindowAudit& audit = fits.audit;
+  const auto windows = std::ssize(fits.windows);
+  for (const auto count : {audit.batch, audit.ceres, audit.checked, audit.replaced, audit.lower})
+    if (count > windows)
+      throw DataError("the audit counts " + std::to_string(count) + " of " + std::to_string(windows) + " windows");
+}
+
 Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances) {
   const Index features = covariances.empty() ? 0 : covariances.front().rows();
   return side_by_side(
@@ -142,8 +150,21 @@ void check_labels(const Archive& archive) {
     if (!known.contains(row.label)) throw DataError("confusion names the unknown label '" + row.label + "'");
 }
 
+/// The names of competitors in what was found; empty where there was none to name.
+void check_competitors(const Finding& finding) {
+  const auto known = [](const std::string& name, bool may_be_empty) {
+    if ((name.empty() && may_be_empty) || may_name<Finding>(name)) return;
+    throw DataError("evidence names the unknown filter '" + name + "'");
+  };
+  known(finding.best_competitor, true);
+  known(finding.better_description, true);
+  for (const PairedGain& gain : finding.gains) known(gain.competitor, false);
+  for (const BetterMean& mean : finding.better_means) known(mean.competitor, false);
+}
+
 void check_finding(const Archive& archive) {
   if (!archive.finding) return;
+  check_competitors(*archive.finding);
   const auto compare = [](Index said, Index there, bool fits, const char* of) {
     if (!fits)
       throw DataError("evidence speaks of " + std::to_string(said) + " " + of + ", there are " + std::to_string(there));

@@ -32,6 +32,8 @@ std::vector<Window> restore_windows(const StoredWindows& stored, const std::vect
 /// restore_structure for windows, whose arrays have one entry per measured state; p is that of the motion model if
 /// there is one.
 void restore_window_structure(WindowFits& fits, Index states, Index parameters);
+/// No count of the audit exceeds that of the windows.
+void check_audit(const WindowFits& fits);
 
 /// The components' covariances, F*F x K.
 Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances);

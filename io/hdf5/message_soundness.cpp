@@ -153,6 +153,24 @@ void require_sound_datatype(const RawMessage& message, const Widths& widths, con
   }
 }
 
+/// Kinds of messages, as the format numbers them.
+enum MessageKind : std::uint64_t {
+  nothing = 0,
+  dataspace = 1,
+  datatype = 3,
+  old_fill = 4,
+  fill = 5,
+  outside = 7,
+  layout = 8,
+  group_info = 10,
+  filters = 11,
+  comment = 13,
+  continuation = 16,
+  symbols = 17,
+  reference_count = 22,
+  cache_image = 24
+};
+
 }  // namespace
 
 DensePlaces dense_places(const RawMessage& message, const Widths& widths) {
@@ -166,17 +184,6 @@ DensePlaces dense_places(const RawMessage& message, const Widths& widths) {
 }
 
 void require_of_an_archive(const RawMessage& message) {
-  enum : std::uint64_t {
-    nothing = 0,
-    dataspace = 1,
-    datatype = 3,
-    fill = 5,
-    outside = 7,
-    layout = 8,
-    group_info = 10,
-    continuation = 16,
-    reference_count = 22
-  };
   constexpr std::uint64_t layout_version = 3, contiguous = 1;
   static const std::set<std::uint64_t> known{
       nothing,        dataspace,    link_info_kind,      datatype,       fill, link_kind, layout, group_info,
@@ -190,17 +197,6 @@ void require_of_an_archive(const RawMessage& message) {
 }
 
 void require_sound_message(const RawMessage& message, const Widths& widths, const TypeAt& type_at) {
-  enum : std::uint64_t {
-    dataspace = 1,
-    datatype = 3,
-    old_fill = 4,
-    fill = 5,
-    layout = 8,
-    filters = 11,
-    comment = 13,
-    symbols = 17,
-    cache_image = 24
-  };
   const std::string_view content = message.content;
   ByteReader reader(content);
   // From there, HDF5 would take whole headers that nobody judges.

@@ -1,0 +1,38 @@
+// Lines of samples as CSV has them: quoted fields, and names that need quotes.
+#include <gmock/gmock.h>
+
+#include "tests/app/cli/track_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+TEST_F(Track, ReadsQuotedFieldsAsTheImportDoes) {
+  PipedProgram plain(command()), quoted(command());
+  plain.write("time,wz,left,right\n0,0.1,0.1,0.2\n0.1,0.2,0.1,0.2\n");
+  quoted.write(
+      "\"time\",note,\"wz\",\"left\",\"right\",\"a \"\"b\"\", c\"\n0,\"one, two\",0.1,\"0.1\",0.2,x\n"
+      "0.1,\"a \"\"quote, \"\"\",0.2,0.1,0.2,\"never closed\n");
+  for (PipedProgram* program : {&plain, &quoted}) program->close_input();
+  for (int line = 0; line < 3; ++line) EXPECT_EQ(quoted.read_line(), plain.read_line()) << line;
+  EXPECT_EQ(quoted.wait(), 0);
+  EXPECT_EQ(quoted.errors(), "");
+}
+
+/// A header that a reader of CSV takes apart as it was put together, and a spreadsheet for text.
+TEST_F(Track, NamesInTheHeaderAreQuoted) {
+  for (const char* run_file : {"run_00.csv", "run_01.csv"}) {
+    const std::string text = csv_run(80, run_file[5] == '0' ? 1 : 2);
+    write(run_file, "time,\"=a\"\"b\"" + text.substr(std::string("time,wz").size()));
+  }
+  ASSERT_EQ(run({"--data.state", "=a\"b"}).status, 0);
+  PipedProgram program(command());
+  program.write("time,\"=a\"\"b\",left,right\n");
+  program.close_input();
+  EXPECT_THAT(
+      program.read_line().value_or(""),
+      testing::StartsWith("time,steps,\"'=a\"\"b_predicted\",\"'=a\"\"b_lower\",\"'=a\"\"b_upper\",\"'=a\"\"b\","));
+  EXPECT_EQ(program.wait(), 0);
+}
+
+}  // namespace
+}  // namespace modebank::test
