@@ -70,8 +70,7 @@ std::string unscored_warning(const Archive& archive, double least_share) {
   if (lost == 0 || static_cast<double>(lost) < least_share * static_cast<double>(all)) return "";
   return fmt::format(
       "{} of {} measured samples have no score, most of them in run {}: the filter starts, and starts anew after a "
-      "long "
-      "gap, where {} whole samples follow each other",
+      "long gap, where {} whole samples follow each other",
       lost, all, worst, archive.bank->structure.state_lags);
 }
 
