@@ -4,7 +4,6 @@
 #include <fstream>
 
 #include "io/archive/bank/open_archive.hpp"
-#include "io/hdf5/file_driver.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -44,9 +43,7 @@ std::string image_name() {
 ArchiveImage::ArchiveImage() : access_(memory_access()), file_(create_file(image_name(), access_)) {}
 
 hdf5::Handle create_archive_file(const std::filesystem::path& path) {
-  const hdf5::Handle access = file_access();
-  hdf5::check(H5Pset_driver(access.id(), hdf5::file_driver(), nullptr), "prepare the archive");
-  return create_file(path.string(), access);
+  return create_file(path.string(), file_access());
 }
 
 std::string_view ArchiveImage::content() const {

@@ -66,7 +66,7 @@ void exchange_recording(Io& io, R& recording, L& labels) {
   for (std::size_t i = 0; i < recording.runs.size(); ++i) {
     auto& run = recording.runs[i];
     Eigen::VectorXi label = labels && !label_names.empty() ? labels->of_runs[i] : Eigen::VectorXi();
-    io.small_group(run.run, known, [&](auto& member) {
+    io.group(run.run, known, [&](auto& member) {
       member.attribute("role", run.role);
       member.attribute("lag_s", run.lag_s, rule::finite);
       member.attribute_unless(std::int64_t{0}, "time_origin_ns", run.time_origin_ns);

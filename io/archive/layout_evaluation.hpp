@@ -70,7 +70,7 @@ void exchange_filter_run(Io& io, const std::string& run, Index samples, const Si
                          F& free_run, const Unit& states) {
   Sizes known = of_bank;
   if (samples > 0) known.set("N", static_cast<hsize_t>(samples));
-  io.small_group(run, known, [&](auto& member) {
+  io.group(run, known, [&](auto& member) {
     exchange_run_evaluation(member, evaluation, states);
     exchange_free_run(member, free_run, states);
   });
@@ -266,7 +266,7 @@ void exchange_residual_tests(Io& io, S& sets, const Recording& recording) {
                                     std::to_string(recording.runs.size()));
       for (std::size_t i = 0; i < recording.runs.size(); ++i) {
         known.set("samples", static_cast<hsize_t>(recording.runs[i].samples()));
-        member.small_group(recording.runs[i].run, known, [&](auto& run) { exchange_run_residuals(run, set.runs[i]); });
+        member.group(recording.runs[i].run, known, [&](auto& run) { exchange_run_residuals(run, set.runs[i]); });
       }
     });
 }

@@ -21,7 +21,9 @@ struct FreeVariable {
 using MatFile = std::unique_ptr<mat_t, CloseFile>;
 using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
-void be_silent(int, char*) {}
+/// A template, because the text is `const` from matio 1.5.27 on.
+template <class Text>
+void be_silent(int, Text*) {}
 
 MatFile open_mat(const std::string& path) {
   Mat_LogInitFunc("modebank", be_silent);

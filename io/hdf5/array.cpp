@@ -1,7 +1,6 @@
 #include "io/hdf5/array.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #include "io/hdf5/links.hpp"
@@ -174,9 +173,6 @@ StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : p
   check_plausible();
 }
 
-StoredArray::StoredArray(const SmallArray& small, Place place, const std::string& name)
-    : place_(place), name_(name), small_(&small), shape_(small.shape), elements_(small.elements()) {}
-
 void StoredArray::check_plausible() const {
   const auto refuse = [&] { throw DataError(quoted(place_, name_) + " declares more content than the file holds"); };
   const std::size_t element_bytes = H5Tget_size(type());  // by which HDF5 divides
@@ -194,24 +190,8 @@ void StoredArray::check_plausible() const {
   if (bytes > file_bytes || longest_extent > file_bytes) refuse();
 }
 
-void StoredArray::read_small(hid_t memory_type, void* data) const {
-  const std::string& bytes = small_->bytes;
-  if (H5Tequal(small_->type, memory_type) > 0) {
-    std::memcpy(data, bytes.data(), bytes.size());
-    return;
-  }
-  const auto count = static_cast<std::size_t>(elements_);
-  const std::size_t wanted = H5Tget_size(memory_type);
-  std::string values(count * std::max(wanted, small_->element_bytes), '\0');
-  bytes.copy(values.data(), bytes.size());
-  check(H5Tconvert(small_->type, memory_type, count, values.data(), nullptr, H5P_DEFAULT),
-        "read " + quoted(place_, name_));
-  std::memcpy(data, values.data(), count * wanted);
-}
-
 void StoredArray::read(hid_t memory_type, void* data) const {
   if (elements_ == 0) return;
-  if (small_) return read_small(memory_type, data);
   const std::string what = "read " + quoted(place_, name_);
   if (place_ == Place::attribute) return check(H5Aread(object(), memory_type, data), what);
   check(H5Dread(object(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), what);
@@ -243,7 +223,6 @@ const std::string& StoredArray::bytes() const {
 }
 
 std::vector<std::string> StoredArray::texts() const {
-  if (small_ && type_class() == H5T_STRING) return unpack_texts(small_->bytes, small_->element_bytes);
   if (type_class() != H5T_STRING || H5Tis_variable_str(type()) != 0)
     throw DataError(quoted(place_, name_) + " does not hold fixed-length strings");
   const Handle type_in_memory(H5Tcopy(type()), H5Tclose, "copy a string type");

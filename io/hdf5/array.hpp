@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "io/hdf5/handle.hpp"
-#include "io/hdf5/small_group.hpp"
 
 namespace modebank::hdf5 {
 
@@ -70,12 +69,10 @@ Handle write_texts(hid_t parent, Place place, const std::string& name, const std
 class StoredArray {
  public:
   StoredArray(hid_t parent, Place place, const std::string& name);
-  /// Of a small group, which must outlive it; HDF5 knows neither object nor type of it.
-  StoredArray(const SmallArray& small, Place place, const std::string& name);
 
   hid_t object() const { return object_.id(); }
   hid_t type() const { return type_.id(); }
-  H5T_class_t type_class() const { return small_ ? small_->type_class : H5Tget_class(type()); }
+  H5T_class_t type_class() const { return H5Tget_class(type()); }
   const Shape& shape() const { return shape_; }
   hsize_t elements() const { return elements_; }
   void read(hid_t memory_type, void* data) const;
@@ -87,12 +84,10 @@ class StoredArray {
 
  private:
   void check_plausible() const;
-  void read_small(hid_t memory_type, void* data) const;
 
   Place place_;
   Storage storage_ = Storage::file;  ///< attributes', too, for what they may declare
   std::string name_;
-  const SmallArray* small_ = nullptr;
   Handle object_;
   Handle type_;
   Shape shape_;

@@ -42,36 +42,14 @@ const std::string& GroupReader::require(const std::string& name) const {
   return name;
 }
 
-bool GroupReader::has_attribute(const std::string& name) const {
-  return small_ ? small_->attributes.contains(name) : hdf5::has_attribute(group_.id(), name);
-}
-
-std::optional<hdf5::SmallGroup> GroupReader::small_member(haddr_t address) const {
-  try {
-    if (!file_) file_ = std::make_shared<hdf5::FileBytes>(group_.id());
-  } catch (const hdf5::NotKnownHere&) {
-    return std::nullopt;
-  }
-  return hdf5::read_small_group(*file_, address);
-}
-
 GroupReader GroupReader::open_member(const std::string& name) const {
-  const Member& found = members().at(require(name));
-  const std::string path = path_ + "/" + name;
-  if (small_) throw DataError("is not a group");
-  std::optional<hdf5::SmallGroup> small;
-  if (found.hard) small = small_member(found.address);
-  GroupReader member = small ? GroupReader(std::move(*small), problems_, path)
-                             : GroupReader(hdf5::open_group(group_.id(), name), problems_, path);
-  member.file_ = file_;
+  GroupReader member(hdf5::open_group(group_.id(), require(name)), problems_, path_ + "/" + name);
   member.use_ = use_;
   return member;
 }
 
 hdf5::StoredArray GroupReader::open_array(const std::string& name) const {
-  require(name);
-  return small_ ? hdf5::StoredArray(small_->arrays.at(name), hdf5::Place::dataset, name)
-                : hdf5::StoredArray(group_.id(), hdf5::Place::dataset, name);
+  return {group_.id(), hdf5::Place::dataset, require(name)};
 }
 
 hdf5::StoredArray GroupReader::open_numbers(const std::string& name, const Letters& letters, H5T_class_t kind) {
@@ -83,9 +61,8 @@ hdf5::StoredArray GroupReader::open_numbers(const std::string& name, const Lette
 }
 
 hdf5::StoredArray GroupReader::open_attribute(const std::string& name, H5T_class_t kind, bool scalar) const {
-  if (!has_attribute(name)) throw DataError("the attribute is missing");
-  hdf5::StoredArray array = small_ ? hdf5::StoredArray(small_->attributes.at(name), hdf5::Place::attribute, name)
-                                   : hdf5::StoredArray(group_.id(), hdf5::Place::attribute, name);
+  if (!hdf5::has_attribute(group_.id(), name)) throw DataError("the attribute is missing");
+  hdf5::StoredArray array(group_.id(), hdf5::Place::attribute, name);
   if (array.type_class() != kind || array.shape().size() != (scalar ? 0 : 1) || (scalar && array.elements() != 1))
     throw DataError("the attribute holds another kind of value");
   return array;
@@ -112,10 +89,7 @@ void GroupReader::attribute_texts(const std::string& name, std::vector<std::stri
 
 void GroupReader::attributes(std::vector<std::pair<std::string, std::string>>& pairs) {
   std::vector<std::string> names;
-  if (small_)
-    for (const auto& [name, value] : small_->attributes) names.push_back(name);
-  else
-    guarded("", [&] { names = hdf5::attribute_names(group_.id()); });
+  guarded("", [&] { names = hdf5::attribute_names(group_.id()); });
   for (const std::string& name : names) {
     pairs.emplace_back(name, "");
     attribute(name, pairs.back().second);
@@ -144,11 +118,7 @@ void GroupReader::texts(const std::string& name, std::vector<std::string>& value
 GroupReader::Members& GroupReader::members() const {
   if (members_) return *members_;
   members_.emplace();
-  if (small_)
-    for (const auto& [name, array] : small_->arrays) members_->emplace(name, Member{true, HADDR_UNDEF});
-  else
-    for (const hdf5::Link& link : hdf5::links_of(group_.id()))
-      members_->emplace(link.name, Member{link.hard, link.address});
+  for (const hdf5::Link& link : hdf5::links_of(group_.id())) members_->emplace(link.name, Member{link.hard});
   return *members_;
 }
 
@@ -160,7 +130,6 @@ bool GroupReader::has(const std::string& name) const {
 }
 
 void GroupReader::check_links(const hdf5::LinkAllowed& elsewhere) {
-  if (small_) return;  // all of it has been read
   for (const auto& link : members())
     guarded(link.first, [&] {
       const Member& member = link.second;

@@ -13,7 +13,6 @@
 #include "io/hdf5/links.hpp"
 #include "io/hdf5/rule.hpp"
 #include "io/hdf5/sizes.hpp"
-#include "io/hdf5/small_group.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -26,13 +25,6 @@ class GroupReader {
 
   GroupReader(hdf5::Handle group, std::vector<std::string>* problems, std::string path = {})
       : group_(std::move(group)),
-        problems_(problems),
-        problems_before_(problems ? problems->size() : 0),
-        path_(std::move(path)) {}
-
-  /// A group that has been read whole.
-  GroupReader(hdf5::SmallGroup small, std::vector<std::string>* problems, std::string path)
-      : small_(std::move(small)),
         problems_(problems),
         problems_before_(problems ? problems->size() : 0),
         path_(std::move(path)) {}
@@ -51,10 +43,6 @@ class GroupReader {
       body(member);
       member.check_links();
     });
-  }
-  template <class Body>
-  void small_group(const std::string& name, const Sizes& known, Body body) {
-    group(name, known, body);
   }
   /// Reads the part if it is there.
   template <class Body>
@@ -77,7 +65,7 @@ class GroupReader {
   }
   template <class T>
   void optional_attribute(const std::string& name, T& value, const Rule& rule = rule::any) {
-    if (has_attribute(name)) attribute(name, value, rule);
+    if (hdf5::has_attribute(group_.id(), name)) attribute(name, value, rule);
   }
   template <class T>
   void attribute_unless(const T& /*absent*/, const std::string& name, T& value, const Rule& rule = rule::any) {
@@ -86,7 +74,7 @@ class GroupReader {
   void constant_attribute(const std::string& name, const std::string& expected);
   void attribute_texts(const std::string& name, std::vector<std::string>& texts);
   void optional_attribute_texts(const std::string& name, std::vector<std::string>& texts) {
-    if (has_attribute(name)) attribute_texts(name, texts);
+    if (hdf5::has_attribute(group_.id(), name)) attribute_texts(name, texts);
   }
   /// All attributes, in name order.
   void attributes(std::vector<std::pair<std::string, std::string>>& pairs);
@@ -191,9 +179,7 @@ class GroupReader {
   void guarded(const std::string& name, const std::function<void()>& step);
   const std::string& require(const std::string& name) const;
   GroupReader open_member(const std::string& name) const;
-  std::optional<hdf5::SmallGroup> small_member(haddr_t address) const;
   hdf5::StoredArray open_array(const std::string& name) const;
-  bool has_attribute(const std::string& name) const;
   hdf5::StoredArray open_numbers(const std::string& name, const Letters& letters, H5T_class_t kind);
   hdf5::StoredArray open_attribute(const std::string& name, H5T_class_t kind, bool scalar) const;
   void read_attribute(const std::string& name, std::string& value) const;
@@ -203,9 +189,7 @@ class GroupReader {
     open_attribute(name, kind, true).read(hdf5::memory_type<Number>(), &value);
   }
 
-  hdf5::Handle group_;  ///< unless it is a small one
-  std::optional<hdf5::SmallGroup> small_;
-  mutable std::shared_ptr<hdf5::FileBytes> file_;  ///< what small groups below are read from, from the first on
+  hdf5::Handle group_;
   std::vector<std::string>* problems_;
   std::size_t problems_before_;
   std::string path_;
@@ -213,7 +197,6 @@ class GroupReader {
   const ValuesOf* use_ = nullptr;
   struct Member {
     bool hard;
-    haddr_t address;
     bool asked = false;
   };
   using Members = std::map<std::string, Member>;

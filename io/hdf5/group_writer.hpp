@@ -10,7 +10,6 @@
 #include "io/hdf5/columns.hpp"
 #include "io/hdf5/rule.hpp"
 #include "io/hdf5/sizes.hpp"
-#include "io/hdf5/small_group_writer.hpp"
 
 namespace modebank {
 
@@ -29,17 +28,6 @@ class GroupWriter {
     GroupWriter member(make_group(name), path_ + "/" + name);
     member.sizes_ = known;
     body(member);
-  }
-  /// The same of one that has nothing but attributes and arrays, most of them small.
-  template <class Body>
-  void small_group(const std::string& name, const Sizes& known, Body body) {
-    if (!complete()) return;
-    GroupWriter member(hdf5::Handle(), path_ + "/" + name);
-    member.small_.emplace();
-    member.sizes_ = known;
-    body(member);
-    if (!file_) file_ = hdf5::appendable_file(group_.id());
-    member.small_->write(*file_, group_.id(), name);
   }
   /// An absent part is left out.
   template <class Body>
@@ -110,10 +98,6 @@ class GroupWriter {
                        part_->count, values.data());
       return complete() ? write_unit(open_dataset(name), unit, shape) : void();
     }
-    if (small_) {
-      small_->add_array(name, hdf5::file_type<Stored>(), shape, values.data());
-      return write_unit(hdf5::Handle(), unit, shape);
-    }
     const hdf5::Handle dataset = hdf5::write_array(group_.id(), hdf5::Place::dataset, name, hdf5::file_type<Stored>(),
                                                    hdf5::memory_type<Stored>(), shape, values.data());
     write_unit(dataset, unit, shape);
@@ -174,12 +158,10 @@ class GroupWriter {
  private:
   hdf5::Handle make_group(const std::string& name);
   void write_attribute(const std::string& name, const std::string& value) {
-    if (small_) return small_->add_attribute(name, value);
     hdf5::write_texts(group_.id(), hdf5::Place::attribute, name, {value}, {});
   }
   template <class Number>
   void write_attribute(const std::string& name, Number value) {
-    if (small_) return small_->add_attribute(name, hdf5::file_type<Number>(), &value);
     hdf5::write_array(group_.id(), hdf5::Place::attribute, name, hdf5::file_type<Number>(), hdf5::memory_type<Number>(),
                       {}, &value);
   }
@@ -197,8 +179,6 @@ class GroupWriter {
   void write_text_rows(const std::string& name, const std::vector<std::string>& values);
 
   hdf5::Handle group_;
-  std::optional<hdf5::NewSmallGroup> small_;  ///< instead, until it is whole
-  std::optional<hdf5::OpenedFile> file_;      ///< of the group, from the first small one on
   std::string path_;
   Sizes sizes_;
   std::optional<Part> part_;

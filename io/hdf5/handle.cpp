@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "io/hdf5/file_driver.hpp"
 #include "io/hdf5/links.hpp"
 #include "modebank/base/error.hpp"
 
@@ -80,10 +79,9 @@ Quiet::~Quiet() {
   if (!failed) H5Eset_auto2(H5E_DEFAULT, function_, data_);
 }
 
-Handle open_file(const std::string& path, FileOf of) {
+Handle open_file(const std::string& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the file access");
   check(H5Pset_file_locking(access.id(), false, true), "switch file locking off");
-  check(H5Pset_driver(access.id(), file_driver(of), nullptr), "prepare the file access");
   return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, "open the file"};
 }
 

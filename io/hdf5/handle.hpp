@@ -51,11 +51,9 @@ class Quiet {
   void* data_ = nullptr;
 };
 
-/// Whose a file is: an archive has less in it, and of it HDF5 gets nothing else.
-enum class FileOf { anybody, archive };
 /// Opens an existing file for reading. No lock is taken (archives never change under their final name, and many file
 /// systems refuse locks).
-Handle open_file(const std::string& path, FileOf of = FileOf::anybody);
+Handle open_file(const std::string& path);
 /// A member group itself, not what a link leads to; "/": the root.
 Handle open_group(hid_t parent, const std::string& name);
 /// Names of a group's members and of an object's attributes, in byte order.

@@ -10,8 +10,7 @@ namespace modebank::hdf5 {
 namespace {
 
 herr_t append_link(hid_t, const char* name, const H5L_info_t* info, void* list) {
-  const bool hard = info->type == H5L_TYPE_HARD;
-  static_cast<std::vector<Link>*>(list)->push_back({name, hard, hard ? info->u.address : HADDR_UNDEF});
+  static_cast<std::vector<Link>*>(list)->push_back({name, info->type == H5L_TYPE_HARD});
   return 0;
 }
 

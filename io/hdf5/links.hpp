@@ -12,7 +12,6 @@ namespace modebank::hdf5 {
 struct Link {
   std::string name;
   bool hard = true;
-  haddr_t address = HADDR_UNDEF;  ///< of the object, where the link is hard
 };
 
 /// In byte order of the names. Nothing is opened.

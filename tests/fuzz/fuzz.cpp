@@ -31,7 +31,7 @@ namespace modebank::fuzz {
 
 std::vector<Target> all_targets() {
   std::vector<Target> all;
-  for (auto* part : {text_targets, message_targets, recording_targets, array_targets, filter_targets, archive_targets})
+  for (auto* part : {text_targets, message_targets, recording_targets, array_targets, filter_targets})
     for (Target& target : part()) all.push_back(std::move(target));
   return all;
 }

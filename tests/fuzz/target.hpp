@@ -28,7 +28,6 @@ std::vector<Target> message_targets();
 std::vector<Target> recording_targets();
 std::vector<Target> array_targets();
 std::vector<Target> filter_targets();
-std::vector<Target> archive_targets();
 std::vector<Target> all_targets();
 
 /// The files of tests/fuzz/corpus/NAME in order of their names: seeds of mutations, and inputs that once were findings.

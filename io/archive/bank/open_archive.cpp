@@ -205,7 +205,7 @@ hdf5::Handle open_archive(const fs::path& path, HashCheck hash) {
     const OpenedFile opened(path);
     check_signature(opened);
     if (hash == HashCheck::before) check_hash(opened);
-    hdf5::Handle file = hdf5::open_file(opened.name(path), hdf5::FileOf::archive);
+    hdf5::Handle file = hdf5::open_file(opened.name(path));
     check_schema(open_root(file));
     return file;
   } catch (const DataError& error) {
