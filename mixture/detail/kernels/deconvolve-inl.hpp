@@ -1,6 +1,5 @@
 // What EM with error covariances does with one component and two vectors of points, which lie side by side: one's
-// arithmetic fills the time in which the other's waits for its own. Up to four features stay in registers, more of them
-// in memory. Included once per instruction set.
+// arithmetic fills the time in which the other's waits for its own. Included once per instruction set.
 #if defined(MODEBANK_EM_DECONVOLVE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_EM_DECONVOLVE_INL
 #undef MODEBANK_EM_DECONVOLVE_INL
@@ -46,16 +45,8 @@ HWY_INLINE Pair reciprocal(Pair x) {
 
 }  // namespace each
 
-/// Intermediate values for F features; 0: for any number, in memory.
-template <int F>
+/// Intermediate values, in the caller's memory.
 struct DeconvolutionWork {
-  Pair t[triangle(F)], errors[triangle(F)], x[F], y[F], row[F], scaled[F], least[F], inverse_pivot[F];
-
-  static constexpr Index doubles(int) { return 0; }
-  DeconvolutionWork(int, double*) {}
-};
-template <>
-struct DeconvolutionWork<0> {
   Pair *t, *errors, *x, *y, *row, *scaled, *least, *inverse_pivot;
 
   static constexpr Index doubles(int features) { return 2 * L * (2 * triangle(features) + 6 * features); }
@@ -67,25 +58,24 @@ struct DeconvolutionWork<0> {
   }
 };
 
-/// F features, 0: any number.
-template <int F_, bool diagonal_>
+template <bool diagonal_>
 class Deconvolution {
  public:
   static constexpr bool diagonal = diagonal_;
-  static constexpr int features(int given) { return F_ > 0 ? F_ : given; }
-  static constexpr Index work(int given) { return DeconvolutionWork<F_>::doubles(given); }
+  using Work = DeconvolutionWork;
 
-  Deconvolution(int given, double* memory) : given_(given), w_(given, memory) {}
+  Deconvolution(int features, double* memory) : features_(features), w_(features, memory) {}
 
   HWY_INLINE void begin(const Block& points) {
     block_ = points;
-    for (int i = 0; i < triangle(F()); ++i) w_.errors[i] = each::load(points.errors + i * block_size);
+    for (int i = 0; i < triangle(features_); ++i) w_.errors[i] = each::load(points.errors + i * block_size);
   }
 
   template <bool logarithmic>
   HWY_INLINE void spread(const double* mean, const double* W, double* expected, Spread<logarithmic> (&of)[2]) {
     whiten(mean, W);
-    for (int i = 0; i < F(); ++i) w_.least[i] = i == 0 ? each::splat(1.0) : each::noticeable_pivot(w_.t[at(i, i)]);
+    for (int i = 0; i < features_; ++i)
+      w_.least[i] = i == 0 ? each::splat(1.0) : each::noticeable_pivot(w_.t[at(i, i)]);
     const Pair determinant = factor<logarithmic>();
     invert();
     const Pair distance = expect(expected);
@@ -94,34 +84,25 @@ class Deconvolution {
   }
 
  private:
-  HWY_INLINE int F() const { return F_ > 0 ? F_ : given_; }
-
   /// The lower triangle of T and y. Packing::unit_rows.
   HWY_INLINE void whiten(const double* mean, const double* W) {
-    const int n = F();
+    const int n = features_;
     const double *products = W, *D_ = W + triangle(n), *U = D_ + n;
     for (int i = 0; i < n; ++i) w_.x[i] = each::Sub(each::load(block_.points + i * block_size), each::splat(mean[i]));
-#pragma GCC unroll 4
     for (int i = 0; i < n; ++i) {
       const double* const u = U + triangle(i - 1);
       Pair sum = w_.x[i];
-#pragma GCC unroll 4
       for (int l = 0; !diagonal && l < i; ++l) sum = each::MulAdd(each::splat(u[l]), w_.x[l], sum);
       w_.y[i] = each::Mul(sum, each::splat(D_[i]));
       // Row i of U S, then of U S U'.
-#pragma GCC unroll 4
       for (int j = 0; j <= i; ++j) {
         Pair a = w_.errors[at(i, j)];
-#pragma GCC unroll 4
         for (int l = 0; !diagonal && l < j; ++l) a = each::MulAdd(each::splat(u[l]), w_.errors[at(j, l)], a);
-#pragma GCC unroll 4
         for (int l = j; !diagonal && l < i; ++l) a = each::MulAdd(each::splat(u[l]), w_.errors[at(l, j)], a);
         w_.row[j] = a;
       }
-#pragma GCC unroll 4
       for (int j = 0; j <= i; ++j) {
         Pair sum_j = w_.row[j];
-#pragma GCC unroll 4
         for (int l = 0; !diagonal && l < j; ++l)
           sum_j = each::MulAdd(w_.row[l], each::splat(U[triangle(j - 1) + l]), sum_j);
         w_.t[at(i, j)] = i == j ? each::MulAdd(sum_j, each::splat(products[at(i, j)]), each::splat(1.0))
@@ -134,21 +115,17 @@ class Deconvolution {
   /// Spread has it: the products of four pivots at most.
   template <bool logarithmic>
   HWY_INLINE Pair factor() {
-    const int n = F();
+    const int n = features_;
     constexpr int per_logarithm = 4;
     auto& t = w_.t;
     Pair product, determinant;
-#pragma GCC unroll 4
     for (int j = 0; j < n; ++j) {
       Pair pivot = t[at(j, j)];
-#pragma GCC unroll 4
       for (int k = 0; k < j; ++k) {
         Pair z = t[at(j, k)];
-#pragma GCC unroll 4
         for (int i = 0; i < k; ++i) z = each::NegMulAdd(w_.row[i], t[at(k, i)], z);
         w_.row[k] = z;
       }
-#pragma GCC unroll 4
       for (int k = 0; k < j; ++k) {
         t[at(j, k)] = each::Mul(w_.row[k], w_.inverse_pivot[k]);
         pivot = each::NegMulAdd(w_.row[k], t[at(j, k)], pivot);
@@ -167,14 +144,11 @@ class Deconvolution {
 
   /// The unit lower triangle in t becomes its inverse.
   HWY_INLINE void invert() {
-    const int n = F();
+    const int n = features_;
     auto& t = w_.t;
-#pragma GCC unroll 4
     for (int i = 1; i < n; ++i)
-#pragma GCC unroll 4
       for (int j = 0; j < i; ++j) {
         Pair sum = t[at(i, j)];
-#pragma GCC unroll 4
         for (int k = j + 1; k < i; ++k) sum = each::MulAdd(t[at(i, k)], t[at(k, j)], sum);
         t[at(i, j)] = each::Neg(sum);
       }
@@ -182,33 +156,27 @@ class Deconvolution {
 
   /// z and I - T^-1 to `expected`, from the inverse of the factor; returns y' T^-1 y.
   HWY_INLINE Pair expect(double* expected) {
-    const int n = F();
+    const int n = features_;
     const Index per_vector = expectations(n, diagonal) * L;
     const auto& m = w_.t;
     Pair distance;
-#pragma GCC unroll 4
     for (int i = 0; i < n; ++i) {
       Pair u = w_.y[i];
-#pragma GCC unroll 4
       for (int j = 0; j < i; ++j) u = each::MulAdd(m[at(i, j)], w_.y[j], u);
       w_.scaled[i] = each::Mul(u, w_.inverse_pivot[i]);
       distance = i == 0 ? each::Mul(u, w_.scaled[i]) : each::MulAdd(u, w_.scaled[i], distance);
     }
     double* second = expected + n * L;
-#pragma GCC unroll 4
     for (int i = 0; i < n; ++i) {
       Pair z = w_.scaled[i];
-#pragma GCC unroll 4
       for (int l = i + 1; l < n; ++l) {
         z = each::MulAdd(m[at(l, i)], w_.scaled[l], z);
         w_.row[l] = each::Mul(m[at(l, i)], w_.inverse_pivot[l]);
       }
       each::store(z, expected + i * L, per_vector);
-#pragma GCC unroll 4
       for (int j = diagonal ? i : 0; j <= i; ++j, second += L) {
         Pair sum = i == j ? each::Sub(each::splat(1.0), w_.inverse_pivot[i])
                           : each::Neg(each::Mul(m[at(i, j)], w_.inverse_pivot[i]));
-#pragma GCC unroll 4
         for (int l = i + 1; l < n; ++l) sum = each::NegMulAdd(w_.row[l], m[at(l, j)], sum);
         each::store(sum, second, per_vector);
       }
@@ -216,8 +184,8 @@ class Deconvolution {
     return distance;
   }
 
-  int given_;
-  DeconvolutionWork<F_> w_;
+  int features_;
+  DeconvolutionWork w_;
   Block block_;
 };
 

@@ -139,16 +139,16 @@ struct Errors {
   static void evaluate(const Components& components, const Block& block, const Scratch& scratch) {
     Kernel kernel(components.features, scratch.work);
     const double shift = largest_log_constant(components);
-    double* const expected = scratch.work + Kernel::work(components.features);
+    double* const expected = scratch.work + Kernel::Work::doubles(components.features);
     for (Index point = 0; point < block_size; point += together)
       densities(kernel, components, part(block, point), shift, part(scratch, point), expected);
   }
 
   static void accumulate(const Components& components, const Block& block, const Scratch& scratch) {
-    const int n = Kernel::features(components.features);
+    const int n = components.features;
     Kernel kernel(n, scratch.work);
     const double shift = largest_log_constant(components);
-    double* const expected = scratch.work + Kernel::work(n);
+    double* const expected = scratch.work + Kernel::Work::doubles(n);
     const Index entries = expectations(n, Kernel::diagonal);
     for (Index point = 0; point < block_size; point += together) {
       const Block points = part(block, point);

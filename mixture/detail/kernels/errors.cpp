@@ -11,11 +11,11 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::em::HWY_NAMESPACE {
 
 template <class Kernel>
-Kernels error_kernels_of(Packing packing, int features) {
+Kernels error_kernels_of(int features) {
   Kernels kernels;
-  kernels.packing = packing;
+  kernels.packing = Packing::unit_rows;
   kernels.entries = 1 + expectations(features, Kernel::diagonal);
-  kernels.common_work = Kernel::work(features);
+  kernels.common_work = Kernel::Work::doubles(features);
   kernels.work = expectations(features, Kernel::diagonal) * together;
   kernels.evaluate = Errors<Kernel>::evaluate;
   kernels.measure = measure<Errors<Kernel>>;
@@ -23,24 +23,8 @@ Kernels error_kernels_of(Packing packing, int features) {
   return kernels;
 }
 
-template <bool diagonal>
-Kernels with_errors_of(int features) {
-  switch (features) {
-    case 1:
-      return error_kernels_of<Deconvolution<1, diagonal>>(Packing::unit_rows, features);
-    case 2:
-      return error_kernels_of<Deconvolution<2, diagonal>>(Packing::unit_rows, features);
-    case 3:
-      return error_kernels_of<Deconvolution<3, diagonal>>(Packing::unit_rows, features);
-    case 4:
-      return error_kernels_of<Deconvolution<4, diagonal>>(Packing::unit_rows, features);
-    default:
-      return error_kernels_of<Deconvolution<0, diagonal>>(Packing::unit_rows, features);
-  }
-}
-
 Kernels with_errors(int features, bool diagonal) {
-  return diagonal ? with_errors_of<true>(features) : with_errors_of<false>(features);
+  return diagonal ? error_kernels_of<Deconvolution<true>>(features) : error_kernels_of<Deconvolution<false>>(features);
 }
 
 }  // namespace modebank::em::HWY_NAMESPACE
