@@ -29,8 +29,8 @@ std::string json_quoted(const std::string& name) { return nlohmann::json(name).d
 
 }  // namespace
 
-EstimateWriter::EstimateWriter(std::vector<std::string> states, Index modes, bool json)
-    : states_(std::move(states)), modes_(modes), json_(json) {
+EstimateWriter::EstimateWriter(std::vector<std::string> states, Index modes, bool as_json)
+    : states_(std::move(states)), modes_(modes), json_(as_json) {
   if (json_)
     for (std::string& state : states_) state = json_quoted(state);
 }

@@ -13,7 +13,7 @@ namespace modebank::app {
 /// Writes estimates as lines of CSV under a header, or of NDJSON. What is not known is empty, or null.
 class EstimateWriter {
  public:
-  EstimateWriter(std::vector<std::string> states, Eigen::Index modes, bool json);
+  EstimateWriter(std::vector<std::string> states, Eigen::Index modes, bool as_json);
 
   /// Appends the header, which NDJSON has none of.
   void header(fmt::memory_buffer& out) const;

@@ -120,7 +120,7 @@ std::vector<ErrorAhead> errors_ahead(const Archive& archive, const std::string& 
 
 std::string fit_words(const Eigen::VectorXd& fit) {
   std::vector<std::string> parts;
-  for (const double percent : fit) parts.push_back(fmt::format("{:.1f} %", percent));
+  for (const double share : fit) parts.push_back(fmt::format("{:.1f} %", share));
   return boost::algorithm::join(parts, ", ");
 }
 

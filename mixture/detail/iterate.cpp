@@ -58,12 +58,12 @@ std::optional<Coordinates> coordinates_of(const GaussianMixture& mixture) {
 }
 
 /// Logarithms and coordinates (in units of a point's error) beyond these are no mixture of the points.
-constexpr double largest_logarithm = 300.0, largest_coordinate = 1e8;
+constexpr double largest_logarithm = 300.0, largest_coordinate_in_errors = 1e8;
 
 /// Back; `pattern` tells type and noise component. Nothing where an entry is no usable number.
 std::optional<GaussianMixture> mixture_of(const Eigen::VectorXd& values, const GaussianMixture& pattern,
                                           const EmOptions& options) {
-  if (!(values.array().abs().maxCoeff() < largest_coordinate)) return {};
+  if (!(values.array().abs().maxCoeff() < largest_coordinate_in_errors)) return {};
   bool usable = true;
   const auto exponential = [&](double logarithm) {
     usable = usable && std::abs(logarithm) < largest_logarithm;

@@ -19,7 +19,7 @@
 namespace modebank::app::report {
 namespace {
 
-constexpr Index most_samples = 2000;  // of a run, from its start: more than a column of print can show
+constexpr Index most_printed_samples = 2000;  // of a run, from its start: more than a column of print can show
 constexpr double band_level = 0.95;
 
 /// One run and what both filters said of it.
@@ -28,7 +28,7 @@ struct DrawnRun {
   const Trajectory& run;
   RunEvaluation bank;
   std::optional<RunEvaluation> baseline;
-  Index samples() const { return std::min(most_samples, run.samples()); }
+  Index samples() const { return std::min(most_printed_samples, run.samples()); }
 };
 
 std::size_t index_of_run(const Archive& archive, const std::string& name) {

@@ -18,7 +18,7 @@ using Point = Eigen::Vector2d;
 constexpr double least_probability = 0.005;  // rarer switches are not drawn
 constexpr std::size_t most_labelled = 5;     // modes, up to which arrows have room for their numbers
 constexpr double bend = 0.16;                // of an arrow's length
-constexpr Index line_points = 25;
+constexpr Index arrow_points = 25;
 
 struct Node {
   Point at;
@@ -51,9 +51,9 @@ Arrow arrow(const Node& from, const Node& to) {
   const Point out = (control - from.at).normalized(), in = (control - to.at).normalized();
   constexpr double head_length = 0.09, head_half_width = 0.04;
   const Point start = from.at + from.radius * out, tip = to.at + (to.radius + 0.01) * in, neck = tip + head_length * in;
-  Arrow result{Eigen::MatrixXd(line_points, 2), Eigen::MatrixXd(3, 2), 0.25 * start + 0.5 * control + 0.25 * neck};
-  for (Index i = 0; i < line_points; ++i) {
-    const double t = static_cast<double>(i) / (line_points - 1);
+  Arrow result{Eigen::MatrixXd(arrow_points, 2), Eigen::MatrixXd(3, 2), 0.25 * start + 0.5 * control + 0.25 * neck};
+  for (Index i = 0; i < arrow_points; ++i) {
+    const double t = static_cast<double>(i) / (arrow_points - 1);
     result.line.row(i) = ((1 - t) * (1 - t) * start + 2 * t * (1 - t) * control + t * t * neck).transpose();
   }
   result.head << tip.transpose(), (neck + head_half_width * left_of(in)).transpose(),

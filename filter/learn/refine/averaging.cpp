@@ -31,9 +31,9 @@ std::vector<Bank> united_on_splits(const std::vector<ScoredFit>& fits, std::size
 }
 
 /// How many of the fits to average: the fewest whose score is as good as the best number's. scores: of 1, 2, ... fits.
-Index fewest_as_good(const Eigen::VectorXd& scores, double least_gain) {
+Index fewest_as_good(const Eigen::VectorXd& scores, double margin) {
   Index fewest = 0;
-  while (!(scores(fewest) > scores.maxCoeff() - least_gain) && fewest + 1 < scores.size()) ++fewest;
+  while (!(scores(fewest) > scores.maxCoeff() - margin) && fewest + 1 < scores.size()) ++fewest;
   return scores(fewest) > scores(0) ? fewest + 1 : 1;
 }
 
