@@ -1,8 +1,7 @@
 #!/bin/sh
-# What test_packages.sh does inside the clean root: each package is installed and used, as few others as it asks for beside it.
+# test_packages.sh runs this in the empty root: it installs each package with the fewest others that apt allows, and uses it.
 set -eu
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
-cd /packages
 useradd --create-home robot
 
 # Whoever is no root, in his own folder and with none of this environment.
