@@ -5,8 +5,8 @@ as_user() { su --login robot -c "$1"; }
 
 as_user 'tar -xzf /files/modebank-*.tar.gz && mv modebank-* modebank'
 # The loader must take everything but glibc's own libraries from the tarball, and every library in the tarball must have a use.
-as_user 'ldd modebank/bin/modebank' >/tmp/loaded
-if grep -vE '/modebank/lib/|linux-vdso|ld-linux|=> [^ ]*/lib(c|dl|m|pthread|resolv|rt)\.so' /tmp/loaded >&2; then
+as_user 'LD_LIBRARY_PATH=/usr/lib/x86_64-linux-gnu ldd modebank/bin/modebank' >/tmp/loaded
+if grep -vE '/modebank/bin/\.\./lib/|linux-vdso|ld-linux|=> [^ ]*/lib(c|dl|m|pthread|resolv|rt)\.so' /tmp/loaded >&2; then
   echo "modebank: the tarball lacks the libraries above" >&2
   exit 1
 fi

@@ -13,6 +13,6 @@ unshare --net su --login robot -c "python3 -m venv --system-site-packages env &&
   { tail -n 40 /tmp/pip.log >&2; exit 1; }
 tail -n 1 /tmp/pip.log
 echo "pip install took $(($(date +%s) - begin)) s"
-as_user 'env/bin/pip show --files modebank | sed -n "/^Files:/,\$p" && du -h env/lib/python3*/site-packages/modebank/*.so'
-sed -n '/^```python$/,/^```$/p' /home/robot/source/README.md | grep -v '^```' >/tmp/readme.py
+as_user "env/bin/pip show --files modebank | grep modebank/ && du -h env/lib/python3*/site-packages/modebank/*.so"
+awk "/^\`\`\`/ { block = /python/; next } block" /home/robot/source/README.md >/tmp/readme.py
 as_user 'env/bin/python3 /tmp/readme.py'

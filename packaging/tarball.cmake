@@ -1,8 +1,8 @@
 # `make dist` writes modebank-VERSION-linux-PROCESSOR.tar.gz: the component program, and in lib/ the libraries that it needs.
-# It needs glibc of the system alone, whose loader and libraries fit only each other.
-# DT_RPATH, not today's DT_RUNPATH: the loader searches the program's DT_RPATH for the libraries' own libraries, too. So these stay
-# as Debian built them; and LD_LIBRARY_PATH, with which ROS sets other versions, comes after it. CMake's INSTALL_RPATH would also
-# get into the Debian package, which must not have one, so patchelf sets the path in the tarball's copy.
+# glibc stays out: its libraries fit only the loader that the system has.
+# The program's DT_RPATH also serves the libraries' own libraries, which DT_RUNPATH does not, and the loader searches it before
+# LD_LIBRARY_PATH, in which ROS has other versions. A DT_RUNPATH of a library would switch it off there, so libraries have none.
+# CMake's INSTALL_RPATH would get into the Debian package, too, where Debian forbids it; patchelf changes the tarball's copy alone.
 install(CODE [[
   file(GET_RUNTIME_DEPENDENCIES EXECUTABLES "$<TARGET_FILE:modebank>" RESOLVED_DEPENDENCIES_VAR libraries
        PRE_EXCLUDE_REGEXES "^ld-linux" "^lib(anl|c|dl|m|mvec|nsl|pthread|resolv|rt|util)\\.so")
@@ -12,6 +12,7 @@ install(CODE [[
     get_filename_component(name "${library}" NAME)
     get_filename_component(file "${library}" REALPATH)
     file(COPY_FILE "${file}" "${root}/lib/${name}")
+    execute_process(COMMAND patchelf --remove-rpath "${root}/lib/${name}" COMMAND_ERROR_IS_FATAL ANY)
     # Each library's terms, by the package that it comes from. dpkg knows some by the name without /usr.
     string(REGEX REPLACE "^/usr/" "/" unmerged "${file}")
     execute_process(COMMAND dpkg-query --search "${file}" "${unmerged}" OUTPUT_VARIABLE package ERROR_QUIET)
@@ -21,6 +22,8 @@ install(CODE [[
     endif()
     configure_file(/usr/share/doc/${package}/copyright "${root}/share/doc/modebank/libraries/${package}" COPYONLY)
   endforeach()
+  # The texts that these refer to.
+  file(COPY /usr/share/common-licenses DESTINATION "${root}/share/doc/modebank/libraries")
   execute_process(COMMAND patchelf --force-rpath --set-rpath "$ORIGIN/../lib" "${root}/bin/modebank" COMMAND_ERROR_IS_FATAL ANY)
 ]] COMPONENT tarball EXCLUDE_FROM_ALL)
 
