@@ -25,7 +25,7 @@ demo: build
 	@rm -rf $(DEMO)
 	build/modebank demo -o $(DEMO)
 
-# Debian packages, build/packages/*.deb; and that they install and work on a bare Debian 12, which takes minutes.
+# Debian packages, build/packages/*.deb, and a trial in an empty Debian 12, which takes minutes.
 packages: packages-build packages-package build/build.ninja
 	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	rm -rf build/packages
