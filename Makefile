@@ -2,7 +2,7 @@
 JOBS := $(shell nproc)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
+.PHONY: all api build demo packages package-test dist dist-test pip-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
 
 all: build
 
@@ -14,6 +14,9 @@ build/build.ninja: CMakePresets.json | packages-build
 build: packages-build build/build.ninja
 	cmake --build --preset release -j $(JOBS) --target modebank
 
+packages-build:
+	@sh .ci/install-packages build page
+
 packages-%:
 	@sh .ci/install-packages $*
 
@@ -22,14 +25,26 @@ demo: build
 	@rm -rf $(DEMO)
 	build/modebank demo -o $(DEMO)
 
-# Debian packages, build/packages/*.deb; and that they install and work on a bare Debian 12, which takes minutes.
+# Debian packages, build/packages/*.deb, and a trial in an empty Debian 12, which takes minutes.
 packages: packages-build packages-package build/build.ninja
 	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	rm -rf build/packages
 	cmake --build --preset release -j $(JOBS) --target modebank_packages
 
 package-test: packages packages-root
-	packaging/test_packages.sh build/packages build/clean_root
+	packaging/test_packages.sh build/packages build/empty_root
+
+# The program with its libraries for any Linux that has their glibc, and a trial in empty Debian 12 and 13.
+dist: packages-build packages-dist build/build.ninja
+	cmake --preset release >/dev/null
+	cmake --build --preset release -j $(JOBS) --target modebank_dist
+
+dist-test: dist packages-root
+	packaging/test_dist.sh build/modebank-*.tar.gz build/empty_root
+
+# Installs the Python module by pip in an empty Debian 12.
+pip-test: packages-root
+	packaging/test_pip.sh build/empty_root
 
 test: packages-build packages-test build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_PYTHON=ON >/dev/null

@@ -143,3 +143,7 @@ if(TARGET modebank_python)
   list(APPEND packed modebank_python)
 endif()
 add_dependencies(modebank_packages ${packed})
+
+if(MODEBANK_BUILD_PROGRAM)
+  include(${CMAKE_CURRENT_LIST_DIR}/tarball.cmake)
+endif()

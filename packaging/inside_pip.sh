@@ -1,0 +1,18 @@
+#!/bin/sh
+# test_pip.sh runs this in the empty root: pip builds and installs the module as an ordinary user, then README's Python block runs.
+set -eu
+export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
+as_user() { su --login robot -c "$1"; }
+
+as_user 'mkdir source && tar -xf /files/source.tar -C source'
+sh /home/robot/source/.ci/install-packages build pip >/tmp/apt.log 2>&1 || { cat /tmp/apt.log >&2; exit 1; }
+begin=$(date +%s)
+# Without a network, pip can ask no registry.
+unshare --net su --login robot -c "python3 -m venv --system-site-packages env &&
+  CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)} env/bin/pip install --no-build-isolation ./source" >/tmp/pip.log 2>&1 ||
+  { tail -n 40 /tmp/pip.log >&2; exit 1; }
+tail -n 1 /tmp/pip.log
+echo "pip install took $(($(date +%s) - begin)) s"
+as_user "env/bin/pip show --files modebank | grep modebank/ && du -h env/lib/python3*/site-packages/modebank/*.so"
+awk "/^\`\`\`/ { block = /python/; next } block" /home/robot/source/README.md >/tmp/readme.py
+as_user 'env/bin/python3 /tmp/readme.py >readme.txt && grep "^finding .*show evidence for modes of motion" readme.txt'
