@@ -17,6 +17,16 @@ build: packages-build build/build.ninja
 packages-%:
 	@sh .ci/install-packages $*
 
+# The program for development, build/dev/modebank: each source on its own, so that one edited line is compiled and linked in seconds.
+build/dev/build.ninja: CMakePresets.json
+	@$(MAKE) --no-print-directory packages-build
+	cmake --preset dev >/dev/null
+	@touch $@
+
+.PHONY: dev
+dev: build/dev/build.ninja
+	cmake --build --preset dev -j $(JOBS) --target modebank
+
 # Simulates a robot on ice and grip with known truth and takes the whole chain over its runs.
 demo: build
 	@rm -rf $(DEMO)
