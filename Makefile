@@ -149,8 +149,10 @@ docs-examples docs-update: packages-test build
 	cmake --build --preset release -j $(JOBS) --target modebank_python
 	/usr/bin/python3 tests/docs/examples.py $(if $(findstring update,$@),--update) --data $(DATA) build $(PAGES)
 
-# The pages' scripts: style, and types as their comments state them. Debian's eslint is told where Debian's modules are: another node does not know.
+# Words of the change's added lines (.ci/words). The pages' scripts: style, and types as their comments state them; NODE_PATH tells
+# every node where Debian's modules are.
 lint: packages-check
+	.ci/check-words
 	NODE_PATH=/usr/share/nodejs eslint --format unix app/report/web/src app/report/web/test
 	tsc --project app/report/web/tsconfig.json
 
