@@ -20,6 +20,16 @@ packages-build:
 packages-%:
 	@sh .ci/install-packages $*
 
+# The program for development, build/dev/modebank: each source on its own, so that one edited line is compiled and linked in seconds.
+build/dev/build.ninja: CMakePresets.json
+	@$(MAKE) --no-print-directory packages-build
+	cmake --preset dev >/dev/null
+	@touch $@
+
+.PHONY: dev
+dev: build/dev/build.ninja
+	cmake --build --preset dev -j $(JOBS) --target modebank
+
 # Simulates a robot on ice and grip with known truth and takes the whole chain over its runs.
 demo: build
 	@rm -rf $(DEMO)
@@ -115,19 +125,40 @@ export-recovery: packages-build packages-test build/build.ninja
 	MODEBANK_EXPORT_SEEDS=1000 build/test_export_recovery
 
 # The how-to's commands and lost nodes on a real Slurm of three nodes (slurmctld, slurmd, munge), which the test starts and ends.
-slurm: packages-build packages-test build/build.ninja
+slurm: packages-build packages-test packages-nightly build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target test_study_survival
 	CI=true build/test_study_survival --gtest_filter='StudySlurm*'
 
 # Studies of several machines on a file system without locks, with caches and other clocks; 40 machines are lost. Root, for mounts.
-shared-fs: packages-build packages-test build/build.ninja
+shared-fs: packages-build packages-test packages-nightly build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target test_shared_fs
 	CI=true MODEBANK_SHARED_FS_ROUNDS=40 build/test_shared_fs
 
-# Everything CI runs beside `make test`.
-check: format lint shellcheck docs tidy-changed seeds sanitize
+# Everything that CI runs beside `make test`; .ci/run times these one by one.
+CHECKS := format lint shellcheck docs tidy-changed seeds sanitize-short
+.PHONY: list-checks
+check: $(CHECKS)
+list-checks:
+	@echo $(CHECKS)
+
+# Everything else, and `make` and `make test` on Debian 13; hours. Goes on after a failure. The table stands in build/nightly/table.md.
+# STEPS="slurm arm64" runs these steps alone and keeps the results of the others.
+.PHONY: nightly debian
+nightly: packages-build packages-test packages-nightly
+	tests/nightly $(STEPS)
+
+# Tests with the label nightly_KIND: browser, slurm, shared_fs, faults, tutorials.
+nightly-%: packages-nightly strict
+	ctest --test-dir build -L '^nightly_$*$$' --no-tests=error --output-on-failure -j $(JOBS)
+
+# README's two commands in an empty Debian: SUITE is trixie (Debian 13) or bookworm (Debian 12). If they fail, build/SUITE stays to look into.
+SUITE := trixie
+debian: packages-root
+	@mkdir -p build
+	git bundle create -q build/source.bundle HEAD
+	packaging/with_root.sh $(SUITE) build/$(SUITE) tests/in_empty_debian.sh build/source.bundle
 
 format: packages-check
 	git ls-files '*.hpp' '*.cpp' '*.js' | xargs clang-format --dry-run --Werror
@@ -137,25 +168,31 @@ api: packages-check
 	@mkdir -p build/api
 	doxygen Doxyfile
 
-# The pages of docs/, build/docs/index.html: built offline, a warning is an error; their search as a reader uses it, and their spelling.
+# The pages of docs/, build/docs/index.html: built offline, a warning is an error; their spelling, and tables against their commands.
 docs: packages-docs build api
 	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank_python
 	/usr/bin/python3 -m sphinx -q -E -a -W --keep-going -b html docs build/docs
-	/usr/bin/python3 docs/check_search.py build/docs
 	/usr/bin/python3 docs/check_spelling.py README.md docs
 	/usr/bin/python3 docs/check_results.py $(if $(wildcard $(DATA)/.),--data $(DATA)) docs/results/*.md
+
+# The pages' search, as a reader uses it in Chromium.
+.PHONY: docs-search
+docs-search: docs packages-nightly
+	/usr/bin/python3 docs/check_search.py build/docs
 
 # What README and the tutorials print, run and compared; docs-update writes what is printed now into them.
 DATA := $(or $(MODEBANK_DATA),../shared/data)
 PAGES := README.md docs/tutorials/*.md
-docs-examples docs-update: packages-test build
+docs-examples docs-update: packages-test packages-nightly build
 	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank_python
 	/usr/bin/python3 tests/docs/examples.py $(if $(findstring update,$@),--update) --data $(DATA) build $(PAGES)
 
-# The pages' scripts: style, and types as their comments state them. Debian's eslint is told where Debian's modules are: another node does not know.
+# Words of the change's added lines (.ci/words). The pages' scripts: style, and types as their comments state them; NODE_PATH tells
+# every node where Debian's modules are.
 lint: packages-check
+	.ci/check-words
 	NODE_PATH=/usr/share/nodejs eslint --format unix app/report/web/src app/report/web/test
 	tsc --project app/report/web/tsconfig.json
 
@@ -173,7 +210,7 @@ tidy-changed: packages-build packages-check
 arm64: packages-build packages-arm64
 	.ci/arm64
 
-# The release build with warnings as errors, as CI builds it; `sanitize` has them so anyway.
+# The release build with benchmarks, warnings as errors; CI=true and `sanitize` make them errors, too.
 strict: packages-build packages-test packages-bench
 	cmake --preset release -DMODEBANK_WARNINGS_AS_ERRORS=ON -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_BUILD_BENCHMARKS=ON -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS)
@@ -184,13 +221,20 @@ seeds: packages-build packages-test build/build.ninja
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset seeds -j $(JOBS)
 
+# Address and undefined-behaviour sanitizers: io and the stepping of filters, what CI runs; and all tests.
+.PHONY: sanitize-short
+sanitize-short: packages-build packages-test
+	cmake --preset sanitize >/dev/null
+	cmake --build --preset sanitize -j $(JOBS) --target sanitize_short
+	ctest --preset sanitize-short -j $(JOBS)
+
 sanitize: packages-build packages-test
 	cmake --preset sanitize >/dev/null
 	cmake --build --preset sanitize -j $(JOBS)
 	ctest --preset sanitize -j $(JOBS)
 
-# Every reader under mutated inputs, with sanitizers: ten minutes (FUZZ_SECONDS) with the day's seed. What it finds is kept in build/findings;
-# `sanitize` does the same for a minute.
+# Every reader under mutated inputs, with sanitizers: ten minutes (FUZZ_SECONDS) with the day's seed. It keeps what it finds in build/findings;
+# `make nightly` does the same for a minute.
 FUZZ_SECONDS ?= 600
 FUZZ_SEED ?= $(shell date +%Y%m%d)
 fuzz: fuzz-build
@@ -205,7 +249,7 @@ fuzz-build: packages-build packages-test
 	cmake --build --preset sanitize -j $(JOBS) --target fuzz
 	@mkdir -p build/findings
 
-# Every command on a disk that runs full at every one of its calls, of which `make test` takes a sample.
+# Every command on a disk that runs full at every one of its calls; `make nightly` takes a sample of them.
 faults: packages-build packages-test build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target test_faults
@@ -217,14 +261,14 @@ coverage: packages-build packages-test
 	ctest --preset coverage -j $(JOBS)
 
 # How evenly a page's plot follows a drag over a million samples; docs/results/speed.md.
-page-drag: packages-test build
+page-drag: packages-nightly build
 	/usr/bin/python3 tests/bench/page_drag.py build/modebank build/page_drag
 
-# Pages of a study of 200 runs and of a million samples in Chromium; `make test` has all others.
-pages-large: packages-test build
+# Pages of a study of 200 runs and of a million samples in Chromium; `make nightly` has all others, too.
+pages-large: packages-nightly build
 	/usr/bin/python3 tests/browser/pages_test.py build/modebank . build/pages_large LargePages
 
-# A page of every kind in Debian's Firefox; `make test` has Chromium.
+# A page of every kind in Debian's Firefox; `make nightly` has Chromium, too.
 firefox: packages-firefox build
 	/usr/bin/python3 tests/browser/firefox_test.py build/modebank . build/firefox
 

@@ -18,5 +18,5 @@ skbuild.setup(
     cmake_install_dir="python",
     cmake_install_target="modebank_python_install",
     cmake_args=["-DMODEBANK_PYTHON=ON", "-DMODEBANK_PYTHON_FOLDER=.", "-DMODEBANK_BUILD_PROGRAM=OFF", "-DMODEBANK_BUILD_TESTS=OFF",
-                "-DMODEBANK_BUILD_BENCHMARKS=OFF", "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=10"],
+                "-DMODEBANK_BUILD_BENCHMARKS=OFF", "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=40"],
 )

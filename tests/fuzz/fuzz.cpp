@@ -29,9 +29,9 @@ extern "C" const char* __lsan_default_options() { return "print_suppressions=0";
 
 namespace modebank::fuzz {
 
-std::vector<Target> all_targets() {
+std::vector<Target> joined(std::initializer_list<std::vector<Target> (*)()> parts) {
   std::vector<Target> all;
-  for (auto* part : {text_targets, message_targets, recording_targets, array_targets, filter_targets})
+  for (auto* part : parts)
     for (Target& target : part()) all.push_back(std::move(target));
   return all;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,12 +23,16 @@ struct Target {
 /// No input is longer, but for archives, of which the smallest whole one is larger.
 inline constexpr std::size_t most_bytes = 20'000;
 
-/// Every target, in the order in which `all` runs them. What they need is made when they are first used.
-std::vector<Target> text_targets();
+/// The targets of each kind of input. A target makes what it needs when it is first used.
+std::vector<Target> configuration_targets();
+std::vector<Target> table_targets();
 std::vector<Target> message_targets();
 std::vector<Target> recording_targets();
 std::vector<Target> array_targets();
 std::vector<Target> filter_targets();
+std::vector<Target> joined(std::initializer_list<std::vector<Target> (*)()> parts);
+
+/// Every target of this program, in the order in which `all` runs them; each program defines its own.
 std::vector<Target> all_targets();
 
 /// The files of tests/fuzz/corpus/NAME in order of their names: seeds of mutations, and inputs that once were findings.

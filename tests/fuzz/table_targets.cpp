@@ -1,11 +1,8 @@
-// Configurations, logs that are text, formulas.
+// Logs that are text, formulas.
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "app/config/config_file.hpp"
-#include "app/config/option_table.hpp"
-#include "app/study/space/study_space.hpp"
 #include "io/import/derived.hpp"
 #include "tests/fuzz/mutate.hpp"
 #include "tests/fuzz/read_table.hpp"
@@ -15,33 +12,6 @@
 namespace modebank::fuzz {
 
 namespace {
-
-/// A configuration file as every command reads it. What it was resolved to is a configuration of the same meaning.
-void read_configuration(std::string_view text) {
-  const app::Config config = app::load_config(scratch_file("fuzz.ini", text), {});
-  const std::string resolved = app::resolved_text(config);
-  if (app::resolved_text(app::resolved_config(resolved)) != resolved)
-    throw std::logic_error("the resolved configuration reads back as another one");
-  app::validate(config);
-  constexpr Index few_points = 1000;
-  if (config.study.sample <= few_points) app::lay_out(config);
-}
-
-std::vector<std::string> ini_corpus() {
-  std::vector<std::string> texts = corpus("ini");
-  texts.push_back(app::resolved_text({}));
-  return texts;
-}
-
-std::vector<std::string> ini_tokens() {
-  std::vector<std::string> tokens{"[study]\nvary = ", "{1:5:1}", " | ", "{0.1..1 log 3}", "together", "auto", "none"};
-  for (const app::Option& option : app::option_table()) {
-    tokens.push_back(option.key);
-    tokens.push_back(option.name() + " = ");
-    tokens.push_back("[" + option.section() + "]\n" + option.name() + " = ");
-  }
-  return tokens;
-}
 
 void read_csv(std::string_view text) {
   Random chances = chances_of(text);
@@ -108,15 +78,9 @@ const std::vector<std::string> formula_tokens{
 
 }  // namespace
 
-std::vector<Target> text_targets() {
+std::vector<Target> table_targets() {
   constexpr std::uint64_t million = 1'000'000;
-  return {{"ini", million,
-           [](Random& random) {
-             static const auto texts = ini_corpus(), tokens = ini_tokens();
-             return mutated_text(random, texts, tokens);
-           },
-           read_configuration},
-          {"csv", million,
+  return {{"csv", million,
            [](Random& random) {
              static const auto texts = corpus("csv");
              return mutated_text(random, texts, csv_tokens);

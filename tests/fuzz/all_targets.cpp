@@ -1,0 +1,10 @@
+#include "tests/fuzz/target.hpp"
+
+namespace modebank::fuzz {
+
+std::vector<Target> all_targets() {
+  return joined(
+      {configuration_targets, table_targets, message_targets, recording_targets, array_targets, filter_targets});
+}
+
+}  // namespace modebank::fuzz

@@ -1,0 +1,16 @@
+#!/bin/sh
+# README's two commands as root in an empty Debian, in a folder that contains source.bundle, the committed source. Prints the versions
+# that they found. `make debian` runs this script.
+set -eu
+export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
+apt-get update -q
+apt-get install -q -y --no-install-recommends make git
+git init -q source
+cd source
+git fetch -q ../source.bundle HEAD
+git checkout -q FETCH_HEAD
+make
+make test
+echo "$(sed -n 's/^PRETTY_NAME=//p' /etc/os-release): $(gcc --version | sed -n 1p)"
+dpkg-query -W -f '${Package} ${Version}\n' libceres-dev libeigen3-dev libhdf5-dev libhwy-dev libboost-dev libmatio-dev
+build/modebank version
