@@ -164,7 +164,7 @@ class Page:
                 bad, text = bad + 1, block[0]
                 print(f"{self.path}:{page.count(chr(10), 0, block.start('language')) + 1}: {error}\n", flush=True)
             except NoData as missing:
-                print(f"{self.path}: {missing}: the rest of the page is not run", flush=True)
+                print(f"SKIPPED: {missing}: set MODEBANK_DATA; the rest of {self.path.name} is not run", flush=True)
                 sys.exit(1 if bad else SKIPPED)
             out += page[end:block.start()] + text
             end = block.end()

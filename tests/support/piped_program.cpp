@@ -49,7 +49,7 @@ void PipedProgram::write(const std::string& text) {
 }
 
 std::optional<std::string> PipedProgram::read_line() {
-  constexpr int patience_ms = 10'000;
+  constexpr int patience_ms = 600'000;
   for (;;) {
     if (const auto end = buffer_.find('\n'); end != std::string::npos) {
       const std::string line = buffer_.substr(0, end);
