@@ -41,7 +41,7 @@ def main():
         for reason in given or (["no reason is given"] if is_skipped else []):
             skipped[reason].append(name if is_skipped else f"{name} (in part)")
     if kernels:
-        print("vector kernels: " + ", ".join(f"{name} in {count} tests" for name, count in sorted(kernels.items())))
+        print("vector kernels, and the number of tests that ran them: " + ", ".join(f"{name} {count}" for name, count in sorted(kernels.items())))
     for reason, names in sorted(skipped.items()):
         for name in names:
             print(f"skipped: {name}: {reason}")
