@@ -33,7 +33,7 @@ def reasons(output):
 def main():
     skipped, kernels, whole = collections.defaultdict(list), collections.Counter(), 0
     for case in xml.etree.ElementTree.parse(sys.argv[1]).iter("testcase"):
-        name, output = case.get("name"), case.findtext("system-out") or ""
+        name, output = case.get("name").split("  # ")[0], case.findtext("system-out") or ""
         kernels.update(set(KERNELS.findall(output)))
         is_skipped = case.find("skipped") is not None or case.get("status") in ("notrun", "disabled")
         whole += is_skipped
