@@ -40,20 +40,20 @@ bool has_python_modules(const std::string& names);
 
 }  // namespace modebank::test
 
-/// Skips the test with a reason where something from outside the project is absent. Fails instead where `required` holds.
-#define MODEBANK_NEEDS_UNLESS(present, absence, required)          \
-  if (!(present)) {                                                \
+/// Skips the test with a reason where something from outside the project is absent. Fails instead where `required`
+/// holds.
+#define MODEBANK_NEEDS_UNLESS(present, absence, required)            \
+  if (!(present)) {                                                  \
     ASSERT_FALSE(required) << (absence) << " (it is required here)"; \
-    GTEST_SKIP() << (absence);                                     \
+    GTEST_SKIP() << (absence);                                       \
   }
 
 /// A tool such as Octave. It is required in the nightly run (MODEBANK_NIGHTLY=1).
 #define MODEBANK_NEEDS(present, absence) MODEBANK_NEEDS_UNLESS(present, absence, ::modebank::test::is_nightly())
 
 /// Real data. They are required in continuous integration (CI=true) and in the nightly run.
-#define MODEBANK_NEEDS_DATA(present)                                                         \
-  MODEBANK_NEEDS_UNLESS(present,                                                             \
-                        "real data are absent: set MODEBANK_DATA to a folder that holds borealtc/ICE", \
+#define MODEBANK_NEEDS_DATA(present)                                                                            \
+  MODEBANK_NEEDS_UNLESS(present, "real data are absent: set MODEBANK_DATA to a folder that holds borealtc/ICE", \
                         ::modebank::test::is_ci() || ::modebank::test::is_nightly())
 
 #define MODEBANK_NEEDS_SHARED_DATA() MODEBANK_NEEDS_DATA(!::modebank::test::shared_data_dir().empty())

@@ -1,4 +1,5 @@
-// Linked into every test program: its last line names the instruction set that its vector kernels ran, if it called any.
+// Linked into every test program: its last line names the instruction set that its vector kernels ran, if it called
+// any.
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 

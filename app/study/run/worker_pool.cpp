@@ -189,8 +189,7 @@ std::optional<WorkerPool::Finished> WorkerPool::wait(double patience_s) {
     if (left <= 0.0 && !overdue) return std::nullopt;
     if (due) left = std::min(left, std::max(0.0, timeout_s_ - seconds_since(workers_[*due].since)));
     constexpr double ms_per_s = 1000.0;
-    const int answers =
-        ::poll(channels.data(), channels.size(), overdue ? 0 : static_cast<int>(ms_per_s * left) + 1);
+    const int answers = ::poll(channels.data(), channels.size(), overdue ? 0 : static_cast<int>(ms_per_s * left) + 1);
     // On a busy machine an answer may lie here since before the limit: it counts.
     if (answers <= 0 && overdue) return stop_overdue(*due);
     if (answers <= 0) continue;

@@ -17,7 +17,8 @@
 namespace modebank::test {
 namespace {
 
-#define MODEBANK_NEEDS_GNUPLOT() MODEBANK_NEEDS(has_program("gnuplot"), "gnuplot is absent: apt-get install gnuplot-nox")
+#define MODEBANK_NEEDS_GNUPLOT() \
+  MODEBANK_NEEDS(has_program("gnuplot"), "gnuplot is absent: apt-get install gnuplot-nox")
 
 std::string text_of(const std::filesystem::path& path) {
   std::ostringstream text;
