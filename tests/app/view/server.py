@@ -7,10 +7,15 @@ import subprocess
 import time
 
 
+def heed_ctrl_c():
+    """A shell makes what it runs in the background ignore SIGINT."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class Server:
     def __init__(self, program, what, *options, environment=None):
         self.process = subprocess.Popen([program, "view", str(what), *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                        env=environment)
+                                        env=environment, preexec_fn=heed_ctrl_c)
         while True:
             line = self.process.stdout.readline()
             assert line, self.process.stderr.read()
