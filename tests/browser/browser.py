@@ -10,6 +10,7 @@ from selenium.webdriver.chrome.service import Service
 
 CHROMIUM = "/usr/bin/chromium"
 DRIVER = "/usr/bin/chromedriver"
+PATIENCE_S = 600  # a page that is waited for longer is broken, however slow the machine is
 
 
 class Browser:
@@ -23,7 +24,7 @@ class Browser:
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"performance": "ALL", "browser": "ALL"})
         self.driver = webdriver.Chrome(service=Service(DRIVER), options=options)
-        self.driver.set_script_timeout(60)
+        self.driver.set_script_timeout(PATIENCE_S)
         # A page draws what is out of sight when it has nothing else to do; here it would do so while the next test waits.
         self.cdp("Page.addScriptToEvaluateOnNewDocument", source="window.requestIdleCallback = () => 0;")
         self.size(width, height)
@@ -44,7 +45,7 @@ class Browser:
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)
 
-    def wait(self, script, *arguments, seconds=120, what=None):
+    def wait(self, script, *arguments, seconds=PATIENCE_S, what=None):
         """Until the script's value is true; returns it."""
         end = time.monotonic() + seconds
         while True:
@@ -55,7 +56,20 @@ class Browser:
                 raise AssertionError(f"waited {seconds} s for: {what or script}")
             time.sleep(0.05)
 
-    def open(self, page, seconds=120):
+    def wait_still(self, expression):
+        """Until the expression's value is the same for ten frames."""
+        self.driver.execute_async_script(f"""
+            const done = arguments[0], value = () => {expression};
+            let last = value(), same = 0;
+            const look = () => {{
+              const now = value();
+              same = now === last ? same + 1 : 0;
+              last = now;
+              if (same >= 10) done(); else requestAnimationFrame(look);
+            }};
+            requestAnimationFrame(look);""")
+
+    def open(self, page, seconds=PATIENCE_S):
         """Opens a file and waits until the page says it has drawn itself; returns the seconds that took."""
         self.messages()
         start = time.monotonic()
@@ -64,7 +78,7 @@ class Browser:
                   what=f"{page} to draw itself")
         return time.monotonic() - start
 
-    def draw_all(self, within="main", seconds=120):
+    def draw_all(self, within="main", seconds=PATIENCE_S):
         """Scrolls through the page, or one part of it, until every plot is drawn; plots draw when they come near the window. Returns how many."""
         end = time.monotonic() + seconds
         while True:

@@ -8,6 +8,7 @@ import xml.etree.ElementTree
 import h5py
 import numpy
 import session
+from browser import PATIENCE_S
 from session import PageTest
 
 PLOT = "document.querySelector('#data div.plot')"
@@ -40,7 +41,7 @@ class LookingAround(PageTest):
 
     def wait_range(self, what, test):
         """Until the range that is shown passes; returns it."""
-        end = time.monotonic() + 60
+        end = time.monotonic() + PATIENCE_S
         while not test(shown := self.plot_range("data")):
             self.assertLess(time.monotonic(), end, f"waited for {what}: {shown}")
             time.sleep(0.05)

@@ -24,7 +24,7 @@ class RunPages(PageTest):
 
     def test_all_runs_are_counted_where_not_all_are_drawn(self):
         if "drive" not in session.made:
-            self.skipTest("real data is absent")
+            self.skipTest("real data are absent: set MODEBANK_DATA to a folder that holds borealtc/ICE")
         self.open(session.modebank.page("drive", session.made["drive"]))
         with h5py.File(session.made["drive"]) as file:
             runs = len(file["data"].attrs["runs"])
@@ -154,8 +154,7 @@ class RunPages(PageTest):
         self.assert_quiet()
 
     def test_figures_say_whose_colour_is_whose(self):
-        if not shutil.which("gnuplot"):
-            self.skipTest("gnuplot is missing (Debian package gnuplot-nox)")
+        self.needs(shutil.which("gnuplot"), "gnuplot is absent: apt-get install gnuplot-nox")
         folder = session.work / "figures"
         session.modebank("report", session.made["demo"], "-o", session.work / "with_figures.html", "--report.figures", folder)
         with h5py.File(session.made["demo"]) as file:

@@ -31,7 +31,7 @@ class ViewPages(PageTest):
         return session.browser.run("return [...document.querySelectorAll('#archives tbody a')].map((a) => a.textContent)")
 
     def wait_for_archives(self, count):
-        session.browser.wait("""return document.querySelectorAll('#archives tbody input:not([disabled])').length === arguments[0]""", count, seconds=120)
+        session.browser.wait("""return document.querySelectorAll('#archives tbody input:not([disabled])').length === arguments[0]""", count)
 
     def wait_for_page(self):
         session.browser.wait("return document.documentElement.dataset.ready === 'true' || document.querySelector('.failure')")

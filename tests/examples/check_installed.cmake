@@ -1,5 +1,6 @@
 # Installs modebank into a folder of its own, builds the examples against it as a robot's makers would, and runs them:
-# cmake -DBUILD=... -DSOURCE=... -DWORK=... -P check_installed.cmake
+# cmake -DBUILD=... -DSOURCE=... -DWORK=... -DPART=... -P check_installed.cmake
+# PART install is first; the others need its folder and run side by side: components, plain, wide, debug, address.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 # The libraries that a program of ours asks for itself, beside those every C++ program does.
@@ -13,57 +14,69 @@ function(needs_only program allowed)
   message(STATUS "${program} needs ${needed}")
 endfunction()
 
-file(REMOVE_RECURSE ${WORK})
-file(MAKE_DIRECTORY ${WORK})
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/installed)
+if(PART STREQUAL install)
+  file(REMOVE_RECURSE ${WORK})
+  file(MAKE_DIRECTORY ${WORK})
+  run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/installed)
 
-# An archive made by the installed program.
-file(WRITE ${WORK}/linear.ini "[data]\nstate = wz\ninput = velL, velR\n[simulate]\nmodes = -0.3, -0.15, 0.15\nprocess_sd = 0.01\nruns = 2\nsamples = 200\noutput = ${WORK}/runs\n")
-file(WRITE ${WORK}/run.ini "[data]\ninputs = pro_*.csv\nstates = imu_*.csv\nstate = wz\ninput = velL, velR\n[mixture]\ncomponents = 2\n")
-run(${WORK}/installed/bin/modebank simulate ${WORK}/linear.ini)
-run(${WORK}/installed/bin/modebank run ${WORK}/run.ini --data.root ${WORK}/runs --archive.output ${WORK}/bank.h5)
+  # An archive made by the installed program.
+  file(WRITE ${WORK}/linear.ini "[data]\nstate = wz\ninput = velL, velR\n[simulate]\nmodes = -0.3, -0.15, 0.15\nprocess_sd = 0.01\nruns = 2\nsamples = 200\noutput = ${WORK}/runs\n")
+  file(WRITE ${WORK}/run.ini "[data]\ninputs = pro_*.csv\nstates = imu_*.csv\nstate = wz\ninput = velL, velR\n[mixture]\ncomponents = 2\n")
+  run(${WORK}/installed/bin/modebank simulate ${WORK}/linear.ini)
+  run(${WORK}/installed/bin/modebank run ${WORK}/run.ini --data.root ${WORK}/runs --archive.output ${WORK}/bank.h5)
+  return()
+endif()
 
 # Each component alone asks for what it links and nothing else.
-foreach(without "filter|HDF5|Ceres|TBB|fmt" "judge|HDF5|Ceres|TBB|fmt" "archive|Ceres|TBB|fmt" "ident|HDF5|fmt" "mixture|HDF5|Ceres" "learn|HDF5")
-  string(REPLACE "|" ";" left_out "${without}")
-  list(POP_FRONT left_out component)
-  list(TRANSFORM left_out REPLACE "(.+)" "-DCMAKE_DISABLE_FIND_PACKAGE_\\1=ON")
-  set(alone ${WORK}/alone_${component})
-  file(WRITE ${alone}/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(alone LANGUAGES C CXX)\n"
-       "find_package(modebank 0.1 REQUIRED COMPONENTS ${component})\n"
-       "add_executable(alone ${SOURCE}/tests/examples/other_eigen.cpp)\ntarget_link_libraries(alone PRIVATE modebank::${component})\n")
-  run(${CMAKE_COMMAND} -S ${alone} -B ${alone}/build -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/installed ${left_out})
-endforeach()
+if(PART STREQUAL components)
+  foreach(without "filter|HDF5|Ceres|TBB|fmt" "judge|HDF5|Ceres|TBB|fmt" "archive|Ceres|TBB|fmt" "ident|HDF5|fmt" "mixture|HDF5|Ceres" "learn|HDF5")
+    string(REPLACE "|" ";" left_out "${without}")
+    list(POP_FRONT left_out component)
+    list(TRANSFORM left_out REPLACE "(.+)" "-DCMAKE_DISABLE_FIND_PACKAGE_\\1=ON")
+    set(alone ${WORK}/alone_${component})
+    file(WRITE ${alone}/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(alone LANGUAGES C CXX)\n"
+         "find_package(modebank 0.1 REQUIRED COMPONENTS ${component})\n"
+         "add_executable(alone ${SOURCE}/tests/examples/other_eigen.cpp)\ntarget_link_libraries(alone PRIVATE modebank::${component})\n")
+    run(${CMAKE_COMMAND} -S ${alone} -B ${alone}/build -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/installed ${left_out})
+  endforeach()
+  return()
+endif()
 
 # Users compile as they like: plainly, for wider registers, without optimisation, under a sanitizer, and beside another
-# library of Eigen's that was compiled otherwise. (The flags of the other library come second.)
-set(variants "plain|-O2|-O2 -march=x86-64-v3" "wide|-O2 -march=x86-64-v3|-O2" "debug|-O0 -g -march=x86-64-v3|-O0"
-    "address|-O1 -g -march=x86-64-v3 -fsanitize=address|-O2 -fsanitize=address")
-foreach(variant IN LISTS variants)
-  string(REPLACE "|" ";" parts "${variant}")
-  list(GET parts 0 name)
-  list(GET parts 1 flags)
-  list(GET parts 2 other_flags)
-  set(build ${WORK}/${name})
-  run(${CMAKE_COMMAND} -S ${SOURCE}/tests/examples -B ${build} -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/installed
-      "-DCMAKE_CXX_FLAGS=${flags}" "-DOTHER_FLAGS=${other_flags}")
-  run(${CMAKE_COMMAND} --build ${build})
-  run(${build}/embedded_bank)
-  message(STATUS "${name}: ${output}")
-  run(${build}/robot_loop ${WORK}/bank.h5 1)
-  message(STATUS "${name}: ${output}")
-  if(NOT output MATCHES "1000 ticks")
-    message(FATAL_ERROR "robot_loop said: ${output}")
-  endif()
-  run(${build}/combined ${WORK}/bank.h5)
-  if(NOT output MATCHES "199 samples predicted, RMSE 0[.]0.*sum to 1[.]000")
-    message(FATAL_ERROR "combined said: ${output}")
-  endif()
-  run(${build}/identify)
-  message(STATUS "${name}: ${output}")
-endforeach()
+# library of Eigen's that was compiled otherwise, with other_flags.
+set(flags_plain "-O2")
+set(other_flags_plain "-O2 -march=x86-64-v3")
+set(flags_wide "-O2 -march=x86-64-v3")
+set(other_flags_wide "-O2")
+set(flags_debug "-O0 -g -march=x86-64-v3")
+set(other_flags_debug "-O0")
+set(flags_address "-O1 -g -march=x86-64-v3 -fsanitize=address")
+set(other_flags_address "-O2 -fsanitize=address")
+if(NOT DEFINED flags_${PART})
+  message(FATAL_ERROR "unknown part '${PART}'; expected install, components, plain, wide, debug or address")
+endif()
+set(build ${WORK}/${PART})
+file(REMOVE_RECURSE ${build})
+run(${CMAKE_COMMAND} -S ${SOURCE}/tests/examples -B ${build} -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/installed
+    "-DCMAKE_CXX_FLAGS=${flags_${PART}}" "-DOTHER_FLAGS=${other_flags_${PART}}")
+run(${CMAKE_COMMAND} --build ${build})
+run(${build}/embedded_bank)
+message(STATUS "${PART}: ${output}")
+run(${build}/robot_loop ${WORK}/bank.h5 1)
+message(STATUS "${PART}: ${output}")
+if(NOT output MATCHES "1000 ticks")
+  message(FATAL_ERROR "robot_loop said: ${output}")
+endif()
+run(${build}/combined ${WORK}/bank.h5)
+if(NOT output MATCHES "199 samples predicted, RMSE 0[.]0.*sum to 1[.]000")
+  message(FATAL_ERROR "combined said: ${output}")
+endif()
+run(${build}/identify)
+message(STATUS "${PART}: ${output}")
 
-needs_only(${WORK}/plain/embedded_bank "hwy")
-needs_only(${WORK}/plain/robot_loop "hwy|hdf5_serial")
-# Ceres may be a static library, and then what it needs itself is asked for, too.
-needs_only(${WORK}/plain/identify "hwy|tbb|fmt|ceres|glog|gflags|cholmod|cxsparse|spqr|lapack|blas|f77blas")
+if(PART STREQUAL plain)
+  needs_only(${WORK}/plain/embedded_bank "hwy")
+  needs_only(${WORK}/plain/robot_loop "hwy|hdf5_serial")
+  # Ceres may be a static library, and then what it needs itself is asked for, too.
+  needs_only(${WORK}/plain/identify "hwy|tbb|fmt|ceres|glog|gflags|cholmod|cxsparse|spqr|lapack|blas|f77blas")
+endif()

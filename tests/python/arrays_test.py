@@ -131,6 +131,9 @@ print((after - before) * 1024 / (states.nbytes + inputs.nbytes))
 class CtrlC(unittest.TestCase):
     """Jobs of minutes, which the signal ends."""
 
+    def setUp(self):
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it in what it runs in the background
+
     def interrupted(self, job):
         timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
         timer.start()

@@ -13,7 +13,7 @@ shift 7
 tries=0
 until mountpoint -q "$mount"; do
   tries=$((tries + 1))
-  [ "$tries" -lt 200 ] || { echo "node.sh: $mount was not mounted" >&2; exit 125; }
+  [ "$tries" -lt 6000 ] || { echo "node.sh: $mount was not mounted" >&2; exit 125; }
   sleep 0.05
 done
 status=0

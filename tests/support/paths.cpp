@@ -34,4 +34,24 @@ void write_file(const std::filesystem::path& path, const std::string& content) {
   std::ofstream(path, std::ios::binary) << content;
 }
 
+namespace {
+
+bool is_set_to(const char* variable, const std::string& value) {
+  const char* const found = std::getenv(variable);
+  return found && found == value;
+}
+
+}  // namespace
+
+bool is_ci() { return is_set_to("CI", "true"); }
+bool is_nightly() { return is_set_to("MODEBANK_NIGHTLY", "1"); }
+
+bool has_program(const std::string& name) {
+  return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+bool has_python_modules(const std::string& names) {
+  return std::system(("/usr/bin/python3 -c 'import " + names + "' >/dev/null 2>&1").c_str()) == 0;
+}
+
 }  // namespace modebank::test

@@ -28,16 +28,32 @@ class TemporaryFolder {
 
 void write_file(const std::filesystem::path& path, const std::string& content);
 
+/// CI=true: continuous integration.
+bool is_ci();
+/// MODEBANK_NIGHTLY=1: every tool that a test can use is installed.
+bool is_nightly();
+
+/// Whether the shell finds a program of this name.
+bool has_program(const std::string& name);
+/// Whether Debian's Python can import the modules ("rosbag, genpy").
+bool has_python_modules(const std::string& names);
+
 }  // namespace modebank::test
 
-/// What a test needs from outside the project: its absence skips the test with a message, and fails it under CI=true.
-#define MODEBANK_NEEDS(present, absence)                                              \
-  if (!(present)) {                                                                   \
-    const char* ci = std::getenv("CI");                                               \
-    ASSERT_FALSE(ci&& std::string(ci) == "true") << (absence) << " (CI requires it)"; \
-    GTEST_SKIP() << (absence);                                                        \
+/// Skips the test with a reason where something from outside the project is absent. Fails instead where `required`
+/// holds.
+#define MODEBANK_NEEDS_UNLESS(present, absence, required)            \
+  if (!(present)) {                                                  \
+    ASSERT_FALSE(required) << (absence) << " (it is required here)"; \
+    GTEST_SKIP() << (absence);                                       \
   }
 
-#define MODEBANK_NEEDS_SHARED_DATA()                           \
-  MODEBANK_NEEDS(!::modebank::test::shared_data_dir().empty(), \
-                 "real data is absent: set MODEBANK_DATA to a folder that holds borealtc/ICE")
+/// A tool such as Octave. It is required in the nightly run (MODEBANK_NIGHTLY=1).
+#define MODEBANK_NEEDS(present, absence) MODEBANK_NEEDS_UNLESS(present, absence, ::modebank::test::is_nightly())
+
+/// Real data. They are required in continuous integration (CI=true) and in the nightly run.
+#define MODEBANK_NEEDS_DATA(present)                                                                            \
+  MODEBANK_NEEDS_UNLESS(present, "real data are absent: set MODEBANK_DATA to a folder that holds borealtc/ICE", \
+                        ::modebank::test::is_ci() || ::modebank::test::is_nightly())
+
+#define MODEBANK_NEEDS_SHARED_DATA() MODEBANK_NEEDS_DATA(!::modebank::test::shared_data_dir().empty())

@@ -24,6 +24,7 @@ PipedProgram::PipedProgram(const std::vector<std::string>& arguments) {
   if (child_ < 0) throw std::runtime_error("fork failed");
   if (child_ == 0) {
     std::signal(SIGPIPE, SIG_DFL);
+    std::signal(SIGINT, SIG_DFL);  // a shell ignores it in what it runs in the background
     const int file = open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     if (dup2(to[0], STDIN_FILENO) < 0 || dup2(from[1], STDOUT_FILENO) < 0 || dup2(file, STDERR_FILENO) < 0) _exit(126);
     execvp(argv[0], argv.data());
@@ -49,7 +50,7 @@ void PipedProgram::write(const std::string& text) {
 }
 
 std::optional<std::string> PipedProgram::read_line() {
-  constexpr int patience_ms = 10'000;
+  constexpr int patience_ms = 600'000;
   for (;;) {
     if (const auto end = buffer_.find('\n'); end != std::string::npos) {
       const std::string line = buffer_.substr(0, end);

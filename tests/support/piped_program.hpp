@@ -20,7 +20,7 @@ class PipedProgram {
   PipedProgram& operator=(const PipedProgram&) = delete;
 
   void write(const std::string& text);
-  /// The next line of its output without the newline; nothing at the end of the output or after ten seconds.
+  /// The next line of its output without the newline; nothing at the end of the output or after ten minutes.
   std::optional<std::string> read_line();
   void close_input();
   void close_output();

@@ -64,6 +64,6 @@ done
 tries=0
 until [ "$(sinfo -h -t idle -o %D 2>/dev/null)" = "$nodes" ]; do
   tries=$((tries + 1))
-  [ $tries -le 150 ] || { echo "the nodes did not come up:" >&2; tail -n 20 log/* >&2; exit 1; }
+  [ $tries -le 3000 ] || { echo "the nodes did not come up:" >&2; tail -n 20 log/* >&2; exit 1; }
   sleep 0.1
 done

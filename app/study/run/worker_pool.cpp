@@ -177,7 +177,7 @@ std::optional<WorkerPool::Finished> WorkerPool::wait(double patience_s) {
   const Clock::time_point start = Clock::now();
   for (;;) {
     const std::optional<std::size_t> due = first_due();
-    if (due && seconds_since(workers_[*due].since) > timeout_s_) return stop_overdue(*due);
+    const bool overdue = due && seconds_since(workers_[*due].since) > timeout_s_;
     std::vector<pollfd> channels;
     std::vector<std::size_t> owners;
     for (std::size_t i = 0; i < workers_.size(); ++i)
@@ -186,10 +186,13 @@ std::optional<WorkerPool::Finished> WorkerPool::wait(double patience_s) {
         owners.push_back(i);
       }
     double left = patience_s - seconds_since(start);
-    if (left <= 0.0) return std::nullopt;
+    if (left <= 0.0 && !overdue) return std::nullopt;
     if (due) left = std::min(left, std::max(0.0, timeout_s_ - seconds_since(workers_[*due].since)));
     constexpr double ms_per_s = 1000.0;
-    if (::poll(channels.data(), channels.size(), static_cast<int>(ms_per_s * left) + 1) <= 0) continue;
+    const int answers = ::poll(channels.data(), channels.size(), overdue ? 0 : static_cast<int>(ms_per_s * left) + 1);
+    // On a busy machine an answer may lie here since before the limit: it counts.
+    if (answers <= 0 && overdue) return stop_overdue(*due);
+    if (answers <= 0) continue;
     for (std::size_t c = 0; c < channels.size(); ++c)
       if (channels[c].revents != 0)
         if (auto finished = collect(owners[c])) return finished;

@@ -10,8 +10,7 @@ using ::testing::HasSubstr;
 /// Looked up before the fixture hides the user's data folder from the program.
 const std::filesystem::path shared_data = shared_data_dir();
 
-#define NEEDS_SHARED_DATA() \
-  MODEBANK_NEEDS(!shared_data.empty(), "real data is absent: set MODEBANK_DATA to a folder that holds borealtc/ICE")
+#define NEEDS_SHARED_DATA() MODEBANK_NEEDS_DATA(!shared_data.empty())
 
 class CheckOfRealData : public Check {
  protected:

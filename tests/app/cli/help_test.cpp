@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "app/cli/command_table.hpp"
@@ -13,10 +12,6 @@ namespace modebank::test {
 namespace {
 
 class Help : public CliTest {};
-
-bool installed(const std::string& program) {
-  return std::system(("command -v " + program + " > /dev/null").c_str()) == 0;
-}
 
 ProgramResult in_shell(const std::string& shell, const std::string& script) {
   return run_program({shell, "-c", script});
@@ -149,20 +144,21 @@ TEST_F(Help, BashCompletesCommandsOptionsKeysAndWords) {
   EXPECT_EQ(completed("modebank run --data.decimal co"), " comma \n");
 }
 
-TEST_F(Help, ZshAndFishTakeTheirScripts) {
-  for (const char* shell : {"zsh", "fish"}) {
-    if (!installed(shell)) {
-      fmt::print("SKIPPED PART: {} is not installed\n", shell);
-      continue;
-    }
-    write("script", modebank({"completion", shell}).out);
-    const ProgramResult read = in_shell(shell, fmt::format("{} -n {}", shell, file("script").string()));
-    EXPECT_EQ(read.status, 0) << shell << read.err;
-  }
+class CompletionScript : public Help, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(CompletionScript, IsReadByItsShell) {
+  const std::string shell = GetParam();
+  MODEBANK_NEEDS(has_program(shell), shell + " is absent: apt-get install " + shell);
+  write("script", modebank({"completion", shell}).out);
+  const ProgramResult read = in_shell(shell, fmt::format("{} -n {}", shell, file("script").string()));
+  EXPECT_EQ(read.status, 0) << read.err;
 }
 
+INSTANTIATE_TEST_SUITE_P(Shells, CompletionScript, ::testing::Values("zsh", "fish"),
+                         [](const auto& about) { return std::string(about.param); });
+
 TEST_F(Help, ManualPagesAreCleanRoff) {
-  MODEBANK_NEEDS(installed("mandoc"), "mandoc is not installed: apt-get install mandoc");
+  MODEBANK_NEEDS(has_program("mandoc"), "mandoc is absent: apt-get install mandoc");
   for (const app::Command& command : app::command_table()) {
     write("page.1", modebank({"manual", command.name}).out);
     const ProgramResult lint = run_program({"mandoc", "-Tlint", "-Wwarning", file("page.1").string()});

@@ -95,8 +95,7 @@ TEST(ExportedMat, HoldsHostileNames) {
 }
 
 TEST(ExportedMat, OctaveLoadsAndSimulates) {
-  MODEBANK_NEEDS(run_program({"/bin/sh", "-c", "command -v octave-cli"}).status == 0,
-                 "Octave is absent (Debian package octave): nobody but matio has read the MAT-file");
+  MODEBANK_NEEDS(modebank::test::has_program("octave-cli"), "Octave is absent: apt-get install octave");
   Bank bank = modebank::test::example_bank(2, 2, 2);
   bank.dt_s = 0.1;
   const TemporaryFolder folder;

@@ -18,6 +18,9 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+#define MODEBANK_NEEDS_YAML() \
+  MODEBANK_NEEDS(modebank::test::has_python_modules("yaml"), "PyYAML is absent: apt-get install python3-yaml")
+
 /// As a reader of YAML sees a text.
 json read_yaml(const std::string& text) {
   const modebank::test::TemporaryFolder folder;
@@ -69,6 +72,7 @@ json parameters(const ExportedBank& exported, const RobotSizes& sizes, const std
 }
 
 TEST(ExportedRos2, GivesTheRobotBack) {
+  MODEBANK_NEEDS_YAML();
   const Robot robot;
   for (const double radius_m : {1.0, 0.165}) {
     const ExportedBank exported = bank_of(robot, true, radius_m);
@@ -96,6 +100,7 @@ TEST(ExportedRos2, GivesTheRobotBack) {
 }
 
 TEST(ExportedRos2, CountsDeadTimeAndLags) {
+  MODEBANK_NEEDS_YAML();
   ExportedBank exported = bank_of(Robot(), false);
   const double without = parameters(exported, {0.5, 0.0}, "controller_server").at("FollowPath").at("model_delay_wz");
   exported.input_lag_s = 0.12;
@@ -106,6 +111,7 @@ TEST(ExportedRos2, CountsDeadTimeAndLags) {
 
 /// Without a forward speed the wheels' mean is taken as one; what is missing is said.
 TEST(ExportedRos2, SaysWhatIsMissing) {
+  MODEBANK_NEEDS_YAML();
   Robot robot;
   const ExportedBank exported = bank_of(robot, false);
   const std::string text = to_ros2(exported, {}).at(0).second;
@@ -143,6 +149,7 @@ TEST(ExportedRos2, StatesErrorsByTheDeltaMethod) {
 }
 
 TEST(ExportedRos2, HoldsHostileNames) {
+  MODEBANK_NEEDS_YAML();
   ExportedBank exported = bank_of(Robot(), true);
   for (const std::string& name : hostile_names()) {
     exported.archive = exported.mode_names[0] = exported.provenance.modebank_version = name;

@@ -194,6 +194,7 @@ TEST_F(DiskFull, OfReport) {
 }
 
 TEST_F(DiskFull, OfFigures) {
+  MODEBANK_NEEDS(has_program("gnuplot"), "gnuplot is absent: apt-get install gnuplot-nox");
   make_archive();
   every_call({"report", "two.h5", "-o", "page.html", "--report.figures", "figures"}, 4);
 }

@@ -17,9 +17,8 @@
 namespace modebank::test {
 namespace {
 
-bool has_gnuplot() { return std::system("gnuplot --version >/dev/null 2>&1") == 0; }
-
-#define MODEBANK_NEEDS_GNUPLOT() MODEBANK_NEEDS(has_gnuplot(), "gnuplot is not installed (Debian package gnuplot-nox)")
+#define MODEBANK_NEEDS_GNUPLOT() \
+  MODEBANK_NEEDS(has_program("gnuplot"), "gnuplot is absent: apt-get install gnuplot-nox")
 
 std::string text_of(const std::filesystem::path& path) {
   std::ostringstream text;

@@ -39,9 +39,9 @@ std::vector<Task> tasks_of(const SlurmCluster& cluster) {
 
 class StudySlurm : public StudyTest {
  protected:
-  /// Waits until nothing is pending or running any more, at most that long; false when it took longer.
-  static bool settled(const SlurmCluster& cluster, double limit_s) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(limit_s);
+  /// Waits until every job has ended; false where that takes longer than half an hour.
+  static bool settled(const SlurmCluster& cluster) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(30);
     while (std::chrono::steady_clock::now() < end) {
       const std::vector<Task> tasks = tasks_of(cluster);
       const bool over = !tasks.empty() && std::all_of(tasks.begin(), tasks.end(), [](const Task& task) {
@@ -63,7 +63,7 @@ TEST_F(StudySlurm, TableEqualsTheLocalOne) {
   EXPECT_TRUE(std::regex_search(submitted.out, std::regex("sbatch --parsable --job-name=run-slurm .*--array=0-5 ")))
       << submitted.out;
   EXPECT_TRUE(std::regex_search(submitted.out, std::regex("sbatch .*--dependency=afterany:[0-9]+ "))) << submitted.out;
-  ASSERT_TRUE(settled(cluster, 60)) << cluster.queue();
+  ASSERT_TRUE(settled(cluster)) << cluster.queue();
   std::set<std::string> nodes;
   for (const Task& task : tasks_of(cluster)) {
     EXPECT_EQ(task.state, "COMPLETED") << task.id;
@@ -124,7 +124,7 @@ TEST_F(StudySlurmPaths, TheHandbooksCommandsRunAsPrinted) {
   const SlurmCluster cluster(3, 2);
   const ProgramResult submitted = typed_in(folder, commands[0]);
   ASSERT_EQ(submitted.status, 0) << submitted.out << submitted.err;
-  ASSERT_TRUE(settled(cluster, 60)) << cluster.queue();
+  ASSERT_TRUE(settled(cluster)) << cluster.queue();
   for (const Task& task : tasks_of(cluster)) EXPECT_EQ(task.state, "COMPLETED") << task.id;
   const ProgramResult status = typed_in(folder, commands[1]);
   EXPECT_EQ(status.status, 0) << status.out << status.err;
@@ -161,11 +161,11 @@ TEST_F(StudySlurm, LostNodeChangesNoNumber) {
     return cluster.running_on("n2") > 0 && std::filesystem::exists(file("slurm") / "trials") &&
            !archives("slurm").empty();
   };
-  for (int tries = 0; !at_work() && tries < 600; ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  for (int tries = 0; !at_work() && tries < 12'000; ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   ASSERT_TRUE(at_work()) << "n2 had nothing to do\n" << cluster.queue();
   cluster.kill_node("n2");
   EXPECT_LT(archives("slurm").size(), trials);
-  ASSERT_TRUE(settled(cluster, 120)) << cluster.queue();
+  ASSERT_TRUE(settled(cluster)) << cluster.queue();
   int restarts = 0;
   for (const Task& task : tasks_of(cluster)) {
     EXPECT_EQ(task.state, "COMPLETED") << task.id;

@@ -22,18 +22,24 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Ten studies, each killed three times at moments drawn over its whole duration, by turns with and without its
+/// A part of a test that repeats one thing: parts run side by side.
+class StudySurvivalPart : public StudySurvival, public ::testing::WithParamInterface<unsigned> {};
+
+constexpr unsigned parts = 5;
+INSTANTIATE_TEST_SUITE_P(Of5, StudySurvivalPart, ::testing::Range(0U, parts));
+
+/// Ten studies in all, each killed three times at moments drawn over its whole duration, by turns with and without its
 /// children, who then meet the next process. What was finished before a kill is not done again.
-TEST_F(StudySurvival, ThirtyKillsChangeNoNumber) {
+TEST_P(StudySurvivalPart, ThirtyKillsChangeNoNumber) {
   const Clock::time_point start = Clock::now();
   run_undisturbed();
   const double duration_s = seconds_since(start);
   const std::string expected = numbers(undisturbed);
-  std::mt19937_64 generator(20261121);
+  std::mt19937_64 generator(20261121 + GetParam());
   std::uniform_real_distribution<double> moment(0.0, duration_s);
-  for (int round = 0; round < 10; ++round) {
+  for (unsigned round = GetParam(); round < 10; round += parts) {
     const std::string folder = "killed_" + std::to_string(round);
-    for (int blow = 0; blow < 3; ++blow) {
+    for (unsigned blow = 0; blow < 3; ++blow) {
       Process process(study_line(folder));
       std::this_thread::sleep_for(std::chrono::duration<double>(moment(generator) / (blow + 1)));
       if ((round + blow) % 2 == 0)
@@ -66,18 +72,19 @@ void flip_a_bit(const std::filesystem::path& path, std::mt19937_64& generator) {
   stream.put(static_cast<char>(byte ^ static_cast<char>(1U << (generator() % 8))));
 }
 
-/// 200 flips, one in each archive of a round but two: verify names every one of them and no other, resuming redoes
-/// those alone, and the table is the same again.
-TEST_F(StudySurvival, TwoHundredFlippedBitsAreFoundAndRedone) {
+/// 200 flips in all, one in each archive of a round but two: verify names every one of them and no other, resuming
+/// redoes those alone, and the table is the same again.
+TEST_P(StudySurvivalPart, TwoHundredFlippedBitsAreFoundAndRedone) {
+  constexpr int flips_of_part = 200 / parts;
   run_undisturbed();
   const std::string expected = numbers(undisturbed);
-  std::mt19937_64 generator(7);
+  std::mt19937_64 generator(7 + GetParam());
   int flips = 0;
-  while (flips < 200) {
+  while (flips < flips_of_part) {
     std::vector<std::filesystem::path> paths = archives(undisturbed);
     std::shuffle(paths.begin(), paths.end(), generator);
     const std::vector<std::filesystem::path> whole(paths.end() - 2, paths.end());
-    paths.resize(std::min<std::size_t>(paths.size() - 2, static_cast<std::size_t>(200 - flips)));
+    paths.resize(std::min<std::size_t>(paths.size() - 2, static_cast<std::size_t>(flips_of_part - flips)));
     std::map<std::filesystem::path, ino_t> before;
     for (const auto& path : whole) before[path] = identity(path);
     for (const auto& path : paths) flip_a_bit(path, generator);

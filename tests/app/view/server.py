@@ -1,4 +1,5 @@
 """modebank view as its attackers meet it: the program, its address, and requests byte by byte."""
+import pathlib
 import re
 import signal
 import socket
@@ -6,10 +7,15 @@ import subprocess
 import time
 
 
+def heed_ctrl_c():
+    """A shell makes what it runs in the background ignore SIGINT."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class Server:
     def __init__(self, program, what, *options, environment=None):
         self.process = subprocess.Popen([program, "view", str(what), *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                        env=environment)
+                                        env=environment, preexec_fn=heed_ctrl_c)
         while True:
             line = self.process.stdout.readline()
             assert line, self.process.stderr.read()
@@ -26,7 +32,7 @@ class Server:
         return head
 
     def connect(self):
-        return socket.create_connection(("127.0.0.1", self.port), timeout=120)
+        return socket.create_connection(("127.0.0.1", self.port), timeout=600)
 
     def send(self, request):
         """Raw bytes out; (head, body) back, or None where the server closes without a word."""
@@ -65,17 +71,25 @@ class Server:
     def stop(self, how=signal.SIGINT):
         if self.process.poll() is None:
             self.process.send_signal(how)
-        status = self.process.wait(timeout=120)
+        status = self.process.wait(timeout=600)
         self.process.stdout.close()
         self.process.stderr.close()
         return status
 
     def children(self):
-        listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(self.process.pid)], capture_output=True, text=True)
-        return listed.stdout.split()
+        """Process ids, read from /proc: ps is not installed everywhere."""
+        found = []
+        for folder in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                after_name = (folder / "stat").read_text().rpartition(")")[2].split()
+            except OSError:  # it ended meanwhile
+                continue
+            if after_name[1] == str(self.process.pid):
+                found.append(folder.name)
+        return found
 
 
-def wait_for(condition, seconds=300):
+def wait_for(condition, seconds=600):
     end = time.monotonic() + seconds
     while not (value := condition()):
         assert time.monotonic() < end, "waited in vain"

@@ -11,10 +11,8 @@ namespace {
 
 constexpr const char* python = "/usr/bin/python3";
 
-bool has_h5py() { return std::system((std::string(python) + " -c 'import h5py' 2>/dev/null").c_str()) == 0; }
-
 TEST(ArchivePython, H5pyFindsWhatTheContractPromises) {
-  MODEBANK_NEEDS(has_h5py(), "python3-h5py is absent: install it to check archives from outside");
+  MODEBANK_NEEDS(test::has_python_modules("h5py"), "h5py is absent: apt-get install python3-h5py");
   const test::TemporaryFolder folder;
   const std::string path = (folder.path() / "full.h5").string();
   write_archive(path, test::full_archive(2, 1));

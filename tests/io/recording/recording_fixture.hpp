@@ -25,10 +25,9 @@ inline void run_recordings_script(std::vector<std::string> arguments) {
   ASSERT_EQ(result.status, 0) << result.err;
 }
 
-inline bool has_rosbag() { return run_program({python, "-c", "import rosbag, genpy"}).status == 0; }
-
-#define MODEBANK_NEEDS_ROSBAG() \
-  MODEBANK_NEEDS(::modebank::test::has_rosbag(), "python3-rosbag is absent: install it to compare bags with it")
+#define MODEBANK_NEEDS_ROSBAG()                                         \
+  MODEBANK_NEEDS(::modebank::test::has_python_modules("rosbag, genpy"), \
+                 "rosbag is absent: apt-get install python3-rosbag")
 
 inline std::size_t topic_position(const RosLog& log, const std::string& name) {
   for (std::size_t t = 0; t < log.topics().size(); ++t)

@@ -11,7 +11,7 @@ namespace modebank::test {
 class SameDrive : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    if (shared_data_dir().empty() || !has_rosbag()) return;
+    if (shared_data_dir().empty() || !has_python_modules("rosbag, genpy")) return;
     folder_ = std::make_unique<TemporaryFolder>();
     run_recordings_script({"convert", (shared_data_dir() / "bags" / "husky_outdoor_test1.bag").string(), "0", "60",
                            folder_->path().string()});

@@ -31,14 +31,22 @@ function placeNow() {
   return {id: section.id, above: section.getBoundingClientRect().top};
 }
 
+// The place from before the last reload, until somebody scrolls. Figures that are drawn above it move it, and a slow
+// machine reloads before they are all drawn: then the next page gets this place, not the one measured meanwhile.
+/** @type {{id: string, above: number} | null} */
+let kept = null;
+
 function restorePlace() {
   const {place} = history.state || {}, section = place && document.getElementById(place.id);
   if (!section) return;
+  kept = place;
   const settle = () => scrollBy(0, section.getBoundingClientRect().top - place.above);
-  // What is drawn above moves it, until somebody scrolls.
   const watcher = new ResizeObserver(settle);
   watcher.observe(document.getElementById('main'));
-  const release = () => watcher.disconnect();
+  const release = () => {
+    watcher.disconnect();
+    kept = null;
+  };
   for (const event of ['pointerdown', 'keydown', 'wheel', 'touchstart']) addEventListener(event, release, {once: true});
   settle();
 }
@@ -62,7 +70,7 @@ export function keepLive({finished, all, seconds}) {
   setTimeout(restorePlace, 0);  // once all sections are there
   setInterval(() => {
     if (!on || performance.now() - touched <= quiet_ms || filtered()) return;
-    history.replaceState({place: placeNow()}, '');
+    history.replaceState({place: kept || placeNow()}, '');
     location.reload();
   }, 1000 * seconds);
 }
