@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double digits = 1e-12;
+constexpr double combined_digits = 1e-12;
 
 /// Made-up forecasts of N samples, h of them ahead, of Gaussians.
 HorizonEvaluation forecasts(Index N, const std::vector<Index>& horizons, unsigned seed, double deviation) {
@@ -36,8 +36,8 @@ TEST(Combination, ALoneFilterAndEqualOnesAreThemselves) {
   for (const std::vector<const HorizonEvaluation*>& members :
        {std::vector<const HorizonEvaluation*>{&one}, {&one, &one, &one}}) {
     const CombinedForecasts all = combine_forecasts(members);
-    EXPECT_TRUE(test::near(all.predictions.log_density, one.log_density, digits));
-    for (std::size_t h = 0; h < 2; ++h) EXPECT_TRUE(test::near(all.predictions.error[h], one.error[h], digits));
+    EXPECT_TRUE(test::near(all.predictions.log_density, one.log_density, combined_digits));
+    for (std::size_t h = 0; h < 2; ++h) EXPECT_TRUE(test::near(all.predictions.error[h], one.error[h], combined_digits));
   }
 }
 
@@ -56,13 +56,13 @@ TEST(Combination, AForecastHasTheWeightsOfItsOrigin) {
                 (a.log_density(static_cast<Index>(at), j) - b.log_density(static_cast<Index>(at), j)) /
                 static_cast<double>(h);
       const double weight = 1.0 / (1.0 + std::exp(-odds));
-      EXPECT_NEAR(all.weight[at](0, k), weight, digits);
+      EXPECT_NEAR(all.weight[at](0, k), weight, combined_digits);
       EXPECT_NEAR(all.predictions.error[at](0, k), weight * a.error[at](0, k) + (1 - weight) * b.error[at](0, k),
-                  digits);
+                  combined_digits);
       EXPECT_NEAR(all.predictions.log_density(static_cast<Index>(at), k),
                   std::log(weight * std::exp(a.log_density(static_cast<Index>(at), k)) +
                            (1 - weight) * std::exp(b.log_density(static_cast<Index>(at), k))),
-                  digits);
+                  combined_digits);
     }
   }
 }
@@ -73,8 +73,8 @@ TEST(Combination, SamplesAreTheFirstFilters) {
   const CombinedForecasts all = combine_forecasts({&bank, &other});
   EXPECT_TRUE(std::isnan(all.predictions.log_density(0, 10)));
   EXPECT_EQ(all.weight[0](0, 20), 1.0);
-  EXPECT_NEAR(all.predictions.log_density(0, 20), bank.log_density(0, 20), digits);
-  EXPECT_NEAR(all.predictions.error[0](0, 20), bank.error[0](0, 20), digits);
+  EXPECT_NEAR(all.predictions.log_density(0, 20), bank.log_density(0, 20), combined_digits);
+  EXPECT_NEAR(all.predictions.error[0](0, 20), bank.error[0](0, 20), combined_digits);
 }
 
 /// A run that the bank has never seen the like of: the combination finds the competitor that has.
@@ -104,7 +104,7 @@ TEST(Combination, LosesLittleAgainstTheBestOfARun) {
   EXPECT_EQ(weights[1].role, Role::test);
   EXPECT_EQ(weights[1].horizon, 10);
   EXPECT_GT(weights[1].weight, 0.8);
-  EXPECT_NEAR(weights[0].weight + weights[1].weight, 1.0, digits);
+  EXPECT_NEAR(weights[0].weight + weights[1].weight, 1.0, combined_digits);
 }
 
 /// A held-out run starts where the training runs were on average.
@@ -123,9 +123,9 @@ TEST(Combination, HeldOutRunsStartAsTrainingRunsEnded) {
   const double start = trained[1].weight;  // of drifting
   const CombinedForecasts run = combine_forecasts({&bad, &good}, {{1.0 - start, start}});
   EXPECT_GT(start, 0.8);
-  EXPECT_NEAR(run.weight[0](1, 1), start, digits);
+  EXPECT_NEAR(run.weight[0](1, 1), start, combined_digits);
   const std::vector<HorizonRow> rows = tables.horizons();
-  EXPECT_NEAR(rows.back().log_score, run.predictions.log_density.row(0).tail(N - 1).mean(), digits);
+  EXPECT_NEAR(rows.back().log_score, run.predictions.log_density.row(0).tail(N - 1).mean(), combined_digits);
 }
 
 TEST(Combination, WhatDoesNotFitIsRefused) {

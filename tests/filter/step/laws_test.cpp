@@ -20,16 +20,16 @@ using test::simulate_bank;
 using test::single_mode;
 
 /// Two double-precision routes to one number of order one.
-constexpr double rounding = 1e-12;
+constexpr double law_rounding = 1e-12;
 constexpr FilterOptions imm{}, mmae{FilterVariant::mmae}, kf{FilterVariant::kf};
 
 void expect_same_estimates(const RunEvaluation& a, const RunEvaluation& b) {
-  EXPECT_TRUE(near(a.prediction, b.prediction, rounding));
-  EXPECT_TRUE(near(a.innovation_covariance, b.innovation_covariance, rounding));
-  EXPECT_TRUE(near(a.state, b.state, rounding));
-  EXPECT_TRUE(near(a.covariance, b.covariance, rounding));
-  EXPECT_TRUE(near(a.log_density, b.log_density, rounding * 10));  // log densities reach about ten
-  EXPECT_TRUE(near(a.pit, b.pit, rounding));
+  EXPECT_TRUE(near(a.prediction, b.prediction, law_rounding));
+  EXPECT_TRUE(near(a.innovation_covariance, b.innovation_covariance, law_rounding));
+  EXPECT_TRUE(near(a.state, b.state, law_rounding));
+  EXPECT_TRUE(near(a.covariance, b.covariance, law_rounding));
+  EXPECT_TRUE(near(a.log_density, b.log_density, law_rounding * 10));  // log densities reach about ten
+  EXPECT_TRUE(near(a.pit, b.pit, law_rounding));
 }
 
 TEST(MixingWeights, PredictedProbabilitiesFollowTheRowsOfTheTransitionMatrix) {
@@ -38,9 +38,9 @@ TEST(MixingWeights, PredictedProbabilitiesFollowTheRowsOfTheTransitionMatrix) {
   Eigen::VectorXd c(2);
   MixingWeights weights{Eigen::MatrixXd(2, 2)};
   mixing_weights(T.matrix(), Eigen::Vector2d(0.7, 0.3), c, weights);
-  EXPECT_TRUE(near(c, Eigen::Vector2d(0.695, 0.305), rounding));
-  EXPECT_TRUE(near(weights.matrix.colwise().sum(), Eigen::RowVector2d::Ones(), rounding));
-  EXPECT_NEAR(weights.matrix(1, 0), 0.3 * 0.10 / 0.695, rounding);
+  EXPECT_TRUE(near(c, Eigen::Vector2d(0.695, 0.305), law_rounding));
+  EXPECT_TRUE(near(weights.matrix.colwise().sum(), Eigen::RowVector2d::Ones(), law_rounding));
+  EXPECT_NEAR(weights.matrix(1, 0), 0.3 * 0.10 / 0.695, law_rounding);
 }
 
 TEST(Imm, EqualLikelihoodsLeaveThePredictedProbabilities) {
@@ -49,8 +49,8 @@ TEST(Imm, EqualLikelihoodsLeaveThePredictedProbabilities) {
   bank.transition = TransitionMatrix((Eigen::MatrixXd(2, 2) << 0.95, 0.05, 0.10, 0.90).finished());
   bank.initial_probability << 0.7, 0.3;
   const RunEvaluation result = evaluate_run(bank, simulate_bank(bank, 2, 1), imm);
-  EXPECT_TRUE(near(result.mode_probability_predicted.col(1), Eigen::Vector2d(0.695, 0.305), rounding));
-  EXPECT_TRUE(near(result.mode_probability.col(1), Eigen::Vector2d(0.695, 0.305), rounding));
+  EXPECT_TRUE(near(result.mode_probability_predicted.col(1), Eigen::Vector2d(0.695, 0.305), law_rounding));
+  EXPECT_TRUE(near(result.mode_probability.col(1), Eigen::Vector2d(0.695, 0.305), law_rounding));
 }
 
 TEST(Imm, IdenticalModesAreOneFilter) {
@@ -83,8 +83,8 @@ TEST(Imm, ProbabilitiesSumToOne) {
   const Trajectory run = simulate_bank(bank, 200, 4);
   for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::mmae, FilterVariant::salvi2025}) {
     const RunEvaluation result = evaluate_run(bank, run, {variant});
-    EXPECT_TRUE(near(result.mode_probability.colwise().sum(), Eigen::RowVectorXd::Ones(200), rounding));
-    EXPECT_TRUE(near(result.mode_probability_predicted.colwise().sum(), Eigen::RowVectorXd::Ones(200), rounding));
+    EXPECT_TRUE(near(result.mode_probability.colwise().sum(), Eigen::RowVectorXd::Ones(200), law_rounding));
+    EXPECT_TRUE(near(result.mode_probability_predicted.colwise().sum(), Eigen::RowVectorXd::Ones(200), law_rounding));
     EXPECT_GE(result.mode_probability.minCoeff(), 0.5 * mode_probability_floor);
   }
 }
@@ -112,8 +112,8 @@ TEST(Mmae, IsBayesRuleOverSeparateFilters) {
   ASSERT_GT(expected.minCoeff(), 1e-9) << "the floor of probabilities would interfere";
 
   const RunEvaluation result = evaluate_run(bank, run, mmae);
-  EXPECT_TRUE(near(result.mode_probability, expected, rounding * 100));  // sums of 40 log densities of order ten
-  EXPECT_NEAR(result.log_density.tail(39).sum(), evidence(39), rounding * 1000);
+  EXPECT_TRUE(near(result.mode_probability, expected, law_rounding * 100));  // sums of 40 log densities of order ten
+  EXPECT_NEAR(result.log_density.tail(39).sum(), evidence(39), law_rounding * 1000);
 
   bank.transition = TransitionMatrix(Eigen::MatrixXd::Identity(3, 3));
   expect_same_estimates(evaluate_run(bank, run, imm), result);
@@ -140,8 +140,8 @@ TEST(Kf, WithoutProcessNoiseIsBatchLeastSquares) {
   const Eigen::Matrix2d P = power * information.inverse() * power.transpose();
 
   const RunEvaluation result = evaluate_run(bank, run, kf);
-  EXPECT_TRUE(near(result.state.col(29), x, rounding));
-  EXPECT_TRUE(near(result.covariance.col(29), P.reshaped(), rounding));
+  EXPECT_TRUE(near(result.state.col(29), x, law_rounding));
+  EXPECT_TRUE(near(result.covariance.col(29), P.reshaped(), law_rounding));
 }
 
 TEST(Gpb, OneModeIsTheKalmanFilterAndIdenticalModesAreOneFilter) {
@@ -178,8 +178,8 @@ TEST(Gpb2, IsExactForTwoSteps) {
       if (j == 0) first += c * std::exp(l1);
     }
   const RunEvaluation gpb2 = evaluate_run(bank, run, {FilterVariant::gpb2});
-  EXPECT_NEAR(gpb2.log_density(1), std::log(first), rounding * 10);
-  EXPECT_NEAR(gpb2.log_density(2), std::log(evidence) - std::log(first), rounding * 10);
+  EXPECT_NEAR(gpb2.log_density(1), std::log(first), law_rounding * 10);
+  EXPECT_NEAR(gpb2.log_density(2), std::log(evidence) - std::log(first), law_rounding * 10);
 }
 
 TEST(LogLikelihood, IsTheSumOfLogDensities) {

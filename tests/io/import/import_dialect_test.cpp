@@ -16,7 +16,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr int rows = 40;
+constexpr int log_rows = 40;
 constexpr std::int64_t epoch_ns = 1'714'557'600'000'000'000;  // 2024-05-01T10:00:00Z
 
 /// 50 Hz and a jitter of microseconds; every stamp is a whole number of these.
@@ -27,7 +27,7 @@ double u_of(int k) { return 1.5 - 0.125 * (k % 7); }
 /// A table of time, x, u whose rows are written by `text(k)`.
 std::string table(const std::string& head, const std::function<std::string(int)>& text) {
   std::string content = head;
-  for (int k = 0; k < rows; ++k) content += text(k) + "\n";
+  for (int k = 0; k < log_rows; ++k) content += text(k) + "\n";
   return content;
 }
 
@@ -66,9 +66,9 @@ class ImportDialect : public test::ImportFixture {
   /// `content` gives what plain() does, with times from its first sample on.
   void expect_plain(const std::string& content, std::int64_t origin_ns = 0) {
     const Trajectory run = read(content).recording.runs.at(0);
-    ASSERT_EQ(run.samples(), rows);
+    ASSERT_EQ(run.samples(), log_rows);
     EXPECT_EQ(run.time_origin_ns, origin_ns);
-    for (int k = 0; k < rows; ++k) {
+    for (int k = 0; k < log_rows; ++k) {
       EXPECT_EQ(run.time_s(k), static_cast<double>(stamp_ns(k)) / 1e9) << k;
       EXPECT_EQ(run.state(0, k), x_of(k)) << k;
       EXPECT_EQ(run.input(0, k), u_of(k)) << k;
@@ -238,7 +238,7 @@ TEST_F(ImportDialect, RobotArmOfDaisy) {
 }
 
 TEST_F(ImportDialect, AStampFarOutIsNamed) {
-  for (const int out : {0, 1, 17, rows - 1}) {
+  for (const int out : {0, 1, 17, log_rows - 1}) {
     write("log.csv", table("time,x,u\n", [&](int k) {
             return fmt::format("{},{},{}", k == out ? 0 : epoch_ns + stamp_ns(k), x_of(k), u_of(k));
           }));
@@ -261,7 +261,7 @@ TEST_F(ImportDialect, UnitsStandInBracketsOfTheHeader) {
   const ImportedData data = import();
   EXPECT_EQ(data.recording.states.front().unit, "deg/s");
   EXPECT_EQ(data.recording.inputs.front().unit, "m/s");
-  EXPECT_NEAR(data.recording.runs.front().time_s(rows - 1), static_cast<double>(stamp_ns(rows - 1)) / 1e9, 1e-9);
+  EXPECT_NEAR(data.recording.runs.front().time_s(log_rows - 1), static_cast<double>(stamp_ns(log_rows - 1)) / 1e9, 1e-9);
 }
 
 TEST_F(ImportDialect, DisorderIsExplained) {
