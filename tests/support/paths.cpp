@@ -10,7 +10,9 @@ std::filesystem::path project_dir() { return MODEBANK_SOURCE_DIR; }
 
 std::filesystem::path golden_dir() { return project_dir() / "tests" / "golden" / "data"; }
 
-std::filesystem::path shared_data_dir() {
+namespace {
+
+std::filesystem::path find_shared_data() {
   const char* configured = std::getenv("MODEBANK_DATA");
   const std::filesystem::path folder = configured && *configured
                                            ? std::filesystem::path(configured)
@@ -18,6 +20,16 @@ std::filesystem::path shared_data_dir() {
   return std::filesystem::exists(folder / "borealtc" / "ICE") ? std::filesystem::canonical(folder)
                                                               : std::filesystem::path();
 }
+
+}  // namespace
+
+std::filesystem::path shared_data_dir() {
+  static const std::filesystem::path found = find_shared_data();
+  return found;
+}
+
+/// Looks the folder up before main: CliTest hides MODEBANK_DATA from the program, and so from this process.
+[[maybe_unused]] const std::filesystem::path looked_up = shared_data_dir();
 
 TemporaryFolder::TemporaryFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "modebank_test_XXXXXX").string();
