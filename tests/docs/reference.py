@@ -20,7 +20,7 @@ import program  # noqa: E402  its folder is added above
 
 SMALL_DEMO = ["--data.label=mode", "--simulate.runs=4", "--simulate.samples=80", "--mixture.components=1..2", "--mixture.restarts=1", "--bank.restarts=0",
               "--bank.max_iterations=5", "--filter.horizon=1,2", "--filter.simulate=5"]
-README_LINES = 200
+README_LINES = 150
 problems = []
 
 
