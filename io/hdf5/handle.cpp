@@ -82,7 +82,10 @@ Quiet::~Quiet() {
 Handle open_file(const std::string& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the file access");
   check(H5Pset_file_locking(access.id(), false, true), "switch file locking off");
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, "open the file"};
+  hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id());
+  // Where h5py in the same process has the file open, HDF5 requires the same setting of locks, its default.
+  if (file < 0) file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  return {file, H5Fclose, "open the file"};
 }
 
 Handle open_group(hid_t parent, const std::string& name) {
