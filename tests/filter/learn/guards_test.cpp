@@ -15,7 +15,7 @@ using test::guarded_runs;
 using test::soft;
 using test::true_model;
 
-RefineOptions quick_guards() {
+RefineOptions quick_transition() {
   RefineOptions options;
   options.restarts = 0;
   options.folds = 4;
@@ -29,7 +29,7 @@ Refinement refined(const Recording& recording, const Guard& start) {
   SwitchingRegression constant = true_model(start);
   constant.logit = {};
   WindowFits fits = test::windows_of(recording, 10, 10);
-  return refine_bank(recording, fits, {bank_of(recording, t, constant)}, quick_guards(), {});
+  return refine_bank(recording, fits, {bank_of(recording, t, constant)}, quick_transition(), {});
 }
 
 TEST(Guards, ASoftGuardIsFoundWithinItsErrors) {
