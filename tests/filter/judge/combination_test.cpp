@@ -37,7 +37,8 @@ TEST(Combination, ALoneFilterAndEqualOnesAreThemselves) {
        {std::vector<const HorizonEvaluation*>{&one}, {&one, &one, &one}}) {
     const CombinedForecasts all = combine_forecasts(members);
     EXPECT_TRUE(test::near(all.predictions.log_density, one.log_density, combined_digits));
-    for (std::size_t h = 0; h < 2; ++h) EXPECT_TRUE(test::near(all.predictions.error[h], one.error[h], combined_digits));
+    for (std::size_t h = 0; h < 2; ++h)
+      EXPECT_TRUE(test::near(all.predictions.error[h], one.error[h], combined_digits));
   }
 }
 

@@ -261,7 +261,8 @@ TEST_F(ImportDialect, UnitsStandInBracketsOfTheHeader) {
   const ImportedData data = import();
   EXPECT_EQ(data.recording.states.front().unit, "deg/s");
   EXPECT_EQ(data.recording.inputs.front().unit, "m/s");
-  EXPECT_NEAR(data.recording.runs.front().time_s(log_rows - 1), static_cast<double>(stamp_ns(log_rows - 1)) / 1e9, 1e-9);
+  EXPECT_NEAR(data.recording.runs.front().time_s(log_rows - 1), static_cast<double>(stamp_ns(log_rows - 1)) / 1e9,
+              1e-9);
 }
 
 TEST_F(ImportDialect, DisorderIsExplained) {
