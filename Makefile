@@ -1,5 +1,6 @@
 # make demo and make test are all a new machine needs; see README.md.
-JOBS := $(shell nproc)
+# A compiler for each processor, but only one for every 2.5 GB of free memory: the largest sources take 2.3 GB.
+JOBS := $(shell awk -v cores=$$(nproc) '/^MemAvailable/ { most = int($$2 / 2500000); print most < 1 ? 1 : most < cores ? most : cores }' /proc/meminfo)
 DEMO := build/demo
 
 .PHONY: all api build demo packages package-test dist dist-test pip-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox

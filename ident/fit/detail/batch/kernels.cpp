@@ -11,10 +11,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 
-/// Losses of their own for the shapes and losses that people fit by the million; the rest share a kernel per shape.
+/// The shapes and losses that people fit by the million have kernels of their own, except one lane at a time, which
+/// only processors without AVX2 run; the rest share a kernel per shape.
 template <int Q>
 Kernel kernel_of(Loss loss) {
-  if constexpr (Q >= 2 && Q <= 4) {
+  if constexpr (Q >= 2 && Q <= 4 && HWY_TARGET != HWY_SCALAR) {
     if (loss == Loss::trivial) return &solve_chunk<Q, TrivialLoss, TrivialLoss>;
     if (loss == Loss::huber) return &solve_chunk<Q, HuberLoss, HuberLoss>;
     if (loss == Loss::cauchy) return &solve_chunk<Q, CauchyLoss, HuberLoss>;
