@@ -21,7 +21,7 @@ struct FreeVariable {
 using MatFile = std::unique_ptr<mat_t, CloseFile>;
 using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
-/// A template, because the text is `const` from matio 1.5.27 on.
+/// A template, because matio 1.5.28 passes its text as `const`.
 template <class Text>
 void be_silent(int, Text*) {}
 
