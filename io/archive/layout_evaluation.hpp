@@ -8,6 +8,7 @@
 
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/units.hpp"
+#include "io/archive/stored.hpp"
 #include "io/hdf5/columns.hpp"
 
 /// The layout of what filters and models said of the runs; see io/archive/layout.hpp. T lags, from 0 on.
