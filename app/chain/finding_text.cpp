@@ -114,6 +114,11 @@ std::string answer_words(const Finding& finding) {
                  "motion that is nonlinear would show so, too).",
                  shows(finding)) +
              least_gain_words(finding);
+    case Answer::not_yet:
+      return fmt::format(
+          "Modes of motion are not judged yet: steps scatter by {:.0f} % of their median, and the model holds for one "
+          "step length.",
+          100 * finding.step_scatter);
   }
   return "";
 }

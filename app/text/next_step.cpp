@@ -72,6 +72,10 @@ const Rule rules[] = {
      [](const Situation&) -> std::string {
        return "some windows have no finite fit: `modebank check CONFIG` says which samples are wild";
      }},
+    {[](const Situation& s) { return s.says(Answer::not_yet); },
+     [](const Situation&) -> std::string {
+       return "bring the samples to an even rate: repeat with --data.rate_hz; `modebank check CONFIG` shows the steps";
+     }},
     {[](const Situation& s) { return s.says(Answer::not_comparable); },
      [](const Situation&) -> std::string {
        return "measure more finely, or go by the RMSE: `modebank check CONFIG` says what repeats or comes in steps, "

@@ -187,6 +187,8 @@ std::string answer_words(Answer answer) {
       return "no evidence for modes of motion";
     case Answer::evidence:
       return "evidence for modes of motion";
+    case Answer::not_yet:
+      return "modes of motion: not yet";
   }
   return "";
 }

@@ -64,6 +64,7 @@ bool is_coarse(const Resolution& state) {
 }
 
 Answer answer_of(const Finding& finding) {
+  if (finding.step_scatter > most_step_scatter) return Answer::not_yet;
   if (finding.modes < 2) return Answer::one_mode;
   if (!finding.coarse.empty()) return Answer::not_comparable;
   if (finding.gains.empty() || !finding.held_out()) return Answer::cannot_tell;
@@ -147,13 +148,15 @@ Finding judge_modes(const FindingInputs& in) {
   finding.runs = scored_runs(in.bank_densities);
   finding.modes = in.bank.mode_count();
   finding.modes_differ = modes_differ(in.bank);
+  finding.step_scatter = in.step_scatter;
   finding.one_motion_drifts = in.one_motion_drifts;
   std::copy_if(in.states.begin(), in.states.end(), std::back_inserter(finding.coarse), is_coarse);
   for (const Densities& competitor : in.competitors)
     finding.gains.push_back(paired_gain(competitor.filter, in.bank_densities.of_runs, competitor.of_runs));
   set_best_competitor(finding);
   finding.answer = answer_of(finding);
-  if (finding.answer != Answer::not_comparable && !beats_the_best(finding))
+  const bool densities_tell = finding.answer != Answer::not_comparable && finding.answer != Answer::not_yet;
+  if (densities_tell && !beats_the_best(finding))
     finding.better_description = simplest_as_good(in.competitors, finding.best_competitor);
   if (finding.modes > 1) finding.better_means = better_means(in);
   return finding;

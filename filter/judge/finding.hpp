@@ -17,12 +17,13 @@
 /// prints what stands here.
 namespace modebank {
 
-/// not_comparable: measurements are so coarse, or repeated so often, that log densities mean little.
-enum class Answer { one_mode, not_comparable, cannot_tell, no_evidence, evidence };
+/// not_yet: a simpler fact has to be settled first (Finding::step_scatter). not_comparable: measurements are so coarse,
+/// or repeated so often, that log densities mean little.
+enum class Answer { one_mode, not_comparable, cannot_tell, no_evidence, evidence, not_yet };
 
 template <>
 struct EnumNames<Answer> {
-  static constexpr Names<5> values{"one mode", "not comparable", "cannot tell", "no evidence", "evidence"};
+  static constexpr Names<6> values{"one mode", "not comparable", "cannot tell", "no evidence", "evidence", "not yet"};
 };
 
 /// The competitors that a bank is asked to beat, the simplest description first.
@@ -49,6 +50,10 @@ struct Resolution {
 /// digit.
 inline constexpr double repeated_share = 0.1;
 
+/// Scatter of the steps beyond which modes are not asked for: the model holds for one step length, so that one motion
+/// at steps of many lengths looks like several.
+inline constexpr double most_step_scatter = 0.1;
+
 /// A competitor that predicts the mean better than the bank, in root mean square over the judged runs.
 struct BetterMean {
   std::string competitor;
@@ -63,6 +68,7 @@ struct Finding {
   Eigen::Index runs = 0;                    ///< judged, with scored samples
   Eigen::Index modes = 0;                   ///< of the bank
   bool modes_differ = false;                ///< in theta, beyond their errors
+  double step_scatter = 0.0;                ///< standard deviation of the time steps over their median
   std::vector<Resolution> coarse;           ///< states for which densities are not comparable
   bool one_motion_drifts = false;           ///< the competitor of that name learns within a run, as the bank does
   std::vector<PairedGain> gains;            ///< of the bank over each competitor
@@ -89,9 +95,10 @@ struct FindingInputs {
   const std::vector<Resolution>& states;
   const std::vector<FreeRunRow>& free_runs;
   bool one_motion_drifts = false;
+  double step_scatter = 0.0;  ///< as in Finding
 };
 
-/// evidence: the gain over each competitor exceeds its margin (paired_gain.hpp) and the modes differ. no evidence: a
+/// not yet: the steps scatter beyond most_step_scatter. evidence: the gain over each competitor exceeds its margin (paired_gain.hpp) and the modes differ. no evidence: a
 /// competitor has no lower score, or all modes have the same theta. cannot tell: all between, nothing held out, or too
 /// few samples for a margin. With one mode the question is not asked.
 Finding judge_modes(const FindingInputs& in);

@@ -154,7 +154,7 @@ def main():
     seeds = range(options.first, options.first + options.seeds)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         results = list(pool.map(lambda job: trial(options.program, options.quantum, *job), [(name, seed) for name in wanted for seed in seeds]))
-    answers = ["evidence", "cannot tell", "no evidence", "one mode", "not comparable", "refused", "crash"]
+    answers = ["evidence", "cannot tell", "no evidence", "one mode", "not comparable", "not yet", "refused", "crash"]
     print("| system | " + " | ".join(answers) + " |\n|---|" + "---|" * len(answers))
     claimed = 0
     for name in [name for name in wanted if name != "modes"]:

@@ -112,7 +112,8 @@ json modes_of(const FirstScreen& screen) {
 
 /// Good: evidence, and a band that is not found false. Neither good nor bad: what cannot be told.
 json goodness(const FirstScreen& screen) {
-  if (!screen.answer || *screen.answer == Answer::cannot_tell || *screen.answer == Answer::not_comparable)
+  if (!screen.answer || *screen.answer == Answer::cannot_tell || *screen.answer == Answer::not_comparable ||
+      *screen.answer == Answer::not_yet)
     return nullptr;
   if (*screen.answer == Answer::one_mode) return screen.verdict == Verdict::calibrated ? json(true) : json(nullptr);
   return *screen.answer == Answer::evidence && screen.verdict == Verdict::calibrated;

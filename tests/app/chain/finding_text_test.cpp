@@ -80,6 +80,13 @@ TEST(FindingText, OneModeAndCoarseMeasurementsClaimNothing) {
                     HasSubstr("78 % of the samples of v repeat the one before"), Not(HasSubstr("evidence"))));
 }
 
+TEST(FindingText, StepsThatScatterClaimNothing) {
+  Finding finding = finding_of(Answer::not_yet);
+  finding.step_scatter = 0.426;
+  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("not judged yet: steps scatter by 43 % of their median"),
+                                           Not(HasSubstr("evidence")), Not(HasSubstr("gains"))));
+}
+
 TEST(FindingText, AnErrorFromBlocksSaysSo) {
   Finding finding = finding_of(Answer::evidence);
   EXPECT_THAT(finding_text(finding), Not(HasSubstr("blocks")));

@@ -209,6 +209,8 @@ TEST_F(NextStep, LostWindowsComeFirst) {
 }
 
 TEST_F(NextStep, AnswersHaveTheirs) {
+  archive.finding->answer = Answer::not_yet;
+  EXPECT_THAT(advice(), HasSubstr("--data.rate_hz"));
   archive.finding->answer = Answer::not_comparable;
   EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), HasSubstr("data.rate_hz")));
   archive.finding->answer = Answer::cannot_tell;

@@ -36,6 +36,7 @@ struct Case {
   std::vector<HorizonRow> horizons;
   std::vector<FreeRunRow> free_runs;
   std::vector<Resolution> states{{"wz", 0.0, 0.0, 0.01}};
+  double step_scatter = 0.0;
 
   static Bank with_errors(Bank bank, double error) {
     for (Mode& mode : bank.modes) mode.standard_error = VectorXd::Constant(bank.structure.parameters(), error);
@@ -43,7 +44,8 @@ struct Case {
   }
   Finding judged() const {
     const Densities of_bank = scores_of("bank", bank_gain);
-    return judge_modes({bank, role, of_bank, competitors, summary, horizons, states, free_runs});
+    return judge_modes({bank, role, of_bank, competitors, summary, horizons, states, free_runs, false,
+                        step_scatter});
   }
 };
 
@@ -130,6 +132,19 @@ TEST(Finding, TheLimitForOneComparisonIsTheNormalQuantile) {
   EXPECT_FALSE(modes_differ(bank));
   bank.modes[1].model.A(0, 0) = 1.97 * std::sqrt(18.0);
   EXPECT_TRUE(modes_differ(bank));
+}
+
+// One motion at steps of many lengths looks like several modes: 10 % of the median is the limit.
+TEST(Finding, StepsThatScatterComeBeforeModes) {
+  Case even;
+  even.step_scatter = 0.099;
+  EXPECT_EQ(even.judged().answer, Answer::evidence);
+  Case uneven;
+  uneven.step_scatter = 0.101;
+  const Finding finding = uneven.judged();
+  EXPECT_EQ(finding.answer, Answer::not_yet);
+  EXPECT_EQ(finding.step_scatter, 0.101);
+  EXPECT_TRUE(finding.better_description.empty());
 }
 
 TEST(Finding, CoarseOrRepeatedMeasurementsAreNotJudgedByDensities) {
