@@ -1,5 +1,7 @@
 #include "app/chain/judged_runs.hpp"
 
+#include <fmt/format.h>
+
 namespace modebank {
 
 const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role) {
@@ -37,6 +39,13 @@ std::string grouped(Eigen::Index count) {
 
 std::string learned_words(Eigen::Index learned, Eigen::Index all) {
   return "from " + grouped(learned) + " of " + grouped(all) + " training transitions";
+}
+
+std::string shrinking_words(const Shrinking& shrinking) {
+  return fmt::format(
+      "{} mode{} drawn {:.1f} % of the way to the model of all runs: predictions many samples ahead would have grown "
+      "without limit (their mean square {:.4g} times a sample)",
+      shrinking.modes, shrinking.modes == 1 ? "" : "s", 100.0 * shrinking.share, shrinking.growth);
 }
 
 }  // namespace modebank

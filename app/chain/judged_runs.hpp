@@ -24,4 +24,7 @@ const char* words_for(Role role);
 /// "from 200,000 of 2,500,000 training transitions".
 std::string learned_words(Eigen::Index learned, Eigen::Index all);
 
+/// "3 modes drawn 32 % of the way to the model of all runs: ...".
+std::string shrinking_words(const Shrinking& shrinking);
+
 }  // namespace modebank

@@ -22,6 +22,10 @@ GlobalModel linear_global(const Recording& recording, const WindowFits& windows,
 
 namespace {
 
+void tell_of_shrinking(const std::string& whose, const Bank& bank, const Listener& listener) {
+  if (bank.shrinking.modes > 0) listener.warning(fmt::format("{}: {}", whose, shrinking_words(bank.shrinking)));
+}
+
 constexpr Index fewest_levels = 8;  // noise levels that one_motion may have at least (method: section 6)
 
 Bank one_motion(const Recording& recording, const WindowFits& windows, const Bank& baseline, Index components,
@@ -29,6 +33,7 @@ Bank one_motion(const Recording& recording, const WindowFits& windows, const Ban
   const Stopwatch watch;
   Bank bank = learn_one_motion(recording, windows, linear_global(recording, windows, inputs.window), baseline.R,
                                std::max(fewest_levels, components), *inputs.one_motion, inputs.filter);
+  tell_of_shrinking("one_motion", bank, listener);
   const DriftRates& rates = bank.drift.rates;
   listener.progress(fmt::format("one_motion: {} noise levels{} in {:.2f} s", bank.mode_count(),
                                 bank.drift.empty() ? ""
@@ -107,6 +112,7 @@ std::string worth_of(const LookAheadStage& stage) {
 }
 
 void tell_of(const Refinement& refined, const Listener& listener) {
+  tell_of_shrinking("refine", refined.bank, listener);
   for (const RefineCandidate& c : refined.candidates)
     listener.detail(fmt::format(
         "refine: {:<12} {:>3} modes, Q prior {}{}: {:.4f} nats/sample left out, {:.4f} +- {:.4f} below the best, after "

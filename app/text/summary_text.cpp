@@ -72,6 +72,7 @@ std::string bank_text(const Bank& bank) {
   std::string text = fmt::format("bank      {} modes", bank.mode_count());
   for (const ScreenedMode& mode : bank.screened)
     text += fmt::format("; component {} screened: {}", mode.component, mode.reason);
+  if (bank.shrinking.modes > 0) text += "; " + shrinking_words(bank.shrinking);
   if (const DriftRates& rates = bank.drift.rates; !bank.drift.empty())
     text += fmt::format(", theta drifts in a run (rate {:g}, start {:g}, leak {:g})", rates.q, rates.p0, rates.leak);
   text += fmt::format("; R = {:.4g}", fmt::join(bank.R.diagonal(), " "));

@@ -67,6 +67,7 @@ struct Bank {
   std::vector<std::string> input_names;
   double dt_s = 0.0;  ///< median sample period of the training data
   std::vector<ScreenedMode> screened;
+  Shrinking shrinking;                            ///< of the modes as they were learned
   std::vector<ModelParameter> motion_parameters;  ///< of a motion model; empty for linear ones
   NoiseAdaptation noise_adaptation;               ///< for filters whose noise is adaptive
   BankDrift drift;                                ///< how theta of each mode wanders in a run; empty: not at all

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <functional>
 #include <optional>
 
 /// Decompositions of dense matrices by Eigen, compiled once: a name for what each computes, and for a compiler one of
@@ -44,6 +45,11 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& M);
 
 /// Of any square matrix, in no order.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& square);
+/// The largest real part among the eigenvalues of a linear map on R^n that is known by its products M x alone. `start`
+/// (n): a guess of its eigenvector. Restarted Arnoldi iteration (Spectra) to 1e-11 of the result; dense where the map
+/// is small, or where that does not converge.
+double largest_real_eigenvalue(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& product,
+                               const Eigen::VectorXd& start);
 
 /// Cholesky's factor of a symmetric positive definite matrix, M = L L'.
 class Cholesky {

@@ -123,6 +123,9 @@ AveragedBank average_fits(const RefineInput& in, const CrossValidation& validati
   for (std::size_t i = 0; i < members.size(); ++i) result.rows.push_back(fits[i].row);
   result.bank = unite(members, switching);
   result.bank->screened = screened_of(members, in.frame.screened.size());
+  result.bank->shrinking = std::max_element(members.begin(), members.end(), [](const Bank& a, const Bank& b) {
+                             return a.shrinking.share < b.shrinking.share;
+                           })->shrinking;
   result.bank->noise_adaptation = validation.adaptation(united_on_splits(fits, members.size(), switching));
   return result;
 }

@@ -73,7 +73,7 @@ std::vector<Bank> SplitFits::banks() const {
     const auto stable = in_.options.screen && in_.options.look_ahead > 1
                             ? shrunk_to_stability(in_.frame.structure, model, priors_[s].mean, in_.options.tuning)
                             : std::nullopt;
-    banks.push_back(with_modes(in_.frame, stable ? *stable : model));
+    banks.push_back(with_modes(in_.frame, stable ? stable->model : model));
   }
   return banks;
 }

@@ -31,7 +31,8 @@ TrainingFit fit_training_runs(const RefineInput& in, const RefineStart& start, c
   TrainingFit fit{em.model(), em.posterior(), in.frame.screened, em.objective()};
   while (in.options.screen) {
     if (auto stable = shrunk_to_stability(in.transitions.structure, fit.model, prior.mean, in.options.tuning)) {
-      fit.model = std::move(*stable);
+      fit.model = std::move(stable->model);
+      fit.shrinking = stable->shrinking;
       fit.posterior = smooth_modes(in.transitions, fit.model);
     }
     std::optional<ScreenedModel> rest =
@@ -42,6 +43,7 @@ TrainingFit fit_training_runs(const RefineInput& in, const RefineStart& start, c
     for (Index i = 0; i < in.options.tuning.iterations_after_screening; ++i) others.step();
     fit.model = others.model();
     fit.posterior = others.posterior();
+    fit.shrinking = {};
   }
   return fit;
 }
@@ -49,6 +51,7 @@ TrainingFit fit_training_runs(const RefineInput& in, const RefineStart& start, c
 Bank bank_of_fit(const RefineInput& in, const TrainingFit& fit, const NoiseAdaptation& adaptation) {
   Bank bank = with_modes(in.frame, fit.model);
   bank.screened = fit.screened;
+  bank.shrinking = fit.shrinking;
   bank.noise_adaptation = adaptation;
   const Eigen::VectorXd transitions =
       (fit.posterior.probability.transpose() * in.transitions.usable).cwiseMax(std::numeric_limits<double>::min());

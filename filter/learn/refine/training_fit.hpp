@@ -43,6 +43,7 @@ struct TrainingFit {
   ModePosterior posterior;
   std::vector<ScreenedMode> screened;  ///< the frame's and those of the fit
   std::vector<double> objective;       ///< before each iteration until modes were screened
+  Shrinking shrinking = {};            ///< of the model as it stands
 };
 
 /// Expectation-maximisation from `start` for a number of iterations, or fewer if the objective stands still; then

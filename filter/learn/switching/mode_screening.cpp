@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "filter/learn/switching/mean_square_growth.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/linalg.hpp"
 
@@ -119,32 +120,6 @@ std::optional<Index> unstable_mode(const LinearStructure& structure, const Switc
 }
 
 }  // namespace
-
-double mean_square_growth(const LinearStructure& structure, const SwitchingRegression& model) {
-  constexpr int most = 2000;
-  constexpr double tolerance = 1e-7;
-  const Index n = structure.dimension(), K = model.modes();
-  std::vector<Eigen::MatrixXd> F, X(static_cast<std::size_t>(K), Eigen::MatrixXd::Identity(n, n));
-  for (Index j = 0; j < K; ++j) F.push_back(unpack(structure, model.theta.col(j)).full_form());
-  double growth = 0.0;
-  for (int iteration = 0; iteration < most; ++iteration) {
-    std::vector<Eigen::MatrixXd> next(X.size(), Eigen::MatrixXd::Zero(n, n));
-    double trace = 0.0, trace_before = 0.0;
-    for (std::size_t i = 0; i < X.size(); ++i) {
-      const Eigen::MatrixXd moved = F[i] * X[i] * F[i].transpose();
-      for (std::size_t j = 0; j < X.size(); ++j)
-        next[j] += model.transition(static_cast<Index>(i), static_cast<Index>(j)) * moved;
-      trace_before += X[i].trace();
-      trace += moved.trace();
-    }
-    if (!(trace > 0.0)) return 0.0;
-    const double before = growth;
-    growth = trace / trace_before;
-    for (std::size_t j = 0; j < X.size(); ++j) X[j] = next[j] / trace;
-    if (std::abs(growth - before) <= tolerance * growth) break;
-  }
-  return growth;
-}
 
 std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& transitions, const ModePosterior& posterior,
                                                 const SwitchingRegression& model, bool one_theta,

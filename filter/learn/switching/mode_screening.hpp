@@ -32,9 +32,4 @@ std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& trans
 SwitchingRegression with_closest_pair_merged(const TrainingTransitions& transitions, const ModePosterior& posterior,
                                              const SwitchingRegression& model);
 
-/// Growth per step of the second moment of x[k+1] = F_j x[k] under switching by T: the spectral radius of the operator
-/// X_j -> sum_i T_ij F_i X_i F_i' (Costa, Fragoso & Marques 2005, "Discrete-Time Markov Jump Linear Systems", chapter
-/// 3). The system is mean-square stable below 1. By power iteration, to about 1e-6.
-double mean_square_growth(const LinearStructure& structure, const SwitchingRegression& model);
-
 }  // namespace modebank

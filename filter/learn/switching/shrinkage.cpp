@@ -5,7 +5,7 @@
 
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/switching/em.hpp"
-#include "filter/learn/switching/mode_screening.hpp"
+#include "filter/learn/switching/mean_square_growth.hpp"
 #include "filter/learn/switching/starts.hpp"
 
 namespace modebank {
@@ -34,13 +34,11 @@ SwitchingPrior towards_one_motion(SwitchingPrior prior, const TrainingTransition
   return prior;
 }
 
-std::optional<SwitchingRegression> shrunk_to_stability(const LinearStructure& structure,
-                                                       const SwitchingRegression& model, const Eigen::VectorXd& theta,
-                                                       const RefineTuning& tuning) {
-  const auto grows = [&](const SwitchingRegression& m) {
-    return !(mean_square_growth(structure, m) <= 1.0 + tuning.growth_slack);
-  };
-  if (!grows(model)) return std::nullopt;
+std::optional<ShrunkModel> shrunk_to_stability(const LinearStructure& structure, const SwitchingRegression& model,
+                                               const Eigen::VectorXd& theta, const RefineTuning& tuning) {
+  const double most = 1.0 + tuning.growth_slack, growth = mean_square_growth(structure, model);
+  const auto grows = [&](const SwitchingRegression& m) { return !(mean_square_growth(structure, m) <= most); };
+  if (growth <= most) return std::nullopt;
   std::vector<Index> all, unstable;
   for (Index j = 0; j < model.modes(); ++j) {
     all.push_back(j);
@@ -53,7 +51,7 @@ std::optional<SwitchingRegression> shrunk_to_stability(const LinearStructure& st
       const double middle = 0.5 * (too_little + enough);
       (grows(moved(model, which, theta, middle)) ? too_little : enough) = middle;
     }
-    return moved(model, which, theta, enough);
+    return ShrunkModel{moved(model, which, theta, enough), {std::ssize(which), enough, growth}};
   }
   return std::nullopt;
 }

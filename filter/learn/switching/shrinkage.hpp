@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "filter/learn/switching/switching_regression.hpp"
+#include "modebank/filter/screened_mode.hpp"
 #include "modebank/learn/tuning.hpp"
 
 namespace modebank {
@@ -13,11 +14,16 @@ namespace modebank {
 SwitchingPrior towards_one_motion(SwitchingPrior prior, const TrainingTransitions& transitions,
                                   SwitchingRegression model, double theta_transitions, const RefineTuning& tuning);
 
+/// A model whose modes were drawn towards one motion, and how far.
+struct ShrunkModel {
+  SwitchingRegression model;
+  Shrinking shrinking;
+};
+
 /// The model with modes drawn towards `theta` (p) by the least share of the way at which the switching system no longer
 /// grows in mean square: the modes that are unstable by themselves, or all where that does not do. Empty where the
 /// system does not grow (as it is, then), or where even one mode of that theta would.
-std::optional<SwitchingRegression> shrunk_to_stability(const LinearStructure& structure,
-                                                       const SwitchingRegression& model, const Eigen::VectorXd& theta,
-                                                       const RefineTuning& tuning);
+std::optional<ShrunkModel> shrunk_to_stability(const LinearStructure& structure, const SwitchingRegression& model,
+                                               const Eigen::VectorXd& theta, const RefineTuning& tuning);
 
 }  // namespace modebank

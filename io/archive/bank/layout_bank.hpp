@@ -86,6 +86,9 @@ void exchange_bank(Io& io, B& bank, const Units& units) {
   io.attribute("dt_s", bank.dt_s, rule::positive);
   io.optional_attribute("noise_forgetting", bank.noise_adaptation.forgetting, rule::share);
   io.optional_attribute("noise_prior_samples", bank.noise_adaptation.prior_samples, rule::positive);
+  io.attribute_unless(std::ptrdiff_t{0}, "shrunk_modes", bank.shrinking.modes, rule::not_negative);
+  io.attribute_unless(0.0, "shrunk_share", bank.shrinking.share, rule::share);
+  io.attribute_unless(0.0, "shrunk_growth", bank.shrinking.growth, rule::not_negative);
   exchange_model_parameters(io, bank.motion_parameters, "motion_parameter");
   io.table("screened", bank.screened, column("component", &ScreenedMode::component).obeying(rule::not_negative),
            share_column("weight", &ScreenedMode::weight),

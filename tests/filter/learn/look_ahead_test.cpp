@@ -1,14 +1,11 @@
-// Learning that looks ahead: what it counts, the pull towards one motion, and stability beyond one step.
+// Learning that looks ahead: what it counts and the pull towards one motion.
 #include "filter/judge/look_ahead.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
-#include <unsupported/Eigen/KroneckerProduct>
 
 #include "filter/judge/evaluate.hpp"
 #include "filter/judge/horizon.hpp"
 #include "filter/learn/switching/em.hpp"
-#include "filter/learn/switching/mode_screening.hpp"
 #include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -88,55 +85,6 @@ TEST(LookAhead, OfLaggedModelsIsThePlainRecursions) {
   }
   const LookAhead look{h, Eigen::VectorXd::Ones(1)};
   EXPECT_TRUE(near(look_ahead_scores(test::arx_bank(s, theta), run, {}, look), expected, 1e-10));
-}
-
-/// Largest eigenvalue of the second moments' operator as one matrix: its blocks are T_ij (F_i (x) F_i).
-double growth_by_kronecker(const LinearStructure& structure, const SwitchingRegression& model) {
-  const Index K = model.modes(), n = structure.dimension();
-  Eigen::MatrixXd moments(K * n * n, K * n * n);
-  for (Index i = 0; i < K; ++i) {
-    const Eigen::MatrixXd F = unpack(structure, model.theta.col(i)).full_form();
-    for (Index j = 0; j < K; ++j)
-      moments.block(j * n * n, i * n * n, n * n, n * n) = model.transition(i, j) * Eigen::kroneckerProduct(F, F).eval();
-  }
-  return moments.eigenvalues().cwiseAbs().maxCoeff();
-}
-
-/// Two states; mode 0 is unstable in one direction, mode 1 is not.
-SwitchingRegression growing_model() {
-  Eigen::MatrixXd theta(6, 2);  // rows of [A B]
-  theta << 0.3, -0.2, 0.2, 0.3, 0.1, 1.0, 0.0, 0.1, -0.4, -0.3, 0.5, 0.0;
-  return {theta,
-          {Eigen::MatrixXd::Identity(2, 2), Eigen::MatrixXd::Identity(2, 2)},
-          Eigen::Matrix2d{{0.9, 0.1}, {0.2, 0.8}},
-          Eigen::Vector2d(0.5, 0.5)};
-}
-
-TEST(Shrinkage, TakesUnstableModesTheLeastWayToMeanSquareStability) {
-  const LinearStructure structure{2, 1, false};
-  const SwitchingRegression model = growing_model();
-  ASSERT_GT(growth_by_kronecker(structure, model), 1.01);
-  EXPECT_NEAR(mean_square_growth(structure, model), growth_by_kronecker(structure, model), 1e-5);
-  const Eigen::VectorXd target = model.theta.col(1);
-  const auto stable = shrunk_to_stability(structure, model, target, {});
-  ASSERT_TRUE(stable);
-  EXPECT_EQ(stable->theta.col(1), model.theta.col(1)) << "a mode that is stable by itself stays";
-  EXPECT_LE(growth_by_kronecker(structure, *stable), 1.0 + 2e-4);
-  const Eigen::VectorXd way = target - model.theta.col(0);
-  const double share = (stable->theta.col(0) - model.theta.col(0)).dot(way) / way.squaredNorm();
-  EXPECT_TRUE(near(stable->theta.col(0), model.theta.col(0) + share * way, 1e-12));
-  SwitchingRegression less = *stable;
-  less.theta.col(0) = model.theta.col(0) + (share - 0.005) * way;
-  EXPECT_GT(growth_by_kronecker(structure, less), 1.0);
-}
-
-TEST(Shrinkage, LeavesStableSystemsAndHopelessOnes) {
-  const LinearStructure structure{2, 1, false};
-  SwitchingRegression model = growing_model();
-  const Eigen::VectorXd unstable = model.theta.col(0);
-  EXPECT_FALSE(shrunk_to_stability(structure, model, unstable, {}));
-  model.theta.col(0) = model.theta.col(1);
-  EXPECT_FALSE(shrunk_to_stability(structure, model, unstable, {}));
 }
 
 using LookAheadLearning = test::RefineTest;

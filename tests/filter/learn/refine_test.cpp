@@ -4,9 +4,6 @@
 #include <gmock/gmock.h>
 #include <tbb/global_control.h>
 
-#include <Eigen/Eigenvalues>
-
-#include "filter/learn/switching/mode_screening.hpp"
 #include "tests/filter/learn/refine_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -134,20 +131,6 @@ TEST_F(Refine, AdaptiveNoiseIsWorthItWhereARunIsQuieter) {
   ;
   const double gain = log_likelihood(bank, quiet.runs[0], adaptive_imm()) - log_likelihood(bank, quiet.runs[0], {});
   EXPECT_GT(gain / 399.0, 0.2);
-}
-
-TEST(RefineScreening, SecondMomentsGrowAsTheJumpSystemSays) {
-  const LinearStructure scalar{1, 1, false};
-  SwitchingRegression model{Eigen::MatrixXd{{-0.5, 0.2}, {0.0, 0.0}},
-                            {Eigen::MatrixXd::Ones(1, 1), Eigen::MatrixXd::Ones(1, 1)},
-                            Eigen::MatrixXd{{0.7, 0.3}, {0.7, 0.3}},
-                            Eigen::Vector2d(0.5, 0.5)};
-  EXPECT_NEAR(mean_square_growth(scalar, model), 0.7 * 0.25 + 0.3 * 1.44, 1e-6);  // independent draws: sum p_j f_j^2
-  model.transition = Eigen::Matrix2d{{0.5, 0.5}, {0.01, 0.99}};
-  EXPECT_GT(mean_square_growth(scalar, model), 1.0);
-  model.transition = Eigen::Matrix2d{{0.9, 0.1}, {0.8, 0.2}};
-  const Eigen::Matrix2d moments = (model.transition.transpose() * Eigen::Vector2d(0.25, 1.44).asDiagonal());
-  EXPECT_NEAR(mean_square_growth(scalar, model), moments.eigenvalues().cwiseAbs().maxCoeff(), 1e-6);
 }
 
 }  // namespace

@@ -249,6 +249,7 @@ def check_bank(group, modes, uncertain):
         expect(f"{name} noise_forgetting", group.attrs["noise_forgetting"], 0.995)
         expect(f"{name} measured_fit", group.attrs["measured_fit"], b"iteration_limit")
         expect(f"{name} learned_transitions", group.attrs["learned_transitions"], 40)
+        expect(f"{name} shrunk", [group.attrs[f"shrunk_{what}"] for what in ("modes", "share", "growth")], [2, 0.125, 1.5])
         check_bank(group["unrefined"], 1, False)
         expect(f"{name} reason", group["screened"]["reason"][0], b"unstable: spectral radius 1.25")
 

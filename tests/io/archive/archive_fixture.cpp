@@ -161,6 +161,7 @@ Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
     bank.transition_weight_error = pattern(count, features, 97.0);
   }
   if (uncertain) bank.screened.push_back({4, 0.01, 1.25, "unstable: spectral radius 1.25"});
+  if (uncertain) bank.shrinking = {2, 0.125, 1.5};
   return bank;
 }
 

@@ -42,7 +42,7 @@ struct RefineTuning {
 
   // Screening of fitted modes.
   double duplicate_significance = 0.95;  ///< of the likelihood-ratio test that tells two modes apart
-  /// Above 1, for mean-square growth that power iteration knows to no more digits: an integrator stays.
+  /// Above 1: mean-square growth of systems that integrate twice is known to no more digits, and an integrator stays.
   double growth_slack = 1e-4;
   std::ptrdiff_t iterations_after_screening =
       10;  ///< as many as the first checkpoint: the others take over what is left
