@@ -9,6 +9,7 @@
 
 #include "filter/learn/likelihood/information.hpp"
 #include "filter/learn/likelihood/standard_errors.hpp"
+#include "filter/learn/refine/dominating_noise.hpp"
 #include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
 #include "ident/base/linalg.hpp"
@@ -84,6 +85,25 @@ LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const Refi
   return maximise_likelihood(target, free, bank, {in.options.max_iterations, in.options.tolerance});
 }
 
+/// R of a bank in this order: by the search for R alone, with theta where no R is likelier than none with the theta of
+/// exact states, and from one model where R dominates, all of theta, Q and R together. The first that finds some
+/// counts.
+MeasurementNoise find_R(const LikelihoodTarget& target, const RefineInput& in, const TrainingTransitions& transitions,
+                        const GlobalModel& global, const SwitchingPrior& prior, const Bank& bank) {
+  MeasurementNoise noise = estimate_measurement_noise(target, bank, in.options.tuning);
+  if (!noise.bank) noise.bank = estimate_with_theta(target, in, transitions, prior, bank);
+  if (noise.bank) return noise;
+  const std::optional<Bank> start = start_of_dominating_noise(in, target.recording, global, bank);
+  if (!start) return noise;
+  const LikelihoodTarget with_prior{target.recording, learning_filter(target.filter),
+                                    prior_with_states_unknown(prior, *start, in.options.tuning), in.options.one_theta};
+  LikelihoodMaximum end = maximise_everything(with_prior, in, transitions, *start, true);
+  const double level = target.value(bank) +
+                       in.options.tuning.least_gain * static_cast<double>(target.recording.transitions(Role::train));
+  if (target.value(end.bank) > level) noise.bank = std::move(end.bank);
+  return noise;
+}
+
 /// The fits to the splits' training runs as measurement noise enters them. Nothing of a fit has seen the runs it is
 /// scored on: not theta and T, nor R or the prior.
 class MeasuredSplits {
@@ -101,10 +121,8 @@ class MeasuredSplits {
   void estimate_R() {
     for_each([&](const SplitData& split, Bank& bank) {
       const LikelihoodTarget target{split.runs.training, in_.filter, std::nullopt};
-      MeasurementNoise noise = estimate_measurement_noise(target, bank, in_.options.tuning);
-      if (!noise.bank)
-        noise.bank = estimate_with_theta(target, in_, split.transitions,
-                                         prior_of_split(in_, split, chosen_.noise_transitions), bank);
+      MeasurementNoise noise = find_R(target, in_, split.transitions, split.global,
+                                      prior_of_split(in_, split, chosen_.noise_transitions), bank);
       if (noise.bank) bank = std::move(*noise.bank);
     });
   }
@@ -183,10 +201,9 @@ bool take_R(const RefineInput& in, const SwitchingPrior& prior, std::optional<Me
             MeasuredBank& fit) {
   const RefineTuning& tuning = in.options.tuning;
   const LikelihoodTarget target{in.recording, in.filter, std::nullopt};
-  MeasurementNoise noise = estimate_measurement_noise(target, fit.bank, tuning);
+  MeasurementNoise noise = find_R(target, in, in.transitions, in.fits.global, prior, fit.bank);
   fit.stage.starts = noise.starts;
   fit.stage.failed_starts = noise.failed_starts;
-  if (!noise.bank) noise.bank = estimate_with_theta(target, in, in.transitions, prior, fit.bank);
   if (!noise.bank) return false;
   if (splits) {
     MeasuredSplits with_R(*splits);
