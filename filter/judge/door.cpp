@@ -15,8 +15,11 @@ Trajectory inside(const filter::Bank& bank, const RecordedRun& run) {
 
 }  // namespace
 
-Evaluation evaluate_run(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options) {
-  const RunEvaluation e = modebank::evaluate_run(bank.internal(), inside(bank, run), options);
+Evaluation evaluate_run(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options,
+                        std::uint64_t seed) {
+  const Trajectory trajectory = inside(bank, run);
+  RunEvaluation e = modebank::evaluate_run(bank.internal(), trajectory, options);
+  draw_pit(trajectory, seed, e);
   return {to_matrix(e.prediction), to_matrix(e.innovation),  to_matrix(e.innovation_covariance),
           to_matrix(e.state),      to_matrix(e.covariance),  to_vector(e.nis),
           to_matrix(e.pit),        to_vector(e.log_density), to_matrix(e.mode_probability)};

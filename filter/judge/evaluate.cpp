@@ -1,15 +1,14 @@
 #include "filter/judge/evaluate.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "filter/judge/drifting.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/feed/run_samples.hpp"
+#include "filter/step/pit_draw.hpp"
 #include "filter/step/stepper.hpp"
 #include "ident/base/not_a_number.hpp"
-#include "ident/base/seed.hpp"
 
 namespace modebank {
 
@@ -91,16 +90,9 @@ RunEvaluation evaluate_run(const DriftingModel& model, const Trajectory& run, Ti
 
 void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluation) {
   if (evaluation.pit_width.size() == 0) return;
-  const std::uint64_t of_run = derive_seed(seed, "pit of " + run.run);
-  for (Index k = 0; k < evaluation.pit.cols(); ++k) {
-    std::mt19937_64 generator = make_generator(of_run, "pit", static_cast<std::uint64_t>(k));
-    for (Index i = 0; i < evaluation.pit.rows(); ++i) {
-      const double draw = std::ldexp(static_cast<double>(generator() >> 11U), -53);
-      double& pit = evaluation.pit(i, k);
-      if (const double width = evaluation.pit_width(i, k); width > 0.0)
-        pit = std::clamp(pit + (draw - 0.5) * width, 0.0, 1.0);
-    }
-  }
+  const std::uint64_t of_run = pit_seed(seed, run.run);
+  for (Index k = 0; k < evaluation.pit.cols(); ++k)
+    draw_pit(of_run, k, evaluation.pit_width.col(k), evaluation.pit.col(k));
 }
 
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options) {

@@ -37,9 +37,8 @@ struct RunEvaluation {
 /// disagree and DataError for an input that is not finite.
 RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
-/// The transform of a quantised measurement is an interval (predicted_mixture.hpp): moves it from its middle to a point
-/// drawn uniformly within it, which makes it uniform in a true filter. The draw depends on the seed, the run's name and
-/// the sample alone. Nothing of a continuous one.
+/// Draws the transforms of quantised measurements within their intervals (pit_draw.hpp), by the seed, the run's name
+/// and the sample.
 void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluation);
 
 /// Sum of log predictive densities over the scored samples of a run [nats]: the log-likelihood of theta, Q, R and T.

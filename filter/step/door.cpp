@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "filter/step/bank_filter.hpp"
+#include "filter/step/pit_draw.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/filter/bank_filter.hpp"
 
@@ -126,6 +127,8 @@ struct BankFilter::Inside {
   modebank::BankFilter filter;
   Index inputs, measurements;
   Estimate estimate;
+  std::uint64_t seed = pit_seed(1, "");
+  Index samples = 0;  ///< that were taken in
 };
 
 BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
@@ -145,8 +148,13 @@ void BankFilter::check_sizes(std::ptrdiff_t inputs, std::ptrdiff_t measurements)
 
 const Estimate& BankFilter::step(double time_s, const double* input, const double* measurement) {
   using Numbers = Eigen::Map<const Eigen::VectorXd>;
-  assign(inside_->filter.step(time_s, Numbers(input, inside_->inputs), Numbers(measurement, inside_->measurements)),
-         inside_->estimate);
+  const FilterEstimate& said =
+      inside_->filter.step(time_s, Numbers(input, inside_->inputs), Numbers(measurement, inside_->measurements));
+  assign(said, inside_->estimate);
+  if ((said.pit_width.array() > 0.0).any())
+    draw_pit(inside_->seed, inside_->samples, said.pit_width,
+             Eigen::Map<Eigen::VectorXd>(inside_->estimate.pit.data(), inside_->measurements));
+  ++inside_->samples;
   return inside_->estimate;
 }
 

@@ -11,6 +11,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 constexpr double difference_share = 1e-6;  // of a parameter's size
+constexpr double least_size = 1e-2;  // that a parameter near zero is taken to have: 2e-8 of a derivative is rounding
 
 Eigen::VectorXd linear_theta(const MotionModel& model, const Eigen::VectorXd& theta, const OperatingPoint& at) {
   const Index n = model.states(), m = model.inputs(), p = model.parameter_count();
@@ -51,7 +52,7 @@ LinearisedMotion linearise(const MotionModel& model, const Eigen::VectorXd& thet
   LinearisedMotion result{linear_theta(model, theta, at), {}};
   result.by_motion.resize(result.theta.size(), theta.size());
   for (Index j = 0; j < theta.size(); ++j) {
-    const double h = difference_share * std::max(std::abs(theta(j)), difference_share);
+    const double h = difference_share * std::max(std::abs(theta(j)), least_size);
     Eigen::VectorXd above = theta, below = theta;
     above(j) += h;
     below(j) -= h;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -9,9 +10,9 @@
 #include <vector>
 
 #include "filter/learn/likelihood/information.hpp"
+#include "filter/learn/refine/learning_part.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
-#include "ident/data/stretch.hpp"
 
 namespace modebank {
 namespace {
@@ -21,24 +22,22 @@ constexpr double weight_unit_share = 0.1;  // of the prior's standard deviation
 constexpr double most_numbers = 4e6;  // samples times coordinates: 32 MB
 constexpr Index fewest_samples = 2000, most_samples = 20000;
 
-/// The first training samples, as many as are wanted, and by what their information is to be multiplied.
-struct FirstSamples {
-  Recording recording;
+/// Samples that errors are learned from: stretches of all training runs where these are long. Their information is
+/// multiplied by `factor`.
+struct ErrorSamples {
+  std::optional<Recording> part;  ///< empty: all
   double factor = 1.0;
 };
 
-FirstSamples first_samples(const Recording& recording, Index coordinates) {
-  Index room =
+ErrorSamples error_samples(const Recording& recording, Index coordinates) {
+  constexpr std::uint64_t seed = 1;  // of the draw: errors of one bank are always the same
+  const Index most =
       std::clamp(static_cast<Index>(most_numbers / static_cast<double>(coordinates)), fewest_samples, most_samples);
-  FirstSamples first{{recording.states, recording.inputs, {}, recording.quantum}};
-  for (const Trajectory& run : recording.runs) {
-    if (run.role != Role::train || run.samples() < 2 || room < 2) continue;
-    first.recording.runs.push_back(run.samples() <= room ? run : stretch(run, 0, room));
-    room -= first.recording.runs.back().samples();
-  }
-  if (const Index taken = first.recording.transitions(Role::train); taken > 0)
-    first.factor = static_cast<double>(recording.transitions(Role::train)) / static_cast<double>(taken);
-  return first;
+  ErrorSamples samples{learning_part(recording, most, seed)};
+  if (samples.part)
+    samples.factor = static_cast<double>(recording.transitions(Role::train)) /
+                     static_cast<double>(samples.part->transitions(Role::train));
+  return samples;
 }
 
 /// Of the parameters in ParameterPlaces' order: their covariance, and how far the maximum is from where they stand.
@@ -58,10 +57,11 @@ void add_weights_gradient(const BankCoordinates& around, const SwitchingPrior& p
 
 /// Empty where the information has no inverse.
 std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordinates& around) {
-  const FirstSamples first = first_samples(target.recording, around.size());
+  const ErrorSamples samples = error_samples(target.recording, around.size());
   const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), difference_step);
-  const SampleGradients gradients = sample_gradients(around, steps, first.recording, target.filter);
-  const Eigen::MatrixXd information = first.factor * gradients.information + prior_information(around, *target.prior);
+  const SampleGradients gradients =
+      sample_gradients(around, steps, samples.part ? *samples.part : target.recording, target.filter);
+  const Eigen::MatrixXd information = samples.factor * gradients.information + prior_information(around, *target.prior);
   if (!information.allFinite()) return std::nullopt;
   // Coordinates differ in scale by orders of magnitude: the factorisation sees correlations.
   const Eigen::VectorXd unit =
@@ -69,7 +69,7 @@ std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordi
   const Cholesky factor(unit.asDiagonal() * information * unit.asDiagonal());
   if (!factor.definite()) return std::nullopt;
   const Eigen::MatrixXd root = factor.whiten(Eigen::MatrixXd(unit.asDiagonal() * around.jacobian().transpose()));
-  Eigen::VectorXd gradient = first.factor * gradients.sum;
+  Eigen::VectorXd gradient = samples.factor * gradients.sum;
   add_weights_gradient(around, *target.prior, gradient);
   const Eigen::VectorXd whitened = factor.whiten(Eigen::MatrixXd(unit.cwiseProduct(gradient)));
   Observed observed{root.transpose() * root, root.transpose() * whitened};

@@ -17,7 +17,8 @@ FreeParameters all_parameters(const Bank& bank, const SwitchingSums& complete, c
 /// spread: the inverse of the observed information (information.hpp) with the prior's added, of all parameters
 /// together, in the filter and with the sample weights of the target. So it allows for what is not known about the
 /// modes and, with R > 0, about the states, which the expected sums of the fit (Louis 1982's complete information) do
-/// not. It supposes that the model is true. Of long recordings it takes the first samples and scales up. Where the
+/// not. It supposes that the model is true. Of long recordings it takes stretches of all training
+/// runs (learning_part.hpp) and scales up. Where the
 /// information has no inverse the errors are those of the complete information, and R's are NaN.
 ///
 /// target.prior is required; `free` is all_parameters of the same bank.

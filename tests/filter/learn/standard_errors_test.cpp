@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "filter/learn/switching/starts.hpp"
@@ -65,6 +66,33 @@ TEST_F(StandardErrors, AreThoseOfTheFilterThatRuns) {
   filter.time_steps = TimeSteps::single;
   expect_same(errors_in(gaps, filter), plain, 1e-12);
   EXPECT_FALSE(errors_in(gaps, {}).modes[0].spread.isApprox(plain.modes[0].spread, 0.05));
+}
+
+/// A mode that only a later run has, behind more samples than errors are learned from: closed form, least squares'
+/// Q (sum of phi phi')^-1 of its own run.
+TEST(StandardErrorsOfLongData, RestOnAllRuns) {
+  const Bank truth = test::true_bank({1, 1, false}, Eigen::MatrixXd{{-0.2, -0.6}, {1.0, 3.0}},
+                                     {Eigen::MatrixXd{{0.01}}, Eigen::MatrixXd{{0.04}}}, Eigen::VectorXd::Zero(1), 1.0);
+  Recording recording = test::empty_recording(1, 1);
+  for (const Index mode : {0, 1})
+    recording.runs.push_back(
+        test::simulated_recording(test::single_mode(truth, mode), 1, 30000, 5 + static_cast<std::uint64_t>(mode))
+            .runs.front());
+  const TrainingTransitions transitions = gather_training_transitions(recording, truth.structure);
+  const SwitchingPrior prior = switching_prior(transitions, fit_global(recording, truth.structure), {}, 1.0);
+  Bank sticky = truth;
+  sticky.transition = TransitionMatrix::sticky(2, 0.999);
+  const SwitchingSums sums = sum_transitions(transitions, smooth_modes(transitions, switching_model(sticky)), prior);
+  const FreeParameters free = all_parameters(sticky, sums, prior, false, false, Eigen::VectorXd::Zero(1));
+  const Bank bank = with_standard_errors({recording, {}, prior}, free, sums, sticky);
+  for (const std::size_t mode : {0u, 1u}) {
+    const Trajectory& run = recording.runs[mode];
+    Eigen::MatrixXd phi(2, run.transitions());
+    phi << run.state.leftCols(run.transitions()), run.input.leftCols(run.transitions());
+    const Eigen::Matrix2d covariance = truth.modes[mode].Q(0, 0) * Eigen::Matrix2d(phi * phi.transpose()).inverse();
+    for (const Index i : {0, 1})
+      EXPECT_NEAR(bank.modes[mode].standard_error(i) / std::sqrt(covariance(i, i)), 1.0, 0.15) << mode << ' ' << i;
+  }
 }
 
 /// Expectation-maximisation counts rough runs like quiet ones, so its errors are those of a filter that does, too,

@@ -11,6 +11,9 @@
 #include "filter/judge/horizon.hpp"
 #include "filter/judge/statistics.hpp"
 #include "filter/step/bank_filter.hpp"
+#include "modebank/base/eigen.hpp"
+#include "modebank/filter/bank_filter.hpp"
+#include "modebank/judge/evaluate.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/golden.hpp"
@@ -170,6 +173,29 @@ TEST(Interval, TransformIsUniformInATrueFilter) {
     constexpr double one_per_mille = 1.95;  // Kolmogorov's distribution
     EXPECT_LT(kolmogorov_distance(pit), one_per_mille / std::sqrt(static_cast<double>(samples))) << deviations;
   }
+}
+
+/// The transform that programs get, sample by sample and of a run, at a quantum of three deviations.
+TEST(Interval, TransformOfTheInstalledFilterIsUniform) {
+  const Index samples = 20000;
+  const double quantum = 0.3;
+  Bank bank = test::single_mode(test::example_bank(1, 1, 1, 0.0), 0);
+  bank.modes[0].Q(0, 0) = 1e-2;
+  const Trajectory run = rounded(test::simulate_bank(bank, samples, 6), quantum);
+  const filter::Bank installed(std::make_shared<const Bank>(with_quantum(bank, quantum)));
+  filter::BankFilter live(installed);
+  RecordedRun recorded{"", false, {run.time_s.begin(), run.time_s.end()}, to_matrix(run.state), to_matrix(run.input),
+                       {}};
+  const Matrix of_run = judge::evaluate_run(installed, recorded).pit;
+  std::vector<double> pit;
+  for (Index k = 0; k < samples; ++k) {
+    const filter::Estimate& said = live.step(run.time_s(k), VectorXd(run.input.col(k)), VectorXd(run.state.col(k)));
+    if (k == 0) continue;
+    pit.push_back(said.pit[0]);
+    ASSERT_EQ(said.pit[0], of_run.values[static_cast<std::size_t>(k)]) << k;
+  }
+  constexpr double one_per_mille = 1.95;  // Kolmogorov's distribution
+  EXPECT_LT(kolmogorov_distance(pit), one_per_mille / std::sqrt(static_cast<double>(samples)));
 }
 
 TEST(Interval, DrawsDependOnSeedRunAndSampleAlone) {

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "ident/fit/fit_windows.hpp"
+#include "ident/fit/linearise.hpp"
 #include "ident/fit/motion_fit.hpp"
 #include "ident/model/linear_motion.hpp"
 #include "modebank/base/error.hpp"
@@ -48,6 +49,16 @@ std::vector<Exact> exact_cases() {
           {"icr", {1, 2, 0.165}, vector({1.5})},
           {"icr", two_states(), vector({0.6, -0.7, 0.9, 0.8})},
           {"icr", {3, 2, 0.165}, vector({0.6, -0.7, 0.9, 0.8, -0.1})}};
+}
+
+// At slip_difference d = 0: B = g (d/2 -+ 1) r / W of left and right, g = 1 - exp(-dt / tau), so dB/dd = g r / (2 W).
+TEST(MotionModel, LinearisationKnowsItsDerivativeAtZero) {
+  const double track = 1.4, tau = 0.25, dt = 0.1, radius = 0.165, gain = 1.0 - std::exp(-dt / tau);
+  const auto model = make_motion_model("slip", {1, 2, radius});
+  const LinearisedMotion motion =
+      linearise(*model, Eigen::Vector3d(track, 0.0, tau), {Eigen::VectorXd::Zero(1), Eigen::Vector2d(2.0, 3.0), dt});
+  for (const Index entry : {1, 2})  // theta: A, B of left, B of right, c
+    EXPECT_NEAR(motion.by_motion(entry, 1) / (gain * radius / (2.0 * track)), 1.0, 1e-6);
 }
 
 TEST(MotionModel, NoiselessRunsGiveTheParametersBack) {

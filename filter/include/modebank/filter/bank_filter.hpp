@@ -18,7 +18,9 @@ struct Estimate {
   Matrix innovation_covariance;                    ///< n_y x n_y, of the combined prediction
   std::vector<double> state;                       ///< n, after the measurement
   Matrix covariance;                               ///< n x n, after the measurement
-  std::vector<double> pit;                         ///< n_y, probability integral transform (Rosenblatt 1952)
+  std::vector<double> pit;                         ///< n_y, probability integral transform (Rosenblatt 1952), uniform
+                                                   ///< in a true filter: of a quantised signal drawn uniformly within
+                                                   ///< its interval, by the sample's number since construction
   std::vector<double> mode_probability_predicted;  ///< K, before the measurement
   std::vector<double> mode_probability;            ///< K, after the measurement
   double nis = 0.0;                                ///< normalised innovation squared of the signals that are there

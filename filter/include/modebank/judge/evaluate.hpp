@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "modebank/base/recording.hpp"
@@ -16,14 +17,17 @@ struct Evaluation {
   Matrix state;                     ///< n x N, after the measurement
   Matrix covariance;                ///< n*n x N, after the measurement
   std::vector<double> nis;          ///< N, normalised innovation squared
-  Matrix pit;                       ///< n_y x N, probability integral transform (Rosenblatt 1952)
+  Matrix pit;                       ///< n_y x N, probability integral transform (Rosenblatt 1952), uniform in a true
+                                    ///< filter: of a quantised signal drawn uniformly within its interval
   std::vector<double> log_density;  ///< N [nats]
   Matrix mode_probability;          ///< K x N, after the measurement
 };
 
 /// Runs the filter over a run from its first whole measurement. Throws std::invalid_argument when sizes disagree and
-/// DataError for an input that is not finite.
-Evaluation evaluate_run(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options = {});
+/// DataError for an input that is not finite. `seed`: of the transforms of quantised signals, which are those of
+/// `modebank run` with the same job.seed and run name.
+Evaluation evaluate_run(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options = {},
+                        std::uint64_t seed = 1);
 
 /// Sum of the log predictive densities over the scored samples of a run [nats]. Nothing is stored.
 double log_likelihood(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options = {});
