@@ -5,6 +5,7 @@
 #include "app/chain/judged_runs.hpp"
 #include "app/chain/stages.hpp"
 #include "ident/check/stream_check.hpp"
+#include "ident/model/parameter_labels.hpp"
 
 namespace modebank {
 namespace {
@@ -38,6 +39,23 @@ double innovation_sd(const FilterEvaluation& bank, const Recording& recording, R
   return std::sqrt(*middle);
 }
 
+/// The values that are missing do not count; 0 without any.
+double standard_deviation(const Eigen::VectorXd& values) {
+  const auto known = values.array().isFinite();
+  const auto count = static_cast<double>(known.count());
+  if (count == 0.0) return 0.0;
+  const double mean = known.select(values, 0.0).sum() / count;
+  return std::sqrt(known.select(values.array() - mean, 0.0).square().sum() / count);
+}
+
+std::vector<std::pair<std::string, double>> coefficients_of(const Bank& bank) {
+  const std::vector<std::string> labels = parameter_labels(bank.structure, bank.state_names, bank.input_names);
+  const Eigen::VectorXd theta = bank.theta(0);
+  std::vector<std::pair<std::string, double>> coefficients;
+  for (Index i = 0; i < theta.size(); ++i) coefficients.emplace_back(labels[static_cast<std::size_t>(i)], theta(i));
+  return coefficients;
+}
+
 /// Over the judged runs, one after another. `quantum`: of the bank; where it has one its scores know of the rounding.
 std::vector<Resolution> resolutions(const FilterEvaluation& bank, const Eigen::VectorXd& quantum,
                                     const Recording& recording, Role role) {
@@ -55,7 +73,7 @@ std::vector<Resolution> resolutions(const FilterEvaluation& bank, const Eigen::V
     const bool known = i < quantum.size() && quantum(i) > 0.0;
     const ChannelCheck check = known ? ChannelCheck() : check_channel(values);
     states.push_back({recording.states[static_cast<std::size_t>(i)].name, check.quantum, check.repeated,
-                      innovation_sd(bank, recording, role, i)});
+                      innovation_sd(bank, recording, role, i), standard_deviation(values)});
   }
   return states;
 }
@@ -77,6 +95,7 @@ std::optional<Finding> find_modes(const Archive& archive) {
       judge_modes({*archive.bank, role, densities_of(*bank, *archive.recording, role), competitors, archive.summary,
                    archive.horizons, resolutions(*bank, archive.bank->quantum, *archive.recording, role),
                    archive.free_runs, archive.one_motion_drifts()});
+  if (finding.without_noise && archive.baseline) finding.coefficients = coefficients_of(*archive.baseline);
   finding.text = finding_text(finding);
   return finding;
 }

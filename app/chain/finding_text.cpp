@@ -47,25 +47,44 @@ std::string instead_words(const Finding& finding) {
   const bool better = std::any_of(finding.gains.begin(), finding.gains.end(), [&](const PairedGain& gain) {
     return gain.competitor == finding.better_description && gain.falls_short();
   });
-  // A reader has just been told of the best one, which is another where a simpler one scores as well.
-  const std::string apart = finding.better_description == finding.best_competitor
-                                ? ""
-                                : ", the simplest that is not told apart from " + finding.best_competitor;
+  // The best one was named before; a simpler one that is as good states what it costs.
+  const std::string loss = finding.better_description == finding.best_competitor
+                               ? ""
+                               : fmt::format(", the simplest that is about as good as {} ({:+.3f} nats per sample)",
+                                             finding.best_competitor, -finding.description_loss);
   // Only a gain beyond its margin is known: what cannot be told apart may be as good, or not.
   return fmt::format(" These runs {} by {} ({}){}.",
                      !better                                 ? "may be described as well"
                      : finding.answer == Answer::cannot_tell ? "may be described better"
                                                              : "are described better",
                      description_of(finding.better_description, finding.one_motion_drifts), finding.better_description,
-                     apart);
+                     loss);
+}
+
+/// "the gain over one_motion, +0.849 +- 0.388 nats per sample, does not exceed what chance makes of 5 runs (0.911)"
+std::string within_chance_words(const PairedGain& gain, Eigen::Index runs) {
+  return fmt::format(
+      "the gain over {}, {:+.3f} +- {:.3f} nats per sample, does not exceed what chance makes of {} "
+      "({:.3f})",
+      gain.competitor, gain.gain, gain.standard_error,
+      gain.by_blocks ? counted(static_cast<Eigen::Index>(gain.degrees_of_freedom) + 1, "block") : counted(runs, "run"),
+      gain.margin);
 }
 
 std::string why_not_told(const Finding& finding) {
-  if (!finding.held_out()) return "nothing was held out";
-  if (finding.gains.empty()) return "no competitor was scored";
-  for (const PairedGain& gain : finding.gains)
-    if (!std::isfinite(gain.margin)) return "there are too few samples to know the error of a gain";
-  return "the gain does not exceed what chance makes of so few runs";
+  switch (doubt_of(finding)) {
+    case Doubt::nothing_held_out:
+      return "nothing was held out";
+    case Doubt::no_competitor:
+      return "no competitor was scored";
+    case Doubt::few_samples:
+      return "there are too few independent samples to know the error of a gain";
+    case Doubt::errors_unknown:
+      return "the standard errors of the modes' parameters are not known, so that the modes may be alike";
+    case Doubt::within_chance:
+      break;
+  }
+  return within_chance_words(*least_beaten(finding), finding.runs);
 }
 
 /// "78 % of the samples of y repeat the one before; ..."
@@ -87,7 +106,19 @@ std::string coarse_words(const Finding& finding) {
       shows(finding), coarse_reasons(finding));
 }
 
+/// "One linear model describes the 2 held-out runs without noise: ..."
+std::string without_noise_words(const Finding& finding) {
+  std::vector<std::string> coefficients;
+  for (const auto& [name, value] : finding.coefficients) coefficients.push_back(fmt::format("{} {:.6g}", name, value));
+  return fmt::format(
+      "One linear model describes the {} without noise: what it leaves is rounding, so that scores, bands and modes "
+      "have "
+      "no meaning. Its coefficients, of the change per sample: {}.",
+      where(finding), fmt::join(coefficients, ", "));
+}
+
 std::string one_mode_words(const Finding& finding) {
+  if (finding.without_noise) return without_noise_words(finding);
   std::string text = "The bank has one mode, so modes of motion are not in question.";
   if (finding.coarse.empty()) return text + instead_words(finding);
   return text + fmt::format(" Its log scores say little: {}.", coarse_reasons(finding));
@@ -103,10 +134,11 @@ std::string answer_words(const Finding& finding) {
       return fmt::format("Whether {} modes of motion cannot be told: {}.", shows(finding), why_not_told(finding)) +
              least_gain_words(finding) + instead_words(finding);
     case Answer::no_evidence:
-      return fmt::format(
-                 "{}{} no evidence for modes of motion.",
-                 finding.modes_differ ? "" : "The modes do not differ in their parameters beyond their errors: ",
-                 shows(finding)) +
+      return fmt::format("{}{} no evidence for modes of motion.",
+                         finding.modes_differ || !finding.errors_known
+                             ? ""
+                             : "The modes do not differ in their parameters beyond their errors: ",
+                         shows(finding)) +
              least_gain_words(finding) + instead_words(finding);
     case Answer::evidence:
       return fmt::format(

@@ -49,7 +49,8 @@ void Adviser::done(Stage stage, const Archive& archive) const {
     counts.add(*archive.windows);
     warn_of_windows(*archive.windows, counts);
   }
-  if (stage == Stage::mixture)
+  // A refined bank has other starts, too, and keeps nothing of the mixture.
+  if (stage == Stage::bank && archive.mixture && !archive.unrefined)
     for (const std::string& text : selection_warnings(archive.mixture->candidates)) warning("mixture: " + text);
   if (const std::string text = refinement_warning(archive.measured_fit); stage == Stage::bank && !text.empty())
     warning("refine: " + text);
@@ -58,7 +59,7 @@ void Adviser::done(Stage stage, const Archive& archive) const {
 }
 
 void Adviser::warn_of_windows(const WindowFits& windows, const WindowCounts& counts) const {
-  for (const std::string& text : window_warnings(windows, counts)) warning("windows: " + text);
+  for (const Warning& found : window_warnings(windows, counts)) warning("windows: " + found.text);
 }
 
 void check_request(const std::string& command, const Config& config, const std::filesystem::path& file,

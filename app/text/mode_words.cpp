@@ -36,7 +36,9 @@ std::vector<std::string> gain_cells(const ModeDynamics& dynamics, const std::vec
   const Eigen::VectorXd gains = dynamics.gain.transpose().reshaped(),
                         errors = dynamics.gain_error.transpose().reshaped();
   for (Index i = 0; i < gains.size(); ++i)
-    cells.push_back(open[static_cast<std::size_t>(i)] ? not_identifiable : estimate_text(gains(i), errors(i)));
+    cells.push_back(open[static_cast<std::size_t>(i)] ? not_identifiable
+                    : std::isnan(gains(i))            ? "never settles"
+                                                      : estimate_text(gains(i), errors(i)));
   return cells;
 }
 
@@ -56,10 +58,11 @@ std::vector<ModeTable::Row> rows_of(const Archive& archive, const std::vector<Us
     if (!all_decays && dynamics.decays.size() > 1) dynamics.decays.resize(1);
     std::vector<std::string> times;
     for (const Decay& decay : dynamics.decays) times.push_back(decay_words(decay));
-    ModeTable::Row row{used.mode,
-                       {heading(mode_cell(archive.mode_names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
-                        seconds(used.stay_s), no_decays ? "-" : per_sample_words(dynamics.decays),
-                        no_decays ? not_identifiable : boost::algorithm::join(times, "; ")}};
+    ModeTable::Row row{
+        used.mode,
+        {heading(mode_cell(archive.mode_names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
+         (used.at_least ? "over " : "") + seconds(used.stay_s), no_decays ? "-" : per_sample_words(dynamics.decays),
+         no_decays ? not_identifiable : boost::algorithm::join(times, "; ")}};
     const std::vector<std::string> gains = gain_cells(dynamics, open);
     row.cells.insert(row.cells.end(), gains.begin(), gains.end());
     rows.push_back(std::move(row));
@@ -141,19 +144,33 @@ std::string per_sample_words(const std::vector<Decay>& decays) {
   return boost::algorithm::join(texts, "; ");
 }
 
+namespace {
+
+/// By the transition matrix; switches that see state and input leave what the most probable modes did.
+UsedMode with_stay(const Archive& archive, Index mode, double use, const DiagnosticsRow* row) {
+  const Bank& bank = *archive.bank;
+  const double leave = 1.0 - bank.transition.matrix()(mode, mode);
+  double samples = bank.mode_count() > 1 && leave > 0.0 ? 1.0 / leave : not_a_number;
+  if (row) samples = row->dwell_model > 0.0 && row->dwell > 0.0 ? row->dwell_model : row->dwell;
+  Index longest = 0;
+  for (std::size_t i = 0; archive.recording && i < archive.recording->runs.size(); ++i)
+    longest = std::max(longest, archive.recording->runs[i].samples());
+  const bool at_least = longest > 0 && row && row->dwell_model > 0.0 && samples > static_cast<double>(longest);
+  if (at_least) samples = static_cast<double>(longest);
+  return {mode, use, samples > 0.0 ? samples * bank.dt_s : not_a_number, at_least};
+}
+
+}  // namespace
+
 std::vector<UsedMode> used_modes(const Archive& archive) {
   const Bank& bank = *archive.bank;
   std::vector<UsedMode> modes;
-  for (Index k = 0; k < bank.mode_count(); ++k) {
-    const double leave = 1.0 - bank.transition.matrix()(k, k);
-    modes.push_back({k, bank.modes[static_cast<std::size_t>(k)].weight,
-                     bank.mode_count() > 1 && leave > 0.0 ? bank.dt_s / leave : not_a_number});
-  }
+  for (Index k = 0; k < bank.mode_count(); ++k)
+    modes.push_back(with_stay(archive, k, bank.modes[static_cast<std::size_t>(k)].weight, nullptr));
   const Role role = judged_role(archive);
   for (const DiagnosticsRow& row : archive.diagnostics)
     if (row.filter == "bank" && row.role == role && row.mode >= 0 && row.mode < bank.mode_count())
-      modes[static_cast<std::size_t>(row.mode)] = {row.mode, row.usage,
-                                                   row.dwell > 0.0 ? row.dwell * bank.dt_s : not_a_number};
+      modes[static_cast<std::size_t>(row.mode)] = with_stay(archive, row.mode, row.usage, &row);
   std::stable_sort(modes.begin(), modes.end(), [](const UsedMode& a, const UsedMode& b) { return a.use > b.use; });
   return modes;
 }

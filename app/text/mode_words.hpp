@@ -19,10 +19,13 @@ std::string per_sample_words(const std::vector<Decay>& decays);
 /// One mode on the judged runs.
 struct UsedMode {
   Index mode = 0;
-  double use = 1.0;     ///< mean probability
-  double stay_s = 0.0;  ///< mean stay; NaN where it was never entered
+  double use = 1.0;  ///< mean probability
+  /// Mean stay; NaN where it was never entered. By the transition matrix: where gaps cut runs, stays look shorter.
+  /// Where that has seen no end of it in the longest run, the length of that run, which the stay is at least.
+  double stay_s = 0.0;
+  bool at_least = false;
 };
-/// Most used first; where nothing was scored by weight, with the stays that the transition matrix says.
+/// Most used first; where nothing was scored by weight.
 std::vector<UsedMode> used_modes(const Archive& archive);
 
 /// Said of what the training runs leave open: an input that is always zero, inputs of which one is a sum of others.

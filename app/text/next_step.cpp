@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <vector>
 
 #include "app/chain/judged_runs.hpp"
 #include "app/chain/options.hpp"
 #include "app/text/warnings.hpp"
+#include "filter/judge/verdict_reason.hpp"
 #include "io/import/split.hpp"
 
 namespace modebank::app {
@@ -18,12 +20,13 @@ struct Situation {
   const Settings& settings;
   const Finding& finding;
   const DiagnosticsRow& bank;  ///< the whole filter on the judged runs
+  std::vector<Warning> warnings;
 
   std::string setting(const std::string& key) const {
     const auto found = settings.find(key);
     return found == settings.end() ? std::string() : found->second;
   }
-  bool says(Answer answer) const { return finding.answer == answer; }
+  bool answers(Answer answer) const { return finding.answer == answer; }
 };
 
 struct Rule {
@@ -31,10 +34,8 @@ struct Rule {
   std::string (*advice)(const Situation&);
 };
 
-bool is_lost(const Situation& s) {
-  WindowCounts counts;
-  if (s.archive.windows) counts.add(*s.archive.windows);
-  return counts.of(FitStatus::failed) > 0;
+bool warns(const Situation& s, WarningKind kind) {
+  return std::any_of(s.warnings.begin(), s.warnings.end(), [kind](const Warning& w) { return w.kind == kind; });
 }
 
 int state_lags(const Situation& s) { return std::atoi(s.setting("window.state_lags").c_str()); }
@@ -53,34 +54,59 @@ bool may_have_more_lags(const Situation& s) {
          state_lags(s) < most_lags;
 }
 
-bool is_not_white(const Situation& s) { return s.bank.flags.find("innovations not white") != std::string::npos; }
-
 bool is_uncertain_wrongly(const Situation& s) {
   return s.bank.verdict == Verdict::overconfident || s.bank.verdict == Verdict::underconfident;
 }
 
+/// Whether a bank that is the mixture's own has few; refinement has starts of its own.
 bool has_few_agreeing_restarts(const Situation& s) {
-  if (!s.archive.mixture) return false;
+  if (!s.archive.mixture || s.archive.unrefined) return false;
   const auto& all = s.archive.mixture->candidates;
   return std::any_of(all.begin(), all.end(),
                      [](const Candidate& c) { return c.selected && 2 * c.agreeing_restarts < c.restarts; });
 }
 
+/// The largest way in which a competitor predicts the mean better than the bank, beyond a tenth.
+const BetterMean* far_better_mean(const Situation& s) {
+  constexpr double far = 0.9;
+  const auto& all = s.finding.better_means;
+  const auto best = std::min_element(all.begin(), all.end(), [](const BetterMean& a, const BetterMean& b) {
+    return a.rmse * b.rmse_bank < b.rmse * a.rmse_bank;
+  });
+  return best != all.end() && best->rmse < far * best->rmse_bank ? &*best : nullptr;
+}
+
+std::string advice_on_doubt(const Situation& s) {
+  if (doubt_of(s.finding) != Doubt::errors_unknown)
+    return fmt::format("more held-out runs than {}: record some, or name more of them with --data.test",
+                       s.finding.runs);
+  if (std::atoi(s.setting("bank.look_ahead").c_str()) > 1)
+    return "learn with standard errors, by which modes are told apart: repeat with --bank.look_ahead 1";
+  return "leave out inputs that hardly vary, which leave modes without standard errors: `modebank check CONFIG` names "
+         "them";
+}
+
 /// From what spoils every number to what only could be better. docs/howto/troubleshooting.md has the same list.
 const Rule rules[] = {
-    {is_lost,
+    {[](const Situation& s) { return warns(s, WarningKind::failed_windows); },
      [](const Situation&) -> std::string {
        return "some windows have no finite fit: `modebank check CONFIG` says which samples are wild";
      }},
-    {[](const Situation& s) { return s.says(Answer::not_yet); },
+    {[](const Situation& s) { return s.answers(Answer::not_yet); },
      [](const Situation&) -> std::string {
        return "bring the samples to an even rate: repeat with --data.rate_hz; `modebank check CONFIG` shows the steps";
      }},
-    {[](const Situation& s) { return s.says(Answer::not_comparable); },
+    {[](const Situation& s) { return s.finding.without_noise; },
      [](const Situation&) -> std::string {
-       return "measure more finely, or go by the RMSE: `modebank check CONFIG` says what repeats or comes in steps, "
-              "and "
-              "which data.rate_hz leaves it out; of rounded values --data.quantum auto compares the intervals";
+       return "nothing to filter: take the coefficients (`modebank export ARCHIVE --to json --track.filter baseline`)";
+     }},
+    {[](const Situation& s) { return s.answers(Answer::not_comparable); },
+     [](const Situation& s) -> std::string {
+       const bool by_intervals = !s.setting("data.quantum").empty() && s.setting("data.quantum") != "none";
+       return std::string(
+                  "measure more finely, or go by the RMSE: `modebank check CONFIG` says what repeats or comes "
+                  "in steps, and which data.rate_hz leaves it out") +
+              (by_intervals ? "" : "; of rounded values --data.quantum auto compares the intervals");
      }},
     {[](const Situation& s) { return !s.finding.held_out(); },
      [](const Situation& s) -> std::string {
@@ -89,12 +115,8 @@ const Rule rules[] = {
                             proposed_split(s.archive.recording->runs.front().samples(), window_and_lags(s)));
        return "hold runs out, for only they can be evidence: record another, or name some with --data.test";
      }},
-    {[](const Situation& s) { return s.says(Answer::cannot_tell); },
-     [](const Situation& s) {
-       return fmt::format("more held-out runs than {}: record some, or name more of them with --data.test",
-                          s.finding.runs);
-     }},
-    {[](const Situation& s) { return is_not_white(s) && may_have_more_lags(s); },
+    {[](const Situation& s) { return s.answers(Answer::cannot_tell); }, advice_on_doubt},
+    {[](const Situation& s) { return errors_follow_a_pattern(s.bank) && may_have_more_lags(s); },
      [](const Situation& s) {
        const bool acted_on = !s.archive.recording || !s.archive.recording->inputs.empty();
        const std::string lags = state_lags(s) >= most_automatic_lags ? fmt::to_string(state_lags(s) + 1)
@@ -105,15 +127,15 @@ const Rule rules[] = {
            "{}{}",
            lags, s.setting("data.lag_s") == "auto" ? "" : ", or with --data.lag_s auto");
      }},
-    {[](const Situation& s) { return s.says(Answer::no_evidence) && !s.finding.better_description.empty(); },
+    {[](const Situation& s) { return s.answers(Answer::no_evidence) && !s.finding.better_description.empty(); },
      [](const Situation& s) {
        const std::string& simpler = s.finding.better_description;
        return fmt::format(
            "use the simpler {0} ({1}){2}: `modebank track ARCHIVE --track.filter {0}`", simpler,
            description_of(simpler, s.archive.one_motion_drifts()),
-           simpler == s.finding.best_competitor ? "" : ", which is not told apart from " + s.finding.best_competitor);
+           simpler == s.finding.best_competitor ? "" : ", which is about as good as " + s.finding.best_competitor);
      }},
-    {is_not_white,
+    {[](const Situation& s) { return errors_follow_a_pattern(s.bank); },
      [](const Situation&) -> std::string {
        return "errors follow a pattern: `modebank check CONFIG` looks for a lag between inputs and states, and for "
               "what "
@@ -127,7 +149,9 @@ const Rule rules[] = {
      [](const Situation&) -> std::string {
        return "train on runs like the held-out ones: `modebank check CONFIG` compares runs, --data.train names them";
      }},
-    {[](const Situation& s) { return s.bank.verdict == Verdict::undecided; },
+    {[](const Situation& s) {
+       return s.bank.verdict == Verdict::undecided && reason_of(s.bank) != VerdictReason::close;
+     },
      [](const Situation&) -> std::string {
        return "more held-out samples, to know whether the band is false: record some, or name more with --data.test";
      }},
@@ -136,15 +160,41 @@ const Rule rules[] = {
        return fmt::format("look for a better mixture: repeat with --mixture.restarts {}",
                           4 * std::max(5, std::atoi(s.setting("mixture.restarts").c_str())));
      }},
-    {[](const Situation& s) { return s.archive.measured_fit == MeasuredFit::iteration_limit; },
+    {[](const Situation& s) { return warns(s, WarningKind::iteration_limit); },
      [](const Situation& s) {
        return fmt::format("let the fit with measurement noise end: repeat with --bank.max_iterations {}",
                           std::min(1000, 4 * std::max(25, std::atoi(s.setting("bank.max_iterations").c_str()))));
      }},
-    {[](const Situation& s) { return !archive_warnings(s.archive).empty(); },
+    {[](const Situation& s) { return warns(s, WarningKind::stalled); },
      [](const Situation&) -> std::string {
-       return "see to the warning first (`modebank show ARCHIVE` has it where it belongs); what it leaves is ready to "
-              "use";
+       return "state the measurement noise from the sensor's data sheet: repeat with --bank.measurement_variance "
+              "VARIANCE";
+     }},
+    {[](const Situation& s) { return warns(s, WarningKind::no_stable_mode); },
+     [](const Situation&) -> std::string {
+       return "leave out of --data.state what drifts or stays where it is: no mode is stable with it";
+     }},
+    {[](const Situation& s) { return warns(s, WarningKind::unscored); },
+     [](const Situation&) -> std::string {
+       return "score more of the samples: `modebank check CONFIG` shows which are missing; fewer --window.state_lags "
+              "lose fewer";
+     }},
+    {[](const Situation& s) { return warns(s, WarningKind::replaced_windows); },
+     [](const Situation&) -> std::string { return "solve every window by Ceres: repeat with --window.solver ceres"; }},
+    {[](const Situation& s) { return warns(s, WarningKind::mixture); },
+     [](const Situation&) -> std::string {
+       return "see to the mixture first (`modebank show ARCHIVE` has its warning): widen --mixture.components";
+     }},
+    {[](const Situation& s) { return far_better_mean(s) != nullptr; },
+     [](const Situation& s) {
+       const BetterMean& mean = *far_better_mean(s);
+       return fmt::format(
+           "to understand the motion, use it; to predict, {0} is closer{1}: `modebank track ARCHIVE "
+           "--track.filter {0}`",
+           mean.competitor,
+           mean.horizon == 0   ? " in free run"
+           : mean.horizon == 1 ? ""
+                               : fmt::format(" {} samples ahead", mean.horizon));
      }},
     {[](const Situation&) { return true; },
      [](const Situation&) -> std::string {
@@ -157,7 +207,7 @@ const Rule rules[] = {
 std::string next_step(const Archive& archive, const Settings& settings) {
   const DiagnosticsRow* const row = diagnosis(archive, "bank", judged_role(archive));
   if (!archive.finding || !row) return "";
-  const Situation situation{archive, settings, *archive.finding, *row};
+  const Situation situation{archive, settings, *archive.finding, *row, archive_warnings(archive)};
   return std::find_if(std::begin(rules), std::end(rules), [&](const Rule& rule) { return rule.applies(situation); })
       ->advice(situation);
 }

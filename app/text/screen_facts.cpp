@@ -7,8 +7,10 @@
 #include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 
 #include "app/chain/judged_runs.hpp"
+#include "app/text/verdict_text.hpp"
 #include "app/text/warnings.hpp"
 #include "ident/base/not_a_number.hpp"
 
@@ -53,29 +55,27 @@ std::string read_words(const Archive& archive, const Settings& settings) {
   return text;
 }
 
-std::string verdict_words(Verdict verdict) {
-  if (verdict == Verdict::undecided) return "undecided, too few independent samples to tell";
-  return fmt::format("{}, {}", name_of(verdict), calibration_words(verdict));
-}
-
-std::string band_words(const DiagnosticsRow& row) {
-  return fmt::format(
-      "{:.1f} % [{:.1f}, {:.1f}] of the {} samples lie in the 95 % band: {}; {:.1f} % in the 50 %, {:.1f} % in the "
-      "90 %, {:.1f} % in the 99 % band",
-      100 * row.coverage_95, 100 * row.coverage_95_lower, 100 * row.coverage_95_upper, words_for(row.role),
-      verdict_words(row.verdict), 100 * row.coverage_50, 100 * row.coverage_90, 100 * row.coverage_99);
-}
-
-/// "0.0301 rad/s", or per state "wz 0.0301 rad/s, v 0.2 m/s".
-std::string rmse_words(const Eigen::VectorXd& rmse, const std::vector<Channel>& states) {
+/// One text per state, with its name where there are several.
+std::vector<std::string> rmse_parts(const Eigen::VectorXd& rmse, const std::vector<Channel>& states) {
   std::vector<std::string> parts;
   for (Index i = 0; i < rmse.size(); ++i) {
     const Channel state = static_cast<std::size_t>(i) < states.size() ? states[static_cast<std::size_t>(i)] : Channel{};
     parts.push_back(fmt::format("{}{:.4g}{}", rmse.size() > 1 ? state.name + " " : "", rmse(i),
                                 state.unit.empty() ? "" : " " + state.unit));
   }
-  return boost::algorithm::join(parts, ", ");
+  return parts;
 }
+
+/// "0.0301 rad/s", or per state "wz 0.0301 rad/s, v 0.2 m/s".
+std::string rmse_words(const Eigen::VectorXd& rmse, const std::vector<Channel>& states) {
+  return boost::algorithm::join(rmse_parts(rmse, states), ", ");
+}
+
+/// The best of several filters, state by state.
+struct Best {
+  Eigen::VectorXd values;
+  std::vector<std::string> names;
+};
 
 const HorizonRow* horizon_row(const Archive& archive, const std::string& filter, Role role, Index horizon) {
   const auto found = std::find_if(archive.horizons.begin(), archive.horizons.end(), [&](const HorizonRow& row) {
@@ -99,20 +99,57 @@ const FreeRunRow* free_run_of(const Archive& archive, const std::string& filter,
   return found == archive.free_runs.end() ? nullptr : &*found;
 }
 
-/// One step ahead, and as far as was looked ahead.
-std::vector<ErrorAhead> errors_ahead(const Archive& archive, const std::string& competitor, Role role) {
+/// The competitor that is best at each state. `value_of`: a competitor's numbers, null without.
+template <class ValueOf, class Better>
+Best best_of_competitors(ValueOf value_of, Better better) {
+  Best best;
+  for (const char* name : competitor_names) {
+    const Eigen::VectorXd* values = value_of(name);
+    if (!values) continue;
+    if (best.names.empty()) best = {*values, std::vector<std::string>(static_cast<std::size_t>(values->size()), name)};
+    for (Index i = 0; i < std::min(values->size(), best.values.size()); ++i)
+      if (better((*values)(i), best.values(i))) {
+        best.values(i) = (*values)(i);
+        best.names[static_cast<std::size_t>(i)] = name;
+      }
+  }
+  return best;
+}
+
+/// "drifting: 0.04 rad/s", or "wz 0.04 rad/s (drifting), v 0.2 m/s (baseline)" where states differ in it.
+std::string words_of_best(const Best& best, const std::string& together, const std::vector<std::string>& each) {
+  if (best.names.empty()) return "";
+  if (std::adjacent_find(best.names.begin(), best.names.end(), std::not_equal_to<>()) == best.names.end())
+    return fmt::format("{}: {}", best.names.front(), together);
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < each.size(); ++i) parts.push_back(fmt::format("{} ({})", each[i], best.names[i]));
+  return boost::algorithm::join(parts, ", ");
+}
+
+/// The bank's row of a number of steps ahead with what is beside it. `row_of`: of a filter, null without.
+template <class RowOf>
+void add_error(Index steps, RowOf row_of, const Archive& archive, Role role, std::vector<ErrorAhead>& errors) {
+  const auto* bank = row_of("bank");
+  if (!bank) return;
   const std::vector<Channel> states = archive.recording ? archive.recording->states : std::vector<Channel>();
+  const auto value_of = [&](const char* name) { return row_of(name) ? &row_of(name)->rmse : nullptr; };
+  const Best other = best_of_competitors(value_of, std::less<>());
+  const HorizonRow* row = horizon_row(archive, combined_name, role, steps);
+  const Eigen::VectorXd combined = row ? row->rmse : Eigen::VectorXd();
+  errors.push_back({steps, bank->rmse, other.values, combined, rmse_words(bank->rmse, states),
+                    words_of_best(other, rmse_words(other.values, states), rmse_parts(other.values, states)),
+                    rmse_words(combined, states)});
+}
+
+/// One step ahead, and as far as was looked ahead.
+std::vector<ErrorAhead> errors_ahead(const Archive& archive, Role role) {
   std::vector<ErrorAhead> errors;
-  const auto add = [&](Index steps, const auto* bank, const auto* other) {
-    if (!bank) return;
-    const auto rmse = [](const auto* row) { return row ? row->rmse : Eigen::VectorXd(); };
-    const HorizonRow* combined = horizon_row(archive, combined_name, role, steps);
-    errors.push_back({steps, bank->rmse, rmse(other), rmse(combined), rmse_words(bank->rmse, states),
-                      rmse_words(rmse(other), states), rmse_words(rmse(combined), states)});
-  };
-  add(1, pooled_row(archive, "bank", role), pooled_row(archive, competitor, role));
+  add_error(
+      1, [&](const char* filter) { return pooled_row(archive, filter, role); }, archive, role, errors);
   if (const HorizonRow* far = longest_horizon(archive, "bank", role))
-    add(far->horizon, far, horizon_row(archive, competitor, role, far->horizon));
+    add_error(
+        far->horizon, [&](const char* filter) { return horizon_row(archive, filter, role, far->horizon); }, archive,
+        role, errors);
   return errors;
 }
 
@@ -131,7 +168,7 @@ namespace {
 std::string mean_words(const FirstScreen& screen) {
   const auto beside = [&](const std::string& words, const std::string& combined = "") {
     std::vector<std::string> others;
-    if (!words.empty()) others.push_back(fmt::format("{}: {}", screen.competitor, words));
+    if (!words.empty()) others.push_back(words);
     if (!combined.empty()) others.push_back(fmt::format("combined: {}", combined));
     return others.empty() ? "" : fmt::format(" ({})", boost::algorithm::join(others, ", "));
   };
@@ -142,30 +179,39 @@ std::string mean_words(const FirstScreen& screen) {
         error.bank_words + beside(error.other_words, error.combined_words));
   if (screen.free_run_start > 0)
     parts.push_back(fmt::format("free run from {} samples FIT {}{}", screen.free_run_start, fit_words(screen.fit),
-                                beside(fit_words(screen.other_fit))));
+                                beside(screen.other_fit_words)));
   return screen.errors.empty() ? "" : boost::algorithm::join(parts, "; ");
 }
 
 std::string warning_words(const Archive& archive) {
-  const std::vector<std::string> warnings = archive_warnings(archive);
+  const std::vector<Warning> warnings = archive_warnings(archive);
   if (warnings.empty()) return "";
   return warnings.size() == 1
-             ? warnings.front()
-             : fmt::format("{}, the first: {} (`modebank show` has all)", warnings.size(), warnings.front());
+             ? warnings.front().text
+             : fmt::format("{}, the first: {} (`modebank show` has all)", warnings.size(), warnings.front().text);
 }
 
-/// The numbers of the scores; `screen` has role and competitor already.
+/// The numbers of the scores; `screen` has its role already.
 void add_scores(FirstScreen& screen, const Archive& archive) {
-  screen.errors = errors_ahead(archive, screen.competitor, screen.role);
+  screen.errors = errors_ahead(archive, screen.role);
   if (const FreeRunRow* bank = free_run_of(archive, "bank", screen.role)) {
     screen.free_run_start = bank->start;
     screen.fit = bank->fit;
-    if (const FreeRunRow* other = free_run_of(archive, screen.competitor, screen.role)) screen.other_fit = other->fit;
+    const auto fit_of = [&](const char* name) {
+      const FreeRunRow* row = free_run_of(archive, name, screen.role);
+      return row ? &row->fit : nullptr;
+    };
+    const Best other = best_of_competitors(fit_of, std::greater<>());
+    screen.other_fit = other.values;
+    std::vector<std::string> each;
+    for (const double fit : other.values) each.push_back(fmt::format("{:.1f} %", fit));
+    screen.other_fit_words = words_of_best(other, fit_words(other.values), each);
   }
   screen.mean = mean_words(screen);
   screen.coverage = screen.coverage_lower = screen.coverage_upper = not_a_number;
   if (const DiagnosticsRow* row = diagnosis(archive, "bank", screen.role)) {
-    screen.band = band_words(*row);
+    screen.band = band_text(*row);
+    screen.verdict_words = verdict_text(*row);
     screen.verdict = row->verdict;
     screen.coverage = row->coverage_95;
     screen.coverage_lower = row->coverage_95_lower;
@@ -191,20 +237,6 @@ std::string answer_words(Answer answer) {
       return "modes of motion: not yet";
   }
   return "";
-}
-
-std::string calibration_words(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::calibrated:
-      return "its stated uncertainty is not found false";
-    case Verdict::overconfident:
-      return "it claims more certainty than it has";
-    case Verdict::underconfident:
-      return "it claims less certainty than it has";
-    case Verdict::undecided:
-      break;
-  }
-  return "whether its stated uncertainty is false is undecided";
 }
 
 bool has_first_screen(const Archive& archive) { return archive.bank && !archive.summary.empty(); }

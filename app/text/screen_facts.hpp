@@ -16,11 +16,12 @@ namespace modebank::app {
 /// Whether the archive holds what the screen is about: a bank and its scores.
 bool has_first_screen(const Archive& archive);
 
-/// How far predictions are off, beside the best competitor's and those of all filters combined.
+/// How far predictions are off, beside those of the competitor that predicts each state's mean best (as the finding's
+/// better_means have it) and of all filters combined.
 struct ErrorAhead {
   Index steps = 1;
   Eigen::VectorXd bank, other, combined;  ///< n_y, root mean square [state unit]; the last two: empty where not known
-  std::string bank_words, other_words, combined_words;  ///< the same with units
+  std::string bank_words, other_words, combined_words;  ///< the same with units; of the competitors with their names
 };
 
 /// What the screen says, computed once: first_screen prints it, the report's page shows it. Sentences are empty where
@@ -29,14 +30,16 @@ struct FirstScreen {
   std::string read, finding, band, mean, warning, next;
   bool inputs_ahead = false;  ///< the filter needs inputs earlier than the states they act on
   Role role = Role::test;     ///< of the judged runs
-  std::string competitor;     ///< the best one; empty without
+  std::string competitor;     ///< that of highest log score, which the gain is over; empty without
   std::optional<Answer> answer;
   double gain = 0.0, gain_error = 0.0;  ///< of log score over the competitor [nats/sample]; NaN where not known
   double coverage = 0.0, coverage_lower = 0.0, coverage_upper = 0.0;  ///< of the 95 % band; NaN where not known
   Verdict verdict = Verdict::undecided;
+  std::string verdict_words;       ///< with what it rests on; empty where the bank was not scored
   std::vector<ErrorAhead> errors;  ///< one step ahead, and as far as filter.horizon looks
   Index free_run_start = 0;        ///< measured samples that free runs begin with; 0: there are none
-  Eigen::VectorXd fit, other_fit;  ///< n_y, of the free runs [%]
+  Eigen::VectorXd fit, other_fit;  ///< n_y, of the free runs [%], and the best of the competitors'
+  std::string other_fit_words;     ///< the latter with their names
   Index mode_count = 0;
   ModeTable modes;  ///< of a scored bank
 };
@@ -46,7 +49,5 @@ FirstScreen make_first_screen(const Archive& archive, const Settings& settings);
 std::string answer_words(Answer answer);
 /// "71.2 %", or of several states "71.2 %, 65.0 %".
 std::string fit_words(const Eigen::VectorXd& fit);
-/// What a verdict means: "its stated uncertainty is not found false".
-std::string calibration_words(Verdict verdict);
 
 }  // namespace modebank::app

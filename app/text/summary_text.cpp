@@ -226,7 +226,7 @@ std::string windows_text(const WindowFits& fits, const WindowCounts& counts, con
       counts.total(), fits.length, counts.of(FitStatus::converged), counts.of(FitStatus::rank_deficient),
       counts.of(FitStatus::iteration_limit), counts.of(FitStatus::failed));
   text += audit_text(fits.audit);
-  for (const std::string& warning : window_warnings(fits, counts)) text += "warning   " + warning + "\n";
+  for (const Warning& warning : window_warnings(fits, counts)) text += "warning   " + warning.text + "\n";
   text += "global    ";
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const auto k = static_cast<Index>(i);

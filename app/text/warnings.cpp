@@ -15,20 +15,22 @@ void WindowCounts::add(const WindowFits& fits) {
   for (const int value : fits.status) ++status[static_cast<std::size_t>(value)];
 }
 
-std::vector<std::string> window_warnings(const WindowFits& fits, const WindowCounts& counts) {
-  std::vector<std::string> warnings;
+std::vector<Warning> window_warnings(const WindowFits& fits, const WindowCounts& counts) {
+  std::vector<Warning> warnings;
   if (fits.audit.replaced > 0)
     warnings.push_back(
-        fmt::format("the batch solver's cost was above Ceres' by more than {:.0e} relative, or its gradient above "
-                    "{:.0e}, in {} of {} "
-                    "audited windows, which have been solved by {}; window.solver = ceres solves all of them so",
-                    WindowAudit::tolerance, WindowAudit::gradient_tolerance, fits.audit.replaced, fits.audit.checked,
-                    fits.audit.ceres_method));
+        {WarningKind::replaced_windows,
+         fmt::format("the batch solver's cost was above Ceres' by more than {:.0e} relative, or its gradient above "
+                     "{:.0e}, in {} of {} "
+                     "audited windows, which have been solved by {}; window.solver = ceres solves all of them so",
+                     WindowAudit::tolerance, WindowAudit::gradient_tolerance, fits.audit.replaced, fits.audit.checked,
+                     fits.audit.ceres_method)});
   if (const Index failed = counts.of(FitStatus::failed); failed > 0)
     warnings.push_back(
-        fmt::format("{} of {} windows have no finite fit and are left out: their samples may hold values too large to "
-                    "square; see `modebank check`",
-                    failed, counts.total()));
+        {WarningKind::failed_windows,
+         fmt::format("{} of {} windows have no finite fit and are left out: their samples may hold values too large to "
+                     "square; see `modebank check`",
+                     failed, counts.total())});
   return warnings;
 }
 
@@ -76,22 +78,24 @@ std::string unscored_warning(const Archive& archive, double least_share) {
 
 constexpr double many_unscored = 0.05;  // fewer are no reason to look at the warning before the result
 
-std::vector<std::string> archive_warnings(const Archive& archive) {
-  std::vector<std::string> warnings;
-  const auto add = [&](const std::vector<std::string>& more) {
-    warnings.insert(warnings.end(), more.begin(), more.end());
-  };
+std::vector<Warning> archive_warnings(const Archive& archive) {
+  std::vector<Warning> warnings;
   if (archive.windows) {
     WindowCounts counts;
     counts.add(*archive.windows);
-    add(window_warnings(*archive.windows, counts));
+    warnings = window_warnings(*archive.windows, counts);
   }
-  if (archive.mixture) add(selection_warnings(archive.mixture->candidates));
-  if (const std::string refined = refinement_warning(archive.measured_fit); archive.bank && !refined.empty())
-    add({refined});
-  if (const std::string unstable = archive.bank ? stability_warning(*archive.bank) : ""; !unstable.empty())
-    add({unstable});
-  if (const std::string unscored = unscored_warning(archive, many_unscored); !unscored.empty()) add({unscored});
+  const auto add = [&](WarningKind kind, const std::string& text) {
+    if (!text.empty()) warnings.push_back({kind, text});
+  };
+  if (archive.mixture && !archive.unrefined)
+    for (const std::string& text : selection_warnings(archive.mixture->candidates)) add(WarningKind::mixture, text);
+  if (archive.bank) {
+    const bool limited = archive.measured_fit == MeasuredFit::iteration_limit;
+    add(limited ? WarningKind::iteration_limit : WarningKind::stalled, refinement_warning(archive.measured_fit));
+    add(WarningKind::no_stable_mode, stability_warning(*archive.bank));
+  }
+  add(WarningKind::unscored, unscored_warning(archive, many_unscored));
   return warnings;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "filter/judge/evidence.hpp"
+#include "filter/judge/verdict_reason.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -97,8 +98,6 @@ constexpr double takes_all = 0.99;         // usage of one mode
 constexpr double unused = 1e-3;            // usage
 constexpr double flat_entropy = 0.95;      // of log K
 constexpr double dominating_spread = 0.5;  // share of trace S
-constexpr double coloured = 0.01;          // whiteness p
-constexpr double noticeable_colour = 0.1;  // autocorrelation: a hundredth of the variance could be predicted
 
 void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
 
@@ -117,10 +116,9 @@ std::string two_digits(double value) {
   return {text.data(), end};
 }
 
-/// What stands out of a filter's row, separated by "; ". `colour`: of its z. `modes`: rows of the same filter's modes.
-/// `nees_states`: how many states the NEES is about.
-std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes, Eigen::Index nees_states,
-                     const Autocorrelation& colour) {
+/// Flags of a filter's row, separated by "; ". `modes`: rows of the same filter's modes. `nees_states`: how
+/// many states the NEES is about.
+std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes, Eigen::Index nees_states) {
   std::string flags;
   for (const DiagnosticsRow& mode : modes)
     if (mode.usage > takes_all) add_flag(flags, "one mode takes all (" + std::to_string(mode.mode) + ")");
@@ -134,10 +132,11 @@ std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow
     add_flag(flags, "NEES above a true filter's: the state's covariance is too small");
   if (all.nees_mean < all.nees_lower)
     add_flag(flags, "NEES below a true filter's: the state's covariance is too large");
-  if (all.whiteness_p < coloured && std::abs(colour.value) > noticeable_colour)
-    add_flag(flags, "innovations not white: autocorrelation " + two_digits(colour.value) + " at lag " +
-                        std::to_string(colour.lag));
-  if (all.verdict == Verdict::undecided) add_flag(flags, "too few samples for a verdict");
+  if (errors_follow_a_pattern(all))
+    add_flag(flags, "innovations not white: autocorrelation " + two_digits(all.autocorrelation) + " at lag " +
+                        std::to_string(all.autocorrelation_lag));
+  if (all.verdict == Verdict::undecided && reason_of(all) == VerdictReason::few_samples)
+    add_flag(flags, "too few samples for a verdict");
   if (nees_states < all.state_rmse.size() && all.state_rmse.allFinite())
     add_flag(flags, nees_states == 0 ? "R is as good as zero, so the state is the measurement: no NEES"
                                      : "R of some states is as good as zero, so they are the measurement: NEES of the "
@@ -156,21 +155,24 @@ std::vector<DiagnosticsRow> diagnose_role(const std::string& filter, Role role, 
   const bool chi_square_nis =
       (bank.mode_count() == 1 || options.variant == FilterVariant::kf) && options.noise == FilterNoise::gaussian;
   const std::vector<Index> nees_states = states_with_noise(bank, role, runs, evaluations);
-  Autocorrelation colour;
   const auto row_of = [&](Index mode) {
     const Collected collected = collect(bank, mode, role, chi_square_nis, nees_states, runs, evaluations, scores);
     DiagnosticsRow row = make_row(collected, std::ssize(nees_states));
     row.filter = filter;
     row.role = role;
     row.mode = mode;
-    if (mode < 0) colour = largest_autocorrelation(collected.z);
+    if (mode < 0) {
+      const Autocorrelation colour = largest_autocorrelation(collected.z);
+      row.autocorrelation = colour.value;
+      row.autocorrelation_lag = colour.lag;
+    }
     if (mode >= 0 && bank.transition_logit.empty())
       row.dwell_model = 1.0 / (1.0 - bank.transition.matrix()(mode, mode));
     return row;
   };
   std::vector<DiagnosticsRow> rows{row_of(-1)};
   for (Index mode = 0; bank.mode_count() > 1 && mode < bank.mode_count(); ++mode) rows.push_back(row_of(mode));
-  rows.front().flags = flags_of(rows.front(), {rows.begin() + 1, rows.end()}, std::ssize(nees_states), colour);
+  rows.front().flags = flags_of(rows.front(), {rows.begin() + 1, rows.end()}, std::ssize(nees_states));
   return rows;
 }
 

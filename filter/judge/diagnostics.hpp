@@ -36,9 +36,11 @@ struct DiagnosticsRow {
   double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< mean_distance, interval of it if the filter is true
   double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< of the state after the measurement, with truth;
   ///< NaN where R is next to nothing: the state is then the measurement, and its stated covariance R no judgement of it
-  Eigen::VectorXd state_rmse;  ///< n_y, state minus truth; NaN without truth
-  double whiteness_p = 0.0;    ///< Ljung & Box, as in the summary
-  double spread_share = 0.0;   ///< mean share of the modes' differences in trace S
+  Eigen::VectorXd state_rmse;    ///< n_y, state minus truth; NaN without truth
+  double whiteness_p = 0.0;      ///< Ljung & Box, as in the summary
+  double autocorrelation = 0.0;  ///< of z, the largest by size, at this lag; of the whole filter, else 0
+  Eigen::Index autocorrelation_lag = 0;
+  double spread_share = 0.0;  ///< mean share of the modes' differences in trace S
   Verdict verdict = Verdict::undecided;
   std::string flags;  ///< what stands out, separated by "; "
 };

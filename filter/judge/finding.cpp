@@ -19,6 +19,9 @@ using Eigen::Index;
 constexpr double coarse_share = 0.25;  // of the innovation's standard deviation: densities then peak between quanta
 constexpr Index free_run_horizon = 0;
 constexpr double noticeable_rmse = 1e-3;  // relative: what a table of three digits shows
+constexpr double rounding_rmse = 1e-8;    // of a state's standard deviation: half of a double's digits
+constexpr double negligible_loss = 0.02;  // nats per sample, as where modes are counted (model_choice.hpp)
+constexpr double rank_significance = 0.05;
 
 Index scored_runs(const Densities& densities) {
   return std::count_if(densities.of_runs.begin(), densities.of_runs.end(),
@@ -41,22 +44,38 @@ void set_best_competitor(Finding& finding) {
   }
 }
 
-/// The simplest competitor whose loss against the best one lies within its own margin.
-std::string simplest_as_good(const std::vector<Densities>& competitors, const std::string& best) {
-  const Densities* leader = named(competitors, best);
+/// Whether what `better` gains over another is small, or not told from zero.
+bool is_as_good(const PairedGain& of_better) {
+  if (of_better.gain < negligible_loss) return true;
+  return std::isfinite(of_better.margin) && !of_better.exceeds() && !(of_better.rank_p < rank_significance);
+}
+
+const PairedGain* gain_over(const Finding& finding, const std::string& competitor) {
+  const auto found = std::find_if(finding.gains.begin(), finding.gains.end(),
+                                  [&](const PairedGain& gain) { return gain.competitor == competitor; });
+  return found == finding.gains.end() ? nullptr : &*found;
+}
+
+/// The simplest competitor that is as good as the best one and as the bank, and what it loses against the former.
+void set_better_description(const std::vector<Densities>& competitors, Finding& finding) {
+  const Densities* leader = named(competitors, finding.best_competitor);
   for (const char* name : competitor_names) {
     const Densities* candidate = named(competitors, name);
+    if (finding.best_competitor == name) break;  // what follows is less simple
     if (!leader || !candidate) continue;
-    if (name == best || !paired_gain(name, leader->of_runs, candidate->of_runs).exceeds()) return name;
+    const PairedGain loss = paired_gain(name, leader->of_runs, candidate->of_runs);
+    if (!is_as_good(*gain_over(finding, name)) || !is_as_good(loss)) continue;
+    finding.better_description = name;
+    finding.description_loss = loss.gain;
+    return;
   }
-  return best;
+  finding.better_description = finding.best_competitor;
 }
 
 /// Whether the bank is beyond doubt better than the best competitor.
 bool beats_the_best(const Finding& finding) {
-  return std::any_of(finding.gains.begin(), finding.gains.end(), [&](const PairedGain& gain) {
-    return gain.competitor == finding.best_competitor && gain.exceeds();
-  });
+  const PairedGain* gain = gain_over(finding, finding.best_competitor);
+  return gain && gain->exceeds();
 }
 
 bool is_coarse(const Resolution& state) {
@@ -65,14 +84,27 @@ bool is_coarse(const Resolution& state) {
 
 Answer answer_of(const Finding& finding) {
   if (finding.step_scatter > most_step_scatter) return Answer::not_yet;
-  if (finding.modes < 2) return Answer::one_mode;
+  if (finding.modes < 2 || finding.without_noise) return Answer::one_mode;
   if (!finding.coarse.empty()) return Answer::not_comparable;
   if (finding.gains.empty() || !finding.held_out()) return Answer::cannot_tell;
   const auto any = [&](auto holds) { return std::any_of(finding.gains.begin(), finding.gains.end(), holds); };
   if (any([](const PairedGain& gain) { return !std::isfinite(gain.margin); })) return Answer::cannot_tell;
-  if (!finding.modes_differ || any([](const PairedGain& gain) { return gain.gain <= 0.0; })) return Answer::no_evidence;
+  if (any([](const PairedGain& gain) { return gain.gain <= 0.0; })) return Answer::no_evidence;
+  if (!finding.modes_differ) return finding.errors_known ? Answer::no_evidence : Answer::cannot_tell;
   if (any([](const PairedGain& gain) { return !gain.exceeds(); })) return Answer::cannot_tell;
   return Answer::evidence;
+}
+
+/// Whether one linear model's errors are no more than rounding.
+bool leaves_rounding(const FindingInputs& in) {
+  for (const SummaryRow& row : in.summary) {
+    if (row.filter != "baseline" || row.run != "*" || row.role != in.role) continue;
+    bool all = row.rmse.size() == std::ssize(in.states) && row.rmse.size() > 0;
+    for (Index i = 0; all && i < row.rmse.size(); ++i)
+      all = row.rmse(i) < rounding_rmse * in.states[static_cast<std::size_t>(i)].sd;
+    return all;
+  }
+  return false;
 }
 
 /// At each horizon and state the competitor of least RMSE, where that is less than the bank's.
@@ -116,6 +148,23 @@ std::vector<BetterMean> better_means(const FindingInputs& in) {
   return means.better(in.states);
 }
 
+/// Variances of theta; NaN where there are no standard errors.
+Eigen::ArrayXd variances(const Bank& bank, Index mode) {
+  const Eigen::VectorXd& error = bank.modes[static_cast<std::size_t>(mode)].standard_error;
+  const Index parameters = bank.structure.parameters();
+  return error.size() == parameters ? Eigen::ArrayXd(error.array().square())
+                                    : Eigen::ArrayXd::Constant(parameters, not_a_number);
+}
+
+/// Whether something holds for the difference of two modes' theta and its variance, for some pair.
+template <class Holds>
+bool any_pair(const Bank& bank, Holds holds) {
+  for (Index a = 0; a < bank.mode_count(); ++a)
+    for (Index b = 0; b < a; ++b)
+      if (holds((bank.theta(a) - bank.theta(b)).array(), variances(bank, a) + variances(bank, b))) return true;
+  return false;
+}
+
 }  // namespace
 
 const char* description_of(const std::string& competitor, bool one_motion_drifts) {
@@ -132,14 +181,31 @@ bool modes_differ(const Bank& bank) {
   const auto comparisons = static_cast<double>(pairs * bank.structure.parameters());
   if (K < 2) return false;
   const double far = normal_quantile(1.0 - 0.025 / comparisons);
-  for (Index a = 0; a < K; ++a)
-    for (Index b = 0; b < a; ++b) {
-      const Eigen::ArrayXd variance = bank.modes[static_cast<std::size_t>(a)].standard_error.array().square() +
-                                      bank.modes[static_cast<std::size_t>(b)].standard_error.array().square();
-      const Eigen::ArrayXd difference = (bank.theta(a) - bank.theta(b)).array();
-      if ((difference.square() > far * far * variance).any()) return true;
-    }
-  return false;
+  return any_pair(bank, [far](const Eigen::ArrayXd& difference, const Eigen::ArrayXd& variance) {
+    return (difference.square() > far * far * variance).any();
+  });
+}
+
+bool errors_known(const Bank& bank) {
+  return !any_pair(bank, [](const Eigen::ArrayXd& difference, const Eigen::ArrayXd& variance) {
+    return (difference != 0.0 && !variance.isFinite()).any();
+  });
+}
+
+Doubt doubt_of(const Finding& finding) {
+  if (!finding.held_out()) return Doubt::nothing_held_out;
+  if (finding.gains.empty()) return Doubt::no_competitor;
+  if (!least_beaten(finding)) return Doubt::few_samples;
+  return finding.modes_differ ? Doubt::within_chance : Doubt::errors_unknown;
+}
+
+const PairedGain* least_beaten(const Finding& finding) {
+  const PairedGain* least = nullptr;
+  for (const PairedGain& gain : finding.gains) {
+    if (!std::isfinite(gain.margin)) return nullptr;
+    if (!least || gain.gain * least->margin < least->gain * gain.margin) least = &gain;
+  }
+  return least;
 }
 
 Finding judge_modes(const FindingInputs& in) {
@@ -148,17 +214,19 @@ Finding judge_modes(const FindingInputs& in) {
   finding.runs = scored_runs(in.bank_densities);
   finding.modes = in.bank.mode_count();
   finding.modes_differ = modes_differ(in.bank);
+  finding.errors_known = errors_known(in.bank);
   finding.step_scatter = in.step_scatter;
+  finding.without_noise = leaves_rounding(in);
   finding.one_motion_drifts = in.one_motion_drifts;
   std::copy_if(in.states.begin(), in.states.end(), std::back_inserter(finding.coarse), is_coarse);
   for (const Densities& competitor : in.competitors)
     finding.gains.push_back(paired_gain(competitor.filter, in.bank_densities.of_runs, competitor.of_runs));
   set_best_competitor(finding);
   finding.answer = answer_of(finding);
-  const bool densities_tell = finding.answer != Answer::not_comparable && finding.answer != Answer::not_yet;
-  if (densities_tell && !beats_the_best(finding))
-    finding.better_description = simplest_as_good(in.competitors, finding.best_competitor);
-  if (finding.modes > 1) finding.better_means = better_means(in);
+  const bool densities_tell =
+      finding.answer != Answer::not_comparable && finding.answer != Answer::not_yet && !finding.without_noise;
+  if (densities_tell && !beats_the_best(finding)) set_better_description(in.competitors, finding);
+  if (finding.modes > 1 && !finding.without_noise) finding.better_means = better_means(in);
   return finding;
 }
 

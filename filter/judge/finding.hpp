@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "filter/judge/free_run.hpp"
@@ -32,6 +33,10 @@ inline constexpr std::array<const char*, 4> competitor_names{"baseline", "noise_
 /// `one_motion_drifts`: whether the theta of `one_motion` does.
 const char* description_of(const std::string& competitor, bool one_motion_drifts);
 
+/// Why an answer is `cannot tell`. errors_unknown: modes whose parameters have no standard error may be alike.
+/// within_chance: the gain over some competitor lies within its margin.
+enum class Doubt { nothing_held_out, no_competitor, few_samples, errors_unknown, within_chance };
+
 /// What a filter said of the judged runs.
 struct Densities {
   std::string filter;
@@ -44,6 +49,7 @@ struct Resolution {
   double quantum = 0.0;        ///< all values are multiples of it apart; 0: none seen
   double repeated = 0.0;       ///< share of samples equal to the one before
   double innovation_sd = 0.0;  ///< median standard deviation of the bank's predictions [state unit]
+  double sd = 0.0;             ///< of the samples [state unit]; 0: not known
 };
 
 /// Share of repeated samples beyond which densities are not compared: measured noise hardly ever repeats to the last
@@ -68,22 +74,33 @@ struct Finding {
   Eigen::Index runs = 0;                    ///< judged, with scored samples
   Eigen::Index modes = 0;                   ///< of the bank
   bool modes_differ = false;                ///< in theta, beyond their errors
+  bool errors_known = true;                 ///< errors_known of the bank: else modes may differ all the same
   double step_scatter = 0.0;                ///< standard deviation of the time steps over their median
   std::vector<Resolution> coarse;           ///< states for which densities are not comparable
+  bool without_noise = false;               ///< one linear model leaves no more of the runs than rounding
   bool one_motion_drifts = false;           ///< the competitor of that name learns within a run, as the bank does
   std::vector<PairedGain> gains;            ///< of the bank over each competitor
   std::string best_competitor;              ///< of highest log score; empty without competitors
   double gain = 0.0, standard_error = 0.0;  ///< over that one [nats/sample]; NaN where it is not known
   std::string better_description;  ///< the competitor that describes the runs instead; empty where there is none
+  double description_loss = 0.0;   ///< of that one against the best competitor [nats/sample]
   std::vector<BetterMean> better_means;
+  std::vector<std::pair<std::string, double>> coefficients;  ///< of one linear model, where that leaves no noise
   std::string text;  ///< all of it in plain sentences, by whoever has words for it
 
   bool held_out() const { return role == Role::test; }
 };
 
 /// Whether some pair of modes differs in a parameter by more than its two standard errors allow, at 95 % for all pairs
-/// and parameters together (Bonferroni).
+/// and parameters together (Bonferroni). Parameters without a standard error tell no modes apart.
 bool modes_differ(const Bank& bank);
+/// Whether every parameter in which modes have different values has a standard error.
+bool errors_known(const Bank& bank);
+
+/// The first reason that the numbers of a finding give that cannot tell.
+Doubt doubt_of(const Finding& finding);
+/// The competitor that the bank's gain is least beyond chance over, in units of its margin; null without a margin.
+const PairedGain* least_beaten(const Finding& finding);
 
 struct FindingInputs {
   const Bank& bank;
@@ -98,9 +115,13 @@ struct FindingInputs {
   double step_scatter = 0.0;  ///< as in Finding
 };
 
-/// not yet: the steps scatter beyond most_step_scatter. evidence: the gain over each competitor exceeds its margin (paired_gain.hpp) and the modes differ. no evidence: a
-/// competitor has no lower score, or all modes have the same theta. cannot tell: all between, nothing held out, or too
-/// few samples for a margin. With one mode the question is not asked.
+/// not yet: the steps scatter beyond most_step_scatter. one mode: the bank has one, or one linear model leaves no
+/// noise: scores are then those of rounding. evidence: the gain over each competitor exceeds its margin
+/// (paired_gain.hpp) and the modes differ. no evidence: a competitor has no lower score, or all modes have the same
+/// theta. cannot tell: all between, nothing held out, too few samples for a margin, or modes whose errors are not
+/// known. Where the bank is not beyond doubt better than the best competitor,
+/// better_description is the simplest one that is as good as both: it loses less than 0.02 nats, or neither a t-test
+/// nor Wilcoxon's over runs tells it apart.
 Finding judge_modes(const FindingInputs& in);
 
 }  // namespace modebank

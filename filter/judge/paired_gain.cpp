@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "filter/judge/signed_rank.hpp"
 #include "filter/judge/statistics.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -36,6 +37,13 @@ double stretch_sum(const std::vector<double>& values, std::size_t first, std::si
   double sum = 0.0;
   for (std::size_t k = first; k < first + count; ++k) sum += values[k];
   return sum;
+}
+
+std::vector<double> means_of_runs(const SeriesByRun& d) {
+  std::vector<double> means;
+  for (const std::vector<double>& run : d)
+    means.push_back(stretch_sum(run, 0, run.size()) / static_cast<double>(run.size()));
+  return means;
 }
 
 struct MeanError {
@@ -90,6 +98,7 @@ PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::V
   const MeanError error = result.by_blocks ? error_by_blocks(d, result.gain, samples) : error_by_runs(d);
   result.standard_error = error.standard_error;
   result.degrees_of_freedom = error.degrees_of_freedom;
+  if (!result.by_blocks) result.rank_p = signed_rank_p(means_of_runs(d));
   if (error.degrees_of_freedom > 0.0)
     result.margin = student_quantile(upper_probability, error.degrees_of_freedom) * error.standard_error;
   return result;

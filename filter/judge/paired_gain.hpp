@@ -15,6 +15,7 @@ struct PairedGain {
   double degrees_of_freedom = 0.0;
   double margin = 0.0;     ///< what the gain has to exceed: t(0.975, degrees of freedom) standard errors; NaN likewise
   bool by_blocks = false;  ///< clustered by blocks of samples rather than by runs
+  double rank_p = 1.0;     ///< signed_rank_p of the runs' mean differences; 1 where blocks are counted
 
   /// False where the error is not known.
   bool exceeds() const { return gain > margin; }

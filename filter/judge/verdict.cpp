@@ -14,14 +14,8 @@ namespace {
 constexpr double nis_level = 0.99;     // of the interval whose outside is a verdict
 constexpr double nis_tolerance = 0.1;  // a tenth of the variance is a twentieth of the interval's width
 constexpr double outside_level = 0.99;
-constexpr double true_outside = 0.05, many_outside = 0.06, few_outside = 0.025;
 
 bool within(double value, double least, double largest) { return value >= least && value <= largest; }
-
-/// Whether an interval holds all of the band that counts as calibrated, and more: nothing is known.
-bool says_nothing(const Interval& interval, double least, double largest) {
-  return interval.lower < least && interval.upper > largest;
-}
 
 /// What the mean NIS says: -1 underconfident, 1 overconfident, 0 nothing.
 int judge_nis(const Evidence& evidence) {
@@ -34,6 +28,10 @@ int judge_nis(const Evidence& evidence) {
 }
 
 }  // namespace
+
+bool says_nothing(const Interval& interval, double least, double largest) {
+  return interval.lower < least && interval.upper > largest;
+}
 
 SeriesByRun as_numbers(const HitsByRun& hits) {
   SeriesByRun numbers;

@@ -38,6 +38,9 @@ std::array<double, coverage_levels.size()> coverage_band_edges();
 /// What counts as calibrated: fractions outside the deciding band, and fractions too close to the middle.
 inline constexpr double least_outside = 0.025, largest_outside = 0.075, least_close = 0.01, largest_close = 0.04;
 
+/// Shares outside that are a verdict where they are beyond doubt (verdict_of).
+inline constexpr double true_outside = 0.05, many_outside = 0.06, few_outside = 0.025;
+
 /// Limits of the probability behind `count` successes in `samples` independent trials, Clopper & Pearson (1934).
 /// Fractions of trials are allowed. NaN without samples.
 Interval binomial_interval(double count, double samples, double level = 0.95);
@@ -60,6 +63,9 @@ struct Evidence {
 double time_by_sizes(const SeriesByRun& sizes);
 /// Of a fraction of hits, with as many samples as there are independent ones. `time`: of time_by_sizes.
 Interval fraction_interval(const SeriesByRun& hits, double time, double level = 0.95);
+
+/// Whether an interval holds all of the band that counts as calibrated, and more: nothing is known.
+bool says_nothing(const Interval& interval, double least, double largest);
 
 /// `time`: of time_by_sizes.
 Verdict verdict_of(const Evidence& evidence, double time);

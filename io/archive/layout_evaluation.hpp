@@ -163,7 +163,9 @@ void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
       amount_column("nees_mean", &Row::nees_mean), amount_column("nees_lower", &Row::nees_lower),
       amount_column("nees_upper", &Row::nees_upper), amount_column("state_rmse", &Row::state_rmse, joined(states)),
       share_column("whiteness_p", &Row::whiteness_p), share_column("spread_share", &Row::spread_share),
-      column("verdict", &Row::verdict), column("flags", &Row::flags));
+      column("verdict", &Row::verdict), column("flags", &Row::flags),
+      later_column("autocorrelation", &Row::autocorrelation),
+      later_column("autocorrelation_lag", &Row::autocorrelation_lag));
 }
 
 /// /evaluation/evidence: what was found, in words and in the numbers that decided.
@@ -174,6 +176,7 @@ void exchange_finding(Io& io, F& finding) {
   io.attribute("runs", finding.runs, rule::not_negative);
   io.attribute("modes", finding.modes, rule::not_negative);
   io.attribute("modes_differ", finding.modes_differ);
+  io.attribute_unless(false, "without_noise", finding.without_noise);
   io.attribute("best_competitor", finding.best_competitor);
   io.attribute("gain", finding.gain);
   io.attribute("standard_error", finding.standard_error, rule::not_negative_or_missing);

@@ -22,9 +22,7 @@ json card(const std::string& key, const std::string& name, const json& big, cons
   return {{"key", key}, {"name", name}, {"big", big}, {"unit", unit}, {"said", said}};
 }
 
-std::string competitor_words(const FirstScreen& screen, const std::string& words) {
-  return words.empty() ? "no competitor was scored" : fmt::format("{}: {}", screen.competitor, words);
-}
+std::string competitor_words(const std::string& words) { return words.empty() ? "no competitor was scored" : words; }
 
 json gain_card(const FirstScreen& screen) {
   if (std::isnan(screen.gain)) return nullptr;
@@ -52,11 +50,9 @@ std::string use_words(const FirstScreen& screen) {
   return "cannot tell yet";
 }
 
-/// "use it: calibrated, its stated uncertainty is not found false"
+/// "use it: calibrated, ..."
 std::string band_advice(const FirstScreen& screen) {
-  const std::string why =
-      screen.verdict == Verdict::undecided ? "too few independent samples" : calibration_words(screen.verdict);
-  return fmt::format("{}: {}, {}", use_words(screen), name_of(screen.verdict), why);
+  return fmt::format("{}: {}", use_words(screen), screen.verdict_words);
 }
 
 json coverage_card(const FirstScreen& screen) {
@@ -66,25 +62,25 @@ json coverage_card(const FirstScreen& screen) {
               band_advice(screen));
 }
 
-json error_card(const FirstScreen& screen, const ErrorAhead& error) {
+json error_card(const ErrorAhead& error) {
   const std::string name = error.steps == 1 ? "RMSE one step ahead" : fmt::format("RMSE {} steps ahead", error.steps);
   json big = number_list(error.bank);
   big["t"] = error.bank_words;
   const std::string combined = error.combined_words.empty() ? "" : "; combined: " + error.combined_words;
-  return card("error", name, big, "", competitor_words(screen, error.other_words) + combined);
+  return card("error", name, big, "", competitor_words(error.other_words) + combined);
 }
 
 json fit_card(const FirstScreen& screen) {
   json big = number_list(screen.fit);
   big["t"] = fit_words(screen.fit);
-  return card("fit", "FIT of the free run", big, "", competitor_words(screen, fit_words(screen.other_fit)));
+  return card("fit", "FIT of the free run", big, "", competitor_words(screen.other_fit_words));
 }
 
 json cards_of(const FirstScreen& screen) {
   json cards = json::array();
   for (const json& made : {coverage_card(screen), gain_card(screen)})
     if (!made.is_null()) cards.push_back(made);
-  for (const ErrorAhead& error : screen.errors) cards.push_back(error_card(screen, error));
+  for (const ErrorAhead& error : screen.errors) cards.push_back(error_card(error));
   if (screen.errors.size() == 1)
     cards.push_back(card("error", "RMSE ten steps ahead", nullptr, "", "not looked at: --filter.horizon 10 does so"));
   if (screen.free_run_start > 0) cards.push_back(fit_card(screen));

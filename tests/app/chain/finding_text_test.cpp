@@ -36,17 +36,20 @@ TEST(FindingText, EvidenceNamesGainErrorAndTheOtherExplanation) {
 TEST(FindingText, NoEvidenceNamesWhatDescribesTheRunsInstead) {
   Finding finding = finding_of(Answer::no_evidence);
   finding.better_description = "drifting";
+  finding.description_loss = 0.012;
   EXPECT_THAT(
       finding_text(finding),
       AllOf(HasSubstr("no evidence for modes of motion"),
             HasSubstr("These runs may be described as well by one motion whose parameters drift (drifting), the "
-                      "simplest that is not told apart from one_motion.")));
+                      "simplest that is about as good as one_motion (-0.012 nats per sample).")));
   finding.better_description = "one_motion";
   EXPECT_THAT(finding_text(finding), HasSubstr("as well by one motion with changing noise (one_motion)."));
   finding.gains.front().gain = -0.2;
   EXPECT_THAT(finding_text(finding), HasSubstr("These runs are described better by one motion with changing noise"));
   finding.modes_differ = false;
   EXPECT_THAT(finding_text(finding), HasSubstr("The modes do not differ in their parameters beyond their errors"));
+  finding.errors_known = false;
+  EXPECT_THAT(finding_text(finding), Not(HasSubstr("beyond their errors")));
 }
 
 TEST(FindingText, OneMotionThatDriftsIsCalledSo) {
@@ -60,9 +63,22 @@ TEST(FindingText, OneMotionThatDriftsIsCalledSo) {
 
 TEST(FindingText, WhatCannotBeToldSaysWhy) {
   Finding finding = finding_of(Answer::cannot_tell);
-  EXPECT_THAT(finding_text(finding), HasSubstr("cannot be told: the gain does not exceed what chance makes"));
+  // 7.6 errors over the best competitor, while another one is not beaten beyond chance: that one is named.
+  finding.gain = 0.717;
+  finding.standard_error = 0.094;
+  finding.gains = {{"one_motion", 700, 0.849, 0.388, 4.0, 1.077, false},
+                   {"drifting", 700, 0.717, 0.094, 4.0, 0.261, false}};
+  finding.best_competitor = "drifting";
+  finding.runs = 5;
+  EXPECT_THAT(finding_text(finding),
+              AllOf(HasSubstr("cannot be told: the gain over one_motion, +0.849 +- 0.388 nats per sample, does not "
+                              "exceed what chance makes of 5 runs (1.077)."),
+                    HasSubstr("gains +0.717 +- 0.094 nats per sample over drifting")));
+  finding.modes_differ = false;
+  EXPECT_THAT(finding_text(finding), HasSubstr("the standard errors of the modes' parameters are not known"));
   finding.gains.front().margin = finding.standard_error = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("too few samples"), HasSubstr("of unknown error")));
+  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("too few independent samples"), HasSubstr("of unknown error")));
+  finding.runs = 6;
   finding.role = Role::train;
   EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("6 training runs"), HasSubstr("nothing was held out")));
 }
@@ -78,6 +94,14 @@ TEST(FindingText, OneModeAndCoarseMeasurementsClaimNothing) {
   EXPECT_THAT(finding_text(coarse),
               AllOf(HasSubstr("wz comes in steps of 0.2, predictions are uncertain by 0.12"),
                     HasSubstr("78 % of the samples of v repeat the one before"), Not(HasSubstr("evidence"))));
+}
+
+TEST(FindingText, DataWithoutNoiseEndInCoefficients) {
+  Finding finding = finding_of(Answer::one_mode);
+  finding.without_noise = true;
+  finding.coefficients = {{"y <- y", -0.1}, {"y <- u", 0.2}};
+  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("describes the 6 held-out runs without noise"),
+                                           HasSubstr("y <- y -0.1, y <- u 0.2."), Not(HasSubstr("evidence"))));
 }
 
 TEST(FindingText, StepsThatScatterClaimNothing) {

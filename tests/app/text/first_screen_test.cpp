@@ -100,6 +100,25 @@ TEST(FirstScreen, SaysWhatMatters) {
   EXPECT_THAT(screen_of(screen_archive(1, 2, 3, Role::train)), HasSubstr("none held out"));
 }
 
+/// The best of log score need not be the best of the mean: what stands beside the bank's error is what the finding
+/// names.
+TEST(FirstScreen, ErrorsStandBesideTheLeastOfTheCompetitors) {
+  Archive archive = screen_archive(2, 1, 3);
+  SummaryRow row = archive.summary.back();
+  row.filter = "baseline";
+  row.rmse = Eigen::Vector2d(0.035, 0.05);
+  archive.summary.push_back(row);
+  EXPECT_THAT(app::make_first_screen(archive, defaults).mean,
+              HasSubstr("(wz 0.035 rad/s (baseline), v1 0.04 rad/s (drifting))"));
+}
+
+TEST(FirstScreen, StaysAreThoseOfTheTransitionMatrixWhereGapsCutRuns) {
+  Archive archive = screen_archive(1, 1, 2);
+  archive.recording->runs.front().state = Eigen::MatrixXd::Zero(1, 300);
+  for (DiagnosticsRow& row : archive.diagnostics) row.dwell_model = row.mode == 0 ? 169.0 : 1000.0;
+  EXPECT_THAT(screen_of(archive), AllOf(HasSubstr("16.9 s"), HasSubstr("over 30 s")));
+}
+
 TEST(FirstScreen, SaysWhatTheFiltersPredictTogether) {
   Archive archive = screen_archive(1, 2, 3);
   for (const Index ahead : {1, 10})
@@ -226,12 +245,12 @@ TEST_F(NextStep, AnswersHaveTheirs) {
   archive.finding->best_competitor = "one_motion";
   EXPECT_THAT(advice(), HasSubstr("use the simpler one_motion (one motion with changing noise): `modebank track"));
   archive.finding->best_competitor = "drifting";
-  EXPECT_THAT(advice(),
-              HasSubstr("(one motion with changing noise), which is not told apart from drifting: `modebank"));
+  EXPECT_THAT(advice(), HasSubstr("(one motion with changing noise), which is about as good as drifting: `modebank"));
 }
 
 TEST_F(NextStep, ColouredErrorsAskForMemory) {
-  row().flags = "innovations not white: autocorrelation 0.45 at lag 1";
+  row().whiteness_p = 1e-6;
+  row().autocorrelation = 0.45;
   settings["window.state_lags"] = "2";
   EXPECT_THAT(advice(), HasSubstr("--window.model varx --window.state_lags auto --window.input_lags auto"));
   archive.recording->inputs.clear();  // input_lags = auto is refused without any
@@ -249,7 +268,8 @@ TEST_F(NextStep, ColouredErrorsAskForMemory) {
 
 /// Which of two models that both lack memory predicts better says little.
 TEST_F(NextStep, MemoryComesBeforeASimplerModel) {
-  row().flags = "innovations not white: autocorrelation -0.92 at lag 4";
+  row().whiteness_p = 1e-6;
+  row().autocorrelation = -0.92;
   archive.finding->answer = Answer::no_evidence;
   archive.finding->better_description = "one_motion";
   EXPECT_THAT(advice(), HasSubstr("--window.state_lags auto"));
@@ -266,18 +286,54 @@ TEST_F(NextStep, AFalseBandAsksForAdaptiveNoiseOnce) {
     EXPECT_THAT(advice(), AllOf(HasSubstr("--data.train"), Not(HasSubstr("adaptive"))));
   }
   row().verdict = Verdict::undecided;
+  row().coverage_95_lower = 0.9, row().coverage_95_upper = 0.99;
   EXPECT_THAT(advice(), HasSubstr("more held-out samples"));
+}
+
+/// A flag's words decide nothing: what it is made of does.
+TEST_F(NextStep, GoesByNumbersAndNotByWords) {
+  row().flags = "innovations not white: autocorrelation 0.45 at lag 1";
+  EXPECT_THAT(advice(), HasSubstr("nothing: use it"));
+}
+
+TEST_F(NextStep, UnknownErrorsAskForThem) {
+  archive.finding->answer = Answer::cannot_tell;
+  archive.finding->gains = {{"drifting", 700, 0.3, 0.1, 5.0, 0.2, false}};
+  EXPECT_THAT(advice(), HasSubstr("inputs that hardly vary"));
+  settings["bank.look_ahead"] = "10";
+  EXPECT_THAT(advice(), HasSubstr("--bank.look_ahead 1"));
+}
+
+TEST_F(NextStep, APredictorThatIsFarCloserIsNamed) {
+  archive.finding->better_means = {{"drifting", 1, "", 0.03, 0.029}, {"baseline", 10, "", 0.167, 0.043}};
+  EXPECT_THAT(advice(), HasSubstr("to predict, baseline is closer 10 samples ahead: `modebank track ARCHIVE "
+                                  "--track.filter baseline`"));
+}
+
+TEST_F(NextStep, RoundedValuesAreNotAskedForTwice) {
+  archive.finding->answer = Answer::not_comparable;
+  EXPECT_THAT(advice(), HasSubstr("--data.quantum auto"));
+  settings["data.quantum"] = "auto";
+  EXPECT_THAT(advice(), Not(HasSubstr("--data.quantum")));
+}
+
+TEST_F(NextStep, DataWithoutNoiseLeaveNothingToFilter) {
+  archive.finding->answer = Answer::one_mode;
+  archive.finding->without_noise = true;
+  EXPECT_THAT(advice(), HasSubstr("modebank export ARCHIVE --to json"));
 }
 
 TEST_F(NextStep, ABankWithoutAStableModeWarns) {
   for (Mode& mode : archive.bank->modes) mode.model.A(0, 0) = 0.01;
   EXPECT_THAT(app::archive_warnings(archive),
-              ElementsAre(HasSubstr("no mode of the bank is stable (spectral radius 1.01)")));
+              ElementsAre(testing::Field(&app::Warning::text,
+                                         HasSubstr("no mode of the bank is stable (spectral radius 1.01)"))));
+  EXPECT_THAT(advice(), HasSubstr("leave out of --data.state"));
   archive.bank->modes.back().model.A(0, 0) = -0.2;
   EXPECT_THAT(app::archive_warnings(archive), IsEmpty());
 }
 
-/// Refined or not: what a warning asks for comes before any use.
+/// A warning comes before any use.
 TEST_F(NextStep, WarningsComeBeforeUse) {
   archive.mixture.emplace();
   archive.mixture->candidates.resize(1);
@@ -285,12 +341,13 @@ TEST_F(NextStep, WarningsComeBeforeUse) {
   archive.mixture->candidates[0].restarts = 5;
   EXPECT_THAT(advice(), HasSubstr("--mixture.restarts 20"));
   archive.unrefined = archive.bank;
-  EXPECT_THAT(advice(), HasSubstr("--mixture.restarts 20"));
+  EXPECT_THAT(advice(), HasSubstr("nothing: use it")) << "refinement replaced the mixture";
+  archive.unrefined.reset();
   archive.mixture->candidates[0].agreeing_restarts = 5;
   archive.mixture->candidates[0].converged = true;
   EXPECT_THAT(advice(), HasSubstr("nothing: use it"));
   archive.mixture->candidates[0].floor_active = true;
-  EXPECT_THAT(advice(), AllOf(HasSubstr("warning first"), Not(HasSubstr("nothing"))));
+  EXPECT_THAT(advice(), AllOf(HasSubstr("--mixture.components"), Not(HasSubstr("nothing"))));
   archive.measured_fit = MeasuredFit::iteration_limit;
   settings["bank.max_iterations"] = "100";
   EXPECT_THAT(advice(), HasSubstr("--bank.max_iterations 400"));

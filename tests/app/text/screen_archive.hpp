@@ -36,7 +36,10 @@ inline Archive screen_archive(Index states, Index inputs, Index modes, Role judg
     row.usage = use;
     if (k >= 0) use *= 0.6;
     row.coverage_50 = 0.575, row.coverage_90 = 0.934, row.coverage_95 = 0.966, row.coverage_99 = 0.989;
+    row.coverage_50_lower = 0.555, row.coverage_50_upper = 0.595;
+    row.coverage_90_lower = 0.895, row.coverage_90_upper = 0.944;
     row.coverage_95_lower = 0.956, row.coverage_95_upper = 0.974;
+    row.coverage_99_lower = 0.983, row.coverage_99_upper = 0.993;
     row.verdict = Verdict::calibrated;
     if (k < 0 || modes > 1) archive.diagnostics.push_back(row);
   }

@@ -44,8 +44,7 @@ struct Case {
   }
   Finding judged() const {
     const Densities of_bank = scores_of("bank", bank_gain);
-    return judge_modes({bank, role, of_bank, competitors, summary, horizons, states, free_runs, false,
-                        step_scatter});
+    return judge_modes({bank, role, of_bank, competitors, summary, horizons, states, free_runs, false, step_scatter});
   }
 };
 
@@ -74,6 +73,10 @@ TEST(Finding, AGainWithinItsErrorTellsNothing) {
   for (Densities& competitor : noisy.competitors) competitor = scores_of(competitor.filter, 0.1, 3.0);
   const Finding finding = noisy.judged();
   EXPECT_NE(finding.answer, Answer::evidence);
+  if (finding.answer == Answer::cannot_tell) {
+    EXPECT_EQ(doubt_of(finding), Doubt::within_chance);
+    EXPECT_LE(least_beaten(finding)->gain, least_beaten(finding)->margin);
+  }
   Case few;
   for (Densities& competitor : few.competitors)
     for (VectorXd& run : competitor.of_runs) run.tail(198).setConstant(std::nan(""));
@@ -118,6 +121,35 @@ TEST(Finding, ModesOfTheSameParametersAreNoModesOfMotion) {
   EXPECT_TRUE(modes_differ(Case().bank));
 }
 
+// Learning that looks ahead states no errors, and a theta that data leave open has none: the modes may be alike.
+TEST(Finding, ModesOfUnknownErrorsTellNothing) {
+  Case unknown;
+  unknown.bank = Case::with_errors(unknown.bank, std::nan(""));
+  EXPECT_EQ(unknown.judged().answer, Answer::cannot_tell);
+  EXPECT_EQ(doubt_of(unknown.judged()), Doubt::errors_unknown);
+  for (Mode& mode : unknown.bank.modes) mode.standard_error.resize(0);
+  EXPECT_EQ(unknown.judged().answer, Answer::cannot_tell);
+  unknown.bank.modes[1].model = unknown.bank.modes[0].model;
+  EXPECT_EQ(unknown.judged().answer, Answer::no_evidence) << "the same, whatever the errors";
+  Case some;  // one parameter that is known tells them apart
+  some.bank.modes[0].standard_error(0) = std::nan("");
+  EXPECT_EQ(some.judged().answer, Answer::evidence);
+  Case worse = unknown;
+  worse.bank = Case::with_errors(Case().bank, std::nan(""));
+  worse.bank_gain = 0.0;
+  EXPECT_EQ(worse.judged().answer, Answer::no_evidence) << "a competitor has the higher score";
+}
+
+// Baseline loses 0.4 nats in each of six runs; one run where drifting gains 2.6 more makes the t-test blind to it.
+TEST(Finding, ADescriptionThatLosesInEveryRunIsNotAsGood) {
+  Case even;
+  even.bank_gain = 0.38;
+  even.competitors = {scores_of("baseline", 0.0), scores_of("drifting", 0.4)};
+  even.competitors[1].of_runs[2].array() += 2.6;
+  EXPECT_FALSE(paired_gain("baseline", even.competitors[1].of_runs, even.competitors[0].of_runs).exceeds());
+  EXPECT_EQ(even.judged().better_description, "drifting");
+}
+
 // With one parameter and two modes the limit is the normal quantile 1.96 of the difference over its standard error.
 TEST(Finding, TheLimitForOneComparisonIsTheNormalQuantile) {
   Bank bank = test::example_bank(1, 0, 2);
@@ -160,15 +192,31 @@ TEST(Finding, CoarseOrRepeatedMeasurementsAreNotJudgedByDensities) {
   EXPECT_EQ(fine.judged().answer, Answer::evidence);
 }
 
+SummaryRow pooled(const char* filter, double rmse) {
+  SummaryRow row;
+  row.filter = filter;
+  row.role = Role::test;
+  row.run = "*";
+  row.rmse = VectorXd::Constant(1, rmse);
+  return row;
+}
+
+TEST(Finding, WhatOneModelLeavesNoNoiseOfHasOneMode) {
+  Case exact;
+  exact.states = {{"wz", 0.0, 0.0, 1e-12, 0.5}};
+  exact.summary = {pooled("bank", 1e-12), pooled("baseline", 1e-12)};
+  const Finding finding = exact.judged();
+  EXPECT_TRUE(finding.without_noise);
+  EXPECT_EQ(finding.answer, Answer::one_mode);
+  EXPECT_TRUE(finding.better_description.empty() && finding.better_means.empty());
+  exact.summary = {pooled("baseline", 1e-6)};  // measured with six digits
+  EXPECT_EQ(exact.judged().answer, Answer::evidence);
+}
+
 TEST(Finding, ACompetitorThatPredictsTheMeanBetterIsNamed) {
   Case worse;
   for (const auto& [filter, rmse] : {std::pair{"bank", 0.02}, {"baseline", 0.03}, {"noise_only", 0.019}}) {
-    SummaryRow row;
-    row.filter = filter;
-    row.role = Role::test;
-    row.run = "*";
-    row.rmse = VectorXd::Constant(1, rmse);
-    worse.summary.push_back(row);
+    worse.summary.push_back(pooled(filter, rmse));
     worse.horizons.push_back({filter, Role::test, "*", 10, 100, 0.0, VectorXd::Constant(1, 2.0 * rmse * rmse)});
     FreeRunRow free_run;
     free_run.filter = filter;

@@ -1,0 +1,87 @@
+#include "app/text/verdict_text.hpp"
+
+#include <fmt/format.h>
+
+#include "app/chain/judged_runs.hpp"
+#include "filter/judge/verdict_reason.hpp"
+
+namespace modebank::app {
+namespace {
+
+std::string passing_words() {
+  return fmt::format("{:g} to {:g} %", 100.0 * (1.0 - largest_outside), 100.0 * (1.0 - least_outside));
+}
+
+/// "(a true filter's: 0.95 to 1.05)"
+std::string nis_words(const DiagnosticsRow& row) {
+  return fmt::format("mean NIS {:.3g} (a true filter's: {:.3g} to {:.3g})", row.nis_mean, row.nis_lower, row.nis_upper);
+}
+
+std::string close_words(const DiagnosticsRow& row) {
+  return fmt::format("{:.1f} % lie as close to the middle as 2.5 % should", 100.0 * row.too_close);
+}
+
+std::string overconfidence_words(const DiagnosticsRow& row) {
+  if (reason_of(row) == VerdictReason::nis)
+    return fmt::format("the band holds enough, but errors are larger than stated, {}", nis_words(row));
+  return "it claims more certainty than it has";
+}
+
+std::string underconfidence_words(const DiagnosticsRow& row) {
+  switch (reason_of(row)) {
+    case VerdictReason::nis:
+      return fmt::format("errors are smaller than stated, {}", nis_words(row));
+    case VerdictReason::close:
+      return close_words(row);
+    default:
+      return "it claims less certainty than it has";
+  }
+}
+
+std::string doubt_words(const DiagnosticsRow& row) {
+  switch (reason_of(row)) {
+    case VerdictReason::few_samples:
+      return "too few independent samples to tell";
+    case VerdictReason::close:
+      return fmt::format("{} ({:g} to {:g} % passes)", close_words(row), 100.0 * least_close, 100.0 * largest_close);
+    default:
+      return fmt::format("outside the {} that pass, but not beyond doubt", passing_words());
+  }
+}
+
+/// "57.5 % in the 50 % (too wide)"
+std::string other_band(double level, double coverage, double lower, double upper) {
+  const BandWidth width = width_of(level, lower, upper);
+  return fmt::format("{:.1f} % in the {:g} %{}", 100.0 * coverage, 100.0 * level,
+                     width == BandWidth::too_wide     ? " (too wide)"
+                     : width == BandWidth::too_narrow ? " (too narrow)"
+                                                      : "");
+}
+
+}  // namespace
+
+std::string verdict_text(const DiagnosticsRow& row) {
+  const auto with = [&](const std::string& why) { return fmt::format("{}, {}", name_of(row.verdict), why); };
+  switch (row.verdict) {
+    case Verdict::calibrated:
+      return with(fmt::format("you can rely on this band ({} passes)", passing_words()));
+    case Verdict::overconfident:
+      return with(overconfidence_words(row));
+    case Verdict::underconfident:
+      return with(underconfidence_words(row));
+    case Verdict::undecided:
+      break;
+  }
+  return with(doubt_words(row));
+}
+
+std::string band_text(const DiagnosticsRow& row) {
+  return fmt::format("{:.1f} % [{:.1f}, {:.1f}] of the {} samples lie in the 95 % band: {}; {}, {}, {} band",
+                     100 * row.coverage_95, 100 * row.coverage_95_lower, 100 * row.coverage_95_upper,
+                     words_for(row.role), verdict_text(row),
+                     other_band(0.50, row.coverage_50, row.coverage_50_lower, row.coverage_50_upper),
+                     other_band(0.90, row.coverage_90, row.coverage_90_lower, row.coverage_90_upper),
+                     other_band(0.99, row.coverage_99, row.coverage_99_lower, row.coverage_99_upper));
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,150 @@
+// Sentences of random rows: what a reader takes them to mean, which is typed here, is what the rows' numbers are.
+#include <gtest/gtest.h>
+
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <random>
+#include <regex>
+
+#include "app/chain/finding_text.hpp"
+#include "app/text/verdict_text.hpp"
+#include "tests/filter/filter_test_support.hpp"
+
+namespace modebank::test {
+namespace {
+
+using Eigen::Index;
+struct Draw {
+  std::mt19937_64 generator;
+  double normal(double sd) { return boost::random::normal_distribution<double>(0.0, sd)(generator); }
+  double between(double least, double most) {
+    return boost::random::uniform_real_distribution<double>(least, most)(generator);
+  }
+  int whole(int least, int most) { return boost::random::uniform_int_distribution<int>(least, most)(generator); }
+};
+
+bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
+
+/// Errors in units of what the filter states, with tails, a middle and an NIS of their own.
+DiagnosticsRow random_row(Draw& draw) {
+  const Bank bank = single_mode(example_bank(1, 0, 1, 1e-6), 0);
+  Trajectory run;
+  run.role = Role::test;
+  const Index samples = draw.whole(0, 1) == 0 ? draw.whole(20, 400) : draw.whole(2000, 9000);
+  run.state.setZero(1, samples);
+  run.input.setZero(0, samples);
+  RunEvaluation e = evaluate_run(bank, run, {});
+  const double size = draw.between(0.8, 1.2), rough = draw.between(0.0, 0.1), quiet = draw.between(0.0, 0.2);
+  const double nis = draw.whole(0, 2) == 0 ? draw.between(0.7, 1.4) : 1.0;
+  for (Index k = 1; k < samples; ++k) {
+    const double u = draw.between(0.0, 1.0), z = draw.normal(size) * (u < rough ? 2.0 : u < rough + quiet ? 0.3 : 1.0);
+    e.pit(0, k) = 0.5 * std::erfc(-z / std::sqrt(2.0));
+    e.nis(k) = nis * z * z;
+    e.log_density(k) = 0.0;
+  }
+  return diagnose("bank", bank, {}, {run}, {e}, score_runs({e})).front();
+}
+
+TEST(Sentences, OnTheBandMeanWhatItsRowSays) {
+  Draw draw{std::mt19937_64(3)};
+  std::array<int, 4> verdicts{};
+  for (int i = 0; i < 400; ++i) {
+    const DiagnosticsRow row = random_row(draw);
+    const std::string text = app::band_text(row);
+    ++verdicts[static_cast<std::size_t>(row.verdict)];
+    const auto means = [&](const std::string& words, bool holds) { EXPECT_TRUE(!has(text, words) || holds) << text; };
+    means("rely on this band", row.coverage_95 >= 0.925 && row.coverage_95 <= 0.975);
+    means("claims more certainty", row.coverage_95_upper < 0.95);
+    means("claims less certainty", row.coverage_95_lower > 0.95);
+    means("errors are larger than stated", row.nis_mean > row.nis_upper);
+    means("errors are smaller than stated", row.nis_mean < row.nis_lower);
+    means("as close to the middle", row.too_close < 0.01 || row.too_close > 0.04);
+    means("too few independent samples",
+          row.coverage_95_upper - row.coverage_95_lower > 0.05 || row.too_close_upper - row.too_close_lower > 0.03);
+    means("outside the 92.5 to 97.5 %", row.coverage_95 < 0.925 || row.coverage_95 > 0.975);
+    EXPECT_EQ(has(text, "50 % (too wide)"), row.coverage_50_lower > 0.5) << text;
+    EXPECT_EQ(has(text, "50 % (too narrow)"), row.coverage_50_upper < 0.5) << text;
+    EXPECT_EQ(has(text, "99 % (too narrow)"), row.coverage_99_upper < 0.99) << text;
+    EXPECT_EQ(has(row.flags, "too few samples"), has(text, "too few independent samples")) << row.flags;
+  }
+  for (const int count : verdicts) EXPECT_GT(count, 10);
+}
+
+/// Scores of the bank and its competitors, off a level in every run, now and then far off in one.
+std::vector<Densities> random_scores(Draw& draw) {
+  std::vector<Densities> all{{"bank", {}}};
+  for (const char* name : competitor_names) all.push_back({name, {}});
+  const int runs = draw.whole(1, 14), samples = draw.whole(20, 300);
+  for (Densities& filter : all) {
+    const double level = draw.whole(0, 2) == 0 ? 0.0 : draw.normal(0.2), spread = draw.between(0.0, 0.2);
+    for (int r = 0; r < runs; ++r) {
+      const double of_run = level + draw.normal(spread) + (draw.whole(0, 20) == 0 ? draw.normal(3.0) : 0.0);
+      filter.of_runs.push_back(Eigen::VectorXd::NullaryExpr(samples, [&] { return of_run + draw.normal(0.3); }));
+    }
+  }
+  return all;
+}
+
+Eigen::VectorXd run_losses(const Densities& better, const Densities& other) {
+  Eigen::VectorXd losses(std::ssize(better.of_runs));
+  for (Index r = 0; r < losses.size(); ++r)
+    losses(r) = (better.of_runs[static_cast<std::size_t>(r)] - other.of_runs[static_cast<std::size_t>(r)]).mean();
+  return losses;
+}
+
+/// Every run of at least five on one side: a coin does that in less than 5 % of draws.
+bool always(const Eigen::VectorXd& losses) { return losses.size() >= 5 && (losses.array() > 0.0).all(); }
+
+/// The text in a pattern's brackets; empty where it is not found.
+std::string named(const std::string& text, const std::string& pattern) {
+  std::smatch found;
+  return std::regex_search(text, found, std::regex(pattern)) ? found[1].str() : "";
+}
+
+TEST(Sentences, OnTheGainsMeanWhatTheirRowsSay) {
+  Draw draw{std::mt19937_64(4)};
+  std::array<int, 6> answers{};
+  for (int i = 0; i < 400; ++i) {
+    const std::vector<Densities> all = random_scores(draw);
+    Bank bank = example_bank(1, 1, 2);
+    const bool known = draw.whole(0, 3) > 0;
+    for (Mode& mode : bank.modes)
+      mode.standard_error.setConstant(bank.structure.parameters(), known ? 1e-3 : std::nan(""));
+    const Finding finding =
+        judge_modes({bank, Role::test, all[0], {all.begin() + 1, all.end()}, {}, {}, {{"y", 0.0, 0.0, 1.0}}, {}});
+    const std::string text = finding_text(finding);
+    ++answers[static_cast<std::size_t>(finding.answer)];
+    const auto scores = [&](const std::string& name) {
+      return *std::find_if(all.begin(), all.end(), [&](const Densities& d) { return d.filter == name; });
+    };
+    const auto gain = [&](const std::string& name) { return run_losses(all[0], scores(name)).mean(); };
+    const auto margin = [&](const std::string& name) {
+      const auto row = [&](const PairedGain& g) { return g.competitor == name; };
+      return std::find_if(finding.gains.begin(), finding.gains.end(), row)->margin;
+    };
+    const auto means = [&](bool said, auto holds) { EXPECT_TRUE(!said || holds()) << text; };
+    const std::string best = named(text, "nats per sample over (\\w+) .*its best competitor");
+    for (const char* name : competitor_names) {
+      EXPECT_GE(gain(name), gain(best) - 1e-12) << text;
+      means(std::regex_search(text, std::regex("shows? evidence")), [&] { return gain(name) > margin(name); });
+    }
+    const std::string as_good = named(text, "described as well by .*? \\((\\w+)\\)");
+    const std::string better = named(text, "described better by .*? \\((\\w+)\\)");
+    const std::string unbeaten = named(text, "the gain over (\\w+), .* does not exceed");
+    means(!as_good.empty(), [&] {
+      const Eigen::VectorXd to_best = run_losses(scores(best), scores(as_good));
+      return (to_best.mean() < 0.02 || !always(to_best)) && (gain(as_good) < 0.02 || gain(as_good) <= margin(as_good));
+    });
+    means(!better.empty(), [&] { return gain(better) < 0.0; });
+    means(!unbeaten.empty(), [&] { return gain(unbeaten) <= margin(unbeaten); });
+    means(has(text, "no evidence"), [&] { return gain(best) <= 0.0; });
+    means(has(text, "errors of the modes' parameters are not known"), [&] { return !known; });
+    means(has(text, "too few independent samples"), [&] { return std::isnan(margin(best)); });
+  }
+  for (const Answer answer : {Answer::evidence, Answer::no_evidence, Answer::cannot_tell})
+    EXPECT_GT(answers[static_cast<std::size_t>(answer)], 20) << name_of(answer);
+}
+
+}  // namespace
+}  // namespace modebank::test
