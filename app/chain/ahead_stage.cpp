@@ -1,15 +1,18 @@
 // What filters predict several samples ahead, each by itself and all of them combined.
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <string>
 #include <vector>
 
+#include "app/chain/judged_runs.hpp"
 #include "app/chain/stages.hpp"
 #include "filter/judge/combination.hpp"
 #include "filter/judge/drifting.hpp"
 #include "filter/judge/finding.hpp"
 #include "filter/judge/horizon.hpp"
 #include "ident/base/work_counter.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
@@ -59,6 +62,13 @@ void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Arc
     if (role == Role::train) tables.start_as_trained();
   }
   archive.horizons = tables.horizons();
+  // Lags take more of a run than was known before it was modelled.
+  for (const HorizonRow& row : archive.horizons)
+    if (row.filter == "bank" && row.run == "*" && row.role == judged_role(archive) && row.samples == 0)
+      throw DataError(
+          fmt::format("filter.horizon = {}: no run reaches so many samples ahead of where the filter starts, "
+                      "its sample {}",
+                      row.horizon, archive.bank->structure.first_transition() + 1));
   archive.combination = tables.combination();
 }
 

@@ -39,6 +39,20 @@ void refuse_constant_states(const Recording& recording) {
   }
 }
 
+void refuse_unreached_horizons(const Recording& recording, const std::vector<Index>& horizons) {
+  const bool held_out = recording.transitions(Role::test) > 0;
+  const Trajectory* longest = nullptr;
+  for (const Trajectory& run : recording.runs)
+    if (run.role == (held_out ? Role::test : Role::train) && (!longest || run.samples() > longest->samples()))
+      longest = &run;
+  for (const Index horizon : horizons)
+    if (longest && horizon > longest->transitions())
+      throw DataError(fmt::format(
+          "filter.horizon = {}: no {} run reaches so many samples ahead; the longest, {}, has {} samples: at "
+          "most {}",
+          horizon, held_out ? "held-out" : "training", longest->run, longest->samples(), longest->transitions()));
+}
+
 std::string open_effects(const Recording& recording, const LinearStructure& structure) {
   const std::vector<Index> open = open_regressors(recording, structure);
   if (open.empty()) return {};

@@ -51,24 +51,28 @@ std::string python_channels(const char* names, const char* units, const std::vec
 
 std::string python_opening(const ExportedBank& exported) {
   const LinearStructure& s = exported.structure();
+  std::string remarks;
+  for (const std::string& remark : exported.remarks()) remarks += "# " + comment_text(remark) + ".\n";
   return fmt::format(R"py(# Verdict: {}
 # A bank of modes for CasADi, made by modebank {} of {},
 # SHA-256 {}, filter {}.
 # {}
 # {}; its unit is 1.
 # {} state lag(s), {} input lag(s), delay {} sample(s): x and u hold lagged samples as their names say.
-import casadi as ca
+{}import casadi as ca
 
 nan = float("nan")
 
 VERDICT = {}
+REMARKS = {}
 DT_S = {:.17g}  # a step takes [s]
 INPUT_LAG_S = {:.17g}  # inputs act this much later [s]: at time t, u is what was recorded at t - INPUT_LAG_S
 )py",
                      comment_text(exported.verdict_text()), comment_text(exported.provenance.modebank_version),
                      comment_text(exported.archive), exported.sha256, exported.filter, exported_equation,
-                     transition_meaning, s.state_lags, s.input_lags, s.input_delay,
-                     quoted_scalar(exported.verdict_text()), exported.bank.dt_s, exported.input_lag_s);
+                     transition_meaning, s.state_lags, s.input_lags, s.input_delay, remarks,
+                     quoted_scalar(exported.verdict_text()), python_texts(exported.remarks()), exported.bank.dt_s,
+                     exported.input_lag_s);
 }
 
 std::string python_bank(const ExportedBank& exported) {

@@ -6,6 +6,8 @@
 
 #include "app/chain/judged_runs.hpp"
 #include "app/chain/mode_names.hpp"
+#include "app/text/mode_words.hpp"
+#include "app/text/verdict_text.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/bank/load_bank.hpp"
@@ -43,6 +45,7 @@ void add_verdict(const Archive& archive, ExportedBank& exported) {
   if (archive.finding && exported.filter == "bank") exported.finding = archive.finding->text;
   if (!row) return;
   exported.verdict = row->verdict;
+  exported.verdict_words = verdict_text(*row);
   exported.judged_on = words_for(role);
   exported.coverage_95 = row->coverage_95;
 }
@@ -69,20 +72,8 @@ void add_channels(const Recording& recording, ExportedBank& exported) {
 
 std::string ExportedBank::verdict_text() const {
   if (judged_on.empty()) return "not judged: no run was scored";
-  return fmt::format("{}: {:.1f} % of the {} samples lie in the 95 % band", name_of(verdict), 100.0 * coverage_95,
+  return fmt::format("{}: {:.1f} % of the {} samples lie in the 95 % band", verdict_words, 100.0 * coverage_95,
                      judged_on);
-}
-
-std::vector<std::string> ExportedBank::remarks() const {
-  std::vector<std::string> list;
-  if (!bank.drift.empty())
-    list.push_back("the filter lets the modes' coefficients drift within a run: A, B and c are where each run starts");
-  if (!bank.motion_parameters.empty())
-    list.push_back(
-        fmt::format("A, B and c linearise the motion model {} at each mode's mean state and input", bank.model));
-  if (bank.is_quantised())
-    list.push_back("measurements are rounded (data.quantum): the filter takes them for intervals");
-  return list;
 }
 
 ExportedBank exported_bank(const Archive& archive, const std::string& file, const std::string& filter,
@@ -99,6 +90,7 @@ ExportedBank exported_bank(const Archive& archive, const std::string& file, cons
   exported.input_lag_s = input_lag_s;
   add_verdict(archive, exported);
   add_channels(archive.recording.value_or(Recording()), exported);
+  exported.open = open_parameters(archive, bank->structure);
   for (std::size_t j = 0; j < bank->modes.size(); ++j) {
     const std::string name = filter == "bank" ? name_of_mode(archive.mode_names, static_cast<Index>(j)) : "";
     exported.mode_names.push_back(name.empty() ? fmt::format("mode {}", j) : name);

@@ -25,7 +25,8 @@ struct ExportedBank {
   Provenance provenance;  ///< of the archive
   FilterOptions options;  ///< how the archive ran it
   Verdict verdict = Verdict::undecided;
-  std::string judged_on;  ///< held-out, training; empty: it was not judged
+  std::string verdict_words;  ///< with what it rests on
+  std::string judged_on;      ///< held-out, training; empty: it was not judged
   double coverage_95 = 0.0;
   std::string finding;  ///< whether runs ask for modes of motion; may be empty
   Bank bank;
@@ -37,15 +38,21 @@ struct ExportedBank {
   std::vector<std::string> mode_names;                        ///< K
   std::vector<std::string> parameter_names, parameter_units;  ///< p, of the modes' theta
   std::vector<ModeErrors> errors;                             ///< K
+  std::vector<bool> open;                                     ///< p, what the training runs leave open; or empty
 
   const LinearStructure& structure() const { return bank.structure; }
   Eigen::MatrixXd A(Eigen::Index mode) const { return bank.modes[static_cast<std::size_t>(mode)].model.full_form(); }
   bool may_be_trusted() const { return verdict != Verdict::overconfident && verdict != Verdict::underconfident; }
   /// The verdict in a sentence.
   std::string verdict_text() const;
-  /// What of the archive's bank A, B and c alone do not say; sentences, mostly none.
+  /// Sentences on what a reader of the bank's numbers alone would not learn.
   std::vector<std::string> remarks() const;
 };
+
+/// Why a value may not be taken as it stands, for a remark beside it; empty where it may.
+std::string doubt_about(double value, double standard_error);
+/// The doubt about an entry of a mode's theta.
+std::string doubt_about_parameter(const ExportedBank& bank, Eigen::Index mode, Eigen::Index parameter);
 
 /// The equation that every form states, in one line of ASCII.
 inline constexpr const char* exported_equation =

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/export/forms.hpp"
@@ -74,8 +75,10 @@ ordered source_json(const ExportedBank& bank) {
           {"data_hash", bank.provenance.data_hash}};
 }
 
+/// `remark_of`: of a position; empty where the value may be taken as it stands.
+template <class RemarkOf>
 ordered parameters_json(const VectorXd& values, const VectorXd& errors, const std::vector<std::string>& names,
-                        const std::vector<std::string>& units) {
+                        const std::vector<std::string>& units, RemarkOf remark_of) {
   ordered list = ordered::array();
   for (Index i = 0; i < values.size(); ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -83,6 +86,7 @@ ordered parameters_json(const VectorXd& values, const VectorXd& errors, const st
                     {"value", values(i)},
                     {"standard_error", errors.size() == values.size() ? ordered(errors(i)) : ordered(nullptr)},
                     {"unit", at < units.size() ? units[at] : ""}});
+    if (const std::string remark = remark_of(i); !remark.empty()) list.back()["remark"] = remark;
   }
   return list;
 }
@@ -98,14 +102,19 @@ ordered mode_json(const ExportedBank& exported, Index k) {
   result["c"] = quantity(mode.model.c, errors.c, states);
   result["Q"] = quantity(mode.Q, mode.Q_standard_error, outer(states));
   result["parameters"] =
-      parameters_json(exported.bank.theta(k), mode.standard_error, exported.parameter_names, exported.parameter_units);
+      parameters_json(exported.bank.theta(k), mode.standard_error, exported.parameter_names, exported.parameter_units,
+                      [&](Index i) { return doubt_about_parameter(exported, k, i); });
   if (mode.motion_theta.size() == 0) return result;
   std::vector<std::string> names, units;
   for (const ModelParameter& parameter : exported.bank.motion_parameters) {
     names.push_back(parameter.name);
     units.push_back(parameter.unit);
   }
-  result["motion_parameters"] = parameters_json(mode.motion_theta, mode.motion_standard_error, names, units);
+  result["motion_parameters"] =
+      parameters_json(mode.motion_theta, mode.motion_standard_error, names, units, [&](Index i) {
+        return doubt_about(mode.motion_theta(i),
+                           mode.motion_standard_error.size() > i ? mode.motion_standard_error(i) : NAN);
+      });
   return result;
 }
 

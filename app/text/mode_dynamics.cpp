@@ -34,12 +34,13 @@ double slowness(const Decay& decay) {
   return decay.time_constant_s < 0.0 ? std::numeric_limits<double>::infinity() : decay.time_constant_s;
 }
 
-Eigen::MatrixXd steady_gain(const Bank& bank, const LinearModel& model) {
+/// NaN where an input that is held never settles.
+Eigen::MatrixXd steady_gain(const Bank& bank, const LinearModel& model, bool settles) {
   const Eigen::Index inputs = bank.structure.inputs;
   Eigen::MatrixXd held = Eigen::MatrixXd::Zero(model.A.rows(), inputs);
   for (Eigen::Index first = 0; first < model.B.cols(); first += inputs) held += model.B.middleCols(first, inputs);
   const PivotedLu lu(-model.A);
-  if (!lu.invertible()) return Eigen::MatrixXd::Constant(bank.C.rows(), inputs, not_a_number);
+  if (!settles || !lu.invertible()) return Eigen::MatrixXd::Constant(bank.C.rows(), inputs, not_a_number);
   return bank.C * lu.solve(held);
 }
 
@@ -50,7 +51,8 @@ ModeDynamics dynamics_of(const Bank& bank, const LinearModel& model) {
     if (lambda.imag() >= 0.0) dynamics.decays.push_back(decay_of(lambda, bank.dt_s));
   std::stable_sort(dynamics.decays.begin(), dynamics.decays.end(),
                    [](const Decay& a, const Decay& b) { return slowness(a) > slowness(b); });
-  dynamics.gain = bank.structure.inputs > 0 ? steady_gain(bank, model) : Eigen::MatrixXd(bank.C.rows(), 0);
+  const bool settles = lambdas.cwiseAbs().maxCoeff() < 1.0 - integrator_slack;
+  dynamics.gain = bank.structure.inputs > 0 ? steady_gain(bank, model, settles) : Eigen::MatrixXd(bank.C.rows(), 0);
   return dynamics;
 }
 

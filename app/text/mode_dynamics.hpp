@@ -19,7 +19,8 @@ struct Decay {
 /// What a mode means to who looks at a step response.
 struct ModeDynamics {
   std::vector<Decay> decays;   ///< one per eigenvalue or conjugate pair, slowest first
-  Eigen::MatrixXd gain;        ///< n_y x recorded inputs: C (-A)^-1 B of a constant input; NaN when A is singular
+  Eigen::MatrixXd gain;        ///< n_y x recorded inputs: C (-A)^-1 B of a constant input; NaN of a mode that
+                               ///< integrates or grows: an input that is held never settles
   Eigen::MatrixXd gain_error;  ///< standard errors of the same; NaN where they are not known
 };
 

@@ -115,13 +115,15 @@ std::string opening(const ExportedBank& exported, const char* what) {
                 "s;"
                 "\n * live, measurements wait that long for them.",
                 -exported.input_lag_s);
+  std::string remarks;
+  for (const std::string& remark : exported.remarks()) remarks += "\n * " + c_comment(remark) + ".";
   return fmt::format(
       "/* Verdict: {}\n *\n * {}, made by modebank {} of\n * {}, filter {}, SHA-256\n * {}\n * {}\n * dt_s = {:.17g} "
       "s; "
-      "{} state lag(s), {} input lag(s), delay {} sample(s){}\n * {} */\n\n",
+      "{} state lag(s), {} input lag(s), delay {} sample(s){}{}\n * {} */\n\n",
       c_comment(exported.verdict_text()), what, c_comment(exported.provenance.modebank_version),
       c_comment(exported.archive), exported.filter, exported.sha256, exported_equation, exported.bank.dt_s,
-      s.state_lags, s.input_lags, s.input_delay, lag, transition_meaning);
+      s.state_lags, s.input_lags, s.input_delay, lag, remarks, transition_meaning);
 }
 
 std::string header(const ExportedBank& exported, const std::string& prefix) {

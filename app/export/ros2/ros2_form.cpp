@@ -6,6 +6,7 @@
 
 #include "app/export/names.hpp"
 #include "app/export/ros2/ros2_numbers.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank::app {
 namespace {
@@ -17,7 +18,9 @@ std::string yaml_number(double value) {
 }
 
 std::string error_text(const Estimate& estimate) {
-  return std::isfinite(estimate.error) ? fmt::format("+- {:.2g}", estimate.error) : "standard error not known";
+  if (!std::isfinite(estimate.error)) return "standard error not known";
+  const std::string doubt = doubt_about(estimate.value, estimate.error);
+  return fmt::format("+- {:.2g}{}", estimate.error, doubt.empty() ? "" : ": " + doubt);
 }
 
 /// A key where the bank determines its value, else a comment with the reason.
@@ -117,8 +120,8 @@ std::string process_noise(const ExportedBank& exported, Index mode, const RobotC
   const auto set = [&](Index a, Index b, Index of_a, Index of_b, const char* name) {
     if (of_a < 0 || of_b < 0) return;
     noise(a, b) = noise(b, a) = Q(of_a, of_b) / exported.bank.dt_s;
-    const std::string error = errors ? fmt::format("+- {:.2g}", of.Q_standard_error(of_a, of_b) / exported.bank.dt_s)
-                                     : "standard error not known";
+    const std::string error =
+        error_text({noise(a, b), errors ? of.Q_standard_error(of_a, of_b) / exported.bank.dt_s : not_a_number});
     text += fmt::format("    # {}: Q {:.6g} / dt_s {:.6g} s = {:.6g} {}\n", name, Q(of_a, of_b), exported.bank.dt_s,
                         noise(a, b), error);
   };

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "app/cli/command_table.hpp"
@@ -117,15 +118,44 @@ TEST_F(Commands, SampleWeightsComeFromAColumn) {
   EXPECT_NE(negative.err.find("run_00.csv:"), std::string::npos) << negative.err;
 }
 
+TEST_F(Commands, AHorizonThatNoRunReachesIsAnError) {
+  const ProgramResult result = run({"--filter.horizon", "1,5000"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("filter.horizon = 5000: no held-out run reaches so many samples ahead"), std::string::npos)
+      << result.err;
+  EXPECT_TRUE(left_behind().empty());
+}
+
+/// y[k+1] = 0.9 y[k] + 0.2 u[k], to all digits.
+TEST_F(Commands, DataWithoutNoiseEndInCoefficients) {
+  for (const char* name : {"run_00.csv", "run_01.csv"}) {
+    std::string text = "time,y,u\n";
+    double y = 0.3;
+    for (int k = 0; k < 300; ++k) {
+      const double u = std::sin(1.0 + k / 7 * (name[5] - '0' + 3.0));
+      text += fmt::format("{:.17g},{:.17g},{:.17g}\n", 0.1 * k, y, u);
+      y = 0.9 * y + 0.2 * u;
+    }
+    write(name, text);
+  }
+  write("exact.ini", "[data]\ninputs = run_*.csv\nstate = y\ninput = u\n[archive]\noutput = exact.h5\n");
+  const ProgramResult result = modebank({"run", file("exact.ini").string()});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string screen = std::regex_replace(result.out, std::regex("\n +"), " ");
+  for (const char* said : {"without noise", "y <- y -0.1, y <- u 0.2", "take the coefficients"})
+    EXPECT_NE(screen.find(said), std::string::npos) << said << '\n' << screen;
+}
+
 /// Import refuses values that have no square, so that none comes from a file.
 TEST(WindowWarnings, NameWindowsWithoutAFiniteFit) {
   app::WindowCounts counts;
   counts.status[static_cast<std::size_t>(FitStatus::converged)] = 5;
   EXPECT_TRUE(app::window_warnings({}, counts).empty());
   counts.status[static_cast<std::size_t>(FitStatus::failed)] = 3;
-  const std::vector<std::string> warnings = app::window_warnings({}, counts);
+  const std::vector<app::Warning> warnings = app::window_warnings({}, counts);
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("3 of 8 windows have no finite fit"), std::string::npos) << warnings[0];
+  EXPECT_EQ(warnings[0].kind, app::WarningKind::failed_windows);
+  EXPECT_NE(warnings[0].text.find("3 of 8 windows have no finite fit"), std::string::npos) << warnings[0].text;
 }
 
 TEST_F(Commands, ShowBeginsWithTheSameScreenAndPrintsAnyObject) {

@@ -1,6 +1,7 @@
 // modebank export from outside.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -43,7 +44,7 @@ TEST_F(Export, JsonIsTheArchivesBank) {
   const json page = json::parse(result.out);
   const Archive stored = read_archive(archive());
   EXPECT_EQ(page.at("format"), "modebank export");
-  EXPECT_EQ(page.at("schema_version"), "1.0");
+  EXPECT_EQ(page.at("schema_version"), "1.1");
   EXPECT_EQ(page.at("verdict").at("answer"), "calibrated");
   EXPECT_LT(result.out.find("\"verdict\""), result.out.find("\"modes\""));
   EXPECT_EQ(page.at("dt_s"), stored.bank->dt_s);
@@ -62,6 +63,36 @@ TEST_F(Export, JsonIsTheArchivesBank) {
                 stored.bank->transition.matrix()(static_cast<Index>(k), j));
   }
   EXPECT_EQ(page.at("filter").at("noise"), "gaussian");
+}
+
+/// A value that its standard error exceeds, a parameter that the runs leave open, R at its bound: never a bare number.
+TEST_F(Export, DoubtfulNumbersAreRemarkedInEveryForm) {
+  judge(Verdict::calibrated);
+  Archive stored = read_archive(archive());
+  Mode& mode = stored.bank->modes[0];
+  mode.standard_error = Eigen::VectorXd::Constant(mode.standard_error.size(), 1e-6);
+  mode.standard_error(1) = 2.0 * std::abs(stored.bank->theta(0)(1)) + 1e-3;
+  stored.windows->global.covariance.row(2).setConstant(std::nan(""));
+  stored.windows->global.covariance.col(2).setConstant(std::nan(""));
+  stored.bank->R(0, 0) = 1e-14;
+  write_archive(archive(), stored);
+  const json page = json::parse(exported("json").out);
+  EXPECT_EQ(page.at("modes").at(0).at("parameters").at(1).at("remark"), "its standard error exceeds it");
+  EXPECT_EQ(page.at("modes").at(0).at("parameters").at(2).at("remark"), "not identifiable");
+  EXPECT_FALSE(page.at("modes").at(0).at("parameters").at(0).contains("remark"));
+  ASSERT_EQ(exported("c", {"-o", file("bank.c").string()}).status, 0);
+  ASSERT_EQ(exported("casadi", {"-o", file("bank.py").string()}).status, 0);
+  ASSERT_EQ(exported("mat", {"-o", file("bank.mat").string()}).status, 0);
+  ASSERT_EQ(exported("ros2", {"-o", file("ros").string()}).status, 0);
+  std::vector<std::string> texts{page.at("remarks").dump(), text_of(file("bank.c")), text_of(file("bank.py")),
+                                 text_of(file("bank.mat"))};
+  for (const auto& entry : std::filesystem::directory_iterator(file("ros"))) texts.push_back(text_of(entry.path()));
+  for (std::string& text : texts) {
+    std::erase(text, '\0');  // MATLAB's characters have 16 bits
+    EXPECT_THAT(
+        text, testing::AllOf(HasSubstr("standard errors exceed the values"),
+                             HasSubstr("not identifiable from the training runs"), HasSubstr("is at its lower bound")));
+  }
 }
 
 TEST_F(Export, ModesHaveTheirNames) {

@@ -187,6 +187,7 @@ ExportedBank as_exported(Bank bank, const FilterOptions& options) {
   exported.archive = "test.h5";
   exported.options = options;
   exported.verdict = Verdict::calibrated;
+  exported.verdict_words = "calibrated";
   exported.judged_on = "held-out";
   exported.coverage_95 = 0.95;
   for (Index i = 0; i < s.dimension(); ++i) exported.states.push_back({fmt::format("x{}", i), "rad/s"});

@@ -38,6 +38,16 @@ TEST(ModeDynamics, FirstOrderLag) {
   EXPECT_NEAR(dynamics.gain(0, 0), gain, dynamics_rounding);
 }
 
+/// y[k+1] = 1.02 y[k] + 0.1 u[k]: (-A)^-1 B = -5 is where nothing ever settles.
+TEST(ModeDynamics, WhatGrowsOrIntegratesHasNoSteadyGain) {
+  for (const double a : {0.02, 0.0, -2.1}) {
+    Bank bank = bank_of({1, 1}, vector({a, 0.1}), 0.1);
+    bank.modes[0].standard_error = vector({1e-3, 1e-3});
+    const ModeDynamics dynamics = mode_dynamics(bank, 0);
+    EXPECT_TRUE(std::isnan(dynamics.gain(0, 0)) && std::isnan(dynamics.gain_error(0, 0))) << a;
+  }
+}
+
 /// A rotation by w dt shrinking with tau: one conjugate pair.
 TEST(ModeDynamics, DampedOscillation) {
   const double dt = 0.05, tau = 2.0, hertz = 1.5, angle = 2 * std::numbers::pi * hertz * dt, size = std::exp(-dt / tau);
