@@ -4,18 +4,12 @@
 #include "app/chain/finding_text.hpp"
 #include "app/chain/judged_runs.hpp"
 #include "app/chain/stages.hpp"
+#include "ident/check/run_check.hpp"
 #include "ident/check/stream_check.hpp"
 #include "ident/model/parameter_labels.hpp"
 
 namespace modebank {
 namespace {
-
-std::vector<const Trajectory*> runs_of(const Recording& recording, Role role) {
-  std::vector<const Trajectory*> runs;
-  for (const Trajectory& run : recording.runs)
-    if (run.role == role) runs.push_back(&run);
-  return runs;
-}
 
 Densities densities_of(const FilterEvaluation& evaluation, const Recording& recording, Role role) {
   Densities densities{evaluation.filter, {}};
@@ -24,14 +18,30 @@ Densities densities_of(const FilterEvaluation& evaluation, const Recording& reco
   return densities;
 }
 
-/// Median standard deviation of the predictions of measurement i.
-double innovation_sd(const FilterEvaluation& bank, const Recording& recording, Role role, Index i) {
+/// Per run of a recording, which of its samples rest.
+using Rests = std::vector<std::vector<bool>>;
+
+Rests rests_of(const Recording& recording) {
+  Eigen::VectorXd still_level = Eigen::VectorXd::Zero(recording.input_count());
+  for (const Trajectory& run : recording.runs)
+    for (Index i = 0; i < still_level.size(); ++i)
+      for (const double value : run.input.row(i))
+        if (std::isfinite(value)) still_level(i) = std::max(still_level(i), still_share * std::abs(value));
+  Rests rests;
+  for (const Trajectory& run : recording.runs)
+    rests.push_back(resting_samples({run.time_s, run.state}, {run.time_s, run.input}, still_level));
+  return rests;
+}
+
+/// Median standard deviation of the predictions of measurement i, in motion.
+double innovation_sd(const FilterEvaluation& bank, const Recording& recording, const Rests& rests, Role role, Index i) {
   std::vector<double> variances;
   for (std::size_t r = 0; r < recording.runs.size(); ++r) {
     const RunEvaluation& run = bank.runs[r];
     const Index n_y = run.innovation.rows();
     for (Index k = 0; k < run.log_density.size() && recording.runs[r].role == role; ++k)
-      if (!std::isnan(run.log_density(k))) variances.push_back(run.innovation_covariance(i * n_y + i, k));
+      if (!std::isnan(run.log_density(k)) && !rests[r][static_cast<std::size_t>(k)])
+        variances.push_back(run.innovation_covariance(i * n_y + i, k));
   }
   if (variances.empty()) return 0.0;
   const auto middle = variances.begin() + std::ssize(variances) / 2;
@@ -56,24 +66,28 @@ std::vector<std::pair<std::string, double>> coefficients_of(const Bank& bank) {
   return coefficients;
 }
 
-/// Over the judged runs, one after another. `quantum`: of the bank; where it has one its scores know of the rounding.
+/// Over the judged runs, one after another. `quantum`: of the bank; where it has one its scores take values for
+/// intervals. A sample at rest repeats the one before because nothing moves, however fine the measurement.
 std::vector<Resolution> resolutions(const FilterEvaluation& bank, const Eigen::VectorXd& quantum,
                                     const Recording& recording, Role role) {
-  const std::vector<const Trajectory*> runs = runs_of(recording, role);
+  const Rests rests = rests_of(recording);
   Index samples = 0;
-  for (const Trajectory* run : runs) samples += run->samples();
+  for (const Trajectory& run : recording.runs) samples += run.role == role ? run.samples() : 0;
   std::vector<Resolution> states;
   for (Index i = 0; i < recording.state_count(); ++i) {
     Eigen::VectorXd values(samples);
-    Index at = 0;
-    for (const Trajectory* run : runs) {
-      values.segment(at, run->samples()) = run->state.row(i).transpose();
-      at += run->samples();
+    std::vector<bool> at_rest;
+    for (std::size_t r = 0; r < recording.runs.size(); ++r) {
+      const Trajectory& run = recording.runs[r];
+      if (run.role != role) continue;
+      values.segment(std::ssize(at_rest), run.samples()) = run.state.row(i).transpose();
+      at_rest.insert(at_rest.end(), rests[r].begin(), rests[r].end());
     }
     const bool known = i < quantum.size() && quantum(i) > 0.0;
     const ChannelCheck check = known ? ChannelCheck() : check_channel(values);
-    states.push_back({recording.states[static_cast<std::size_t>(i)].name, check.quantum, check.repeated,
-                      innovation_sd(bank, recording, role, i), standard_deviation(values)});
+    states.push_back({recording.states[static_cast<std::size_t>(i)].name, check.quantum,
+                      known ? 0.0 : repeats_in_motion(values, at_rest), innovation_sd(bank, recording, rests, role, i),
+                      standard_deviation(values)});
   }
   return states;
 }

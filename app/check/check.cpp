@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "app/chain/training_check.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -20,8 +21,6 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double still_share = 0.005;  // of an input's largest value: what counts as zero
-
 constexpr double least_resolved = 0.25;  // sample periods: a shorter time constant is none
 
 /// All that is known of the data while the report is made.
@@ -30,6 +29,7 @@ struct Material {
   std::vector<RunPair> ordered;
   std::vector<Trajectory> parts;  // joined, split at gaps; all of them, whatever the role
   LinearStructure structure;
+  VectorXd still_level;  // per input
 };
 
 /// The runs as `run` would join them if it accepted all that can be mended.
@@ -114,11 +114,31 @@ void check_all_channels(const DataOptions& data, const Material& material, DataC
     check_channels(material, data.input[i], unit(data.input_unit, i), false, static_cast<Index>(i), check);
 }
 
-void check_runs(const Material& material, DataCheck& check) {
-  VectorXd still_level(material.structure.inputs);
+/// Share of repeated samples in motion, over all runs or those of a role.
+double repeats_of(const Material& material, bool is_state, Index row, const std::optional<Role>& role = {}) {
+  std::vector<VectorXd> rows;
+  std::vector<bool> at_rest;
+  for (const RunPair& run : material.ordered) {
+    if (role && run.role != *role) continue;
+    const std::vector<bool> rests = is_state ? resting_samples(run.states, run.inputs, material.still_level)
+                                             : still_samples(run.inputs, material.still_level);
+    at_rest.insert(at_rest.end(), rests.begin(), rests.end());
+    rows.push_back((is_state ? run.states : run.inputs).values.row(row));
+  }
+  return repeats_in_motion(joined(rows), at_rest);
+}
+
+void check_runs(Material& material, DataCheck& check) {
+  VectorXd& still_level = material.still_level;
+  still_level.resize(material.structure.inputs);
   for (Index i = 0; i < still_level.size(); ++i) {
     const ChannelCheck& values = check.channels[static_cast<std::size_t>(material.structure.states + i)].values;
     still_level(i) = still_share * std::max(std::abs(values.least), std::abs(values.largest));
+  }
+  for (std::size_t i = 0; i < check.channels.size(); ++i) {
+    const auto row = static_cast<Index>(i);
+    const bool is_state = row < material.structure.states;
+    check.channels[i].repeated = repeats_of(material, is_state, is_state ? row : row - material.structure.states);
   }
   tbb::parallel_for(std::size_t{0}, check.runs.size(), [&](std::size_t i) {
     RunReport& run = check.runs[i];
@@ -154,8 +174,8 @@ double median_of(std::vector<double> values) {
   return values.empty() ? 0.0 : median(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
 }
 
-/// Largest share of repeated values of a measured input; one that never changes has no rate. Commands are coarse;
-/// measurements take many values.
+/// Largest share of repeated values in motion of a measured input; one that never changes has no rate. Commands are
+/// coarse or switched; measurements take many values.
 double repeated_inputs(const Material& material) {
   double most = 0.0;
   for (Index i = 0; i < material.structure.inputs; ++i) {
@@ -163,7 +183,8 @@ double repeated_inputs(const Material& material) {
     for (const RunPair& run : material.ordered)
       if (run.role == Role::train) rows.push_back(run.inputs.values.row(i));
     const ChannelCheck values = check_channel(joined(rows));
-    if (values.quantum == 0.0 && values.levels > 1) most = std::max(most, values.repeated);
+    if (values.quantum == 0.0 && values.levels > 1 && !values.two_level)
+      most = std::max(most, repeats_of(material, false, i, Role::train));
   }
   return most;
 }

@@ -31,6 +31,7 @@ struct ChannelSummary {
   Channel channel;
   bool is_state = false;
   ChannelCheck values;
+  double repeated = 0.0;  ///< share of samples equal to the one before, where the system does not rest
   SaturationLimits limits{0.0, 0.0, false};
   double saturated = 0.0;
 };

@@ -64,6 +64,15 @@ void time_findings(const DataCheck& check, const Config& config, std::vector<std
     found.push_back(fmt::format("gaps of more than 5 periods in {}: they split these runs", runs));
 }
 
+/// Excitation of the inputs together, in the run that excites least; empty where a run does not excite at all.
+std::string excitation_words(const DataCheck& check) {
+  Index least = check.runs.empty() ? 0 : check.runs.front().excitation;
+  for (const RunReport& run : check.runs) least = std::min(least, run.excitation);
+  if (least < 1) return "";
+  return fmt::format(", and the inputs are persistently exciting of order {}{} in every run", least,
+                     least < most_excitation_order ? "" : " or more");
+}
+
 void channel_findings(const DataCheck& check, std::vector<std::string>& found) {
   for (std::size_t i = 0; i < check.channels.size(); ++i) {
     const ChannelSummary& channel = check.channels[i];
@@ -85,9 +94,13 @@ void channel_findings(const DataCheck& check, std::vector<std::string>& found) {
                            : ""));
     if (channel.values.levels == 1)
       found.push_back(fmt::format("{} is constant: {:g} in every sample", channel.channel.name, channel.values.least));
-    else if (channel.values.repeated > 0.3 && (channel.is_state || channel.values.quantum == 0.0))
-      found.push_back(fmt::format("{} repeats {:.0f} % of its samples: its source is slower than the file",
-                                  channel.channel.name, percent * channel.values.repeated));
+    else if (channel.values.two_level)
+      found.push_back(fmt::format("{} is a binary signal: it switches between two levels (range {:.4g} to {:.4g}){}",
+                                  channel.channel.name, channel.values.least, channel.values.largest,
+                                  channel.is_state ? "" : excitation_words(check)));
+    else if (channel.repeated > 0.3 && (channel.is_state || channel.values.quantum == 0.0))
+      found.push_back(fmt::format("{} repeats {:.0f} % of its samples in motion: its source is slower than the file",
+                                  channel.channel.name, percent * channel.repeated));
     if (channel.is_state && channel.values.outliers > 0)
       found.push_back(fmt::format("{} has {} isolated spikes", channel.channel.name, channel.values.outliers));
   }

@@ -47,8 +47,8 @@ struct Densities {
 struct Resolution {
   std::string state;
   double quantum = 0.0;        ///< all values are multiples of it apart; 0: none seen
-  double repeated = 0.0;       ///< share of samples equal to the one before
-  double innovation_sd = 0.0;  ///< median standard deviation of the bank's predictions [state unit]
+  double repeated = 0.0;       ///< share of samples in motion that equal the one before
+  double innovation_sd = 0.0;  ///< median standard deviation of the bank's predictions in motion [state unit]
   double sd = 0.0;             ///< of the samples [state unit]; 0: not known
 };
 

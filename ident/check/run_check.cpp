@@ -24,6 +24,35 @@ bool is_still(const VectorXd& input, const VectorXd& level) {
 
 }  // namespace
 
+std::vector<bool> still_samples(const Stream& inputs, const VectorXd& still_level) {
+  std::vector<bool> still(static_cast<std::size_t>(inputs.values.cols()), false);
+  if (still_level.size() == 0) return still;
+  for (Index k = 1; k < inputs.values.cols(); ++k)
+    still[static_cast<std::size_t>(k)] =
+        is_still(inputs.values.col(k), still_level) && is_still(inputs.values.col(k - 1), still_level);
+  return still;
+}
+
+std::vector<bool> resting_samples(const Stream& states, const Stream& inputs, const VectorXd& still_level) {
+  const Index N = states.values.cols();
+  if (still_level.size() == 0 || inputs.time_s.size() == 0 || N == 0)
+    return std::vector<bool>(static_cast<std::size_t>(N), false);
+  std::vector<bool> rests = still_samples({states.time_s, hold(inputs, states.time_s)}, still_level);
+  for (Index k = 1; k < N; ++k)
+    if (states.values.col(k) != states.values.col(k - 1)) rests[static_cast<std::size_t>(k)] = false;
+  return rests;
+}
+
+double repeats_in_motion(const VectorXd& values, const std::vector<bool>& at_rest) {
+  double repeats = 0.0, known = 0.0;
+  for (Index k = 1; k < values.size(); ++k) {
+    if (at_rest[static_cast<std::size_t>(k)] || !std::isfinite(values(k)) || !std::isfinite(values(k - 1))) continue;
+    known += 1.0;
+    repeats += values(k) == values(k - 1) ? 1.0 : 0.0;
+  }
+  return known > 0.0 ? repeats / known : 0.0;
+}
+
 CommandCheck check_commands(const Stream& inputs, const VectorXd& still_level) {
   CommandCheck check;
   const Index N = inputs.time_s.size();

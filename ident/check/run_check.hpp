@@ -9,6 +9,20 @@
 
 namespace modebank {
 
+/// An input counts as zero, or still, within this share of its largest value.
+inline constexpr double still_share = 0.005;
+
+/// Samples of `states` at rest: every input in force there is within `still_level` (per input, m) of zero, and so it
+/// was a sample before, and every state repeats its value. None without inputs: nothing then separates rest from a
+/// measurement that is too coarse.
+std::vector<bool> resting_samples(const Stream& states, const Stream& inputs, const Eigen::VectorXd& still_level);
+
+/// Samples of `inputs` at which all inputs are within `still_level` of zero, as they were a sample before.
+std::vector<bool> still_samples(const Stream& inputs, const Eigen::VectorXd& still_level);
+
+/// Share of known samples equal to the one before, among those that `at_rest` leaves; 0 where it leaves none.
+double repeats_in_motion(const Eigen::VectorXd& values, const std::vector<bool>& at_rest);
+
 /// Commands of one run: stillness and constancy.
 struct CommandCheck {
   double still = 0.0;               ///< share of input samples with every input within `still_level` of zero
@@ -28,7 +42,8 @@ RestCheck check_rest(const Stream& states, const Stream& inputs, const Eigen::Ve
 
 /// Order of persistent excitation (Ljung 1999, def. 13.2): largest d <= most for which the inputs and their first d - 1
 /// delays, each in units of its root mean square, have a second-moment matrix with no eigenvalue below 1e-4.
-Eigen::Index excitation_order(const Eigen::MatrixXd& inputs, Eigen::Index most = 10);
+inline constexpr Eigen::Index most_excitation_order = 10;
+Eigen::Index excitation_order(const Eigen::MatrixXd& inputs, Eigen::Index most = most_excitation_order);
 
 /// Share of windows of `length` transitions whose regressors are rank deficient, of at most `most_windows` evenly
 /// spread ones; NaN for none.

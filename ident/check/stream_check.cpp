@@ -88,6 +88,21 @@ std::vector<double> levels_of(std::vector<double> values) {
   return levels;
 }
 
+/// Whether a signal takes few levels, the ends of its range as often as those inside: its values are chosen.
+bool is_of_few_levels(const std::vector<double>& known) {
+  constexpr std::size_t most_levels = 10;
+  constexpr double pressed = 3.0;
+  const std::vector<double> levels = levels_of(known);
+  if (levels.size() > most_levels || levels.size() < 3) return levels.size() == 2;
+  std::vector<double> shares(levels.size(), 0.0);
+  for (const double value : known) {
+    const auto above = std::upper_bound(levels.begin(), levels.end(), value);
+    shares[static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - levels.begin() - 1, 0))] += 1.0;
+  }
+  const double inside = *std::max_element(shares.begin() + 1, shares.end() - 1);
+  return std::max(shares.front(), shares.back()) <= pressed * inside;
+}
+
 }  // namespace
 
 SamplingCheck check_sampling(const Stream& recorded) {
@@ -142,8 +157,36 @@ ChannelCheck check_channel(const VectorXd& values) {
   for (Index k = 1; k < known_values.size(); ++k)
     if (known_values(k) == known_values(k - 1)) ++repeats;
   if (known.size() > 1) check.repeated = static_cast<double>(repeats) / static_cast<double>(known.size() - 1);
-  check.outliers = spikes(known_values, check.quantum);
+  check.two_level = has_two_levels(known_values);
+  // A switch may be on for one sample.
+  check.outliers = check.two_level ? 0 : spikes(known_values, check.quantum);
   return check;
+}
+
+bool has_two_levels(const VectorXd& values) {
+  constexpr double near = 0.1, least_near = 0.99, least_share = 0.02;
+  std::vector<double> known = finite_values(values);
+  if (known.empty()) return false;
+  // Between quantiles, so that a glitch does not count as a level.
+  const auto quantile = [&known](double share) {
+    const auto at = known.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(known.size() - 1));
+    std::nth_element(known.begin(), at, known.end());
+    return *at;
+  };
+  const double least = quantile(0.5 * least_share), middle = 0.5 * (least + quantile(1.0 - 0.5 * least_share));
+  double low = 0.0, high = 0.0, count = 0.0, above = 0.0;
+  for (const double value : known) {
+    (value > middle ? high : low) += value;
+    above += value > middle ? 1.0 : 0.0;
+    count += 1.0;
+  }
+  if (!(std::min(above, count - above) >= least_share * count)) return false;
+  high /= above;
+  low /= count - above;
+  const auto close = std::count_if(known.begin(), known.end(), [&](double value) {
+    return std::abs(value - (value > middle ? high : low)) <= near * (high - low);
+  });
+  return high > low && static_cast<double>(close) >= least_near * count;
 }
 
 Index spikes(const VectorXd& values, double quantum) {
@@ -174,7 +217,7 @@ SaturationLimits saturation_limits(const std::vector<VectorXd>& runs) {
     all.insert(all.end(), known.begin(), known.end());
   }
   SaturationLimits limits{not_a_number, not_a_number, false};
-  if (all.empty()) return limits;
+  if (all.empty() || is_of_few_levels(all) || has_two_levels(VectorXd::Map(all.data(), std::ssize(all)))) return limits;
   const auto [least, largest] = std::minmax_element(all.begin(), all.end());
   const double low = *least, high = *largest, width = band * (high - low), scale = std::max(-low, high);
   if (!(width > 0.0)) return limits;

@@ -33,11 +33,16 @@ struct ChannelCheck {
   double least = 0.0, largest = 0.0, mean = 0.0, sd = 0.0;
   double quantum = 0.0;     ///< all values are multiples of this apart; 0: none coarser than a thousandth of the range
   Eigen::Index levels = 0;  ///< distinct values
+  bool two_level = false;   ///< see has_two_levels()
   double repeated = 0.0;    ///< share of samples equal to the one before
   Eigen::Index outliers = 0;  ///< isolated samples: see spikes()
 };
 
 ChannelCheck check_channel(const Eigen::VectorXd& values);
+
+/// Whether a signal is a switch or a binary test signal: 99 % of its known values lie within a tenth of the distance
+/// between two levels from one of them (their means), and each level has 2 % of the values at least.
+bool has_two_levels(const Eigen::VectorXd& values);
 
 /// Samples that leave both neighbours in the same direction and stand off their mean by more than 12 robust standard
 /// deviations of such distances in the 51 samples around, three quanta and 1 % of the range.
@@ -47,6 +52,8 @@ Eigen::Index spikes(const Eigen::VectorXd& values, double quantum);
 /// over all runs; ends below 0.8 of that are none. Hard: more than 0.5 % of the samples lie in the outermost 2 % of the
 /// range, and at least 1.5 times as many as in the next 4 %. Soft: the outermost fifth of full scale holds at least 2 %
 /// of the samples, and 1.2 times as many as the next fifth; its outer half then counts.
+/// A signal of two levels has none, and one of up to ten levels only where an end has three times the share of the
+/// commonest level inside the range: test signals and gears take each of few values often.
 struct SaturationLimits {
   double low, high;   ///< samples at or below low, or at or above high, count as saturated; NaN: no such end
   bool soft = false;  ///< no hard end was found, but a soft one

@@ -79,6 +79,58 @@ TEST(Saturation, IsAPileUpAtFullScale) {
   EXPECT_FALSE(std::isfinite(upper.low)) << "far from full scale: a rest, not a limit";
 }
 
+TEST(Saturation, IsNotSeenInSignalsOfFewLevels) {
+  std::mt19937_64 generator(5);
+  const auto held = [&](std::vector<double> levels, double sd) {
+    VectorXd signal = noise(4000, 6, sd);
+    double level = levels.front();
+    for (Index k = 0; k < signal.size(); ++k) {
+      if (generator() % 5 == 0) level = levels[generator() % levels.size()];
+      signal(k) += level;
+    }
+    return signal;
+  };
+  for (const double sd : {0.0, 0.02}) {  // as commanded, as measured
+    const VectorXd binary = held({-1.0, 1.0}, sd);
+    EXPECT_TRUE(has_two_levels(binary));
+    EXPECT_FALSE(std::isfinite(saturation_limits({binary}).high));
+    EXPECT_FALSE(std::isfinite(saturation_limits({binary}).low));
+    EXPECT_EQ(check_channel(binary).outliers, 0) << "a pulse of one sample";
+  }
+  for (const std::vector<double>& levels : {std::vector<double>{-1.0, 0.0, 1.0}, {0.0, 1.0, 2.0, 3.0, 4.0}}) {
+    EXPECT_FALSE(has_two_levels(held(levels, 0.0)));
+    EXPECT_FALSE(std::isfinite(saturation_limits({held(levels, 0.0)}).high));
+  }
+  EXPECT_TRUE(std::isfinite(saturation_limits({held({0.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0}, 0.0)}).high))
+      << "three times as common as what lies inside";
+  VectorXd glitch = held({0.0, 1.0}, 0.01);
+  glitch(70) = 50.0;
+  EXPECT_TRUE(has_two_levels(glitch));
+  EXPECT_FALSE(has_two_levels(noise(4000, 7)));
+}
+
+TEST(Rest, RepeatsNothingThatMoves) {
+  constexpr Index N = 400;
+  Stream states{VectorXd::LinSpaced(N, 0.0, 39.9), noise(N, 8).transpose()}, inputs = states;
+  for (Index k = 0; k < N; ++k) {
+    const bool rests = k < 100 || k >= 300;
+    inputs.values(0, k) = rests ? 0.0 : 1.0;
+    if (rests) states.values(0, k) = 0.0;
+  }
+  for (Index k = 110; k < 160; k += 10)
+    states.values(0, k) = states.values(0, k - 1);  // five of two hundred, in motion
+  const VectorXd level = VectorXd::Constant(1, 0.01), state = states.values.row(0);
+  const std::vector<bool> rests = resting_samples(states, inputs, level);
+  EXPECT_EQ(std::count(rests.begin(), rests.end(), true), 99 + 99);
+  EXPECT_NEAR(check_channel(state).repeated, (5.0 + 198.0) / 399.0, 1e-12);
+  EXPECT_NEAR(repeats_in_motion(state, rests), 5.0 / 201.0, 1e-12);
+  inputs.values.setOnes();
+  EXPECT_NEAR(repeats_in_motion(state, resting_samples(states, inputs, level)), 203.0 / 399.0, 1e-12)
+      << "a state that repeats while an input acts is measured coarsely";
+  const Stream none{states.time_s, MatrixXd(0, N)};
+  EXPECT_EQ(repeats_in_motion(state, resting_samples(states, none, VectorXd(0))), 203.0 / 399.0);
+}
+
 TEST(CheckCommands, StillnessAndConstancy) {
   Stream inputs{VectorXd::LinSpaced(10, 0.0, 9.0), MatrixXd(2, 10)};
   inputs.values << 0, 0, 1, 1, 1, 1, 0, 0, 2, 2,  //
