@@ -18,8 +18,6 @@ namespace modebank {
 
 namespace {
 
-constexpr std::string_view nanoseconds_type = "datetime64[ns]";
-
 /// Columns, by position in the store, that share their rows.
 struct Block {
   std::string group;
@@ -27,10 +25,6 @@ struct Block {
   bool timed = false;
   std::vector<std::size_t> columns;
 };
-
-bool is_time(const StoredColumn& column) {
-  return column.type == nanoseconds_type || (!column.text && is_time_name(column.name));
-}
 
 std::vector<Block> blocks_of(const std::vector<StoredColumn>& columns) {
   std::vector<Block> blocks;
@@ -77,6 +71,8 @@ class ArrayReader : public TableReader {
 
   std::vector<TableInfo> tables() const override { return tables_; }
 
+  std::vector<std::string> left_out() const override { return store_->objects(); }
+
   InputFile describe(const std::vector<TableRequest>&) const override { return describe_file(path_); }
 
   std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile* file) const override {
@@ -107,6 +103,14 @@ class ArrayReader : public TableReader {
     return table;
   }
 
+  std::vector<double> values_of(std::size_t column) const {
+    const StoredColumn& stored = store_->columns()[column];
+    if (!(stored.step_s > 0.0)) return store_->numbers(column);
+    std::vector<double> values(static_cast<std::size_t>(stored.rows));
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = static_cast<double>(k) * stored.step_s;
+    return values;
+  }
+
   std::size_t stored(const TableRequest& request, const std::string& name) const {
     const TableInfo& table = tables_.at(request.table);
     return blocks_[request.table].columns[column_position(path_.string(), column_names(table), name)];
@@ -132,7 +136,7 @@ class ArrayReader : public TableReader {
   std::vector<double> numbers(std::size_t column, bool may_miss) const {
     const StoredColumn& stored = store_->columns()[column];
     if (stored.text) throw DataError(fmt::format("{}: column {} is text, not numbers", path_.string(), stored.path()));
-    std::vector<double> values = store_->numbers(column);
+    std::vector<double> values = values_of(column);
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (std::isfinite(values[k])) continue;
       if (!may_miss)
@@ -150,7 +154,7 @@ class ArrayReader : public TableReader {
     if (stored.whole)
       for (const std::int64_t value : store_->whole_numbers(column)) result.push_back(fmt::format("{}", value));
     else
-      for (const double value : store_->numbers(column)) result.push_back(fmt::format("{}", value));
+      for (const double value : values_of(column)) result.push_back(fmt::format("{}", value));
     return result;
   }
 
@@ -163,7 +167,7 @@ class ArrayReader : public TableReader {
     std::vector<std::string> fine;
     if (!request.time.nanoseconds.empty()) fine = texts(stored(request, request.time.nanoseconds));
     const std::vector<std::int64_t> whole = seconds.whole ? store_->whole_numbers(column) : std::vector<std::int64_t>();
-    const std::vector<double> values = seconds.whole ? std::vector<double>() : store_->numbers(column);
+    const std::vector<double> values = seconds.whole ? std::vector<double>() : values_of(column);
     for (std::size_t k = 0; k < table.rows(); ++k) {
       const bool known = seconds.whole || std::isfinite(values[k]);
       if (!known && !request.time.may_miss)

@@ -32,7 +32,7 @@ class Hdf5Columns : public ColumnStore {
   explicit Hdf5Columns(const std::filesystem::path& path) : path_(path.string()) {
     const hdf5::Quiet quiet;
     H5PLset_loading_state(0);  // no file names code of ours
-    Hdf5Walk walk;
+    Hdf5Walk walk(path_);
     try {
       const Handle file = hdf5::open_file(path_);
       const Handle root = hdf5::open_group(file.id(), "/");
@@ -46,10 +46,13 @@ class Hdf5Columns : public ColumnStore {
     if (walk.columns.empty()) fail_empty(walk);
     columns_ = std::move(walk.columns);
     places_ = std::move(walk.places);
+    objects_ = std::move(walk.objects);
+    add_sample_times(columns_, sample_times(walk));
     if (walk.tables == 1) leave_out_only_group();
   }
 
   const std::vector<StoredColumn>& columns() const override { return columns_; }
+  const std::vector<std::string>& objects() const override { return objects_; }
   std::vector<double> numbers(std::size_t column) const override { return read<double>(column, H5T_NATIVE_DOUBLE); }
   std::vector<std::int64_t> whole_numbers(std::size_t column) const override {
     return read<std::int64_t>(column, H5T_NATIVE_INT64);
@@ -62,6 +65,7 @@ class Hdf5Columns : public ColumnStore {
   std::string path_;
   std::vector<StoredColumn> columns_;
   std::vector<Hdf5Place> places_;
+  std::vector<std::string> objects_;
   mutable std::filesystem::file_time_type written_;
   mutable std::set<std::string> sound_;  // datasets that were looked at; changed under HDF5's lock (Quiet) alone
 
@@ -74,6 +78,19 @@ class Hdf5Columns : public ColumnStore {
     if (sound_.count(object) > 0) return;
     hdf5_check_readable(data);
     sound_.insert(object);
+  }
+
+  std::map<std::string, double> sample_times(const Hdf5Walk& walk) const {
+    std::map<std::string, double> result;
+    for (const auto& [group, place] : walk.sample_times) try {
+        const Handle file = hdf5::open_file(path_);
+        const Handle data(H5Dopen2(file.id(), place.object.c_str(), H5P_DEFAULT), H5Dclose, "open the dataset");
+        hdf5_check_readable(data.id());
+        hdf5::check(H5Dread(data.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &result[group]), "read Ts");
+      } catch (const DataError&) {
+        result.erase(group);  // no sample time then
+      }
+    return result;
   }
 
   void refuse_archive(hid_t root) const {
@@ -102,6 +119,15 @@ class Hdf5Columns : public ColumnStore {
 
   template <class T>
   std::vector<T> read(std::size_t column, hid_t memory) const {
+    if (columns_[column].type.starts_with("bits")) {  // HDF5 converts them to longer bits alone
+      const std::vector<std::uint64_t> bits = read_as<std::uint64_t>(column, H5T_NATIVE_B64);
+      return std::vector<T>(bits.begin(), bits.end());
+    }
+    return read_as<T>(column, memory);
+  }
+
+  template <class T>
+  std::vector<T> read_as(std::size_t column, hid_t memory) const {
     return at_column(column, [&](hid_t data, const Hdf5Place& place) {
       const auto rows = static_cast<std::size_t>(columns_[column].rows);
       if (!place.member.empty()) return hdf5_read_member<T>(data, place.member, place.element, memory, rows);

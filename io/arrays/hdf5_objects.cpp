@@ -67,10 +67,14 @@ Shape hdf5_shape(hid_t dataset) {
 
 bool hdf5_is_number(hid_t type) {
   const H5T_class_t kind = H5Tget_class(type);
-  return kind == H5T_INTEGER || kind == H5T_FLOAT || kind == H5T_ENUM;
+  return kind == H5T_INTEGER || kind == H5T_FLOAT || kind == H5T_ENUM || hdf5_is_bits(type);
 }
 
-bool hdf5_is_whole(hid_t type) { return H5Tget_class(type) == H5T_INTEGER; }
+bool hdf5_is_bits(hid_t type) {
+  return H5Tget_class(type) == H5T_BITFIELD && H5Tget_size(type) <= sizeof(std::uint64_t);
+}
+
+bool hdf5_is_whole(hid_t type) { return H5Tget_class(type) == H5T_INTEGER || hdf5_is_bits(type); }
 
 bool hdf5_is_text(hid_t type) { return H5Tget_class(type) == H5T_STRING; }
 
@@ -83,6 +87,8 @@ std::string hdf5_type_name(hid_t type) {
       return fmt::format("{}int{}", H5Tget_sign(type) == H5T_SGN_NONE ? "u" : "", bits);
     case H5T_ENUM:
       return "enumeration";
+    case H5T_BITFIELD:
+      return fmt::format("bits{}", bits);
     case H5T_STRING:
       return "text";
     default:

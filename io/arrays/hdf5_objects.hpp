@@ -16,11 +16,13 @@ std::string hdf5_text_attribute(hid_t object, const std::string& name);
 std::string hdf5_unit(hid_t object);
 hdf5::Shape hdf5_shape(hid_t dataset);
 
-/// Whether values convert to numbers: integers, floats and enumerations (booleans).
+/// Whether values convert to numbers: integers, floats, enumerations (h5py's booleans) and bits.
 bool hdf5_is_number(hid_t type);
+/// Bits, 64 at most: PyTables and pandas store truth values so.
+bool hdf5_is_bits(hid_t type);
 bool hdf5_is_whole(hid_t type);
 bool hdf5_is_text(hid_t type);
-/// double, float32, int16, uint8, text, ...
+/// double, float32, int16, uint8, bits8, text, ...
 std::string hdf5_type_name(hid_t type);
 std::string hdf5_member_name(hid_t compound, unsigned member);
 hsize_t hdf5_array_elements(hid_t array_type);

@@ -53,9 +53,7 @@ bool Hdf5Walk::is_object(hid_t id, const std::string& made) {
 }
 
 void Hdf5Walk::note_object(const std::string& made, const std::string& name) {
-  const std::string line = matlab_conversion(made, name);
-  objects.push_back(fmt::format("{} is a MATLAB {}{}{}", name, made.empty() ? "object" : made,
-                                line.empty() ? "" : ": convert it in MATLAB with ", line));
+  objects.push_back(matlab_object(made, name, made == "iddata" ? "" : file));
 }
 
 void Hdf5Walk::link(hid_t parent, const std::string& member, const std::string& path, const std::string& group_name,
@@ -92,6 +90,8 @@ void Hdf5Walk::dataset(hid_t id, const std::string& path, const std::string& gro
 }
 
 void Hdf5Walk::plain(StoredColumn column, const std::string& path, const Shape& shape, hsize_t habit) {
+  if (column.name == "Ts" && !column.text && hdf5::element_count(shape) == 1)
+    sample_times[column.group] = {path, "", 0, 0};
   if (shape.size() == 1 && shape[0] > 1) {
     column.rows = shape[0];
     return add(std::move(column), {path, "", 0, 0});

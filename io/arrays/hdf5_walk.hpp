@@ -21,12 +21,17 @@ struct Hdf5Place {
 /// Walks through a file and lists its columns.
 class Hdf5Walk {
  public:
+  /// `named`: the file, in lines on objects.
+  explicit Hdf5Walk(std::string named) : file(std::move(named)) {}
+
+  const std::string file;
   std::vector<StoredColumn> columns;
   std::vector<Hdf5Place> places;
   std::map<std::string, std::string> labels;
-  std::vector<std::string> objects;  ///< MATLAB's, with the line that converts each
-  std::vector<std::string> foreign;  ///< what lies outside the file
-  int tables = 0;                    ///< of pandas or of compound rows
+  std::vector<std::string> objects;               ///< MATLAB's, with the lines that convert each
+  std::map<std::string, Hdf5Place> sample_times;  ///< of groups that hold a scalar Ts
+  std::vector<std::string> foreign;               ///< what lies outside the file
+  int tables = 0;                                 ///< of pandas or of compound rows
 
   void group(hid_t id, const std::string& path, const std::string& name, int depth);
 

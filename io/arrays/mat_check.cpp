@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <memory>
 
 #include "io/files/read_file.hpp"
@@ -103,7 +104,10 @@ constexpr int deepest = 64;
 /// The elements of versions 6 and 7.
 class Elements {
  public:
-  Elements(Bytes& bytes, bool swapped) : bytes_(bytes), swapped_(swapped) {}
+  using Classes = std::map<std::string, std::string>;
+
+  /// `objects`: gets the classes of variables that are objects.
+  Elements(Bytes& bytes, bool swapped, Classes& objects) : bytes_(bytes), swapped_(swapped), objects_(objects) {}
 
   /// A matrix whose tag is read, and whose content has so many bytes.
   void matrix(std::uint64_t room, int depth) {
@@ -114,12 +118,12 @@ class Elements {
     const std::uint32_t word = value(flags), kind = word & 0xff;
     const bool is_complex = (word & 0x800) != 0;
     rest(flags, 4);
-    if (kind == opaque) return bytes_.skip(room);
+    if (kind == opaque) return opaque_object(room, depth);
     const std::uint64_t count = extents(part(room));
     const Part called = part(room);
     if (depth > 0 && called.bytes > 0) fail("a part of a struct or cell has a name of its own");
-    name(called);
-    if (kind == object) name(part(room));
+    const std::string variable = text(called);
+    if (kind == object) note_object(variable, text(part(room)), depth);
     if (kind == cell) return matrices(count, room, depth);
     if (kind == structure || kind == object) return fields(count, room, depth);
     if (kind == function) return matrices(1, room, depth);
@@ -166,6 +170,7 @@ class Elements {
 
   Bytes& bytes_;
   bool swapped_;
+  Classes& objects_;
 
   void take(std::uint64_t& room, std::uint64_t count) {
     if (count > room) fail("a part of a matrix is larger than the matrix");
@@ -219,9 +224,29 @@ class Elements {
     return count;
   }
 
-  void name(const Part& of) {
+  std::string text(const Part& of) {
     if (of.bytes > longest_name) fail("a name is too long");
-    rest(of, 0);
+    std::string name(static_cast<std::size_t>(of.bytes), '\0');
+    if (of.is_small)
+      std::copy_n(of.small.begin(), name.size(), name.begin());
+    else
+      bytes_.read(name.data(), name.size());
+    rest(of, of.bytes);
+    return name;
+  }
+
+  void note_object(const std::string& variable, const std::string& made, int depth) {
+    if (depth == 0) objects_[variable] = made;
+  }
+
+  /// MATLAB's class system puts the variable's name, its own and the class's before the content.
+  void opaque_object(std::uint64_t room, int depth) {
+    if (depth == 0) {
+      const std::string variable = text(part(room));
+      text(part(room));
+      note_object(variable, text(part(room)), depth);
+    }
+    bytes_.skip(room);
   }
 
   void fields(std::uint64_t count, std::uint64_t room, int depth) {
@@ -253,20 +278,21 @@ class Elements {
   }
 };
 
-void check_elements(FileBytes& file) {
+Elements::Classes check_elements(FileBytes& file) {
+  Elements::Classes objects;
   std::array<char, 128> header{};
   file.read(header.data(), header.size());
   const std::string_view order(header.data() + 126, 2);
   if (order != "IM" && order != "MI") fail("its header is another one");
   const bool swapped = (order == "MI") == (std::endian::native == std::endian::little);
   while (file.left() >= tag_bytes) {
-    const Elements::Tag outer = Elements(file, swapped).tag();
+    const Elements::Tag outer = Elements(file, swapped, objects).tag();
     if (outer.bytes > file.left()) fail("a part of it is said to be larger than what is there");
     if (outer.type == Elements::matrix_type) {
-      Elements(file, swapped).matrix(outer.bytes, 0);
+      Elements(file, swapped, objects).matrix(outer.bytes, 0);
     } else if (outer.type == Elements::compressed_type) {
       UnpackedBytes unpacked(file, outer.bytes);
-      Elements elements(unpacked, swapped);
+      Elements elements(unpacked, swapped, objects);
       const Elements::Tag inner = elements.tag();
       if (inner.type != Elements::matrix_type) fail("a compressed part is no matrix");
       elements.matrix(inner.bytes, 0);
@@ -275,6 +301,7 @@ void check_elements(FileBytes& file) {
       fail("a part of it is no matrix");
     }
   }
+  return objects;
 }
 
 /// Version 4: type, rows, columns, whether complex, the name's length; the name; values.
@@ -298,16 +325,15 @@ void check_matrices(FileBytes& file) {
 
 }  // namespace
 
-void check_mat(const std::filesystem::path& path) {
+std::map<std::string, std::string> check_mat(const std::filesystem::path& path) {
   try {
     FileBytes file(path);
     // Versions 6 and 7 begin with text, 4 with a type, which has a zero among its four bytes.
     std::array<char, 4> first{};
     if (file.left() >= first.size()) FileBytes(path).read(first.data(), first.size());
-    if (std::find(first.begin(), first.end(), '\0') == first.end())
-      check_elements(file);
-    else
-      check_matrices(file);
+    if (std::find(first.begin(), first.end(), '\0') == first.end()) return check_elements(file);
+    check_matrices(file);
+    return {};
   } catch (const DataError& error) {
     throw DataError(fmt::format("{}: {}", path.string(), error.what()));
   }

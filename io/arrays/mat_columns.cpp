@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <matio.h>
 
 #include <algorithm>
@@ -73,11 +74,15 @@ matvar_t* follow(matvar_t* v, const std::vector<MatStep>& steps) {
 /// Walks through the variables' headers and lists their columns.
 class MatWalk {
  public:
-  explicit MatWalk(std::uint64_t file_bytes) : most_bytes_((file_bytes + 4096) * most_expansion) {}
+  /// `classes`: of the variables that are objects; libmatio lists these without their classes, or not at all.
+  MatWalk(const std::string& file, const std::map<std::string, std::string>& classes)
+      : file_(file), most_bytes_((std::filesystem::file_size(file) + 4096) * most_expansion) {
+    for (const auto& [variable, made] : classes) objects.push_back(matlab_object(made, variable, file));
+  }
 
   std::vector<StoredColumn> columns;
   std::vector<MatPlace> places;
-  std::map<std::string, MatPlace> label_places;
+  std::map<std::string, MatPlace> label_places, sample_time_places;
   std::vector<std::string> objects;
 
   void variable(const matvar_t& v) {
@@ -86,16 +91,20 @@ class MatWalk {
   }
 
  private:
+  const std::string& file_;
   std::uint64_t most_bytes_, bytes_ = 0;
 
   void part(const matvar_t& v, const std::string& group, const std::string& name, const MatPlace& place, int depth) {
     const std::string path = group.empty() ? name : group + "." + name;
     if (v.class_type == MAT_C_STRUCT) return fields(v, path, place, depth);
-    if (v.class_type == MAT_C_OBJECT || v.class_type == MAT_C_OPAQUE || v.class_type == MAT_C_FUNCTION)
-      return objects.push_back(path);
+    if (v.class_type == MAT_C_OBJECT || v.class_type == MAT_C_OPAQUE) {
+      if (!group.empty()) objects.push_back(matlab_object("", path, file_));
+      return;
+    }
     if (v.class_type == MAT_C_CHAR && name == "label") label_places[path] = place;
     if (!is_number(v)) return;
     check_size(v, path);
+    if (name == "Ts" && elements(v) == 1) sample_time_places[group] = place;
     if (v.rank != 2 || elements(v) < 2) return;
     const std::size_t rows = v.dims[0], wide = v.dims[1];
     const bool vector = rows == 1 || wide == 1;
@@ -136,9 +145,8 @@ class MatWalk {
 class MatColumns : public ColumnStore {
  public:
   explicit MatColumns(const std::filesystem::path& path) : path_(path.string()) {
-    check_mat(path);
+    MatWalk walk(path_, check_mat(path));
     const MatFile file = open_mat(path_);
-    MatWalk walk(std::filesystem::file_size(path));
     try {
       for (Variable v(Mat_VarReadNextInfo(file.get())); v; v.reset(Mat_VarReadNextInfo(file.get()))) walk.variable(*v);
     } catch (const DataError& error) {
@@ -149,10 +157,18 @@ class MatColumns : public ColumnStore {
     name_signals(walk.columns, labels);
     columns_ = std::move(walk.columns);
     places_ = std::move(walk.places);
-    if (columns_.empty()) fail_empty(walk.objects);
+    objects_ = std::move(walk.objects);
+    if (columns_.empty())
+      throw ConfigurationError(fmt::format("{}: no column of numbers of two rows or more{}{}", path_,
+                                           objects_.empty() ? "" : "; ", fmt::join(objects_, "; ")));
+    std::map<std::string, double> sample_time;
+    for (const auto& [group, place] : walk.sample_time_places)
+      sample_time[group] = values_at<double>(place, 1, "Ts")[0];
+    add_sample_times(columns_, sample_time);
   }
 
   const std::vector<StoredColumn>& columns() const override { return columns_; }
+  const std::vector<std::string>& objects() const override { return objects_; }
 
   std::vector<double> numbers(std::size_t column) const override { return read<double>(column); }
   std::vector<std::int64_t> whole_numbers(std::size_t column) const override { return read<std::int64_t>(column); }
@@ -164,17 +180,7 @@ class MatColumns : public ColumnStore {
   std::string path_;
   std::vector<StoredColumn> columns_;
   std::vector<MatPlace> places_;
-
-  [[noreturn]] void fail_empty(const std::vector<std::string>& objects) const {
-    std::string why;
-    for (const std::string& object : objects)
-      why += fmt::format(
-          "; {0} is an object, of which these files say too little. Convert it in MATLAB, a timeseries with {1}   a "
-          "table with {2}   a timetable with {3}   a datetime with {4}",
-          object, matlab_conversion("timeseries", object), matlab_conversion("table", object),
-          matlab_conversion("timetable", object), matlab_conversion("datetime", object));
-    throw ConfigurationError(fmt::format("{}: no column of numbers of two rows or more{}", path_, why));
-  }
+  std::vector<std::string> objects_;
 
   /// Whether so many elements were read: a damaged file may declare more.
   static bool holds(const matvar_t& part, std::uint64_t count) {
@@ -197,13 +203,16 @@ class MatColumns : public ColumnStore {
 
   template <class T>
   std::vector<T> read(std::size_t column) const {
-    const MatPlace& place = places_.at(column);
+    return values_at<T>(places_.at(column), static_cast<std::size_t>(columns_[column].rows), columns_[column].path());
+  }
+
+  template <class T>
+  std::vector<T> values_at(const MatPlace& place, std::size_t rows, const std::string& name) const {
     const MatFile file = open_mat(path_);
     const Variable v(Mat_VarRead(file.get(), place.variable.c_str()));
     const matvar_t* part = v ? follow(v.get(), place.steps) : nullptr;
-    const auto rows = static_cast<std::size_t>(columns_[column].rows);
     if (!part || !is_number(*part) || elements(*part) < place.first + rows || !holds(*part, place.first + rows))
-      throw DataError(fmt::format("{}: column {} cannot be read: the file is damaged", path_, columns_[column].path()));
+      throw DataError(fmt::format("{}: column {} cannot be read: the file is damaged", path_, name));
     return converted<T>(*part, place.first, rows);
   }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace modebank {
@@ -18,16 +19,23 @@ struct StoredColumn {
   std::uint64_t rows = 0;
   bool whole = false;  ///< whole numbers, which whole_numbers gives exactly
   bool text = false;
+  double step_s = 0.0;  ///< above 0: the file stores no values, row k is k * step_s
 
   std::string path() const { return group.empty() ? name : group + "." + name; }
 };
+
+constexpr std::string_view nanoseconds_type = "datetime64[ns]";
+/// Whether a column holds times, by its type or its name.
+bool is_time(const StoredColumn& column);
 
 /// A file's columns, one after another, each read when it is asked for.
 class ColumnStore {
  public:
   virtual ~ColumnStore() = default;
   virtual const std::vector<StoredColumn>& columns() const = 0;
-  /// Throw DataError, naming the column, when it cannot be read.
+  /// A line for every object of MATLAB, which gives no columns, with the lines that convert it.
+  virtual const std::vector<std::string>& objects() const = 0;
+  /// Throw DataError, naming the column, when it cannot be read. Of columns that the file stores.
   virtual std::vector<double> numbers(std::size_t column) const = 0;
   virtual std::vector<std::int64_t> whole_numbers(std::size_t column) const = 0;
   virtual std::vector<std::string> texts(std::size_t column) const = 0;
@@ -47,8 +55,16 @@ std::unique_ptr<ColumnStore> open_mat_columns(const std::filesystem::path& path)
 /// of NAME.signals.label or NAME.signals[0].label by path.
 void name_signals(std::vector<StoredColumn>& columns, const std::map<std::string, std::string>& labels);
 
+/// A struct's scalar Ts is the sample time of its columns: adds the column "time" to the groups that `sample_time`
+/// names, for the commonest number of rows in them and below, unless these have times.
+void add_sample_times(std::vector<StoredColumn>& columns, const std::map<std::string, double>& sample_time);
+
 /// The line of MATLAB that turns an object of that class into what is read here; "" when none is known.
 std::string matlab_conversion(const std::string& class_name, const std::string& variable);
+
+/// An object of MATLAB and the lines of MATLAB and of Python that convert it. `class_name` empty: not known;
+/// `file` empty: Python's scipy does not read it.
+std::string matlab_object(const std::string& class_name, const std::string& variable, const std::string& file);
 
 /// Compressed data is at most this many times smaller than what it unpacks to (deflate's limit is 1032).
 constexpr std::uint64_t most_expansion = 1100;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,7 +26,8 @@ struct TableInfo {
   std::string name;  ///< empty: the file is one table
   std::string type;  ///< the format's word for a row, as "sensor_msgs/Imu"; may be empty
   std::vector<ColumnInfo> columns;
-  std::uint64_t rows = 0;  ///< 0: not known without reading
+  std::uint64_t rows = 0;     ///< 0: not known without reading
+  std::uint64_t skipped = 0;  ///< lines of a title above it, in text
 };
 
 /// The column of times; an empty one asks for none. Stamps in two columns have their nanoseconds in the second.
@@ -54,6 +56,7 @@ struct Table {
   std::vector<std::int64_t> time_ns;            ///< per row, exact; empty when no time was requested
   /// The same times as they were written, where that is seconds in text, which may be finer; else empty.
   std::vector<double> time_s;
+  std::map<std::string, std::size_t> missing_words;  ///< how often each word of data.na stands for a missing number
   std::vector<std::string> notes;  ///< what the reader found out and the user should know; without the file's name, so
                                    ///< that many files say it once
 
@@ -79,6 +82,9 @@ class TableReader {
   /// column_position does, and DataError, naming file, line and column, for text where a number is wanted, a missing
   /// value (empty, NaN or infinite) in a column that may not miss any and a malformed row.
   virtual std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile* file) const = 0;
+
+  /// A line for everything that the file holds and no table gives, saying what helps.
+  virtual std::vector<std::string> left_out() const { return {}; }
 
   /// Why a column that a user may expect is not there; empty when there is nothing to say.
   virtual std::string why_without(const std::string& /*column*/) const { return {}; }

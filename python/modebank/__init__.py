@@ -30,7 +30,7 @@ Path = Union[str, os.PathLike]
 Frames = Mapping[str, Union[pandas.DataFrame, Sequence[pandas.DataFrame]]]
 
 __all__ = ["Archive", "Array", "Bank", "ConfigurationError", "DataError", "Estimate", "Filter", "FreeRun", "Mixture",
-           "Windows", "fit_mixture", "identify", "read", "run", "simulate"]
+           "Windows", "fit_mixture", "identify", "read", "read_iddata", "run", "simulate"]
 
 
 def _flat(keys):
@@ -131,6 +131,35 @@ def read(log: Path, *, columns: Sequence[str] = (), **options: Any) -> dict[str,
     for name, (columns, units) in _modebank.read_log(os.fspath(log), list(columns), options).items():
         frames[name] = pandas.DataFrame(columns)
         frames[name].attrs["units"] = {column: unit for column, unit in units.items() if unit}
+    return frames
+
+
+def read_iddata(file: Path, variable: str | None = None) -> dict[str, pandas.DataFrame]:
+    """The experiments of an iddata object that MATLAB saved (-v7 or older) as {name: DataFrame}, which run takes.
+
+    variable: the object's name, where the file holds several. Outputs come first, then inputs, after the column "time"
+    [s]; units are in frame.attrs["units"]. Needs scipy."""
+    import scipy.io
+
+    found = {name: value for name, value in scipy.io.loadmat(os.fspath(file)).items()
+             if getattr(value, "classname", "") == "iddata"}
+    if len(found) != 1 and variable not in found:
+        raise ConfigurationError(f"{file} holds {len(found)} iddata objects: {', '.join(found)}; name one of them")
+    record = found[variable or next(iter(found))][0, 0]
+
+    def parts(field):
+        return list(record[field].ravel()) if record[field].dtype == object else [record[field]]
+
+    labels, units = ([str(text.item()) if text.size else "" for side in ("Output", "Input") for text in parts(side + of)]
+                     for of in ("Name", "Unit"))
+    frames = {}
+    for name, outputs, inputs, step in zip(*map(parts, ("ExperimentName", "OutputData", "InputData", "Ts"))):
+        if not step.size:
+            raise DataError(f"{file}: experiment {name.item()} has no sample time: save SamplingInstants beside it")
+        frame = pandas.DataFrame(np.hstack([outputs, inputs]).astype(float), columns=labels)
+        frame.insert(0, "time", step.item() * np.arange(len(frame)))
+        frame.attrs["units"] = dict(zip(labels, units))
+        frames[str(name.item())] = frame
     return frames
 
 

@@ -60,6 +60,38 @@ TEST_F(ImportArrays, TakeTimesFromTheStructAbove) {
   EXPECT_EQ(import().recording.runs[0].input, row({5, 6, 7}));
 }
 
+TEST_F(ImportArrays, TakeTsOfAStructForItsSampleTime) {
+  options.inputs = "log.mat";
+  for (const mat_ft version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
+    {
+      MatWriter file(folder.path() / "log.mat", version);
+      file.write(MatWriter::structure("z", {"y", "u", "Ts"},
+                                      {{MatWriter::matrix("y", {0, 1, 2, 3}, 4),
+                                        MatWriter::matrix("u", {5, 6, 7, 8}, 4), MatWriter::matrix("Ts", {0.25}, 1)}}));
+    }
+    options.state = {"z.y"};
+    options.input = {"z.u"};
+    EXPECT_EQ(import().recording.runs[0].time_s.transpose(), row({0, 0.25, 0.5, 0.75}));
+    {
+      MatWriter file(folder.path() / "log.mat", version);
+      file.write(MatWriter::matrix("y", {0, 1, 2, 3}, 4));
+      file.write(MatWriter::matrix("t", {0, 1, 2, 3}, 4));
+      file.write(MatWriter::matrix("Ts", {0.25}, 1));
+    }
+    options.state = {"y"};
+    options.input.clear();
+    options.time = {"t"};
+    EXPECT_EQ(import().recording.runs[0].time_s.transpose(), row({0, 1, 2, 3})) << "times stand beside it";
+    options.time = DataOptions().time;
+    {
+      MatWriter file(folder.path() / "log.mat", version);
+      file.write(MatWriter::matrix("y", {0, 1, 2, 3}, 4));
+      file.write(MatWriter::matrix("Ts", {-1.0}, 1));
+    }
+    EXPECT_THAT(error<ConfigurationError>(), ::testing::HasSubstr("\"time\"")) << "no time runs backwards";
+  }
+}
+
 TEST_F(ImportArrays, ReadPandasDatesExactly) {
   options.root = test::golden_dir().string();
   options.inputs = "pandas_stamped.h5";

@@ -17,6 +17,7 @@ namespace {
 using test::MatWriter;
 using test::message_of;
 using test::TemporaryFolder;
+using ::testing::AllOf;
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -116,11 +117,28 @@ TEST(MatFilesOfVersion4, DeclareNoMoreThanTheyHold) {
 
 TEST(MatObjects, AreNamedWithTheLineThatConvertsThem) {
   EXPECT_EQ(matlab_conversion("timeseries", "log.speed"),
-            "s = struct('t', log.speed.Time, 'x', log.speed.Data); save('log_plain.mat', '-struct', 's')");
-  EXPECT_EQ(matlab_conversion("table", "T"),
-            "s = table2struct(T, 'ToScalar', true); save('T_plain.mat', '-struct', 's')");
-  EXPECT_EQ(matlab_conversion("datetime", "d"), "s.t = posixtime(d); save('d_plain.mat', '-struct', 's')");
+            "s = struct('t', log.speed.Time, 'x', log.speed.Data); save log_plain s -v7");
+  EXPECT_EQ(matlab_conversion("table", "T"), "s = table2struct(T, 'ToScalar', true); save T_plain s -v7");
+  EXPECT_EQ(matlab_conversion("datetime", "d"), "s = struct('t', posixtime(d)); save d_plain s -v7");
+  EXPECT_EQ(matlab_conversion("iddata", "z"),
+            "s = struct('y', z.OutputData, 'u', z.InputData, 'Ts', z.Ts); save z_plain s -v7");
   EXPECT_EQ(matlab_conversion("double", "x"), "");
+  EXPECT_THAT(matlab_object("iddata", "z", "log.mat"),
+              AllOf(HasSubstr("z is a MATLAB iddata"), HasSubstr("modebank.read_iddata('log.mat')")));
+  EXPECT_THAT(matlab_object("", "a.b", "log.mat"), HasSubstr("a.b is a MATLAB object"));
+}
+
+/// tests/golden/generate/mat_objects.py: by scipy, and one as MATLAB's own class system is stored.
+TEST(MatObjects, AreNamedByTheirClasses) {
+  for (const char* made : {"iddata", "table"}) {
+    const std::string file = (test::golden_dir() / (std::string("mat_") + made + ".mat")).string();
+    EXPECT_THAT(message_of<ConfigurationError>([&] { open_mat_columns(file); }),
+                AllOf(HasSubstr(std::string("z is a MATLAB ") + made + ": convert it in MATLAB with s = "),
+                      HasSubstr("save z_plain s -v7"), HasSubstr("python3 -c")));
+  }
+  const auto beside = open_mat_columns(test::golden_dir() / "mat_iddata_and_t.mat");
+  EXPECT_THAT(paths(*beside), ElementsAre("t"));
+  EXPECT_THAT(beside->objects(), ElementsAre(HasSubstr("z is a MATLAB iddata")));
 }
 
 class Hdf5Files : public ::testing::Test {
@@ -263,6 +281,28 @@ TEST(PandasFiles, GiveDatesAsNanoseconds) {
     EXPECT_THAT(store->whole_numbers(at), ElementsAre(1'700'000'000'000'000'000, 1'700'000'000'100'000'000,
                                                       1'700'000'000'200'000'000, 1'700'000'000'300'000'000));
   }
+}
+
+TEST(PandasFiles, GiveTruthValuesAsNumbers) {
+  for (const char* name : {"pandas_truths_fixed.h5", "pandas_truths_table.h5", "pandas_truths_columns.h5"}) {
+    const auto store = open_hdf5_columns(test::golden_dir() / name);
+    EXPECT_THAT(numbers(*store, "brake"), ElementsAre(1.0, 0.0, 0.0, 1.0)) << name;
+    EXPECT_THAT(store->whole_numbers(position(*store, "brake")), ElementsAre(1, 0, 0, 1)) << name;
+    EXPECT_THAT(numbers(*store, "v"), ElementsAre(0.0, 0.5, 1.0, 1.5)) << name;
+  }
+}
+
+TEST_F(Hdf5Files, GiveBitsOfAnyLengthAsNumbers) {
+  const hid_t id = create();
+  const hsize_t shape = 3;
+  const std::uint16_t flags[]{0, 256, 65535};
+  const hid_t space = H5Screate_simple(1, &shape, nullptr),
+              data = H5Dcreate2(id, "flags", H5T_STD_B16BE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  H5Dwrite(data, H5T_NATIVE_B16, H5S_ALL, H5S_ALL, H5P_DEFAULT, flags);
+  H5Dclose(data);
+  H5Sclose(space);
+  H5Fclose(id);
+  EXPECT_THAT(numbers(*open_hdf5_columns(file), "flags"), ElementsAre(0.0, 256.0, 65535.0));
 }
 
 TEST(PandasFiles, OfAForeignFilterSayHowToWriteThem) {
