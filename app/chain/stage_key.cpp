@@ -58,7 +58,7 @@ class KeyText {
   void put(const T& value);
 };
 
-MODEBANK_KEY_FIELDS(FormatOptions, separator, decimal, header, definitions)
+MODEBANK_KEY_FIELDS(FormatOptions, separator, decimal, header, na, skip_rows, skip_automatic, definitions)
 MODEBANK_KEY_FIELDS(SplitOptions, kind, blocks, last_percent, gap_samples)
 MODEBANK_KEY_FIELDS(DataOptions, root, inputs, states, state, input, truth, derive, where, state_unit, input_unit,
                     weight, label, time, time_unit, join, run, rate_hz, lag_s, lag_auto, lag_range_s, quantum,

@@ -76,7 +76,7 @@ int run_init(const CommandLine& line) {
   Proposal proposal = propose(sets, surveyed, guess, folder.string());
   std::erase_if(proposal.keys, [](const ProposedKey& key) { return find_option("data." + key.key) == nullptr; });
   for (ProposedKey& key : proposal.keys)
-    if (key.key == "root") key.value = path_text(key.value);
+    if (takes_quotes("data." + key.key) && key.value != " ") key.value = path_text(key.value);
   const std::string text = configuration_text(proposal, line.typed);
   replace_file(target, {text});
   print_text(line, fmt::format("\n{}:\n{}\n", target, text));

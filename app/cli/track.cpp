@@ -19,6 +19,7 @@
 #include "app/cli/track_watchdog.hpp"
 #include "app/config/config_file.hpp"
 #include "filter/step/alarm.hpp"
+#include "ident/base/utf8.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/files/replace_file.hpp"
@@ -91,7 +92,7 @@ class Tracker {
   LiveMessages messages_;
   Watchdog watchdog_;
   SampleThinning thinning_;
-  bool thinning_told_ = false;
+  bool thinning_told_ = false, other_bytes_told_ = false;
   bool checkpoint_due_ = false, checkpoint_fails_ = false;
 
   static double now_s() { return std::chrono::duration<double>(LineStream::Clock::now().time_since_epoch()).count(); }
@@ -159,6 +160,10 @@ class Tracker {
   void complain(const std::string& reason) { messages_.say(fmt::format("line {}: {}; skipped", line_number_, reason)); }
 
   void take(std::string_view line) {
+    if (!other_bytes_told_ && !is_utf8(line)) {
+      messages_.say(fmt::format("line {}: {}", line_number_, read_as_windows_1252));
+      other_bytes_told_ = true;
+    }
     const SampleReader::Line kind = reader_.read(line);
     if (kind == SampleReader::Line::blank) return;
     if (kind == SampleReader::Line::malformed) return complain(reader_.reason());

@@ -9,6 +9,7 @@
 
 #include "filter/step/equations/bounds.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "ident/base/utf8.hpp"
 #include "io/import/csv.hpp"
 #include "io/table/number.hpp"
 #include "modebank/base/error.hpp"
@@ -109,6 +110,8 @@ SampleReader::Line SampleReader::malformed(std::string reason) {
 }
 
 SampleReader::Line SampleReader::read(std::string_view line) {
+  std::string utf8;
+  line = utf8_or_windows_1252(line, utf8);
   if (format_ == LineFormat::automatic || positions_.empty())
     if (line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);  // a byte order mark
   const std::string_view content = trimmed(line);
@@ -149,8 +152,9 @@ bool SampleReader::read_json(std::string_view line) {
   for (std::size_t i = 0; i < slots(); ++i) {
     const auto member = object.find(name(i));
     const bool missing = member == object.end() || member->is_null();
-    if (!missing && !member->is_number()) return malformed(fmt::format("{} is not a number", name(i))), false;
-    slot(i) = missing ? not_a_number : member->get<double>();
+    const bool truth = !missing && member->is_boolean();  // 1 and 0, as in text
+    if (!missing && !truth && !member->is_number()) return malformed(fmt::format("{} is not a number", name(i))), false;
+    slot(i) = missing ? not_a_number : truth ? static_cast<double>(member->get<bool>()) : member->get<double>();
   }
   return true;
 }

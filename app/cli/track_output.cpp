@@ -25,7 +25,10 @@ Index likeliest(const FilterEstimate& estimate) {
   return mode;
 }
 
-std::string json_quoted(const std::string& name) { return nlohmann::json(name).dump(); }
+/// Archives of other writers may hold names that are not UTF-8.
+std::string json_quoted(const std::string& name) {
+  return nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
 
 }  // namespace
 

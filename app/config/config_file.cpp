@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -17,6 +18,7 @@
 #include "app/config/path_text.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "ident/base/printable.hpp"
+#include "ident/base/utf8.hpp"
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 
@@ -32,9 +34,8 @@ struct FileEntry {
   bool has_comment = false, comment_touches_value = false;
 };
 
-/// Keys of one path each, which may hold what a configuration file has other uses for: their values may stand in double
-/// quotes, with \\" \\\\ \\n and \\x1b inside. Elsewhere quotes are part of the value.
-bool takes_quotes(const std::string& key) {
+/// Keys of one path each, which may hold any character.
+bool is_path(const std::string& key) {
   return key == "data.root" || key == "archive.output" || key == "archive.input" || key == "archive.bank" ||
          key == "study.output" || key == "simulate.output" || key == "mixture.start";
 }
@@ -76,7 +77,9 @@ std::optional<FileEntry> quoted_entry(const std::string& section, const std::str
 }
 
 /// One line at a time through Boost's parser: its grammar, and a line number for every message.
-std::vector<FileEntry> parse_lines(std::istream& stream, const std::string& path) {
+std::vector<FileEntry> parse_lines(std::string_view text, const std::string& path) {
+  std::string storage;
+  std::istringstream stream{std::string(utf8_or_windows_1252(text, storage))};
   static const po::options_description no_options;
   std::vector<FileEntry> entries;
   std::string section, line;
@@ -124,7 +127,7 @@ const Option& known_option(const std::string& where, const std::string& key) {
 void apply(Config& config, const std::string& where, const std::string& key, const std::string& value,
            bool has_comment) {
   const Option& option = known_option(where, key);
-  if (const std::string shown = printable(value); shown != value && !takes_quotes(key))
+  if (const std::string shown = printable(value); shown != value && !is_path(key))
     throw ConfigurationError(fmt::format("{}: {} = '{}' holds control characters", where, key, shown));
   try {
     option.set(config, value);
@@ -172,6 +175,13 @@ void apply_defaults_of_file(Config& config, const std::filesystem::path& path, O
 
 }  // namespace
 
+bool takes_quotes(const std::string& key) {
+  if (is_path(key)) return true;
+  for (const char* of_names : {"derive", "where", "state", "input", "truth", "time", "run", "label", "weight"})
+    if (key == std::string("data.") + of_names) return true;
+  return false;
+}
+
 std::string nearest_key_hint(const std::string& key) {
   std::vector<std::string> keys;
   for (const Option& option : option_table()) keys.push_back(option.key);
@@ -204,7 +214,9 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
   Config config;
   Origins found;
   std::map<std::string, int> seen;
-  for (const FileEntry& entry : parse_lines(stream, path.string())) {
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (!is_utf8(bytes)) spdlog::warn("{}: {}", path.string(), read_as_windows_1252);
+  for (const FileEntry& entry : parse_lines(bytes, path.string())) {
     const std::string where = fmt::format("{}:{}", path.string(), entry.line);
     const Option* option = find_option(entry.key);
     const auto [earlier, fresh] = seen.emplace(entry.key, entry.line);
@@ -213,8 +225,9 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
     apply(config, where, entry.key, entry.value, entry.has_comment);
     found[entry.key] = fresh ? where : found[entry.key] + "\n" + where;
     if (entry.comment_touches_value)
-      spdlog::warn("{}: {} is cut to '{}': # starts a comment, so no value can hold one", where, entry.key,
-                   entry.value);
+      spdlog::warn(
+          "{}: {} is cut to '{}': # starts a comment{}", where, entry.key, entry.value,
+          takes_quotes(entry.key) ? "; a value that holds one stands in double quotes" : ", so no value can hold one");
     // A relative root in a file means relative to that file, wherever the program is started.
     if (entry.key == "data.root" && !config.data.root.empty())
       config.data.root = (std::filesystem::absolute(path).parent_path() / config.data.root).string();
@@ -258,16 +271,16 @@ std::string resolved_text(const Config& config) {
     section = option.section();
     std::vector<std::string> values;
     boost::split(values, option.get(config), [](char c) { return c == '\n'; });
-    if (takes_quotes(option.key)) values = {path_text(option.get(config))};
+    if (is_path(option.key)) values = {option.get(config)};
+    if (takes_quotes(option.key)) std::transform(values.begin(), values.end(), values.begin(), path_text);
     for (const std::string& value : values) text += option.name() + " =" + (value.empty() ? "" : " " + value) + "\n";
   }
   return text;
 }
 
 std::map<std::string, std::string> resolved_values(const std::string& resolved) {
-  std::istringstream stream(resolved);
   std::map<std::string, std::string> values;
-  for (const FileEntry& entry : parse_lines(stream, "stored configuration")) {
+  for (const FileEntry& entry : parse_lines(resolved, "stored configuration")) {
     std::string& value = values[entry.key];
     value += (value.empty() ? "" : "\n") + entry.value;
   }

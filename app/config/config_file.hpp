@@ -33,6 +33,10 @@ std::string resolved_text(const Config& config);
 /// Key and value of every line of a resolved configuration.
 std::map<std::string, std::string> resolved_values(const std::string& resolved);
 
+/// Whether a key's value may stand in double quotes, with \\" \\\\ \\n and \\x1b inside: paths, and names of columns,
+/// which may hold a #. Elsewhere quotes are part of the value.
+bool takes_quotes(const std::string& key);
+
 /// Whether a key can change a number of the result: not where data lie, archives go or how many threads work.
 bool decides_numbers(const std::string& key);
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "io/import/expression.hpp"
+
 namespace modebank::app {
 namespace {
 
@@ -71,7 +73,25 @@ void parse_value(const std::string& text, std::optional<double>& value) {
   if (!boost::trim_copy(text).empty()) parse_value(text, value.emplace());
 }
 
-void parse_value(const std::string& text, std::vector<std::string>& value) { value = split(text, ','); }
+/// Names by commas; one that holds a comma stands in single quotes, with '' for a quote inside, as in data.derive.
+void parse_value(const std::string& text, std::vector<std::string>& value) {
+  value.clear();
+  std::string_view rest = text;
+  if (boost::trim_copy(text).empty()) return;
+  for (bool more = true; more;) {
+    while (!rest.empty() && (rest.front() == ' ' || rest.front() == '\t')) rest.remove_prefix(1);
+    std::string_view behind = rest;
+    std::string name = rest.starts_with('\'') ? take_channel_name(behind) : std::string();
+    const std::size_t comma = behind.find(',');
+    const bool quoted = !name.empty() && boost::trim_copy(std::string(behind.substr(0, comma))).empty();
+    const std::size_t end = quoted ? comma : rest.find(',');
+    if (!quoted) name = boost::trim_copy(std::string(rest.substr(0, end)));
+    value.push_back(std::move(name));
+    if (quoted) rest = behind;
+    more = end != std::string_view::npos;
+    if (more) rest.remove_prefix(end + 1);
+  }
+}
 void parse_value(const std::string& text, std::vector<double>& value) { value = parse_list<double>(text); }
 
 void parse_value(const std::string& text, std::vector<Eigen::Index>& value) {
@@ -114,7 +134,12 @@ std::string format_value(std::uint64_t value) { return std::to_string(value); }
 std::string format_value(Eigen::Index value) { return std::to_string(value); }
 std::string format_value(double value) { return fmt::format("{}", value); }
 std::string format_value(const std::optional<double>& value) { return value ? format_value(*value) : ""; }
-std::string format_value(const std::vector<std::string>& value) { return boost::join(value, ", "); }
+std::string format_value(const std::vector<std::string>& value) {
+  std::vector<std::string> names;
+  for (const std::string& name : value)
+    names.push_back(name.find(',') == std::string::npos && !name.starts_with('\'') ? name : quoted_channel_name(name));
+  return boost::join(names, ", ");
+}
 std::string format_value(const std::vector<double>& value) { return fmt::format("{}", fmt::join(value, ", ")); }
 
 std::string format_value(const std::vector<Eigen::Index>& value) {

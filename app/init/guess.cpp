@@ -7,6 +7,7 @@
 
 #include "app/init/mounting.hpp"
 #include "app/init/words.hpp"
+#include "ident/base/characters.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -21,11 +22,8 @@ struct Candidate {
   NameScore score;
 };
 
-/// Whether a line of a configuration can hold the name: no list mark, no comment, nothing that ends the line.
-bool may_be_named(const std::string& name) {
-  return std::none_of(name.begin(), name.end(),
-                      [](char c) { return c == ',' || c == '#' || (static_cast<unsigned char>(c) < ' '); });
-}
+/// Whether a line of a configuration can hold the name, in quotes if need be.
+bool may_be_named(const std::string& name) { return std::none_of(name.begin(), name.end(), is_control); }
 
 std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
   std::vector<Candidate> all;
@@ -111,9 +109,17 @@ const SurveyedChannel& channel_at(const std::vector<SurveyedFile>& files, const 
 
 Guess guess_roles(const std::vector<SurveyedFile>& files) {
   std::vector<Candidate> all = candidates_of(files);
-  if (all.empty())
-    throw ConfigurationError(
-        fmt::format("{}: no channel moves: nothing can be a state", files.empty() ? "" : files.front().path.string()));
+  if (all.empty()) {
+    std::string why;
+    for (const SurveyedFile& file : files) {
+      for (const std::string& note : file.notes) why += "; " + note;
+      for (const SurveyedTable& table : file.tables)
+        for (const SurveyedChannel& channel : table.channels)
+          if (!channel.why_text.empty()) why += fmt::format("; column {}: {}", channel.name, channel.why_text);
+    }
+    throw ConfigurationError(fmt::format("{}: no channel moves: nothing can be a state{}",
+                                         files.empty() ? "" : files.front().path.string(), why));
+  }
   Guess guess;
   guess_states(all, guess);
   if (guess.states.empty()) {

@@ -4,12 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 
 #include "app/init/words.hpp"
 #include "ident/base/characters.hpp"
 #include "ident/base/printable.hpp"
+#include "io/import/expression.hpp"
 #include "io/import/split.hpp"
 #include "modebank/base/error.hpp"
 #include "modebank/ident/options.hpp"
@@ -19,8 +21,16 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// The last two parts of a channel's name, as an identifier.
+/// Whether a list of names, or a line of a configuration, has another use for what the name holds.
+bool needs_quotes(const std::string& name) { return name.find_first_of(",#'\"") != std::string::npos; }
+
+/// The last two parts of a channel's name, as an identifier. Behind a comma spreadsheets write the unit: Flow, l/h.
 std::string short_name(const std::string& name) {
+  if (const std::size_t comma = name.find(','); comma != std::string::npos && comma > 0) {
+    std::string result = letters_and_digits(name.substr(0, comma));
+    std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (!result.empty() && !is_digit(result.front())) return result;
+  }
   std::size_t from = name.find_last_of("./");
   if (from != std::string::npos && from > 0) from = name.find_last_of("./", from - 1);
   const std::string result = letters_and_digits(name.substr(from == std::string::npos ? 0 : from + 1));
@@ -92,6 +102,7 @@ class Proposer {
       return fmt::format("{}", fmt::join(names, ", "));
     };
     add("inputs", within(inputs), runs_text(inputs, listed));
+    skipped_lines();
     const bool two = input().file != state().file;
     if (two) add("states", within(states), "the same runs' measured states");
     for (const FileSet* set : {&inputs, &states})
@@ -109,10 +120,13 @@ class Proposer {
                         within(states)));
   }
 
-  static std::string quoted(const std::string& name) {
-    std::string result = "'";
-    for (const char c : name) result += c == '\'' ? std::string("''") : std::string(1, c);
-    return result + "'";
+  void skipped_lines() {
+    const SurveyedFile &inputs = surveyed_[input().file], &states = surveyed_[state().file];
+    if (inputs.skipped_alike && states.skipped_alike && inputs.skipped == states.skipped) {
+      if (inputs.skipped > 0) add("skip_rows", fmt::format("{}", inputs.skipped), "lines of a title above the table");
+    } else {
+      add("skip_rows", "auto", "lines of a title above the table, of another number in each file");
+    }
   }
 
   void mounting() {
@@ -130,7 +144,7 @@ class Proposer {
     std::vector<std::string> parts;
     for (const SurveyedChannel& c : table(state()).channels)
       for (const Axis axis : {Axis::x, Axis::y, Axis::z})
-        if (names_angular_rate(c.name, axis) && parts.size() < 3) parts.push_back(quoted(c.name));
+        if (names_angular_rate(c.name, axis) && parts.size() < 3) parts.push_back(quoted_channel_name(c.name));
     const std::string half = m.reversed ? "-pi/2" : "pi/2", other_half = m.reversed ? "pi/2" : "-pi/2";
     const std::string angles = m.up == Axis::y   ? half + ", 0, 0"
                                : m.up == Axis::x ? "0, " + other_half + ", 0"
@@ -154,13 +168,20 @@ class Proposer {
     constexpr std::size_t longest = 24;
     for (const ChannelPlace& place : places) {
       const std::string& name = channel(place).name;
-      if (name.size() <= longest || short_names_.count(name) > 0 || (is_yaw_rate(place) && !turned_.empty())) continue;
+      if ((name.size() <= longest && !needs_quotes(name)) || short_names_.count(name) > 0 ||
+          (is_yaw_rate(place) && !turned_.empty()))
+        continue;
       std::string alias = is_yaw_rate(place) ? "yaw_rate" : short_name(name);
-      while (std::any_of(short_names_.begin(), short_names_.end(), [&](const auto& n) { return n.second == alias; }))
-        alias += "_";
+      const auto is_taken = [&](const std::string& candidate) {
+        return table(place).find(candidate) != nullptr ||
+               std::any_of(short_names_.begin(), short_names_.end(),
+                           [&](const auto& n) { return n.second == candidate; });
+      };
+      while (is_taken(alias)) alias += "_";
       const std::string& own = channel(place).unit;
       const std::string unit = own.empty() ? usual_unit(name) : own;
-      add("derive", fmt::format("{}{} = {}", alias, unit.empty() ? "" : " [" + unit + "]", quoted(name)), "");
+      add("derive", fmt::format("{}{} = {}", alias, unit.empty() ? "" : " [" + unit + "]", quoted_channel_name(name)),
+          "");
       short_names_[name] = alias;
     }
   }
@@ -221,7 +242,10 @@ class Proposer {
       doubt(fmt::format("{} rises steadily, {:.4g} times a second: it is taken for the times", states.time.front(),
                         states.sampling.rate_hz));
     if (own(states) && own(inputs)) return;  // what a recording calls its stamps needs no key
-    const std::string time = fmt::format("{}", fmt::join(states.time, ", "));
+    std::vector<std::string> stamps;
+    for (const std::string& name : states.time)
+      stamps.push_back(name.find(',') == std::string::npos ? name : quoted_channel_name(name));
+    const std::string time = fmt::format("{}", fmt::join(stamps, ", "));
     if (states.time != inputs.time)
       doubt(fmt::format("times are called {} in one table and {} in the other: data.time takes one name", time,
                         fmt::join(inputs.time, ", ")));

@@ -8,6 +8,7 @@
 
 #include "app/init/words.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "io/import/csv_number.hpp"
 #include "io/import/open_table.hpp"
 #include "io/import/read_columns.hpp"
 #include "modebank/base/error.hpp"
@@ -30,8 +31,11 @@ class TableSurvey {
       SurveyedChannel& channel = table.channels.back();
       if (channel.is_number())
         channel.check = check_channel(channel.values);
-      else
+      else {
         channel.type = "text";
+        if (const auto* texts = std::get_if<std::vector<std::string>>(&columns_[i]))
+          channel.why_text = why_no_numbers(*texts);
+      }
       if (auto* const numbers = std::get_if<std::vector<double>>(&columns_[i])) *numbers = {};
     }
     find_time(table);
@@ -46,6 +50,22 @@ class TableSurvey {
   const TableInfo& info_;
   std::vector<FileColumn>& columns_;
   std::string time_problem_;
+
+  /// The first text that begins like a number and cannot be read as one, with the mark that it has.
+  static std::string why_no_numbers(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      const bool begins = text.find_first_of("0123456789") < 2;
+      if (!begins || parse_number(text).status != NumberStatus::text) continue;
+      const MarkShown mark = mark_shown(text);
+      const bool comma = mark == MarkShown::comma || mark == MarkShown::either_comma;
+      return fmt::format(
+          "\"{}\" is not a number{}", text.substr(0, 30),
+          comma || mark == MarkShown::either_point
+              ? fmt::format(": other numbers have a decimal {} (data.decimal)", comma ? "point" : "comma")
+              : "");
+    }
+    return "";
+  }
 
   /// Stamps in seconds.
   static Eigen::VectorXd numbers_of(const FileColumn& column) {
@@ -223,6 +243,12 @@ class TableSurvey {
   }
 };
 
+FormatOptions surveyed_format() {
+  FormatOptions format;
+  format.skip_automatic = true;
+  return format;
+}
+
 }  // namespace
 
 const SurveyedChannel* SurveyedTable::find(const std::string& channel) const {
@@ -232,13 +258,15 @@ const SurveyedChannel* SurveyedTable::find(const std::string& channel) const {
 }
 
 SurveyedFile survey_file(const std::filesystem::path& path) {
-  const std::shared_ptr<const TableReader> reader = open_table(path, FormatOptions());
+  const std::shared_ptr<const TableReader> reader = open_table(path, surveyed_format());
   SurveyedFile file{path, {}, {}};
   const std::vector<TableInfo> tables = reader->tables();
   FileColumns columns = read_columns(*reader, tables, [](const TableInfo&, const ColumnInfo& column) {
     return column.type != "text";  // of which nothing is wanted
   });
   file.notes = std::move(columns.notes);
+  for (std::string& line : reader->left_out()) file.notes.push_back(std::move(line));
+  for (const TableInfo& table : tables) file.skipped = static_cast<std::size_t>(table.skipped);
   for (std::size_t i = 0; i < tables.size(); ++i)
     file.tables.push_back(TableSurvey(*reader, i, tables[i], columns.tables[i]).look());
   return file;
@@ -246,7 +274,7 @@ SurveyedFile survey_file(const std::filesystem::path& path) {
 
 std::vector<std::string> all_columns(const std::filesystem::path& path) {
   std::vector<std::string> names;
-  for (const TableInfo& table : open_table(path, FormatOptions())->tables())
+  for (const TableInfo& table : open_table(path, surveyed_format())->tables())
     for (const ColumnInfo& column : table.columns) names.push_back(column.name);
   return names;
 }

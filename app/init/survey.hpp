@@ -17,6 +17,7 @@ struct SurveyedChannel {
   std::string name, unit, type;
   ChannelCheck check = {};
   Eigen::VectorXd values = {};  ///< one per row, NaN where missing; empty for text
+  std::string why_text = {};    ///< of a column of text that begins like one of numbers: what keeps it from being one
 
   bool is_number() const { return values.size() > 0; }
   bool moves() const { return is_number() && check.largest > check.least; }
@@ -40,7 +41,9 @@ struct SurveyedTable {
 struct SurveyedFile {
   std::filesystem::path path;
   std::vector<SurveyedTable> tables;
-  std::vector<std::string> notes;  ///< what its reader says of it
+  std::vector<std::string> notes;  ///< what its reader found out
+  std::size_t skipped = 0;         ///< lines of a title above the table of text
+  bool skipped_alike = true;       ///< of several files: whether all have as many
 };
 
 /// Reads all tables of a file that hold numbers. Throws as open_table and TableReader::read do, but for columns that

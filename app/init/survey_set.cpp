@@ -58,6 +58,7 @@ void merge(SurveyedFile& all, SurveyedFile&& other, Names& partial) {
     else
       add_once(partial, theirs.name);
   for (const std::string& note : other.notes) add_once(all.notes, note);
+  all.skipped_alike = all.skipped_alike && all.skipped == other.skipped;
 }
 
 }  // namespace

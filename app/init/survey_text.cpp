@@ -29,7 +29,8 @@ Row row_of(const SurveyedChannel& channel, const SurveyedTable& table) {
   const std::string name = shown_name(channel.name);
   const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
   if (channel.type == "time" || is_time) return {name, "", "times"};
-  if (!channel.is_number()) return {name, "", "text"};
+  if (!channel.is_number())
+    return {name, "", channel.why_text.empty() ? "text" : "text: " + shown_name(channel.why_text)};
   std::string notes;
   if (channel.check.missing > 0) notes += fmt::format("  {} missing", channel.check.missing);
   if (channel.check.quantum > 0.0) notes += fmt::format("  by {:.4g}", channel.check.quantum);

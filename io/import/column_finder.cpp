@@ -84,20 +84,21 @@ std::size_t ColumnFinder::source_of(std::size_t file, std::size_t table) {
 
 void ColumnFinder::fail(const std::string& column, const std::vector<std::size_t>& files) const {
   Texts all;
-  std::string each;
+  std::string each, left_out;
   for (const std::size_t file : files) {
     if (const std::string why = plan_.readers[file]->why_without(column); !why.empty())
       throw ConfigurationError(fmt::format("{} has no column \"{}\": {}", names_[file], column, why));
     each += fmt::format("; {} has {}", names_[file], listing(tables_[file]));
+    for (const std::string& line : plan_.readers[file]->left_out()) left_out += "; " + line;
     for (const TableInfo& table : tables_[file])
       for (const ColumnInfo& known : table.columns) all.push_back(known.name);
   }
   for (const std::string& known : derived_->names()) all.push_back(known);
   const std::string meant = did_you_mean(column, all);
   if (files.size() > 1)
-    throw ConfigurationError(printable_name(fmt::format("no column \"{}\"{}{}", column, meant, each)));
-  throw ConfigurationError(printable_name(fmt::format("{} has no column \"{}\"{}; columns: {}", names_[files.front()],
-                                                      column, meant, listing(tables_[files.front()]))));
+    throw ConfigurationError(printable_name(fmt::format("no column \"{}\"{}{}{}", column, meant, each, left_out)));
+  throw ConfigurationError(printable_name(fmt::format("{} has no column \"{}\"{}; columns: {}{}", names_[files.front()],
+                                                      column, meant, listing(tables_[files.front()]), left_out)));
 }
 
 std::size_t ColumnFinder::source_with(const std::string& column, const std::vector<std::size_t>& files) {

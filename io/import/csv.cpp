@@ -4,13 +4,16 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "ident/base/not_a_number.hpp"
+#include "ident/base/utf8.hpp"
 #include "ident/base/work_counter.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
 #include "io/import/csv_dialect.hpp"
+#include "io/import/csv_number.hpp"
 #include "io/import/csv_pass.hpp"
 #include "io/import/csv_text.hpp"
 #include "io/table/name_unit.hpp"
@@ -23,7 +26,8 @@ namespace modebank {
 namespace {
 
 constexpr std::size_t probed_bytes = 1 << 16;  // of a file, at first, to find its dialect and header
-constexpr std::size_t shown_bytes = 60;        // of an offending field in a message
+constexpr std::size_t most_probed_bytes = 1 << 24;
+constexpr std::size_t shown_bytes = 60;  // of an offending field in a message
 
 std::string too_many_columns() { return fmt::format("more than {} columns", most_csv_columns); }
 
@@ -62,15 +66,16 @@ struct TableSink {
   bool time_may_miss;
   std::string nanoseconds;      // of the row, where they have a column of their own
   std::size_t header_rows = 1;  // yet to come
-  bool decimal_comma = false, rows_seen = false, empty_line_seen = false;
+  CsvNumbers parse;
+  bool rows_seen = false, empty_line_seen = false;
   std::vector<std::uint64_t> comment_lines;  // empty ones that stand for a comment
   std::size_t next_comment = 0;
   std::size_t fields = 0;
   std::uint64_t line = 1;
   std::string error;
 
-  TableSink(const TimeRequest& time, std::string_view time_unit)
-      : stamps(time, time_unit), time_may_miss(time.may_miss) {}
+  TableSink(const TimeRequest& time, std::string_view time_unit, CsvNumbers numbers)
+      : stamps(time, time_unit), time_may_miss(time.may_miss), parse(std::move(numbers)) {}
 
   bool done() const { return !error.empty(); }
 
@@ -85,7 +90,7 @@ struct TableSink {
   }
 
   void time(std::string_view text) {
-    const NumberStatus status = decimal_comma ? stamps.add(with_decimal_point(text)) : stamps.add(text);
+    const NumberStatus status = add_stamp(text);
     if (status == NumberStatus::ok) return;
     if (status == NumberStatus::missing && time_may_miss)
       stamps.add_missing();
@@ -97,9 +102,27 @@ struct TableSink {
                                            : complaint(status, time_column, text);
   }
 
+  NumberStatus add_stamp(std::string_view text) {
+    if (parse.missing_word(text) != nullptr) return NumberStatus::missing;
+    if (!parse.decimal_comma())
+      if (const NumberStatus status = stamps.add(text); status != NumberStatus::text) return status;
+    if (const std::optional<std::string> number = parse.with_point(text)) return stamps.add(*number);
+    // Between decimal commas 12.5 is an error; dates have points.
+    const bool other_mark = parse_number(text).status == NumberStatus::ok;
+    return other_mark || !parse.decimal_comma() ? NumberStatus::text : stamps.add(commas_as_points(text));
+  }
+
+  static std::string commas_as_points(std::string_view text) {
+    std::string result(text);
+    std::replace(result.begin(), result.end(), ',', '.');
+    return result;
+  }
+
   void number(std::size_t column, std::size_t position, std::string_view text) {
-    const ParsedNumber parsed = decimal_comma ? parse_number(with_decimal_point(text)) : parse_number(text);
+    const ParsedNumber parsed = parse.parse(text);
     const bool tolerated = parsed.status == NumberStatus::missing && may_miss[position];
+    if (tolerated && !text.empty())
+      if (const std::string* const word = parse.missing_word(text)) ++table.missing_words[*word];
     table.numbers[position].push_back(tolerated ? not_a_number : parsed.value);
     if (parsed.status != NumberStatus::ok && !tolerated) error = complaint(parsed.status, column, text);
   }
@@ -110,7 +133,14 @@ struct TableSink {
     const std::string where = fmt::format("column {}: ", header[column]);
     if (status == NumberStatus::missing) return where + "missing value" + (text.empty() ? "" : " (" + shown + ")");
     if (status == NumberStatus::out_of_range) return where + shown + " is too large for a double";
-    return where + shown + " is not a number";
+    const MarkShown mark = mark_shown(text);
+    if (mark == MarkShown::none) return where + shown + " is not a number";
+    return where + shown +
+           (parse.decimal_comma() ? " is not a number with a decimal comma"
+            : mark == MarkShown::either_comma
+                ? " may be thousands or have a decimal comma, but the decimal mark of other numbers is a point"
+                : " is not a number with a decimal point") +
+           " (data.decimal)";
   }
 
   void row() {
@@ -143,27 +173,34 @@ struct Head {
   std::vector<std::string> names, units;
 };
 
+std::string no_header(std::string_view file, const CsvDialect& dialect) {
+  return fmt::format(
+      "{} is empty{}: no header", file,
+      dialect.skipped > 0 ? fmt::format(" behind its first {} lines (data.skip_rows)", dialect.skipped) : "");
+}
+
 /// Of a text, or (unless `complete`) of its beginning.
 Head read_head(std::string_view file, std::string_view text, bool complete, const FormatOptions& options) {
   Head head;
   head.dialect = find_dialect(text, complete, options);
   head.names = head.dialect.names;
+  text = without_first_lines(text, head.dialect.skipped);
   if (head.dialect.header_rows > 0) {
     HeaderSink sink;
     sink.wanted = head.dialect.header_rows;
-    CsvPass pass(file, sink, head.dialect.delimiter());
+    CsvPass pass(file, sink, head.dialect.delimiter(), head.dialect.first_line());
     std::string prepared;
     if (head.dialect.rewritten()) {
-      prepared = prepare_text(text, head.dialect.separator == Separator::blank).text;
+      prepared = prepare_text(text, head.dialect.separator == Separator::blank, head.dialect.first_line()).text;
       text = prepared;
     }
     pass.feed(text);
     if (complete) pass.finish();
-    if (sink.rows.empty()) throw ConfigurationError(fmt::format("{} is empty: no header", file));
+    if (sink.rows.empty()) throw ConfigurationError(no_header(file, head.dialect));
     head.names = sink.rows.front();
     if (sink.rows.size() > 1 && head.dialect.header_rows > 1) head.units = sink.rows[1];
   }
-  if (head.names.empty()) throw ConfigurationError(fmt::format("{} is empty: no header", file));
+  if (head.names.empty()) throw ConfigurationError(no_header(file, head.dialect));
   if (head.names.size() > most_csv_columns) throw DataError(fmt::format("{}: {}", file, too_many_columns()));
   head.units.resize(head.names.size());
   for (std::size_t i = 0; i < head.names.size(); ++i)
@@ -171,10 +208,12 @@ Head read_head(std::string_view file, std::string_view text, bool complete, cons
   return head;
 }
 
-TableSink make_sink(std::string_view file, const Head& head, const TableRequest& request, std::size_t rows) {
+TableSink make_sink(std::string_view file, const Head& head, const TableRequest& request, std::size_t rows,
+                    const std::vector<std::string>& na) {
   std::vector<std::string> header = head.names;
   const auto time = std::find(header.begin(), header.end(), request.time.column);
-  TableSink sink(request.time, time == header.end() ? "" : head.units[static_cast<std::size_t>(time - header.begin())]);
+  TableSink sink(request.time, time == header.end() ? "" : head.units[static_cast<std::size_t>(time - header.begin())],
+                 CsvNumbers(head.dialect.decimal_comma, na));
   sink.target.resize(header.size());
   for (std::size_t i = 0; i < request.texts.size(); ++i)
     sink.target[column_position(file, header, request.texts[i])].texts = static_cast<int>(i);
@@ -207,8 +246,11 @@ Head head_of_file(const std::filesystem::path& path, const FormatOptions& option
     const bool complete = content.size() < wanted;
     std::string storage;
     const std::string_view text = as_utf8(content, storage);
-    constexpr std::size_t enough = 4;  // rows, of which a file of long ones gives no more at first
-    if (complete || first_records(text, false, enough).size() == enough)
+    // Rows, of which a file of long ones gives no more at first; behind a title that is to be skipped.
+    const std::size_t enough = options.skip_automatic ? rows_looked_at_for_table : 4;
+    const bool enough_bytes = options.skip_automatic && content.size() >= most_probed_bytes;
+    if (complete || enough_bytes ||
+        first_records(without_first_lines(text, options.skip_rows), false, enough).size() == enough)
       return read_head(path.string(), text, complete, options);
   }
 }
@@ -221,18 +263,18 @@ bool has_late_comment(std::string_view text) {
 }
 
 /// One request, of a text whose head is known.
-Table parse_rows(std::string_view file, std::string_view text, const Head& head, const TableRequest& request) {
+Table parse_rows(std::string_view file, std::string_view text, const Head& head, const TableRequest& request,
+                 const std::vector<std::string>& na) {
   const auto rows_at_most = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-  TableSink sink = make_sink(file, head, request, rows_at_most);
+  TableSink sink = make_sink(file, head, request, rows_at_most, na);
   sink.header_rows = head.dialect.header_rows;
-  sink.decimal_comma = head.dialect.decimal_comma;
   PreparedText prepared;
   if (head.dialect.rewritten() || has_late_comment(text)) {
-    prepared = prepare_text(text, head.dialect.separator == Separator::blank);
+    prepared = prepare_text(text, head.dialect.separator == Separator::blank, head.dialect.first_line());
     sink.comment_lines = std::move(prepared.comment_lines);
     text = prepared.text;
   }
-  CsvPass pass(file, sink, head.dialect.delimiter());
+  CsvPass pass(file, sink, head.dialect.delimiter(), head.dialect.first_line());
   constexpr std::size_t portion_bytes = 1'000'000;
   WorkCounter counter("MB of " + std::filesystem::path(file).filename().string(), text.size() / portion_bytes);
   for (; text.size() > portion_bytes; counter.add()) {
@@ -243,6 +285,9 @@ Table parse_rows(std::string_view file, std::string_view text, const Head& head,
   pass.finish();
   if (sink.time_column != TableSink::none) sink.stamps.finish(file, sink.table);
   if (!head.dialect.note.empty()) sink.table.notes.push_back(head.dialect.note);
+  if (const std::size_t skipped = head.dialect.skipped; skipped > 0)
+    sink.table.notes.push_back(fmt::format("{} line{} above the table {} skipped (data.skip_rows)", skipped,
+                                           skipped == 1 ? "" : "s", skipped == 1 ? "is" : "are"));
   return std::move(sink.table);
 }
 
@@ -252,7 +297,13 @@ std::vector<Table> parse_all(std::string_view file, std::string_view content, co
   const std::string_view text = as_utf8(content, storage);
   const Head head = read_head(file, text, true, options);
   std::vector<Table> tables;
-  for (const TableRequest& request : requests) tables.push_back(parse_rows(file, text, head, request));
+  const std::string_view rows =
+      without_empty_tail(without_first_lines(text, head.dialect.skipped),
+                         head.dialect.separator == Separator::blank ? ' ' : head.dialect.delimiter());
+  for (const TableRequest& request : requests) {
+    tables.push_back(parse_rows(file, rows, head, request, options.na));
+    if (text.data() == storage.data() && !is_utf16(content)) tables.back().notes.emplace_back(read_as_windows_1252);
+  }
   return tables;
 }
 
@@ -270,6 +321,7 @@ std::vector<TableInfo> CsvReader::tables() const {
   TableInfo table;
   for (std::size_t i = 0; i < head.names.size(); ++i)
     table.columns.push_back({std::move(head.names[i]), std::move(head.units[i])});
+  table.skipped = head.dialect.skipped;
   return {std::move(table)};
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <map>
 
+#include "io/import/csv_number.hpp"
 #include "io/import/csv_text.hpp"
 #include "io/table/number.hpp"
 #include "io/table/stamp.hpp"
@@ -34,17 +35,12 @@ char delimiter_of(Separator separator) {
   }
 }
 
-bool is_number(const std::string& field) { return parse_number(field).status == NumberStatus::ok; }
-
-/// 1,5 and -0,25e3, which no point makes clear.
-bool is_comma_number(const std::string& field) {
-  return std::count(field.begin(), field.end(), ',') == 1 && field.find('.') == std::string::npos &&
-         is_number(with_decimal_point(field));
-}
-
 bool is_value(const std::string& field) {
-  return !field.empty() && (is_number(field) || is_comma_number(field) || parse_iso_time(field) ||
-                            parse_number(field).status == NumberStatus::missing);
+  static const CsvNumbers with_point(false, {}), with_comma(true, {});
+  if (field.empty()) return false;
+  const NumberStatus status = with_point.parse(field).status;
+  return status == NumberStatus::ok || status == NumberStatus::missing ||
+         with_comma.parse(field).status == NumberStatus::ok || parse_iso_time(field);
 }
 
 std::vector<Fields> split(const std::vector<TextRecord>& records, Separator separator) {
@@ -53,20 +49,26 @@ std::vector<Fields> split(const std::vector<TextRecord>& records, Separator sepa
   return rows;
 }
 
-/// How well a separator explains the rows: the share that has the commonest width, and of values among their fields.
-double score(const std::vector<Fields>& rows) {
+std::size_t common_width(const std::vector<Fields>& rows) {
   std::map<std::size_t, std::size_t> widths;
   for (const Fields& row : rows) ++widths[row.size()];
   const auto common =
       std::max_element(widths.begin(), widths.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (common == widths.end() || common->first < 2) return 0.0;
+  return common == widths.end() ? 0 : common->first;
+}
+
+/// How well a separator explains the rows: the share that has the commonest width, and of values among their fields.
+double score(const std::vector<Fields>& rows) {
+  const std::size_t width = common_width(rows);
+  if (width < 2) return 0.0;
+  const auto common = std::count_if(rows.begin(), rows.end(), [&](const Fields& row) { return row.size() == width; });
   std::size_t values = 0, fields = 0;
   for (const Fields& row : rows)
     for (const std::string& field : row) {
       ++fields;
       values += is_value(field) ? 1 : 0;
     }
-  return static_cast<double>(common->second) / static_cast<double>(rows.size()) +
+  return static_cast<double>(common) / static_cast<double>(rows.size()) +
          static_cast<double>(values) / static_cast<double>(fields);
 }
 
@@ -82,24 +84,30 @@ Separator find_separator(const std::vector<TextRecord>& records) {
   return best;
 }
 
-bool has_decimal_commas(const std::vector<Fields>& rows) {
-  bool commas = false;
+bool has_decimal_commas(const std::vector<Fields>& rows, Separator separator) {
+  bool comma = false, either_comma = false, either_point = false;
   for (const Fields& row : rows)
     for (const std::string& field : row) {
-      commas = commas || is_comma_number(field);
-      if (field.find('.') != std::string::npos && is_number(field)) return false;
+      const MarkShown shown = mark_shown(field);
+      if (shown == MarkShown::point) return false;
+      comma = comma || shown == MarkShown::comma;
+      either_comma = either_comma || shown == MarkShown::either_comma;
+      either_point = either_point || shown == MarkShown::either_point;
     }
-  return commas;
+  // Between commas a field with one is quoted, and more often for its thousands than for its decimals.
+  return comma || (either_comma && !either_point && separator != Separator::comma);
 }
 
 bool any_value(const Fields& row) { return std::any_of(row.begin(), row.end(), is_value); }
 
 /// Whether the first row is one like the second: values where that has values, and at least one.
-bool is_headless(const std::vector<Fields>& rows) {
+bool is_headless(const std::vector<Fields>& rows, const std::vector<std::string>& na) {
   if (rows.empty() || !any_value(rows[0])) return false;
   if (rows.size() < 2) return true;
+  const CsvNumbers words(false, na);
+  const auto missing = [&](const std::string& field) { return field.empty() || words.missing_word(field) != nullptr; };
   for (std::size_t i = 0; i < std::min(rows[0].size(), rows[1].size()); ++i)
-    if (is_value(rows[0][i]) != is_value(rows[1][i]) && !rows[0][i].empty() && !rows[1][i].empty()) return false;
+    if (is_value(rows[0][i]) != is_value(rows[1][i]) && !missing(rows[0][i]) && !missing(rows[1][i])) return false;
   return true;
 }
 
@@ -124,26 +132,49 @@ Fields commented_names(const std::vector<TextRecord>& records, Separator separat
 
 char CsvDialect::delimiter() const { return separator == Separator::blank ? blank_separator : delimiter_of(separator); }
 
-std::string with_decimal_point(std::string_view number) {
-  std::string text(number);
-  std::replace(text.begin(), text.end(), ',', '.');
-  return text;
-}
-
-CsvDialect find_dialect(std::string_view text, bool complete, const FormatOptions& options) {
-  const std::vector<TextRecord> all = first_records(text, complete, looked_at);
+std::size_t lines_above_table(std::string_view text, bool complete, const FormatOptions& options) {
+  constexpr std::size_t alike = 5, names_and_units = 2;
+  const std::vector<TextRecord> all = first_records(text, complete, rows_looked_at_for_table);
   std::vector<TextRecord> records;
   std::copy_if(all.begin(), all.end(), std::back_inserter(records),
                [](const TextRecord& record) { return !is_comment(record.text); });
+  if (records.size() <= names_and_units) return 0;
+  const std::vector<TextRecord> second_half(records.begin() + std::ssize(records) / 2, records.end());
+  const Separator separator =
+      options.separator == Separator::automatic ? find_separator(second_half) : options.separator;
+  const std::size_t width = common_width(split(second_half, separator));
+  const std::vector<Fields> rows = split(records, separator);
+  if (width < 2 || rows.front().size() == width) return 0;
+  for (std::size_t first = 1; first + names_and_units < rows.size(); ++first) {
+    const std::size_t end = std::min(first + alike, rows.size());
+    bool found = true;
+    for (std::size_t i = first; i < end; ++i)
+      found = found && rows[i].size() == width && (i < first + names_and_units || any_value(rows[i]));
+    if (!found) continue;
+    // R writes headers that lack the name of row numbers: they look like a title.
+    if (first == 1 && rows[0].size() + 1 == width && any_value(rows[1])) return 0;
+    // Comments behind the title stay: the last may name the columns.
+    const auto behind = std::find_if(all.begin(), all.end(),
+                                     [&](const TextRecord& record) { return record.line > records[first - 1].line; });
+    return static_cast<std::size_t>(behind->line) - 1;
+  }
+  return 0;
+}
+
+CsvDialect find_dialect(std::string_view text, bool complete, const FormatOptions& options) {
   CsvDialect dialect;
+  dialect.skipped = options.skip_automatic ? lines_above_table(text, complete, options) : options.skip_rows;
+  const std::vector<TextRecord> all = first_records(without_first_lines(text, dialect.skipped), complete, looked_at);
+  std::vector<TextRecord> records;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(records),
+               [](const TextRecord& record) { return !is_comment(record.text); });
   dialect.comments = records.size() < all.size();
   dialect.separator = options.separator == Separator::automatic ? find_separator(records) : options.separator;
   const std::vector<Fields> rows = split(records, dialect.separator);
-  dialect.decimal_comma =
-      options.decimal == DecimalMark::comma ||
-      (options.decimal == DecimalMark::automatic && dialect.separator != Separator::comma && has_decimal_commas(rows));
+  dialect.decimal_comma = options.decimal == DecimalMark::comma ||
+                          (options.decimal == DecimalMark::automatic && has_decimal_commas(rows, dialect.separator));
   const bool headless =
-      options.header == HeaderRow::no || (options.header == HeaderRow::automatic && is_headless(rows));
+      options.header == HeaderRow::no || (options.header == HeaderRow::automatic && is_headless(rows, options.na));
   std::vector<std::string> said;
   if (dialect.separator != Separator::comma)
     said.push_back(fmt::format("separated by {}s", name_of(dialect.separator)));

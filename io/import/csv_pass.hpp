@@ -19,7 +19,9 @@ namespace modebank {
 template <class Sink>
 class CsvPass {
  public:
-  CsvPass(std::string_view file, Sink& sink, char delimiter) : file_(file), sink_(sink) {
+  /// `first_line`: number of the text's first line in the file.
+  CsvPass(std::string_view file, Sink& sink, char delimiter, std::uint64_t first_line)
+      : file_(file), sink_(sink), line_(first_line) {
     csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI | CSV_REPALL_NL);
     csv_set_delim(&parser_, static_cast<unsigned char>(delimiter));
   }
@@ -87,7 +89,7 @@ class CsvPass {
   std::string_view file_;
   Sink& sink_;
   csv_parser parser_{};
-  std::uint64_t line_ = 1;
+  std::uint64_t line_;
   bool after_return_ = false;
 };
 

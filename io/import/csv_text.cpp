@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ident/base/utf8.hpp"
 #include "io/table/number.hpp"
 
 namespace modebank {
@@ -14,23 +15,6 @@ bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 /// Whether a quote behind this character opens a quoted field.
 bool starts_field(char before) { return std::string_view(",;|\t \n\r").find(before) != std::string_view::npos; }
-
-void append_utf8(std::string& text, std::uint32_t code) {
-  const auto put = [&](std::uint32_t byte) { text += static_cast<char>(static_cast<unsigned char>(byte)); };
-  if (code < 0x80) return put(code);
-  if (code < 0x800) {
-    put(0xC0 | (code >> 6));
-  } else {
-    if (code < 0x10000) {
-      put(0xE0 | (code >> 12));
-    } else {
-      put(0xF0 | (code >> 18));
-      put(0x80 | ((code >> 12) & 0x3F));
-    }
-    put(0x80 | ((code >> 6) & 0x3F));
-  }
-  put(0x80 | (code & 0x3F));
-}
 
 /// Half a pair of surrogates becomes U+FFFD.
 std::string from_utf16(std::string_view content) {
@@ -72,10 +56,26 @@ bool is_utf16(std::string_view content) {
 }
 
 std::string_view as_utf8(std::string_view content, std::string& storage) {
-  if (content.starts_with(utf8_mark)) return content.substr(utf8_mark.size());
-  if (!is_utf16(content)) return content;
+  if (content.starts_with(utf8_mark)) content.remove_prefix(utf8_mark.size());
+  if (!is_utf16(content)) return utf8_or_windows_1252(content, storage);
   storage = from_utf16(content);
   return storage;
+}
+
+std::string_view without_first_lines(std::string_view text, std::size_t lines) {
+  for (; lines > 0 && !text.empty(); --lines) {
+    const std::size_t end = text.find_first_of("\r\n");
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(text.substr(end).starts_with("\r\n") ? end + 2 : end + 1);
+  }
+  return text;
+}
+
+std::string_view without_empty_tail(std::string_view text, char separator) {
+  const std::string empty = std::string(" \t\r\n") + separator;
+  const std::size_t last = text.find_last_not_of(empty);
+  if (last == std::string_view::npos) return text;
+  return text.substr(0, std::min(text.find_first_of("\r\n", last), text.size()));
 }
 
 std::vector<TextRecord> first_records(std::string_view text, bool complete, std::size_t at_most) {
@@ -140,10 +140,10 @@ std::vector<std::string> fields_of(std::string_view record, char separator) {
   return fields;
 }
 
-PreparedText prepare_text(std::string_view text, bool blanks_separate) {
+PreparedText prepare_text(std::string_view text, bool blanks_separate, std::uint64_t first_line) {
   PreparedText result;
   result.text.reserve(text.size());
-  std::uint64_t line = 1;
+  std::uint64_t line = first_line;
   for (std::size_t start = 0; start < text.size(); ++line) {
     const std::size_t end = std::min(text.find('\n', start), text.size());
     std::string_view record = text.substr(start, end - start);

@@ -59,6 +59,12 @@ std::string take_channel_name(std::string_view& text) {
   return name;
 }
 
+std::string quoted_channel_name(std::string_view name) {
+  std::string result = "'";
+  for (const char c : name) result += c == '\'' ? std::string("''") : std::string(1, c);
+  return result + "'";
+}
+
 /// Turns text into tokens and tokens into steps: an argument of diff or unwrap is a column of its own.
 class ExpressionParser {
  public:

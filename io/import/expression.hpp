@@ -54,4 +54,7 @@ class Expression {
 /// A name at the start of `text`, quoted or not, which is taken off it; empty when there is none.
 std::string take_channel_name(std::string_view& text);
 
+/// The name in single quotes, as take_channel_name reads it.
+std::string quoted_channel_name(std::string_view name);
+
 }  // namespace modebank

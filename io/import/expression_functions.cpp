@@ -1,8 +1,8 @@
 #include "io/import/expression_functions.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 namespace modebank {
@@ -26,8 +26,16 @@ double yaw_of(double x, double y, double z, double w) {
   return std::atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z);
 }
 
-double smallest(const double* values, int count) { return *std::min_element(values, values + count); }
-double largest(const double* values, int count) { return *std::max_element(values, values + count); }
+/// NaN where any value is: comparisons alone would pass over it.
+template <class Better>
+double chosen(const double* values, int count, Better better) {
+  double best = values[0];
+  for (int i = 1; i < count; ++i)
+    if (std::isnan(values[i]) || better(values[i], best)) best = values[i];
+  return best;
+}
+double smallest(const double* values, int count) { return chosen(values, count, std::less<>()); }
+double largest(const double* values, int count) { return chosen(values, count, std::greater<>()); }
 
 struct Function1 {
   const char* name;
@@ -51,11 +59,13 @@ constexpr std::array functions1{
     Function1{"abs", [](double x) { return std::abs(x); }},
     Function1{"sign", [](double x) { return x > 0.0   ? 1.0
                                             : x < 0.0 ? -1.0
-                                                      : 0.0; }},
+                                                      : 0.0 * x; }},
     Function1{"floor", [](double x) { return std::floor(x); }},
     Function1{"ceil", [](double x) { return std::ceil(x); }},
     Function1{"round", [](double x) { return std::round(x); }},
-    Function1{"not", [](double x) { return x == 0.0 ? 1.0 : 0.0; }},
+    Function1{"not", [](double x) { return std::isnan(x) ? x
+                                           : x == 0.0    ? 1.0
+                                                         : 0.0; }},
     Function1{"rad", [](double x) { return x * pi / 180.0; }},
     Function1{"deg", [](double x) { return x * 180.0 / pi; }},
     Function1{"wrap", [](double x) { return std::remainder(x, 2.0 * pi); }},

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <exception>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -85,6 +86,7 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
   std::vector<Outcome> outcomes(plans.size());  // the pipeline passes positions on
   std::size_t next = 0;
   std::exception_ptr error;
+  std::map<std::string, std::size_t> missing_words;
   std::atomic<bool> failed = false;
   const auto take = [&](tbb::flow_control& flow) {
     if (next == plans.size() || failed) flow.stop();
@@ -105,6 +107,7 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
     for (std::string& note : outcome.content.notes)
       if (std::find(data.notes.begin(), data.notes.end(), note) == data.notes.end())
         data.notes.push_back(std::move(note));
+    for (const auto& [word, count] : outcome.content.missing_words) missing_words[word] += count;
     std::move(outcome.content.files.begin(), outcome.content.files.end(), std::back_inserter(data.files));
     std::move(outcome.content.runs.begin(), outcome.content.runs.end(), std::back_inserter(runs));
   };
@@ -114,6 +117,9 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
                                         tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, read) &
                                         tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, collect));
   if (error) std::rethrow_exception(error);
+  for (const auto& [word, count] : missing_words)
+    data.notes.push_back(
+        fmt::format("\"{}\" stands for a missing value {} time{} (data.na)", word, count, count == 1 ? "" : "s"));
   data.data_hash = data_hash(data.files);
   return runs;
 }

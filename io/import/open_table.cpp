@@ -55,6 +55,10 @@ struct Foreign {
 };
 
 constexpr std::array foreign{
+    Foreign{"version https://git-lfs.github.com/spec/"sv, "a Git LFS pointer, the place of a file that was not fetched",
+            "git lfs pull fetches it"},
+    Foreign{"/annex/objects/"sv, "a git-annex pointer, the place of a file that was not fetched",
+            "git annex get '{0}'"},
     Foreign{"PAR1"sv, "an Apache Parquet file",
             "python3 -c \"import pandas; pandas.read_parquet('{0}').to_csv('{0}.csv')\""},
     Foreign{"ARROW1"sv, "an Apache Arrow file",
@@ -85,6 +89,20 @@ constexpr std::array foreign{
             "a program", "name the data"},
 };
 
+/// Octave's own default of `save FILE`, unless it is one matrix, which reads as a text of numbers.
+void refuse_octave_text(const Path& path, std::string_view first) {
+  if (!first.starts_with("# Created by Octave")) return;
+  const std::string content = read_file(path);
+  const std::size_t name = content.find("\n# name: ");
+  const bool one_matrix = content.find("\n# name: ", name + 1) == std::string::npos &&
+                          content.find("\n# type: matrix\n") != std::string::npos;
+  if (one_matrix && path.extension() != ".mat") return;
+  throw ConfigurationError(
+      fmt::format("{0} is in Octave's text format, which is not read here; octave --eval \"s = load('{0}'); "
+                  "save('-v7', '{1}', '-struct', 's')\"",
+                  path.string(), (path.parent_path() / (path.stem().string() + "_v7.mat")).string()));
+}
+
 std::string first_bytes(const Path& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return {};
@@ -110,6 +128,7 @@ std::shared_ptr<const TableReader> open_table(const Path& path, const FormatOpti
     if (first.starts_with(other.magic))
       throw ConfigurationError(fmt::format("{} is {}, which is not read here; {}", path.string(), other.name,
                                            fmt::format(fmt::runtime(other.advice), path.string())));
+  refuse_octave_text(path, first);
   for (const Format& format : formats)
     if (format.probe(path, first)) return format.open(path, options);
   throw ConfigurationError(fmt::format("{} is no text and of no known format: it begins with the bytes {:02X}",

@@ -1,5 +1,7 @@
 #include "io/import/read_columns.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "modebank/base/error.hpp"
@@ -18,6 +20,8 @@ struct Piece {
     for (std::size_t i = 0; i < request.numbers.size(); ++i) of_table[columns[i]] = std::move(table.numbers[i]);
     if (!request.texts.empty()) of_table[columns.front()] = std::move(table.texts.front());
     if (!request.time.column.empty()) of_table[columns.front()] = std::move(table.time_ns);
+    for (const auto& [word, count] : table.missing_words)  // by column its missing values are counted
+      table.notes.push_back(fmt::format("\"{}\" stands for a missing value (data.na)", word));
     for (std::string& note : table.notes)
       if (std::find(result.notes.begin(), result.notes.end(), note) == result.notes.end())
         result.notes.push_back(std::move(note));

@@ -21,6 +21,7 @@ std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent
     for (std::size_t i = 0; i < here.size(); ++i) {
       if (read[i].rows() == 0) throw DataError(fmt::format("{}: a header, but no rows", plan.paths[path].string()));
       result.notes.insert(result.notes.end(), read[i].notes.begin(), read[i].notes.end());
+      for (const auto& [word, count] : read[i].missing_words) result.missing_words[word] += count;
       tables[here[i]] = std::move(read[i]);
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct FileContent {
   std::vector<RunStreams> runs;  ///< sorted by name; roles not yet set, samples not yet in order
   std::vector<InputFile> files;  ///< inputs before states
   std::vector<std::string> notes;
+  std::map<std::string, std::size_t> missing_words;  ///< Table::missing_words of all tables
 };
 
 /// Reads one plan's files into streams, run by run. Where a run's states (or inputs) come from several tables, the

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "modebank/base/names.hpp"
 
@@ -34,6 +36,9 @@ struct FormatOptions {
   Separator separator = Separator::automatic;
   DecimalMark decimal = DecimalMark::automatic;
   HeaderRow header = HeaderRow::automatic;
+  std::vector<std::string> na{"NA", "N/A", "null", "-"};  ///< words for a missing value, beside empty fields and NaN
+  std::size_t skip_rows = 0;                              ///< lines above the table
+  bool skip_automatic = false;                            ///< lines above the table are found out in place of skip_rows
   std::string definitions = {};  ///< folder of .msg files, for types that a recording leaves undefined; empty: none
 };
 

@@ -22,6 +22,15 @@ bool parse_plain(std::string_view field, double& value) {
   return error == std::errc() && stop == field.data() + field.size() && std::isfinite(value);
 }
 
+/// As Python (True), R (TRUE) and JSON (true) write it.
+ParsedNumber parse_truth(std::string_view word) {
+  for (const std::string_view written : {"true", "True", "TRUE"})
+    if (word == written) return {1.0, NumberStatus::ok};
+  for (const std::string_view written : {"false", "False", "FALSE"})
+    if (word == written) return {0.0, NumberStatus::ok};
+  return {0.0, NumberStatus::text};
+}
+
 }  // namespace
 
 std::string_view without_blanks(std::string_view field) {
@@ -38,7 +47,8 @@ ParsedNumber parse_number(std::string_view field) {
   if (number.empty()) return {0.0, NumberStatus::missing};
   if (number.size() > 1 && number[0] == '+' && number[1] != '-') number.remove_prefix(1);
   const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), parsed.value);
-  if (stop != number.data() + number.size() || error == std::errc::invalid_argument) return {0.0, NumberStatus::text};
+  if (error == std::errc::invalid_argument) return parse_truth(number);
+  if (stop != number.data() + number.size()) return {0.0, NumberStatus::text};
   if (error == std::errc::result_out_of_range) return parse_extreme(number);
   if (!std::isfinite(parsed.value)) parsed.status = NumberStatus::missing;
   return parsed;

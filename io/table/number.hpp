@@ -15,7 +15,7 @@ struct ParsedNumber {
 std::string_view without_blanks(std::string_view field);
 
 /// A decimal number with blanks around it and a leading '+' tolerated. Empty, NaN and infinity are `missing`; what is
-/// too small for a double becomes zero.
+/// too small for a double becomes zero. true and false, as pandas, R and others write truth values, are 1 and 0.
 ParsedNumber parse_number(std::string_view field);
 
 }  // namespace modebank

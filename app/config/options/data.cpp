@@ -25,6 +25,21 @@ Option lag_option() {
   return result;
 }
 
+Option skip_rows_option() {
+  Option result = numeric("data.skip_rows", at_least(0), "lines",
+                          "lines of a title above the table of text files; auto: found out for each file",
+                          MODEBANK_FIELD(data.format.skip_rows));
+  result.range = "a whole number >= 0, or auto";
+  result.set = [set = result.set](Config& config, const std::string& text) {
+    config.data.format.skip_automatic = text == "auto";
+    set(config, text == "auto" ? "0" : text);
+  };
+  result.get = [get = result.get](const Config& config) {
+    return config.data.format.skip_automatic ? "auto" : get(config);
+  };
+  return result;
+}
+
 /// Numbers, or a word in their place.
 Option quantum_option() {
   Option result =
@@ -137,6 +152,11 @@ std::vector<Option> data_options() {
             MODEBANK_FIELD(data.format.separator)),
       words("data.decimal", "the decimal mark of text files; auto: as their first rows show",
             MODEBANK_FIELD(data.format.decimal)),
+      text("data.na", "words",
+           "words that stand for a missing value in text files, beside empty fields and NaN, in any case; numbers such "
+           "as -999 by value",
+           MODEBANK_FIELD(data.format.na)),
+      skip_rows_option(),
       words("data.header",
             "whether text files' first row names the columns; if not they are c1, c2, ...; auto: whether it holds "
             "numbers",

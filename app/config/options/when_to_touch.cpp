@@ -25,6 +25,8 @@ const std::unordered_map<std::string_view, std::string_view>& data_keys() {
       {"data.time_unit", "when durations on the screen are off by a thousand or a million"},
       {"data.separator", "never, unless a text file is read wrongly: a mixture of separators cannot be told"},
       {"data.decimal", "never, unless numbers with a decimal comma are read wrongly"},
+      {"data.na", "when your logger writes a word or a number of its own, such as -999, where nothing was measured"},
+      {"data.skip_rows", "when a text file has a title above its table; `modebank init` finds the number"},
       {"data.header", "when the first row of a text file is taken for names and is not, or the other way round"},
       {"data.definitions", "when a ROS 2 .db3 recording has messages of your own types"},
       {"data.join", "row, when both files were written row by row together and their times cannot be trusted"},

@@ -18,6 +18,32 @@ TEST_F(Track, ReadsQuotedFieldsAsTheImportDoes) {
   EXPECT_EQ(quoted.errors(), "");
 }
 
+/// As Excel on Windows writes names, in logs and in lines of samples.
+TEST_F(Track, ReadsOtherBytesThanUtf8AsWindows1252) {
+  for (const char* run_file : {"run_00.csv", "run_01.csv"}) {
+    const std::string text = csv_run(80, run_file[5] == '0' ? 1 : 2);
+    write(run_file,
+          "time,gr\xF6\xDF"
+          "e" +
+              text.substr(std::string("time,wz").size()));
+  }
+  const ProgramResult made = run({"--data.state", "größe"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.err.find("read as Windows-1252"), std::string::npos) << made.err;
+  PipedProgram latin(command()), utf8(command());
+  latin.write(
+      "{\"time\":0,\"gr\xF6\xDF"
+      "e\":0.1,\"left\":0.1,\"right\":0.2}\n");
+  utf8.write("{\"time\":0,\"größe\":0.1,\"left\":0.1,\"right\":0.2}\n");
+  for (PipedProgram* program : {&latin, &utf8}) program->close_input();
+  const std::string line = utf8.read_line().value_or("");
+  EXPECT_NE(line.find("\"größe\":{"), std::string::npos) << line;
+  EXPECT_EQ(latin.read_line(), line);
+  EXPECT_EQ(latin.wait() + utf8.wait(), 0);
+  EXPECT_NE(latin.errors().find("read as Windows-1252"), std::string::npos);
+  EXPECT_EQ(utf8.errors(), "");
+}
+
 /// A header that a reader of CSV takes apart as it was put together, and a spreadsheet for text.
 TEST_F(Track, NamesInTheHeaderAreQuoted) {
   for (const char* run_file : {"run_00.csv", "run_01.csv"}) {

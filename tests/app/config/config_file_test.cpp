@@ -40,6 +40,34 @@ TEST_F(ConfigFile, ReadsValuesCommentsAndLists) {
   EXPECT_FALSE(config.bank.measurement_variance.has_value());
 }
 
+TEST_F(ConfigFile, NamesStandInQuotesWhereTheyNeedThem) {
+  const Config config = load(
+      "[data]\nstate = 'Flow, l/h', wz, 'it''s', 'n snow\ntime = \"'Date Time, #1', ns\"  # two\nrun = \"lap#\"\n"
+      "derive = \"v = 'wheel#1' / 'a \\\"b\\\"'\"\nderive = w = 2 * wz\nna = -999, bad\nskip_rows = auto\n");
+  EXPECT_EQ(config.data.state, (std::vector<std::string>{"Flow, l/h", "wz", "it's", "'n snow"}));
+  EXPECT_EQ(config.data.time, (std::vector<std::string>{"Date Time, #1", "ns"}));
+  EXPECT_EQ(config.data.run, "lap#");
+  EXPECT_EQ(config.data.derive, (std::vector<std::string>{"v = 'wheel#1' / 'a \"b\"'", "w = 2 * wz"}));
+  EXPECT_EQ(config.data.format.na, (std::vector<std::string>{"-999", "bad"}));
+  EXPECT_TRUE(config.data.format.skip_automatic);
+  const Config again = load(resolved_text(config));
+  EXPECT_EQ(resolved_text(again), resolved_text(config));
+  EXPECT_EQ(again.data.state, config.data.state);
+  EXPECT_EQ(again.data.derive, config.data.derive);
+  EXPECT_EQ(load("", {{"data.state", "flow#1"}}).data.state, std::vector<std::string>{"flow#1"});
+  EXPECT_EQ(load("[data]\nskip_rows = 3\n").data.format.skip_rows, 3U);
+  EXPECT_THROW(load("[data]\nskip_rows = -1\n"), ConfigurationError);
+  EXPECT_THROW(load("[data]\nrun = \"a\\x1b\"\n"), ConfigurationError) << "control characters";
+}
+
+TEST_F(ConfigFile, OtherBytesThanUtf8AreWindows1252) {
+  EXPECT_EQ(load("[data]\nstate = gr\xF6\xDF"
+                 "e\n")
+                .data.state,
+            std::vector<std::string>{"größe"});
+  EXPECT_EQ(load("[data]\nstate = größe\n").data.state, std::vector<std::string>{"größe"});
+}
+
 /// What `make reference-ini` wrote of the help says what stands in the program.
 TEST_F(ConfigFile, TheReferenceHoldsEveryKeyAtItsDefault) {
   const std::filesystem::path file = test::project_dir() / "configs/reference.ini";

@@ -92,6 +92,22 @@ TEST_F(InitCommand, NamesOfFoldersAndFilesStayWhatTheyAre) {
   EXPECT_FALSE(std::filesystem::exists(file("pwned")));
 }
 
+TEST_F(InitCommand, NamesWithTheMarkOfACommentAreQuoted) {
+  const std::string rows = csv_run(300, 1);
+  write("hash.csv", "t#1,flow#1,\"valve, #2\",right" + rows.substr(rows.find('\n')));
+  const std::string ini = file("hash.ini").string();
+  const ProgramResult made = modebank({"init", file("hash.csv").string(), "-o", ini, "--yes"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const std::string text = read_file(ini);
+  EXPECT_THAT(text, HasSubstr("derive = \"flow_1 = 'flow#1'\""));
+  EXPECT_THAT(text, HasSubstr("derive = \"valve = 'valve, #2'\""));
+  EXPECT_THAT(text, HasSubstr("time = \"t#1\""));
+  EXPECT_THAT(text, HasSubstr("state = flow_1"));
+  const ProgramResult ran = modebank({"run", ini, "--archive.output", archive()});
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_THAT(modebank({"show", archive(), "config"}).out, HasSubstr("derive = \"flow_1 = 'flow#1'\""));
+}
+
 TEST_F(InitCommand, AFileThatNoConfigurationCanNameIsRefused) {
   for (const char* name : {"a#b.csv", "a,b.csv", "a*b.csv", " a.csv", "a\nb.csv"}) {
     write(name, csv_run(50, 1));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <sstream>
 
 #include "app/config/config.hpp"
@@ -15,6 +16,7 @@
 #include "app/init/survey_set.hpp"
 #include "app/init/survey_text.hpp"
 #include "io/import/import.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank::app {
@@ -143,14 +145,100 @@ TEST_F(Init, PairsFilesAndNamesRuns) {
   EXPECT_EQ(import_data(config.data).recording.runs.size(), 3U);
 }
 
-TEST_F(Init, NamesThatNoLineCanHoldAreNoSignals) {
+/// A state that follows an input, 300 rows at 10 Hz; `row` writes one.
+std::string plant(const std::string& head, const std::function<std::string(double, double, double)>& row) {
+  std::string text = head;
+  double y = 0.0, u = 0.0;
+  for (int k = 0; k < 300; ++k) {
+    if (k % 9 == 0) u = std::sin(1.7 * k);
+    y = 0.8 * y + 0.5 * u + 0.01 * std::sin(37.0 * k);
+    text += row(0.1 * k, y, u);
+  }
+  return text;
+}
+
+TEST_F(Init, NamesThatListsCannotHoldGetADeriveLine) {
+  const auto row = [](double t, double y, double u) { return fmt::format("{:.1f},{:.6f},{:.6f}\n", t, y, u); };
+  write_file(folder.path() / "plain.csv", plant("t,flow,valve\n", row));
+  write({path("plain.csv")});
+  const Recording expected = import_data(config.data).recording;
+  for (const char* time : {"t", "Date Time, GMT+01:00"}) {
+    write_file(folder.path() / "comma.csv", plant(fmt::format("\"{}\",\"Flow, l/h\",\"Valve, %\"\n", time), row));
+    const std::string text = write({path("comma.csv")});
+    EXPECT_THAT(text, HasSubstr("derive = flow = 'Flow, l/h'"));
+    EXPECT_THAT(text, HasSubstr("derive = valve = 'Valve, %'"));
+    EXPECT_THAT(config.data.state, ElementsAre("flow"));
+    EXPECT_THAT(config.data.input, ElementsAre("valve"));
+    EXPECT_THAT(config.data.time, ElementsAre(time));
+    const Recording recording = import_data(config.data).recording;
+    ASSERT_EQ(recording.runs.size(), expected.runs.size());
+    EXPECT_EQ(recording.runs[0].state, expected.runs[0].state);
+    EXPECT_EQ(recording.runs[0].input, expected.runs[0].input);
+    EXPECT_EQ(recording.runs[0].time_s, expected.runs[0].time_s);
+  }
+  write_file(folder.path() / "quoted.csv", plant("t,flow 'a' x,\"valve \"\"b\"\"\"\n", row));
+  EXPECT_THAT(write({path("quoted.csv")}), HasSubstr("derive = flow_a_x = 'flow ''a'' x'"));
+  EXPECT_EQ(import_data(config.data).recording.runs[0].state, expected.runs[0].state);
+  write_file(folder.path() / "taken.csv", plant("t,\"Flow, l/h\",valve,flow\n", [](double t, double y, double u) {
+               return fmt::format("{:.1f},{:.6f},{:.6f},7\n", t, y, u);
+             }));
+  EXPECT_THAT(write({path("taken.csv")}), HasSubstr("derive = flow_ = 'Flow, l/h'")) << "a column has the other name";
+}
+
+TEST_F(Init, NamesWithControlCharactersAreNoSignals) {
   std::string log = "\"cmd\nl\",\"cmd,r\",wz [deg/s],t [ms],throttle\n";
   for (int k = 0; k < 200; ++k) log += fmt::format("{0},{0},{1},{2},{3}\n", k % 7, k % 11, 20 * k, k % 5);
   write_file(folder.path() / "odd.csv", log);
-  const std::string text = write({path("odd.csv")});
+  write({path("odd.csv")});
   EXPECT_THAT(config.data.state, ElementsAre("wz [deg/s]"));
-  EXPECT_THAT(config.data.input, ElementsAre("throttle"));
+  EXPECT_THAT(config.data.input, ElementsAre("cmd", "throttle"));
   EXPECT_THAT(config.data.time, ElementsAre("t [ms]"));
+}
+
+TEST_F(Init, FindsTheTableBehindATitle) {
+  const auto tabs = [](double t, double y, double u) { return fmt::format("{:.2f}\t{:.6f}\t{:.6f}\n", t, u, y); };
+  const auto commas = [](double t, double y, double u) { return fmt::format("{:.2f},{:.6f},{:.6f}\n", t, u, y); };
+  struct Case {
+    std::string title;
+    std::size_t lines;
+    bool tabs;
+  };
+  for (const Case& c : {Case{"A towing tank, somewhere\nZig-zag manoeuvre : 10 / -10\n\n", 3, true},
+                        Case{" TANK, model test\n SHIP1\n Z10\xB0/5\xB0\n Time series of motions\n", 4, true},
+                        Case{"\"Plot Title: rig 3\"\n\"time_s\",\"valve\",\"flow\"\n", 1, false}}) {
+    write_file(folder.path() / "tank.dat", c.tabs ? plant(c.title, tabs) : plant(c.title, commas));
+    const std::string text = write({path("tank.dat")});
+    EXPECT_THAT(text, HasSubstr(fmt::format("skip_rows = {} ", c.lines)));
+    EXPECT_THAT(listing, HasSubstr("above the table"));
+    EXPECT_EQ(config.data.format.skip_rows, c.lines);
+    Index samples = 0;
+    for (const Trajectory& run : import_data(config.data).recording.runs) samples += run.samples();
+    EXPECT_GT(samples, 250);
+  }
+  EXPECT_THAT(config.data.state, ElementsAre("flow"));
+  write_file(folder.path() / "rig_1.csv", plant("title\ntime_s,valve,flow\n", commas));
+  write_file(folder.path() / "rig_2.csv", plant("title\nof two lines\ntime_s,valve,flow\n", commas));
+  EXPECT_THAT(write({path("rig_1.csv"), path("rig_2.csv")}), HasSubstr("skip_rows = auto"));
+  EXPECT_EQ(import_data(config.data).recording.runs.size(), 2U);
+  write_file(folder.path() / "tail.dat", plant("", tabs) + "\t\t\n\t\t\n");
+  EXPECT_EQ(write({path("tail.dat")}).find("missing"), std::string::npos) << "rows of separators alone are no rows";
+}
+
+TEST_F(Init, SaysWhatKeepsAColumnFromBeingNumbers) {
+  write_file(folder.path() / "quoted.csv", plant("t,flow,valve\n", [](double t, double y, double u) {
+               std::string text = fmt::format("{:.1f},\"{:.2f}\",\"{:.2f}\"\n", t, 2500 + 300 * y, 40 + 10 * u);
+               for (std::size_t k = text.find(',') + 1; k < text.size(); ++k)
+                 if (text[k] == '.') text[k] = ',';
+               return text;
+             }));
+  try {
+    write({path("quoted.csv")});
+    ADD_FAILURE() << "accepted";
+  } catch (const ConfigurationError& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("column flow: \"2500,00\" is not a number: other numbers have a decimal point"));
+  }
+  EXPECT_THAT(listing, HasSubstr("text: \"2500,00\" is not a number"));
 }
 
 TEST_F(Init, KnowsHuskysBag) {

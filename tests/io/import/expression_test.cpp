@@ -59,6 +59,9 @@ TEST(Expression, KnowsItsFunctions) {
   EXPECT_DOUBLE_EQ(value("atan2(1, -1)"), 0.75 * pi);
   EXPECT_DOUBLE_EQ(value("hypot(3, 4) + abs(-1) + sign(-7) + sqrt(9)"), 8.0);
   EXPECT_DOUBLE_EQ(value("min(3, 1, 2) + max(4, 6)"), 7.0);
+  for (const char* formula : {"min(sqrt(-1), 1)", "min(1, sqrt(-1))", "max(sqrt(-1), 1)", "max(1, 2, sqrt(-1), 3)",
+                              "sign(sqrt(-1))", "not(sqrt(-1))"})
+    EXPECT_TRUE(std::isnan(value(formula))) << formula;
   EXPECT_DOUBLE_EQ(value("mod(-1, 3) + floor(1.5) + ceil(1.5) + round(1.6) + not(0)"), 8.0);
   EXPECT_DOUBLE_EQ(value("rad(180) + deg(pi)"), pi + 180.0);
   EXPECT_NEAR(value("wrap(7)"), 7.0 - 2.0 * pi, 1e-15);

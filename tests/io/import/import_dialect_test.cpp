@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "io/import/csv_dialect.hpp"
 #include "tests/io/import/import_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -179,6 +180,171 @@ TEST_F(ImportDialect, DecimalCommas) {
   EXPECT_THAT(error<DataError>(), HasSubstr(":2: column time: \"0,000000\" is no time")) << "the option is believed";
 }
 
+TEST_F(ImportDialect, MarksOfThousands) {
+  options.time = {"t"};
+  const auto written = [&](const std::string& head, const std::function<std::string(int)>& text) {
+    const Trajectory run = read(table(head, text)).recording.runs.at(0);
+    for (int k = 0; k < log_rows; ++k) {
+      EXPECT_EQ(run.state(0, k), 2400 + 7 * k) << k;
+      EXPECT_EQ(run.input(0, k), 40 + 0.25 * k) << k;
+      EXPECT_EQ(run.time_s(k), 0.5 * k) << k;
+    }
+  };
+  const auto comma = [](double value) { return with_commas(fmt::format("{:.2f}", value)); };
+  written("t;x;u\n", [&](int k) {
+    return fmt::format("{};2.{};{}", with_commas(fmt::format("{:.1f}", 0.5 * k)), 400 + 7 * k, comma(40 + 0.25 * k));
+  });
+  written("t;x;u\n", [&](int k) {
+    return fmt::format("{};2.{},00;{}", with_commas(fmt::format("{:.1f}", 0.5 * k)), 400 + 7 * k, comma(40 + 0.25 * k));
+  });
+  written("t,x,u\n", [&](int k) {
+    return fmt::format("\"{}\",\"2.{},0\",\"{}\"", comma(0.5 * k), 400 + 7 * k, comma(40 + 0.25 * k));
+  });
+  written("t,x,u\n",
+          [&](int k) { return fmt::format("{},\"2,{}.00\",\"{:.2f}\"", 0.5 * k, 400 + 7 * k, 40 + 0.25 * k); });
+  options.format.decimal = DecimalMark::comma;
+  written("t;x;u\n",
+          [&](int k) { return fmt::format("{};2.{};{}", comma(0.5 * k), 400 + 7 * k, comma(40 + 0.25 * k)); });
+  write("log.csv", "t;x;u\n0,0;1,5;1\n0,5;2.49;1\n");
+  EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:3: column x: \"2.49\" is not a number with a decimal comma"));
+  write("log.csv", "t;x;u\n0,0;1,5;1\n0.5;2,49;1\n");
+  EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:3: column t: \"0.5\" is"));
+  options.format.decimal = DecimalMark::automatic;
+  write("log.csv", "t,x,u\n0.1,1.5,1\n0.2,\"2,499\",1\n");
+  EXPECT_THAT(error<DataError>(), HasSubstr("\"2,499\" may be thousands or have a decimal comma"));
+}
+
+TEST_F(ImportDialect, WordsForMissingValuesAreCounted) {
+  const auto text = [](int k) {
+    return fmt::format("{},{},{}", seconds(k),
+                       k == 7 || k == 20 ? "NA"
+                       : k == 30         ? "-"
+                                         : fmt::to_string(x_of(k)),
+                       u_of(k));
+  };
+  write("log.csv", table("time,x,u\n", text));
+  EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:9: column x: missing value (\"NA\")"));
+  options.missing = Missing::predict;
+  const ImportedData data = read(table("time,x,u\n", text));
+  EXPECT_TRUE(std::isnan(data.recording.runs[0].state(0, 7)));
+  EXPECT_TRUE(std::isnan(data.recording.runs[0].state(0, 30)));
+  EXPECT_EQ(data.recording.runs[0].state(0, 8), x_of(8));
+  EXPECT_THAT(data.notes, AllOf(Contains(HasSubstr("\"NA\" stands for a missing value 2 times (data.na)")),
+                                Contains(HasSubstr("\"-\" stands for a missing value 1 time (data.na)"))));
+  options.format.na = {"-999"};
+  EXPECT_TRUE(std::isnan(read("time,x,u\n0,1,2\n1,-999.0,2\n2,3,2\n3,4,2\n").recording.runs[0].state(0, 1)));
+  write("log.csv", table("time,x,u\n", text));
+  EXPECT_THAT(error<DataError>(), HasSubstr("\"NA\" is not a number"));
+}
+
+TEST_F(ImportDialect, ADashIsAUnitAndAMissingFirstValueIsNoName) {
+  const std::string content =
+      table("time,x,u\ns,-,-\n", [](int k) { return fmt::format("{},{},{}", seconds(k), x_of(k), u_of(k)); });
+  expect_plain(content);
+  EXPECT_EQ(read(content).recording.states[0].unit, "-");
+  options.missing = Missing::predict;
+  options.time = {"c1"};
+  options.state = {"c2"};
+  options.input = {"c3"};
+  EXPECT_EQ(read("0,NA,1\n1,2,1\n2,3,1\n").recording.runs[0].samples(), 3);
+}
+
+TEST_F(ImportDialect, LinesAboveTheTableAreSkipped) {
+  const auto line = [](int k) { return fmt::format("{},{},{}", seconds(k), x_of(k), u_of(k)); };
+  struct Title {
+    std::string text;
+    std::size_t lines;
+  };
+  for (const Title& title : {Title{"\"Plot Title: rig 3\"\n", 1},
+                             {"Device: IMU 5\r\nSerial: 1234\r\n\r\nDate: 2025-11-25\r\n", 4},
+                             {"sep=,\n", 1},
+                             {"A rig, somewhere\n\n", 2},
+                             {"\"a title\nof two lines\"\n", 2}}) {
+    const std::string content = table(title.text + "time,x,u\n", line);
+    options.format.skip_rows = title.lines;
+    expect_plain(content);
+    EXPECT_THAT(notes(content), Contains(HasSubstr("above the table")));
+    options.format.skip_rows = 0;
+    options.format.skip_automatic = true;
+    expect_plain(content);
+    options.format.skip_automatic = false;
+  }
+  options.format.skip_rows = 2;
+  write("log.csv", "a title\n\ntime,x,u\n0,1,2\n1,oh,3\n");
+  EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:5: column x: \"oh\"")) << "lines are the file's";
+  options.format.skip_rows = 50;
+  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("is empty behind its first 50 lines (data.skip_rows)"));
+}
+
+TEST_F(ImportDialect, TheTableIsFoundBehindItsTitle) {
+  const auto lines = [](const std::string& text) { return lines_above_table(text, true, {}); };
+  const auto numbers = [](const char* row) {
+    std::string text;
+    for (int k = 0; k < 12; ++k) text += row;
+    return text;
+  };
+  EXPECT_EQ(lines("A towing tank, somewhere\nZig-zag : 10 / -10\n\n" + numbers("0.1\t2\t3\n")), 3U);
+  EXPECT_EQ(lines(" TANK, model test\n SHIP1\n Z10\xC2\xB0/5\n Time series of motions\n" + numbers("0.1\t2\t3\n")), 4U);
+  EXPECT_EQ(lines("title\nname;value\ns;V\n" + numbers("1,5;2\n")), 1U) << "names and units stay";
+  EXPECT_EQ(lines("title\n# t x\n" + numbers("1 2\n")), 1U) << "a comment may name the columns";
+  std::string long_title;
+  for (int k = 0; k < 60; ++k) long_title += "setting number " + std::to_string(k) + ": on\n";
+  EXPECT_EQ(lines(long_title + "t,x\n" + numbers("1,2\n") + numbers("1,2\n") + numbers("1,2\n") + numbers("1,2\n") +
+                  numbers("1,2\n") + numbers("1,2\n")),
+            60U);
+  for (const std::string& none : {plain(), numbers("1,2\n"), "t,x,note\n" + numbers("1,2,\"a, b\"\n"), std::string(),
+                                  "\"time\" \"wz\"\n" + numbers("\"1\" 0.1 2\n"),  // R's header, one short
+                                  std::string("only a title\nand another line\n")})
+    EXPECT_EQ(lines(none), 0U) << none;
+}
+
+TEST_F(ImportDialect, RowsOfSeparatorsBelowTheTableAreNone) {
+  for (const char* separator : {"\t", ";", ","}) {
+    const auto joined = [&](const std::string& a, const std::string& b, const std::string& c) {
+      return a + separator + b + separator + c;
+    };
+    const std::string content = table(joined("time", "x", "u") + "\n", [&](int k) {
+      return joined(seconds(k), fmt::to_string(x_of(k)), fmt::to_string(u_of(k)));
+    });
+    std::string tail;
+    for (int k = 0; k < 40; ++k) tail += joined("", " ", "") + "\r\n";
+    expect_plain(content + tail);
+    expect_plain(content + tail + "\n");
+  }
+  options.missing = Missing::predict;
+  const ImportedData data = read("time,x,u\n0,1,2\n1,2,\n2,3,\n");
+  EXPECT_EQ(data.recording.runs[0].samples(), 3) << "a last value that is missing is one";
+}
+
+TEST_F(ImportDialect, OtherBytesThanUtf8AreWindows1252) {
+  options.state = {
+      "gr\xC3\xB6\xC3\x9F"
+      "e"};
+  const auto rows = [](int k) { return fmt::format("{},{},{},ok", seconds(k), x_of(k), u_of(k)); };
+  const std::string latin = table(
+                        "time,gr\xF6\xDF"
+                        "e,u,note\n",
+                        rows),
+                    utf8 = table(
+                        "time,gr\xC3\xB6\xC3\x9F"
+                        "e,u,note\n",
+                        rows);
+  expect_plain(latin);
+  EXPECT_THAT(notes(latin), Contains(HasSubstr("not UTF-8 are read as Windows-1252")));
+  expect_plain(utf8);
+  EXPECT_THAT(notes(utf8), IsEmpty());
+  write("log.csv", utf8 + "0.9,1,2,\xB0\n");
+  EXPECT_EQ(import().recording.runs.at(0).samples(), log_rows + 1) << "one such line leaves the others as they are";
+}
+
+TEST_F(ImportDialect, TruthValuesAreNumbers) {
+  options.input = {"brake"};
+  const ImportedData data = read(table("time,x,brake\n", [](int k) {
+    return fmt::format("{},{},{}", seconds(k), x_of(k), k % 3 == 0 ? "True" : "False");
+  }));
+  for (int k = 0; k < log_rows; ++k) EXPECT_EQ(data.recording.runs[0].input(0, k), k % 3 == 0 ? 1.0 : 0.0);
+}
+
 TEST_F(ImportDialect, UnitsRowAndComments) {
   const std::string content = table("# logger v2, robot A\n#\ntime,x,u\ns,[rad/s],m/s\n", [](int k) {
     return std::string(k == 20 ? "# \"restarted\n" : "") + fmt::format("{},{},{}", seconds(k), x_of(k), u_of(k));
@@ -282,12 +448,29 @@ TEST_F(ImportDialect, BytesOfNoFormatAndAWrongSeparatorAreNamed) {
   EXPECT_THAT(error<ConfigurationError>(), HasSubstr("columns: time,x,u (a single one: data.separator"));
 }
 
+TEST_F(ImportDialect, OctavesTextIsNamed) {
+  const std::string head = "# Created by Octave 7.3.0, Tue Nov 25 10:00:00 2025 UTC <a@b>\n";
+  const std::string one = "# name: x\n# type: matrix\n# rows: 3\n# columns: 3\n 0 1 2\n 1 2 3\n 2 3 5\n\n\n";
+  write("log.csv", head + one + one);
+  EXPECT_THAT(error<ConfigurationError>(),
+              AllOf(HasSubstr("log.csv is in Octave's text format"), HasSubstr("save('-v7'")));
+  options.time = {"c1"};
+  options.state = {"c2"};
+  options.input = {"c3"};
+  EXPECT_EQ(read(head + one).recording.runs[0].state, row({1, 2, 3})) << "one matrix is a text of numbers";
+  options.inputs = "log.mat";
+  write("log.mat", head + one);
+  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("log.mat is in Octave's text format"));
+}
+
 TEST_F(ImportDialect, FormatsThatAreKnownButNotRead) {
   for (const auto& [magic, name] : {std::pair{"PAR1....", "Parquet"},
                                     {"PK\x03\x04", "zip"},
                                     {"\x1F\x8B\x08", "gzip"},
                                     {"\x80\x04\x95", "pickle"},
-                                    {"BZh9", "bzip2"}}) {
+                                    {"BZh9", "bzip2"},
+                                    {"version https://git-lfs.github.com/spec/v1\noid sha256:9b", "Git LFS pointer"},
+                                    {"/annex/objects/SHA256E-s100--9b.csv\n", "git annex get"}}) {
     write("log.csv", magic);
     EXPECT_THAT(error<ConfigurationError>(), AllOf(HasSubstr(name), HasSubstr("not read here; ")));
   }
