@@ -268,7 +268,10 @@ SurveyedFile survey_file(const std::filesystem::path& path) {
   for (std::string& line : reader->left_out()) file.notes.push_back(std::move(line));
   for (const TableInfo& table : tables) file.skipped = static_cast<std::size_t>(table.skipped);
   for (std::size_t i = 0; i < tables.size(); ++i)
-    file.tables.push_back(TableSurvey(*reader, i, tables[i], columns.tables[i]).look());
+    if (columns.alternation[i].empty())
+      file.tables.push_back(TableSurvey(*reader, i, tables[i], columns.tables[i]).look());
+    else
+      file.notes.push_back("left out: " + columns.alternation[i]);
   return file;
 }
 

@@ -22,6 +22,7 @@ struct Piece {
     if (!request.time.column.empty()) of_table[columns.front()] = std::move(table.time_ns);
     for (const auto& [word, count] : table.missing_words)  // by column its missing values are counted
       table.notes.push_back(fmt::format("\"{}\" stands for a missing value (data.na)", word));
+    if (!table.alternation.empty()) result.alternation[request.table] = std::move(table.alternation);
     for (std::string& note : table.notes)
       if (std::find(result.notes.begin(), result.notes.end(), note) == result.notes.end())
         result.notes.push_back(std::move(note));
@@ -137,6 +138,7 @@ ColumnChoice choice_of(const std::string& file, const std::vector<TableInfo>& ta
 FileColumns read_columns(const TableReader& reader, const std::vector<TableInfo>& tables, const ColumnChoice& wanted) {
   FileColumns result;
   for (const TableInfo& table : tables) result.tables.emplace_back(table.columns.size());
+  result.alternation.resize(tables.size());
   const std::vector<Piece> pieces = pieces_of(tables, wanted);
   if (try_read(reader, pieces, result)) return result;
   for (const Piece& piece : pieces)

@@ -17,6 +17,7 @@ using FileColumn =
 
 struct FileColumns {
   std::vector<std::vector<FileColumn>> tables;  ///< of each table each column
+  std::vector<std::string> alternation;         ///< of each table: Table::alternation
   std::vector<std::string> notes;               ///< of the reader
 };
 

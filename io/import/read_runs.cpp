@@ -22,6 +22,7 @@ std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent
       if (read[i].rows() == 0) throw DataError(fmt::format("{}: a header, but no rows", plan.paths[path].string()));
       result.notes.insert(result.notes.end(), read[i].notes.begin(), read[i].notes.end());
       for (const auto& [word, count] : read[i].missing_words) result.missing_words[word] += count;
+      if (!read[i].alternation.empty()) result.notes.push_back(read[i].alternation);
       tables[here[i]] = std::move(read[i]);
     }
   }
@@ -71,8 +72,10 @@ std::map<std::string, RunSlice> slices_of(const FilePlan& plan, const RowReader&
   return slices;
 }
 
-std::string run_name(const FilePlan& plan, const std::string& value, const DataOptions& options) {
+/// A run is called by the value of its column; of a frame's name in the form of ROS 1, "/base", the slash is left out.
+std::string run_name(const FilePlan& plan, std::string value, const DataOptions& options) {
   if (options.run.empty()) return plan.name;
+  if (value.starts_with('/')) value.erase(0, 1);
   return plan.starred ? plan.name + "_" + value : value;
 }
 

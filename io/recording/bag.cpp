@@ -23,23 +23,36 @@ class Bag : public PieceFile {
     return read_head(bytes, at, end);
   }
 
-  void learn(const RecordHead& head, ByteSource& bytes) override {
-    if (knows(head.connection)) return;
+  /// What the publisher said of the connection: fields, as a record's header has them.
+  static std::string publisher_fields(const RecordHead& head, ByteSource& bytes) {
     if (head.payload_bytes > most_definition_bytes)
       throw Damage(head.payload_at, fmt::format("a definition of {} bytes is larger than {}", head.payload_bytes,
                                                 most_definition_bytes));
-    const std::string fields(bytes.view(head.payload_at, head.payload_bytes));
-    const auto text = [&](std::string_view name) {
-      return std::string(find_field(fields, name, head.payload_at).value_or(""));
-    };
+    return std::string(bytes.view(head.payload_at, head.payload_bytes));
+  }
+
+  static std::string text_of(const std::string& fields, std::string_view name, const RecordHead& head) {
+    return std::string(find_field(fields, name, head.payload_at).value_or(""));
+  }
+
+  /// The topic that was recorded stands in the record's header. Publishers need not repeat it (those in C++ do not),
+  /// and one whose topic was remapped repeats another.
+  ConnectionName name_of(const RecordHead& head, ByteSource& bytes) const override {
+    const std::string header = read_record(bytes, head.at, head.end).header, fields = publisher_fields(head, bytes);
+    const auto topic = find_field(header, "topic", head.at);
+    return {topic ? std::string(*topic) : text_of(fields, "topic", head), text_of(fields, "type", head)};
+  }
+
+  Connection describe(const RecordHead& head, ByteSource& bytes) const override {
     Connection connection;
-    connection.topic = text("topic");
-    connection.type = text("type");
-    connection.definition = text("message_definition");
+    const ConnectionName name = name_of(head, bytes);
+    connection.topic = name.topic;
+    connection.type = name.type;
+    connection.definition = text_of(publisher_fields(head, bytes), "message_definition", head);
     connection.encoding = Connection::Encoding::ros1;
     connection.encoding_name = "ros1";
     connection.definition_form = "ros1msg";
-    add_connection(head.connection, std::move(connection), head.payload_at);
+    return connection;
   }
 
   Record read_header() {
@@ -83,8 +96,11 @@ class Bag : public PieceFile {
   bool try_index(const Record& header) {
     try {
       const auto index_at = header.number<std::uint64_t>("index_pos");
-      if (index_at < header.end() || index_at >= file_.size()) return false;
-      if (read_index(index_at) == header.number<std::uint32_t>("chunk_count")) return true;
+      if (index_at < header.end() || index_at > file_.size()) return false;
+      if (read_index(index_at) == header.number<std::uint32_t>("chunk_count")) {
+        trust_index();
+        return true;
+      }
     } catch (const Damage&) {
     }
     forget_all();
@@ -95,12 +111,13 @@ class Bag : public PieceFile {
     std::uint64_t chunks = 0, expected_at = 0;
     while (at < file_.size()) {
       const Record record = read_record(file_, at, file_.size());
-      if (record.op == Op::connection)
-        learn(read_head(file_, at, file_.size()), file_);
-      else if (record.op == Op::chunk_info)
+      if (record.op == Op::connection) {
+        if (learn(read_head(file_, at, file_.size()), file_)) throw Damage(at, "two connections have one number");
+      } else if (record.op == Op::chunk_info) {
         expected_at = check_chunk(record, expected_at), ++chunks;
-      else
+      } else {
         throw Damage(at, "the index holds another record");
+      }
       at = record.end();
     }
     return chunks;
@@ -149,7 +166,7 @@ class Bag : public PieceFile {
       while (at < file_.size()) {
         const RecordHead head = read_head(file_, at, file_.size());
         if (head.kind == RecordHead::Kind::message) {
-          loose = {at, head.end, Compression::none, head.end - at, 0, {}};
+          loose = {at, head.end, Compression::none, head.end - at, 0, {}, 0, {}};
           count(loose, head, file_);
           add_piece(std::move(loose));
         } else if (head.kind == RecordHead::Kind::connection) {
@@ -164,7 +181,6 @@ class Bag : public PieceFile {
       if (connections_.empty()) throw;
       note_damage(damage);
     }
-    if (connections_.empty()) throw Damage(at, "no message and no connection is whole");
   }
 
   /// The chunk that the end of the file cuts off still holds whole messages.

@@ -79,6 +79,7 @@ RecordHead read_head(ByteSource& bytes, std::uint64_t at, std::uint64_t end) {
   const Extent extent = extent_at(bytes, at, end);
   const std::string_view header = bytes.view(extent.header_at, extent.header_bytes);
   RecordHead head;
+  head.at = at;
   head.payload_at = extent.data_at;
   head.payload_bytes = extent.data_bytes;
   head.end = extent.data_at + extent.data_bytes;

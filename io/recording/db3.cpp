@@ -169,12 +169,16 @@ class Db3 : public Container {
 
   void count_messages() {
     std::unordered_map<std::size_t, std::pair<std::int64_t, std::int64_t>> ends;
+    std::size_t of_no_topic = 0;
     try {
       // Row by row: what is before damage counts. The payload lies behind what is asked for and is not read.
       Query query(*database_, "SELECT rowid, topic_id FROM messages ORDER BY rowid");
       while (query.next()) {
         const auto found = by_id_.find(query.integer(1));
-        if (found == by_id_.end()) continue;
+        if (found == by_id_.end()) {
+          ++of_no_topic;
+          continue;
+        }
         ++connections_[found->second].messages;
         ends.try_emplace(found->second, query.integer(0), 0).first->second.second = query.integer(0);
       }
@@ -182,6 +186,9 @@ class Db3 : public Container {
       notes_.push_back(damage(error) + "; what is before that is read");
       damage_noted_ = true;
     }
+    if (of_no_topic > 0)
+      notes_.push_back(fmt::format("{}: {} messages are left out: the table topics has none of their numbers",
+                                   path_.string(), of_no_topic));
     for (const auto& [connection, first_last] : ends)
       sample_ids_.insert(sample_ids_.end(), {first_last.first, first_last.second});
   }

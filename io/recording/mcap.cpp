@@ -25,17 +25,20 @@ class Mcap : public PieceFile {
     return read_head(bytes, at, end);
   }
 
-  /// Schemas and channels, which stand before their first message and again in the summary.
-  void learn(const RecordHead& head, ByteSource& bytes) override {
-    constexpr std::uint64_t front_bytes = 9;
-    const Record record = read_record(bytes, head.payload_at - front_bytes, head.end);
-    if (record.op == Op::schema) {
-      const auto number = little_endian<std::uint16_t>(bytes.view(record.content_at, 2));
-      if (schemas_.count(number) == 0) schemas_.insert(read_schema(bytes, record));
-      return;
-    }
-    if (knows(little_endian<std::uint16_t>(bytes.view(record.content_at, 2)))) return;
-    const Channel channel = read_channel(bytes, record);
+  /// Schemas and channels stand before their first message and again in the summary.
+  void define(const RecordHead& head, ByteSource& bytes) override {
+    auto [number, schema] = read_schema(bytes, read_record(bytes, head.at, head.end));
+    schemas_.insert_or_assign(number, std::move(schema));
+  }
+
+  ConnectionName name_of(const RecordHead& head, ByteSource& bytes) const override {
+    const Channel channel = read_channel(bytes, read_record(bytes, head.at, head.end));
+    const auto schema = schemas_.find(channel.schema);
+    return {channel.topic, schema == schemas_.end() ? "" : schema->second.name};
+  }
+
+  Connection describe(const RecordHead& head, ByteSource& bytes) const override {
+    const Channel channel = read_channel(bytes, read_record(bytes, head.at, head.end));
     Connection connection;
     connection.topic = channel.topic;
     connection.encoding_name = channel.encoding;
@@ -46,7 +49,7 @@ class Mcap : public PieceFile {
       connection.definition = schema->second.text;
       connection.definition_form = schema->second.encoding;
     }
-    add_connection(channel.number, std::move(connection), record.at);
+    return connection;
   }
 
   struct Footer {
@@ -95,14 +98,20 @@ class Mcap : public PieceFile {
       std::optional<std::uint64_t> messages;
       for (std::uint64_t at = footer.summary_at; at < footer.summary_end;) {
         const Record record = read_record(file_, at, footer.summary_end);
-        if (record.op == Op::schema || record.op == Op::channel) learn(read_head(file_, at, record.end()), file_);
+        if (record.op == Op::schema) define(read_head(file_, at, record.end()), file_);
+        if (record.op == Op::channel && learn(read_head(file_, at, record.end()), file_))
+          throw Damage(at, "two channels have one number");
         if (record.op == Op::chunk_index) chunks.push_back(record);
         if (record.op == Op::statistics) messages = read_message_count(file_, record);
         at = record.end();
       }
       std::uint64_t found = 0, least_at = 0;
       for (const Record& record : chunks) least_at = add_chunk(read_chunk_index(file_, record), least_at, found);
-      if (messages == found) return true;
+      if (messages == found) {
+        trust_index();
+        check_names();
+        return true;
+      }
     } catch (const Damage&) {
     }
     forget_all();
@@ -141,7 +150,7 @@ class Mcap : public PieceFile {
     Piece loose;  // messages outside chunks
     const auto close = [&] {
       if (loose.end > loose.begin) add_piece(loose);
-      loose = {at, at, Compression::none, 0, 0, {}};
+      loose = {at, at, Compression::none, 0, 0, {}, 0, {}};
     };
     try {
       bool ended = false;
@@ -169,7 +178,6 @@ class Mcap : public PieceFile {
       if (connections_.empty()) throw;
       note_damage(damage);
     }
-    if (connections_.empty()) throw Damage(at, "no message and no channel is whole");
   }
 
   /// The chunk that the end of the file cuts off still holds whole messages.

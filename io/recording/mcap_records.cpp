@@ -39,10 +39,17 @@ Record read_record(ByteSource& bytes, std::uint64_t at, std::uint64_t end) {
 RecordHead read_head(ByteSource& bytes, std::uint64_t at, std::uint64_t end) {
   const Record record = read_record(bytes, at, end);
   RecordHead head;
+  head.at = at;
   head.end = record.end();
   head.payload_at = record.content_at;
   head.payload_bytes = record.content_bytes;
-  if (record.op == Op::schema || record.op == Op::channel) head.kind = RecordHead::Kind::connection;
+  if (record.op == Op::channel) {
+    constexpr std::uint64_t number_bytes = 2;
+    if (record.content_bytes < number_bytes) throw Damage(at, "a channel record is too short");
+    head.kind = RecordHead::Kind::connection;
+    head.connection = little_endian<std::uint16_t>(bytes.view(record.content_at, number_bytes));
+  }
+  if (record.op == Op::schema) head.kind = RecordHead::Kind::definition;
   if (record.op != Op::message) return head;
   constexpr std::uint64_t front_bytes = 22;  // channel, sequence, log time, publish time
   if (record.content_bytes < front_bytes) throw Damage(at, "a message record is too short");

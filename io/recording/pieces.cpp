@@ -9,23 +9,41 @@
 
 namespace modebank {
 
-bool PieceFile::add_connection(std::uint32_t number, Connection connection, std::uint64_t at) {
-  if (connections_.size() == most_connections)
-    throw Damage(at, fmt::format("it has more than {} connections", most_connections));
-  if (!by_number_.emplace(number, connections_.size()).second) return false;
-  connections_.push_back(std::move(connection));
-  return true;
+bool PieceFile::learn(const RecordHead& head, ByteSource& bytes) {
+  constexpr std::size_t most_given_again = 4096;  // each is gone through for every message
+  const auto known = position(head.connection);
+  if (known) {
+    const Connection& other = connections_[*known];
+    if (name_of(head, bytes) == ConnectionName{other.topic, other.type}) return false;
+  }
+  if (connections_.size() == most_connections || given_again_.size() == most_given_again)
+    throw Damage(head.at, fmt::format("it has more than {} connections", connections_.size()));
+  connections_.push_back(describe(head, bytes));
+  if (known)
+    given_again_.emplace_back(head.connection, connections_.size() - 1);
+  else
+    by_number_.emplace(head.connection, connections_.size() - 1);
+  return known.has_value();
 }
 
-std::optional<std::size_t> PieceFile::position(std::uint32_t number) const {
+std::optional<std::size_t> PieceFile::position(std::uint32_t number, std::size_t given_again) const {
+  while (given_again-- > 0)
+    if (given_again_[given_again].first == number) return given_again_[given_again].second;
   const auto found = by_number_.find(number);
   return found == by_number_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::size_t PieceFile::known(const RecordHead& head, std::size_t given_again) const {
+  if (const auto connection = position(head.connection, given_again)) return *connection;
+  throw Damage(head.payload_at, fmt::format("connection {} is not described", head.connection));
 }
 
 void PieceFile::forget_all() {
   pieces_.clear();
   connections_.clear();
   by_number_.clear();
+  given_again_.clear();
+  from_index_ = names_differ_ = false;
 }
 
 std::string PieceFile::damage_text(std::uint64_t at, const std::string& what) const {
@@ -70,16 +88,17 @@ void PieceFile::walk_unpacked(const Piece& piece, const Unpacked& unpacked, cons
 void PieceFile::add_piece(Piece piece) {
   constexpr std::size_t most_pieces = 1 << 20;
   if (pieces_.size() == most_pieces) throw Damage(piece.begin, fmt::format("it has more than {} chunks", most_pieces));
+  piece.given_again = given_again_.size() - piece.gives_again.size();
   pieces_.push_back(std::move(piece));
 }
 
 void PieceFile::count(Piece& piece, const RecordHead& head, ByteSource& bytes) {
-  if (head.kind == RecordHead::Kind::connection) learn(head, bytes);
+  if (head.kind == RecordHead::Kind::definition) define(head, bytes);
+  if (head.kind == RecordHead::Kind::connection && learn(head, bytes)) piece.gives_again.push_back(head.at);
   if (head.kind != RecordHead::Kind::message) return;
-  const auto connection = position(head.connection);
-  if (!connection) throw Damage(head.payload_at, fmt::format("connection {} is not described", head.connection));
-  ++piece.messages[*connection];
-  ++connections_[*connection].messages;
+  const std::size_t connection = known(head, given_again_.size());
+  ++piece.messages[connection];
+  ++connections_[connection].messages;
 }
 
 void PieceFile::scan_piece(Piece piece) {
@@ -97,11 +116,16 @@ std::string PieceFile::visit_pieces(const std::vector<const Piece*>& pieces, con
   constexpr std::uint64_t batch_bytes = 16 << 20;
   constexpr std::size_t batch_pieces = 8;
   std::vector<Unpacking> unpackings(batch_pieces);
+  const auto begin_piece = [&](const Piece& piece) {
+    visited_ = &piece;
+    visited_given_again_ = piece.given_again;
+  };
   file_.open();
   try {
     for (std::size_t first = 0; first < pieces.size();) {
       if (pieces[first]->compression == Compression::none) {
         const Piece& piece = *pieces[first++];
+        begin_piece(piece);
         walk(file_, piece.begin, piece.end, sink);
         continue;
       }
@@ -112,7 +136,10 @@ std::string PieceFile::visit_pieces(const std::vector<const Piece*>& pieces, con
         if (piece.compression == Compression::none || (count > 0 && bytes > batch_bytes)) break;
       }
       tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { unpack_piece(*pieces[first + i], unpackings[i]); });
-      for (std::size_t i = 0; i < count; ++i) walk_unpacked(*pieces[first + i], unpackings[i].result, sink);
+      for (std::size_t i = 0; i < count; ++i) {
+        begin_piece(*pieces[first + i]);
+        walk_unpacked(*pieces[first + i], unpackings[i].result, sink);
+      }
       first += count;
     }
   } catch (const Damage& damage) {
@@ -121,16 +148,31 @@ std::string PieceFile::visit_pieces(const std::vector<const Piece*>& pieces, con
   return {};
 }
 
+void PieceFile::check_name(const RecordHead& head, ByteSource& bytes) {
+  const auto connection = position(head.connection, visited_given_again_);
+  if (!connection) return;  // the index leaves out those without messages
+  const Connection& told = connections_[*connection];
+  const ConnectionName name = name_of(head, bytes);
+  names_differ_ = name != ConnectionName{told.topic, told.type};
+  if (names_differ_)
+    throw Damage(head.at, fmt::format("connection {} is {} ({}) here, but {} ({}) in the index", head.connection,
+                                      name.topic, name.type, told.topic, told.type));
+}
+
 PieceFile::HeadSink PieceFile::message_sink(const std::function<bool(std::size_t)>& wanted, const MessageSink& sink) {
   return [this, wanted, sink](const RecordHead& head, ByteSource& bytes) {
+    if (head.kind == RecordHead::Kind::connection) {
+      const std::vector<std::uint64_t>& again = visited_->gives_again;
+      visited_given_again_ += std::count(again.begin(), again.end(), head.at) > 0 ? 1 : 0;
+      if (from_index_) check_name(head, bytes);
+    }
     if (head.kind != RecordHead::Kind::message) return;
-    const auto connection = position(head.connection);
-    if (!connection) throw Damage(head.payload_at, fmt::format("connection {} is not described", head.connection));
-    if (!wanted(*connection)) return;
+    const std::size_t connection = known(head, visited_given_again_);
+    if (!wanted(connection)) return;
     if (head.payload_bytes > most_message_bytes)
       throw Damage(head.payload_at,
                    fmt::format("a message of {} bytes is larger than {}", head.payload_bytes, most_message_bytes));
-    sink({*connection, head.receive_ns, bytes.view(head.payload_at, head.payload_bytes)});
+    sink({connection, head.receive_ns, bytes.view(head.payload_at, head.payload_bytes)});
   };
 }
 
@@ -142,7 +184,7 @@ std::string PieceFile::visit(const std::vector<bool>& wanted, const MessageSink&
   return visit_pieces(pieces, message_sink([&](std::size_t connection) { return wanted[connection]; }, sink));
 }
 
-std::string PieceFile::sample(const MessageSink& sink) {
+std::map<std::size_t, std::set<std::size_t>> PieceFile::sampled_pieces() const {
   // Which pieces hold a connection's first and last message.
   std::vector<std::size_t> first(connections_.size(), pieces_.size()), last(connections_.size(), pieces_.size());
   for (std::size_t p = 0; p < pieces_.size(); ++p)
@@ -156,7 +198,19 @@ std::string PieceFile::sample(const MessageSink& sink) {
     connections[last[c]].insert(c);
   }
   connections.erase(pieces_.size());
-  for (const auto& [piece, here] : connections) {
+  return connections;
+}
+
+void PieceFile::check_names() {
+  const auto none = [](std::size_t) { return false; };
+  for (const auto& [piece, here] : sampled_pieces()) {
+    visit_pieces({&pieces_[piece]}, message_sink(none, {}));
+    if (names_differ_) throw Damage(pieces_[piece].begin, "a chunk has other connections than the index");
+  }
+}
+
+std::string PieceFile::sample(const MessageSink& sink) {
+  for (const auto& [piece, here] : sampled_pieces()) {
     const auto wanted = [&, &chosen = here](std::size_t connection) { return chosen.count(connection) > 0; };
     if (std::string failure = visit_pieces({&pieces_[piece]}, message_sink(wanted, sink)); !failure.empty())
       return failure;

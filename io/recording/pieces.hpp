@@ -4,7 +4,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "io/recording/byte_source.hpp"
 #include "io/recording/connections.hpp"
@@ -20,16 +23,23 @@ struct Piece {
   std::uint64_t unpacked_bytes = 0;
   std::uint32_t crc = 0;                          ///< of what is unpacked; 0: none
   std::map<std::size_t, std::uint64_t> messages;  ///< by connection
+  std::size_t given_again = 0;                    ///< numbers that were given again before it
+  std::vector<std::uint64_t> gives_again;         ///< where it gives a number again: RecordHead::at
 };
 
 /// One record of a piece.
 struct RecordHead {
-  enum class Kind { message, connection, other };
+  enum class Kind { message, connection, definition, other };
   Kind kind = Kind::other;
   std::uint32_t connection = 0;  ///< as the file numbers it
   std::int64_t receive_ns = 0;
   std::uint64_t payload_at = 0, payload_bytes = 0;  ///< of a message, or of a connection's description
-  std::uint64_t end = 0;
+  std::uint64_t at = 0, end = 0;                    ///< of the record
+};
+
+struct ConnectionName {
+  std::string topic, type;
+  bool operator==(const ConnectionName&) const = default;
 };
 
 /// A bag or MCAP file: pieces of records, and an index that tells them where it is sound.
@@ -54,13 +64,22 @@ class PieceFile : public Container {
 
   /// The record at `at`, at most to `end`. Throws Damage.
   virtual RecordHead head_at(ByteSource& bytes, std::uint64_t at, std::uint64_t end) const = 0;
-  /// Takes in what a record of Kind::connection says; a connection that is known is not looked at again.
-  virtual void learn(const RecordHead& head, ByteSource& bytes) = 0;
+  /// Topic and type by a record of Kind::connection.
+  virtual ConnectionName name_of(const RecordHead& head, ByteSource& bytes) const = 0;
+  /// The whole of it.
+  virtual Connection describe(const RecordHead& head, ByteSource& bytes) const = 0;
+  /// Takes in a record of Kind::definition, which connections behind it refer to.
+  virtual void define(const RecordHead& /*head*/, ByteSource& /*bytes*/) {}
 
-  /// Makes a connection known by the file's number; false: it was.
-  bool add_connection(std::uint32_t number, Connection connection, std::uint64_t at);
-  bool knows(std::uint32_t number) const { return by_number_.count(number) > 0; }
-  std::optional<std::size_t> position(std::uint32_t number) const;
+  /// Takes in a record of Kind::connection. The file numbers connections; a number may come again for the same one, or
+  /// be given again to another, of which later messages are then. True: the latter.
+  bool learn(const RecordHead& head, ByteSource& bytes);
+  /// The connection that has a number in what was read up to here.
+  std::optional<std::size_t> position(std::uint32_t number) const { return position(number, given_again_.size()); }
+  /// Connections and counts come from an index: records of connections in the pieces are compared with it.
+  void trust_index() { from_index_ = true; }
+  /// Compares those in the pieces that `sample` looks at. Throws Damage where they differ.
+  void check_names();
 
   /// Reads the piece to learn its connections and count its messages; adds it, as far as it is whole. Throws Damage
   /// after that.
@@ -91,10 +110,17 @@ class PieceFile : public Container {
   void walk_unpacked(const Piece& piece, const Unpacked& unpacked, const HeadSink& sink) const;
   std::string visit_pieces(const std::vector<const Piece*>& pieces, const HeadSink& sink);
   HeadSink message_sink(const std::function<bool(std::size_t)>& wanted, const MessageSink& sink);
+  std::map<std::size_t, std::set<std::size_t>> sampled_pieces() const;
+  std::optional<std::size_t> position(std::uint32_t number, std::size_t given_again) const;
+  std::size_t known(const RecordHead& head, std::size_t given_again) const;
+  void check_name(const RecordHead& head, ByteSource& bytes);
 
   std::vector<Piece> pieces_;
-  bool damage_noted_ = false;
-  std::unordered_map<std::uint32_t, std::size_t> by_number_;
+  bool damage_noted_ = false, from_index_ = false, names_differ_ = false;
+  std::unordered_map<std::uint32_t, std::size_t> by_number_;        ///< the first of each number
+  std::vector<std::pair<std::uint32_t, std::size_t>> given_again_;  ///< the others, in the file's order
+  const Piece* visited_ = nullptr;                                  ///< the piece that a sink is given
+  std::size_t visited_given_again_ = 0;                             ///< numbers that were given again before here
 };
 
 }  // namespace modebank

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ident/base/printable.hpp"
+#include "io/recording/alternating_frames.hpp"
 #include "io/table/number.hpp"
 #include "io/table/stamp_column.hpp"
 #include "modebank/base/error.hpp"
@@ -29,6 +30,16 @@ LogRequest log_request(const TableRequest& request) {
   if (!request.time.column.empty()) wanted.columns.push_back({request.time.column, Form::exact});
   if (!request.time.nanoseconds.empty()) wanted.columns.push_back({request.time.nanoseconds, Form::exact});
   return wanted;
+}
+
+/// What shows whether the rows of a request are of one motion: nothing where they are told apart by it already.
+std::vector<std::string> looked_at_frames(const LogTopic& topic, const TableRequest& request) {
+  std::vector<std::string> columns = frame_columns(topic);
+  const bool told_apart = std::any_of(columns.begin(), columns.end(), [&](const std::string& column) {
+    return std::find(request.texts.begin(), request.texts.end(), column) != request.texts.end();
+  });
+  if (told_apart || request.numbers.empty()) columns.clear();
+  return columns;
 }
 
 const std::filesystem::path& checked(const std::filesystem::path& definitions) {
@@ -125,7 +136,12 @@ InputFile RecordingReader::describe(const std::vector<TableRequest>& requests) c
 
 std::vector<Table> RecordingReader::read(const std::vector<TableRequest>& requests, InputFile* file) const {
   std::vector<LogRequest> wanted;
-  for (const TableRequest& request : requests) wanted.push_back(log_request(request));
+  std::vector<std::vector<std::string>> frames;
+  for (const TableRequest& request : requests) {
+    wanted.push_back(log_request(request));
+    frames.push_back(looked_at_frames(log_.topics()[request.table], request));
+    for (const std::string& column : frames.back()) wanted.back().columns.push_back({column, Form::text});
+  }
   std::vector<std::string> notes = log_.notes();
   UsedMessages used;
   std::vector<LogRows> rows = log_.read(wanted, notes, file == nullptr ? nullptr : &used);
@@ -134,6 +150,10 @@ std::vector<Table> RecordingReader::read(const std::vector<TableRequest>& reques
   for (std::size_t r = 0; r < requests.size(); ++r) {
     const TableRequest& request = requests[r];
     Table& table = tables.emplace_back();
+    const LogTopic& topic = log_.topics()[request.table];
+    for (std::size_t i = 0; i < frames[r].size() && table.alternation.empty(); ++i)
+      table.alternation =
+          alternation_text(topic, frames[r][i], rows[r].columns[rows[r].columns.size() - frames[r].size() + i].text);
     table.line = std::move(rows[r].message);
     auto column = rows[r].columns.begin();
     for (std::size_t i = 0; i < request.numbers.size(); ++i) table.numbers.push_back(std::move((column++)->numbers));

@@ -65,6 +65,14 @@ RosLog::RosLog(const std::filesystem::path& path, const KnownDefinitions& known)
 
 RosLog::RosLog(std::vector<std::filesystem::path> files, const KnownDefinitions& known) : files_(std::move(files)) {
   for (const std::filesystem::path& file : files_) open_part(file, known);
+  const bool any = std::any_of(parts_.begin(), parts_.end(), [](const Part& part) {
+    const std::vector<Connection>& all = part.container->connections();
+    return std::any_of(all.begin(), all.end(), [](const Connection& connection) { return connection.messages > 0; });
+  });
+  if (!any)
+    throw DataError(
+        fmt::format("{}: holds no messages{}", files_.front().string(),
+                    notes_.empty() ? ": the recording was stopped before the first one" : "; " + notes_.front()));
 }
 
 RosLog::~RosLog() = default;

@@ -60,6 +60,9 @@ struct Table {
   std::vector<std::string> notes;  ///< what the reader found out and the user should know; without the file's name, so
                                    ///< that many files say it once
 
+  /// In words, where rows that follow one another are of different frames, and the key that takes them apart.
+  std::string alternation;
+
   std::size_t rows() const { return line.size(); }
 };
 

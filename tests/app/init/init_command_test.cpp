@@ -118,5 +118,22 @@ TEST_F(InitCommand, AFileThatNoConfigurationCanNameIsRefused) {
   }
 }
 
+/// Bags of C++ nodes have their topics in the connections' headers alone.
+TEST_F(InitCommand, TellsTheTopicsOfARecordingApart) {
+  const std::string script = (project_dir() / "tests/io/recording/topics.py").string();
+  ASSERT_EQ(run_program({"/usr/bin/python3", "-B", script, "write", file("").string()}).status, 0);
+  const ProgramResult made = modebank({"init", file("drive.bag").string(), "-o", file("drive.ini").string(), "--yes"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("/cmd (std_msgs/Float64): 400 rows, 10 Hz"));
+  EXPECT_THAT(made.out, HasSubstr("/speed (std_msgs/Float64): 400 rows, 10 Hz"));
+  EXPECT_THAT(read_file(file("drive.ini")), HasSubstr("state = /speed.data"));
+  EXPECT_THAT(read_file(file("drive.ini")), HasSubstr("input = /cmd.data"));
+  const ProgramResult frames = modebank({"init", file("tf.bag").string(), "-o", file("tf.ini").string(), "--yes"});
+  EXPECT_NE(frames.status, 0);
+  EXPECT_THAT(frames.out, HasSubstr("left out: topic /tf: its messages alternate between 2 frames (base, arm); "
+                                    "data.run = /tf.transforms[0].child_frame_id makes a run of each"));
+  EXPECT_FALSE(std::filesystem::exists(file("tf.ini")));
+}
+
 }  // namespace
 }  // namespace modebank::test
