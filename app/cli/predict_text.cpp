@@ -5,6 +5,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "io/files/csv_field.hpp"
+
 namespace modebank::app {
 
 using nlohmann::json;
@@ -19,13 +21,15 @@ std::string predicted_csv(const Recording& recording, const std::vector<FreeRun>
   fmt::memory_buffer out;
   auto to = std::back_inserter(out);
   fmt::format_to(to, "run,time");
-  for (const Channel& s : recording.states) fmt::format_to(to, ",{0}_predicted,{0}_sd,{0}_lower,{0}_upper", s.name);
+  for (const Channel& s : recording.states)
+    for (const char* what : {"_predicted", "_sd", "_lower", "_upper"})
+      fmt::format_to(to, ",{}", csv_field(s.name + what));
   fmt::format_to(to, ",mode\n");
   for (std::size_t r = 0; r < predicted.size(); ++r) {
     const FreeRun& run = predicted[r];
     for (Index k = 0; k < run.mode.size(); ++k) {
       if (run.mode(k) < 0) continue;
-      fmt::format_to(to, "{},{}", recording.runs[r].run, recording.runs[r].time_s(k));
+      fmt::format_to(to, "{},{}", csv_field(recording.runs[r].run), recording.runs[r].time_s(k));
       for (Index i = 0; i < run.mean.rows(); ++i)
         fmt::format_to(to, ",{},{},{},{}", run.mean(i, k), run.deviation(i, k), run.lower(i, k), run.upper(i, k));
       fmt::format_to(to, ",{}\n", run.mode(k));

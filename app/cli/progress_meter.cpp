@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "app/text/duration_text.hpp"
+#include "ident/base/printable.hpp"
 #include "io/files/standard_error.hpp"
 
 namespace modebank::app {
@@ -48,7 +49,7 @@ void ProgressMeter::watch() {
 
 /// The cursor waits at the line's beginning, so that messages take its place.
 void ProgressMeter::tell(const WorkDone& work) {
-  const std::string text = progress_text(work);
+  const std::string text = printable_name(progress_text(work));
   say(terminal_ ? fmt::format("\r{}\x1b[K\r", text) : text + "\n");
   line_open_ = terminal_;
 }

@@ -44,7 +44,7 @@ void refuse_unnameable(const std::vector<FileSet>& sets) {
   for (const FileSet& set : sets)
     for (const std::filesystem::path& file : set.files) {
       const std::string name = file.filename().string();
-      if (printable_name(name) != name || boost::trim_copy(name) != name ||
+      if (name_holds_controls(name) || boost::trim_copy(name) != name ||
           name.find_first_of("#,*") != std::string::npos)
         throw ConfigurationError(
             fmt::format("{}: no configuration can name it: it holds a comma, a '#', a '*', a blank at an end or a "

@@ -4,7 +4,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "app/study/answers/csv_field.hpp"
+#include "ident/base/printable.hpp"
+#include "io/files/csv_field.hpp"
 
 namespace modebank::app {
 
@@ -25,10 +26,8 @@ Index likeliest(const FilterEstimate& estimate) {
   return mode;
 }
 
-/// Archives of other writers may hold names that are not UTF-8.
-std::string json_quoted(const std::string& name) {
-  return nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
+/// JSON is UTF-8; a name from an archive may hold other bytes.
+std::string json_quoted(const std::string& name) { return nlohmann::json(printable_name(name)).dump(); }
 
 }  // namespace
 

@@ -127,8 +127,8 @@ const Option& known_option(const std::string& where, const std::string& key) {
 void apply(Config& config, const std::string& where, const std::string& key, const std::string& value,
            bool has_comment) {
   const Option& option = known_option(where, key);
-  if (const std::string shown = printable(value); shown != value && !is_path(key))
-    throw ConfigurationError(fmt::format("{}: {} = '{}' holds control characters", where, key, shown));
+  if (holds_controls(value) && !is_path(key))
+    throw ConfigurationError(fmt::format("{}: {} = '{}' holds control characters", where, key, printable(value)));
   try {
     option.set(config, value);
   } catch (const std::invalid_argument& error) {

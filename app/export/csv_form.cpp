@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/export/forms.hpp"
-#include "app/export/names.hpp"
+#include "io/files/csv_field.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {

@@ -78,15 +78,6 @@ std::string quoted_scalar(std::string_view text) {
   return result;
 }
 
-std::string csv_field(std::string_view text) {
-  std::string field(text);
-  if (!field.empty() && std::string_view("=+-@\t\r").find(field.front()) != std::string_view::npos)
-    field.insert(0, 1, '\'');
-  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
-  boost::algorithm::replace_all(field, "\"", "\"\"");
-  return '"' + field + '"';
-}
-
 std::string file_stem(std::string_view text) {
   std::string stem;
   for (const char c : text) stem += is_letter(c) || is_digit(c) || c == '-' ? c : '_';

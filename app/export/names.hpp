@@ -20,9 +20,6 @@ std::string comment_text(std::string_view text);
 /// A double-quoted scalar of YAML, which is one of JSON, too, and a string of Python: ASCII.
 std::string quoted_scalar(std::string_view text);
 
-/// A field of CSV: quoted where it must be, and what a spreadsheet would take for a formula begins with an apostrophe.
-std::string csv_field(std::string_view text);
-
 /// A file's name without folder and extension: letters, digits, '_' and '-'.
 std::string file_stem(std::string_view text);
 

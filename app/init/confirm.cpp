@@ -10,6 +10,7 @@
 #include <ostream>
 
 #include "ident/base/nearest_name.hpp"
+#include "ident/base/printable.hpp"
 
 namespace modebank::app {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 std::string names_of(const std::vector<SurveyedFile>& files, const std::vector<ChannelPlace>& places) {
   std::vector<std::string> names;
   for (const ChannelPlace& place : places) names.push_back(channel_at(files, place).name);
-  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+  return names.empty() ? "none" : printable_name(fmt::format("{}", fmt::join(names, ", ")));
 }
 
 /// Where a channel is that moves; of several of the name the first.
@@ -50,8 +51,8 @@ std::optional<std::vector<ChannelPlace>> places_of(const std::vector<SurveyedFil
     boost::trim(name);
     const std::optional<ChannelPlace> place = find_moving(files, name);
     if (!place) {
-      questions << fmt::format("  no channel that moves is called {}{}\n", name,
-                               did_you_mean(name, moving_channels(files)));
+      questions << printable(
+          fmt::format("  no channel that moves is called {}{}\n", name, did_you_mean(name, moving_channels(files))));
       return std::nullopt;
     }
     places.push_back(*place);

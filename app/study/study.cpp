@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <tbb/global_control.h>
 
 #include "app/chain/provenance.hpp"
 #include "app/study/answers/answers_text.hpp"
@@ -34,9 +35,16 @@ bool has_plan(const std::filesystem::path& folder) {
   return std::filesystem::exists(plan_file(folder));
 }
 
+/// Runs are made by processes that are forked from this one, which must have no other thread by then: a lock that such
+/// a thread holds would stay locked in them. Reading compressed recordings would start some.
+StudyPlan planned_by_one_thread(const StudyCommand& command) {
+  const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+  return make_plan(command.config, make_provenance(config_hash(command.config), command.call.typed));
+}
+
 /// The plan of the configuration, written to the folder; one that is there must go on in it.
 StudyPlan settle_plan(const StudyCommand& command) {
-  StudyPlan plan = make_plan(command.config, make_provenance(config_hash(command.config), command.call.typed));
+  StudyPlan plan = planned_by_one_thread(command);
   command.store.create();
   const FileLocks locks(command.store.lock_file());
   const FileLocks::Hold alone = locks.lock(plan_lock);

@@ -16,7 +16,28 @@ const char* misleading(std::string_view text) {
   return nullptr;
 }
 
-std::string shown(std::string_view text, bool lines) {
+/// Bytes of the character of UTF-8 that a text begins with; 0: its first byte begins none.
+std::size_t character_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned first = byte(0);
+  const std::size_t bytes = first < 0x80   ? 1
+                            : first < 0xc2 ? 0
+                            : first < 0xe0 ? 2
+                            : first < 0xf0 ? 3
+                            : first < 0xf5 ? 4
+                                           : 0;
+  if (bytes == 0 || bytes > text.size()) return 0;
+  for (std::size_t i = 1; i < bytes; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  // Longer forms than needed, halves of pairs and what lies beyond Unicode.
+  const bool wrong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
+                     (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f);
+  return wrong ? 0 : bytes;
+}
+
+enum class Bytes { as_they_are, utf8_alone };
+
+std::string shown(std::string_view text, bool lines, Bytes bytes) {
   constexpr std::string_view digits = "0123456789abcdef";
   std::string result;
   const auto add = [&](unsigned char c) {
@@ -36,16 +57,25 @@ std::string shown(std::string_view text, bool lines) {
       add(static_cast<unsigned char>(text[++i]));
     else if (is_control(c) && !(lines && (c == '\n' || c == '\t')))
       add(static_cast<unsigned char>(c));
-    else
+    else if (bytes == Bytes::as_they_are)
       result += c;
+    else if (const std::size_t count = character_bytes(text.substr(i)); count > 0) {
+      result += text.substr(i, count);
+      i += count - 1;
+    } else
+      add(static_cast<unsigned char>(c));
   }
   return result;
 }
 
 }  // namespace
 
-std::string printable(std::string_view text) { return shown(text, true); }
+std::string printable(std::string_view text) { return shown(text, true, Bytes::utf8_alone); }
 
-std::string printable_name(std::string_view text) { return shown(text, false); }
+std::string printable_name(std::string_view text) { return shown(text, false, Bytes::utf8_alone); }
+
+bool holds_controls(std::string_view text) { return shown(text, true, Bytes::as_they_are) != text; }
+
+bool name_holds_controls(std::string_view text) { return shown(text, false, Bytes::as_they_are) != text; }
 
 }  // namespace modebank

@@ -158,8 +158,8 @@ template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const
 
 std::string broken_text(const std::vector<std::string>& texts, bool whole) {
   for (const std::string& text : texts)
-    if (const std::string shown = whole ? printable(text) : printable_name(text); shown != text)
-      return "holds the text \"" + shown + "\", which has control characters";
+    if (whole ? holds_controls(text) : name_holds_controls(text))
+      return "holds the text \"" + printable_name(text) + "\", which has control characters";
   return {};
 }
 

@@ -1,12 +1,12 @@
 #include "io/simulation/simulation_files.hpp"
 
-#include <csv.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
 #include <set>
 
+#include "io/files/csv_field.hpp"
 #include "io/files/replace_file.hpp"
 #include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
@@ -22,21 +22,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A name as one CSV field, quoted only when it has to be.
-std::string quoted(const std::string& name) {
-  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-  std::string field(2 * name.size() + 2, '\0');
-  field.resize(csv_write(field.data(), field.size(), name.data(), name.size()));
-  return field;
-}
-
 std::string csv_text(const SimulationTable& table) {
   std::string text;
-  for (std::size_t i = 0; i < table.names.size(); ++i) text += (i == 0 ? "" : ",") + quoted(table.names[i]);
+  for (std::size_t i = 0; i < table.names.size(); ++i) text += (i == 0 ? "" : ",") + quoted_field(table.names[i]);
   for (Eigen::Index k = 0; k < table.values.cols(); ++k) {
     for (Eigen::Index i = 0; i < table.values.rows(); ++i)
       fmt::format_to(std::back_inserter(text), "{}{}", i == 0 ? '\n' : ',', table.values(i, k));
-    for (const auto& column : table.texts) text += "," + quoted(column[static_cast<std::size_t>(k)]);
+    for (const auto& column : table.texts) text += "," + quoted_field(column[static_cast<std::size_t>(k)]);
   }
   return text + "\n";
 }

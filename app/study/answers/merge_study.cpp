@@ -11,7 +11,7 @@
 
 #include "app/config/option_text.hpp"
 #include "app/study/answers/answer_tables.hpp"
-#include "app/study/answers/csv_field.hpp"
+#include "io/files/csv_field.hpp"
 #include "io/files/look_twice.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"

@@ -16,8 +16,8 @@
 #include <memory>
 #include <thread>
 
-#include "app/study/answers/csv_field.hpp"
 #include "app/study/run/worker_pool.hpp"
+#include "io/files/csv_field.hpp"
 
 namespace modebank::app {
 namespace {

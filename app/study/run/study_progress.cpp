@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/text/duration_text.hpp"
+#include "ident/base/printable.hpp"
 #include "io/files/standard_error.hpp"
 
 namespace modebank::app {
@@ -28,9 +29,9 @@ void StudyProgress::note(const TrialRow& row, const TrialReport& report) {
   if (line_open_) say("\n");
   line_open_ = false;
   if (report.outcome == TrialOutcome::failed)
-    say(fmt::format("failed: {}: {}\n", describe_trial(varied_keys_, row), report.message));
+    say(printable(fmt::format("failed: {}: {}\n", describe_trial(varied_keys_, row), report.message)));
   else
-    say(report.message + "\n");
+    say(printable(report.message + "\n"));
 }
 
 void StudyProgress::tell(const TrialRow& row, const TrialReport& report, std::size_t finished, std::size_t all) {
@@ -39,7 +40,8 @@ void StudyProgress::tell(const TrialRow& row, const TrialReport& report, std::si
   const bool last = finished == all;
   if (!last && std::chrono::duration<double>(Clock::now() - told_).count() < interval_s) return;
   told_ = Clock::now();
-  say(terminal_ ? fmt::format("\r{}\x1b[K", line(finished, all)) : line(finished, all) + "\n");
+  const std::string text = printable_name(line(finished, all));
+  say(terminal_ ? fmt::format("\r{}\x1b[K", text) : text + "\n");
   line_open_ = terminal_;
 }
 
