@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "app/cli/commands.hpp"
+#include "app/config/configuration_output.hpp"
 #include "app/report/page/assets.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/replace_file.hpp"
@@ -108,6 +109,8 @@ int run_demo(const CommandLine& line) {
   run.force = true;  // the archive in its folder is the demo's own
   if (!line.force) refuse_foreign_files(demo);
   make_folder(demo.folder);
+  for (const fs::path& file : {demo.simulation(), demo.configuration()})
+    check_configuration_output("-o", file, {}, true);
   replace_file(demo.simulation(), {assets::simulate_ice_ini()});
   replace_file(demo.configuration(), {assets::demo_ini()});
   print_text(line, simulate.typed + "\n");

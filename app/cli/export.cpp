@@ -14,6 +14,7 @@
 #include "app/export/names.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
+#include "io/files/output_file.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
@@ -23,13 +24,12 @@ namespace {
 using nlohmann::json;
 using std::filesystem::path;
 
-/// Throws ConfigurationError where no such file can be written, or it is the archive.
-void check_output(const CommandLine& line, const path& output) {
-  check_writable(output);
-  std::error_code error;
-  if (std::filesystem::equivalent(output, line.files.front(), error) && !error)
-    throw ConfigurationError(fmt::format("-o {}: that is the archive", output.string()));
+void check_export(const CommandLine& line, const path& output, const FileForm& form) {
+  check_output({"-o", output, form}, {line.files.front()});
 }
+
+/// Of C, Python and YAML: the verdict on the bank opens each.
+FileForm bank_form() { return form_by_front("an export of a bank", " Verdict: ", 16); }
 
 /// How much earlier than recorded the inputs were taken that the bank was learned from.
 double input_lag_of(const Archive& archive, const Config& config) {
@@ -61,23 +61,24 @@ path output_of(const CommandLine& line, const std::string& ending) {
 
 /// A form that is one text: to standard output without -o. Like every form, what --json says of it.
 template <class Make>
-json write_text(const CommandLine& line, Make make) {
-  if (!line.output.empty()) check_output(line, line.output);
+json write_text(const CommandLine& line, const FileForm& form, Make make) {
+  if (!line.output.empty()) check_export(line, line.output, form);
   const std::string text = make();
   if (line.output.empty()) {
     print_text(line, text);
     return {{"text", text}};
   }
-  replace_file(line.output, {text});
+  replace_file(final_target(line.output), {text});
   return {{"written", {line.output}}};
 }
 
 json export_json(const CommandLine& line) {
-  return write_text(line, [&] { return to_json(read_bank(line)); });
+  return write_text(line, form_by_front("an export of a bank", "\"modebank export\"", 64),
+                    [&] { return to_json(read_bank(line)); });
 }
 
 json export_casadi(const CommandLine& line) {
-  return write_text(line, [&] { return to_casadi(read_bank(line)); });
+  return write_text(line, bank_form(), [&] { return to_casadi(read_bank(line)); });
 }
 
 json export_csv(const CommandLine& line) {
@@ -86,12 +87,14 @@ json export_csv(const CommandLine& line) {
     throw ConfigurationError(
         "export --to csv needs --table PATH, such as /evaluation/summary (modebank show ARCHIVE /)");
   judge_archive(line.files.front());
-  return write_text(line, [&] { return to_csv(inspect(line.files.front(), table), table); });
+  const std::string text = to_csv(inspect(line.files.front(), table), table);
+  const std::string header = text.substr(0, text.find('\n') + 1);
+  return write_text(line, form_by_front("a table with these columns", header, header.size()), [&] { return text; });
 }
 
 json export_mat(const CommandLine& line) {
   const path output = output_of(line, ".mat");
-  check_output(line, output);
+  check_export(line, output, form_by_front("an export of a bank", "by modebank export", 64));
   const ExportedBank bank = read_bank(line);
   write_mat(bank, output);
   print_text(line,
@@ -112,10 +115,10 @@ json export_c(const CommandLine& line) {
   if (stem != file_stem(stem))
     throw ConfigurationError(fmt::format("-o {}: of letters, digits, '_' and '-' alone", source.string()));
   const path header = path(source).replace_extension(".h");
-  for (const path& file : {source, header}) check_output(line, file);
+  for (const path& file : {source, header}) check_export(line, file, bank_form());
   const CFiles files = to_c(read_bank(line), stem, line.exported.single_precision);
-  replace_file(header, {files.header});
-  replace_file(source, {files.source});
+  replace_file(final_target(header), {files.header});
+  replace_file(final_target(source), {files.source});
   print_text(
       line,
       fmt::format("wrote {0} and {1}: #include \"{2}\", {3}_restart begins a {3}_filter, {3}_step takes each sample\n"
@@ -134,6 +137,7 @@ json export_ros2(const CommandLine& line) {
   std::filesystem::create_directories(folder, error);
   if (is_disk_failure(error)) throw DataError(fmt::format("cannot write {}: {}", folder.string(), error.message()));
   if (error) throw ConfigurationError(fmt::format("-o {}: {}", folder.string(), error.message()));
+  for (const auto& [name, text] : files) check_export(line, folder / name, bank_form());
   std::string names;
   json written = json::array();
   for (const auto& [name, text] : files) {

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "app/chain/stage_file.hpp"
 #include "ident/base/printable.hpp"
 #include "io/archive/archive.hpp"
 
@@ -53,11 +54,15 @@ KeptStages::KeptStages(const fs::path& output)
     before_[i] = std::signal(signals[i], say_what_is_kept);
     if (before_[i] == SIG_IGN) std::signal(signals[i], SIG_IGN);  // as nohup and a shell's background jobs ask for
   }
+  if (folder_is_link())
+    spdlog::warn("{} is a symbolic link, which may lead to files of others: no stage is kept there; remove the link",
+                 folder_.string());
 }
 
 void KeptStages::provide(Stage stage, const std::string& key, const StagePart& part) {
-  if (stage == Stage::data) return part.compute();  // what a run reads is not written again
-  const fs::path file = folder_ / fmt::format("{}-{}.h5", name_of(stage), key);
+  // What a run reads is not written again.
+  if (stage == Stage::data || folder_is_link()) return part.compute();
+  const fs::path file = folder_ / stage_file_name(stage, key);
   if (load(file, part)) return;
   const Stopwatch watch;
   part.compute();
@@ -88,11 +93,17 @@ void KeptStages::store(const fs::path& file, const StagePart& part) const {
   }
 }
 
+bool KeptStages::folder_is_link() const {
+  std::error_code error;
+  return fs::is_symlink(fs::symlink_status(folder_, error));
+}
+
 KeptStages::~KeptStages() {
   for (std::size_t i = 0; i < signals.size(); ++i) std::signal(signals[i], before_[i]);
+  if (folder_is_link()) return;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error))
-    if (entry.path().extension() == ".h5") fs::remove(entry.path(), error);
+    if (is_stage_file_name(entry.path().filename().string())) fs::remove(entry.path(), error);
   fs::remove(folder_, error);  // stays where it holds something else
 }
 

@@ -9,7 +9,8 @@
 namespace modebank::app {
 
 /// Keeps stages that took long in a folder beside the archive that is to come, so that a run that was stopped, by
-/// Ctrl-C or a power cut, goes on from there when it is repeated.
+/// Ctrl-C or a power cut, goes on from there when it is repeated. Reads, writes and removes files of stages
+/// (stage_file_name) alone, and nothing through a folder that is a symbolic link.
 class KeptStages : public StageSource {
  public:
   /// From now on Ctrl-C says what is kept.
@@ -24,6 +25,7 @@ class KeptStages : public StageSource {
  private:
   bool load(const std::filesystem::path& file, const StagePart& part) const;
   void store(const std::filesystem::path& file, const StagePart& part) const;
+  bool folder_is_link() const;
 
   std::filesystem::path folder_;
   std::array<void (*)(int), 2> before_{};  ///< what SIGINT and SIGTERM did

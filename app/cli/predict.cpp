@@ -15,6 +15,8 @@
 #include "app/config/config_file.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
+#include "io/files/output_file.hpp"
+#include "io/files/read_file.hpp"
 #include "io/files/replace_file.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
@@ -75,6 +77,15 @@ std::vector<FreeRun> predict_all(const std::string& archive, const Config& confi
   return free_runs(bank, recording.runs, options, how);
 }
 
+FileForm predictions_form() {
+  return {"a table of predictions", [](const std::filesystem::path& path) {
+            std::ifstream stream = open_file(path);
+            std::string header;
+            std::getline(stream, header);
+            return header.starts_with("run,time,") && header.find("_predicted,") != std::string::npos;
+          }};
+}
+
 Config predict_config(const CommandLine& line) {
   const std::string& archive = line.files.front();
   judge_archive(archive);
@@ -83,7 +94,10 @@ Config predict_config(const CommandLine& line) {
     throw ConfigurationError(
         "predict needs the number of measured samples that it starts from: --samples N (filter.simulate)");
   if (given(line, "data.inputs")) turn_to_new_files(line, config.data);
-  if (!line.output.empty()) check_writable(line.output);
+  if (line.output.empty()) return config;
+  std::vector<std::filesystem::path> sources{archive};
+  for (const DataFile& file : data_files(config.data)) sources.push_back(file.path);
+  check_output({"-o", line.output, predictions_form()}, sources);
   return config;
 }
 
@@ -101,7 +115,7 @@ int run_predict(const CommandLine& line) {
   if (predicted_samples(predicted) == 0) throw DataError("nothing could be predicted");
   nlohmann::json result;
   if (!line.output.empty()) {
-    replace_file(line.output, {predicted_csv(data.recording, predicted)});
+    replace_file(final_target(line.output), {predicted_csv(data.recording, predicted)});
     result["written"] = {line.output};
   } else if (line.json) {
     result["runs"] = predicted_json(data.recording, predicted);

@@ -10,6 +10,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/progress_meter.hpp"
 #include "app/cli/result.hpp"
+#include "app/config/configuration_output.hpp"
 #include "app/config/valid_config.hpp"
 #include "app/text/lag_counts_text.hpp"
 #include "app/text/terminal.hpp"
@@ -31,18 +32,11 @@ void require_usage(const CommandLine& line) {
     throw ConfigurationError("--findings tries no settings, so --apply has none to write");
 }
 
-/// A configuration must not take the place of what it was made from.
 void check_target(const CommandLine& line, const Config& config) {
   if (!line.apply) return;
-  if (const std::string obstacle = write_obstacle(line.output); !obstacle.empty())
-    throw ConfigurationError("-o: " + obstacle);
   std::vector<std::filesystem::path> sources{line.files.front()};
   for (const DataFile& file : data_files(config.data)) sources.push_back(file.path);
-  for (const std::filesystem::path& source : sources) {
-    std::error_code absent;
-    if (std::filesystem::equivalent(source, line.output, absent))
-      throw ConfigurationError(fmt::format("-o: {} is read by this check; name another file", line.output));
-  }
+  check_configuration_output("-o", line.output, sources, line.force);
 }
 
 class ScoringLog : public Listener {
@@ -93,7 +87,8 @@ Suggestions tell(const CommandLine& line, const Config& config, const DataCheck&
 }
 
 void apply(const CommandLine& line, const Config& config, const Suggestions& suggestions, nlohmann::json& page) {
-  replace_file(line.output, {applied_text(suggestions, config, line.files.front(), line.overrides, line.output)});
+  replace_file(final_target(line.output),
+               {applied_text(suggestions, config, line.files.front(), line.overrides, line.output)});
   print_text(
       line, fmt::format("{}: {}\n", line.output,
                         suggestions.any() ? "the configuration with what is suggested" : "the configuration as it is"));

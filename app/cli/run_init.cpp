@@ -10,6 +10,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
+#include "app/config/configuration_output.hpp"
 #include "app/config/option_table.hpp"
 #include "app/config/path_text.hpp"
 #include "app/init/confirm.hpp"
@@ -34,18 +35,12 @@ std::string default_name(const std::vector<FileSet>& sets) {
   return (stem.empty() ? "log" : stem) + ".ini";
 }
 
-void check_target(const std::string& file, bool force) {
-  if (!force && std::filesystem::exists(file))
-    throw ConfigurationError(fmt::format("{} exists: name another file (-o FILE), or overwrite it with --force", file));
-}
-
 /// Of data.inputs and data.states, which are lists of patterns: what would read as something else in them.
 void refuse_unnameable(const std::vector<FileSet>& sets) {
   for (const FileSet& set : sets)
     for (const std::filesystem::path& file : set.files) {
       const std::string name = file.filename().string();
-      if (name_holds_controls(name) || boost::trim_copy(name) != name ||
-          name.find_first_of("#,*") != std::string::npos)
+      if (name_holds_controls(name) || boost::trim_copy(name) != name || name.find_first_of("#,*") != std::string::npos)
         throw ConfigurationError(
             fmt::format("{}: no configuration can name it: it holds a comma, a '#', a '*', a blank at an end or a "
                         "control character; rename it",
@@ -62,11 +57,12 @@ bool is_asked(const CommandLine& line) {
 
 int run_init(const CommandLine& line) {
   if (line.files.empty()) throw ConfigurationError("init needs one or more logs: modebank init FILE...");
-  if (!line.output.empty()) check_target(line.output, line.force);
   const std::vector<FileSet> sets = file_sets(line.files);
   refuse_unnameable(sets);
   const std::string target = line.output.empty() ? default_name(sets) : line.output;
-  check_target(target, line.force);
+  std::vector<std::filesystem::path> sources;
+  for (const FileSet& set : sets) sources.insert(sources.end(), set.files.begin(), set.files.end());
+  check_configuration_output("-o", target, sources, line.force);
   std::vector<SurveyedFile> surveyed;
   for (const FileSet& set : sets) surveyed.push_back(survey_set(set));
   print_text(line, survey_text(sets, surveyed));
@@ -78,7 +74,7 @@ int run_init(const CommandLine& line) {
   for (ProposedKey& key : proposal.keys)
     if (takes_quotes("data." + key.key) && key.value != " ") key.value = path_text(key.value);
   const std::string text = configuration_text(proposal, line.typed);
-  replace_file(target, {text});
+  replace_file(final_target(target), {text});
   print_text(line, fmt::format("\n{}:\n{}\n", target, text));
   const std::string archive = std::filesystem::path(target).stem().string() + ".h5";
   print_text(line, fmt::format("next: {0} run {1}\nthen: {0} report {2}\n", line.program, shell_quoted(target),

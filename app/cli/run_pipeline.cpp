@@ -22,6 +22,7 @@
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
+#include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -106,8 +107,8 @@ Result identify_many(const Config& config, const Chain& chain, const Archive& da
   const Stopwatch watch;
   WindowCounts counts;
   const WindowInputs& inputs = chain.inputs().windows;
-  const WindowFits common =
-      identify_into_file(config.archive.output, data, inputs, [&](const WindowFits& fits) { counts.add(fits); });
+  const WindowFits common = identify_into_file(final_target(config.archive.output), data, inputs,
+                                               [&](const WindowFits& fits) { counts.add(fits); });
   log.progress(fmt::format("windows: {} fitted and archived in {:.2f} s", counts.total(), watch.seconds()));
   log.warn_of_windows(common, counts);
   const std::vector<std::string> labels =

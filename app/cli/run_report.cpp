@@ -9,6 +9,7 @@
 #include "app/report/page/run_page.hpp"
 #include "app/report/page/write_page.hpp"
 #include "io/archive/archive.hpp"
+#include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -60,7 +61,7 @@ int run_report(const CommandLine& line) {
         "[ARCHIVE...] [-o page.html]",
         report::most_compared));
   const ReportConfig options = stored_config("", line.overrides).report;
-  const std::filesystem::path page = page_if_asked(line, options);
+  const std::filesystem::path page = final_target(page_if_asked(line, options));
   report::Written written{[&](const std::string& text) { print_text(line, text); }, {}};
   try {
     report_files(line, page, options, written);

@@ -22,7 +22,7 @@
 #include "ident/base/utf8.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
-#include "io/files/replace_file.hpp"
+#include "io/archive/filter_checkpoint.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -44,10 +44,9 @@ class Tracker {
     identity_ = fmt::format("{} {} {} {} {} {}", archive_digest(archive), name_of(config.track.filter),
                             name_of(options.variant), name_of(options.noise), options.parameter_noise,
                             name_of(options.time_steps));
+    // The checkpoint that the filter goes on from may be replaced by the next.
     if (!config.track.checkpoint.empty())
-      if (const std::string obstacle = write_obstacle(config.track.checkpoint); !obstacle.empty())
-        throw ConfigurationError(
-            fmt::format("track.checkpoint: cannot write {}: {}", config.track.checkpoint, obstacle));
+      check_output({"track.checkpoint", config.track.checkpoint, checkpoint_form()}, {archive});
     if (config.track.resume.empty()) return;
     const Resumed resumed = filter_.resume(config.track.resume, identity_);
     if (std::isnan(resumed.time_s)) return;

@@ -157,7 +157,7 @@ void fill_mat(const ExportedBank& exported, const std::filesystem::path& path) {
 void write_mat(const ExportedBank& exported, const std::filesystem::path& path) {
   const MemoryFile memory;
   fill_mat(exported, memory.path());
-  replace_file(path, {memory.content()});
+  replace_file(final_target(path), {memory.content()});
 }
 
 }  // namespace modebank::app

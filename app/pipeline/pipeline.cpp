@@ -5,6 +5,8 @@
 
 #include "app/chain/provenance.hpp"
 #include "app/config/config_file.hpp"
+#include "io/archive/archive_form.hpp"
+#include "io/files/replace_file.hpp"
 #include "io/import/import.hpp"
 #include "mixture/criteria.hpp"
 #include "modebank/base/error.hpp"
@@ -26,19 +28,17 @@ void check_usage(const std::string& command, const Config& config) {
       throw ConfigurationError(fmt::format("{}: no such file", file));
 }
 
-/// An archive must not take the place of what it was made from.
-void check_output(const Config& config, const std::filesystem::path& configuration, const MemoryTables* memory) {
-  if (!std::filesystem::exists(config.archive.output)) return;
-  const auto require_other = [&](const std::filesystem::path& file) {
-    std::error_code absent;
-    if (std::filesystem::equivalent(file, config.archive.output, absent))
-      throw ConfigurationError(fmt::format("archive.output: {} is read by this run; name another file", file.string()));
-  };
-  if (!configuration.empty()) require_other(configuration);
-  for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture_start})
-    if (!file.empty()) require_other(file);
-  if (!config.archive.input.empty() || memory != nullptr) return;
-  for (const DataFile& file : data_files(config.data)) require_other(file.path);
+/// Files that the command reads.
+std::vector<std::filesystem::path> sources_of(const Config& config, const std::filesystem::path& configuration,
+                                              const MemoryTables* memory) {
+  std::vector<std::filesystem::path> sources;
+  for (const std::filesystem::path& file :
+       {configuration, std::filesystem::path(config.archive.input), std::filesystem::path(config.archive.bank),
+        std::filesystem::path(config.mixture_start)})
+    if (!file.empty()) sources.push_back(file);
+  if (config.archive.input.empty() && memory == nullptr)
+    for (const DataFile& file : data_files(config.data)) sources.push_back(file.path);
+  return sources;
 }
 
 }  // namespace
@@ -66,8 +66,9 @@ void check_request(const std::string& command, const Config& config, const std::
                    const MemoryTables* memory) {
   check_usage(command, config);
   validate(config);
-  check_writable(config.archive.output);
-  check_output(config, file, memory);
+  const bool replaces = std::filesystem::exists(config.archive.output);
+  check_output({"archive.output", config.archive.output, archive_form()},
+               replaces ? sources_of(config, file, memory) : std::vector<std::filesystem::path>());
 }
 
 const Archive& run_and_write(Chain& chain, const ChainOptions& options, Stage last, const std::string& banks,
@@ -81,12 +82,12 @@ const Archive& run_and_write(Chain& chain, const ChainOptions& options, Stage la
     const Archive* archive = nullptr;
     const auto make_streamed = [&](const EvaluationSink& sink) -> const Archive& { return *(archive = &make(&sink)); };
     if (streams_evaluations(recording)) {
-      stream_archive(output, recording, make_streamed);
+      stream_archive(final_target(output), recording, make_streamed);
       return *archive;
     }
   }
   const Archive& archive = make(nullptr);
-  write_archive(output, archive);
+  write_archive(final_target(output), archive);
   return archive;
 }
 

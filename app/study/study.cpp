@@ -14,6 +14,8 @@
 #include "app/study/run/run_trials.hpp"
 #include "app/study/run/study_progress.hpp"
 #include "app/text/duration_text.hpp"
+#include "io/archive/archive_form.hpp"
+#include "io/files/output_file.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
@@ -35,6 +37,35 @@ bool has_plan(const std::filesystem::path& folder) {
   return std::filesystem::exists(plan_file(folder));
 }
 
+/// Files of the study whose names others' files may have, each with what its content begins with. Links are not among
+/// them: the study's own file takes their place.
+std::vector<OutputFile> files_in_place(const std::filesystem::path& folder) {
+  constexpr std::size_t line_bytes = 4096;
+  const auto at = [&](const char* name, FileForm form) {
+    return OutputFile{"study.output", folder / name, std::move(form)};
+  };
+  std::vector<OutputFile> files{
+      at("study.csv", form_by_front("a table of a study", "repeat,seed,status,message,", line_bytes)),
+      at("log.csv", form_by_front("a log of a study", "Z,", sizeof "2026-01-01T00:00:00Z")),
+      at("study.html", form_by_front("a page", "<!DOCTYPE html>", line_bytes)),
+      at("study.best.ini", form_by_front("a configuration of a study", "# Best of a study by ", line_bytes)),
+      at("study.h5", {"a table of a study", is_table_of_runs})};
+  std::erase_if(files, [](const OutputFile& file) { return std::filesystem::is_symlink(file.path); });
+  return files;
+}
+
+/// Before a study's first file is written in a folder: others' files there stay, and data are not written over.
+void check_folder(const StudyCommand& command, const StudyPlan& plan) {
+  std::vector<std::filesystem::path> sources{command.call.config_file};
+  for (const InputFile& file : plan.provenance.inputs) sources.emplace_back(file.path);
+  if (!std::filesystem::is_directory(command.store.folder())) return;
+  const bool is_study = has_plan(command.store.folder());
+  for (OutputFile file : files_in_place(command.store.folder())) {
+    if (is_study) file.form.is_one = [](const std::filesystem::path&) { return true; };
+    check_output(file, sources);
+  }
+}
+
 /// Runs are made by processes that are forked from this one, which must have no other thread by then: a lock that such
 /// a thread holds would stay locked in them. Reading compressed recordings would start some.
 StudyPlan planned_by_one_thread(const StudyCommand& command) {
@@ -45,6 +76,7 @@ StudyPlan planned_by_one_thread(const StudyCommand& command) {
 /// The plan of the configuration, written to the folder; one that is there must go on in it.
 StudyPlan settle_plan(const StudyCommand& command) {
   StudyPlan plan = planned_by_one_thread(command);
+  check_folder(command, plan);
   command.store.create();
   const FileLocks locks(command.store.lock_file());
   const FileLocks::Hold alone = locks.lock(plan_lock);

@@ -77,6 +77,15 @@ DriftState drift_of(const json& stored) {
 
 }  // namespace
 
+FileForm checkpoint_form() {
+  return {"a checkpoint of track", [](const std::filesystem::path& path) {
+            std::ifstream file(path);
+            const json stored = json::parse(file, nullptr, false);
+            return stored.is_object() && stored.value("format", json()).is_string() &&
+                   stored["format"].get<std::string>().starts_with("modebank checkpoint ");
+          }};
+}
+
 void save_checkpoint(const std::filesystem::path& path, const std::string& identity, const FilterSnapshot& snapshot) {
   json stored{{"format", checkpoint_format},
               {"identity", identity},
@@ -94,7 +103,7 @@ void save_checkpoint(const std::filesystem::path& path, const std::string& ident
   if (const DriftState& drift = snapshot.drift; drift.theta.size() > 0)
     stored["drift"] = {{"theta", to_json(drift.theta)}, {"P", to_json(drift.P)}, {"cross", to_json(drift.cross)}};
   stored["sha256"] = digest_of(stored);
-  replace_file(path, {stored.dump(1), "\n"});
+  replace_file(final_target(path), {stored.dump(1), "\n"});
 }
 
 FilterSnapshot load_checkpoint(const std::filesystem::path& path, const std::string& identity) {

@@ -4,8 +4,12 @@
 #include <string>
 
 #include "filter/step/bank_filter.hpp"
+#include "io/files/output_file.hpp"
 
 namespace modebank {
+
+/// A checkpoint of any version, as check_output recognises one.
+FileForm checkpoint_form();
 
 /// Writes what a filter remembers as JSON, complete or not at all, every number as it is. `identity`: what bank and
 /// settings it is a filter of. Throws DataError when the file cannot be written.

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "io/files/read_file.hpp"
 #include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
 
@@ -110,13 +111,15 @@ bool is_disk_failure(const std::error_code& error) {
 
 namespace {
 
-/// What stands in the way before anything is made; empty when nothing does.
+/// What stands in the way before anything is made; empty when nothing does. A symbolic link does not: the file takes
+/// its place.
 std::string seen_obstacle(const fs::path& path) {
   std::error_code error;
   if (!path.has_filename()) return "'" + path.string() + "' names no file";
   const fs::path folder = folder_of(path);
   if (!fs::is_directory(folder, error)) return "the folder '" + folder.string() + "' does not exist";
-  const fs::file_status status = fs::status(path, error);
+  const fs::file_status status = fs::symlink_status(path, error);
+  if (fs::is_symlink(status)) return {};
   if (fs::is_directory(status)) return "'" + path.string() + "' is a folder";
   if (fs::exists(status) && !fs::is_regular_file(status)) return "'" + path.string() + "' is not a regular file";
   return {};
@@ -153,9 +156,8 @@ TemporaryFile make_temporary(const fs::path& path) {
 
 std::string write_obstacle(const fs::path& path) {
   try {
-    const fs::path target = final_target(path);
-    if (std::string obstacle = seen_obstacle(target); !obstacle.empty()) return obstacle;
-    make_temporary(target);  // and gone again
+    if (std::string obstacle = seen_obstacle(path); !obstacle.empty()) return obstacle;
+    make_temporary(path);  // and gone again
   } catch (const DiskFailure& failure) {
     throw DataError("cannot write " + path.string() + ": " + failure.what());
   } catch (const DataError& obstacle) {
@@ -169,12 +171,11 @@ namespace {
 /// `named`: what messages call it.
 void replace(const fs::path& path, const fs::path& named, const std::function<void(const fs::path&)>& fill) {
   try {
-    const fs::path target = final_target(path);
-    if (const std::string obstacle = seen_obstacle(target); !obstacle.empty()) throw DataError(obstacle);
-    TemporaryFile temporary = make_temporary(target);
+    if (const std::string obstacle = seen_obstacle(path); !obstacle.empty()) throw DataError(obstacle);
+    TemporaryFile temporary = make_temporary(path);
     fill(temporary.path());
-    temporary.become(target);
-    Descriptor(folder_of(target), O_RDONLY | O_DIRECTORY).sync();
+    temporary.become(path);
+    Descriptor(folder_of(path), O_RDONLY | O_DIRECTORY).sync();
   } catch (const DataError& error) {
     throw DataError("cannot write " + named.string() + ": " + error.what());
   } catch (const fs::filesystem_error& error) {
@@ -196,6 +197,23 @@ void replace_file(const fs::path& path, std::initializer_list<std::string_view> 
 
 void write_staged(const fs::path& staged, const fs::path& place, std::string_view content) {
   replace(staged, place, [&](const fs::path& temporary) { append(temporary, content); });
+}
+
+void remove_link(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_symlink(fs::symlink_status(path, error))) fs::remove(path, error);
+}
+
+void append_to_file(const fs::path& path, std::string_view text) {
+  remove_link(path);
+  std::error_code error;
+  if (fs::hard_link_count(path, error) > 1 && !error) replace_file(path, {read_file(path)});
+  Descriptor(path, O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW).write(text);
+}
+
+void make_own_folder(const fs::path& path) {
+  remove_link(path);
+  fs::create_directories(path);
 }
 
 }  // namespace modebank

@@ -4,18 +4,15 @@
 #include <fmt/ranges.h>
 
 #include "app/report/figures/gnuplot.hpp"
+#include "io/files/output_file.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app::report {
 
 void check_page_path(const std::filesystem::path& path, const std::vector<std::filesystem::path>& sources) {
-  if (const std::string obstacle = write_obstacle(path); !obstacle.empty()) throw ConfigurationError("-o: " + obstacle);
-  for (const std::filesystem::path& source : sources) {
-    std::error_code none;
-    if (std::filesystem::equivalent(path, source, none))
-      throw ConfigurationError(fmt::format("-o: {} is the archive itself", path.string()));
-  }
+  constexpr std::size_t front_bytes = 100;
+  check_output({"-o", path, form_by_front("a page", "<!DOCTYPE html>", front_bytes)}, sources);
 }
 
 void write_page(const std::filesystem::path& path, const Page& page, Written& written) {

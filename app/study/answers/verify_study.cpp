@@ -11,6 +11,7 @@
 #include "app/study/run/trial_store.hpp"
 #include "app/study/space/study_plan.hpp"
 #include "io/archive/study_file.hpp"
+#include "io/files/sha256.hpp"
 #include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
 
@@ -98,7 +99,8 @@ void check_others(const TrialStore& store, const std::optional<StudyPlan>& plan,
     if (const auto temporary = parse_temporary_name(file.filename().string());
         temporary && state_of(temporary->owner) == ProcessState::gone)
       result.problems.push_back({file, "was left by a process that was killed", "", true});
-    if (file.extension() != ".h5" || planned.count(file.filename().string())) continue;
+    const bool is_trial = file.extension() == ".h5" && is_sha256(file.stem().string());
+    if (!is_trial || planned.count(file.filename().string())) continue;
     for (const std::string& problem : store.problems(file.stem().string()))
       result.problems.push_back({file, problem, "", true});
   }

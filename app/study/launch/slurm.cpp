@@ -12,6 +12,7 @@
 #include "ident/base/characters.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/replace_file.hpp"
+#include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -79,7 +80,7 @@ bool has_jobs_override(const SlurmRequest& request) {
 
 /// Runs sbatch and returns the job's id.
 std::string sbatch(const SlurmRequest& request, const std::string& command) {
-  const fs::path errors = slurm_folder(request.folder) / "sbatch.err";
+  const fs::path errors = temporary_path(slurm_folder(request.folder) / "sbatch.err");
   const ShellResult result = run_shell(fmt::format("{} 2>{}", command, shell_word(errors.string())));
   const std::string reason = fs::exists(errors) ? boost::trim_copy(read_file(errors)) : "";
   std::error_code ignored;
@@ -138,7 +139,7 @@ void check_request(const SlurmRequest& request) {
 
 SlurmSubmission submit_to_slurm(const SlurmRequest& request) {
   check_request(request);
-  fs::create_directories(slurm_folder(request.folder));
+  make_own_folder(slurm_folder(request.folder));
   replace_file(run_script_path(request), {run_script(request)});
   replace_file(merge_script_path(request), {merge_script(request)});
   SlurmSubmission submission;

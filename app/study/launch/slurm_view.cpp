@@ -10,6 +10,7 @@
 #include "app/study/launch/slurm.hpp"
 #include "app/study/launch/slurm_jobs.hpp"
 #include "io/files/read_file.hpp"
+#include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -75,9 +76,11 @@ std::filesystem::path slurm_folder(const std::filesystem::path& study) { return 
 void remember_job(const std::filesystem::path& study, const SlurmJob& job) {
   const std::filesystem::path file = slurm_folder(study) / "jobs";
   refuse_special_file(file);
-  std::ofstream stream(file, std::ios::app);
-  stream << job.role << ' ' << job.id << '\n' << std::flush;
-  if (!stream) throw DataError(fmt::format("{}: cannot note Slurm job {}", file.string(), job.id));
+  try {
+    append_to_file(file, job.role + ' ' + job.id + '\n');
+  } catch (const std::exception& error) {
+    throw DataError(fmt::format("{}: cannot note Slurm job {}: {}", file.string(), job.id, error.what()));
+  }
 }
 
 std::vector<SlurmJob> remembered_jobs(const std::filesystem::path& study) {

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "io/files/read_file.hpp"
+#include "io/files/replace_file.hpp"
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 
@@ -35,7 +36,8 @@ struct flock record(short type, long long place) {
 
 FileLocks::FileLocks(const std::filesystem::path& path) : path_(path) {
   refuse_special_file(path);
-  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  remove_link(path);
+  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (descriptor_ < 0)
     throw DataError(fmt::format("cannot open {}: {}", path.string(), std::generic_category().message(errno)));
 }

@@ -12,12 +12,12 @@
 #include <chrono>
 #include <ctime>
 #include <deque>
-#include <fstream>
 #include <memory>
 #include <thread>
 
 #include "app/study/run/worker_pool.hpp"
 #include "io/files/csv_field.hpp"
+#include "io/files/replace_file.hpp"
 
 namespace modebank::app {
 namespace {
@@ -81,12 +81,15 @@ void log_trial(const TrialStore& store, const FileLocks& locks, const TrialRow& 
   char host[256] = "";
   ::gethostname(host, sizeof host - 1);
   const FileLocks::Hold alone = locks.lock("log");  // appending from two machines is no one step everywhere
-  std::ofstream file(store.log(), std::ios::app);
   const std::string line =
       fmt::format("{:%Y-%m-%dT%H:%M:%SZ},{},{},{},{},{:.6g},{:.6g},{}\n", fmt::gmtime(std::time(nullptr)),
                   csv_field(host), ::getpid(), row.key, words[static_cast<std::size_t>(report.outcome)], report.seconds,
                   fmt::join(report.stage_seconds, ","), csv_field(report.message));
-  file.write(line.data(), static_cast<std::streamsize>(line.size()));
+  try {
+    append_to_file(store.log(), line);
+  } catch (const std::exception& error) {
+    spdlog::debug("{}: {}", store.log().string(), error.what());
+  }
 }
 
 /// The threads of one trial, when several run at a time.

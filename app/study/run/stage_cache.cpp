@@ -25,15 +25,14 @@ FileLocks::Hold StageCache::wait_for(const std::string& stem) const {
   return alone;
 }
 
-void StageCache::provide(const std::string& name, const std::string& key, const std::function<void(Archive&&)>& take,
+void StageCache::provide(Stage stage, const std::string& key, const std::function<void(Archive&&)>& take,
                          const std::function<bool()>& compute, const std::function<Archive()>& part) const {
-  const std::string stem = name + "-" + key;
-  const fs::path file = folder_ / (stem + ".h5");
+  const fs::path file = folder_ / stage_file_name(stage, key);
   if (limit_bytes_ <= 0.0) {
     compute();
     return;
   }
-  const FileLocks::Hold alone = wait_for(stem);
+  const FileLocks::Hold alone = wait_for(file.stem().string());
   if (load(file, take)) return;
   if (compute()) store(file, part());
 }
@@ -43,7 +42,8 @@ bool StageCache::load(const fs::path& file, const std::function<void(Archive&&)>
   if (!fs::exists(file, error)) return false;
   try {
     take(read_archive(file));
-    ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0);  // by the file system's clock, as the others' times are
+    // By the file system's clock, as the others' times are.
+    ::utimensat(AT_FDCWD, file.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);
     return true;
   } catch (const std::exception& damage) {  // also one that another process has just removed to make room
     spdlog::warn("{}: computed again", damage.what());
@@ -64,9 +64,10 @@ void StageCache::make_room() const {
   std::vector<std::tuple<fs::file_time_type, double, fs::path>> files;
   double total = 0.0;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+    if (!is_stage_file_name(entry.path().filename().string())) continue;
     std::error_code error;
     const double bytes = static_cast<double>(entry.file_size(error));
-    if (error || entry.path().extension() != ".h5") continue;
+    if (error) continue;
     files.emplace_back(entry.last_write_time(error), bytes, entry.path());
     total += bytes;
   }

@@ -4,13 +4,14 @@
 #include <functional>
 #include <string>
 
+#include "app/chain/stage_file.hpp"
 #include "app/study/run/file_locks.hpp"
 #include "io/archive/archive.hpp"
 
 namespace modebank::app {
 
-/// Stages that trials in different processes share, one archive of that stage alone per file, in a folder of bounded
-/// size: the files used longest ago go first.
+/// Stages that trials in different processes share, one archive of that stage alone per file (stage_file_name), in a
+/// folder of bounded size: the files used longest ago go first. Other files there do not count and stay.
 class StageCache {
  public:
   /// `tell_waiting` hears when this process begins (true) and ceases to wait for a stage that another one computes.
@@ -19,7 +20,7 @@ class StageCache {
 
   /// The stage of this name and key: from a file, or by `compute`, which is called by one process at a
   /// time. It says whether its result is worth a file, and is then asked for it by `part`.
-  void provide(const std::string& name, const std::string& key, const std::function<void(Archive&&)>& take,
+  void provide(Stage stage, const std::string& key, const std::function<void(Archive&&)>& take,
                const std::function<bool()>& compute, const std::function<Archive()>& part) const;
 
  private:

@@ -15,7 +15,7 @@ void CachedStages::provide(Stage stage, const std::string& key, const StagePart&
     part.compute();
     return stage == Stage::windows || watch.seconds() > worth_a_file_s;
   };
-  cache_->provide(std::string(name_of(stage)), key, part.take, compute, part.copy);
+  cache_->provide(stage, key, part.take, compute, part.copy);
 }
 
 const Archive& TrialRunner::run(const Config& config, const std::string& typed) {

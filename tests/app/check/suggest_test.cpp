@@ -153,8 +153,8 @@ TEST_F(Suggest, UsageErrorsWriteNothing) {
   const std::string before = content(config());
   EXPECT_THAT(refusal({"--apply"}), HasSubstr("--apply: name the configuration file"));
   EXPECT_THAT(refusal({"-o", file("x.ini").string()}), HasSubstr("with --apply only"));
-  EXPECT_THAT(refusal({"--apply", "-o", config()}), HasSubstr("is read by this check"));
-  EXPECT_THAT(refusal({"--apply", "-o", file("run_00.csv").string()}), HasSubstr("is read by this check"));
+  EXPECT_THAT(refusal({"--apply", "-o", config()}), HasSubstr("is read by this command"));
+  EXPECT_THAT(refusal({"--apply", "-o", file("run_00.csv").string()}), HasSubstr("is read by this command"));
   EXPECT_THAT(refusal({"--apply", "-o", file("nowhere/x.ini").string()}), HasSubstr("-o: "));
   EXPECT_EQ(content(config()), before);
   EXPECT_FALSE(std::filesystem::exists(file("x.ini")));

@@ -7,7 +7,6 @@
 
 #include "app/config/config_file.hpp"
 #include "app/report/figures/figure.hpp"
-#include "app/study/answers/csv_field.hpp"
 #include "app/study/space/study_plan.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/terminal.hpp"
@@ -15,6 +14,7 @@
 #include "ident/base/printable.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/study_file.hpp"
+#include "io/files/csv_field.hpp"
 #include "io/files/read_file.hpp"
 #include "tests/app/cli_fixture.hpp"
 #include "tests/io/archive/archive_patch.hpp"
@@ -130,6 +130,24 @@ TEST_F(Robustness, D15ControlCharactersDoNotReachTheTerminal) {
   }
 }
 
+TEST_F(Robustness, D15BytesThatAreNoUtf8AreShownAsNumbers) {
+  EXPECT_EQ(printable("gr\xf6\xdf"
+                      "e"),
+            "gr\\xf6\\xdfe");
+  EXPECT_EQ(printable("gr\xc3\xb6\xc3\x9f"
+                      "e \xe2\x82\xac \xf0\x9f\xa4\x96"),
+            "gr\xc3\xb6\xc3\x9f"
+            "e \xe2\x82\xac \xf0\x9f\xa4\x96");
+  // Cut off, longer than needed, half of a pair, beyond Unicode.
+  EXPECT_EQ(printable("\xe2\x82"), "\\xe2\\x82");
+  EXPECT_EQ(printable("\xc0\xaf"), "\\xc0\\xaf");
+  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");
+  EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");
+  EXPECT_EQ(printable_name("a\xffz\n"), "a\\xffz\\x0a");
+  EXPECT_FALSE(holds_controls("gr\xf6\n"));
+  EXPECT_TRUE(name_holds_controls("gr\xf6\n"));
+}
+
 TEST_F(Robustness, D16TheWidthIsThatOfATerminal) {
   const char* const before = std::getenv("COLUMNS");
   const std::string kept = before ? before : "";
@@ -153,10 +171,13 @@ TEST_F(Robustness, D16SmallErrorsAreNotPrintedAsZero) {
 }
 
 TEST_F(Robustness, D16TablesHoldNoFormulas) {
-  for (const std::string formula : {"=cmd|' /C calc'!A0", "@SUM(1)", "+x", "-x"})
-    EXPECT_EQ(app::csv_field(formula).substr(0, 1), "'") << formula;
-  for (const std::string plain : {"-1", "+1.5e-3", "wz", "", "-inf"}) EXPECT_EQ(app::csv_field(plain), plain);
-  EXPECT_EQ(app::csv_field("=1,2"), "\"'=1,2\"");
+  for (const std::string formula : {"=cmd|' /C calc'!A0", "@SUM(1)", "+x", "-x", "\tx", "=1+2"})
+    EXPECT_EQ(csv_field(formula), "'" + formula);
+  EXPECT_EQ(csv_field("\rx"), "\"'\rx\"");
+  for (const std::string plain : {"-1", "+1.5e-3", "wz", "", "-inf"}) EXPECT_EQ(csv_field(plain), plain);
+  EXPECT_EQ(csv_field("=1,2"), "\"'=1,2\"");
+  EXPECT_EQ(csv_field("a,\"b\""), "\"a,\"\"b\"\"\"");
+  EXPECT_EQ(quoted_field("-x"), "-x") << "read back by its name";
 }
 
 TEST_F(Robustness, P8AnArchiveOfOtherDataIsNotReplaced) {
@@ -173,8 +194,98 @@ TEST_F(Robustness, P8AnArchiveOfOtherDataIsNotReplaced) {
   EXPECT_EQ(go({"--force"}).status, 0);
   EXPECT_NE(load_data_hash(archive()), hash);
   write("out.h5", "a text of mine");
-  EXPECT_THAT(go({}).err, HasSubstr("is there and not replaced"));
-  EXPECT_EQ(read_file(archive()), "a text of mine");
+  for (const std::vector<std::string>& options : {std::vector<std::string>(), {"--force"}}) {
+    EXPECT_THAT(go(options).err, HasSubstr("is there and not replaced, for it is not an archive"));
+    EXPECT_EQ(read_file(archive()), "a text of mine");
+  }
+  write("out.h5", before.substr(0, before.size() / 2));
+  EXPECT_EQ(go({"--force"}).status, 0) << "a damaged archive is one";
+}
+
+/// Each command, over a file that it reads and over one of another form.
+TEST_F(Robustness, P8NoOutputTakesThePlaceOfWhatIsReadOrOfAnotherForm) {
+  ASSERT_EQ(run({"--mixture.components", "1"}).status, 0);
+  fs::create_directories(file("pages"));
+  for (const char* name : {"log.csv", "pages/log.csv"}) fs::copy_file(file("run_01.csv"), file(name));
+  const std::string log = file("log.csv").string(), other = file("pages/log.csv").string(),
+                    page = file("page.html").string();
+  ASSERT_EQ(modebank({"report", archive(), "-o", page}).status, 0);
+  const auto refuses = [&](std::vector<std::string> words, const std::string& output, const char* why) {
+    const std::string before = read_file(output);
+    words.push_back(output);
+    const ProgramResult result = modebank(words);
+    EXPECT_EQ(result.status, 2) << words.front() << " " << output << result.err;
+    EXPECT_THAT(result.err, AllOf(HasSubstr(output), HasSubstr(why), HasSubstr("name another file"))) << words.front();
+    EXPECT_EQ(read_file(output), before) << words.front();
+  };
+  const char *const read = "is read by this command", *const form = "is there and not replaced, for it is not";
+  const std::vector<std::string> predict{"predict", archive(), "--data.inputs", log, "--samples", "5", "-o"};
+  refuses(predict, log, read);
+  refuses(predict, archive(), read);
+  for (const std::string& mine : {other, config(), page}) refuses(predict, mine, form);
+  const std::vector<std::string> track{"track", archive(), "--track.checkpoint"};
+  refuses(track, archive(), read);
+  for (const std::string& mine : {log, config(), page}) refuses(track, mine, form);
+  const std::vector<std::string> init{"init", log, "--yes", "--force", "-o"};
+  refuses(init, log, read);
+  for (const std::string& mine : {other, archive(), page}) refuses(init, mine, form);
+  const std::vector<std::string> check{"check", config(), "--apply", "--force", "-o"};
+  for (const std::string& mine : {config(), file("run_00.csv").string()}) refuses(check, mine, read);
+  for (const std::string& mine : {log, archive(), page}) refuses(check, mine, form);
+  refuses({"report", archive(), "-o"}, archive(), read);
+  for (const std::string& mine : {log, config()}) refuses({"report", archive(), "-o"}, mine, form);
+  for (const char* to : {"json", "casadi", "mat"}) {
+    refuses({"export", archive(), "--force", "--to", to, "-o"}, archive(), read);
+    for (const std::string& mine : {log, config(), page})
+      refuses({"export", archive(), "--force", "--to", to, "-o"}, mine, form);
+  }
+  const std::vector<std::string> table{"export", archive(), "--to", "csv", "--table", "/evaluation/summary", "-o"};
+  for (const std::string& mine : {log, config(), page}) refuses(table, mine, form);
+  for (const char* command : {"run", "identify"}) {
+    refuses({command, config(), "--force", "--archive.output"}, file("run_01.csv").string(), read);
+    refuses({command, config(), "--force", "--archive.output"}, config(), read);
+    for (const std::string& mine : {log, page}) refuses({command, config(), "--force", "--archive.output"}, mine, form);
+  }
+}
+
+TEST_F(Robustness, P8AnOutputIsReplacedByItsLike) {
+  ASSERT_EQ(run({"--mixture.components", "1"}).status, 0);
+  fs::copy_file(file("run_01.csv"), file("log.csv"));
+  const std::string log = file("log.csv").string();
+  const std::vector<std::vector<std::string>> commands{
+      {"predict", archive(), "--data.inputs", log, "--samples", "5", "-o", file("predicted.csv").string()},
+      {"report", archive(), "-o", file("page.html").string()},
+      {"export", archive(), "--force", "--to", "json", "-o", file("a.json").string()},
+      {"export", archive(), "--force", "--to", "casadi", "-o", file("a.py").string()},
+      {"export", archive(), "--force", "--to", "mat", "-o", file("a.mat").string()},
+      {"export", archive(), "--force", "--to", "c", "-o", file("a.c").string()},
+      {"export", archive(), "--force", "--to", "ros2", "-o", file("ros2").string()},
+      {"export", archive(), "--to", "csv", "--table", "/evaluation/summary", "-o", file("a.csv").string()}};
+  write("predicted.csv", "");  // holds nothing that could be lost
+  for (const std::vector<std::string>& words : commands)
+    for (int time = 0; time < 2; ++time) {
+      const ProgramResult result = modebank(words);
+      EXPECT_EQ(result.status, 0) << words.front() << " " << words.back() << result.err;
+    }
+  const std::vector<std::string> apply{"check", config(), "--apply", "-o", file("new.ini").string()};
+  EXPECT_EQ(modebank(apply).status, 0);
+  EXPECT_THAT(modebank(apply).err, HasSubstr("exists: name another file (-o FILE), or overwrite it with --force"));
+  std::vector<std::string> forced = apply;
+  forced.emplace_back("--force");
+  EXPECT_EQ(modebank(forced).status, 0);
+}
+
+TEST_F(Robustness, P8AStudysTableIsNoArchive) {
+  ASSERT_EQ(
+      modebank({"study", config(), "--study.vary", "mixture.components = 1 | 2", "--study.output", file("s").string()})
+          .status,
+      0);
+  for (const char* name : {"s/study.h5", "s/plan.h5"}) {
+    const std::string before = read_file(file(name));
+    const ProgramResult result = modebank({"run", config(), "--force", "--archive.output", file(name).string()});
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_EQ(read_file(file(name)), before);
+  }
 }
 
 TEST_F(Robustness, P8ALinkedArchiveIsWrittenThrough) {

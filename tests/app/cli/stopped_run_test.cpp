@@ -7,13 +7,17 @@
 #include <chrono>
 #include <thread>
 
+#include "app/chain/stage_file.hpp"
 #include "app/cli/kept_stages.hpp"
+#include "io/files/read_file.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
 namespace {
 
 namespace fs = std::filesystem;
+
+const std::string key(64, 'a'), another_key(64, 'b');
 
 /// A stage that takes longer than is worth a file, whose result is one number.
 struct SlowStage {
@@ -48,7 +52,7 @@ class StoppedRun : public CliTest {
       dup2(ends[1], STDERR_FILENO);
       app::KeptStages kept(output());
       SlowStage stage;
-      kept.provide(Stage::lag_counts, "key", stage.part(result));
+      kept.provide(Stage::lag_counts, key, stage.part(result));
       const auto told = ::write(counts[1], &stage.computed, sizeof stage.computed);
       raise(told > 0 ? SIGINT : SIGKILL);
       _exit(0);
@@ -81,10 +85,10 @@ TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   {
     app::KeptStages kept(output());
     SlowStage same, other;
-    kept.provide(Stage::lag_counts, "key", same.part(5));
+    kept.provide(Stage::lag_counts, key, same.part(5));
     EXPECT_EQ(same.computed, 0);
     EXPECT_EQ(same.value, 3.0);
-    kept.provide(Stage::lag_counts, "another key", other.part(7));
+    kept.provide(Stage::lag_counts, another_key, other.part(7));
     EXPECT_EQ(other.computed, 1);
     EXPECT_EQ(other.value, 7.0);
   }
@@ -111,11 +115,38 @@ TEST_F(StoppedRun, KeepsWhatTakesLongerThanItsWritingAlone) {
   SlowStage stage;
   StagePart part = stage.part(3.0);
   part.writing_s = 1e6;
-  kept.provide(Stage::lag_counts, "large", part);
-  EXPECT_FALSE(fs::exists(folder / "lag_counts-large.h5"));
+  kept.provide(Stage::lag_counts, key, part);
+  EXPECT_FALSE(fs::exists(folder / stage_file_name(Stage::lag_counts, key)));
   part.writing_s = 0.5;
-  kept.provide(Stage::lag_counts, "small", part);
-  EXPECT_TRUE(fs::exists(folder / "lag_counts-small.h5"));
+  kept.provide(Stage::lag_counts, another_key, part);
+  EXPECT_TRUE(fs::exists(folder / stage_file_name(Stage::lag_counts, another_key)));
+}
+
+/// Beside the output may lie a folder, or a link to one, that somebody sent along.
+TEST_F(StoppedRun, NothingOfOthersIsRemovedOrWrittenThroughALink) {
+  fs::create_directory(file("home"));
+  const fs::path folder = file(".robot.h5.stages");
+  const std::string stage = stage_file_name(Stage::lag_counts, key);
+  for (const std::string& name : {std::string("mine.h5"), stage}) write("home/" + name, "precious");
+  fs::create_directory_symlink("home", folder);
+  {
+    app::KeptStages kept(output());
+    SlowStage slow;
+    kept.provide(Stage::lag_counts, another_key, slow.part(3));
+    EXPECT_EQ(slow.computed, 1);
+  }
+  EXPECT_TRUE(fs::is_symlink(folder));
+  EXPECT_EQ(std::distance(fs::directory_iterator(file("home")), fs::directory_iterator()), 2);
+  fs::remove(folder);
+  fs::create_directory(folder);
+  for (const char* name : {"mine.h5", "windows-old.h5"}) write(".robot.h5.stages/" + std::string(name), "precious");
+  fs::create_symlink("../home/" + stage, folder / stage);
+  { const app::KeptStages kept(output()); }
+  EXPECT_FALSE(fs::exists(fs::symlink_status(folder / stage))) << "a link of our name goes, what it leads to stays";
+  for (const std::string& name :
+       {std::string(".robot.h5.stages/mine.h5"), std::string(".robot.h5.stages/windows-old.h5"),
+        std::string("home/mine.h5"), "home/" + stage})
+    EXPECT_EQ(read_file(file(name)), "precious") << name;
 }
 
 }  // namespace

@@ -142,7 +142,7 @@ TEST_F(Export, WritesFilesWholeOrNotAtAll) {
   EXPECT_EQ(text_of(file("ros2") / "mode_0.yaml").rfind("# Verdict: calibrated", 0), 0u);
   EXPECT_THAT(left_behind(), ::testing::ElementsAre("out.h5", "robot.c", "robot.h", "robot.mat", "robot.py", "ros2"));
   EXPECT_EQ(exported("json", {"-o", file("none/robot.json").string()}).status, 2);
-  EXPECT_THAT(exported("json", {"-o", archive()}).err, HasSubstr("that is the archive"));
+  EXPECT_THAT(exported("json", {"-o", archive()}).err, HasSubstr("is read by this command"));
   EXPECT_EQ(exported("c", {"-o", file("robot.txt").string()}).status, 2);
   EXPECT_EQ(exported("c", {"-o", file("a b.c").string()}).status, 2);
   EXPECT_EQ(left_behind().size(), 6u);

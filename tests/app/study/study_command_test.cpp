@@ -1,5 +1,8 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -315,8 +318,9 @@ TEST_F(StudyCommands, DevicesAndPipesAreRefusedByName) {
   EXPECT_EQ(verified.status, 1);
   EXPECT_NE(verified.out.find("is not a regular file"), std::string::npos) << verified.out;
   const ProgramResult again = study_six();
-  EXPECT_EQ(again.status, 1);
+  EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_NE(again.err.find(trial.filename().string()), std::string::npos) << again.err;
+  EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(trial))) << "made anew in its place";
   std::filesystem::remove(trial);
   ASSERT_EQ(mkfifo((trial.parent_path() / (trial.stem().string() + ".failed")).c_str(), 0600), 0);
   EXPECT_EQ(study_six({"--study.stage", "status"}).status, 1);
@@ -329,6 +333,145 @@ TEST_F(StudyCommands, DevicesAndPipesAreRefusedByName) {
   const ProgramResult looped = study_six({"--study.stage", "status"});
   EXPECT_EQ(looped.status, 1);
   EXPECT_EQ(looped.err.find("filesystem error"), std::string::npos) << looped.err;
+}
+
+/// A study's folder is sent from one to another, links and all.
+TEST_F(StudyCommands, FilesOfOthersAreNotWrittenThroughLinks) {
+  namespace fs = std::filesystem;
+  const std::vector<std::string> page{"--study.page", "true"};
+  ASSERT_EQ(study_six(page).status, 0);
+  fs::create_directory(file("home"));
+  std::vector<std::string> names{
+      "study.csv", "study.best.ini", "study.h5", "study.html", "log.csv", "locks", "best/bank_train_log_score.ini"};
+  const std::string plan = text("s/plan.h5"), trial = trials()[0].filename().string(),
+                    failed = "trials/" + trials()[1].stem().string() + ".failed";
+  names.push_back("trials/" + trial);
+  names.push_back(failed);
+  std::vector<fs::path> theirs;
+  for (const std::string& name : names) {
+    theirs.push_back(file("home") / std::to_string(theirs.size()));
+    write_file(theirs.back(), "precious");
+    fs::remove(file("s") / name);
+    fs::create_symlink(theirs.back(), file("s") / name);
+  }
+  write("home/plan.h5", plan);
+  fs::remove(file("s/plan.h5"));
+  fs::create_symlink(file("home/plan.h5"), file("s/plan.h5"));
+  fs::rename(file("s/best"), file("home/best"));
+  fs::create_directory_symlink(file("home/best"), file("s/best"));
+  const auto in_home = [&] {
+    return std::distance(fs::recursive_directory_iterator(file("home")), fs::recursive_directory_iterator());
+  };
+  const auto before = in_home();
+  for (const char* stage : {"merge", "all"}) {
+    std::vector<std::string> options = page;
+    options.insert(options.end(), {"--study.stage", stage});
+    study_six(options);
+    for (std::size_t i = 0; i < theirs.size(); ++i)
+      EXPECT_EQ(text("home/" + theirs[i].filename().string()), "precious") << names[i] << " after " << stage;
+    EXPECT_EQ(text("home/plan.h5"), plan) << stage;
+    EXPECT_EQ(in_home(), before) << stage;
+  }
+  EXPECT_EQ(study_six(page).status, 0);
+  for (const char* name : {"study.csv", "study.best.ini", "study.h5", "study.html", "log.csv", "locks", "best"})
+    EXPECT_FALSE(fs::is_symlink(fs::symlink_status(file("s") / name))) << name;
+  EXPECT_EQ(modebank({"verify", file("s").string()}).status, 0);
+}
+
+/// `trials` and `cache` may be links to another disk.
+TEST_F(StudyCommands, FoldersOnAnotherDiskStayThere) {
+  namespace fs = std::filesystem;
+  for (const char* part : {"trials", "cache"}) {
+    fs::create_directories(file("disk") / part);
+    fs::create_directories(file("s"));
+    fs::create_directory_symlink(file("disk") / part, file("s") / part);
+    write("disk/" + std::string(part) + "/mine.h5", "precious");
+  }
+  ASSERT_EQ(study_six().status, 0);
+  EXPECT_EQ(trials().size(), 7u);
+  EXPECT_TRUE(fs::is_symlink(file("s/trials")));
+  EXPECT_EQ(modebank({"verify", file("s").string(), "--repair"}).status, 0);
+  for (const char* part : {"trials", "cache"}) EXPECT_EQ(text("disk/" + std::string(part) + "/mine.h5"), "precious");
+}
+
+TEST_F(StudyCommands, ItsFilesTakeThePlaceOfNoData) {
+  const std::string log = text("run_00.csv");
+  std::filesystem::create_directory(file("s"));
+  for (const char* name : {"s/log.csv", "s/study.csv"}) {
+    write(name, log);
+    const ProgramResult read = study_six({"--data.inputs", name});
+    EXPECT_EQ(read.status, 2) << read.err;
+    EXPECT_NE(read.err.find("study.output: " + file(name).string() + " is read by this command"), std::string::npos)
+        << read.err;
+    const ProgramResult foreign = study_six();
+    EXPECT_EQ(foreign.status, 2);
+    EXPECT_NE(foreign.err.find(file(name).string() + " is there and not replaced"), std::string::npos) << foreign.err;
+    EXPECT_EQ(text(name), log);
+    std::filesystem::remove(file(name));
+  }
+}
+
+/// Topics give names with slashes.
+TEST_F(StudyCommands, OfARecordingGoFromStartToItsBestConfiguration) {
+  const std::string script = (project_dir() / "tests/io/recording/topics.py").string();
+  ASSERT_EQ(run_program({"/usr/bin/python3", "-B", script, "write", file("").string()}).status, 0);
+  for (const std::string form : {"bag", "mcap"}) {
+    write("drive.ini", "[data]\ninputs = drive." + form +
+                           "\nstate = /speed.data\ninput = /cmd.data\nrate_hz = 10\n"
+                           "split = last 30 %\n[window]\nlength = 10\n[mixture]\nrestarts = 2\n");
+    const std::string folder = file("of_" + form).string();
+    const std::vector<std::string> words{MODEBANK_PROGRAM,
+                                         "study",
+                                         file("drive.ini").string(),
+                                         "--study.vary",
+                                         "mixture.components = 1 | 2",
+                                         "--study.output",
+                                         folder,
+                                         "--study.jobs",
+                                         "2"};
+    const ProgramResult result = run_program(words);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("bank_test_log_score"), std::string::npos) << result.out;
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(folder) / "study.best.ini"));
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(folder) / "best/bank_test_rmse_speed_data.ini"));
+    const ProgramResult best = modebank({"run", folder + "/study.best.ini", "--archive.output", archive()});
+    EXPECT_EQ(best.status, 0) << best.err;
+  }
+}
+
+std::string first_line(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  std::string line;
+  std::getline(stream, line);
+  return line;
+}
+
+/// While workers are there, the program that forked them has one thread, also where it has read packed chunks.
+TEST_F(StudyCommands, WorkersAreForkedFromAProgramOfOneThread) {
+  const std::string script = (project_dir() / "tests/io/recording/topics.py").string();
+  ASSERT_EQ(run_program({"/usr/bin/python3", "-B", script, "write", file("").string()}).status, 0);
+  write("drive.ini",
+        "[data]\ninputs = drive.bag\nstate = /speed.data\ninput = /cmd.data\nrate_hz = 10\n"
+        "[window]\nlength = 10\n[mixture]\nrestarts = 2\n");
+  const pid_t program = ::fork();
+  if (program == 0) {
+    for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(::open("/dev/null", O_WRONLY), stream);
+    ::execl(MODEBANK_PROGRAM, MODEBANK_PROGRAM, "study", file("drive.ini").c_str(), "--study.vary",
+            "mixture.components = 1 | 2 | 3", "--study.output", file("s").c_str(), "--study.jobs", "2", nullptr);
+    ::_exit(127);
+  }
+  const std::filesystem::path tasks = "/proc/" + std::to_string(program) + "/task";
+  const std::filesystem::path children = tasks / std::to_string(program) / "children";
+  std::ptrdiff_t most_threads = 0;
+  int status = 0;
+  while (::waitpid(program, &status, WNOHANG) == 0) {
+    std::error_code gone;
+    const bool before = !first_line(children).empty();
+    const auto threads = std::distance(std::filesystem::directory_iterator(tasks, gone), {});
+    if (before && !first_line(children).empty()) most_threads = std::max(most_threads, threads);
+  }
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(most_threads, 1);
 }
 
 TEST_F(StudyCommands, UsageErrorsLeaveNothing) {

@@ -101,14 +101,14 @@ TEST_F(StudySharing, EveryStageReadsBackFromTheCacheToTheBit) {
   const Config trial = configured({{"bank.refine", "em"}, {"bank.max_iterations", "2"}, {"bank.folds", "1"}});
   const Archive made = TrialRunner(nullptr).run(trial, "");
   Archive taken = made;
-  const auto pass = [&](const char* name, const std::function<Archive()>& part, const auto& take) {
+  const auto pass = [&](Stage stage, const std::function<Archive()>& part, const auto& take) {
     const auto never = [] { return ADD_FAILURE() << "computed", false; };
     cache.provide(
-        name, "inputs", [](Archive&&) { FAIL(); }, [] { return true; }, part);
-    cache.provide(name, "inputs", take, never, part);
+        stage, "inputs", [](Archive&&) { FAIL(); }, [] { return true; }, part);
+    cache.provide(stage, "inputs", take, never, part);
   };
   pass(
-      "windows",
+      Stage::windows,
       [&] {
         Archive part;
         part.recording = made.recording;
@@ -117,7 +117,7 @@ TEST_F(StudySharing, EveryStageReadsBackFromTheCacheToTheBit) {
       },
       [&](Archive&& part) { taken.windows = std::move(part.windows); });
   pass(
-      "mixture",
+      Stage::mixture,
       [&] {
         Archive part;
         part.mixture = made.mixture;
@@ -125,7 +125,7 @@ TEST_F(StudySharing, EveryStageReadsBackFromTheCacheToTheBit) {
       },
       [&](Archive&& part) { taken.mixture = std::move(part.mixture); });
   pass(
-      "bank",
+      Stage::bank,
       [&] {
         Archive part;
         part.bank = made.bank;
@@ -154,6 +154,29 @@ TEST_F(StudySharing, TheCacheIsBounded) {
     runner.run(configured({{"window.length", length}, {"filter.smooth", "false"}}), "");
   EXPECT_LE(bytes(), 0.3e6);
   EXPECT_GT(bytes(), 0.0);
+}
+
+/// A cache may be a folder on another disk that holds more; nothing of it is the cache's but files of stages.
+TEST_F(StudySharing, TheCacheRemovesAndFollowsNothingOfOthers) {
+  std::filesystem::create_directories(file("elsewhere/cache"));
+  std::filesystem::create_directory_symlink("elsewhere/cache", file("cache"));
+  const std::string theirs(400000, 'x'), key(64, '0');
+  write("cache/mine.h5", theirs);
+  write("cache/windows-notes.h5", theirs);
+  write("elsewhere/linked.h5", "precious");
+  std::filesystem::create_symlink("../linked.h5", file("cache") / ("bank-" + key + ".h5"));
+  const auto before = std::filesystem::last_write_time(file("elsewhere/linked.h5"));
+  const FileLocks locks(file("locks"));
+  const StageCache cache(file("cache"), 0.3, locks);
+  cache.provide(
+      Stage::bank, key, [](Archive&&) { FAIL(); }, [] { return true; }, [] { return Archive{}; });
+  TrialRunner runner(&cache);
+  for (const char* length : {"10", "11", "12", "13", "14", "15"})
+    runner.run(configured({{"window.length", length}, {"filter.smooth", "false"}}), "");
+  EXPECT_EQ(bytes_of(file("elsewhere/cache/mine.h5")), theirs);
+  EXPECT_EQ(bytes_of(file("elsewhere/cache/windows-notes.h5")), theirs);
+  EXPECT_EQ(bytes_of(file("elsewhere/linked.h5")), "precious");
+  EXPECT_EQ(std::filesystem::last_write_time(file("elsewhere/linked.h5")), before);
 }
 
 TEST_F(StudySharing, AFailedTrialLeavesNothingForTheNext) {
@@ -324,7 +347,7 @@ TEST_F(StudySharing, TheCacheTellsOfWaitingForAnotherProcess) {
   });
   const auto provide = [&] {
     cache.provide(
-        "bank", "inputs", [](Archive&&) {}, [] { return false; }, [] { return Archive{}; });
+        Stage::bank, "inputs", [](Archive&&) {}, [] { return false; }, [] { return Archive{}; });
   };
   provide();
   EXPECT_EQ(told, (std::vector<bool>{true, false}));

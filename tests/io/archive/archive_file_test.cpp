@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "io/archive/archive_form.hpp"
 #include "io/files/sha256.hpp"
 #include "tests/io/archive/archive_file_fixture.hpp"
 
@@ -52,17 +53,19 @@ TEST_F(ArchiveFile, EqualContentsGiveEqualBytes) {
   EXPECT_NE(read_file(path), read_file(other));
 }
 
+void check(const fs::path& output) { check_output({"archive.output", output, archive_form()}, {}); }
+
 TEST_F(ArchiveFile, NothingIsLeftWhenTheFolderIsMissing) {
   const fs::path missing = folder.path() / "none" / "a.h5";
-  EXPECT_THROW(check_writable(missing), ConfigurationError);
+  EXPECT_THROW(check(missing), ConfigurationError);
   EXPECT_THROW(write_archive(missing, Archive()), DataError);
   EXPECT_FALSE(fs::exists(missing.parent_path()));
-  EXPECT_THROW(check_writable(folder.path()), ConfigurationError);
+  EXPECT_THROW(check(folder.path()), ConfigurationError);
   EXPECT_THROW(write_archive(folder.path(), Archive()), DataError);
-  EXPECT_THROW(check_writable("/dev/full"), ConfigurationError);
+  EXPECT_THROW(check("/dev/full"), ConfigurationError);
   EXPECT_THROW(write_archive("/dev/full", Archive()), DataError);
-  EXPECT_THROW(check_writable(""), ConfigurationError);
-  EXPECT_NO_THROW(check_writable(path));
+  EXPECT_THROW(check(""), ConfigurationError);
+  EXPECT_NO_THROW(check(path));
 }
 
 /// Root may write everywhere, so the test becomes nobody for a while.
@@ -88,7 +91,7 @@ TEST_F(ArchiveFile, NothingIsLeftWhenTheFolderIsNotWritable) {
   ASSERT_EQ(chmod(folder.path().c_str(), 0555), 0);
   {
     const AsNobody nobody;
-    EXPECT_THAT([&] { check_writable(path); }, ThrowsMessage<ConfigurationError>(HasSubstr("not writable")));
+    EXPECT_THAT([&] { check(path); }, ThrowsMessage<ConfigurationError>(HasSubstr("not writable")));
     EXPECT_THAT([&] { write_archive(path, Archive()); }, ThrowsMessage<DataError>(HasSubstr("Permission denied")));
   }
   ASSERT_EQ(chmod(folder.path().c_str(), 0755), 0);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "io/files/output_file.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/support/leftover.hpp"
 #include "tests/support/paths.hpp"
@@ -78,13 +79,13 @@ TEST(Robustness, D16TheNextRunTakesAwayWhatAKilledOneLeft) {
   EXPECT_EQ(text_of(folder.path() / "k.h5"), "whole");
 }
 
-TEST(Robustness, D16SymbolicLinksAreWrittenThrough) {
+TEST(Robustness, D16SymbolicLinksThatAUserNamesAreWrittenThrough) {
   const TemporaryFolder folder;
   fs::create_directory(folder.path() / "far");
   fs::create_symlink("far/target.h5", folder.path() / "relative");
   fs::create_symlink(folder.path() / "relative", folder.path() / "absolute");
   for (const char* text : {"made", "replaced"}) {  // the first where the link dangles
-    replace_file(folder.path() / "absolute", {text});
+    replace_file(final_target(folder.path() / "absolute"), {text});
     EXPECT_EQ(text_of(folder.path() / "far/target.h5"), text);
     EXPECT_TRUE(fs::is_symlink(folder.path() / "absolute"));
     EXPECT_TRUE(fs::is_symlink(folder.path() / "relative"));
@@ -98,9 +99,78 @@ TEST(Robustness, D16ALinkToItselfOrToADeviceIsRefused) {
   const fs::path loop = folder.path() / "loop", device = folder.path() / "device";
   fs::create_symlink("loop", loop);
   fs::create_symlink("/dev/full", device);
-  EXPECT_THAT(write_obstacle(loop), HasSubstr("leads back to itself"));
-  EXPECT_THAT(write_obstacle(device), HasSubstr("not a regular file"));
-  EXPECT_THAT([&] { replace_file(loop, {"x"}); }, ThrowsMessage<DataError>(HasSubstr("leads back to itself")));
+  const FileForm any{"a file", [](const fs::path&) { return true; }};
+  const auto refused = [&](const fs::path& path, const char* why) {
+    EXPECT_THAT([&] { check_output({"-o", path, any}, {}); }, ThrowsMessage<ConfigurationError>(HasSubstr(why)));
+  };
+  refused(loop, "leads back to itself");
+  refused(device, "not a regular file");
+}
+
+/// In a folder that others sent, a file of ours takes the place of a link of its name.
+TEST(OwnFiles, TakeThePlaceOfLinks) {
+  const TemporaryFolder folder;
+  const fs::path theirs = folder.path() / "theirs", own = folder.path() / "own";
+  write_file(theirs, "precious");
+  for (const fs::path& target : {theirs, fs::path("/dev/full"), own, folder.path() / "nowhere", folder.path()}) {
+    fs::remove(own);
+    fs::create_symlink(target, own);
+    EXPECT_EQ(write_obstacle(own), "");
+    replace_file(own, {"ours"});
+    EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(own)));
+    EXPECT_EQ(text_of(own), "ours");
+  }
+  EXPECT_EQ(text_of(theirs), "precious");
+  EXPECT_EQ(entries(folder.path()), 2u);
+}
+
+TEST(OwnFiles, AreNotAppendedToThroughAnotherName) {
+  const TemporaryFolder folder;
+  const fs::path theirs = folder.path() / "theirs", own = folder.path() / "own";
+  write_file(theirs, "precious");
+  fs::create_symlink("theirs", own);
+  append_to_file(own, "a");
+  append_to_file(own, "b");
+  EXPECT_EQ(text_of(own), "ab");
+  fs::remove(own);
+  fs::create_hard_link(theirs, own);
+  append_to_file(own, "c");
+  EXPECT_EQ(text_of(own), "preciousc");
+  EXPECT_EQ(text_of(theirs), "precious");
+}
+
+TEST(OwnFiles, AFolderTakesThePlaceOfALink) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "theirs");
+  fs::create_directory_symlink("theirs", folder.path() / "own");
+  for (int time = 0; time < 2; ++time) make_own_folder(folder.path() / "own");
+  EXPECT_TRUE(fs::is_directory(fs::symlink_status(folder.path() / "own")));
+  EXPECT_EQ(entries(folder.path() / "theirs"), 0u);
+}
+
+TEST(Outputs, AreNeitherWhatIsReadNorOfAnotherForm) {
+  const TemporaryFolder folder;
+  const fs::path log = folder.path() / "log.csv", page = folder.path() / "page.html", empty = folder.path() / "empty";
+  write_file(log, "time,x\n");
+  write_file(page, "<p>old");
+  write_file(empty, "");
+  const FileForm form = form_by_front("a page", "<p>", 10);
+  const auto check = [&](const fs::path& path) { check_output({"-o", path, form}, {log, page}); };
+  const auto refused = [&](const fs::path& path, const std::string& why) {
+    EXPECT_THAT([&] { check(path); },
+                ThrowsMessage<ConfigurationError>("-o: " + path.string() + why + "; name another file"));
+  };
+  refused(page, " is read by this command");
+  const fs::path other = folder.path() / "other.txt";
+  write_file(other, "a text of mine");
+  refused(other, " is there and not replaced, for it is not a page");
+  fs::create_symlink("page.html", folder.path() / "link");
+  refused(folder.path() / "link", " is read by this command");
+  fs::create_hard_link(page, folder.path() / "second");
+  refused(folder.path() / "second", " is read by this command");
+  refused(folder.path() / "." / "page.html", " is read by this command");
+  write_file(folder.path() / "old.html", "<p>older");
+  for (const char* name : {"old.html", "new.html", "empty"}) EXPECT_NO_THROW(check(folder.path() / name)) << name;
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+#include "app/config/configuration_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "io/files/output_file.hpp"
+#include "io/files/read_file.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// Sections and keys alone, one of which is known.
+bool is_configuration(const std::filesystem::path& path) {
+  constexpr std::uintmax_t largest = 1 << 22;
+  if (std::filesystem::file_size(path) > largest) return false;
+  try {
+    const std::map<std::string, std::string> values = resolved_values(read_file(path));
+    return std::any_of(values.begin(), values.end(), [](const auto& value) { return find_option(value.first); });
+  } catch (const ConfigurationError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+void check_configuration_output(const std::string& option, const std::filesystem::path& path,
+                                const std::vector<std::filesystem::path>& sources, bool force) {
+  check_output({option, path, {"a configuration", is_configuration}}, sources);
+  if (!force && std::filesystem::exists(path))
+    throw ConfigurationError(
+        fmt::format("{} exists: name another file (-o FILE), or overwrite it with --force", path.string()));
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace modebank::app {
+
+/// check_output for a configuration. One that is there is somebody's work: it is replaced with `force` alone.
+void check_configuration_output(const std::string& option, const std::filesystem::path& path,
+                                const std::vector<std::filesystem::path>& sources, bool force);
+
+}  // namespace modebank::app
