@@ -28,7 +28,7 @@ void check_export(const CommandLine& line, const path& output, const FileForm& f
   check_output({"-o", output, form}, {line.files.front()});
 }
 
-/// Of C, Python and YAML: the verdict on the bank opens each.
+/// The verdict on the bank opens exports to C, Python and YAML.
 FileForm bank_form() { return form_by_front("an export of a bank", " Verdict: ", 16); }
 
 /// How much earlier than recorded the inputs were taken that the bank was learned from.

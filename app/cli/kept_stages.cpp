@@ -60,7 +60,7 @@ KeptStages::KeptStages(const fs::path& output)
 }
 
 void KeptStages::provide(Stage stage, const std::string& key, const StagePart& part) {
-  // What a run reads is not written again.
+  // The data stage is not kept: it would be the log once more.
   if (stage == Stage::data || folder_is_link()) return part.compute();
   const fs::path file = folder_ / stage_file_name(stage, key);
   if (load(file, part)) return;

@@ -33,8 +33,7 @@ std::string json_quoted(const std::string& name) { return nlohmann::json(printab
 
 EstimateWriter::EstimateWriter(std::vector<std::string> states, Index modes, bool as_json)
     : states_(std::move(states)), modes_(modes), json_(as_json) {
-  if (json_)
-    for (std::string& state : states_) state = json_quoted(state);
+  for (std::string& state : states_) state = json_ ? json_quoted(state) : printable_name(state);
 }
 
 void EstimateWriter::header(fmt::memory_buffer& out) const {

@@ -9,8 +9,8 @@ namespace modebank {
 /// programs read back.
 std::string quoted_field(std::string_view text);
 
-/// The same for tables that people open: a text that a spreadsheet would take for a formula (it begins with = + - @, a
-/// tab or a carriage return and is no number) has an apostrophe in front.
+/// The same for tables that people open. An apostrophe goes in front of a text that a spreadsheet would take for a
+/// formula: it begins with = + - @, a tab or a carriage return, and does not read as a number.
 std::string csv_field(std::string_view text);
 
 }  // namespace modebank

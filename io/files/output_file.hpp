@@ -24,7 +24,7 @@ struct OutputFile {
   FileForm form;               ///< of what is written there
 };
 
-/// The one guard of every output. Throws ConfigurationError, naming option and path, where the file cannot be written,
+/// Guards every output. Throws ConfigurationError, naming option and path, where the file cannot be written,
 /// where it is one of `sources` (files that the command reads) by whatever name or link, and where a file is there that
 /// is not of the form. A file without content may be replaced. Throws DataError when the disk fails.
 void check_output(const OutputFile& output, const std::vector<std::filesystem::path>& sources);

@@ -111,8 +111,8 @@ bool is_disk_failure(const std::error_code& error) {
 
 namespace {
 
-/// What stands in the way before anything is made; empty when nothing does. A symbolic link does not: the file takes
-/// its place.
+/// The obstacle that shows before anything is made; empty without one. A symbolic link is none: the file takes its
+/// place.
 std::string seen_obstacle(const fs::path& path) {
   std::error_code error;
   if (!path.has_filename()) return "'" + path.string() + "' names no file";

@@ -23,7 +23,7 @@ class Bag : public PieceFile {
     return read_head(bytes, at, end);
   }
 
-  /// What the publisher said of the connection: fields, as a record's header has them.
+  /// The publisher's description of the connection: fields, as a record's header has them.
   static std::string publisher_fields(const RecordHead& head, ByteSource& bytes) {
     if (head.payload_bytes > most_definition_bytes)
       throw Damage(head.payload_at, fmt::format("a definition of {} bytes is larger than {}", head.payload_bytes,

@@ -32,7 +32,7 @@ LogRequest log_request(const TableRequest& request) {
   return wanted;
 }
 
-/// What shows whether the rows of a request are of one motion: nothing where they are told apart by it already.
+/// Columns that show whether the rows of a request are of one motion; none where data.run takes them apart by one.
 std::vector<std::string> looked_at_frames(const LogTopic& topic, const TableRequest& request) {
   std::vector<std::string> columns = frame_columns(topic);
   const bool told_apart = std::any_of(columns.begin(), columns.end(), [&](const std::string& column) {

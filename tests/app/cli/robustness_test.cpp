@@ -4,7 +4,9 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
+#include "app/cli/track_output.hpp"
 #include "app/config/config_file.hpp"
 #include "app/report/figures/figure.hpp"
 #include "app/study/space/study_plan.hpp"
@@ -146,6 +148,26 @@ TEST_F(Robustness, D15BytesThatAreNoUtf8AreShownAsNumbers) {
   EXPECT_EQ(printable_name("a\xffz\n"), "a\\xffz\\x0a");
   EXPECT_FALSE(holds_controls("gr\xf6\n"));
   EXPECT_TRUE(name_holds_controls("gr\xf6\n"));
+}
+
+/// attack_05: JSON threw for a byte that is no UTF-8.
+TEST_F(Robustness, D15TracksLinesAreUtf8WhateverTheName) {
+  FilterEstimate estimate;
+  estimate.state = estimate.mode_probability = Eigen::VectorXd::Ones(1);
+  estimate.covariance = Eigen::MatrixXd::Ones(1, 1);
+  const LiveVerdict verdict{Eigen::VectorXd::Ones(1), Eigen::VectorXd::Ones(1), Eigen::VectorXd::Ones(1)};
+  for (const bool as_json : {true, false}) {
+    const app::EstimateWriter writer({"gr\xf6\xdf"
+                                      "e"},
+                                     1, as_json);
+    fmt::memory_buffer out;
+    writer.header(out);
+    writer.line(0.5, estimate, verdict, out);
+    const std::string text = fmt::to_string(out);
+    EXPECT_THAT(text, HasSubstr("gr\\"));
+    EXPECT_EQ(printable(text), text);
+    if (as_json) EXPECT_TRUE(nlohmann::json::parse(text).contains("gr\\xf6\\xdfe"));
+  }
 }
 
 TEST_F(Robustness, D16TheWidthIsThatOfATerminal) {

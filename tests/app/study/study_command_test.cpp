@@ -431,10 +431,10 @@ TEST_F(StudyCommands, OfARecordingGoFromStartToItsBestConfiguration) {
                                          "2"};
     const ProgramResult result = run_program(words);
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.out.find("bank_test_log_score"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find(folder + "/study.csv"), std::string::npos) << result.out;
     EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(folder) / "study.best.ini"));
     EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(folder) / "best/bank_test_rmse_speed_data.ini"));
-    const ProgramResult best = modebank({"run", folder + "/study.best.ini", "--archive.output", archive()});
+    const ProgramResult best = modebank({"run", folder + "/study.best.ini", "--archive.output", folder + ".h5"});
     EXPECT_EQ(best.status, 0) << best.err;
   }
 }

@@ -28,7 +28,7 @@ class Topics : public ::testing::Test {
   }
   std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
 
-  /// What the other reader finds in a file.
+  /// Messages of a file by the other reader.
   json reference(const std::filesystem::path& path) const {
     const ProgramResult read = topics_script({"read", path.string(), file("reference.json").string()});
     EXPECT_EQ(read.status, 0) << path << read.err;
