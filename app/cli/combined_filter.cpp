@@ -55,8 +55,26 @@ void CombinedFilter::combine() {
   estimate_ = *said_.front();  // modes, steps, and what one filter has alone
   estimate_.log_density = filter::ForecastWeights::mixed_log_density(weights_.weights(), log_densities_);
   if (std::isnan(estimate_.log_density)) return;
-  const std::vector<double> share = filter::ForecastWeights::spoken_weights(weights_.weights(), log_densities_);
-  FilterEstimate& mixed = estimate_;
+  mix(filter::ForecastWeights::spoken_weights(weights_.weights(), log_densities_), estimate_);
+}
+
+FilterEstimate CombinedFilter::forecast(double time_s, const Eigen::VectorXd& input) {
+  std::vector<FilterEstimate> ahead;
+  std::vector<double> known;
+  for (const auto& filter : filters_) {
+    FilterEstimate& one = ahead.emplace_back(filter->forecast(time_s, input));
+    one.innovation = -one.prediction.head(one.innovation.size());  // of a measurement of zero: how far they lie apart
+    known.push_back(one.prediction.array().isNaN().any() ? not_a_number : 0.0);
+  }
+  for (std::size_t i = 0; i < ahead.size(); ++i) said_[i] = &ahead[i];
+  FilterEstimate mixed = ahead.front();
+  mix(filter::ForecastWeights::spoken_weights(weights_.weights(), known), mixed);
+  mixed.innovation.setConstant(not_a_number);
+  mixed.nis = not_a_number;
+  return mixed;
+}
+
+void CombinedFilter::mix(const std::vector<double>& share, FilterEstimate& mixed) const {
   for (auto* vector : {&mixed.prediction, &mixed.innovation, &mixed.state, &mixed.pit}) vector->setZero();
   for (auto* matrix : {&mixed.innovation_covariance, &mixed.covariance}) matrix->setZero();
   const auto each = [&](auto add) {

@@ -18,6 +18,7 @@ class CombinedFilter final : public LiveFilter {
   /// `start`: weights at the start and after every gap.
   CombinedFilter(std::vector<std::unique_ptr<LiveFilter>> filters, const std::vector<double>& start);
   const FilterEstimate& step(double time_s, const Eigen::VectorXd& input, const Eigen::VectorXd& measurement) override;
+  FilterEstimate forecast(double time_s, const Eigen::VectorXd& input) override;
   bool started() const override;
   void restart() override;
   void remember() override;
@@ -35,6 +36,8 @@ class CombinedFilter final : public LiveFilter {
   FilterEstimate estimate_;
 
   void combine();
+  /// Puts what was said together, each by its share.
+  void mix(const std::vector<double>& share, FilterEstimate& mixed) const;
 };
 
 }  // namespace modebank::app

@@ -155,13 +155,15 @@ std::vector<Command> commands_to_use() {
       {"Use",
        "track",
        "ARCHIVE",
-       "live filter: samples in on standard input, estimates out, line by line",
-       "Lines in: a header with the time and the archive's states and inputs (or JSON objects of these names), then a "
-       "sample each; a state that was not measured stays empty. Lines out: the estimate, its interval, the modes' "
-       "probabilities, the prediction for the next sample, an alarm.",
+       "live filter: samples in on standard input or from --data.inputs, estimates out, line by line",
+       "Lines in: a header with the columns that the archive was made from (or JSON objects of these names), then a "
+       "sample each, in any form that `run` reads; a state that was not measured stays empty. --data.inputs FILE reads "
+       "a "
+       "recorded log in place of lines. Lines out: the estimate, its interval, the modes' probabilities, the "
+       "prediction "
+       "for the next sample, an alarm.",
        "modebank track robot.h5 < log.csv",
-       {"data.time", "data.state", "data.input", "filter.variant", "filter.noise", "filter.parameter_noise",
-        "filter.time_steps", "track"},
+       {"data", "filter.variant", "filter.noise", "filter.parameter_noise", "filter.time_steps", "track"},
        {},
        run_track},
       {"Use",

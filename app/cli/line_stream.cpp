@@ -87,7 +87,8 @@ LineStream::Filled LineStream::fill(double wait_s) {
     if (errno != EINTR && errno != EAGAIN)
       throw DataError(std::string("cannot read standard input: ") + std::strerror(errno));
   }
-  buffer_.clear();  // stopped: half a line is no sample
+  cut_ = !buffer_.empty();
+  buffer_.clear();
   return Filled::end;
 }
 
@@ -116,7 +117,8 @@ LineStream::Got LineStream::next(std::string_view& line, double wait_s) {
     if (filled == Filled::some) continue;
     if (filled == Filled::quiet) return Got::quiet;
     ended_ = true;
-    if (start_ < buffer_.size() && !discarding_) buffer_ += '\n';
+    unended_ = start_ < buffer_.size() && !discarding_;
+    if (unended_) buffer_ += '\n';
   }
 }
 

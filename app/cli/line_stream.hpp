@@ -20,16 +20,19 @@ class LineStream {
 
   enum class Got { line, overlong, waiting, quiet, end };
   /// `line`: the next one, valid until the next call. `waiting`: all that has arrived is read; the next call waits.
-  /// `overlong`: a line that no sample is so long as, without its text. `quiet`: nothing came for `wait_s`. The last
-  /// line may lack its newline.
+  /// `overlong`: a line that no sample is so long as, without its text. `quiet`: nothing came for `wait_s`.
   Got next(std::string_view& line, double wait_s = std::numeric_limits<double>::infinity());
+  /// Whether the input ended within the line that was read last: it lacks its newline, and may lack more.
+  bool is_unended() const { return unended_ && start_ >= buffer_.size(); }
+  /// Whether a signal ended the input within a line. That line is left out.
+  bool was_cut() const { return cut_; }
   /// When what was read last had come.
   Clock::time_point arrival() const { return arrival_; }
 
  private:
   std::string buffer_;
   std::size_t start_ = 0;
-  bool waited_ = true, ended_ = false, discarding_ = false;
+  bool waited_ = true, ended_ = false, discarding_ = false, unended_ = false, cut_ = false;
   Clock::time_point arrival_ = Clock::now();
 
   enum class Filled { some, quiet, end };

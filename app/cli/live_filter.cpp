@@ -29,6 +29,13 @@ class LiveOf : public LiveFilter {
   const FilterEstimate& step(double time_s, const Eigen::VectorXd& input, const Eigen::VectorXd& measurement) override {
     return filter_.step(time_s, input, measurement);
   }
+  FilterEstimate forecast(double time_s, const Eigen::VectorXd& input) override {
+    const Snapshot now = filter_.snapshot();
+    const Eigen::VectorXd nothing = Eigen::VectorXd::Constant(filter_.estimate().innovation.size(), not_a_number);
+    FilterEstimate ahead = filter_.step(time_s, input, nothing);
+    filter_.restore(now);
+    return ahead;
+  }
   bool started() const override { return filter_.started(); }
   void restart() override { filter_.restart(); }
   void remember() override { remembered_ = filter_.snapshot(); }

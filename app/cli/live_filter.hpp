@@ -14,12 +14,15 @@ struct Resumed {
   Eigen::VectorXd input;
 };
 
-/// One of an archive's filters at work, a bank's or the drifting model's.
+/// One of an archive's filters at work: a bank's, the drifting model's or several together.
 class LiveFilter {
  public:
   virtual ~LiveFilter() = default;
   virtual const FilterEstimate& step(double time_s, const Eigen::VectorXd& input,
                                      const Eigen::VectorXd& measurement) = 0;
+  /// The prediction for a later time, `input` held until then, as an estimate without a measurement. The filter stays
+  /// as it was.
+  virtual FilterEstimate forecast(double time_s, const Eigen::VectorXd& input) = 0;
   virtual bool started() const = 0;
   virtual void restart() = 0;
   /// Remembers what it knows now, and goes back to it.

@@ -1,15 +1,13 @@
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "app/chain/stages.hpp"
 #include "app/chain/stored_banks.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/live_filter.hpp"
+#include "app/cli/new_data.hpp"
 #include "app/cli/predict_text.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
@@ -24,36 +22,9 @@
 namespace modebank::app {
 namespace {
 
-bool given(const CommandLine& line, const std::string& key) {
-  return std::any_of(line.overrides.begin(), line.overrides.end(), [&](const auto& o) { return o.first == key; });
-}
-
-/// Where inputs are delayed by a lag that was estimated, new runs have the pooled one, as held-out runs had.
-void take_lag(const std::string& archive, DataOptions& data) {
-  const std::optional<LagReport> lag = read_archive(archive).lag;
-  data.lag_auto = false;
-  data.lag_s = lag && lag->correction != LagCorrection::none ? lag->lag.mean : 0.0;
-  if (lag && lag->correction == LagCorrection::drift)
-    spdlog::warn("{}: its lag drifts; new runs have the constant lag of {} s", archive, data.lag_s);
-}
-
-/// What the archive says of its own files does not hold for new ones: roles and places; their measurements may end.
-void turn_to_new_files(const CommandLine& line, DataOptions& data) {
-  const std::string& archive = line.files.front();
-  if (!given(line, "data.root")) data.root = std::filesystem::current_path().string();
-  if (!given(line, "data.states") && !data.states.empty())
-    throw ConfigurationError(
-        fmt::format("data.states: the states of {} came from files of their own ({}): name those of the new inputs, or "
-                    "--data.states= where they are columns of the same files",
-                    archive, data.states));
-  if (!given(line, "data.train")) data.train.clear();
-  if (!given(line, "data.test")) data.test.clear();
-  if (!given(line, "data.missing")) data.missing = Missing::predict;
-  data.truth.clear();
-  data.weight.clear();
-  data.label.clear();
-  if (!given(line, "data.split")) data.split = {};
-  if (data.lag_auto && !given(line, "data.lag_s")) take_lag(archive, data);
+double period_of(const std::string& archive, const Config& config) {
+  return config.track.filter == TrackedFilter::drifting ? fixed_bank(load_drifting(archive)).dt_s
+                                                        : load_bank(archive, tracked_bank(config)).dt_s;
 }
 
 std::vector<FreeRun> predict_all(const std::string& archive, const Config& config, const Recording& recording) {
@@ -93,7 +64,10 @@ Config predict_config(const CommandLine& line) {
   if (config.scoring.free_run.samples == 0)
     throw ConfigurationError(
         "predict needs the number of measured samples that it starts from: --samples N (filter.simulate)");
-  if (given(line, "data.inputs")) turn_to_new_files(line, config.data);
+  if (given(line, "data.inputs")) {
+    turn_to_new_files(line, config.data);
+    if (config.data.lag_auto) take_lag(line, period_of(archive, config), config.data);
+  }
   if (line.output.empty()) return config;
   std::vector<std::filesystem::path> sources{archive};
   for (const DataFile& file : data_files(config.data)) sources.push_back(file.path);

@@ -1,65 +1,53 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "app/cli/line_table.hpp"
 #include "app/config/config.hpp"
+#include "filter/step/feed/aligned_samples.hpp"
 
 namespace modebank::app {
 
-/// One sample as it arrived.
-struct LiveSample {
-  double time_s = 0.0;
-  Eigen::VectorXd input;        ///< m
-  Eigen::VectorXd measurement;  ///< n_y, NaN where missing
-};
-
-/// Where a sample's numbers stand: column names of a CSV header, members of a JSON object.
-struct SampleColumns {
-  std::string time;
-  std::vector<std::string> inputs, states;
-};
-
-/// Reads samples from lines. The first line decides between CSV (a header that names columns) and NDJSON (an object per
-/// line) unless the format is given.
+/// Reads samples from lines as they come: the rows of a LineTable with what acts where an input is missing.
 class SampleReader {
  public:
-  SampleReader(SampleColumns columns, LineFormat format);
+  SampleReader(const DataOptions& data, LineFormat format);
 
-  enum class Line { sample, header, blank, malformed };
-  /// Takes one line in; after `sample` it is in sample(), after `malformed` the reason is in reason(). A header without
-  /// a needed column throws ConfigurationError, which lists those there are. Of a malformed line nothing is kept.
-  Line read(std::string_view line);
-  const LiveSample& sample() const { return sample_; }
+  enum class Line { sample, header, blank, left_out, malformed };
+  /// Takes lines in and calls `take` for each in order, with its position. While it runs sample() is that of a
+  /// `sample`, and reason() says why a line is `malformed`: nothing of it is kept. `left_out`: data.where is false. A
+  /// header without a needed column throws ConfigurationError, which lists those there are.
+  void read(const std::vector<std::string>& lines, const std::function<void(std::size_t, Line)>& take);
+
+  const TimedSample& sample() const { return sample_; }
+  const std::string& reason() const { return reason_; }
+  /// Which of the last sample's numbers are too large for a filter, and what becomes of them.
+  const std::vector<std::string>& remarks() const { return remarks_; }
   /// What acts where the next sample misses an input: that of a sample before the first line.
   void remember(const Eigen::VectorXd& input);
-  const std::string& reason() const { return reason_; }
-  /// Of the last sample's numbers those that are too large to reckon with, and what becomes of them.
-  const std::vector<std::string>& remarks() const { return remarks_; }
-  LineFormat format() const { return format_; }
+  LineTable& table() { return table_; }
 
  private:
-  SampleColumns columns_;
-  LineFormat format_;
-  LiveSample sample_, next_;
-  std::vector<std::size_t> positions_;  ///< in a CSV line: time, inputs, states; empty before the header
-  std::size_t fields_ = 0;              ///< per CSV line
+  using Take = std::function<void(std::size_t, Line)>;
+  DataOptions data_;
+  LineTable table_;
+  TimedSample sample_, next_;
+  bool any_input_ = false;
   std::string reason_;
   std::vector<std::string> remarks_;
-  bool any_input_ = false;
 
+  struct Rows {
+    std::vector<std::string> lines;
+    std::vector<std::size_t> positions;
+  };
+  void read_head(std::string line, std::size_t position, const Take& take);
+  void read_rows(const Rows& rows, const Take& take);
+  Line accept(const Table& table, std::size_t row);
   Line malformed(std::string reason);
-  Line read_header(std::string_view line);
-  bool read_csv(std::string_view line);
-  bool read_json(std::string_view line);
-  /// Number `i` of time, inputs, states; NaN: missing.
-  double& slot(std::size_t i);
-  const std::string& name(std::size_t i) const;
-  std::size_t slots() const { return 1 + columns_.inputs.size() + columns_.states.size(); }
-  Line accept();
-  /// Of a number that no filter can reckon with: it is missing.
+  /// Makes a number that is too large for a filter a missing one, with a remark.
   void leave_out(double& value, const std::string& name, const char* instead);
 };
 

@@ -3,15 +3,17 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 
+#include "ident/base/characters.hpp"
 #include "ident/base/printable.hpp"
 #include "io/files/standard_error.hpp"
 
 namespace modebank::app {
 
-/// What a live filter says beside its estimates. Never waits and never fails: what standard error does not take is
+/// Messages of a live filter beside its estimates. Never waits and never fails: what standard error does not take is
 /// dropped, and counted for the next message that it takes.
 class LiveMessages {
  public:
@@ -20,9 +22,41 @@ class LiveMessages {
       dropped_ = 0;
     if (dropped_ > 0 || !say_now(fmt::format("modebank: {}\n", printable(text)))) ++dropped_;
   }
+  /// Says the first message of its kind: those that differ in numbers and quoted words alone count as one.
+  void say_once(const std::string& place, const std::string& text) {
+    Repeats& repeats = repeats_[kind_of(text)];
+    if (repeats.count++ == 0) {
+      repeats.first = place;
+      say(fmt::format("{}: {}", place, text));
+    }
+    repeats.last = place;
+  }
+  /// How often each of them was repeated.
+  void say_repeats() {
+    for (const auto& [kind, repeats] : repeats_)
+      if (repeats.count > 1)
+        say(fmt::format("{}: the same {} time{} more, the last at {}", repeats.first, repeats.count - 1,
+                        repeats.count == 2 ? "" : "s", repeats.last));
+    repeats_.clear();
+  }
 
  private:
+  struct Repeats {
+    std::size_t count = 0;
+    std::string first, last;  ///< places
+  };
   std::size_t dropped_ = 0;
+  std::map<std::string, Repeats> repeats_;
+
+  static std::string kind_of(const std::string& text) {
+    std::string kind;
+    bool quoted = false;
+    for (const char c : text) {
+      if (c == '"') quoted = !quoted;
+      if (!quoted && !is_digit(c) && c != '.' && c != '-' && c != '+') kind += c;
+    }
+    return kind;
+  }
 };
 
 }  // namespace modebank::app

@@ -31,56 +31,80 @@ std::string json_quoted(const std::string& name) { return nlohmann::json(printab
 
 }  // namespace
 
-EstimateWriter::EstimateWriter(std::vector<std::string> states, Index modes, bool as_json)
-    : states_(std::move(states)), modes_(modes), json_(as_json) {
-  for (std::string& state : states_) state = json_ ? json_quoted(state) : printable_name(state);
+EstimateWriter::EstimateWriter(std::vector<std::string> states, Index modes, const EstimateLines& lines)
+    : states_(std::move(states)), modes_(modes), lines_(lines) {
+  for (std::string& state : states_) state = lines_.json ? json_quoted(state) : printable_name(state);
 }
 
 void EstimateWriter::header(fmt::memory_buffer& out) const {
-  if (json_) return;
+  if (lines_.json) return;
   auto to = std::back_inserter(out);
-  fmt::format_to(to, "time,steps");
+  fmt::format_to(to, "{}time,steps", lines_.run ? "run," : "");
   for (const std::string& s : states_)
     for (const char* what : {"_predicted", "_lower", "_upper", "", "_sd"})
       fmt::format_to(to, ",{}", csv_field(s + what));
   fmt::format_to(to, ",nis,log_density,alarm,mode");
   for (Index j = 0; j < modes_; ++j) fmt::format_to(to, ",p{}", j);
+  if (lines_.forecast) fmt::format_to(to, ",now");
+  for (const std::string& s : states_)
+    for (const char* what : {"_now", "_now_lower", "_now_upper"})
+      if (lines_.forecast) fmt::format_to(to, ",{}", csv_field(s + what));
   fmt::format_to(to, "\n");
 }
 
-void EstimateWriter::line(double time_s, const FilterEstimate& e, const LiveVerdict& verdict,
-                          fmt::memory_buffer& out) const {
+/// A state's numbers: fields, or an object under its name.
+void EstimateWriter::signal(std::size_t state, std::initializer_list<double> values,
+                            std::initializer_list<const char*> names, fmt::memory_buffer& out) const {
   auto to = std::back_inserter(out);
-  const char* unknown = json_ ? "null" : "";
+  if (lines_.json) fmt::format_to(to, ",{}:{{", states_[state]);
+  const char* const* name = names.begin();
+  for (const double value : values) {
+    if (lines_.json)
+      fmt::format_to(to, "{}\"{}\":", name == names.begin() ? "" : ",", *name);
+    else
+      fmt::format_to(to, ",");
+    number(out, value, lines_.json ? "null" : "");
+    ++name;
+  }
+  if (lines_.json) fmt::format_to(to, "}}");
+}
+
+void EstimateWriter::line(const std::string& run, double time_s, const FilterEstimate& e, const LiveVerdict& verdict,
+                          const Forecast* forecast, fmt::memory_buffer& out) const {
+  auto to = std::back_inserter(out);
+  const bool json = lines_.json;
   const auto named = [&](const char* name, double value) {
-    fmt::format_to(to, fmt::runtime(json_ ? ",\"{}\":" : ","), name);
-    number(out, value, unknown);
+    fmt::format_to(to, fmt::runtime(json ? ",\"{}\":" : ","), name);
+    number(out, value, json ? "null" : "");
   };
-  fmt::format_to(to, fmt::runtime(json_ ? "{{\"time\":{},\"steps\":{}" : "{},{}"), time_s, e.steps);
+  if (json) fmt::format_to(to, "{{");
+  if (lines_.run && json) fmt::format_to(to, "\"run\":{},", json_quoted(run));
+  if (lines_.run && !json) fmt::format_to(to, "{},", csv_field(run));
+  fmt::format_to(to, fmt::runtime(json ? "\"time\":{},\"steps\":{}" : "{},{}"), time_s, e.steps);
   for (std::size_t s = 0; s < states_.size(); ++s) {
     const auto i = static_cast<Index>(s);
-    if (json_) fmt::format_to(to, ",{}:{{", states_[s]);
-    const double values[] = {verdict.predicted(i), verdict.lower(i), verdict.upper(i), e.state(i),
-                             std::sqrt(e.covariance(i, i))};
-    const char* names[] = {"predicted", "lower", "upper", "estimate", "sd"};
-    for (std::size_t k = 0; k < std::size(values); ++k) {
-      if (json_)
-        fmt::format_to(to, "{}\"{}\":", k == 0 ? "" : ",", names[k]);
-      else
-        fmt::format_to(to, ",");
-      number(out, values[k], unknown);
-    }
-    if (json_) fmt::format_to(to, "}}");
+    signal(s, {verdict.predicted(i), verdict.lower(i), verdict.upper(i), e.state(i), std::sqrt(e.covariance(i, i))},
+           {"predicted", "lower", "upper", "estimate", "sd"}, out);
   }
   named("nis", e.nis);
   named("log_density", e.log_density);
-  fmt::format_to(to, fmt::runtime(json_ ? ",\"alarm\":{},\"mode\":{}" : ",{:d},{}"), verdict.alarm, likeliest(e));
-  if (json_) fmt::format_to(to, ",\"probability\":[");
+  fmt::format_to(to, fmt::runtime(json ? ",\"alarm\":{},\"mode\":{}" : ",{:d},{}"), verdict.alarm, likeliest(e));
+  if (json) fmt::format_to(to, ",\"probability\":[");
   for (Index j = 0; j < modes_; ++j) {
-    if (!json_ || j > 0) fmt::format_to(to, ",");
-    number(out, e.mode_probability(j), unknown);
+    if (!json || j > 0) fmt::format_to(to, ",");
+    number(out, e.mode_probability(j), json ? "null" : "");
   }
-  fmt::format_to(to, fmt::runtime(json_ ? "]}}\n" : "\n"));
+  if (json) fmt::format_to(to, "]");
+  if (forecast != nullptr) {
+    fmt::format_to(to, fmt::runtime(json ? ",\"now\":{{\"time\":{}" : ",{}"), forecast->time_s);
+    const LiveVerdict& expected = forecast->expected;
+    for (std::size_t s = 0; s < states_.size(); ++s) {
+      const auto i = static_cast<Index>(s);
+      signal(s, {expected.predicted(i), expected.lower(i), expected.upper(i)}, {"predicted", "lower", "upper"}, out);
+    }
+    if (json) fmt::format_to(to, "}}");
+  }
+  fmt::format_to(to, fmt::runtime(json ? "}}\n" : "\n"));
 }
 
 }  // namespace modebank::app

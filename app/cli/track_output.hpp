@@ -10,19 +10,37 @@
 
 namespace modebank::app {
 
-/// Writes estimates as lines of CSV under a header, or of NDJSON. What is not known is empty, or null.
+/// The form of lines, and their fields beside the estimate.
+struct EstimateLines {
+  bool json = false;      ///< NDJSON in place of CSV under a header
+  bool run = false;       ///< the run's name
+  bool forecast = false;  ///< what is expected at the time of the newest sample
+};
+
+/// A forecast from an estimate to the time of the newest sample.
+struct Forecast {
+  double time_s;
+  LiveVerdict expected;
+};
+
+/// Writes estimates as lines of CSV or NDJSON. What is not known is empty, or null.
 class EstimateWriter {
  public:
-  EstimateWriter(std::vector<std::string> states, Eigen::Index modes, bool as_json);
+  EstimateWriter(std::vector<std::string> states, Eigen::Index modes, const EstimateLines& lines);
 
   /// Appends the header, which NDJSON has none of.
   void header(fmt::memory_buffer& out) const;
-  void line(double time_s, const FilterEstimate& estimate, const LiveVerdict& verdict, fmt::memory_buffer& out) const;
+  /// `forecast`: where lines have one.
+  void line(const std::string& run, double time_s, const FilterEstimate& estimate, const LiveVerdict& verdict,
+            const Forecast* forecast, fmt::memory_buffer& out) const;
 
  private:
   std::vector<std::string> states_;
   Eigen::Index modes_;
-  bool json_;
+  EstimateLines lines_;
+
+  void signal(std::size_t state, std::initializer_list<double> values, std::initializer_list<const char*> names,
+              fmt::memory_buffer& out) const;
 };
 
 }  // namespace modebank::app

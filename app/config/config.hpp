@@ -27,6 +27,7 @@ struct TrackConfig {
   std::string checkpoint;
   Index checkpoint_interval = 0;
   std::string resume;
+  bool forecast = false;
   double watchdog_s = 0.0;  ///< period of lines that say how it fares; 0: none
 };
 

@@ -208,6 +208,14 @@ Head read_head(std::string_view file, std::string_view text, bool complete, cons
   return head;
 }
 
+TableInfo table_of(Head head) {
+  TableInfo table;
+  for (std::size_t i = 0; i < head.names.size(); ++i)
+    table.columns.push_back({std::move(head.names[i]), std::move(head.units[i])});
+  table.skipped = head.dialect.skipped;
+  return table;
+}
+
 TableSink make_sink(std::string_view file, const Head& head, const TableRequest& request, std::size_t rows,
                     const std::vector<std::string>& na) {
   std::vector<std::string> header = head.names;
@@ -316,14 +324,12 @@ Table parse_csv(std::string_view file, std::string_view content, const TableRequ
   return std::move(parse_all(file, content, {request}, options).front());
 }
 
-std::vector<TableInfo> CsvReader::tables() const {
-  Head head = head_of_file(path_, options_);
-  TableInfo table;
-  for (std::size_t i = 0; i < head.names.size(); ++i)
-    table.columns.push_back({std::move(head.names[i]), std::move(head.units[i])});
-  table.skipped = head.dialect.skipped;
-  return {std::move(table)};
+TableInfo csv_columns(std::string_view file, std::string_view content, const FormatOptions& options) {
+  std::string storage;
+  return table_of(read_head(file, as_utf8(content, storage), true, options));
 }
+
+std::vector<TableInfo> CsvReader::tables() const { return {table_of(head_of_file(path_, options_))}; }
 
 InputFile CsvReader::describe(const std::vector<TableRequest>&) const { return describe_file(path_); }
 

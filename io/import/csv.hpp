@@ -24,6 +24,9 @@ std::vector<std::string> read_csv_header(const std::filesystem::path& path);
 Table parse_csv(std::string_view file, std::string_view content, const TableRequest& request,
                 const FormatOptions& options = {});
 
+/// The columns of a text of that kind, or of its beginning. Throws as read_csv_header does.
+TableInfo csv_columns(std::string_view file, std::string_view content, const FormatOptions& options);
+
 /// A file of that kind: one table without a name.
 class CsvReader : public TableReader {
  public:

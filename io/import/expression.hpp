@@ -32,9 +32,16 @@ class Expression {
   const std::vector<std::string>& channels() const { return channels_; }
   const std::string& key() const { return key_; }
 
-  /// One value per row. `operands` are the channels' columns; all are as long as `time_s`.
-  std::vector<double> evaluate(const std::vector<std::span<const double>>& operands,
-                               std::span<const double> time_s) const;
+  /// The row before the first of a further batch, for each diff and unwrap of the formula.
+  struct RowBefore {
+    double time_s, value;
+  };
+  using Memory = std::vector<RowBefore>;
+
+  /// One value per row. `operands` are the channels' columns; all are as long as `time_s`. With `memory` (empty at
+  /// first) batches of rows give what all rows together would, but for diff in the first row of all, which is missing.
+  std::vector<double> evaluate(const std::vector<std::span<const double>>& operands, std::span<const double> time_s,
+                               Memory* memory = nullptr) const;
 
  private:
   /// A program of muParser over columns: channels first, then what earlier steps gave.

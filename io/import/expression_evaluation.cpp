@@ -18,10 +18,19 @@ void differentiate(std::vector<double>& column, std::span<const double> time_s) 
   if (!column.empty()) column[0] = column.size() > 1 ? column[1] : not_a_number;
 }
 
+/// The same after the row `before`. Rows that share a time have no slope; the first of them counts for the next.
+void differentiate(std::vector<double>& column, std::span<const double> time_s, Expression::RowBefore& before) {
+  for (std::size_t k = 0; k < column.size(); ++k) {
+    const double seconds = time_s[k] - before.time_s;
+    const Expression::RowBefore row{time_s[k], column[k]};
+    column[k] = seconds > 0.0 ? diff_per_second(before.value, column[k], seconds) : not_a_number;
+    if (seconds != 0.0) before = row;
+  }
+}
+
 /// Turns are counted from the last row that is known.
-void unwrap(std::vector<double>& column) {
+void unwrap(std::vector<double>& column, double& before) {
   constexpr double turn = 2.0 * std::numbers::pi;
-  double before = not_a_number;
   for (double& angle : column) {
     if (std::isnan(angle)) continue;
     if (!std::isnan(before)) angle = before + std::remainder(angle - before, turn);
@@ -36,7 +45,9 @@ bool any_missing(const std::vector<std::span<const double>>& columns, std::size_
 }  // namespace
 
 std::vector<double> Expression::evaluate(const std::vector<std::span<const double>>& operands,
-                                         std::span<const double> time_s) const {
+                                         std::span<const double> time_s, Memory* memory) const {
+  const RowBefore none{not_a_number, not_a_number};
+  if (memory != nullptr) memory->resize(steps_.size(), none);
   std::vector<std::vector<double>> computed;
   computed.reserve(steps_.size());
   for (const Step& step : steps_) {
@@ -50,8 +61,11 @@ std::vector<double> Expression::evaluate(const std::vector<std::span<const doubl
       for (std::size_t i = 0; i < columns.size(); ++i) program.values()[i] = columns[i][row];
       result[row] = program();
     }
-    if (step.then == Step::Then::diff) differentiate(result, time_s);
-    if (step.then == Step::Then::unwrap) unwrap(result);
+    RowBefore before = memory != nullptr ? (*memory)[computed.size()] : none;
+    if (step.then == Step::Then::diff && memory != nullptr) differentiate(result, time_s, before);
+    if (step.then == Step::Then::diff && memory == nullptr) differentiate(result, time_s);
+    if (step.then == Step::Then::unwrap) unwrap(result, before.value);
+    if (memory != nullptr) (*memory)[computed.size()] = before;
     for (double& value : result)
       if (!std::isfinite(value)) value = not_a_number;
     computed.push_back(std::move(result));

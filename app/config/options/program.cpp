@@ -35,6 +35,11 @@ std::vector<Option> track_options() {
       numeric("track.checkpoint_interval", at_least(0), "samples", "and this often; 0: at the end only",
               MODEBANK_FIELD(track.checkpoint_interval)),
       text("track.resume", "a checkpoint", "go on from there", MODEBANK_FIELD(track.resume)),
+      flag("track.forecast",
+           "lines also have what is expected at the time of the newest sample, where estimates wait for inputs that "
+           "come "
+           "late (data.lag_s below 0)",
+           MODEBANK_FIELD(track.forecast)),
       numeric("track.watchdog_s", between(0, 86400), "s",
               "this often a line on standard error says what came, how late the slowest estimate was and how likely "
               "the modes are, also when no input comes; 0: never",

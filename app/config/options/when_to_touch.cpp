@@ -161,6 +161,7 @@ const std::unordered_map<std::string_view, std::string_view>& using_keys() {
       {"track.checkpoint", "when the filter must go on after a restart as if there had been none"},
       {"track.checkpoint_interval", "with a checkpoint: when power may fail"},
       {"track.resume", "after a restart: the checkpoint that was kept"},
+      {"track.forecast", "when inputs come late and the state of now is wanted"},
       {"track.watchdog_s", "when the filter runs unattended and someone reads its log"},
       {"report.size_mb", "when the page of long runs must show more samples, or must be sent by mail"},
       {"report.runs", "0, when a study's page alone is enough; more, when you look into many runs"},

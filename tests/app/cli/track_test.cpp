@@ -191,8 +191,8 @@ TEST_F(Track, AnswersMalformedLinesOnStderrAndKeepsItsState) {
     program.close_input();
     EXPECT_EQ(program.wait(), 0);
     if (disturbed) {
-      EXPECT_THAT(program.errors(), HasSubstr("line 7: wz is not a number; skipped"));
-      EXPECT_THAT(program.errors(), HasSubstr("line 8: 2 fields, the header has 4; skipped"));
+      EXPECT_THAT(program.errors(), HasSubstr("line 7: column wz: \"abc\" is not a number; skipped"));
+      EXPECT_THAT(program.errors(), HasSubstr("line 8: 2 fields, but the header has 4; skipped"));
       EXPECT_THAT(program.errors(), HasSubstr("line 10: time 0.1 s is not after 0.4 s; skipped"));
       EXPECT_THAT(program.errors(), HasSubstr("line 11: time is missing; skipped"));
       EXPECT_THAT(program.errors(), HasSubstr("line 13: is too long"));
@@ -212,7 +212,8 @@ TEST_F(Track, TakesWhatOtherProgramsWrite) {
     for (std::size_t k = 0; k < answers; ++k) result.push_back(program.read_line().value_or("none"));
     EXPECT_FALSE(program.read_line());
     EXPECT_EQ(program.wait(), 0);
-    EXPECT_EQ(program.errors(), "");
+    const bool ended = input.back().ends_with("\n");
+    EXPECT_EQ(program.errors().find("the last line has no line break") == std::string::npos, ended);
     return result;
   };
   const std::vector<double> a = numbers(samples[1]), b = numbers(samples[2]);
@@ -251,7 +252,8 @@ TEST_F(Track, EndsCleanlyWhenNobodyReadsOrASignalComes) {
     program.read_line();
     program.send_signal(signal);
     EXPECT_EQ(program.wait(), 0);
-    EXPECT_EQ(program.errors(), "");
+    const std::string errors = program.errors();
+    EXPECT_TRUE(errors.empty() || errors == "modebank: line 3: stopped within it; it is left out\n") << errors;
   }
   PipedProgram empty(command());
   empty.close_input();

@@ -1,0 +1,284 @@
+#include "app/cli/line_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
+
+#include "app/cli/json_line.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/base/utf8.hpp"
+#include "io/import/csv.hpp"
+#include "io/import/csv_dialect.hpp"
+#include "io/import/csv_text.hpp"
+#include "io/table/memory_table.hpp"
+#include "io/table/name_unit.hpp"
+#include "io/table/number.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+constexpr const char* stream_name = "standard input";
+
+/// Columns for a plan, whose rows come later.
+class ColumnsAlone final : public TableReader {
+ public:
+  explicit ColumnsAlone(TableInfo table) : table_(std::move(table)) {}
+  std::vector<TableInfo> tables() const override { return {table_}; }
+  InputFile describe(const std::vector<TableRequest>&) const override { throw std::logic_error("no rows yet"); }
+  std::vector<Table> read(const std::vector<TableRequest>&, InputFile*) const override {
+    throw std::logic_error("no rows yet");
+  }
+
+ private:
+  TableInfo table_;
+};
+
+bool holds(const std::vector<std::string>& all, const std::string& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+/// Options for one stream that has all columns: without files, runs and roles, and every value may be missing.
+DataOptions of_a_stream(DataOptions data) {
+  for (std::string* text : {&data.inputs, &data.states, &data.run, &data.label, &data.weight}) text->clear();
+  for (std::vector<std::string>* names : {&data.truth, &data.train, &data.test}) names->clear();
+  data.split = {};
+  data.join = Join::time;
+  data.lag_auto = false;
+  data.missing = Missing::predict;
+  return data;
+}
+
+/// A derived channel that the stream has as a column is read from there.
+void derive_what_lacks(DataOptions& data, const std::vector<std::string>& columns) {
+  std::erase_if(data.derive, [&](const std::string& line) { return holds(columns, parse_derived(line).name); });
+}
+
+ColumnInfo column_of(const std::string& name) { return {name, std::string(split_unit(name).unit), {}}; }
+
+/// The columns that a channel is read or computed from.
+void add_operands(const DerivedChannels& derived, const std::string& channel, std::vector<std::string>& columns) {
+  const DerivedChannel* const computed = derived.find(channel);
+  if (computed == nullptr && !holds(columns, channel)) columns.push_back(channel);
+  if (computed != nullptr)
+    for (const std::string& operand : computed->expression.channels()) add_operands(derived, operand, columns);
+}
+
+}  // namespace
+
+LineTable::LineTable(const DataOptions& data, LineFormat format) : data_(of_a_stream(data)), format_(format) {}
+
+bool LineTable::open(const std::string& line) {
+  if (format_ == LineFormat::automatic)
+    format_ = without_blanks(line).starts_with('{') ? LineFormat::ndjson : LineFormat::csv;
+  if (format_ == LineFormat::ndjson) {
+    open_json(line);
+    return true;
+  }
+  head_ += line + "\n";
+  if (is_comment(line)) return false;
+  open_csv();
+  after_header_ = !starts_with_a_row();
+  if (!after_header_) head_.resize(head_.size() - line.size() - 1);
+  if (head_.empty()) data_.format.header = HeaderRow::no;
+  return !after_header_;
+}
+
+/// By the archive's own format; a stream that is written otherwise shows its own.
+void LineTable::open_csv() {
+  FormatOptions& format = data_.format;
+  try {
+    return plan_for(csv_columns(stream_name, head_, format));
+  } catch (const ConfigurationError&) {
+    if (format.separator == Separator::automatic && format.header == HeaderRow::automatic) throw;
+  }
+  format.separator = Separator::automatic;
+  format.decimal = DecimalMark::automatic;
+  format.header = HeaderRow::automatic;
+  plan_for(csv_columns(stream_name, head_, format));
+}
+
+bool LineTable::starts_with_a_row() const {
+  try {
+    return rows_of({}, data_.time_unit).rows() > 0;
+  } catch (const DataError&) {
+    return true;  // with a value that is none
+  }
+}
+
+void LineTable::open_json(const std::string& line) {
+  const nlohmann::json object = parse_json_line(line);
+  if (!object.is_object()) throw DataError("not a JSON object");
+  std::vector<std::string> members;
+  for (const auto& [member, value] : object.items()) members.push_back(member);
+  derive_what_lacks(data_, members);
+  if (data_.time.empty() && holds(members, "time")) data_.time = {"time"};
+  const DerivedChannels derived(data_);
+  columns_ = data_.time;
+  for (const std::vector<std::string>* channels : {&data_.state, &data_.input})
+    for (const std::string& channel : *channels) add_operands(derived, channel, columns_);
+  if (derived.where() != nullptr)
+    for (const std::string& operand : derived.where()->expression.channels()) add_operands(derived, operand, columns_);
+  TableInfo table;
+  for (const std::string& column : columns_) table.columns.push_back(column_of(column));
+  plan_for(table);
+}
+
+void LineTable::plan_for(const TableInfo& table) {
+  columns_ = column_names(table);
+  DataOptions data = data_;
+  derive_what_lacks(data, columns_);
+  if (data.time.empty() && holds(columns_, "time")) data.time = {"time"};
+  if (!data.where.empty()) {
+    std::vector<std::string> operands;
+    const DerivedChannels derived(data);
+    for (const std::string& operand : derived.where()->expression.channels()) add_operands(derived, operand, operands);
+    if (!std::all_of(operands.begin(), operands.end(), [&](const auto& operand) { return holds(columns_, operand); })) {
+      notes_.push_back(
+          fmt::format("data.where = {} names a column that {} lacks: every sample is taken", data.where, stream_name));
+      data.where.clear();
+    }
+  }
+  const MemoryTables stream{{stream_name, {std::make_shared<ColumnsAlone>(table)}}};
+  plan_ = std::move(plan_import(data, &stream).front());
+  SourcePlan& source = plan_->sources.front();
+  source.request.may_miss.assign(source.request.numbers.size(), true);
+  source.request.time.may_miss = true;
+  memory_.resize(source.derived.size());
+}
+
+Table LineTable::rows_of(const std::vector<std::string>& lines, TimeUnit unit) const {
+  const SourcePlan& source = plan_->sources.front();
+  TableRequest request = columns_to_read(source.request, source.derived);
+  request.time.unit = unit;
+  if (format_ == LineFormat::ndjson) return json_rows(lines, request);
+  std::string text = head_;
+  for (const std::string& line : lines) {
+    text += line;
+    if (std::count(line.begin(), line.end(), '"') % 2 != 0) text += '"';  // quotes that nobody closed end with the line
+    text += '\n';
+  }
+  return parse_csv(stream_name, text, request, data_.format);
+}
+
+Table LineTable::json_rows(const std::vector<std::string>& lines, const TableRequest& request) const {
+  std::vector<std::vector<std::string>> texts(columns_.size());
+  for (const std::string& line : lines) {
+    const nlohmann::json object = parse_json_line(line);
+    if (!object.is_object()) throw DataError("not a JSON object");
+    for (std::size_t i = 0; i < columns_.size(); ++i) texts[i].push_back(json_field(object, columns_[i]));
+  }
+  std::vector<MemoryColumn> columns;
+  for (std::size_t i = 0; i < columns_.size(); ++i) columns.push_back({column_of(columns_[i]), std::move(texts[i])});
+  return std::move(MemoryTable(stream_name, std::move(columns)).read({request}, nullptr).front());
+}
+
+std::vector<std::string> LineTable::fields_in(const std::string& line) const {
+  const CsvDialect dialect = find_dialect(head_ + first_row_ + "\n", true, data_.format);
+  return fields_of(line, dialect.separator == Separator::blank ? ' ' : dialect.delimiter());
+}
+
+/// The line after the header, where it has a text for each column and no number.
+bool LineTable::take_units(const std::string& line) {
+  if (!std::exchange(after_header_, false)) return false;
+  const std::vector<std::string> fields = fields_in(line);
+  const bool has_number = std::any_of(fields.begin(), fields.end(), [](const std::string& field) {
+    return parse_number(field).status == NumberStatus::ok;
+  });
+  if (fields.size() != columns_.size() || has_number) return false;
+  head_ += line + "\n";
+  return true;
+}
+
+Table LineTable::read(const std::vector<std::string>& lines) {
+  const bool begun = has_rows(), context = begun && format_ == LineFormat::csv;
+  std::vector<std::string> all;
+  if (context) all.push_back(first_row_);
+  all.insert(all.end(), lines.begin(), lines.end());
+  Table table;
+  try {
+    table = rows_of(all, data_.time_unit);
+    if (table.rows() != all.size()) throw DataError("not one row of the table");
+  } catch (const DataError&) {
+    if (take_units(lines.front())) return {};
+    throw;
+  }
+  after_header_ = false;
+  if (format_ == LineFormat::ndjson && !std::all_of(lines.begin(), lines.end(), is_utf8))
+    notes_.emplace_back(read_as_windows_1252);
+  if (!begun) begin(lines.front(), table);
+  if (begun && !unit_known_) learn_unit(lines, table);
+  std::move(table.notes.begin(), table.notes.end(), std::back_inserter(notes_));
+  if (context) {
+    table.line.erase(table.line.begin());
+    for (auto& column : table.numbers) column.erase(column.begin());
+    if (!table.time_ns.empty()) table.time_ns.erase(table.time_ns.begin());
+    if (!table.time_s.empty()) table.time_s.erase(table.time_s.begin());
+  }
+  rows_before_ = rows_;
+  rows_ += table.rows();
+  derive(table);
+  return table;
+}
+
+/// The first row decides on the separator of all rows.
+void LineTable::begin(const std::string& line, const Table& table) {
+  first_row_ = line;
+  first_s_ = time_s(table, 0);
+  unit_known_ = !has_times() || data_.time_unit != TimeUnit::automatic;
+  if (format_ == LineFormat::csv)
+    data_.format.separator = find_dialect(head_ + line + "\n", true, data_.format).separator;
+}
+
+/// Two rows show what times count; the reader's finding holds for all that follow.
+void LineTable::learn_unit(const std::vector<std::string>& lines, const Table& table) {
+  std::vector<std::string> all{first_row_};
+  all.insert(all.end(), lines.begin(), lines.end());
+  const std::vector<std::int64_t> found =
+      table.rows() == all.size() ? table.time_ns : rows_of(all, TimeUnit::automatic).time_ns;
+  for (const std::string_view word : EnumNames<TimeUnit>::values) {
+    const TimeUnit unit = *parse_name<TimeUnit>(word);
+    if (unit == TimeUnit::automatic || rows_of(all, unit).time_ns != found) continue;
+    data_.time_unit = unit;
+    break;
+  }
+  unit_known_ = true;
+  const double first_s = time_s(rows_of({first_row_}, data_.time_unit), 0);
+  if (first_s != first_s_) corrected_first_s_ = first_s;
+}
+
+double LineTable::time_s(const Table& table, std::size_t row) const {
+  constexpr double ns_per_s = 1e9;
+  if (!has_times()) return static_cast<double>(rows_before_ + row) / data_.rate_hz;
+  if (table.time_ns[row] == missing_stamp) return not_a_number;
+  return table.time_s.empty() ? static_cast<double>(table.time_ns[row]) / ns_per_s : table.time_s[row];
+}
+
+void LineTable::derive(Table& table) {
+  const SourcePlan& source = plan_->sources.front();
+  if (source.derived.empty()) return;
+  if (!origin_ns_ && !table.time_ns.empty()) origin_ns_ = table.time_ns.front();
+  std::vector<double> seconds;  // from the first row, so that nanoseconds since 1970 cost no precision
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    seconds.push_back(!has_times() || table.time_ns[row] == missing_stamp
+                          ? time_s(table, row)
+                          : static_cast<double>(table.time_ns[row] - *origin_ns_) / 1e9);
+  for (std::size_t i = 0; i < source.derived.size(); ++i) {
+    const DerivedColumn& column = source.derived[i];
+    std::vector<std::span<const double>> operands;
+    for (const std::size_t operand : column.operands) operands.emplace_back(table.numbers[operand]);
+    std::vector<double> values = column.channel->expression.evaluate(operands, seconds, &memory_[i]);
+    table.numbers.insert(table.numbers.begin() + static_cast<std::ptrdiff_t>(column.position), std::move(values));
+  }
+}
+
+bool LineTable::is_whole(const std::string& line) const {
+  if (format_ == LineFormat::ndjson) return parse_json_line(line).is_object();
+  return fields_in(line).size() == columns_.size();
+}
+
+}  // namespace modebank::app

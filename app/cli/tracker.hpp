@@ -1,0 +1,90 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/cli/line_stream.hpp"
+#include "app/cli/live_filter.hpp"
+#include "app/cli/track_input.hpp"
+#include "app/cli/track_messages.hpp"
+#include "app/cli/track_output.hpp"
+#include "app/cli/track_thinning.hpp"
+#include "app/cli/track_watchdog.hpp"
+#include "app/config/config.hpp"
+#include "filter/step/alarm.hpp"
+#include "filter/step/feed/aligned_samples.hpp"
+#include "ident/data/trajectory.hpp"
+
+namespace modebank::app {
+
+/// A live filter between samples and standard output.
+class Tracker {
+ public:
+  /// `alignment`: of the samples that follow. Throws ConfigurationError where the bank has other columns or a
+  /// checkpoint cannot be written, and as LiveFilter::resume does.
+  Tracker(const std::string& archive, const Config& config, OpenedFilter opened, const Alignment& alignment);
+
+  /// Samples from standard input, line by line, until it ends.
+  void follow_lines();
+  /// Samples of recorded runs. `named`: lines hold the run's name.
+  void follow_runs(const std::vector<Trajectory>& runs, bool named);
+  /// Whatever ends a stream: the estimates that are made leave, and what the filter has learned is kept. Throws
+  /// DataError where no sample could be used.
+  void finish(bool failed);
+
+ private:
+  /// The state before a sample so far ahead that the filter started anew.
+  struct BeforeLeap {
+    double time_s;
+    AlignedSamples samples;
+  };
+
+  const Config& config_;
+  OpenedFilter opened_;
+  const Bank& bank_ = opened_.bank;
+  LiveFilter& filter_ = *opened_.filter;
+  LiveJudge judge_, forecast_judge_;
+  SampleReader reader_;
+  std::optional<EstimateWriter> writer_;
+  std::string identity_, run_, place_;
+  AlignedSamples samples_;
+  double lag_s_;
+  double stepped_s_ = 0.0;           ///< of the last estimate
+  std::optional<double> last_s_;     ///< of the samples that came
+  std::optional<double> resumed_s_;  ///< the estimates up to then are made
+  std::optional<BeforeLeap> before_leap_;
+  std::optional<TimedSample> first_;     ///< while it is the only one
+  std::optional<std::size_t> first_at_;  ///< where its estimate begins in out_; empty once it has left
+  std::size_t line_number_ = 0, came_ = 0, refused_ = 0, estimates_ = 0;
+  fmt::memory_buffer out_;
+  std::optional<LineStream> lines_;  ///< while it runs
+  LiveMessages messages_;
+  Watchdog watchdog_;
+  SampleThinning thinning_;
+  bool thinning_told_ = false, checkpoint_due_ = false, checkpoint_fails_ = false;
+
+  void go_on();
+  LineStream::Got next(std::string_view& line);
+  void take_lines(std::vector<std::string>& lines);
+  void take_last_line(const std::string& line);
+  void take(SampleReader::Line kind);
+  void take_sample(const TimedSample& sample);
+  void open_writer(const EstimateLines& lines);
+  void correct_first(double time_s);
+  bool comes_in_time(double time_s);
+  bool is_gap(double from_s, double to_s) const;
+  bool is_taken(double time_s);
+  void step(const TimedSample& sample);
+  void complain(const std::string& reason);
+  bool flush();
+  void save() const;
+  void keep();
+  void write(const TimedSample& sample, const FilterEstimate& estimate);
+};
+
+}  // namespace modebank::app

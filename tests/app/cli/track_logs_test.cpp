@@ -1,0 +1,255 @@
+// The live filter on logs as `run` reads them: stamps, dialects, derived channels, rates and lags. What is expected is
+// what evaluate has of the same run, or what the same numbers give in the plainest form.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "io/archive/archive.hpp"
+#include "io/files/read_file.hpp"
+#include "tests/app/cli/track_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class TrackLogs : public Track {
+ protected:
+  struct Row {
+    double time_s, wz, left, right;
+  };
+  std::vector<Row> rows(const std::string& name) const {
+    std::vector<Row> result;
+    for (const std::string& line : lines(name))
+      if (line.front() != 't')
+        result.push_back({numbers(line)[0], numbers(line)[1], numbers(line)[2], numbers(line)[3]});
+    return result;
+  }
+  /// Both runs written another way.
+  void rewrite(const std::string& header, const std::function<std::string(const Row&)>& line) const {
+    for (const char* name : {"run_00.csv", "run_01.csv"}) {
+      std::string text = header;
+      for (const Row& row : rows(name)) text += line(row) + "\n";
+      write(name, text);
+    }
+  }
+  ProgramResult track(const std::string& input, const std::string& options = "") const {
+    return run_program({"/bin/sh", "-c",
+                        fmt::format("cd '{}' && '{}' track out.h5 {} {}", file("").string(), MODEBANK_PROGRAM, options,
+                                    input.empty() ? "" : "< " + input)});
+  }
+  static std::vector<std::vector<double>> table(const std::string& csv) {
+    std::vector<std::vector<double>> rows;
+    std::istringstream text(csv);
+    std::string line;
+    std::getline(text, line);
+    while (std::getline(text, line)) rows.push_back(numbers(line));
+    return rows;
+  }
+  /// The estimates of run 01 are those that evaluate has, at its times after `origin_s`.
+  void expect_evaluated(const ProgramResult& result, double origin_s = 0.0, double within = 1e-12) const {
+    const Archive stored = read_archive(archive());
+    const Trajectory& run = stored.recording->runs[1];
+    const RunEvaluation& expected = stored.evaluations[0].runs[1];
+    const auto said = table(result.out);
+    ASSERT_EQ(std::ssize(said), run.samples()) << result.err;
+    for (Index k = 0; k < run.samples(); ++k) {
+      const std::vector<double>& v = said[static_cast<std::size_t>(k)];
+      EXPECT_NEAR(v[0], origin_s + run.time_s(k), 1e-6);
+      EXPECT_NEAR(v[5], expected.state(0, k), within) << k;
+      if (k > 0) {
+        EXPECT_NEAR(v[2], expected.prediction(0, k), within) << k;
+      }
+    }
+  }
+};
+
+constexpr double day_s = 1'714'557'600.0;  // 2024-05-01T10:00:00Z
+
+TEST_F(TrackLogs, ReadsIsoStamps) {
+  rewrite("time,wz,left,right\n", [](const Row& row) {
+    return fmt::format("2024-05-01T10:00:{:06.3f}Z,{},{},{}", row.time_s, row.wz, row.left, row.right);
+  });
+  ASSERT_EQ(run().status, 0);
+  const ProgramResult result = track("run_01.csv");
+  EXPECT_EQ(result.status, 0) << result.err;
+  expect_evaluated(result, day_s);
+  EXPECT_EQ(track("", "--data.inputs run_01.csv").out, result.out);
+}
+
+TEST_F(TrackLogs, ReadsSecondsAndNanosecondsOfTwoColumns) {
+  rewrite("secs,nsecs,wz,left,right\n", [](const Row& row) {
+    const auto ns = std::llround(row.time_s * 1e9);
+    return fmt::format("{},{},{},{},{}", 1'700'000'000 + ns / 1'000'000'000, ns % 1'000'000'000, row.wz, row.left,
+                       row.right);
+  });
+  ASSERT_EQ(run({"--data.time", "secs, nsecs"}).status, 0);
+  const ProgramResult result = track("run_01.csv");
+  expect_evaluated(result, 1.7e9);
+  EXPECT_EQ(result.err, "");
+}
+
+TEST_F(TrackLogs, ReadsSemicolonsDecimalCommasUnitsAndNoHeader) {
+  const auto german = [](std::string text) {
+    for (char& c : text) c = c == ',' ? ';' : c == '.' ? ',' : c;
+    return text;
+  };
+  const auto line = [](const Row& row) { return fmt::format("{},{},{},{}", row.time_s, row.wz, row.left, row.right); };
+  rewrite("time;wz;left;right\ns;rad/s;m/s;m/s\n", [&](const Row& row) { return german(line(row)); });
+  ASSERT_EQ(run().status, 0);
+  expect_evaluated(track("run_01.csv"));
+  for (const char* name : {"run_00.csv", "run_01.csv"}) {
+    std::string text = read_file(file(name));
+    text.erase(0, text.find('\n', text.find('\n') + 1) + 1);
+    write(name, text);
+  }
+  ASSERT_EQ(run({"--data.time", "c1", "--data.state", "c2", "--data.input", "c3, c4"}).status, 0);
+  const ProgramResult result = track("run_01.csv");
+  expect_evaluated(result);
+  EXPECT_THAT(result.err, HasSubstr("without a header: columns c1 to c4"));
+}
+
+/// diff and unwrap need the row before, which may be of an earlier batch.
+TEST_F(TrackLogs, DerivesChannelsRowByRow) {
+  double heading = 0.0;
+  rewrite("time,heading_deg,left,right\n", [&](const Row& row) {
+    const std::string line =
+        fmt::format("{},{},{},{}", row.time_s, std::remainder(heading * 180.0 / M_PI, 360.0), row.left, row.right);
+    heading += 20.0 * row.wz;
+    return line;
+  });
+  ASSERT_EQ(run({"--data.derive", "heading = unwrap(rad(heading_deg))", "--data.derive", "turn = diff(heading)",
+                 "--data.state", "turn"})
+                .status,
+            0);
+  const Archive stored = read_archive(archive());
+  const RunEvaluation& expected = stored.evaluations[0].runs[1];
+  PipedProgram program(command());
+  const std::vector<std::string> samples = lines("run_01.csv");
+  program.write(samples[0] + "\n");
+  ASSERT_TRUE(program.read_line());
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    program.write(samples[k] + "\n");
+    const std::vector<double> v = numbers(program.read_line().value());
+    const auto i = static_cast<Index>(k - 1);
+    if (k < 20) continue;  // the first row has no slope live: another start
+    EXPECT_NEAR(v[2], expected.prediction(0, i), 1e-6) << k;
+  }
+  // A stream that has the channel itself is taken at its word.
+  const ProgramResult direct =
+      run_program({"/bin/sh", "-c",
+                   fmt::format("printf 'time,turn,left,right\\n0,0.5,0,0\\n0.1,0.4,0,0\\n' | '{}' track '{}'",
+                               MODEBANK_PROGRAM, archive())});
+  EXPECT_EQ(table(direct.out).at(0)[5], 0.5) << direct.err;
+}
+
+TEST_F(TrackLogs, BringsAFasterLogToTheArchivesRate) {
+  for (const char* name : {"run_00.csv", "run_01.csv"}) {
+    const std::vector<Row> slow = rows(name);
+    std::string text = "time,wz,left,right\n";
+    for (std::size_t k = 0; k + 1 < slow.size(); ++k)
+      for (int i = 0; i < 5; ++i)
+        text += fmt::format("{},{},{},{}\n", slow[k].time_s + 0.003 + 0.0194 * i,
+                            slow[k].wz + 0.2 * i * (slow[k + 1].wz - slow[k].wz), slow[k].left, slow[k].right);
+    write(name, text);
+  }
+  ASSERT_EQ(run({"--data.rate_hz", "10"}).status, 0);
+  expect_evaluated(track("run_01.csv"));
+}
+
+TEST_F(TrackLogs, HoldsBackTheStreamThatIsEarly) {
+  for (const double lag_s : {0.25, -0.25, -0.5}) {
+    ASSERT_EQ(run({"--data.lag_s", fmt::format("{}", lag_s)}).status, 0);
+    const ProgramResult result = track("run_01.csv");
+    expect_evaluated(result);
+    EXPECT_THAT(result.err, HasSubstr(fmt::format("inputs come {} s {} the states", std::abs(lag_s),
+                                                  lag_s > 0 ? "before" : "after")));
+    EXPECT_EQ(track("", "--data.inputs run_01.csv").out, result.out);
+    EXPECT_EQ(table(track("run_01.csv", "--data.lag_s 0").out).size(), 80u);
+  }
+}
+
+/// The last estimate is 0.5 s old: the forecast is five steps of the filter without a measurement, its input held.
+TEST_F(TrackLogs, ForecastsToTheNewestSample) {
+  ASSERT_EQ(run({"--data.lag_s", "-0.5"}).status, 0);
+  const auto plain = table(track("run_01.csv").out), said = table(track("run_01.csv", "--track.forecast true").out);
+  ASSERT_EQ(said.size(), plain.size());
+  const std::size_t now = said[0].size() - 4;
+  EXPECT_NEAR(said.back()[now], said.back()[0] + 0.5, 1e-9);
+  for (std::size_t k = 0; k < plain.size(); ++k)
+    for (std::size_t i = 0; i < plain[k].size(); ++i)
+      EXPECT_TRUE(plain[k][i] == said[k][i] || std::isnan(plain[k][i])) << "the forecast leaves the filter as it was";
+  // The same by hand: the aligned run, its last state and input, then a sample without measurement.
+  const Trajectory run = read_archive(archive()).recording->runs[1];
+  std::string text = "time,wz,left,right\n";
+  for (Index k = 0; k < run.samples(); ++k)
+    text += fmt::format("{},{},{},{}\n", run.time_s(k), run.state(0, k), run.input(0, k), run.input(1, k));
+  text += fmt::format("{},,,\n", run.time_s(run.samples() - 1) + 0.5);
+  write("aligned.csv", text);
+  const auto by_hand = table(track("aligned.csv", "--data.lag_s 0").out);
+  for (const std::size_t i : {0u, 1u, 2u}) EXPECT_NEAR(said.back()[now + 1 + i], by_hand.back()[2 + i], 1e-12);
+}
+
+TEST_F(TrackLogs, ReadsFilesAsRunDoes) {
+  const ProgramResult both = track("", "--data.inputs 'run_*.csv'");
+  EXPECT_EQ(both.status, 0) << both.err;
+  EXPECT_THAT(both.out, HasSubstr("run,time,steps"));
+  EXPECT_THAT(both.out, HasSubstr("\n00,0,0,"));
+  EXPECT_THAT(both.out, HasSubstr("\n01,0,0,"));
+  EXPECT_EQ(track("", "--data.inputs run_01.csv").out, track("run_01.csv").out);
+  EXPECT_EQ(track("", "--data.inputs none.csv").status, 2);
+  const ProgramResult json = track("", "--data.inputs run_01.csv --track.format ndjson");
+  EXPECT_EQ(nlohmann::json::parse(json.out.substr(0, json.out.find('\n'))).at("time"), 0.0);
+}
+
+TEST_F(TrackLogs, FailsWhereNoSampleCouldBeUsed) {
+  write("junk.csv", "time,wz,left,right\n" + std::string("soon,0,0,0\n") + "later,0,0,0\n" + "last,0,0,0\n");
+  const ProgramResult result = track("junk.csv");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("line 2: column time: \"soon\""));
+  EXPECT_THAT(result.err, Not(HasSubstr("\"later\"")));
+  EXPECT_THAT(result.err, HasSubstr("line 2: the same 2 times more, the last at line 4"));
+  EXPECT_THAT(result.err, HasSubstr("no sample could be used: 3 of 3 were left out"));
+}
+
+TEST_F(TrackLogs, TellsOfALineWithoutItsEnd) {
+  const std::vector<std::string> samples = lines("run_01.csv");
+  const std::string start = samples[0] + "\n" + samples[1] + "\n";
+  write("whole.csv", start + samples[2]);
+  write("cut.csv", start + "0.1,0.2");
+  const ProgramResult whole = track("whole.csv"), cut = track("cut.csv");
+  EXPECT_EQ(table(whole.out).size(), 2u);
+  EXPECT_THAT(whole.err, HasSubstr("line 3: the last line has no line break at its end: it has all its fields"));
+  EXPECT_EQ(table(cut.out).size(), 1u);
+  EXPECT_THAT(cut.err, HasSubstr("line 3: the last line has no line break at its end: fields are missing"));
+  write("cut.json", "{\"time\":0,\"wz\":0,\"left\":0,\"right\":0}\n{\"time\":0.1,\"wz\":0.1,\"left\":0,\"ri");
+  EXPECT_THAT(track("cut.json").err, HasSubstr("fields are missing"));
+}
+
+/// A whole number alone may count anything; two show what.
+TEST_F(TrackLogs, FindsWhatTimesCountAsTheImportDoes) {
+  rewrite("time,wz,left,right\n", [](const Row& row) {
+    return fmt::format("{},{},{},{}", std::llround(1000.0 * row.time_s) + 5000, row.wz, row.left, row.right);
+  });
+  ASSERT_EQ(run().status, 0);
+  const ProgramResult whole = track("run_01.csv");
+  const auto expected = table(whole.out);
+  EXPECT_NEAR(expected[1][0] - expected[0][0], 0.1, 1e-9);
+  PipedProgram program(command());
+  const std::vector<std::string> samples = lines("run_01.csv");
+  program.write(samples[0] + "\n");
+  program.read_line();
+  for (std::size_t k = 1; k < 20; ++k) {
+    program.write(samples[k] + "\n");
+    const std::vector<double> v = numbers(program.read_line().value());
+    EXPECT_EQ(v[1], k == 1 ? 0 : 1) << k;
+    EXPECT_EQ(v[5], expected[k - 1][5]) << k;
+  }
+}
+
+}  // namespace
+}  // namespace modebank::test

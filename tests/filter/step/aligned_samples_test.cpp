@@ -1,0 +1,87 @@
+// Samples as they come and as whole runs are joined: hold and interpolation of both are the same.
+#include "filter/step/feed/aligned_samples.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "ident/data/streams.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A stream of one state and one input whose times jitter.
+struct Recorded {
+  VectorXd time_s;
+  MatrixXd state, input;
+
+  Recorded(Index samples, double period_s, double jitter) : time_s(samples), state(1, samples), input(1, samples) {
+    for (Index k = 0; k < samples; ++k) {
+      const double t = static_cast<double>(k);
+      time_s(k) = period_s * (t + jitter * std::sin(7.0 * t));
+      state(0, k) = std::sin(0.3 * t);
+      input(0, k) = std::cos(0.7 * t);
+    }
+  }
+};
+
+std::vector<TimedSample> aligned(const Recorded& run, const Alignment& alignment) {
+  AlignedSamples samples(alignment);
+  std::vector<TimedSample> all;
+  for (Index k = 0; k < run.time_s.size(); ++k) {
+    samples.push({run.time_s(k), run.input.col(k), run.state.col(k)});
+    while (const TimedSample* const ready = samples.next()) {
+      all.push_back(*ready);
+      EXPECT_GE(run.time_s(k) + 1e-9, std::max(ready->time_s, ready->time_s - alignment.lag_s)) << "before it is known";
+    }
+  }
+  return all;
+}
+
+TEST(AlignedSamples, AreThoseOfTheWholeRun) {
+  for (const double jitter : {0.0, 0.2})
+    for (const double lag_s : {0.0, 0.17, -0.17, -0.5})
+      for (const double rate_hz : {0.0, 10.0, 33.0}) {
+        const Recorded run(400, 0.01, jitter);
+        const VectorXd time_s = joint_times(run.time_s, run.time_s, {rate_hz, lag_s, 0.0, 0.0});
+        const MatrixXd state = interpolate({run.time_s, run.state}, time_s);
+        const MatrixXd input = hold({run.time_s, run.input}, time_s.array() - lag_s);
+        const std::vector<TimedSample> samples = aligned(run, {rate_hz, lag_s});
+        ASSERT_EQ(std::ssize(samples), time_s.size()) << "lag " << lag_s << ", rate " << rate_hz << ", " << jitter;
+        for (Index k = 0; k < time_s.size(); ++k) {
+          const TimedSample& sample = samples[static_cast<std::size_t>(k)];
+          EXPECT_NEAR(sample.time_s, time_s(k), 1e-12);
+          EXPECT_NEAR(sample.measurement(0), state(0, k), 1e-12);
+          EXPECT_EQ(sample.input(0), input(0, k)) << "lag " << lag_s << ", rate " << rate_hz << ", sample " << k;
+        }
+      }
+}
+
+TEST(AlignedSamples, OfASlowStreamKeepTheirTimes) {
+  const Recorded run(50, 0.1, 0.2);
+  const std::vector<TimedSample> samples = aligned(run, {10.0, 0.0});
+  ASSERT_EQ(samples.size(), 50U);
+  for (Index k = 0; k < 50; ++k) EXPECT_EQ(samples[static_cast<std::size_t>(k)].time_s, run.time_s(k));
+}
+
+TEST(AlignedSamples, GoOnAtTheRateAfterAPause) {
+  const Recorded run(400, 0.01, 0.0);
+  const std::vector<TimedSample> whole = aligned(run, {10.0, 0.0});
+  AlignedSamples later({10.0, 0.0});
+  later.go_on_after(whole[9].time_s);
+  std::vector<double> times;
+  for (Index k = 91; k < 200; ++k) {
+    later.push({run.time_s(k), run.input.col(k), run.state.col(k)});
+    while (const TimedSample* const ready = later.next()) times.push_back(ready->time_s);
+  }
+  ASSERT_GE(times.size(), 5U);
+  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], whole[10 + i].time_s, 1e-12);
+}
+
+}  // namespace
+}  // namespace modebank
