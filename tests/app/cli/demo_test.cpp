@@ -55,6 +55,13 @@ TEST_F(Demo, IsTheCommandsThatItNames) {
   EXPECT_THAT(shown.out, HasSubstr(by_hand.out.substr(0, by_hand.out.find("archive   "))));
 }
 
+TEST_F(Demo, ItsConfigurationRunsInItsFolder) {
+  ASSERT_EQ(demo().status, 0);
+  const ProgramResult again = run_program({"/bin/sh", "-c", "cd '" + folder() + "' && '" + MODEBANK_PROGRAM +
+                                                                "' identify demo.ini --archive.output again.h5"});
+  EXPECT_EQ(again.status, 0) << again.err;
+}
+
 TEST_F(Demo, RepeatsInItsOwnFolderButLeavesWhatIsForeign) {
   ASSERT_EQ(demo().status, 0);
   EXPECT_EQ(demo().status, 0) << "its own folder";

@@ -45,7 +45,7 @@ def scored(program, folder, choice, train, test):
     """Of each filter: one-step RMSE, log score and shares too far and too close, and the free run's RMSE, on the one test record."""
     archive = folder / f"tanks_{test}_{'_'.join(train)}_{'_'.join(map(str, choice))}.h5"
     derived = ["--data.derive", f"pump_over=max(pump - {choice.knee}, 0)", "--data.input", "pump,pump_over"] if choice.knee else []
-    done = subprocess.run([program, "run", CONFIG, "--data.root", folder, "--data.train", ",".join(train), "--data.test", test,
+    done = subprocess.run([program, "run", CONFIG, "--data.root", folder, "--data.inputs", "tanks_*.csv", "--data.train", ",".join(train), "--data.test", test,
                            "--window.state_lags", str(choice.lags), "--window.input_lags", str(choice.lags), *derived,
                            "--mixture.components", str(choice.modes), "--bank.look_ahead", str(choice.ahead),
                            "--bank.look_ahead_score", choice.score, "--bank.folds", "1" if choice.score == "error" else "6",

@@ -4,7 +4,6 @@ import h5py
 import numpy as np
 
 from benchmark import FILTERS, SOURCES, Arguments, decoded, head, line, numbers, rows, run
-from dart_prepare import prepare
 from paired import by_run, mean_and_error
 
 PROTOCOL = """ICE and FLOORING by configs/husky_ice.ini, DRIVE by configs/drive_husky.ini, DART by configs/dart.ini; either half of the runs trains. Held-out log score [nats/sample] / RMSE [rad/s];
@@ -48,12 +47,9 @@ def table_row(name, archive, horizon):
 
 def main():
     given = Arguments(__doc__)
-    (given.out / "dart").mkdir(exist_ok=True)
-    for file in (given.data / "dart").glob("*.csv"):
-        prepare(file, given.out / "dart" / file.name)
     head(given.program, "Combined forecasts", PROTOCOL, ["data, what trains", "ahead", "bank", "best competitor in each", "combined", "better by, in errors"])
     for name, config, options in (("ICE", "husky_ice.ini", {}), ("FLOORING", "husky_ice.ini", FLOORING), ("DRIVE", "drive_husky.ini", {}),
-                                  ("DART", "dart.ini", {"data__root": given.out})):
+                                  ("DART", "dart.ini", {})):
         for part, archive in zip(("one half", "the other"), both_folds(given, name, config, **options)):
             for horizon in (1, 10):
                 table_row(f"{name}, {part}", archive, horizon)
