@@ -159,10 +159,10 @@ TEST_F(Robustness, D15TracksLinesAreUtf8WhateverTheName) {
   for (const bool as_json : {true, false}) {
     const app::EstimateWriter writer({"gr\xf6\xdf"
                                       "e"},
-                                     1, as_json);
+                                     1, app::EstimateLines{as_json, false, false});
     fmt::memory_buffer out;
     writer.header(out);
-    writer.line(0.5, estimate, verdict, out);
+    writer.line("", 0.5, estimate, verdict, nullptr, out);
     const std::string text = fmt::to_string(out);
     EXPECT_THAT(text, HasSubstr("gr\\"));
     EXPECT_EQ(printable(text), text);
