@@ -152,7 +152,7 @@ std::size_t lines_above_table(std::string_view text, bool complete, const Format
       found = found && rows[i].size() == width && (i < first + names_and_units || any_value(rows[i]));
     if (!found) continue;
     // R writes headers that lack the name of row numbers: they look like a title.
-    if (first == 1 && rows[0].size() + 1 == width && any_value(rows[1])) return 0;
+    if (first == 1 && rows[0].size() > 1 && rows[0].size() + 1 == width && any_value(rows[1])) return 0;
     // Comments behind the title stay: the last may name the columns.
     const auto behind = std::find_if(all.begin(), all.end(),
                                      [&](const TextRecord& record) { return record.line > records[first - 1].line; });
