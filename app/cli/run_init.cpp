@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/init_trial.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/configuration_output.hpp"
@@ -73,6 +74,7 @@ int run_init(const CommandLine& line) {
   std::erase_if(proposal.keys, [](const ProposedKey& key) { return find_option("data." + key.key) == nullptr; });
   for (ProposedKey& key : proposal.keys)
     if (takes_quotes("data." + key.key) && key.value != " ") key.value = path_text(key.value);
+  make_it_run(proposal, target);
   const std::string text = configuration_text(proposal, line.typed);
   replace_file(final_target(target), {text});
   print_text(line, fmt::format("\n{}:\n{}\n", target, text));

@@ -1,6 +1,7 @@
 #include "app/init/guess.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,11 +20,34 @@ struct Candidate {
   ChannelPlace place;
   const SurveyedTable* table;
   const SurveyedChannel* channel;
-  NameScore score;
+  NameScore score;  ///< all hints
+  NameScore named;  ///< the name alone
+
+  bool is_held() const { return channel->check.repeated > most_repeated; }
 };
 
 /// Whether a line of a configuration can hold the name, in quotes if need be.
 bool may_be_named(const std::string& name) { return std::none_of(name.begin(), name.end(), is_control); }
+
+bool same_table(const ChannelPlace& a, const ChannelPlace& b) { return a.file == b.file && a.table == b.table; }
+
+/// Adds the hints beside the names: a value that is held while others of its table move is a command, and some units are
+/// of what is measured or of what acts.
+void add_hints(std::vector<Candidate>& all) {
+  constexpr int held = 3, unit = 2;
+  constexpr double moving = 0.2;  // repeats at most of what an instrument measures anew in nearly every row
+  for (Candidate& c : all) {
+    const bool others_move = std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
+      return same_table(other.place, c.place) && other.channel->check.repeated < moving;
+    });
+    if (c.is_held() && others_move) {
+      c.score.input += held;
+      c.score.state = std::max(0, c.score.state - held);
+    }
+    c.score.state += unit_of_measured(c.channel->unit) ? unit : 0;
+    c.score.input += unit_of_acting(c.channel->unit) ? unit : 0;
+  }
+}
 
 std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
   std::vector<Candidate> all;
@@ -34,18 +58,18 @@ std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
       const std::string from = table.name.empty() ? files[f].path.stem().string() + " " : "";
       for (std::size_t c = 0; c < table.channels.size(); ++c) {
         const SurveyedChannel& channel = table.channels[c];
-        if (!channel.moves() || channel.name == table.run || !may_be_named(channel.name)) continue;
+        if (!channel.moves() || channel.counts || channel.name == table.run || !may_be_named(channel.name)) continue;
         if (std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end()) continue;
         NameScore score = score_name(channel.name, from + table.type);
-        if (!score.ignored) all.push_back({{f, t, c}, &table, &channel, score});
+        if (!score.ignored) all.push_back({{f, t, c}, &table, &channel, score, score});
       }
     }
+  add_hints(all);
   return all;
 }
 
-bool same_table(const ChannelPlace& a, const ChannelPlace& b) { return a.file == b.file && a.table == b.table; }
-
-/// Those of the most points, in the order of the file; within `slack` of the best and in its table.
+/// Those of the most points, in the order of the file; within `slack` of the best, by all hints or by names, and in its
+/// table.
 std::vector<const Candidate*> best_of(const std::vector<Candidate>& all, int NameScore::*points, int slack,
                                       std::size_t most) {
   const Candidate* best = nullptr;
@@ -53,19 +77,48 @@ std::vector<const Candidate*> best_of(const std::vector<Candidate>& all, int Nam
     if (c.score.*points > 0 && (best == nullptr || c.score.*points > best->score.*points)) best = &c;
   std::vector<const Candidate*> chosen;
   for (const Candidate& c : all)
-    if (best != nullptr && same_table(c.place, best->place) && c.score.*points >= best->score.*points - slack &&
-        c.score.*points > 0 && chosen.size() < most)
+    if (best != nullptr && same_table(c.place, best->place) && c.score.*points > 0 && chosen.size() < most &&
+        (c.score.*points >= best->score.*points - slack ||
+         (slack > 0 && c.named.*points >= best->named.*points - slack)))
       chosen.push_back(&c);
   return chosen;
 }
 
-/// Of channels whose names say nothing: the last is the state, the others act on it, as usual in tables of u and y.
-void guess_by_place(std::vector<Candidate>& all, Guess& guess) {
-  guess.reasons.emplace_back(
-      "names say nothing of the channels' parts: the last is taken for the state, the rest for inputs");
-  guess.states = {all.back().place};
-  for (std::size_t i = 0; i + 1 < all.size() && guess.inputs.size() < most_inputs; ++i)
-    if (same_table(all[i].place, all.back().place)) guess.inputs.push_back(all[i].place);
+/// Whether an instrument measures it beside others, as one axis of several.
+bool is_of_axes(const Candidate& c) {
+  for (const Axis axis : {Axis::x, Axis::y, Axis::z})
+    if (names_angular_rate(c.channel->name, axis) || names_acceleration(c.channel->name, axis) ||
+        names_position(c.channel->name, axis))
+      return true;
+  return false;
+}
+
+/// Without a hint on any state: the last channel that nothing takes for an input is the state, as usual in tables of u
+/// and y.
+void guess_state_by_place(const std::vector<Candidate>& all, Guess& guess) {
+  const auto least = std::min_element(
+      all.rbegin(), all.rend(), [](const Candidate& a, const Candidate& b) { return a.score.input < b.score.input; });
+  guess.states = {least->place};
+}
+
+/// Where nothing names an input: what lies beside the state and is not measured with it, for a table of few channels or
+/// one that is held.
+void guess_inputs_by_place(const std::vector<Candidate>& all, bool by_place, Guess& guess) {
+  constexpr std::ptrdiff_t few = 4;
+  const auto beside = std::count_if(all.begin(), all.end(),
+                                    [&](const Candidate& c) { return same_table(c.place, guess.states.front()); });
+  std::vector<std::string> names;
+  for (const Candidate& c : all) {
+    const bool is_state = std::find(guess.states.begin(), guess.states.end(), c.place) != guess.states.end();
+    if (is_state || !same_table(c.place, guess.states.front()) || c.score.state > 0 || is_of_axes(c)) continue;
+    if ((!by_place && beside > few && !c.is_held()) || guess.inputs.size() == most_inputs) continue;
+    guess.inputs.push_back(c.place);
+    names.push_back(c.channel->name);
+  }
+  if (!names.empty())
+    guess.reasons.push_back(
+        fmt::format("no name tells an input: {} {} taken for what acts, because nothing else stands beside the state",
+                    fmt::join(names, ", "), names.size() == 1 ? "is" : "are"));
 }
 
 void guess_states(std::vector<Candidate>& all, Guess& guess) {
@@ -101,6 +154,13 @@ void turn_upright(const std::vector<SurveyedFile>& files, Guess& guess) {
   }
 }
 
+/// By a name that tells speed or rate rather than a command.
+bool is_measured_motion(const std::vector<SurveyedFile>& files, const ChannelPlace& place) {
+  constexpr int least_of_command = 5;
+  const int points = score_name(channel_at(files, place).name).input;
+  return points > 0 && points < least_of_command;
+}
+
 }  // namespace
 
 const SurveyedChannel& channel_at(const std::vector<SurveyedFile>& files, const ChannelPlace& place) {
@@ -117,27 +177,54 @@ Guess guess_roles(const std::vector<SurveyedFile>& files) {
         for (const SurveyedChannel& channel : table.channels)
           if (!channel.why_text.empty()) why += fmt::format("; column {}: {}", channel.name, channel.why_text);
     }
-    throw ConfigurationError(fmt::format("{}: no channel moves: nothing can be a state{}",
+    throw DataError(fmt::format("{}: no channel moves: nothing can be a state{}",
                                          files.empty() ? "" : files.front().path.string(), why));
   }
   Guess guess;
   guess_states(all, guess);
-  if (guess.states.empty()) {
-    const bool known_inputs = std::any_of(all.begin(), all.end(), [](const Candidate& c) { return c.score.input > 0; });
-    if (known_inputs)
-      std::stable_sort(all.begin(), all.end(),
-                       [](const Candidate& a, const Candidate& b) { return a.score.input > b.score.input; });
-    guess_by_place(all, guess);
-    return guess;
+  const bool by_place = guess.states.empty();
+  if (by_place) {
+    guess.reasons.emplace_back(
+        "names say nothing of the state: the last channel is taken that no hint takes for an input");
+    guess_state_by_place(all, guess);
   }
   guess_inputs(all, guess);
+  if (guess.inputs.empty()) guess_inputs_by_place(all, by_place, guess);
   if (guess.inputs.empty())
     guess.reasons.emplace_back("no channel looks commanded: without inputs modes differ in their own motion alone");
-  else if (score_name(channel_at(files, guess.inputs.front()).name).input < 5)
+  else if (!by_place && is_measured_motion(files, guess.inputs.front()))
     guess.reasons.emplace_back(
         "no command is recorded: measured motion stands in for it, so the model says how one follows the other");
   turn_upright(files, guess);
   return guess;
+}
+
+std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, const Guess& guess) {
+  const auto has = [](const std::vector<ChannelPlace>& places, const ChannelPlace& place) {
+    return std::find(places.begin(), places.end(), place) != places.end();
+  };
+  std::vector<ChannelLeft> left;
+  for (std::size_t f = 0; f < files.size(); ++f)
+    for (std::size_t t = 0; t < files[f].tables.size(); ++t)
+      for (std::size_t c = 0; c < files[f].tables[t].channels.size(); ++c) {
+        const ChannelPlace place{f, t, c};
+        const SurveyedTable& table = files[f].tables[t];
+        const SurveyedChannel& channel = channel_at(files, place);
+        const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
+        if (!channel.moves() || is_time || channel.name == table.run || has(guess.states, place) ||
+            has(guess.inputs, place))
+          continue;
+        const NameScore score = score_name(channel.name);
+        const bool beside = same_table(place, guess.states.front());
+        const bool with_inputs = !guess.inputs.empty() && same_table(place, guess.inputs.front());
+        left.push_back({channel.name, score.ignored    ? "the name is not that of a signal"
+                                      : channel.counts ? "counts up evenly, as times and counters do"
+                                      : score.input > score.state && with_inputs
+                                          ? fmt::format("others are likelier inputs, {} at most are taken", most_inputs)
+                                      : beside || with_inputs ? "measured beside the state, or no hint tells its part"
+                                                              : "of another table than the state and the inputs"});
+      }
+  return left;
 }
 
 }  // namespace modebank::app

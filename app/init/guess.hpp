@@ -28,13 +28,22 @@ struct Mounting {
   std::string other;  ///< that yaw rate
 };
 
+/// A channel that moves and has no part.
+struct ChannelLeft {
+  std::string name, reason;
+};
+
 struct Guess {
   std::vector<ChannelPlace> states, inputs;
   std::optional<Mounting> mounting;
   std::vector<std::string> reasons;  ///< in words, for the configuration's comments
 };
 
-/// States and inputs by names, types and movement. Throws ConfigurationError when no channel moves.
+/// States and inputs by names, units, movement and position, each a hint with a weight. Throws DataError when no
+/// channel moves.
 Guess guess_roles(const std::vector<SurveyedFile>& files);
+
+/// The channels that move and that `guess` leaves out, with the reason, in the order of the files.
+std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, const Guess& guess);
 
 }  // namespace modebank::app

@@ -45,7 +45,9 @@ json init_json(const std::vector<SurveyedFile>& surveyed, const Proposal& propos
   }
   for (const ProposedKey& key : proposal.keys)
     keys.push_back({{"key", "data." + key.key}, {"value", key.value}, {"why", key.why}});
-  return {{"files", files}, {"keys", keys}, {"doubts", proposal.doubts}};
+  json left = json::array();
+  for (const ChannelLeft& channel : proposal.left) left.push_back({{"name", channel.name}, {"reason", channel.reason}});
+  return {{"files", files}, {"keys", keys}, {"doubts", proposal.doubts}, {"not_taken", left}};
 }
 
 }  // namespace modebank::app

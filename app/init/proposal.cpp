@@ -50,6 +50,7 @@ class Proposer {
     times();
     sampling();
     runs();
+    proposal_.left = channels_left(surveyed_, guess_);
     return std::move(proposal_);
   }
 
@@ -258,6 +259,13 @@ class Proposer {
     return places.empty() ? 0.0 : least;
   }
 
+  /// A value of few levels repeats because it is rounded, not because its source is slow.
+  bool is_coarse(const ChannelPlace& place) const {
+    constexpr double few = 200.0;
+    const ChannelCheck& check = channel(place).check;
+    return check.quantum > 0.0 && check.largest - check.least < few * check.quantum;
+  }
+
   /// The usual rate within 15 %, else two digits.
   static double round_rate(double rate_hz) {
     for (const double usual : {1.0, 2.0, 4.0, 5.0, 10.0, 20.0, 25.0, 30.0, 40.0, 50.0, 100.0})
@@ -269,7 +277,7 @@ class Proposer {
   void sampling() {
     const SamplingCheck& rows = table(input()).sampling;
     const double stale = repeated(guess_.states);
-    if (stale > most_repeated && rows.rate_hz > 0.0 && !table(input()).time.empty()) {
+    if (stale > most_repeated && !is_coarse(state()) && rows.rate_hz > 0.0 && !table(input()).time.empty()) {
       const double fresh = rows.rate_hz * (1.0 - stale);
       const double rate = round_rate(fresh);
       add("rate_hz", fmt::format("{:g}", rate),
@@ -302,7 +310,40 @@ class Proposer {
   }
 };
 
+/// Channels of one reason on one line, the first of them by name.
+std::string left_text(const std::vector<ChannelLeft>& left) {
+  constexpr std::size_t named = 8;
+  std::vector<std::string> reasons;
+  for (const ChannelLeft& channel : left)
+    if (std::find(reasons.begin(), reasons.end(), channel.reason) == reasons.end()) reasons.push_back(channel.reason);
+  std::string text;
+  for (const std::string& reason : reasons) {
+    std::vector<std::string> names;
+    for (const ChannelLeft& channel : left)
+      if (channel.reason == reason) names.push_back(printable_name(channel.name));
+    const std::size_t more = names.size() - std::min(names.size(), named);
+    names.resize(names.size() - more);
+    text += fmt::format("# not taken, {}: {}{}\n", reason, fmt::join(names, ", "),
+                        more > 0 ? fmt::format(" and {} more", more) : "");
+  }
+  return text;
+}
+
 }  // namespace
+
+const ProposedKey* Proposal::find(const std::string& key) const {
+  const auto found = std::find_if(keys.begin(), keys.end(), [&](const ProposedKey& k) { return k.key == key; });
+  return found == keys.end() ? nullptr : &*found;
+}
+
+void Proposal::drop(const std::string& key) {
+  std::erase_if(keys, [&](const ProposedKey& k) { return k.key == key; });
+}
+
+void Proposal::set(const std::string& key, const std::string& value, const std::string& why) {
+  drop(key);
+  keys.push_back({key, value, why});
+}
 
 Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
                  const std::string& config_folder) {
@@ -324,6 +365,7 @@ std::string configuration_text(const Proposal& proposal, const std::string& comm
     const std::string line = fmt::format("{} = {}", key.key, key.value == " " ? "" : key.value);
     text += key.why.empty() ? line + "\n" : fmt::format("{:<40}  # {}\n", line, printable_name(key.why));
   }
+  text += left_text(proposal.left);
   text +=
       "\n# What is not named stands at its default; `modebank help KEY` says what a key means, `modebank check` on "
       "this "

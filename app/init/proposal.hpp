@@ -17,6 +17,11 @@ struct ProposedKey {
 struct Proposal {
   std::vector<ProposedKey> keys;
   std::vector<std::string> doubts;  ///< what the user should look at before anything else
+  std::vector<ChannelLeft> left;    ///< channels that move and were not taken
+
+  const ProposedKey* find(const std::string& key) const;
+  void drop(const std::string& key);
+  void set(const std::string& key, const std::string& value, const std::string& why);
 };
 
 /// `surveyed`: each set, by survey_set.

@@ -8,6 +8,7 @@
 
 #include "app/init/words.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "ident/data/trajectory.hpp"
 #include "io/import/csv_number.hpp"
 #include "io/import/open_table.hpp"
 #include "io/import/read_columns.hpp"
@@ -29,9 +30,11 @@ class TableSurvey {
       const ColumnInfo& column = info_.columns[i];
       table.channels.push_back({column.name, column.unit, column.type, {}, numbers_of(columns_[i])});
       SurveyedChannel& channel = table.channels.back();
-      if (channel.is_number())
+      if (channel.is_number()) {
         channel.check = check_channel(channel.values);
-      else {
+        channel.check = check_channel(channel.values);
+        channel.counts = rises_evenly(channel.values);
+      } else {
         channel.type = "text";
         if (const auto* texts = std::get_if<std::vector<std::string>>(&columns_[i]))
           channel.why_text = why_no_numbers(*texts);
@@ -161,12 +164,17 @@ class TableSurvey {
     table.time_s = Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(std::max<Eigen::Index>(rows - 1, 0)));
   }
 
-  /// As times do, and counters of rows: which are whole numbers one apart.
+  /// As times do, but not as counters of rows: which are whole numbers one apart.
   static bool advances_steadily(const Eigen::VectorXd& values) {
+    return rises_evenly(values) &&
+           (values.tail(values.size() - 1).array() - values.head(values.size() - 1).array() != 1.0).any();
+  }
+
+  static bool rises_evenly(const Eigen::VectorXd& values) {
     constexpr Eigen::Index fewest = 10;
     if (values.size() < fewest || !values.allFinite()) return false;
     Eigen::VectorXd steps = values.tail(values.size() - 1) - values.head(values.size() - 1);
-    if (!(steps.array() > 0.0).all() || (steps.array() == 1.0).all()) return false;
+    if (!(steps.array() > 0.0).all()) return false;
     std::sort(steps.begin(), steps.end());
     const double median = steps(steps.size() / 2);
     const auto near = ((steps.array() > 0.5 * median) && (steps.array() < 2.0 * median)).count();
@@ -205,20 +213,38 @@ class TableSurvey {
 
   static bool jumps_back(const Eigen::VectorXd& time_s, Eigen::Index k) { return time_s(k) < time_s(k - 1); }
 
-  /// A column that changes wherever time jumps back.
+  /// A column that changes wherever time jumps back; without jumps a text that changes at gaps alone, and never back.
   void find_run(SurveyedTable& table) {
     std::vector<Eigen::Index> jumps;
     for (Eigen::Index k = 1; k < table.time_s.size(); ++k)
       if (jumps_back(table.time_s, k)) jumps.push_back(k);
-    if (jumps.empty()) return;
     for (const bool named : {true, false})
-      for (const SurveyedChannel& channel : table.channels) {
+      for (std::size_t i = 0; i < table.channels.size(); ++i) {
+        const SurveyedChannel& channel = table.channels[i];
         if (named != names_run(channel.name)) continue;
-        if (channel.is_number() ? separates(channel.values, jumps) : named && channel.type == "text") {
-          table.run = channel.name;
-          return;
-        }
+        const bool found = jumps.empty()         ? changes_at_gaps(i, table.time_s)
+                           : channel.is_number() ? separates(channel.values, jumps)
+                                                 : named && channel.type == "text";
+        if (!found) continue;
+        table.run = channel.name;
+        return;
       }
+  }
+
+  bool changes_at_gaps(std::size_t column, const Eigen::VectorXd& time_s) const {
+    const auto* texts = std::get_if<std::vector<std::string>>(&columns_[column]);
+    if (texts == nullptr || time_s.size() < 3 || std::ssize(*texts) != time_s.size()) return false;
+    const double longest_s = gap_periods * median_period_s(time_s);
+    std::vector<std::string> seen{texts->front()};
+    for (std::size_t k = 1; k < texts->size(); ++k) {
+      const std::string& text = (*texts)[k];
+      if (text == seen.back()) continue;
+      const auto at = static_cast<Eigen::Index>(k);
+      if (!(time_s(at) - time_s(at - 1) > longest_s) || std::find(seen.begin(), seen.end(), text) != seen.end())
+        return false;
+      seen.push_back(text);
+    }
+    return seen.size() > 1 && !seen.front().empty();
   }
 
   static bool separates(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& jumps) {

@@ -18,6 +18,7 @@ struct SurveyedChannel {
   ChannelCheck check = {};
   Eigen::VectorXd values = {};  ///< one per row, NaN where missing; empty for text
   std::string why_text = {};    ///< of a column of text that begins like one of numbers: what keeps it from being one
+  bool counts = false;          ///< rises in steps as even as those of times and counters
 
   bool is_number() const { return values.size() > 0; }
   bool moves() const { return is_number() && check.largest > check.least; }

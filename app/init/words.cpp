@@ -26,17 +26,19 @@ int best(const std::array<Word, size>& list, std::string_view words) {
 }
 
 constexpr std::array state_words{
-    Word{" wz ", 6},          Word{" omega z ", 6}, Word{" yaw rate ", 6},
-    Word{" yawrate ", 6},     Word{" gyro z ", 6},  Word{" angular velocity z ", 6},
-    Word{" angular z ", 5},   Word{" gyro ", 3},    Word{" level ", 5},
-    Word{" temperature ", 5}, Word{" temp ", 4},    Word{" output ", 5},
-    Word{" y ", 3},           Word{" y1 ", 5},      Word{" y 1 ", 4},
-    Word{" response ", 5},    Word{" x ", 2},       Word{" measured ", 4},
-    Word{" meas ", 4},        Word{" sensor ", 3},  Word{" vx ", 4},
-    Word{" linear x ", 4},    Word{" speed ", 3},   Word{" velocity ", 3},
-    Word{" vel ", 3},         Word{" rate ", 2},    Word{" acceleration ", 2},
-    Word{" state ", 3},       Word{" angle ", 2},   Word{" position ", 1},
-    Word{" pressure ", 4},    Word{" flow ", 3},
+    Word{" wz ", 6},          Word{" omega z ", 6},  Word{" yaw rate ", 6},
+    Word{" yawrate ", 6},     Word{" gyro z ", 6},   Word{" angular velocity z ", 6},
+    Word{" angular z ", 5},   Word{" gyro ", 3},     Word{" level ", 5},
+    Word{" temperature ", 5}, Word{" temp ", 4},     Word{" output ", 5},
+    Word{" y ", 3},           Word{" y1 ", 5},       Word{" y 1 ", 4},
+    Word{" response ", 5},    Word{" x ", 2},        Word{" measured ", 4},
+    Word{" meas ", 4},        Word{" sensor ", 3},   Word{" vx ", 4},
+    Word{" linear x ", 4},    Word{" speed ", 3},    Word{" velocity ", 3},
+    Word{" vel ", 3},         Word{" rate ", 2},     Word{" acceleration ", 2},
+    Word{" state ", 3},       Word{" angle ", 2},    Word{" position ", 1},
+    Word{" pressure ", 4},    Word{" flow ", 3},     Word{" gz ", 5},
+    Word{" heading ", 3},     Word{" yaw ", 2},      Word{" roll rate ", 5},
+    Word{" pitch rate ", 5},  Word{" altitude ", 1}, Word{" alt ", 1},
 };
 
 constexpr std::array input_words{
@@ -51,7 +53,9 @@ constexpr std::array input_words{
     Word{" vel r ", 5},     Word{" v l ", 5},      Word{" v r ", 5},       Word{" left ", 4},
     Word{" right ", 4},     Word{" motor ", 4},    Word{" joy ", 5},       Word{" cur ", 2},
     Word{" current ", 2},   Word{" linear x ", 2}, Word{" angular z ", 2}, Word{" wz ", 2},
-    Word{" speed ", 2},     Word{" vx ", 2},
+    Word{" speed ", 2},     Word{" vx ", 2},       Word{" rudder ", 7},    Word{" helm ", 6},
+    Word{" aileron ", 7},   Word{" elevator ", 7}, Word{" fan ", 6},       Word{" force ", 6},
+    Word{" thrust ", 7},    Word{" power ", 5},    Word{" drive ", 4},     Word{" actuator ", 7},
 };
 
 /// What the table's name adds to all its channels.
@@ -61,12 +65,12 @@ constexpr std::array acting_tables{
     Word{" odometry ", 2}, Word{" joint ", 2},   Word{" wheel ", 4},    Word{" encoder ", 4}, Word{" encoders ", 4}};
 
 constexpr std::array ignored_words{
-    " covariance ", " seq ",       " frame id ",     " status ", " stamp ", " secs ",    " nsecs ",    " sec ",
-    " nanosec ",    " timestamp ", " receive time ", " row ",    " index ", " id ",      " latitude ", " longitude ",
-    " altitude ",   " lat ",       " lon ",          " alt ",    " label ", " mode ",    " qx ",       " qy ",
-    " qz ",         " qw ",        " orientation ",  " step ",   " count ", " counter ", " steady ",   " window ",
-    " friction ",   " ground ",    " true ",         " truth ",  " gt ",    " vicon ",   " mocap ",    " optitrack ",
-    " icp ",        " flag ",      " jump ",         " header ",
+    " covariance ", " seq ",       " frame id ",  " status ",       " stamp ", " secs ",  " nsecs ",
+    " sec ",        " nanosec ",   " timestamp ", " receive time ", " row ",   " index ", " id ",
+    " latitude ",   " longitude ", " lat ",       " lon ",          " label ", " mode ",  " qx ",
+    " qy ",         " qz ",        " qw ",        " orientation ",  " step ",  " count ", " counter ",
+    " steady ",     " window ",    " friction ",  " ground ",       " true ",  " truth ", " gt ",
+    " vicon ",      " mocap ",     " optitrack ", " icp ",          " flag ",  " jump ",  " header ",
 };
 
 constexpr std::array time_names{" time ",    " t ",       " stamp ",   " timestamp ",     " tout ",
@@ -148,7 +152,7 @@ std::string usual_unit(std::string_view name) {
 
 bool names_angular_rate(std::string_view name, Axis axis) {
   const std::string words = words_of_name(name);
-  for (const char* before : {" w", " gyro ", " angular velocity ", " angular ", " omega ", " gyro"})
+  for (const char* before : {" w", " g", " gyro ", " angular velocity ", " angular ", " omega ", " gyro"})
     if (has_axis(words, axis, before)) return true;
   return false;
 }
@@ -158,6 +162,44 @@ bool names_acceleration(std::string_view name, Axis axis) {
   for (const char* before : {" a", " acc ", " linear acceleration ", " accel ", " acceleration "})
     if (has_axis(words, axis, before)) return true;
   return false;
+}
+
+bool names_position(std::string_view name, Axis axis) {
+  const std::string words = words_of_name(name);
+  for (const char* before : {"pos ", "position "})
+    if (has_axis(words, axis, before)) return true;
+  return words == std::array{" x ", " y ", " z "}[static_cast<std::size_t>(axis)];
+}
+
+namespace {
+
+template <std::size_t size>
+bool is_one_of(const std::array<std::string_view, size>& units, std::string_view unit) {
+  return std::find(units.begin(), units.end(), unit) != units.end();
+}
+
+}  // namespace
+
+bool unit_of_measured(std::string_view unit) {
+  constexpr std::array<std::string_view, 12> units{"rad/s",
+                                                   "deg/s",
+                                                   "\xC2\xB0/s",
+                                                   "degC",
+                                                   "\xC2\xB0"
+                                                   "C",
+                                                   "K",
+                                                   "m/s^2",
+                                                   "m/s2",
+                                                   "m/s\xC2\xB2",
+                                                   "rad",
+                                                   "deg",
+                                                   "bar"};
+  return is_one_of(units, unit);
+}
+
+bool unit_of_acting(std::string_view unit) {
+  constexpr std::array<std::string_view, 9> units{"V", "A", "%", "N", "Nm", "N m", "N.m", "W", "rpm"};
+  return is_one_of(units, unit);
 }
 
 }  // namespace modebank::app

@@ -33,5 +33,11 @@ enum class Axis { x, y, z };
 /// Whether the name is that of an angular rate, or of an acceleration, about or along that axis.
 bool names_angular_rate(std::string_view name, Axis axis);
 bool names_acceleration(std::string_view name, Axis axis);
+/// Whether it is a position along that axis: x, pos_y.
+bool names_position(std::string_view name, Axis axis);
+
+/// Units that measured motion has and commands rarely, and the reverse: rad/s, degC; V, %, Nm.
+bool unit_of_measured(std::string_view unit);
+bool unit_of_acting(std::string_view unit);
 
 }  // namespace modebank::app

@@ -1,0 +1,257 @@
+// A list of logs with the state and the inputs that a person would take: those of ../shared/data, of the cases, of the
+// documentation and of users' own kinds. Where init writes a configuration, its data can be imported and cut.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "app/cli/init_trial.hpp"
+#include "app/config/config_file.hpp"
+#include "app/init/proposal.hpp"
+#include "app/init/survey_set.hpp"
+#include "io/import/import.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/support/paths.hpp"
+
+namespace modebank::app {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+using test::write_file;
+using ::testing::HasSubstr;
+using Names = std::vector<std::string>;
+
+struct Written {
+  Names state, input;
+  std::string text;
+};
+
+class InitLogs : public ::testing::Test {
+ protected:
+  TemporaryFolder folder;
+
+  Written init(const Names& files) const {
+    const std::vector<FileSet> sets = file_sets(files);
+    std::vector<SurveyedFile> surveyed;
+    for (const FileSet& set : sets) surveyed.push_back(survey_set(set));
+    Proposal proposal = propose(sets, surveyed, guess_roles(surveyed), folder.path().string());
+    const fs::path target = folder.path() / "log.ini";
+    make_it_run(proposal, target);
+    const std::string text = configuration_text(proposal, "modebank init");
+    write_file(target, text);
+    const Config config = load_config(target, {});
+    return {config.data.state, config.data.input, text};
+  }
+
+  Names in(const fs::path& at, const std::string& ending) const {
+    Names files;
+    for (const auto& entry : fs::directory_iterator(at))
+      if (entry.path().extension() == ending) files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end());
+    return files;
+  }
+  std::string data(const std::string& name) const { return (test::shared_data_dir() / name).string(); }
+  /// A log of a case, made by its script.
+  std::string made(const std::string& name, const std::string& arguments = "") const {
+    const fs::path at = folder.path() / name;
+    fs::create_directories(at);
+    const fs::path script = test::shared_data_dir().parent_path() / "cases" / name / "gen.py";
+    const std::string command =
+        fmt::format("cd '{}' && /usr/bin/python3 '{}' {} > /dev/null 2>&1", at.string(), script.string(), arguments);
+    return std::system(command.c_str()) == 0 ? at.string() : "";  // NOLINT(cert-env33-c,concurrency-mt-unsafe)
+  }
+  std::string write(const std::string& name, const std::string& text) const {
+    write_file(folder.path() / name, text);
+    return (folder.path() / name).string();
+  }
+};
+
+/// A robot whose yaw rate follows its wheels, 20 rows a second; wheels are held for 40 rows.
+struct Drive {
+  double t, left, right, rate, noise;
+};
+std::vector<Drive> drive(int rows) {
+  std::vector<Drive> all;
+  double rate = 0.0;
+  for (int k = 0; k < rows; ++k) {
+    const double left = 0.1 * ((k / 40 * 7) % 11 - 5), right = 0.1 * ((k / 40 * 5) % 13 - 6);
+    all.push_back({0.05 * k, left, right, rate, 0.01 * std::sin(91.0 * k) * std::cos(37.0 * k)});
+    rate += 0.2 * (right - left - rate) + all.back().noise;
+  }
+  return all;
+}
+
+template <class Line>
+std::string log_of(const std::string& header, int rows, Line line) {
+  std::string text = header;
+  for (const Drive& d : drive(rows)) text += line(d) + "\n";
+  return text;
+}
+
+std::string german(std::string text) {
+  for (char& c : text) c = c == ',' ? ';' : c == '.' ? ',' : c;
+  return text;
+}
+
+struct Expected {
+  std::string name;
+  Names files, state, input;
+};
+
+TEST_F(InitLogs, FindsStateAndInputsOfNearlyAllOfAList) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  std::vector<Expected> list{
+      {"bag", {data("bags/husky_outdoor_test1.bag")}, {"yaw_rate"}, {"linear_x", "angular_z"}},
+      {"odometry and imu",
+       {data("bags/husky_outdoor_test1_odom.csv"), data("bags/husky_outdoor_test1_imu.csv")},
+       {"wy"},
+       {"vx", "wz"}},
+      {"imu", {data("bags/husky_outdoor_test1_imu.csv")}, {"wy"}, {}},
+      {"odometry", {data("bags/husky_outdoor_test1_odom.csv")}, {"wz"}, {}},
+      {"fix", {data("bags/husky_outdoor_test1_fix.csv")}, {"alt"}, {}},
+      {"ice", in(data("borealtc/ICE"), ".csv"), {"wz"}, {"velL", "velR"}},
+      {"flooring", in(data("borealtc/FLOORING"), ".csv"), {"wz"}, {"velL", "velR"}},
+      {"tanks", in(data("cascaded_tanks"), ".csv"), {"level"}, {"pump"}},
+      {"one tank", {data("cascaded_tanks/est.csv")}, {"level"}, {"pump"}},
+      {"dart", in(data("dart"), ".csv"), {"yaw_rate"}, {"steering", "throttle"}},
+      {"one dart", {data("dart/rub_01.csv")}, {"yaw_rate"}, {"steering", "throttle"}},
+      {"husky", {data("drive_husky/husky_samples.csv")}, {"gyro_z"}, {"cmd_left", "cmd_right"}},
+      {"windows", {data("drive_husky/husky_windows.csv")}, {"gyro_z_mean"}, {"cmd_left_mean", "cmd_right_mean"}},
+      {"deadzone", {data("hybrid/example_deadzone.csv")}, {"x"}, {"u"}},
+      {"buck", {data("sysid_classic/buck_id.csv")}, {"y"}, {"input"}},
+      {"arm", {data("sysid_classic/robot_arm.dat")}, {"c2"}, {"c1"}},
+  };
+  for (const char* file : {"s.csv", "min.csv", "h.csv", "hours.csv"})
+    list.push_back({file, {made("field_06_hours") + "/" + file}, {"y"}, {"u"}});
+  list.push_back({"uneven", in(made("field_04_uneven_times") + "/d", ".csv"), {"y"}, {"u"}});
+  list.push_back({"iso", {made("field_09_clock_times") + "/iso.csv"}, {"y"}, {"u"}});
+  list.push_back({"plain", {made("field_10_comma_in_names") + "/plain.csv"}, {"flow"}, {"valve"}});
+  list.push_back({"unstable", in(made("field_18_unstable_gain") + "/d", ".csv"), {"yaw_rate"}, {"rudder"}});
+  list.push_back({"binary", in(made("field_17_binary_input", "binary 1 1") + "/d", ".csv"), {"y"}, {"u"}});
+  list.push_back({"topics", {made("field_02_bag_topics") + "/with_topic.bag"}, {"/speed.data"}, {"/cmd.data"}});
+  const auto row = [](const Drive& d) { return fmt::format("{:.3f},{:.5f},{},{}", d.t, d.rate, d.left, d.right); };
+  list.push_back({"spreadsheet",
+                  {write("excel.csv", log_of("Zeit;Gierrate;Rad links;Rad rechts\ns;rad/s;m/s;m/s\n", 900,
+                                             [&](const Drive& d) { return german(row(d)); }))},
+                  {"Gierrate"},
+                  {"Rad links", "Rad rechts"}});
+  list.push_back({"no header", {write("matlab.csv", log_of("", 900, row))}, {"c2"}, {"c3", "c4"}});
+  list.push_back(
+      {"commands last", {write("last.csv", log_of("t,q,left,right\n", 900, row))}, {"q"}, {"left", "right"}});
+  list.push_back({"oven",
+                  {write("oven.csv", log_of("time,temperature,heater,fan\n", 900, row))},
+                  {"temperature"},
+                  {"heater", "fan"}});
+  list.push_back({"gyro and wheels",
+                  {write("gyro.csv", log_of("time,gx,gy,gz\n", 900,
+                                            [](const Drive& d) {
+                                              return fmt::format("{:.3f},{:.5f},{:.5f},{:.5f}", d.t, d.noise,
+                                                                 -d.noise * d.t, d.rate);
+                                            })),
+                   write("wheels.csv", log_of("time,vel_left,vel_right\n", 900,
+                                              [](const Drive& d) {
+                                                return fmt::format("{:.3f},{},{}", d.t + 0.01, d.left, d.right);
+                                              }))},
+                  {"gz"},
+                  {"vel_left", "vel_right"}});
+  const auto shown = [](const Names& names) { return fmt::format("{}", fmt::join(names, ", ")); };
+  int wrong = 0;
+  for (const Expected& log : list) {
+    Written written;
+    try {
+      written = init(log.files);
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << log.name << ": " << error.what();
+      continue;
+    }
+    if (written.state == log.state && written.input == log.input) continue;
+    ++wrong;
+    std::cout << log.name << ": state " << shown(written.state) << ", input " << shown(written.input) << "\n";
+    EXPECT_THAT(written.text, HasSubstr("\n# ! ")) << log.name;
+  }
+  EXPECT_GE(list.size(), 30U);
+  EXPECT_LE(10 * wrong, static_cast<int>(list.size()));
+}
+
+/// Texts that name runs: each lasts from gap to gap.
+TEST_F(InitLogs, ATextThatChangesAtGapsNamesRuns) {
+  std::string text = ",time,gyro_z,cmd_left,cmd_right,run,surface\n";
+  int k = 0;
+  for (const Drive& d : drive(1500)) {
+    const int run = k / 300;
+    text += fmt::format("{},2024-05-01T{:02}:{:02}:{:06.3f}+02:00,{:.5f},{},{},exp_{},{}\n", k, 10 + run,
+                        static_cast<int>(d.t) % 300 / 60, std::fmod(d.t, 60.0), d.rate, d.left, d.right, run,
+                        k / 60 % 2 == 0 ? "ice" : "grip");
+    ++k;
+  }
+  const Written written = init({write("pandas.csv", text)});
+  EXPECT_THAT(written.text, HasSubstr("run = run"));
+  EXPECT_EQ(written.text.find("split ="), std::string::npos);
+  EXPECT_EQ(written.state, Names{"gyro_z"});
+}
+
+TEST_F(InitLogs, ListsWhatMovesAndWasNotTaken) {
+  const Written written =
+      init({write("more.csv", log_of("time,wz,cmd_left,cmd_right,icp_x,pressure\n", 400, [](const Drive& d) {
+                    return fmt::format("{:.3f},{:.5f},{},{},{},{}", d.t, d.rate, d.left, d.right, std::sin(d.t),
+                                       std::cos(d.t));
+                  }))});
+  EXPECT_THAT(written.text, HasSubstr("# not taken, the name is not that of a signal: icp_x\n"));
+  EXPECT_THAT(written.text, HasSubstr("# not taken, measured beside the state, or no hint tells its part: pressure\n"));
+}
+
+/// Readings of few levels repeat: no slower rate mends that.
+TEST_F(InitLogs, RoundedReadingsAreNoSlowSource) {
+  const Written written = init({write("coarse.csv", log_of("time,y,u\n", 600, [](const Drive& d) {
+                                        return fmt::format("{:.3f},{:.1f},{}", d.t, d.rate, d.left);
+                                      }))});
+  EXPECT_EQ(written.text.find("rate_hz"), std::string::npos) << written.text;
+}
+
+TEST_F(InitLogs, WritesNothingThatRunRefuses) {
+  const std::string few = write("few.csv", log_of("time,y,u\n", 5, [](const Drive& d) {
+                                  return fmt::format("{},{},{}", d.t, d.rate + d.t, d.left + d.t);
+                                }));
+  try {
+    init({few});
+    FAIL() << "five rows make no window";
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no configuration is written, because run would end in: "));
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()) || !fs::exists(folder.path() / "log.ini"));
+  const std::string still = write("still.csv", "time,y\n0,1\n1,1\n2,1\n");
+  EXPECT_THROW(init({still}), DataError);
+  // Runs too short for windows, but a log that is long enough as a whole.
+  std::string text = "time,y,u,run\n";
+  int k = 0;
+  for (const Drive& d : drive(600))
+    text += fmt::format("{},{},{},{}\n", d.t - 0.5 * (k / 10), d.rate, d.left, k / 10), ++k;
+  const std::string pieces = write("pieces.csv", text);
+  try {
+    EXPECT_THAT(init({pieces}).text, HasSubstr("# ! "));
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no configuration is written"));
+  }
+}
+
+/// No script has to prepare their data.
+TEST(ShippedConfigurations, FindTheirData) {
+  MODEBANK_NEEDS_SHARED_DATA();
+  int imported = 0;
+  for (const auto& entry : fs::directory_iterator(test::project_dir() / "configs")) {
+    const std::string name = entry.path().stem().string();
+    if (name == "minimal" || name == "reference" || name == "demo" || name.starts_with("simulate")) continue;
+    Config config = load_config(entry.path(), {{"data.root", test::shared_data_dir().string()}});
+    config.data.lag_auto = false;
+    EXPECT_NO_THROW(imported += import_data(data_options_of(config)).recording.runs.empty() ? 0 : 1) << name;
+  }
+  EXPECT_GE(imported, 10);
+}
+
+}  // namespace
+}  // namespace modebank::app
