@@ -31,8 +31,8 @@ bool may_be_named(const std::string& name) { return std::none_of(name.begin(), n
 
 bool same_table(const ChannelPlace& a, const ChannelPlace& b) { return a.file == b.file && a.table == b.table; }
 
-/// Adds the hints beside the names: a value that is held while others of its table move is a command, and some units are
-/// of what is measured or of what acts.
+/// Adds the hints beside the names: a value that is held while others of its table move is a command, and some units
+/// are of what is measured or of what acts.
 void add_hints(std::vector<Candidate>& all) {
   constexpr int held = 3, unit = 2;
   constexpr double moving = 0.2;  // repeats at most of what an instrument measures anew in nearly every row
@@ -217,7 +217,7 @@ std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, c
         const NameScore score = score_name(channel.name);
         const bool beside = same_table(place, guess.states.front());
         const bool with_inputs = !guess.inputs.empty() && same_table(place, guess.inputs.front());
-        left.push_back({channel.name, score.ignored    ? "the name is not that of a signal"
+        left.push_back({channel.name, score.ignored    ? "its name is that of a time, counter, pose, place or label"
                                       : channel.counts ? "counts up evenly, as times and counters do"
                                       : score.input > score.state && with_inputs
                                           ? fmt::format("others are likelier inputs, {} at most are taken", most_inputs)

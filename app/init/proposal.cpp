@@ -365,7 +365,7 @@ std::string configuration_text(const Proposal& proposal, const std::string& comm
     const std::string line = fmt::format("{} = {}", key.key, key.value == " " ? "" : key.value);
     text += key.why.empty() ? line + "\n" : fmt::format("{:<40}  # {}\n", line, printable_name(key.why));
   }
-  text += left_text(proposal.left);
+  if (!proposal.left.empty()) text += "\n" + left_text(proposal.left);
   text +=
       "\n# What is not named stands at its default; `modebank help KEY` says what a key means, `modebank check` on "
       "this "

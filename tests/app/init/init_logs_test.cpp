@@ -201,7 +201,8 @@ TEST_F(InitLogs, ListsWhatMovesAndWasNotTaken) {
                     return fmt::format("{:.3f},{:.5f},{},{},{},{}", d.t, d.rate, d.left, d.right, std::sin(d.t),
                                        std::cos(d.t));
                   }))});
-  EXPECT_THAT(written.text, HasSubstr("# not taken, the name is not that of a signal: icp_x\n"));
+  EXPECT_THAT(written.text,
+              HasSubstr("# not taken, its name is that of a time, counter, pose, place or label: icp_x\n"));
   EXPECT_THAT(written.text, HasSubstr("# not taken, measured beside the state, or no hint tells its part: pressure\n"));
 }
 
