@@ -65,12 +65,12 @@ constexpr std::array acting_tables{
     Word{" odometry ", 2}, Word{" joint ", 2},   Word{" wheel ", 4},    Word{" encoder ", 4}, Word{" encoders ", 4}};
 
 constexpr std::array ignored_words{
-    " covariance ", " seq ",       " frame id ",  " status ",       " stamp ", " secs ",  " nsecs ",
-    " sec ",        " nanosec ",   " timestamp ", " receive time ", " row ",   " index ", " id ",
-    " latitude ",   " longitude ", " lat ",       " lon ",          " label ", " mode ",  " qx ",
-    " qy ",         " qz ",        " qw ",        " orientation ",  " step ",  " count ", " counter ",
-    " steady ",     " window ",    " friction ",  " ground ",       " true ",  " truth ", " gt ",
-    " vicon ",      " mocap ",     " optitrack ", " icp ",          " flag ",  " jump ",  " header ",
+    " covariance ", " seq ",       " frame id ",     " status ", " stamp ", " secs ",    " nsecs ",    " sec ",
+    " nanosec ",    " timestamp ", " receive time ", " row ",    " index ", " id ",      " latitude ", " longitude ",
+    " checksum ",   " lat ",       " lon ",          " crc ",    " label ", " mode ",    " qx ",       " qy ",
+    " qz ",         " qw ",        " orientation ",  " step ",   " count ", " counter ", " steady ",   " window ",
+    " friction ",   " ground ",    " true ",         " truth ",  " gt ",    " vicon ",   " mocap ",    " optitrack ",
+    " icp ",        " flag ",      " jump ",         " header ",
 };
 
 constexpr std::array time_names{" time ",    " t ",       " stamp ",   " timestamp ",     " tout ",

@@ -57,8 +57,9 @@ TEST_F(Demo, IsTheCommandsThatItNames) {
 
 TEST_F(Demo, ItsConfigurationRunsInItsFolder) {
   ASSERT_EQ(demo().status, 0);
-  const ProgramResult again = run_program({"/bin/sh", "-c", "cd '" + folder() + "' && '" + MODEBANK_PROGRAM +
-                                                                "' identify demo.ini --archive.output again.h5"});
+  const ProgramResult again =
+      run_program({"/bin/sh", "-c",
+                   "cd '" + folder() + "' && '" + MODEBANK_PROGRAM + "' identify demo.ini --archive.output again.h5"});
   EXPECT_EQ(again.status, 0) << again.err;
 }
 
