@@ -37,14 +37,19 @@ void check_estimate(const FilterEstimate& estimate) {
     throw std::logic_error("the filter gives numbers that are not finite");
 }
 
+/// The columns of that bank.
+DataOptions columns() {
+  DataOptions data;
+  data.input = {"u0"};
+  data.state = {"x0"};
+  return data;
+}
+
 void track_lines(std::string_view text) {
   Random chances = chances_of(text);
   const auto format = chances.pick(
       {app::LineFormat::automatic, app::LineFormat::automatic, app::LineFormat::csv, app::LineFormat::ndjson});
-  DataOptions data;
-  data.input = {"u0"};
-  data.state = {"x0"};
-  app::SampleReader reader(data, format);
+  app::SampleReader reader(columns(), format);
   BankFilter filter = new_filter(chances.below(4));
   double last_s = -INFINITY;
   std::vector<std::string> lines;
@@ -100,7 +105,8 @@ void read_checkpoint(std::string_view text) { resume(scratch_file("fuzz.json", t
 void read_json(std::string_view text) {
   const std::function<void()> readers[] = {
       [&] {
-        app::SampleReader({"time", {"u0"}, {"x0"}}, app::LineFormat::ndjson).read(text);
+        app::SampleReader(columns(), app::LineFormat::ndjson)
+            .read({std::string(text)}, [](std::size_t, app::SampleReader::Line) {});
       },
       [&] { hdf5::text_json(std::string(text)).dump(); }, [&] { read_checkpoint(text); }};
   std::optional<DataError> refusal;
