@@ -32,7 +32,6 @@ class TableSurvey {
       SurveyedChannel& channel = table.channels.back();
       if (channel.is_number()) {
         channel.check = check_channel(channel.values);
-        channel.check = check_channel(channel.values);
         channel.counts = rises_evenly(channel.values);
       } else {
         channel.type = "text";
