@@ -242,6 +242,7 @@ class Proposer {
     if (states.time_guessed)
       doubt(fmt::format("{} rises steadily, {:.4g} times a second: it is taken for the times", states.time.front(),
                         states.sampling.rate_hz));
+    stamps(states);
     if (own(states) && own(inputs)) return;  // what a recording calls its stamps needs no key
     std::vector<std::string> stamps;
     for (const std::string& name : states.time)
@@ -250,7 +251,28 @@ class Proposer {
     if (states.time != inputs.time)
       doubt(fmt::format("times are called {} in one table and {} in the other: data.time takes one name", time,
                         fmt::join(inputs.time, ", ")));
-    if (time != "time") add("time", time, states.time.size() > 1 ? "seconds and nanoseconds" : "");
+    if (time != "time") add("time", time, why_time(states));
+  }
+
+  static std::string why_time(const SurveyedTable& of) {
+    using Ground = StampForm::Ground;
+    if (of.time.size() > 1) return of.form.ground == Ground::text ? "date and time of day" : "seconds and nanoseconds";
+    return of.form.ground == Ground::stated ? fmt::format("{}", fmt::join(of.time_notes, "; ")) : "";
+  }
+
+  /// What is in doubt of how the stamps are read.
+  void stamps(const SurveyedTable& of) {
+    if (of.form.ground != StampForm::Ground::stated)
+      for (const std::string& note : of.time_notes) doubt(note);
+    const SurveyedChannel* column = of.find(of.time.front());
+    const std::string unit = column == nullptr ? "" : column->unit;
+    if (!unit.empty() && column->type != "time" && !stated_time_unit(unit))
+      doubt(fmt::format("{} is not known as a unit of time: {} is taken for {} (data.time_unit)", unit, of.time.front(),
+                        in_words(of.form.unit)));
+    if (of.form.patterns.size() < 2) return;
+    add("time_format", of.form.patterns.front(), "a guess: day and month may be the other way round");
+    doubt(fmt::format("the times, as {}, allow two readings: {} and {}", of.form.value, of.form.patterns[0],
+                      of.form.patterns[1]));
   }
 
   double repeated(const std::vector<ChannelPlace>& places) const {

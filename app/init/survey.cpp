@@ -12,6 +12,7 @@
 #include "io/import/csv_number.hpp"
 #include "io/import/open_table.hpp"
 #include "io/import/read_columns.hpp"
+#include "io/import/stamp_check.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -41,6 +42,7 @@ class TableSurvey {
       if (auto* const numbers = std::get_if<std::vector<double>>(&columns_[i])) *numbers = {};
     }
     find_time(table);
+    leave_out_unset(table);
     find_run(table);
     table.sampling = check_sampling(one_run(table));
     return table;
@@ -83,17 +85,21 @@ class TableSurvey {
   }
 
   /// The stamps of a candidate, those that were read as such already among them.
-  std::vector<std::int64_t> stamps_of(const std::vector<std::string>& candidate) {
+  Table stamps_of(const std::vector<std::string>& candidate) {
+    Table result;
     for (std::size_t i = 0; candidate.size() == 1 && i < columns_.size(); ++i)
       if (info_.columns[i].name == candidate[0])
-        if (const auto* stamps = std::get_if<std::vector<std::int64_t>>(&columns_[i])) return *stamps;
+        if (const auto* stamps = std::get_if<std::vector<std::int64_t>>(&columns_[i])) {
+          result.time_ns = *stamps;
+          return result;
+        }
     TableRequest request;
     request.table = position_;
     request.time.column = candidate[0];
-    request.time.nanoseconds = candidate.size() > 1 ? candidate[1] : "";
+    request.time.second = candidate.size() > 1 ? candidate[1] : "";
     request.time.may_miss = true;
     try {
-      return std::move(reader_.read({request}, nullptr).at(0).time_ns);
+      return std::move(reader_.read({request}, nullptr).at(0));
     } catch (const DataError& error) {
       if (time_problem_.empty()) time_problem_ = error.what();
       return {};
@@ -109,6 +115,8 @@ class TableSurvey {
       if (!names_time(channel.name)) continue;
       if (i + 1 < table.channels.size() && names_nanoseconds(table.channels[i + 1].name))
         named.insert(named.begin(), {channel.name, table.channels[i + 1].name});
+      else if (const std::string date = date_beside(table, i); !date.empty())
+        named.insert(named.begin(), {date, channel.name});
       else
         named.push_back({channel.name});
     }
@@ -118,11 +126,14 @@ class TableSurvey {
     return typed;
   }
 
-  struct Times {
-    std::vector<std::string> names;
-    Eigen::VectorXd time_s;
-    std::int64_t origin_ns;
-  };
+  /// The name of the date beside a time of day, both of which are text.
+  static std::string date_beside(const SurveyedTable& table, std::size_t time) {
+    for (const std::size_t i : {time - 1, time + 1})
+      if (i < table.channels.size() && names_date(table.channels[i].name) && table.channels[i].type == "text" &&
+          table.channels[time].type == "text")
+        return table.channels[i].name;
+    return {};
+  }
 
   static Eigen::Index jumps_back(const Eigen::VectorXd& time_s) {
     Eigen::Index count = 0;
@@ -137,27 +148,27 @@ class TableSurvey {
 
   /// The first candidate that advances; one that jumps back now and then may be many runs' time.
   void find_time(SurveyedTable& table) {
-    std::optional<Times> jumping;
+    std::optional<std::vector<std::string>> jumping;
     for (const std::vector<std::string>& candidate : time_candidates(table)) {
-      const std::vector<std::int64_t> stamps = stamps_of(candidate);
-      if (stamps.size() < 2) continue;
-      take_times(table, stamps);
+      if (!take_times(table, stamps_of(candidate))) continue;
       table.time = candidate;
       const Eigen::Index jumps = jumps_back(table.time_s), stands = stands_still(table.time_s);
       if (stands > table.time_s.size() / 2) continue;
       if (jumps == 0) return;
-      if (jumps < table.time_s.size() / 10 && !jumping) jumping = Times{candidate, table.time_s, table.origin_ns};
+      if (jumps < table.time_s.size() / 10 && !jumping) jumping = candidate;
     }
     if (jumping) {
-      table.time = jumping->names;
-      table.time_s = jumping->time_s;
-      table.origin_ns = jumping->origin_ns;
+      table.time = *jumping;
+      take_times(table, stamps_of(*jumping));
       return;
     }
     for (const SurveyedChannel& channel : table.channels)
       if (advances_steadily(channel.values) && take_steady(table, channel.name)) return;
     table.time.clear();
     table.time_problem = time_problem_;
+    table.form = {};
+    table.time_notes.clear();
+    table.unset_rows = 0;
     table.origin_ns = 0;
     const Eigen::Index rows = row_count(table);
     table.time_s = Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(std::max<Eigen::Index>(rows - 1, 0)));
@@ -183,9 +194,7 @@ class TableSurvey {
   /// Whether the channel's values are times of a rate that instruments have.
   bool take_steady(SurveyedTable& table, const std::string& name) {
     constexpr double lowest_hz = 0.01, highest_hz = 20e3;
-    const std::vector<std::int64_t> stamps = stamps_of({name});
-    if (stamps.size() < 2) return false;
-    take_times(table, stamps);
+    if (!take_times(table, stamps_of({name}))) return false;
     const double rate_hz = static_cast<double>(table.time_s.size() - 1) / (table.time_s.tail(1)(0) - table.time_s(0));
     if (!(rate_hz >= lowest_hz && rate_hz <= highest_hz)) return false;
     table.time = {name};
@@ -199,7 +208,14 @@ class TableSurvey {
     return 0;
   }
 
-  static void take_times(SurveyedTable& table, const std::vector<std::int64_t>& stamps) {
+  /// False: too few of them. Those from before the clock was set become missing.
+  static bool take_times(SurveyedTable& table, const Table& read) {
+    std::vector<std::int64_t> stamps = read.time_ns;
+    if (stamps.size() < 2) return false;
+    table.form = read.form;
+    table.time_notes = read.notes;
+    table.unset_rows = rows_before_clock_was_set(stamps);
+    std::fill_n(stamps.begin(), table.unset_rows, missing_stamp);
     table.time_s.resize(std::ssize(stamps));
     table.origin_ns = missing_stamp;
     for (const std::int64_t stamp : stamps)
@@ -208,6 +224,14 @@ class TableSurvey {
     for (std::size_t k = 0; k < stamps.size(); ++k)
       table.time_s(static_cast<Eigen::Index>(k)) =
           stamps[k] == missing_stamp ? not_a_number : static_cast<double>(stamps[k] - table.origin_ns) / 1e9;
+    return true;
+  }
+
+  static void leave_out_unset(SurveyedTable& table) {
+    const auto kept = table.time_s.size() - static_cast<Eigen::Index>(table.unset_rows);
+    table.time_s = table.time_s.tail(kept).eval();
+    for (SurveyedChannel& channel : table.channels)
+      if (channel.values.size() > kept) channel.values = channel.values.tail(kept).eval();
   }
 
   static bool jumps_back(const Eigen::VectorXd& time_s, Eigen::Index k) { return time_s(k) < time_s(k - 1); }

@@ -29,6 +29,12 @@ void widen(ChannelCheck& check, const ChannelCheck& other) {
 
 /// Takes another file's table in; its channels that are not in both are `partial`.
 void merge(SurveyedTable& table, const SurveyedTable& other, Names& partial) {
+  const Names& theirs_fit = other.form.patterns;
+  if (std::find_first_of(theirs_fit.begin(), theirs_fit.end(), table.form.patterns.begin(),
+                         table.form.patterns.end()) != theirs_fit.end())
+    std::erase_if(table.form.patterns, [&](const std::string& pattern) {
+      return std::find(theirs_fit.begin(), theirs_fit.end(), pattern) == theirs_fit.end();
+    });
   std::erase_if(table.channels, [&](const SurveyedChannel& channel) {
     if (other.find(channel.name) != nullptr) return false;
     add_once(partial, channel.name);

@@ -94,8 +94,10 @@ std::string survey_text(const std::vector<FileSet>& sets, const std::vector<Surv
                                                   : fmt::format("{:.4g} Hz by {}, {:.4g} s, {} gap{}", rows.rate_hz,
                                                                 fmt::join(table.time, " + "), rows.duration_s,
                                                                 rows.gaps, rows.gaps == 1 ? "" : "s");
-      text += fmt::format(" {}{} rows, {}{}\n", name, table.time_s.size(), time,
-                          table.run.empty() ? "" : fmt::format(", runs by {}", table.run));
+      const std::string unset =
+          table.unset_rows == 0 ? "" : fmt::format(", {} rows before its clock was set left out", table.unset_rows);
+      text += fmt::format(" {}{} rows, {}{}{}\n", name, table.time_s.size(), time,
+                          table.run.empty() ? "" : fmt::format(", runs by {}", table.run), unset);
       text += rows_text(table);
     }
   }

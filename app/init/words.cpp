@@ -76,7 +76,9 @@ constexpr std::array ignored_words{
 constexpr std::array time_names{" time ",    " t ",       " stamp ",   " timestamp ",     " tout ",
                                 " secs ",    " seconds ", " sec ",     " sampling time ", " zeit ",
                                 " clock ",   " time s ",  " t s ",     " header stamp ",  " time ns ",
-                                " time ms ", " time us ", " t block ", " stamp ns ",      " header stamp secs "};
+                                " time ms ", " time us ", " t block ", " stamp ns ",      " header stamp secs ",
+                                " time min ", " time h ", " hours ",   " minutes ",       " datetime ",
+                                " date time ", " date "};
 constexpr std::array run_names{" run ",     " run id ",   " block ", " trial ",   " episode ", " experiment ",
                                " segment ", " sequence ", " file ",  " session ", " lap "};
 
@@ -131,6 +133,7 @@ NameScore score_name(std::string_view name, std::string_view type) {
 }
 
 bool names_time(std::string_view name) { return ends_with_any(time_names, words_of_name(name)); }
+bool names_date(std::string_view name) { return words_of_name(name).ends_with(" date "); }
 bool names_run(std::string_view name) { return ends_with_any(run_names, words_of_name(name)); }
 
 bool names_nanoseconds(std::string_view name) {

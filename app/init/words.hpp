@@ -21,6 +21,7 @@ std::string words_of_name(std::string_view name);
 
 /// Whether a name says that its values are times, or which run a row belongs to.
 bool names_time(std::string_view name);
+bool names_date(std::string_view name);
 bool names_run(std::string_view name);
 /// Whether it says nanoseconds beside a column of seconds.
 bool names_nanoseconds(std::string_view name);

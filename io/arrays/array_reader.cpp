@@ -160,25 +160,27 @@ class ArrayReader : public TableReader {
 
   void times(const TableRequest& request, Table& table) const {
     const std::size_t column = stored(request, request.time.column);
-    const StoredColumn& seconds = store_->columns()[column];
-    StampColumn stamps(request.time, seconds.type == nanoseconds_type ? "ns" : std::string_view(seconds.unit));
+    const StoredColumn& from = store_->columns()[column];
+    StampColumn stamps(request.time, from.type == nanoseconds_type ? "ns" : std::string_view(from.unit));
     stamps.reserve(table.rows());
-    if (seconds.text) throw DataError(fmt::format("{}: column {} is text", path_.string(), seconds.path()));
-    std::vector<std::string> fine;
-    if (!request.time.nanoseconds.empty()) fine = texts(stored(request, request.time.nanoseconds));
-    const std::vector<std::int64_t> whole = seconds.whole ? store_->whole_numbers(column) : std::vector<std::int64_t>();
-    const std::vector<double> values = seconds.whole ? std::vector<double>() : values_of(column);
+    const bool two = !request.time.second.empty();
+    const std::vector<std::string> first = two || from.text ? texts(column) : std::vector<std::string>();
+    const std::vector<std::string> second = two ? texts(stored(request, request.time.second)) : first;
+    const std::vector<std::int64_t> whole = from.whole ? store_->whole_numbers(column) : std::vector<std::int64_t>();
+    const std::vector<double> values =
+        from.whole || from.text ? std::vector<double>() : values_of(column);
     for (std::size_t k = 0; k < table.rows(); ++k) {
-      const bool known = seconds.whole || std::isfinite(values[k]);
-      if (!known && !request.time.may_miss)
-        throw DataError(fmt::format("{}:{}: column {}: missing value", path_.string(), k + 1, seconds.path()));
-      if (seconds.whole)
-        stamps.add(whole[k]);
-      else
-        stamps.add(values[k]);
-      if (known && !fine.empty() && !stamps.add_nanoseconds(fine[k]))
-        throw DataError(fmt::format("{}:{}: column {}: {} is no number of nanoseconds", path_.string(), k + 1,
-                                    request.time.nanoseconds, fine[k]));
+      const NumberStatus status = two          ? stamps.add(first[k], second[k])
+                                  : from.text  ? stamps.add(first[k])
+                                  : from.whole ? stamps.add(whole[k])
+                                               : stamps.add(values[k]);
+      if (status == NumberStatus::missing && request.time.may_miss)
+        stamps.add_missing();
+      else if (status != NumberStatus::ok)
+        throw DataError(fmt::format("{}:{}: column {}: {}", path_.string(), k + 1, from.path(),
+                                    stamps.complaint(status, !first.empty() ? first[k]
+                                                             : from.whole   ? fmt::to_string(whole[k])
+                                                                            : fmt::format("{}", values[k]))));
     }
     stamps.finish(path_.string(), table);
   }

@@ -207,10 +207,11 @@ void ColumnFinder::time(std::size_t source, const DataOptions& options) {
   column_position(path_of(source), column_names(table), column->name);  // throws where it is there twice
   request.column = column->name;
   request.unit = options.time_unit;
+  request.format = options.time_format;
   if (options.time.size() < 2) return;
-  const ColumnInfo* nanoseconds = find_within(table, options.time[1]);
-  if (nanoseconds == nullptr) fail(options.time[1], {plan_.sources[source].path});
-  request.nanoseconds = nanoseconds->name;
+  const ColumnInfo* second = find_within(table, options.time[1]);
+  if (second == nullptr) fail(options.time[1], {plan_.sources[source].path});
+  request.second = second->name;
 }
 
 std::size_t ColumnFinder::text(std::size_t source, const std::string& column) {

@@ -58,13 +58,13 @@ struct TableSink {
     int numbers = skipped, texts = skipped;
   };
   std::vector<Target> target;  // per column of the file: skipped or position in the table's
-  std::size_t time_column = none, nanoseconds_column = none;
+  std::size_t time_column = none, second_column = none;  // of stamps in two columns
   std::vector<std::string> header;
   Table table;
   std::vector<bool> may_miss;  // per position in table.numbers
   StampColumn stamps;
   bool time_may_miss;
-  std::string nanoseconds;      // of the row, where they have a column of their own
+  std::string first, second;    // of the row, where its stamp stands in two columns
   std::size_t header_rows = 1;  // yet to come
   CsvNumbers parse;
   bool rows_seen = false, empty_line_seen = false;
@@ -85,21 +85,27 @@ struct TableSink {
     if (header_rows > 0 || column >= target.size()) return;
     if (target[column].texts != skipped) table.texts[static_cast<std::size_t>(target[column].texts)].emplace_back(text);
     if (target[column].numbers != skipped) number(column, static_cast<std::size_t>(target[column].numbers), text);
-    if (column == time_column) time(text);
-    if (column == nanoseconds_column) nanoseconds = text;
+    if (column == time_column && second_column == none) time(text);
+    if (second_column == none) return;
+    if (column == time_column) first = text;
+    if (column == second_column) second = text;
   }
 
   void time(std::string_view text) {
     const NumberStatus status = add_stamp(text);
-    if (status == NumberStatus::ok) return;
+    if (status != NumberStatus::ok) no_time(status, text);
+  }
+
+  void time_of_two() {
+    const NumberStatus status = stamps.add(first, second);
+    if (status != NumberStatus::ok) no_time(status, fmt::format("{} {}", first, second));
+  }
+
+  void no_time(NumberStatus status, std::string_view text) {
     if (status == NumberStatus::missing && time_may_miss)
       stamps.add_missing();
     else
-      error = status == NumberStatus::text ? fmt::format(
-                                                 "column {}: \"{}\" is no time (seconds, or as "
-                                                 "2024-05-01T10:00:00.25Z)",
-                                                 header[time_column], text.substr(0, shown_bytes))
-                                           : complaint(status, time_column, text);
+      error = fmt::format("column {}: {}", header[time_column], stamps.complaint(status, text));
   }
 
   NumberStatus add_stamp(std::string_view text) {
@@ -152,12 +158,10 @@ struct TableSink {
       rows_seen = true;
     } else if (fields != target.size()) {
       error = fmt::format("{} field{}, but the header has {}", fields, fields == 1 ? "" : "s", target.size());
-    } else if (nanoseconds_column != none && !stamps.add_nanoseconds(nanoseconds)) {
-      error = fmt::format("column {}: \"{}\" is no number of nanoseconds below 1e9 beside whole seconds",
-                          header[nanoseconds_column], nanoseconds);
     } else {
       table.line.push_back(line);
       rows_seen = true;
+      if (second_column != none) time_of_two();
     }
   }
 
@@ -230,8 +234,7 @@ TableSink make_sink(std::string_view file, const Head& head, const TableRequest&
     sink.time_column = column_position(file, header, request.time.column);
     sink.stamps.reserve(rows);
   }
-  if (!request.time.nanoseconds.empty())
-    sink.nanoseconds_column = column_position(file, header, request.time.nanoseconds);
+  if (!request.time.second.empty()) sink.second_column = column_position(file, header, request.time.second);
   for (std::size_t i = 0; i < request.numbers.size(); ++i)
     sink.target[column_position(file, header, request.numbers[i])].numbers = static_cast<int>(i);
   sink.may_miss = request.may_miss;

@@ -10,7 +10,7 @@
 #include "io/import/csv_number.hpp"
 #include "io/import/csv_text.hpp"
 #include "io/table/number.hpp"
-#include "io/table/stamp.hpp"
+#include "io/table/stamp_pattern.hpp"
 
 namespace modebank {
 
@@ -40,7 +40,7 @@ bool is_value(const std::string& field) {
   if (field.empty()) return false;
   const NumberStatus status = with_point.parse(field).status;
   return status == NumberStatus::ok || status == NumberStatus::missing ||
-         with_comma.parse(field).status == NumberStatus::ok || parse_iso_time(field);
+         with_comma.parse(field).status == NumberStatus::ok || is_known_time(field);
 }
 
 std::vector<Fields> split(const std::vector<TextRecord>& records, Separator separator) {

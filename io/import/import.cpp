@@ -65,7 +65,7 @@ struct Outcome {
 Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_stand) {
   Outcome outcome;
   try {
-    outcome.content = read_runs(plan, options);
+    read_runs(plan, options, outcome.content);
     for (RunStreams& run : outcome.content.runs) {
       check_values(run, options);
       for (std::string& text : run.label.text) text = printable_name(text);
@@ -80,9 +80,11 @@ Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_
 /// Reads plans in parallel; results arrive in order, which the hash over all of them needs. After a failure no further
 /// plan is begun, but those under way end: an exception within the pipeline would cancel what readers do in parallel
 /// and hand on half of it.
-std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data,
+std::vector<RunStreams> read_all(std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data,
                                  bool as_they_stand) {
   std::vector<RunStreams> runs;
+  std::vector<FileForm> forms;
+  UnsetRows unset;
   std::vector<Outcome> outcomes(plans.size());  // the pipeline passes positions on
   std::size_t next = 0;
   std::exception_ptr error;
@@ -101,6 +103,7 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
   const auto collect = [&](std::size_t plan) {
     if (counter) counter->add();
     Outcome outcome = std::exchange(outcomes[plan], {});
+    std::move(outcome.content.forms.begin(), outcome.content.forms.end(), std::back_inserter(forms));
     if (outcome.error && !error) error = outcome.error;
     failed = error != nullptr;
     if (failed) return;
@@ -109,6 +112,7 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
         data.notes.push_back(std::move(note));
     for (const auto& [word, count] : outcome.content.missing_words) missing_words[word] += count;
     std::move(outcome.content.files.begin(), outcome.content.files.end(), std::back_inserter(data.files));
+    unset.add(outcome.content.unset);
     std::move(outcome.content.runs.begin(), outcome.content.runs.end(), std::back_inserter(runs));
   };
   const auto in_flight = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
@@ -116,10 +120,16 @@ std::vector<RunStreams> read_all(const std::vector<FilePlan>& plans, const DataO
   tbb::parallel_pipeline(in_flight, tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, take) &
                                         tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, read) &
                                         tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, collect));
+  if (agree_on_stamps(forms, plans)) {  // also where a wrong reading of stamps was what failed
+    data.files.clear();
+    data.notes.clear();
+    return read_all(plans, options, data, as_they_stand);
+  }
   if (error) std::rethrow_exception(error);
   for (const auto& [word, count] : missing_words)
     data.notes.push_back(
         fmt::format("\"{}\" stands for a missing value {} time{} (data.na)", word, count, count == 1 ? "" : "s"));
+  if (unset.count > 0) data.notes.push_back(unset.note());
   data.data_hash = data_hash(data.files);
   return runs;
 }
@@ -190,7 +200,7 @@ std::vector<Trajectory> without_missing_values(const Trajectory& run, const std:
 }
 
 /// All runs that have a role, in name order.
-std::vector<RunStreams> named_streams(const std::vector<FilePlan>& plans, const DataOptions& options,
+std::vector<RunStreams> named_streams(std::vector<FilePlan>& plans, const DataOptions& options,
                                       ImportedData& data, bool as_they_stand) {
   std::vector<RunStreams> runs = read_all(plans, options, data, as_they_stand);
   sort_by_name(runs);
@@ -213,7 +223,7 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory)
   ImportedData data;
   check_units("state", options.state, options.state_unit);
   check_units("input", options.input, options.input_unit);
-  const std::vector<FilePlan> plans = plan_import(options, memory);
+  std::vector<FilePlan> plans = plan_import(options, memory);
   data.recording.states = with_units(plans.front().states, options.state_unit);
   data.recording.inputs = with_units(plans.front().inputs, options.input_unit);
   refuse_control_characters(data.recording.states);

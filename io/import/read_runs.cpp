@@ -2,15 +2,31 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
-#include "io/import/row_reader.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
 
 namespace {
+
+/// Times of day of several tables count from the same midnight, though midnight may lie between their first rows.
+void align_clocks(std::vector<Table>& tables) {
+  constexpr std::int64_t day_ns = 86'400'000'000'000;
+  std::optional<std::int64_t> reference;
+  for (Table& table : tables) {
+    const auto known = [](std::int64_t stamp) { return stamp != missing_stamp; };
+    const auto first = std::find_if(table.time_ns.begin(), table.time_ns.end(), known);
+    if (!table.form.clock || first == table.time_ns.end()) continue;
+    if (!reference) reference = *first;
+    const double apart = static_cast<double>(*reference - *first) / static_cast<double>(day_ns);
+    const std::int64_t shift_ns = std::llround(apart) * day_ns;
+    for (std::int64_t& stamp : table.time_ns) stamp += known(stamp) ? shift_ns : 0;
+  }
+}
 
 /// One table per source of the plan.
 std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent& result) {
@@ -23,9 +39,12 @@ std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent
       result.notes.insert(result.notes.end(), read[i].notes.begin(), read[i].notes.end());
       for (const auto& [word, count] : read[i].missing_words) result.missing_words[word] += count;
       if (!read[i].alternation.empty()) result.notes.push_back(read[i].alternation);
+      const TimeRequest& time = requests[i].time;
+      if (!time.column.empty()) result.forms.push_back({plan.paths[path].string(), time.column, path, read[i].form});
       tables[here[i]] = std::move(read[i]);
     }
   }
+  align_clocks(tables);
   for (std::size_t source = 0; source < plan.sources.size(); ++source) {
     const SourcePlan& of = plan.sources[source];
     const RowOrder order{tables[plan.states_clock], of.run, rate_hz};
@@ -46,8 +65,8 @@ void check_row_counts(const FilePlan& plan, const std::vector<Table>& tables) {
                                   name(source), tables[source].rows()));
 }
 
-/// The rows of every run in every source.
-std::map<std::string, RunSlice> slices_of(const FilePlan& plan, const RowReader& reader) {
+/// The rows of every run in every source, without those that were stamped before the clock was set.
+std::map<std::string, RunSlice> slices_of(const FilePlan& plan, const RowReader& reader, UnsetRows& unset) {
   std::vector<RunRows> by_source;
   for (std::size_t source = 0; source < plan.sources.size(); ++source)
     by_source.push_back(reader.rows_by_run(plan.rows_correspond() ? plan.runs_source : source));
@@ -66,6 +85,7 @@ std::map<std::string, RunSlice> slices_of(const FilePlan& plan, const RowReader&
   for (const auto& [name, rows] : by_source[first]) {
     RunSlice& slice = slices[name];
     for (const RunRows& source : by_source) slice.rows.push_back(source.at(name));
+    unset.add(reader.leave_out_unset(slice));
     slice.origin_ns = reader.origin_ns(slice.rows);
     reader.check_stamps(slice);
   }
@@ -123,15 +143,13 @@ RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::
 
 }  // namespace
 
-FileContent read_runs(const FilePlan& plan, const DataOptions& options) {
-  FileContent result;
+void read_runs(const FilePlan& plan, const DataOptions& options, FileContent& result) {
   result.notes = plan.notes;
   const std::vector<Table> tables = read_tables(plan, options.rate_hz, result);
   check_row_counts(plan, tables);
   const RowReader reader(plan, tables, options);
-  for (const auto& [value, slice] : slices_of(plan, reader))
+  for (const auto& [value, slice] : slices_of(plan, reader, result.unset))
     result.runs.push_back(streams_of(plan, reader, run_name(plan, value, options), slice));
-  return result;
 }
 
 }  // namespace modebank

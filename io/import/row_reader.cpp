@@ -68,6 +68,30 @@ FileStream RowReader::stream(std::size_t clock, const std::vector<ColumnRef>& re
   return result;
 }
 
+std::string UnsetRows::note() const {
+  if (count == 0) return {};
+  return fmt::format("{} row{} stamped before the clock was set ({}): left out", count, count == 1 ? " is" : "s are",
+                     example);
+}
+
+UnsetRows RowReader::leave_out_unset(RunSlice& run) const {
+  UnsetRows result;
+  for (std::size_t source = 0; source < plan_.sources.size(); ++source) {
+    const auto& all = tables_[source].time_ns;
+    if (all.empty()) continue;
+    std::vector<std::int64_t> stamps;
+    for (const std::size_t row : run.rows[source]) stamps.push_back(all[row]);
+    const std::size_t unset = rows_before_clock_was_set(stamps);
+    if (unset == 0) continue;
+    result.add({unset, fmt::format("{}: {} s, then {} s", place(source, run.rows[source][unset - 1]),
+                                   seconds_text(stamps[unset - 1]), seconds_text(stamps[unset]))});
+    for (std::size_t other = 0; other < plan_.sources.size(); ++other)
+      if (other == source || plan_.rows_correspond())
+        run.rows[other].erase(run.rows[other].begin(), run.rows[other].begin() + static_cast<std::ptrdiff_t>(unset));
+  }
+  return result;
+}
+
 void RowReader::check_stamps(const RunSlice& run) const {
   for (std::size_t source = 0; source < plan_.sources.size(); ++source) {
     const auto& all = tables_[source].time_ns;

@@ -21,6 +21,18 @@ struct RunSlice {
   std::int64_t origin_ns = 0;
 };
 
+/// Rows that were stamped before the clock was set, which are left out.
+struct UnsetRows {
+  std::size_t count = 0;
+  std::string example = {};  ///< the place and the stamps around of the first ones
+
+  void add(const UnsetRows& other) {
+    if (count == 0) example = other.example;
+    count += other.count;
+  }
+  std::string note() const;  ///< empty without any
+};
+
 /// Tables' view of the runs: which rows belong to which, and their values. Keeps references.
 class RowReader {
  public:
@@ -35,6 +47,9 @@ class RowReader {
   /// The samples of `clock`, with the columns `refs` of whatever source; those of others are brought to its times, and
   /// what is derived from several sources is computed there.
   FileStream stream(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run, Bring bring) const;
+
+  /// Takes the rows out of the run that were stamped before the clock was set.
+  UnsetRows leave_out_unset(RunSlice& run) const;
 
   /// Throws DataError for stamps of the run that are out by orders of magnitude.
   void check_stamps(const RunSlice& run) const;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/table/table_reader.hpp"
+
 namespace modebank {
 
 namespace {
@@ -60,6 +62,25 @@ std::optional<std::size_t> stamp_far_out(const std::vector<std::int64_t>& stamps
   return std::nullopt;
 }
 
+std::size_t rows_before_clock_was_set(const std::vector<std::int64_t>& stamps_ns) {
+  constexpr double year_ns = 3.15e16, far = 1e3;
+  std::vector<std::size_t> rows;
+  std::vector<double> times;
+  for (std::size_t k = 0; k < stamps_ns.size(); ++k) {
+    if (stamps_ns[k] == missing_stamp) continue;
+    rows.push_back(k);
+    times.push_back(static_cast<double>(stamps_ns[k]));
+  }
+  const auto leaps = [&](std::size_t k) { return times[k] - times[k - 1] >= year_ns; };
+  std::size_t first = 1;
+  while (first < times.size() && !leaps(first)) ++first;
+  if (first >= times.size() || 2 * first > times.size()) return 0;
+  const std::vector<double> before = spans(times, false), after = spans(times, true);
+  const double leap = times[first] - times[first - 1];
+  const bool dwarfs = leap > far * std::max({before[first - 1], median_step(times)}) && leap > after[first];
+  return dwarfs ? rows[first] : 0;
+}
+
 std::string disorder_hint(const FileStream& source, Index k) {
   const Eigen::VectorXd& time_s = source.stream.time_s;
   const Index N = time_s.size();
@@ -73,6 +94,9 @@ std::string disorder_hint(const FileStream& source, Index k) {
   if (whole && 2 * repeats > N)
     return fmt::format(" (seconds without their nanoseconds? data.time = {}, {})", source.time_column,
                        nanoseconds_beside(source.time_column));
+  constexpr double hour_s = 3600.0, near_hour = 0.01;
+  if (std::abs(time_s(k - 1) - time_s(k) - hour_s) < near_hour * hour_s && source.origin_ns != 0)
+    return " (an hour back, as local time goes at the end of summer time: log UTC, or with the zone, as +02:00)";
   const double span = time_s(k - 1) - time_s(0);
   constexpr double near_start = 0.02;
   if (k + 1 >= fewest && span > 0.0 && std::abs(time_s(k) - time_s(0)) <= near_start * span)

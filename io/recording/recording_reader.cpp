@@ -28,7 +28,7 @@ LogRequest log_request(const TableRequest& request) {
   for (const std::string& number : request.numbers) wanted.columns.push_back({number, Form::number});
   for (const std::string& text : request.texts) wanted.columns.push_back({text, Form::text});
   if (!request.time.column.empty()) wanted.columns.push_back({request.time.column, Form::exact});
-  if (!request.time.nanoseconds.empty()) wanted.columns.push_back({request.time.nanoseconds, Form::exact});
+  if (!request.time.second.empty()) wanted.columns.push_back({request.time.second, Form::exact});
   return wanted;
 }
 
@@ -49,7 +49,7 @@ const std::filesystem::path& checked(const std::filesystem::path& definitions) {
   return definitions;
 }
 
-[[noreturn]] void fail(const std::string& file, std::uint64_t message, const std::string& column, const char* why) {
+[[noreturn]] void fail(const std::string& file, std::uint64_t message, const std::string& column, const std::string& why) {
   throw DataError(fmt::format("{}:{}: column {}: {}", file, message, column, why));
 }
 
@@ -68,7 +68,7 @@ void check_numbers(const std::string& file, const TableRequest& request, Table& 
 
 /// Stamps are exact; other columns count what TimeRequest::unit says, or what is found as for any file.
 void set_times(const std::string& file, const TimeRequest& request, bool is_stamp, LogColumn& column,
-               const LogColumn* nanoseconds, Table& table) {
+               const LogColumn* second, Table& table) {
   if (!request.may_miss) {
     const bool none =
         std::find(column.exact.begin(), column.exact.end(), no_exact_value) != column.exact.end() ||
@@ -81,16 +81,19 @@ void set_times(const std::string& file, const TimeRequest& request, bool is_stam
   }
   StampColumn stamps(request, "");
   stamps.reserve(table.rows());
+  const auto text = [](const LogColumn& of, std::size_t k) {
+    return of.exact.empty() ? fmt::format("{}", of.numbers[k]) : fmt::to_string(of.exact[k]);
+  };
   for (std::size_t k = 0; k < table.rows(); ++k) {
-    if (!column.numbers.empty())
-      stamps.add(column.numbers[k]);
-    else if (column.exact[k] == no_exact_value)
+    const bool none = column.numbers.empty() && column.exact[k] == no_exact_value;
+    const NumberStatus status = none                      ? NumberStatus::missing
+                                : second != nullptr       ? stamps.add(text(column, k), text(*second, k))
+                                : !column.numbers.empty() ? stamps.add(column.numbers[k])
+                                                          : stamps.add(column.exact[k]);
+    if (status == NumberStatus::missing)
       stamps.add_missing();
-    else
-      stamps.add(column.exact[k]);
-    if (nanoseconds &&
-        (nanoseconds->exact.empty() || !stamps.add_nanoseconds(fmt::format("{}", nanoseconds->exact[k]))))
-      fail(file, table.line[k], request.nanoseconds, "no number of nanoseconds (0 to 999999999)");
+    else if (status != NumberStatus::ok)
+      fail(file, table.line[k], request.column, stamps.complaint(status, text(column, k)));
   }
   stamps.finish(file, table);
 }
@@ -168,7 +171,7 @@ std::vector<Table> RecordingReader::read(const std::vector<TableRequest>& reques
     const bool is_stamp = std::any_of(known.begin(), known.end(), [&](const MessageColumn& c) {
       return c.path == request.time.column && c.form == MessageColumn::Form::time;
     });
-    set_times(path_.string(), request.time, is_stamp, time, request.time.nanoseconds.empty() ? nullptr : &*column,
+    set_times(path_.string(), request.time, is_stamp, time, request.time.second.empty() ? nullptr : &*column,
               table);
   }
   if (!tables.empty()) tables.front().notes.insert(tables.front().notes.begin(), notes.begin(), notes.end());

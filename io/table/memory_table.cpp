@@ -20,6 +20,10 @@ std::size_t rows_of(const MemoryColumn& column) {
   return std::visit([](const auto& values) { return values.size(); }, column.values);
 }
 
+std::string text_of(const MemoryColumn& column, std::size_t row) {
+  return std::visit([&](const auto& values) { return fmt::format("{}", values[row]); }, column.values);
+}
+
 /// The column's name and values, each text with its length, so that no other column has the same bytes.
 void add_to_hash(const MemoryColumn& column, Sha256& hash, std::uint64_t& bytes) {
   const auto add = [&](const void* data, std::size_t size) {
@@ -62,7 +66,7 @@ InputFile MemoryTable::describe(const std::vector<TableRequest>& requests) const
   for (const TableRequest& request : requests) {
     std::vector<std::string> wanted = request.numbers;
     wanted.insert(wanted.end(), request.texts.begin(), request.texts.end());
-    for (const std::string& name : {request.time.column, request.time.nanoseconds})
+    for (const std::string& name : {request.time.column, request.time.second})
       if (!name.empty()) wanted.push_back(name);
     for (const std::string& name : wanted) add_to_hash(column(name), hash, file.bytes);
   }
@@ -129,25 +133,20 @@ void MemoryTable::stamps(const TimeRequest& request, Table& table) const {
   const MemoryColumn& source = column(request.column);
   StampColumn stamps(request, source.info.unit);
   stamps.reserve(rows_);
-  std::vector<double> nanoseconds;
-  if (!request.nanoseconds.empty()) nanoseconds = numbers(request.nanoseconds, false);
+  const std::vector<std::string> first = request.second.empty() ? std::vector<std::string>() : texts(request.column);
+  const std::vector<std::string> second = request.second.empty() ? first : texts(request.second);
   for (std::size_t row = 0; row < rows_; ++row) {
-    NumberStatus status = NumberStatus::ok;
-    if (const auto* reals = std::get_if<std::span<const double>>(&source.values)) {
-      status = std::isfinite((*reals)[row]) ? NumberStatus::ok : NumberStatus::missing;
-      if (status == NumberStatus::ok) stamps.add((*reals)[row]);
-    } else if (const auto* whole = std::get_if<std::span<const std::int64_t>>(&source.values)) {
-      status = (*whole)[row] == missing_stamp ? NumberStatus::missing : NumberStatus::ok;  // which is numpy's NaT
-      if (status == NumberStatus::ok) stamps.add((*whole)[row]);
-    } else {
-      status = stamps.add(std::get<std::vector<std::string>>(source.values)[row]);
-    }
+    NumberStatus status = NumberStatus::missing;
+    if (!request.second.empty())
+      status = stamps.add(first[row], second[row]);
+    else if (const auto* whole = std::get_if<std::span<const std::int64_t>>(&source.values))
+      status = (*whole)[row] == missing_stamp ? status : stamps.add((*whole)[row]);  // which is numpy's NaT
+    else
+      std::visit([&](const auto& values) { status = stamps.add(values[row]); }, source.values);
     if (status == NumberStatus::missing && request.may_miss)
       stamps.add_missing();
     else if (status != NumberStatus::ok)
-      fail(row, request.column, status == NumberStatus::missing ? "missing value" : "no time");
-    else if (!nanoseconds.empty() && !stamps.add_nanoseconds(fmt::format("{}", nanoseconds[row])))
-      fail(row, request.nanoseconds, "no nanoseconds");
+      fail(row, request.column, stamps.complaint(status, text_of(source, row)));
   }
   stamps.finish(name_, table);
 }

@@ -25,63 +25,25 @@ std::optional<std::string_view> take_digits(std::string_view& text) {
   return digits;
 }
 
-/// Takes a number of exactly `width` digits.
-std::optional<int> take_number(std::string_view& text, std::size_t width) {
-  if (text.size() < width) return std::nullopt;
-  int value = 0;
-  for (std::size_t i = 0; i < width; ++i) {
-    if (!is_digit(text[i])) return std::nullopt;
-    value = 10 * value + (text[i] - '0');
-  }
-  text.remove_prefix(width);
-  return value;
-}
-
 bool take(std::string_view& text, std::string_view any_of) {
   if (text.empty() || any_of.find(text.front()) == std::string_view::npos) return false;
   text.remove_prefix(1);
   return true;
 }
 
-/// The fraction's digits as billionths, rounded: one billion at most.
+}  // namespace
+
 std::int64_t billionths_of(std::string_view digits) {
   std::int64_t value = 0;
   for (std::size_t i = 0; i < 9; ++i) value = 10 * value + (i < digits.size() ? digits[i] - '0' : 0);
   return value + (digits.size() > 9 && digits[9] >= '5' ? 1 : 0);
 }
 
-Stamp normalised(std::int64_t whole, std::int64_t billionths) {
+Stamp normalised_stamp(std::int64_t whole, std::int64_t billionths) {
   if (billionths >= billion) return {whole + 1, static_cast<std::int32_t>(billionths - billion)};
   if (billionths < 0) return {whole - 1, static_cast<std::int32_t>(billionths + billion)};
   return {whole, static_cast<std::int32_t>(billionths)};
 }
-
-/// What follows the time of day: seconds east of Greenwich. Nothing means none.
-std::optional<std::int64_t> parse_zone(std::string_view text) {
-  if (text.empty() || text == "Z" || text == "z") return 0;
-  const std::int64_t sign = text.front() == '-' ? -1 : 1;
-  if (!take(text, "+-")) return std::nullopt;
-  const std::optional<int> hours = take_number(text, 2);
-  take(text, ":");
-  const std::optional<int> minutes = text.empty() ? 0 : take_number(text, 2);
-  if (!hours || !minutes || !text.empty() || *hours > 23 || *minutes > 59) return std::nullopt;
-  return sign * (3600 * *hours + 60 * *minutes);
-}
-
-std::optional<std::int64_t> take_day(std::string_view& text) {
-  const std::optional<int> year = take_number(text, 4);
-  if (!year || !take(text, "-/")) return std::nullopt;
-  const std::optional<int> month = take_number(text, 2);
-  if (!month || !take(text, "-/")) return std::nullopt;
-  const std::optional<int> day = take_number(text, 2);
-  if (!day) return std::nullopt;
-  const std::chrono::year_month_day date{std::chrono::year(*year), std::chrono::month(static_cast<unsigned>(*month)),
-                                         std::chrono::day(static_cast<unsigned>(*day))};
-  if (!date.ok()) return std::nullopt;
-  return std::chrono::sys_days(date).time_since_epoch().count();
-}
-
-}  // namespace
 
 std::optional<Stamp> parse_decimal_stamp(std::string_view text) {
   text = without_blanks(text);
@@ -97,35 +59,12 @@ std::optional<Stamp> parse_decimal_stamp(std::string_view text) {
   if (!whole.empty() && std::from_chars(whole.data(), whole.data() + whole.size(), value).ec != std::errc())
     return std::nullopt;
   const std::int64_t billionths = billionths_of(fraction);
-  return negative ? normalised(-value, -billionths) : normalised(value, billionths);
+  return negative ? normalised_stamp(-value, -billionths) : normalised_stamp(value, billionths);
 }
 
 Stamp stamp_of(double value) {
   const double whole = std::floor(value);
-  return normalised(static_cast<std::int64_t>(whole), std::llround((value - whole) * static_cast<double>(billion)));
-}
-
-std::optional<Stamp> parse_iso_time(std::string_view text) {
-  text = without_blanks(text);
-  const std::optional<std::int64_t> day = take_day(text);
-  if (!day || !take(text, "Tt ")) return std::nullopt;
-  const std::optional<int> hour = take_number(text, 2);
-  if (!hour || !take(text, ":")) return std::nullopt;
-  const std::optional<int> minute = take_number(text, 2);
-  std::optional<int> second = 0;
-  std::int64_t billionths = 0;
-  if (minute && take(text, ":")) {
-    second = take_number(text, 2);
-    if (second && take(text, ".,")) {
-      const auto digits = take_digits(text);
-      if (!digits) return std::nullopt;
-      billionths = billionths_of(*digits);
-    }
-  }
-  const std::optional<std::int64_t> zone = parse_zone(without_blanks(text));
-  constexpr int leap_second = 60;
-  if (!minute || !second || !zone || *hour > 23 || *minute > 59 || *second > leap_second) return std::nullopt;
-  return normalised(86400 * *day + 3600 * *hour + 60 * *minute + *second - *zone, billionths);
+  return normalised_stamp(static_cast<std::int64_t>(whole), std::llround((value - whole) * static_cast<double>(billion)));
 }
 
 std::string seconds_text(std::int64_t time_ns) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -17,75 +16,24 @@ namespace {
 
 constexpr double largest_whole = 9.2e18;  // that 64 bits hold
 constexpr double exact_below = 1e6;       // a double tells billionths of what is smaller
-constexpr std::size_t rows_for_unit = 4096;
+constexpr std::int64_t billion = 1'000'000'000;
+constexpr std::size_t shown_bytes = 60;  // of an offending field in a message
 
-std::int64_t ns_per(TimeUnit unit) {
-  switch (unit) {
-    case TimeUnit::ms:
-      return 1'000'000;
-    case TimeUnit::us:
-      return 1'000;
-    case TimeUnit::ns:
-      return 1;
-    default:
-      return 1'000'000'000;
-  }
-}
+/// Units of which billionths are coarser than what a double tells.
+bool is_long(TimeUnit unit) { return ns_per(unit) > billion; }
 
-std::string_view in_words(TimeUnit unit) {
-  constexpr std::array<std::string_view, 5> words{"", "seconds", "milliseconds", "microseconds", "nanoseconds"};
-  return words.at(static_cast<std::size_t>(unit));
-}
-
-/// What a name or a unit says of itself: time_ms, "stamp [us]", nsec.
-std::optional<TimeUnit> unit_in(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  while (!text.empty() && std::string_view(")] ").find(text.back()) != std::string_view::npos) text.pop_back();
-  const std::size_t start = text.find_last_of("_[( .");
-  const std::string word = start == std::string::npos ? text : text.substr(start + 1);
-  const auto is_one_of = [&](std::initializer_list<std::string_view> words) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-  };
-  if (is_one_of({"s", "sec", "secs", "second", "seconds"})) return TimeUnit::s;
-  if (is_one_of({"ms", "msec", "msecs", "millis", "millisecond", "milliseconds"})) return TimeUnit::ms;
-  if (is_one_of({"us", "usec", "usecs", "micros", "microsecond", "microseconds", "\xC2\xB5s", "\xCE\xBCs"}))
-    return TimeUnit::us;
-  if (is_one_of({"ns", "nsec", "nsecs", "nanos", "nanosecond", "nanoseconds"})) return TimeUnit::ns;
-  return std::nullopt;
-}
-
-/// Epochs of robots: 1998 to 2103, in seconds.
-std::optional<TimeUnit> unit_of_epoch(double stamp) {
-  constexpr double first_s = 9e8, last_s = 4.2e9;
-  double scale = 1.0;
-  for (const TimeUnit unit : {TimeUnit::s, TimeUnit::ms, TimeUnit::us, TimeUnit::ns}) {
-    if (stamp >= first_s * scale && stamp <= last_s * scale) return unit;
-    scale *= 1e3;
-  }
-  return std::nullopt;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Of whole numbers that are this far apart: a robot samples at 0.1 Hz or faster, so what is further apart than ten is
-/// no seconds, unless it is minutes.
-TimeUnit unit_of_spacing(double spacing) {
-  constexpr double slowest_s = 10.0, minute_s = 60.0, hour_s = 3600.0;
-  const bool minutes = spacing <= hour_s && std::fmod(spacing, minute_s) == 0.0;
-  if (spacing <= slowest_s || minutes) return TimeUnit::s;
-  if (spacing <= slowest_s * 1e3) return TimeUnit::ms;
-  return spacing <= slowest_s * 1e6 ? TimeUnit::us : TimeUnit::ns;
+std::optional<std::int64_t> nanoseconds_in(std::string_view text) {
+  const std::optional<Stamp> stamp = parse_decimal_stamp(text);
+  if (!stamp || stamp->billionths != 0 || stamp->whole < 0 || stamp->whole >= billion) return std::nullopt;
+  return stamp->whole;
 }
 
 }  // namespace
 
 StampColumn::StampColumn(const TimeRequest& request, std::string_view stated_unit)
-    : request_(request), stated_unit_(stated_unit) {}
+    : request_(request), stated_unit_(stated_unit) {
+  if (!request_.format.empty()) patterns_.emplace_back(request_.format);
+}
 
 void StampColumn::reserve(std::size_t rows) {
   stamps_.reserve(rows);
@@ -93,103 +41,204 @@ void StampColumn::reserve(std::size_t rows) {
 }
 
 void StampColumn::push(Stamp stamp, double as_written) {
+  kind_ = Kind::number;
   whole_numbers_ = whole_numbers_ && stamp.billionths == 0;
   stamps_.push_back(stamp);
   as_written_.push_back(as_written);
 }
 
 NumberStatus StampColumn::add(std::string_view text) {
-  if (kind_ != Kind::iso) {
-    const ParsedNumber number = parse_number(text);
-    if (number.status == NumberStatus::ok && std::abs(number.value) < largest_whole) {
-      kind_ = Kind::number;
-      const bool exact_anyway = std::abs(number.value) < exact_below;
-      const std::optional<Stamp> exact = exact_anyway ? std::nullopt : parse_decimal_stamp(text);
-      push(exact ? *exact : stamp_of(number.value), number.value);
-      return NumberStatus::ok;
-    }
-    if (number.status == NumberStatus::ok) return NumberStatus::out_of_range;
-    if (number.status != NumberStatus::text || kind_ == Kind::number) return number.status;
+  if (kind_ == Kind::text || !patterns_.empty()) return add_by_patterns(text);
+  const ParsedNumber number = parse_number(text);
+  if (number.status == NumberStatus::ok && !(std::abs(number.value) < largest_whole)) return NumberStatus::out_of_range;
+  if (number.status == NumberStatus::ok) {
+    const bool exact_anyway = std::abs(number.value) < exact_below;
+    const std::optional<Stamp> exact = exact_anyway ? std::nullopt : parse_decimal_stamp(text);
+    push(exact ? *exact : stamp_of(number.value), number.value);
+    return NumberStatus::ok;
   }
-  const std::optional<Stamp> iso = parse_iso_time(text);
-  if (!iso) return parse_number(text).status == NumberStatus::missing ? NumberStatus::missing : NumberStatus::text;
-  kind_ = Kind::iso;
-  push(*iso, 0.0);
+  if (number.status != NumberStatus::text || kind_ == Kind::number) return number.status;
+  return add_by_patterns(text);
+}
+
+NumberStatus StampColumn::add(std::string_view text, std::string_view second) {
+  const ParsedNumber number = parse_number(text);
+  if (number.status != NumberStatus::text && patterns_.empty() && kind_ != Kind::text) {
+    if (number.status == NumberStatus::missing) return number.status;
+    const std::optional<std::int64_t> fine = nanoseconds_in(second);
+    if (!fine) return NumberStatus::text;
+    if (const NumberStatus status = add(text); status != NumberStatus::ok) return status;
+    if (stamps_.back().billionths != 0) return NumberStatus::text;  // the seconds have a fraction of their own
+    stamps_.back().billionths = static_cast<std::int32_t>(*fine);
+    return NumberStatus::ok;
+  }
+  return add(fmt::format("{} {}", without_blanks(text), without_blanks(second)));
+}
+
+NumberStatus StampColumn::add(double value) {
+  if (!std::isfinite(value)) return NumberStatus::missing;
+  if (!patterns_.empty()) return add_by_patterns(fmt::format("{}", value));
+  if (!(std::abs(value) < largest_whole)) return NumberStatus::out_of_range;
+  push(stamp_of(value), value);
   return NumberStatus::ok;
 }
 
-void StampColumn::add(double value) {
-  if (!(std::abs(value) < largest_whole)) return add_missing();
-  kind_ = Kind::number;
-  push(stamp_of(value), value);
-}
-
-void StampColumn::add(std::int64_t value) {
-  kind_ = Kind::number;
+NumberStatus StampColumn::add(std::int64_t value) {
+  if (!patterns_.empty()) return add_by_patterns(fmt::to_string(value));
   push({value, 0}, static_cast<double>(value));
+  return NumberStatus::ok;
 }
 
 void StampColumn::add_missing() {
-  stamps_.emplace_back();
   as_written_.push_back(not_a_number);
+  if (kind_ != Kind::text) stamps_.emplace_back();
+  for (Reading& reading : readings_) reading.stamps.emplace_back();
 }
 
-bool StampColumn::add_nanoseconds(std::string_view text) {
-  constexpr std::int64_t end = 1'000'000'000;
-  const std::optional<Stamp> stamp = parse_decimal_stamp(text);
-  if (!stamp || stamp->billionths != 0 || stamp->whole < 0 || stamp->whole >= end) return false;
-  if (stamps_.back().billionths != 0) return false;  // the seconds have a fraction of their own
-  stamps_.back().billionths = static_cast<std::int32_t>(stamp->whole);
+/// Keeps the patterns that fit the first text.
+bool StampColumn::start_readings(std::string_view text) {
+  for (const StampPattern& pattern : patterns_.empty() ? known_stamp_patterns() : patterns_)
+    if (pattern.read(text)) readings_.push_back({pattern, std::vector<Stamp>(as_written_.size())});
+  if (readings_.empty()) return false;
+  kind_ = Kind::text;
+  first_value_ = without_blanks(text);
+  first_row_ = as_written_.size();
   return true;
 }
 
-TimeUnit StampColumn::unit_of_numbers(std::vector<std::string>& notes) const {
-  if (const auto stated = unit_in(stated_unit_)) return *stated;
-  if (request_.column.size() > 1)  // a column called "s" may be anything
-    if (const auto named = unit_in(request_.column)) return *named;
-  std::vector<double> known, spacings;
-  for (const double value : as_written_) {
-    if (std::isnan(value)) continue;
-    if (known.size() == rows_for_unit) break;
-    if (!known.empty() && value > known.back()) spacings.push_back(value - known.back());
-    known.push_back(value);
+NumberStatus StampColumn::add_by_patterns(std::string_view text) {
+  const auto none = [&] {
+    return parse_number(text).status == NumberStatus::missing ? NumberStatus::missing : NumberStatus::text;
+  };
+  if (readings_.empty() && !start_readings(text)) return none();
+  std::size_t fitting = 0;
+  for (Reading& reading : readings_) {
+    const std::optional<Stamp> stamp = reading.pattern.read(text);
+    reading.fits = stamp.has_value();
+    if (!stamp) continue;
+    reading.push(*stamp);
+    ++fitting;
   }
-  if (const auto epoch = unit_of_epoch(median(known))) return *epoch;
-  if (!whole_numbers_) return TimeUnit::s;
-  const double spacing = median(spacings);
-  const TimeUnit unit = unit_of_spacing(spacing);
-  if (unit == TimeUnit::s && spacing > 1.0)
-    notes.push_back(
-        fmt::format("column {}: whole numbers {} apart are taken for seconds (data.time_unit = ms says "
-                    "otherwise)",
-                    request_.column, spacing));
-  return unit;
+  if (fitting == 0) return none();
+  if (fitting < readings_.size()) std::erase_if(readings_, [](const Reading& reading) { return !reading.fits; });
+  as_written_.push_back(0.0);
+  return NumberStatus::ok;
 }
 
-TimeUnit StampColumn::found_unit(std::vector<std::string>& notes) const {
-  if (kind_ == Kind::iso || !request_.nanoseconds.empty()) return TimeUnit::s;
-  if (request_.unit != TimeUnit::automatic) return request_.unit;
-  const TimeUnit unit = unit_of_numbers(notes);
-  if (unit != TimeUnit::s)
-    notes.push_back(
-        fmt::format("column {} counts {} (data.time_unit = {})", request_.column, in_words(unit), name_of(unit)));
-  return unit;
+/// A time of day that falls by hours belongs to the next day; one that rises by nearly a day, once midnight has passed,
+/// to a row of the day before that came late.
+void StampColumn::Reading::push(Stamp stamp) {
+  constexpr std::int64_t day_s = 86400, most_disorder_s = 7200;
+  if (!pattern.has_date()) {
+    stamp.whole += day_s * days;
+    if (latest && stamp.whole < *latest - most_disorder_s) {
+      ++days;
+      stamp.whole += day_s;
+    } else if (days > 0 && stamp.whole > *latest + day_s - most_disorder_s) {
+      stamp.whole -= day_s;
+    }
+    latest = latest ? std::max(*latest, stamp.whole) : stamp.whole;
+  }
+  stamps.push_back(stamp);
+}
+
+bool StampColumn::Reading::is_even(const std::vector<double>& missing) const {
+  constexpr double gap_steps = 5.0;
+  std::vector<double> steps;
+  const Stamp* before = nullptr;
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    if (std::isnan(missing[k])) continue;
+    if (before != nullptr)
+      steps.push_back(static_cast<double>(stamps[k].whole - before->whole) +
+                      1e-9 * (stamps[k].billionths - before->billionths));
+    before = &stamps[k];
+  }
+  if (steps.empty() || *std::min_element(steps.begin(), steps.end()) < 0.0) return steps.empty();
+  const double longest = *std::max_element(steps.begin(), steps.end());
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return longest <= gap_steps * *middle;
+}
+
+std::string StampColumn::complaint(NumberStatus status, std::string_view text) const {
+  const std::string shown = fmt::format("\"{}\"{}", text.substr(0, shown_bytes), text.size() > shown_bytes ? "..." : "");
+  if (status == NumberStatus::missing) return text.empty() ? "missing value" : fmt::format("missing value ({})", shown);
+  if (status == NumberStatus::out_of_range) return shown + " is too large for a double";
+  if (!patterns_.empty()) return fmt::format("{} does not fit data.time_format = {}", shown, request_.format);
+  if (!readings_.empty())
+    return fmt::format("{} does not fit {}, as \"{}\" before it does (data.time_format = PATTERN states the form)",
+                       shown, readings_.front().pattern.text(), first_value_);
+  if (!request_.second.empty() && kind_ != Kind::text)
+    return shown + " in two columns is no time (whole seconds and nanoseconds below 1e9, or a date and a time of day)";
+  return fmt::format(
+      "{} is no time (seconds, or as 2024-05-01T10:00:00.25Z; data.time_format states another form, as "
+      "%d.%m.%Y %H:%M:%S.%f)",
+      shown);
+}
+
+/// What is known without looking at all stamps is believed.
+StampForm StampColumn::found_form(std::vector<std::string>& notes) const {
+  using Ground = StampForm::Ground;
+  if (!request_.second.empty()) return {Ground::stated, TimeUnit::s};
+  if (request_.unit != TimeUnit::automatic) return {Ground::stated, request_.unit};
+  StampForm form{Ground::stated, TimeUnit::s};
+  if (const auto stated = stated_time_unit(stated_unit_))
+    form.unit = *stated;
+  else if (const auto named = named_time_unit(request_.column))
+    form.unit = *named;
+  else
+    form = form_of_numbers(request_.column, as_written_, whole_numbers_, notes);
+  if (form.unit != TimeUnit::s)
+    notes.push_back(fmt::format("column {} counts {} (data.time_unit = {})", request_.column, in_words(form.unit),
+                                name_of(form.unit)));
+  return form;
+}
+
+std::int64_t StampColumn::nanoseconds(std::size_t row, const StampForm& form) const {
+  const std::int64_t scale = ns_per(form.unit);
+  if (is_long(form.unit))
+    return std::llround((as_written_[row] - static_cast<double>(form.first_day)) * static_cast<double>(scale));
+  return stamps_[row].whole * scale + stamps_[row].billionths / (billion / scale);
+}
+
+/// Of several patterns those whose stamps advance evenly, if there are some; what reads all alike is one.
+void StampColumn::decide_reading(Table& table) {
+  const auto uneven = [&](const Reading& reading) { return !reading.is_even(as_written_); };
+  if (readings_.size() > 1 && !std::all_of(readings_.begin(), readings_.end(), uneven)) std::erase_if(readings_, uneven);
+  const Reading& chosen = readings_.front();
+  table.form = {StampForm::Ground::text, TimeUnit::s, 0, {}, first_value_, table.line[first_row_]};
+  table.form.clock = !chosen.pattern.has_date();
+  for (const Reading& reading : readings_)
+    if (&reading == &chosen || reading.stamps != chosen.stamps) table.form.patterns.push_back(reading.pattern.text());
+  table.time_ns.resize(as_written_.size());
+  for (std::size_t k = 0; k < as_written_.size(); ++k)
+    table.time_ns[k] = std::isnan(as_written_[k]) ? missing_stamp
+                                                  : chosen.stamps[k].whole * billion + chosen.stamps[k].billionths;
+  if (!chosen.pattern.text().starts_with("%Y") && patterns_.empty())
+    table.notes.push_back(
+        fmt::format("column {} is read as {} (data.time_format)", request_.column, chosen.pattern.text()));
 }
 
 void StampColumn::finish(std::string_view file, Table& table) {
-  const TimeUnit unit = found_unit(table.notes);
-  const std::int64_t scale = ns_per(unit), most = std::numeric_limits<std::int64_t>::max() / scale - 1;
-  table.time_ns.resize(stamps_.size());
+  if (kind_ == Kind::text) return decide_reading(table);
+  table.form = found_form(table.notes);
+  StampForm& form = table.form;
+  if (kind_ == Kind::unknown) form.ground = StampForm::Ground::none;
+  table.time_ns.assign(stamps_.size(), missing_stamp);
+  const double most = largest_whole / static_cast<double>(ns_per(form.unit));
   for (std::size_t k = 0; k < stamps_.size(); ++k) {
-    const Stamp& stamp = stamps_[k];
-    if (stamp.whole > most || stamp.whole < -most)  // the least number has no absolute value
+    if (std::isnan(as_written_[k])) continue;
+    if (form.value.empty()) {
+      form.value = fmt::format("{}", as_written_[k]);
+      form.line = table.line[k];
+      if (form.unit == TimeUnit::d) form.first_day = first_day_of(as_written_[k]);
+    }
+    if (!(std::abs(as_written_[k] - static_cast<double>(form.first_day)) < most))
       throw DataError(fmt::format("{}:{}: column {}: {} {} is no time (data.time_unit)", file, table.line[k],
-                                  request_.column, stamp.whole, in_words(unit)));
-    const bool missing = std::isnan(as_written_[k]);
-    table.time_ns[k] = missing ? missing_stamp : stamp.whole * scale + stamp.billionths / (1'000'000'000 / scale);
+                                  request_.column, as_written_[k], in_words(form.unit)));
+    table.time_ns[k] = nanoseconds(k, form);
   }
-  const bool plain = kind_ != Kind::iso && unit == TimeUnit::s && request_.nanoseconds.empty();
-  if (plain) table.time_s = std::move(as_written_);
+  if (form.unit == TimeUnit::s && request_.second.empty()) table.time_s = std::move(as_written_);
 }
 
 }  // namespace modebank

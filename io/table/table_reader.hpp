@@ -9,6 +9,7 @@
 
 #include "io/files/input_file.hpp"
 #include "io/table/format_options.hpp"
+#include "io/table/stamp_form.hpp"
 #include "io/table/time_unit.hpp"
 
 namespace modebank {
@@ -30,11 +31,13 @@ struct TableInfo {
   std::uint64_t skipped = 0;  ///< lines of a title above it, in text
 };
 
-/// The column of times; an empty one asks for none. Stamps in two columns have their nanoseconds in the second.
+/// The column of times; an empty one asks for none. Stamps in two columns have their nanoseconds in the second, or the
+/// time of day beside a date.
 struct TimeRequest {
   std::string column = {};
-  std::string nanoseconds = {};
+  std::string second = {};
   TimeUnit unit = TimeUnit::automatic;
+  std::string format = {};  ///< a StampPattern; empty: found
   bool may_miss = false;  ///< whether a missing stamp becomes missing_stamp; else it is an error
 };
 
@@ -57,6 +60,7 @@ struct Table {
   /// The same times as they were written, where that is seconds in text, which may be finer; else empty.
   std::vector<double> time_s;
   std::map<std::string, std::size_t> missing_words;  ///< how often each word of data.na stands for a missing number
+  StampForm form = {};           ///< of the times, where they were found in numbers or text
   std::vector<std::string> notes;  ///< what the reader found out and the user should know; without the file's name, so
                                    ///< that many files say it once
 

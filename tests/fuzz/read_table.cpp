@@ -30,7 +30,7 @@ TableRequest some_request(const TableInfo& table, std::size_t position, Random& 
   for (const ColumnInfo& column : table.columns) {
     const bool is_text = column.type == "text" || chances.one_in(20);
     if (column.type == "time" || (request.time.column.empty() && chances.one_in(8)))
-      (request.time.nanoseconds.empty() && !request.time.column.empty() && chances.one_in(6) ? request.time.nanoseconds
+      (request.time.second.empty() && !request.time.column.empty() && chances.one_in(6) ? request.time.second
                                                                                              : request.time.column) =
           column.name;
     else if (is_text)
@@ -39,6 +39,7 @@ TableRequest some_request(const TableInfo& table, std::size_t position, Random& 
       request.numbers.push_back(column.name);
   }
   request.time.unit = any_of<TimeUnit>(chances);
+  if (chances.one_in(8)) request.time.format = "%d.%m.%Y %H:%M:%S.%f";
   request.time.may_miss = !chances.one_in(4);
   for (std::size_t i = 0; i < request.numbers.size(); ++i) request.may_miss.push_back(!chances.one_in(6));
   return request;

@@ -4,6 +4,7 @@
 #include "app/config/option_builders.hpp"
 #include "app/config/options/sections.hpp"
 #include "io/import/derived.hpp"
+#include "io/table/stamp_pattern.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -58,6 +59,18 @@ Option quantum_option() {
   result.get = [get = result.get](const Config& config) {
     if (config.data.quantum_auto) return std::string("auto");
     return config.data.quantum.empty() ? std::string("none") : get(config);
+  };
+  return result;
+}
+
+Option time_format_option() {
+  Option result = text("data.time_format", "strptime's letters, %f for the fraction of a second",
+                       "the form of times that are text, as %d.%m.%Y %H:%M:%S.%f; empty: the first of a table of usual "
+                       "forms that fits all values. Without a date times count from midnight and go on past the next",
+                       MODEBANK_FIELD(data.time_format));
+  result.set = [set = result.set](Config& config, const std::string& text) {
+    if (!text.empty()) StampPattern{text};  // throws what is wrong with it
+    set(config, text);
   };
   return result;
 }
@@ -141,13 +154,14 @@ std::vector<Option> data_options() {
            MODEBANK_FIELD(data.state_unit)),
       text("data.input_unit", "units", "one per input, or one for all", MODEBANK_FIELD(data.input_unit)),
       text(
-          "data.time", "one column name, or those of seconds and nanoseconds",
-          "times: numbers or ISO 8601. Of a recording: time is the header's stamp or, where there is none, when it was "
+          "data.time", "one column name, or those of seconds and nanoseconds, or of date and time of day",
+          "times: numbers or text. Of a recording: time is the header's stamp or, where there is none, when it was "
           "received; receive_time the latter. Empty: row k is at k / rate_hz",
           MODEBANK_FIELD(data.time)),
       words("data.time_unit",
             "what times count; auto: as their name, their size or how far apart they are shows, else seconds",
             MODEBANK_FIELD(data.time_unit)),
+      time_format_option(),
       words("data.separator", "what is between the fields of text files; auto: what their first rows show",
             MODEBANK_FIELD(data.format.separator)),
       words("data.decimal", "the decimal mark of text files; auto: as their first rows show",

@@ -340,14 +340,18 @@ TEST_F(Init, TakesAColumnThatRisesSteadilyForTheTimes) {
   EXPECT_NEAR(run.time_s(1) - run.time_s(0), 0.05, 1e-9);
 }
 
-TEST_F(Init, SaysWhyDatesOfOtherOrdersAreNoTimes) {
-  for (const char* date : {"01.05.2024 10:00:{:06.3f}", "05/01/2024 10:00:{:06.3f}"}) {
-    std::string text = "time;wz;cmd\n";
+TEST_F(Init, SaysWhatIsInDoubtOfDates) {
+  for (const auto& [date, said] :
+       {std::pair{"01/02/2024 10:00:{:06.3f}", "time_format = %d/%m/%Y %H:%M:%S.%f"},
+        {"01/02/2024 10:00:{:06.3f}", "# ! the times, as 01/02/2024 10:00:00.000, allow two readings"},
+        {"01.02.2024 10:00:{:06.3f}", "# ! column time is read as %d.%m.%Y %H:%M:%S.%f"},
+        {"2024;032 10:00:{:06.3f}", "is no time (seconds, or as 2024-05-01T10:00:00.25Z"}}) {
+    std::string text = "time|wz|cmd\n";
     for (int k = 0; k < 300; ++k)
       text +=
-          fmt::format("{};{};{}\n", fmt::format(fmt::runtime(date), 0.05 * k), std::sin(0.3 * k), std::cos(0.3 * k));
+          fmt::format("{}|{}|{}\n", fmt::format(fmt::runtime(date), 0.05 * k), std::sin(0.3 * k), std::cos(0.3 * k));
     write_file(folder.path() / "dates.csv", text);
-    EXPECT_THAT(write({path("dates.csv")}), HasSubstr("is no time (seconds, or as 2024-05-01T10:00:00.25Z)")) << date;
+    EXPECT_THAT(write({path("dates.csv")}), HasSubstr(said)) << date;
   }
 }
 

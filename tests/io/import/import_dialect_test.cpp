@@ -404,7 +404,7 @@ TEST_F(ImportDialect, RobotArmOfDaisy) {
 }
 
 TEST_F(ImportDialect, AStampFarOutIsNamed) {
-  for (const int out : {0, 1, 17, log_rows - 1}) {
+  for (const int out : {1, 17, log_rows - 1}) {
     write("log.csv", table("time,x,u\n", [&](int k) {
             return fmt::format("{},{},{}", k == out ? 0 : epoch_ns + stamp_ns(k), x_of(k), u_of(k));
           }));
@@ -412,9 +412,9 @@ TEST_F(ImportDialect, AStampFarOutIsNamed) {
                                           HasSubstr("out by orders of magnitude")));
   }
   write("log.csv", table("time,x,u\n", [&](int k) {
-          return fmt::format("{},{},{}", (k < 12 ? 0 : epoch_ns) + stamp_ns(k), x_of(k), u_of(k));
+          return fmt::format("{},{},{}", (k < 22 ? 0 : epoch_ns) + stamp_ns(k), x_of(k), u_of(k));
         }));
-  EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:14: column time")) << "a clock that was set on the way";
+  EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:24: column time")) << "a clock that was set on the way";
 }
 
 TEST_F(ImportDialect, UnitsStandInBracketsOfTheHeader) {

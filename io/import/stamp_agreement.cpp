@@ -1,0 +1,114 @@
+#include "io/import/stamp_agreement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "io/table/stamp_pattern.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Ground = StampForm::Ground;
+using Pool = std::vector<const FileForm*>;
+
+std::string shown(const FileForm& of) {
+  return fmt::format("{}:{}: column {}: \"{}\"", of.file, of.form.line, of.column, of.form.value);
+}
+
+std::string read_by(const std::string& pattern, const std::string& value) {
+  const StampPattern by(pattern);
+  const Stamp stamp = by.read(value).value_or(Stamp());
+  const std::string text = iso_text(stamp.whole * 1'000'000'000 + stamp.billionths);
+  return fmt::format("{} by {}", by.has_date() ? text : text.substr(text.find('T') + 1), pattern);
+}
+
+/// The finest unit that spacings show serves all files of a logger: none is further apart than a robot samples.
+TimeUnit agreed_unit(const Pool& pool) {
+  TimeUnit finest = pool.front()->form.unit;
+  for (const FileForm* of : pool) {
+    const bool same = of->form.unit == pool.front()->form.unit;
+    const auto weak = [](const FileForm* f) { return f->form.ground != Ground::spacing; };
+    if (!same && (weak(of) || weak(pool.front())))
+      throw DataError(fmt::format("{} counts {} and {} counts {}, as their size and spacing show: data.time_unit = UNIT "
+                                  "states what the stamps of all files count",
+                                  shown(*pool.front()), in_words(pool.front()->form.unit), shown(*of),
+                                  in_words(of->form.unit)));
+    if (ns_per(of->form.unit) < ns_per(finest)) finest = of->form.unit;
+  }
+  return finest;
+}
+
+/// The patterns that fit all files, in the order in which they are tried.
+std::vector<std::string> common_patterns(const Pool& pool) {
+  std::vector<std::string> common = pool.front()->form.patterns;
+  for (const FileForm* of : pool) {
+    const std::vector<std::string> before = common;
+    std::erase_if(common, [&](const std::string& pattern) {
+      return std::count(of->form.patterns.begin(), of->form.patterns.end(), pattern) == 0;
+    });
+    if (common.empty())
+      throw DataError(fmt::format("{} is a time by {}, but {} by {}: data.time_format = PATTERN states one form for all "
+                                  "files",
+                                  shown(*pool.front()), before.front(), shown(*of), of->form.patterns.front()));
+  }
+  return common;
+}
+
+[[noreturn]] void refuse_ambiguous(const FileForm& of, const std::vector<std::string>& patterns) {
+  throw DataError(fmt::format("{} is {}, or {}: data.time_format = {} or {} states which", shown(of),
+                              read_by(patterns[0], of.form.value), read_by(patterns[1], of.form.value), patterns[0],
+                              patterns[1]));
+}
+
+/// Of one pattern's files those whose form was found, numbers and texts apart.
+std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools_of(const std::vector<FileForm>& forms) {
+  std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools;
+  for (const FileForm& of : forms)
+    if (of.form.ground != Ground::none && of.form.ground != Ground::stated)
+      pools[{of.form.ground == Ground::text, of.path, of.column}].push_back(&of);
+  return pools;
+}
+
+}  // namespace
+
+bool agree_on_stamps(const std::vector<FileForm>& forms, std::vector<FilePlan>& plans) {
+  bool changed = false;
+  std::vector<std::string> decided;  // patterns that values decided on
+  const auto pools = pools_of(forms);
+  std::map<const Pool*, std::vector<std::string>> common;
+  for (const auto& [key, pool] : pools)
+    if (std::get<bool>(key))
+      if (const auto patterns = common[&pool] = common_patterns(pool); patterns.size() == 1)
+        decided.push_back(patterns.front());
+  for (const auto& [key, pool] : pools) {
+    const auto& [is_text, path, column] = key;
+    TimeRequest agreed;
+    if (is_text) {
+      const std::vector<std::string>& patterns = common[&pool];
+      const auto known = std::find_first_of(patterns.begin(), patterns.end(), decided.begin(), decided.end());
+      if (patterns.size() > 1 && known == patterns.end()) refuse_ambiguous(*pool.front(), patterns);
+      agreed.format = known == patterns.end() ? patterns.front() : *known;
+    } else {
+      agreed.unit = agreed_unit(pool);
+    }
+    const bool as_read = std::all_of(pool.begin(), pool.end(), [&](const FileForm* of) {
+      return is_text ? of->form.patterns.front() == agreed.format : of->form.unit == agreed.unit;
+    });
+    if (as_read) continue;
+    changed = true;
+    for (FilePlan& plan : plans)
+      for (SourcePlan& source : plan.sources)
+        if (TimeRequest& request = source.request.time; source.path == path && request.column == column) {
+          request.unit = agreed.unit;
+          request.format = agreed.format;
+        }
+  }
+  return changed;
+}
+
+}  // namespace modebank

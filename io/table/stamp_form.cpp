@@ -1,0 +1,112 @@
+#include "io/table/stamp_form.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace modebank {
+
+namespace {
+
+constexpr std::size_t rows_for_unit = 4096;
+constexpr double minute_s = 60.0, hour_s = 3600.0, day_s = 86400.0;
+
+struct Numbers {
+  double size = 0.0;     ///< median
+  double spacing = 0.0;  ///< median of those that advance; 0: none does
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Numbers first_numbers(const std::vector<double>& values) {
+  std::vector<double> known, spacings;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    if (known.size() == rows_for_unit) break;
+    if (!known.empty() && value > known.back()) spacings.push_back(value - known.back());
+    known.push_back(value);
+  }
+  return {median(std::move(known)), median(std::move(spacings))};
+}
+
+bool is_multiple(double value, double of) { return std::fmod(value, of) == 0.0; }
+
+/// Whether loggers that stamp in whole units since an epoch sample so: every minute at least, or each full minute, hour
+/// or day.
+bool is_logging_interval(double seconds) {
+  if (seconds <= minute_s) return true;
+  if (seconds <= hour_s) return is_multiple(seconds, minute_s);
+  return seconds <= day_s ? is_multiple(seconds, hour_s) && is_multiple(day_s, seconds) : is_multiple(seconds, day_s);
+}
+
+/// Epochs of robots: 1998 to 2103, in seconds.
+std::optional<TimeUnit> unit_of_epoch(const Numbers& numbers, bool whole) {
+  constexpr double first_s = 9e8, last_s = 4.2e9;
+  double scale = 1.0;
+  for (const TimeUnit unit : {TimeUnit::s, TimeUnit::ms, TimeUnit::us, TimeUnit::ns}) {
+    if (numbers.size >= first_s * scale && numbers.size <= last_s * scale &&
+        (!whole || is_logging_interval(numbers.spacing / scale)))
+      return unit;
+    scale *= 1e3;
+  }
+  return std::nullopt;
+}
+
+/// Of whole numbers: a robot samples at 0.1 Hz or faster, so what is further apart than ten is no seconds, unless it is
+/// minutes; and it runs for less than ten days, unless it would then sample faster than 2 kHz.
+TimeUnit unit_of_spacing(const Numbers& numbers) {
+  constexpr double slowest_s = 10.0, longest_s = 9e5, fastest_s = 5e-4;
+  if (numbers.spacing <= slowest_s || (numbers.spacing <= hour_s && is_multiple(numbers.spacing, minute_s)))
+    return TimeUnit::s;
+  double scale = 1e3;
+  for (const TimeUnit unit : {TimeUnit::ms, TimeUnit::us}) {
+    const bool too_long = numbers.size > longest_s * scale && numbers.spacing >= fastest_s * 1e3 * scale;
+    if (numbers.spacing <= slowest_s * scale && !too_long) return unit;
+    scale *= 1e3;
+  }
+  return TimeUnit::ns;
+}
+
+/// Days since an epoch with the time of day as their fraction: as seconds they would be sampled faster than 20 kHz.
+bool are_serial_days(const Numbers& numbers) {
+  constexpr double fastest_s = 5e-5;
+  return first_day_of(numbers.size) != 0 && numbers.spacing > 0.0 && numbers.spacing < fastest_s;
+}
+
+}  // namespace
+
+std::int64_t first_day_of(double serial_day) {
+  constexpr std::int64_t spreadsheet = 25569, matlab = 719529;
+  if (serial_day > 2e4 && serial_day < 8e4) return spreadsheet;     // 1954 to 2119
+  return serial_day > 7.1e5 && serial_day < 8e5 ? matlab : 0;  // 1943 to 2190
+}
+
+StampForm form_of_numbers(std::string_view column, const std::vector<double>& values, bool all_whole,
+                          std::vector<std::string>& notes) {
+  using Ground = StampForm::Ground;
+  const Numbers numbers = first_numbers(values);
+  if (const auto epoch = unit_of_epoch(numbers, all_whole)) return {Ground::magnitude, *epoch};
+  if (all_whole) {
+    const TimeUnit unit = unit_of_spacing(numbers);
+    if (unit == TimeUnit::s && numbers.spacing > 1.0)
+      notes.push_back(fmt::format(
+          "column {}: whole numbers {} apart are taken for seconds (data.time_unit = ms says otherwise)", column,
+          numbers.spacing));
+    return {Ground::spacing, unit};
+  }
+  if (are_serial_days(numbers)) return {Ground::magnitude, TimeUnit::d};
+  constexpr double doubtful_s = 1e-3;
+  if (first_day_of(numbers.size) != 0 && numbers.spacing < doubtful_s)
+    notes.push_back(fmt::format("column {}: numbers {:.3g} apart are taken for seconds (data.time_unit = d reads days)",
+                                column, numbers.spacing));
+  return {Ground::assumed, TimeUnit::s};
+}
+
+}  // namespace modebank
