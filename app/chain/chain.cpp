@@ -70,6 +70,7 @@ void Chain::import(const DataInputs& inputs) {
     archive_.recording = std::move(data_.recording);
     archive_.lag = std::move(data_.lag);
     archive_.labels = std::move(data_.labels);
+    archive_.step_scatter = data_.step_scatter;
     listener_.progress(fmt::format("import: {} runs, {} training and {} test transitions in {:.2f} s",
                                    archive_.recording->runs.size(), archive_.recording->transitions(Role::train),
                                    archive_.recording->transitions(Role::test), watch.seconds()));
@@ -79,6 +80,7 @@ void Chain::import(const DataInputs& inputs) {
     part.recording = archive_.recording;
     part.lag = archive_.lag;
     part.labels = archive_.labels;
+    part.step_scatter = archive_.step_scatter;
     part.provenance.inputs = data_.files;
     part.provenance.data_hash = data_.data_hash;
     return part;
@@ -87,6 +89,7 @@ void Chain::import(const DataInputs& inputs) {
     archive_.recording = std::move(part.recording);
     archive_.lag = std::move(part.lag);
     archive_.labels = std::move(part.labels);
+    archive_.step_scatter = part.step_scatter;
     data_.files = std::move(part.provenance.inputs);
     archive_.provenance.data_hash = data_.data_hash = std::move(part.provenance.data_hash);
   };

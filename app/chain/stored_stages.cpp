@@ -17,6 +17,7 @@ void StoredStages::provide(Stage stage, const std::string& /*key*/, const StageP
     result.recording = std::move(stored_.recording);
     result.lag = std::move(stored_.lag);
     result.labels = std::move(stored_.labels);
+    result.step_scatter = stored_.step_scatter;
     result.provenance = stored_.provenance;
   } else if (stage == Stage::lag_counts && stage <= until_) {
     result.lag_counts = std::move(stored_.lag_counts);

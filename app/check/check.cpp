@@ -13,6 +13,7 @@
 #include "ident/lag/choice.hpp"
 #include "io/import/import.hpp"
 #include "io/import/missing_values.hpp"
+#include "io/import/sampling.hpp"
 #include "io/import/value_check.hpp"
 #include "modebank/base/error.hpp"
 
@@ -39,13 +40,17 @@ void join_parts(const CheckOptions& options, Material& material, DataCheck& chec
   lenient.disorder = Disorder::sort;
   lenient.lag_s = options.data.lag_auto ? 0.0 : options.data.lag_s;
   lenient.lag_auto = false;
-  for (std::size_t i = 0; i < material.recorded.size(); ++i) {
-    RunStreams run = material.recorded[i];
-    run.states.stream = material.ordered[i].states;
-    run.inputs.stream = material.ordered[i].inputs;
-    run.truth.clear();
+  std::vector<RunStreams> ordered = material.recorded;
+  for (std::size_t i = 0; i < ordered.size(); ++i) {
+    ordered[i].states.stream = material.ordered[i].states;
+    ordered[i].inputs.stream = material.ordered[i].inputs;
+    ordered[i].truth.clear();
+  }
+  std::vector<std::string> notes;  // `run` has them
+  const Sampling sampling = choose_sampling(ordered, lenient, notes);
+  for (std::size_t i = 0; i < ordered.size(); ++i) {
     try {
-      for (Trajectory& part : split_at_gaps(join_run(run, lenient, {}), false)) {
+      for (Trajectory& part : split_at_gaps(join_run(ordered[i], lenient, sampling, {}), false)) {
         RunReport& report = check.runs[i];
         const DeficientWindows windows = count_deficient_windows(part, options.window_length, material.structure);
         report.transitions += part.transitions();

@@ -62,6 +62,15 @@ void time_findings(const DataCheck& check, const Config& config, std::vector<std
   if (const auto runs = runs_where(check, [](const RunReport& r) { return r.inputs.gaps + r.states.gaps > 0; });
       !runs.empty())
     found.push_back(fmt::format("gaps of more than 5 periods in {}: they split these runs", runs));
+  const auto scatters = [](const RunReport& r) { return r.inputs.jitter > most_step_scatter; };
+  if (const auto runs = runs_where(check, scatters); !runs.empty()) {
+    double worst = 0.0;
+    for (const RunReport& run : check.runs) worst = std::max(worst, run.inputs.jitter);
+    found.push_back(fmt::format(
+        "steps scatter by up to {:.0f} % of their median in {}: a model holds for one step length, and where steps "
+        "differ it finds modes that are none, so that modes are not judged; log at an even rate",
+        percent * worst, runs));
+  }
 }
 
 /// Excitation of the inputs together, in the run that excites least; empty where a run does not excite at all.

@@ -9,6 +9,7 @@
 #include "filter/judge/combination.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "ident/data/streams.hpp"
 
 namespace modebank {
 

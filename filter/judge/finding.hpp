@@ -11,6 +11,7 @@
 #include "filter/judge/paired_gain.hpp"
 #include "filter/judge/scores.hpp"
 #include "filter/step/bank.hpp"
+#include "ident/data/streams.hpp"
 #include "ident/data/trajectory.hpp"
 #include "modebank/base/names.hpp"
 
@@ -55,10 +56,6 @@ struct Resolution {
 /// Share of repeated samples beyond which densities are not compared: measured noise hardly ever repeats to the last
 /// digit.
 inline constexpr double repeated_share = 0.1;
-
-/// Scatter of the steps beyond which modes are not asked for: the model holds for one step length, so that one motion
-/// at steps of many lengths looks like several.
-inline constexpr double most_step_scatter = 0.1;
 
 /// A competitor that predicts the mean better than the bank, in root mean square over the judged runs.
 struct BetterMean {

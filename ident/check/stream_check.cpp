@@ -26,19 +26,14 @@ void check_intervals(const VectorXd& time_s, SamplingCheck& check) {
   const double period_s = median_period_s(time_s);
   if (!(period_s > 0.0)) return;
   check.rate_hz = 1.0 / period_s;
-  double square_sum = 0.0;
-  Index regular = 0;
+  check.jitter = step_scatter({&time_s});
   for (Index k = 1; k < time_s.size(); ++k) {
     const double interval = time_s(k) - time_s(k - 1);
     if (interval > gap_periods * period_s) {
       ++check.gaps;
       check.longest_gap_s = std::max(check.longest_gap_s, interval);
-      continue;
     }
-    square_sum += std::pow(interval - period_s, 2);
-    ++regular;
   }
-  if (regular > 0) check.jitter = std::sqrt(square_sum / static_cast<double>(regular)) / period_s;
 }
 
 /// Whether all levels lie on a lattice of spacing near `spacing`, which is refined on the way up.

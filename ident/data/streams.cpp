@@ -115,6 +115,27 @@ MatrixXd interpolate(const Stream& stream, const VectorXd& time_s) {
   return result;
 }
 
+MatrixXd average_ending(const Stream& stream, const VectorXd& time_s, double step_s) {
+  const VectorXd& t = stream.time_s;
+  const VectorXd starts_s = time_s.array() - step_s;
+  const MatrixXd first = interpolate(stream, starts_s), end = interpolate(stream, time_s);
+  MatrixXd result(end.rows(), end.cols());
+  Index next = 0;  // the stream's first sample behind the step's start
+  for (Index k = 0; k < time_s.size(); ++k) {
+    while (next < t.size() && t(next) <= starts_s(k)) ++next;
+    double from_s = starts_s(k);
+    VectorXd from = first.col(k), integral = VectorXd::Zero(end.rows());
+    for (Index i = next; i < t.size() && t(i) < time_s(k); ++i) {
+      integral += 0.5 * (t(i) - from_s) * (from + stream.values.col(i));
+      from_s = t(i);
+      from = stream.values.col(i);
+    }
+    integral += 0.5 * (time_s(k) - from_s) * (from + end.col(k));
+    result.col(k) = integral / step_s;
+  }
+  return result;
+}
+
 VectorXd interpolate_weights(const Stream& weights, const VectorXd& time_s) {
   const MatrixXd positive = (weights.values.array() > 0.0).cast<double>();
   const MatrixXd share = interpolate({weights.time_s, positive}, time_s);
@@ -131,6 +152,20 @@ MatrixXd hold(const Stream& stream, const VectorXd& time_s) {
     result.col(k) = stream.values.col(std::max<Index>(j, 0));
   }
   return result;
+}
+
+double step_scatter(const std::vector<const VectorXd*>& times_s) {
+  const double period_s = median_period_s(times_s);
+  double squares = 0.0;
+  Index steps = 0;
+  for (const VectorXd* time_s : times_s)
+    for (Index k = 1; k < time_s->size(); ++k) {
+      const double step_s = (*time_s)(k) - (*time_s)(k - 1);
+      if (!(step_s <= gap_periods * period_s)) continue;
+      squares += (step_s - period_s) * (step_s - period_s);
+      ++steps;
+    }
+  return period_s > 0.0 && steps > 0 ? std::sqrt(squares / static_cast<double>(steps)) / period_s : 0.0;
 }
 
 void blank_gaps(const VectorXd& stream_time_s, const VectorXd& time_s, MatrixXd& values) {

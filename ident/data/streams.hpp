@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "ident/data/input_clock.hpp"
 
@@ -16,6 +17,10 @@ struct Stream {
 /// numpy.interp. Requires N >= 1.
 Eigen::MatrixXd interpolate(const Stream& stream, const Eigen::VectorXd& time_s);
 
+/// The mean over the step that ends at each of `time_s`, `step_s` long, of the stream's linear interpolation, so that
+/// samples at the step's ends weigh half. Missing values (NaN) make those means NaN that they lie in. Requires N >= 1.
+Eigen::MatrixXd average_ending(const Stream& stream, const Eigen::VectorXd& time_s, double step_s);
+
 /// Zero-order hold: the value of the last sample at or before each of `time_s` (increasing); before the first sample,
 /// its value. Times that miss a sample by no more than rounding count as equal to it. Requires N >= 1.
 Eigen::MatrixXd hold(const Stream& stream, const Eigen::VectorXd& time_s);
@@ -26,6 +31,13 @@ Eigen::VectorXd interpolate_weights(const Stream& weights, const Eigen::VectorXd
 
 /// Samples further apart than this many median periods of their stream have a gap between them.
 inline constexpr double gap_periods = 5.0;
+
+/// Standard deviation of the steps about their median, in medians, over all series; gaps are no steps. 0 without any.
+double step_scatter(const std::vector<const Eigen::VectorXd*>& times_s);
+
+/// Scatter of the steps beyond which modes are not asked for: the model holds for one step length, so that one motion
+/// at steps of many lengths looks like several.
+inline constexpr double most_step_scatter = 0.1;
 
 /// Makes values NaN that were interpolated across a gap of the stream they come from (`stream_time_s`, increasing).
 void blank_gaps(const Eigen::VectorXd& stream_time_s, const Eigen::VectorXd& time_s, Eigen::MatrixXd& values);

@@ -85,6 +85,7 @@ struct Archive {
   std::string config;  ///< fully resolved, itself a valid configuration file
   std::optional<Recording> recording;
   std::optional<RunLabels> labels;      ///< with data.label
+  double step_scatter = 0.0;            ///< of the recording's steps, in their median (io/import/sampling.hpp)
   std::optional<LagReport> lag;         ///< with data.lag_s = auto
   std::optional<LagCounts> lag_counts;  ///< with window.state_lags = auto or window.input_lags = auto
   std::optional<WindowFits> windows;

@@ -37,8 +37,8 @@ void exchange_origin(Io& io, A& archive) {
 }
 
 /// `labels`: with data.label.
-template <class Io, class R, class L>
-void exchange_recording(Io& io, R& recording, L& labels) {
+template <class Io, class R, class L, class S>
+void exchange_recording(Io& io, R& recording, L& labels, S& step_scatter) {
   const auto channels = [&](auto& list, const std::string& kind) {
     io.through(list, store_channels, restore_channels, [&](auto& stored) {
       io.attribute_texts(kind + "_names", stored.names);
@@ -55,6 +55,7 @@ void exchange_recording(Io& io, R& recording, L& labels) {
   };
   io.through(recording.runs, run_names<Trajectory>, named_runs,
              [&](auto& names) { io.attribute_texts("runs", names); });
+  io.attribute_unless(0.0, "step_scatter", step_scatter);
   Sizes known;
   known.set("n", recording.states.size());
   known.set("m", recording.inputs.size());

@@ -23,6 +23,7 @@
 #include "io/import/quanta.hpp"
 #include "io/import/read_runs.hpp"
 #include "io/import/run_roles.hpp"
+#include "io/import/sampling.hpp"
 #include "io/import/split.hpp"
 #include "io/import/value_check.hpp"
 #include "modebank/base/error.hpp"
@@ -211,10 +212,10 @@ std::vector<RunStreams> named_streams(std::vector<FilePlan>& plans, const DataOp
   return runs;
 }
 
-LagReport find_lags(const std::vector<RunStreams>& streams, const DataOptions& options) {
+LagReport find_lags(const std::vector<RunStreams>& streams, double range_s, double rate_hz) {
   std::vector<RunPair> pairs;
   for (const RunStreams& run : streams) pairs.push_back({run.run, run.role, run.states.stream, run.inputs.stream});
-  return choose_lag(pairs, {options.lag_range_s, options.rate_hz});
+  return choose_lag(pairs, {range_s, rate_hz});
 }
 
 }  // namespace
@@ -230,14 +231,16 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory)
   refuse_control_characters(data.recording.inputs);
   std::vector<RunStreams> streams = named_streams(plans, options, data, false);
   for (std::string& line : dominating_values(streams, options)) data.notes.push_back(std::move(line));
-  if (options.lag_auto) data.lag = find_lags(streams, options);
+  const Sampling sampling = choose_sampling(streams, options, data.notes);
+  data.step_scatter = sampling.step_scatter;
+  if (options.lag_auto) data.lag = find_lags(streams, options.lag_range_s, sampling.rate_hz);
   auto& runs = data.recording.runs;
   Quanta quanta(options);
   LabelHolder labels;
   LeftOut left_out;
   for (std::size_t i = 0; i < streams.size(); ++i) {
     for (std::string& line : columns_without_value(streams[i], options)) data.notes.push_back(std::move(line));
-    const Trajectory run = join_run(streams[i], options, data.lag ? data.lag->runs[i].applied() : InputClock{});
+    const Trajectory run = join_run(streams[i], options, sampling, data.lag ? data.lag->runs[i].applied() : InputClock{});
     quanta.look_at(streams[i], run);
     std::vector<Trajectory> parts =
         without_missing_values(run, kept_samples(streams[i], run), options.missing, data.notes);

@@ -62,9 +62,13 @@ std::vector<bool> kept_samples(const RunStreams& run, const Trajectory& joined);
 /// Both streams, and what is sampled with them.
 void put_in_order(RunStreams& run, Disorder disorder);
 
-/// The run as identification sees it: states interpolated, inputs held and delayed by the constant options.lag_s, or by
+struct Sampling;
+
+/// The run as identification sees it, sampled as `sampling` says: states interpolated or averaged, inputs held or
+/// averaged, and delayed by the constant options.lag_s, or by
 /// `clock` when options.lag_auto (taken in the middle of each transition, see hold_mid_transition). Samples whose
 /// delayed input is not known are dropped. Throws DataError when fewer than two are left.
-Trajectory join_run(const RunStreams& run, const DataOptions& options, const InputClock& clock);
+Trajectory join_run(const RunStreams& run, const DataOptions& options, const Sampling& sampling,
+                    const InputClock& clock);
 
 }  // namespace modebank

@@ -183,7 +183,9 @@ std::vector<Option> data_options() {
             MODEBANK_FIELD(data.join)),
       text("data.run", "a column name", "column whose value separates runs inside one file; empty: one run per file",
            MODEBANK_FIELD(data.run)),
-      numeric("data.rate_hz", at_least(0), "Hz", "0: the inputs' own times; else resample (states linear, inputs held)",
+      numeric("data.rate_hz", at_least(0), "Hz",
+              "0: the inputs' own times; else resample: states linear, inputs held; below the log's rate, what moves at "
+              "each sample is averaged over the step that ends at the new one",
               MODEBANK_FIELD(data.rate_hz)),
       lag_option(),
       numeric("data.lag_range_s", above(0), "s",
