@@ -260,7 +260,7 @@ class Proposer {
     return of.form.ground == Ground::stated ? fmt::format("{}", fmt::join(of.time_notes, "; ")) : "";
   }
 
-  /// What is in doubt of how the stamps are read.
+  /// Adds doubts about the form of the stamps.
   void stamps(const SurveyedTable& of) {
     if (of.form.ground != StampForm::Ground::stated)
       for (const std::string& note : of.time_notes) doubt(note);

@@ -34,10 +34,10 @@ struct SurveyedTable {
   std::string run = {};                ///< a column whose value separates runs; empty: none is needed
   Eigen::VectorXd time_s = {};         ///< of the rows, from their first; the row's number where there is no time
   std::int64_t origin_ns = 0;
-  StampForm form = {};         ///< of the stamps
+  StampForm form = {};                       ///< of the stamps
   std::vector<std::string> time_notes = {};  ///< what their reader says of them
-  std::size_t unset_rows = 0;  ///< left out: stamped before the clock was set
-  SamplingCheck sampling = {};  ///< of one run
+  std::size_t unset_rows = 0;                ///< left out: stamped before the clock was set
+  SamplingCheck sampling = {};               ///< of one run
 
   const SurveyedChannel* find(const std::string& channel) const;
 };

@@ -73,11 +73,11 @@ constexpr std::array ignored_words{
     " icp ",        " flag ",      " jump ",         " header ",
 };
 
-constexpr std::array time_names{" time ",    " t ",       " stamp ",   " timestamp ",     " tout ",
-                                " secs ",    " seconds ", " sec ",     " sampling time ", " zeit ",
-                                " clock ",   " time s ",  " t s ",     " header stamp ",  " time ns ",
-                                " time ms ", " time us ", " t block ", " stamp ns ",      " header stamp secs ",
-                                " time min ", " time h ", " hours ",   " minutes ",       " datetime ",
+constexpr std::array time_names{" time ",      " t ",       " stamp ",   " timestamp ",     " tout ",
+                                " secs ",      " seconds ", " sec ",     " sampling time ", " zeit ",
+                                " clock ",     " time s ",  " t s ",     " header stamp ",  " time ns ",
+                                " time ms ",   " time us ", " t block ", " stamp ns ",      " header stamp secs ",
+                                " time min ",  " time h ",  " hours ",   " minutes ",       " datetime ",
                                 " date time ", " date "};
 constexpr std::array run_names{" run ",     " run id ",   " block ", " trial ",   " episode ", " experiment ",
                                " segment ", " sequence ", " file ",  " session ", " lap "};

@@ -74,10 +74,9 @@ WindowFits write_archive(const std::filesystem::path& path, const Archive& archi
       const hdf5::Handle file = create_archive_file(temporary);
       GroupWriter root(open_root(file));
       layout::exchange_origin(root, archive);
-      root.group("data", {},
-                 [&](GroupWriter& member) {
-                   layout::exchange_recording(member, recording, archive.labels, archive.step_scatter);
-                 });
+      root.group("data", {}, [&](GroupWriter& member) {
+        layout::exchange_recording(member, recording, archive.labels, archive.step_scatter);
+      });
       layout::exchange_part(root, "lag", archive.lag, {},
                             [](GroupWriter& member, const LagReport& lag) { layout::exchange_lag(member, lag); });
       layout::exchange_part(

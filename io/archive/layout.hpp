@@ -148,8 +148,9 @@ void exchange_mixture(Io& io, X& result, const Unit& parameters) {
 template <class Io, class A>
 void exchange_archive(Io& io, A& archive) {
   exchange_origin(io, archive);
-  exchange_part(io, "data", archive.recording, {},
-                [&](auto& member, auto& part) { exchange_recording(member, part, archive.labels, archive.step_scatter); });
+  exchange_part(io, "data", archive.recording, {}, [&](auto& member, auto& part) {
+    exchange_recording(member, part, archive.labels, archive.step_scatter);
+  });
   exchange_part(io, "lag", archive.lag, {}, [](auto& member, auto& part) { exchange_lag(member, part); });
   exchange_part(io, "lag_counts", archive.lag_counts, {},
                 [](auto& member, auto& part) { exchange_lag_counts(member, part); });

@@ -57,7 +57,7 @@ struct TableSink {
   struct Target {
     int numbers = skipped, texts = skipped;
   };
-  std::vector<Target> target;  // per column of the file: skipped or position in the table's
+  std::vector<Target> target;                            // per column of the file: skipped or position in the table's
   std::size_t time_column = none, second_column = none;  // of stamps in two columns
   std::vector<std::string> header;
   Table table;

@@ -201,8 +201,8 @@ std::vector<Trajectory> without_missing_values(const Trajectory& run, const std:
 }
 
 /// All runs that have a role, in name order.
-std::vector<RunStreams> named_streams(std::vector<FilePlan>& plans, const DataOptions& options,
-                                      ImportedData& data, bool as_they_stand) {
+std::vector<RunStreams> named_streams(std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data,
+                                      bool as_they_stand) {
   std::vector<RunStreams> runs = read_all(plans, options, data, as_they_stand);
   sort_by_name(runs);
   check_run_names(run_names(runs));
@@ -240,7 +240,8 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory)
   LeftOut left_out;
   for (std::size_t i = 0; i < streams.size(); ++i) {
     for (std::string& line : columns_without_value(streams[i], options)) data.notes.push_back(std::move(line));
-    const Trajectory run = join_run(streams[i], options, sampling, data.lag ? data.lag->runs[i].applied() : InputClock{});
+    const Trajectory run =
+        join_run(streams[i], options, sampling, data.lag ? data.lag->runs[i].applied() : InputClock{});
     quanta.look_at(streams[i], run);
     std::vector<Trajectory> parts =
         without_missing_values(run, kept_samples(streams[i], run), options.missing, data.notes);

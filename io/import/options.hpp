@@ -66,8 +66,9 @@ struct DataOptions {
   std::string weight;
   /// Column of what is known of the ground or the like, text or whole numbers; the last one holds. Empty: none.
   std::string label;
-  /// Column of times (one; or seconds and nanoseconds, or date and time of day). In a recording "time" means its messages' header stamps, or
-  /// where they have none when they were received; receive_time the latter. Empty: row k of a file is k / rate_hz.
+  /// Column of times (one; or seconds and nanoseconds, or date and time of day). In a recording "time" means its
+  /// messages' header stamps, or where they have none when they were received; receive_time the latter. Empty: row k of
+  /// a file is k / rate_hz.
   std::vector<std::string> time{"time"};
   TimeUnit time_unit = TimeUnit::automatic;
   std::string time_format;  ///< of times as text (io/table/stamp_pattern.hpp); empty: found

@@ -23,9 +23,10 @@ struct FileContent {
   std::map<std::string, std::size_t> missing_words;  ///< Table::missing_words of all tables
 };
 
-/// Reads one plan's files into streams, run by run; `result` keeps the stamps' forms where it throws. Where a run's states (or inputs) come from several tables, the
-/// first one's table gives the times: other states are interpolated onto them, other inputs held; these streams are put
-/// in order as options.disorder says. Throws DataError (io/import/import.hpp).
+/// Reads one plan's files into streams, run by run; `result` keeps the stamps' forms where it throws. Where a run's
+/// states (or inputs) come from several tables, the first one's table gives the times: other states are interpolated
+/// onto them, other inputs held; these streams are put in order as options.disorder says. Throws DataError
+/// (io/import/import.hpp).
 void read_runs(const FilePlan& plan, const DataOptions& options, FileContent& result);
 
 }  // namespace modebank

@@ -104,8 +104,7 @@ void average_rows(const Stream& stream, const std::vector<bool>& rows, const Vec
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (rows[i]) averaged.push_back(static_cast<Index>(i));
   if (averaged.empty()) return;
-  values(averaged, Eigen::all) =
-      average_ending({stream.time_s, stream.values(averaged, Eigen::all)}, time_s, step_s);
+  values(averaged, Eigen::all) = average_ending({stream.time_s, stream.values(averaged, Eigen::all)}, time_s, step_s);
 }
 
 }  // namespace

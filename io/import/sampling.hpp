@@ -10,7 +10,7 @@ namespace modebank {
 
 /// How the streams of a data set become samples.
 struct Sampling {
-  double rate_hz = 0.0;       ///< 0: the inputs' own times
+  double rate_hz = 0.0;  ///< 0: the inputs' own times
   /// How the log's steps scatter (step_scatter in ident/data/streams.hpp), unless many of them make one new step. 0: no
   /// more than a model of one step length bears.
   double step_scatter = 0.0;
@@ -22,8 +22,8 @@ struct Sampling {
 };
 
 /// As data.rate_hz states; without it the inputs' own times are taken, however they scatter: one linear
-/// motion at steps that scatter by 15 % or 43 % shows modes at an even rate, too, interpolated at the log's rate as well
-/// as averaged over four steps. `runs`: in order of time. What the user should know is added to `notes`.
+/// motion at steps that scatter by 15 % or 43 % shows modes at an even rate, too, interpolated at the log's rate as
+/// well as averaged over four steps. `runs`: in order of time. What the user should know is added to `notes`.
 Sampling choose_sampling(const std::vector<RunStreams>& runs, const DataOptions& options,
                          std::vector<std::string>& notes);
 

@@ -34,10 +34,10 @@ TimeUnit agreed_unit(const Pool& pool) {
     const bool same = of->form.unit == pool.front()->form.unit;
     const auto weak = [](const FileForm* f) { return f->form.ground != Ground::spacing; };
     if (!same && (weak(of) || weak(pool.front())))
-      throw DataError(fmt::format("{} counts {} and {} counts {}, as their size and spacing show: data.time_unit = UNIT "
-                                  "states what the stamps of all files count",
-                                  shown(*pool.front()), in_words(pool.front()->form.unit), shown(*of),
-                                  in_words(of->form.unit)));
+      throw DataError(
+          fmt::format("{} counts {} and {} counts {}, as their size and spacing show: data.time_unit = UNIT "
+                      "states what the stamps of all files count",
+                      shown(*pool.front()), in_words(pool.front()->form.unit), shown(*of), in_words(of->form.unit)));
     if (ns_per(of->form.unit) < ns_per(finest)) finest = of->form.unit;
   }
   return finest;
@@ -52,9 +52,10 @@ std::vector<std::string> common_patterns(const Pool& pool) {
       return std::count(of->form.patterns.begin(), of->form.patterns.end(), pattern) == 0;
     });
     if (common.empty())
-      throw DataError(fmt::format("{} is a time by {}, but {} by {}: data.time_format = PATTERN states one form for all "
-                                  "files",
-                                  shown(*pool.front()), before.front(), shown(*of), of->form.patterns.front()));
+      throw DataError(
+          fmt::format("{} is a time by {}, but {} by {}: data.time_format = PATTERN states one form for all "
+                      "files",
+                      shown(*pool.front()), before.front(), shown(*of), of->form.patterns.front()));
   }
   return common;
 }
@@ -65,7 +66,7 @@ std::vector<std::string> common_patterns(const Pool& pool) {
                               patterns[1]));
 }
 
-/// Of one pattern's files those whose form was found, numbers and texts apart.
+/// The files of each pattern whose form was found, numbers and texts apart.
 std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools_of(const std::vector<FileForm>& forms) {
   std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools;
   for (const FileForm& of : forms)

@@ -49,7 +49,8 @@ const std::filesystem::path& checked(const std::filesystem::path& definitions) {
   return definitions;
 }
 
-[[noreturn]] void fail(const std::string& file, std::uint64_t message, const std::string& column, const std::string& why) {
+[[noreturn]] void fail(const std::string& file, std::uint64_t message, const std::string& column,
+                       const std::string& why) {
   throw DataError(fmt::format("{}:{}: column {}: {}", file, message, column, why));
 }
 
@@ -171,8 +172,7 @@ std::vector<Table> RecordingReader::read(const std::vector<TableRequest>& reques
     const bool is_stamp = std::any_of(known.begin(), known.end(), [&](const MessageColumn& c) {
       return c.path == request.time.column && c.form == MessageColumn::Form::time;
     });
-    set_times(path_.string(), request.time, is_stamp, time, request.time.second.empty() ? nullptr : &*column,
-              table);
+    set_times(path_.string(), request.time, is_stamp, time, request.time.second.empty() ? nullptr : &*column, table);
   }
   if (!tables.empty()) tables.front().notes.insert(tables.front().notes.begin(), notes.begin(), notes.end());
   return tables;

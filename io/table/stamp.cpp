@@ -64,7 +64,8 @@ std::optional<Stamp> parse_decimal_stamp(std::string_view text) {
 
 Stamp stamp_of(double value) {
   const double whole = std::floor(value);
-  return normalised_stamp(static_cast<std::int64_t>(whole), std::llround((value - whole) * static_cast<double>(billion)));
+  return normalised_stamp(static_cast<std::int64_t>(whole),
+                          std::llround((value - whole) * static_cast<double>(billion)));
 }
 
 std::string seconds_text(std::int64_t time_ns) {

@@ -161,7 +161,8 @@ bool StampColumn::Reading::is_even(const std::vector<double>& missing) const {
 }
 
 std::string StampColumn::complaint(NumberStatus status, std::string_view text) const {
-  const std::string shown = fmt::format("\"{}\"{}", text.substr(0, shown_bytes), text.size() > shown_bytes ? "..." : "");
+  const std::string shown =
+      fmt::format("\"{}\"{}", text.substr(0, shown_bytes), text.size() > shown_bytes ? "..." : "");
   if (status == NumberStatus::missing) return text.empty() ? "missing value" : fmt::format("missing value ({})", shown);
   if (status == NumberStatus::out_of_range) return shown + " is too large for a double";
   if (!patterns_.empty()) return fmt::format("{} does not fit data.time_format = {}", shown, request_.format);
@@ -169,14 +170,15 @@ std::string StampColumn::complaint(NumberStatus status, std::string_view text) c
     return fmt::format("{} does not fit {}, as \"{}\" before it does (data.time_format = PATTERN states the form)",
                        shown, readings_.front().pattern.text(), first_value_);
   if (!request_.second.empty() && kind_ != Kind::text)
-    return shown + " in two columns is no time (whole seconds and nanoseconds below 1e9, or a date and a time of day)";
+    return shown +
+           " in two columns is not a time (whole seconds and nanoseconds below 1e9, or a date and a time of day)";
   return fmt::format(
-      "{} is no time (seconds, or as 2024-05-01T10:00:00.25Z; data.time_format states another form, as "
+      "{} is not a time (seconds, or as 2024-05-01T10:00:00.25Z; data.time_format states another form, as "
       "%d.%m.%Y %H:%M:%S.%f)",
       shown);
 }
 
-/// What is known without looking at all stamps is believed.
+/// A stated or named unit comes before the one that the numbers show.
 StampForm StampColumn::found_form(std::vector<std::string>& notes) const {
   using Ground = StampForm::Ground;
   if (!request_.second.empty()) return {Ground::stated, TimeUnit::s};
@@ -201,10 +203,11 @@ std::int64_t StampColumn::nanoseconds(std::size_t row, const StampForm& form) co
   return stamps_[row].whole * scale + stamps_[row].billionths / (billion / scale);
 }
 
-/// Of several patterns those whose stamps advance evenly, if there are some; what reads all alike is one.
+/// Patterns whose stamps advance evenly come before others; patterns that read all stamps alike count as one.
 void StampColumn::decide_reading(Table& table) {
   const auto uneven = [&](const Reading& reading) { return !reading.is_even(as_written_); };
-  if (readings_.size() > 1 && !std::all_of(readings_.begin(), readings_.end(), uneven)) std::erase_if(readings_, uneven);
+  if (readings_.size() > 1 && !std::all_of(readings_.begin(), readings_.end(), uneven))
+    std::erase_if(readings_, uneven);
   const Reading& chosen = readings_.front();
   table.form = {StampForm::Ground::text, TimeUnit::s, 0, {}, first_value_, table.line[first_row_]};
   table.form.clock = !chosen.pattern.has_date();
@@ -212,8 +215,8 @@ void StampColumn::decide_reading(Table& table) {
     if (&reading == &chosen || reading.stamps != chosen.stamps) table.form.patterns.push_back(reading.pattern.text());
   table.time_ns.resize(as_written_.size());
   for (std::size_t k = 0; k < as_written_.size(); ++k)
-    table.time_ns[k] = std::isnan(as_written_[k]) ? missing_stamp
-                                                  : chosen.stamps[k].whole * billion + chosen.stamps[k].billionths;
+    table.time_ns[k] =
+        std::isnan(as_written_[k]) ? missing_stamp : chosen.stamps[k].whole * billion + chosen.stamps[k].billionths;
   if (!chosen.pattern.text().starts_with("%Y") && patterns_.empty())
     table.notes.push_back(
         fmt::format("column {} is read as {} (data.time_format)", request_.column, chosen.pattern.text()));
@@ -234,7 +237,7 @@ void StampColumn::finish(std::string_view file, Table& table) {
       if (form.unit == TimeUnit::d) form.first_day = first_day_of(as_written_[k]);
     }
     if (!(std::abs(as_written_[k] - static_cast<double>(form.first_day)) < most))
-      throw DataError(fmt::format("{}:{}: column {}: {} {} is no time (data.time_unit)", file, table.line[k],
+      throw DataError(fmt::format("{}:{}: column {}: {} {} is not a time (data.time_unit)", file, table.line[k],
                                   request_.column, as_written_[k], in_words(form.unit)));
     table.time_ns[k] = nanoseconds(k, form);
   }

@@ -24,14 +24,14 @@ class StampColumn {
   void reserve(std::size_t rows);
   /// The next row's stamp; nothing is added unless it is `ok`.
   NumberStatus add(std::string_view text);
-  /// The same of two columns: whole seconds and nanoseconds, or a date and a time of day.
+  /// The next row's stamp in two columns: whole seconds and nanoseconds, or a date and a time of day.
   NumberStatus add(std::string_view text, std::string_view second);
   NumberStatus add(double value);
   NumberStatus add(std::int64_t value);
   /// The next row's stamp is missing.
   void add_missing();
 
-  /// What is wrong with a text that `add` gave this status for, as the ending of a message.
+  /// The ending of a message about a text that `add` gave this status for.
   std::string complaint(NumberStatus status, std::string_view text) const;
 
   /// Decides on the form and fills time_ns, time_s, form and notes of `table`, whose lines are there. Throws DataError,
@@ -63,9 +63,9 @@ class StampColumn {
   std::string stated_unit_;
   std::vector<StampPattern> patterns_;  // one where the user states it, else none
   enum class Kind { unknown, number, text } kind_ = Kind::unknown;
-  std::vector<Stamp> stamps_;           // of numbers
-  std::vector<double> as_written_;      // NaN: missing
-  std::vector<Reading> readings_;       // of text
+  std::vector<Stamp> stamps_;       // of numbers
+  std::vector<double> as_written_;  // NaN: missing
+  std::vector<Reading> readings_;   // of text
   std::string first_value_;
   std::size_t first_row_ = 0;
   bool whole_numbers_ = true;

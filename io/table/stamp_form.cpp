@@ -59,8 +59,9 @@ std::optional<TimeUnit> unit_of_epoch(const Numbers& numbers, bool whole) {
   return std::nullopt;
 }
 
-/// Of whole numbers: a robot samples at 0.1 Hz or faster, so what is further apart than ten is no seconds, unless it is
-/// minutes; and it runs for less than ten days, unless it would then sample faster than 2 kHz.
+/// The unit of whole numbers. A robot samples at 0.1 Hz or faster, so numbers further apart than ten do not count
+/// seconds, unless they count full minutes. It runs for less than ten days, unless it would then sample faster than
+/// 2 kHz.
 TimeUnit unit_of_spacing(const Numbers& numbers) {
   constexpr double slowest_s = 10.0, longest_s = 9e5, fastest_s = 5e-4;
   if (numbers.spacing <= slowest_s || (numbers.spacing <= hour_s && is_multiple(numbers.spacing, minute_s)))
@@ -84,8 +85,8 @@ bool are_serial_days(const Numbers& numbers) {
 
 std::int64_t first_day_of(double serial_day) {
   constexpr std::int64_t spreadsheet = 25569, matlab = 719529;
-  if (serial_day > 2e4 && serial_day < 8e4) return spreadsheet;     // 1954 to 2119
-  return serial_day > 7.1e5 && serial_day < 8e5 ? matlab : 0;  // 1943 to 2190
+  if (serial_day > 2e4 && serial_day < 8e4) return spreadsheet;  // 1954 to 2119
+  return serial_day > 7.1e5 && serial_day < 8e5 ? matlab : 0;    // 1943 to 2190
 }
 
 StampForm form_of_numbers(std::string_view column, const std::vector<double>& values, bool all_whole,
@@ -96,9 +97,9 @@ StampForm form_of_numbers(std::string_view column, const std::vector<double>& va
   if (all_whole) {
     const TimeUnit unit = unit_of_spacing(numbers);
     if (unit == TimeUnit::s && numbers.spacing > 1.0)
-      notes.push_back(fmt::format(
-          "column {}: whole numbers {} apart are taken for seconds (data.time_unit = ms says otherwise)", column,
-          numbers.spacing));
+      notes.push_back(
+          fmt::format("column {}: whole numbers {} apart are taken for seconds (data.time_unit = ms says otherwise)",
+                      column, numbers.spacing));
     return {Ground::spacing, unit};
   }
   if (are_serial_days(numbers)) return {Ground::magnitude, TimeUnit::d};

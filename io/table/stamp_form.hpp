@@ -20,15 +20,15 @@ struct StampForm {
     text        ///< times as text
   };
   Ground ground = Ground::none;
-  TimeUnit unit = TimeUnit::s;            ///< of numbers
-  std::int64_t first_day = 0;             ///< of days: the number of 1970-01-01 where they count from another epoch
-  std::vector<std::string> patterns = {}; ///< of text: all that fit every value; several: the values do not tell which
-  std::string value = {};                 ///< the first stamp, as it is written
-  std::uint64_t line = 0;                 ///< where it stands
-  bool clock = false;                     ///< whether it is a time of day, which counts from midnight
+  TimeUnit unit = TimeUnit::s;             ///< of numbers
+  std::int64_t first_day = 0;              ///< of days: the number of 1970-01-01 where they count from another epoch
+  std::vector<std::string> patterns = {};  ///< of text: all that fit every value; several: the values do not tell which
+  std::string value = {};                  ///< the first stamp, as it is written
+  std::uint64_t line = 0;                  ///< where it stands
+  bool clock = false;                      ///< whether it is a time of day, which counts from midnight
 };
 
-/// What numbers count, found by magnitude and spacing together: `values` are the first ones, NaN where missing.
+/// The form of numbers, found by magnitude and spacing together. `values`: NaN where missing.
 /// `all_whole`: of all of them. What the user should know is added to `notes`.
 StampForm form_of_numbers(std::string_view column, const std::vector<double>& values, bool all_whole,
                           std::vector<std::string>& notes);

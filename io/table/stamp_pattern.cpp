@@ -1,6 +1,7 @@
 #include "io/table/stamp_pattern.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -137,17 +138,15 @@ const std::vector<StampPattern>& known_stamp_patterns() {
       });
       if (!known) all.emplace_back(pattern);
     };
-    for (const char* const iso :
-         {"%Y-%m-%dT%H:%M:%S.%f%z", "%Y-%m-%d %H:%M:%S.%f%z", "%Y-%m-%dT%H:%M%z", "%Y-%m-%d %H:%M%z",
-          "%Y/%m/%d %H:%M:%S.%f%z", "%Y/%m/%d %H:%M%z", "%Y/%m/%dT%H:%M:%S.%f%z", "%Y-%m-%dt%H:%M:%S.%f%z",
-          "%Y-%m-%d %H:%M:%S.%f UTC"})
+    for (const char* const iso : {"%Y-%m-%dT%H:%M:%S.%f%z", "%Y-%m-%d %H:%M:%S.%f%z", "%Y-%m-%dT%H:%M%z",
+                                  "%Y-%m-%d %H:%M%z", "%Y/%m/%d %H:%M:%S.%f%z", "%Y/%m/%d %H:%M%z",
+                                  "%Y/%m/%dT%H:%M:%S.%f%z", "%Y-%m-%dt%H:%M:%S.%f%z", "%Y-%m-%d %H:%M:%S.%f UTC"})
       all.emplace_back(iso);
     for (const char* const date : dates)
       for (const char* const clock : clocks) add(std::string(date) + clock);
-    for (const char* const other :
-         {"%Y/%m/%d/%H:%M:%S.%f", "%Y-%m-%d_%H-%M-%S.%f", "%Y%m%dT%H%M%S.%f%z",
-          "%Y%m%d %H:%M:%S.%f", "%a %b %d %H:%M:%S %Y", "%a, %d %b %Y %H:%M:%S %z", "%H:%M:%S.%f", "%H:%M", "%M:%S.%f",
-          "%I:%M:%S.%f %p", "%I:%M %p"})
+    for (const char* const other : {"%Y/%m/%d/%H:%M:%S.%f", "%Y-%m-%d_%H-%M-%S.%f", "%Y%m%dT%H%M%S.%f%z",
+                                    "%Y%m%d %H:%M:%S.%f", "%a %b %d %H:%M:%S %Y", "%a, %d %b %Y %H:%M:%S %z",
+                                    "%H:%M:%S.%f", "%H:%M", "%M:%S.%f", "%I:%M:%S.%f %p", "%I:%M %p"})
       all.emplace_back(other);
     return all;
   }();
@@ -159,7 +158,8 @@ bool is_known_time(std::string_view value) {
   constexpr std::size_t shortest = 4;
   if (value.size() < shortest || !std::any_of(value.begin(), value.end(), is_digit)) return false;
   const std::vector<StampPattern>& all = known_stamp_patterns();
-  return std::any_of(all.begin(), all.end(), [&](const StampPattern& pattern) { return pattern.read(value).has_value(); });
+  return std::any_of(all.begin(), all.end(),
+                     [&](const StampPattern& pattern) { return pattern.read(value).has_value(); });
 }
 
 }  // namespace modebank

@@ -38,7 +38,7 @@ struct TimeRequest {
   std::string second = {};
   TimeUnit unit = TimeUnit::automatic;
   std::string format = {};  ///< a StampPattern; empty: found
-  bool may_miss = false;  ///< whether a missing stamp becomes missing_stamp; else it is an error
+  bool may_miss = false;    ///< whether a missing stamp becomes missing_stamp; else it is an error
 };
 
 /// Which columns of a table are wanted; the others are skipped unread and may hold anything.

@@ -52,7 +52,7 @@ std::string_view last_capitalised(std::string_view word) {
   return {};
 }
 
-/// What is behind a word for times: ns of timestampns.
+/// The part behind a word for times: ns of timestampns.
 std::string_view behind_time(std::string_view word) {
   for (const std::string_view time : {"timestamp", "time", "stamp", "clock"})
     if (word.size() > time.size() + 1 && word.starts_with(time)) return word.substr(time.size());

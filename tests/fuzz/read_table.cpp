@@ -31,7 +31,7 @@ TableRequest some_request(const TableInfo& table, std::size_t position, Random& 
     const bool is_text = column.type == "text" || chances.one_in(20);
     if (column.type == "time" || (request.time.column.empty() && chances.one_in(8)))
       (request.time.second.empty() && !request.time.column.empty() && chances.one_in(6) ? request.time.second
-                                                                                             : request.time.column) =
+                                                                                        : request.time.column) =
           column.name;
     else if (is_text)
       request.texts.push_back(column.name);

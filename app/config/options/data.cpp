@@ -153,11 +153,10 @@ std::vector<Option> data_options() {
       text("data.state_unit", "units", "one per state, or one for all; written to the archive and the plots",
            MODEBANK_FIELD(data.state_unit)),
       text("data.input_unit", "units", "one per input, or one for all", MODEBANK_FIELD(data.input_unit)),
-      text(
-          "data.time", "one column name, or those of seconds and nanoseconds, or of date and time of day",
-          "times: numbers or text. Of a recording: time is the header's stamp or, where there is none, when it was "
-          "received; receive_time the latter. Empty: row k is at k / rate_hz",
-          MODEBANK_FIELD(data.time)),
+      text("data.time", "one column name, or those of seconds and nanoseconds, or of date and time of day",
+           "times: numbers or text. Of a recording: time is the header's stamp or, where there is none, when it was "
+           "received; receive_time the latter. Empty: row k is at k / rate_hz",
+           MODEBANK_FIELD(data.time)),
       words("data.time_unit",
             "what times count; auto: as their name, their size or how far apart they are shows, else seconds",
             MODEBANK_FIELD(data.time_unit)),
@@ -183,10 +182,11 @@ std::vector<Option> data_options() {
             MODEBANK_FIELD(data.join)),
       text("data.run", "a column name", "column whose value separates runs inside one file; empty: one run per file",
            MODEBANK_FIELD(data.run)),
-      numeric("data.rate_hz", at_least(0), "Hz",
-              "0: the inputs' own times; else resample: states linear, inputs held; below the log's rate, what moves at "
-              "each sample is averaged over the step that ends at the new one",
-              MODEBANK_FIELD(data.rate_hz)),
+      numeric(
+          "data.rate_hz", at_least(0), "Hz",
+          "0: the inputs' own times; else resample: states linear, inputs held; below the log's rate, what moves at "
+          "each sample is averaged over the step that ends at the new one",
+          MODEBANK_FIELD(data.rate_hz)),
       lag_option(),
       numeric("data.lag_range_s", above(0), "s",
               "lags from minus to plus this are searched by lag_s = auto and by check",

@@ -345,7 +345,7 @@ TEST_F(Init, SaysWhatIsInDoubtOfDates) {
        {std::pair{"01/02/2024 10:00:{:06.3f}", "time_format = %d/%m/%Y %H:%M:%S.%f"},
         {"01/02/2024 10:00:{:06.3f}", "# ! the times, as 01/02/2024 10:00:00.000, allow two readings"},
         {"01.02.2024 10:00:{:06.3f}", "# ! column time is read as %d.%m.%Y %H:%M:%S.%f"},
-        {"2024;032 10:00:{:06.3f}", "is no time (seconds, or as 2024-05-01T10:00:00.25Z"}}) {
+        {"2024;032 10:00:{:06.3f}", "is not a time (seconds, or as 2024-05-01T10:00:00.25Z"}}) {
     std::string text = "time|wz|cmd\n";
     for (int k = 0; k < 300; ++k)
       text +=

@@ -177,7 +177,7 @@ TEST_F(ImportDialect, DecimalCommas) {
   expect_plain(content);
   EXPECT_THAT(notes(content), Contains(AllOf(HasSubstr("semicolons"), HasSubstr("decimal commas"))));
   options.format.decimal = DecimalMark::point;
-  EXPECT_THAT(error<DataError>(), HasSubstr(":2: column time: \"0,000000\" is no time")) << "the option is believed";
+  EXPECT_THAT(error<DataError>(), HasSubstr(":2: column time: \"0,000000\" is not a time")) << "the option is believed";
 }
 
 TEST_F(ImportDialect, MarksOfThousands) {

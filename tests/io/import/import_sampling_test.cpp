@@ -44,8 +44,9 @@ double held(double t) { return std::floor(t / 0.37 + 1e-6); }
 
 TEST_F(ImportSampling, VibrationAboveHalfTheNewRateIsAveragedAway) {
   options.rate_hz = 10.0;
-  const Trajectory run = read(at_100_hz, [](double t) { return slow(t) + vibration(t); },
-                              [](double t) { return 2.0 * slow(t) + vibration(t); });
+  const Trajectory run = read(
+      at_100_hz, [](double t) { return slow(t) + vibration(t); },
+      [](double t) { return 2.0 * slow(t) + vibration(t); });
   ASSERT_EQ(run.samples(), 99) << "no whole step ends at the first row";
   for (Index k = 0; k < run.samples(); ++k) {
     const double t = run.time_s(k);
@@ -54,7 +55,8 @@ TEST_F(ImportSampling, VibrationAboveHalfTheNewRateIsAveragedAway) {
     EXPECT_NEAR(run.state(0, k), mean, 0.12) << t;
     EXPECT_NEAR(run.input(0, k), 2.0 * mean, 0.12) << t;
   }
-  EXPECT_THAT(data.notes, Contains(AllOf(HasSubstr("at 10 Hz x, u are the mean over the step"), Not(HasSubstr("half")))));
+  EXPECT_THAT(data.notes,
+              Contains(AllOf(HasSubstr("at 10 Hz x, u are the mean over the step"), Not(HasSubstr("half")))));
 }
 
 TEST_F(ImportSampling, EndPointsOfAStepWeighHalf) {
@@ -63,8 +65,7 @@ TEST_F(ImportSampling, EndPointsOfAStepWeighHalf) {
   const Trajectory run = read(at_100_hz, x, held);
   for (Index k = 0; k < run.samples(); ++k) {
     double mean = 0.0;
-    for (int i = 0; i <= 10; ++i)
-      mean += (i == 0 || i == 10 ? 0.05 : 0.1) * x(at_100_hz(static_cast<int>(10 * k) + i));
+    for (int i = 0; i <= 10; ++i) mean += (i == 0 || i == 10 ? 0.05 : 0.1) * x(at_100_hz(static_cast<int>(10 * k) + i));
     EXPECT_NEAR(run.state(0, k), mean, 1e-8);
     EXPECT_EQ(run.input(0, k), held(run.time_s(k))) << "a value that is held is picked";
   }
@@ -73,7 +74,8 @@ TEST_F(ImportSampling, EndPointsOfAStepWeighHalf) {
 
 TEST_F(ImportSampling, HeldColumnsArePickedAndSoIsARateNearTheLogs) {
   options.rate_hz = 10.0;
-  const Trajectory run = read(at_100_hz, [](double t) { return std::sin(std::floor(10.0 * t + 1e-6)); }, held);
+  const Trajectory run = read(
+      at_100_hz, [](double t) { return std::sin(std::floor(10.0 * t + 1e-6)); }, held);
   ASSERT_EQ(run.samples(), 100);
   for (Index k = 0; k < run.samples(); ++k) EXPECT_NEAR(run.state(0, k), std::sin(static_cast<double>(k)), 1e-8);
   EXPECT_THAT(data.notes, IsEmpty());
@@ -84,7 +86,8 @@ TEST_F(ImportSampling, HeldColumnsArePickedAndSoIsARateNearTheLogs) {
 TEST_F(ImportSampling, MissingStatesMakeTheirOwnMeansMissing) {
   std::string content = "time,x,u\n";
   for (int k = 0; k < 1000; ++k)
-    content += fmt::format("{:.2f},{},{}\n", at_100_hz(k), k == 455 ? "" : fmt::format("{:.9f}", slow(at_100_hz(k))), 1);
+    content +=
+        fmt::format("{:.2f},{},{}\n", at_100_hz(k), k == 455 ? "" : fmt::format("{:.9f}", slow(at_100_hz(k))), 1);
   write("log.csv", content);
   options.rate_hz = 10.0;
   options.missing = Missing::predict;

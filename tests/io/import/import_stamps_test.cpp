@@ -56,36 +56,40 @@ TEST_F(ImportStamps, UnitsAreReadFromNames) {
                                     {"timeMs", 1e3},
                                     {"timestampns", 1e9},
                                     {"t [µs]", 1e6}})
-    expect_even(name, 0.25, [&, scale = per_s](int k) { return fmt::format("{:.12f}", 0.25 * k * scale); }, 1e-6);
+    expect_even(
+        name, 0.25, [&, scale = per_s](int k) { return fmt::format("{:.12f}", 0.25 * k * scale); }, 1e-6);
 }
 
 TEST_F(ImportStamps, UnitsAreStatedByTheUser) {
   options.time_unit = TimeUnit::min;
   expect_even("clock", 3.0, [](int k) { return fmt::format("{:.3f}", 0.05 * k); });
   options.time_unit = TimeUnit::h;
-  expect_even("clock", 180.0, [](int k) { return fmt::format("{:.3f}", 0.05 * k); }, 1e-6);
+  expect_even(
+      "clock", 180.0, [](int k) { return fmt::format("{:.3f}", 0.05 * k); }, 1e-6);
   options.time_unit = TimeUnit::d;
-  expect_even("clock", 4320.0, [](int k) { return fmt::format("{:.3f}", 0.05 * k); }, 1e-6);
+  expect_even(
+      "clock", 4320.0, [](int k) { return fmt::format("{:.3f}", 0.05 * k); }, 1e-6);
 }
 
 TEST_F(ImportStamps, StampsSinceBootAreNoEpoch) {
   const auto counted = [](std::int64_t start, std::int64_t step) {
     return [=](int k) { return fmt::to_string(start + step * k); };
   };
-  expect_even("timestamp", 0.15, counted(1'000'000'000, 150'000));           // us, 1,000 s after boot
-  expect_even("timestamp", 0.004, counted(1'500'000'000, 4'000));            // us
-  expect_even("timestamp", 0.15, counted(1'000'000'000'000, 150'000'000));   // ns, 1,000 s of simulated time
-  expect_even("timestamp", 0.001, counted(3'000'000'000'000, 1'000'000));    // ns
-  expect_even("timestamp", 1.0, counted(1'700'000'000, 1));                  // s since 1970
-  expect_even("timestamp", 30.0, counted(1'700'000'000, 30));                // s since 1970
-  expect_even("timestamp", 900.0, counted(1'700'000'100, 900));              // s since 1970, each quarter of an hour
-  expect_even("timestamp", 86400.0, counted(1'700'006'400, 86'400));         // s since 1970, daily
-  expect_even("timestamp", 0.15, counted(1'700'000'000'000, 150));           // ms since 1970
+  expect_even("timestamp", 0.15, counted(1'000'000'000, 150'000));          // us, 1,000 s after boot
+  expect_even("timestamp", 0.004, counted(1'500'000'000, 4'000));           // us
+  expect_even("timestamp", 0.15, counted(1'000'000'000'000, 150'000'000));  // ns, 1,000 s of simulated time
+  expect_even("timestamp", 0.001, counted(3'000'000'000'000, 1'000'000));   // ns
+  expect_even("timestamp", 1.0, counted(1'700'000'000, 1));                 // s since 1970
+  expect_even("timestamp", 30.0, counted(1'700'000'000, 30));               // s since 1970
+  expect_even("timestamp", 900.0, counted(1'700'000'100, 900));             // s since 1970, each quarter of an hour
+  expect_even("timestamp", 86400.0, counted(1'700'006'400, 86'400));        // s since 1970, daily
+  expect_even("timestamp", 0.15, counted(1'700'000'000'000, 150));          // ms since 1970
 }
 
 TEST_F(ImportStamps, SerialDaysOfSpreadsheetsAndMatlab) {
   for (const double start : {45764.5, 739724.5}) {
-    expect_even("Time", 1.0, [&](int k) { return fmt::format("{:.9f}", start + k / 86400.0); }, 2e-4);
+    expect_even(
+        "Time", 1.0, [&](int k) { return fmt::format("{:.9f}", start + k / 86400.0); }, 2e-4);
     EXPECT_NEAR(static_cast<double>(origin_ns()), 1744891200e9, 1e5) << "2025-04-17T12:00:00Z";
     EXPECT_THAT(import().notes, Contains(HasSubstr("counts days (data.time_unit = d)")));
   }
@@ -95,8 +99,10 @@ TEST_F(ImportStamps, OneUnitForAllFilesOfAPattern) {
   options.inputs = "px4_*.csv";
   options.time = {"timestamp"};
   for (const auto& [early, late] : {std::pair{9'990, 9'990}, {9'990, 10'010}}) {  // by itself the former is ms
-    write("px4_early.csv", table("timestamp", [&, step = early](int k) { return fmt::to_string(500'000'000 + step * k); }));
-    write("px4_late.csv", table("timestamp", [&, step = late](int k) { return fmt::to_string(500'000'000 + step * k); }));
+    write("px4_early.csv",
+          table("timestamp", [&, step = early](int k) { return fmt::to_string(500'000'000 + step * k); }));
+    write("px4_late.csv",
+          table("timestamp", [&, step = late](int k) { return fmt::to_string(500'000'000 + step * k); }));
     const std::vector<Trajectory> runs = import().recording.runs;
     EXPECT_NEAR(runs[0].time_s(1) - runs[0].time_s(0), (late > 10'000 ? 1e-6 : 1e-3) * early, 1e-9);
     EXPECT_NEAR(runs[1].time_s(1) - runs[1].time_s(0), (late > 10'000 ? 1e-6 : 1e-3) * late, 1e-9);
@@ -120,8 +126,9 @@ std::string late_evening(const std::string& form, int k) {
 TEST_F(ImportStamps, CalendarsAndClocks) {
   for (const char* const form :
        {"{d:02}.07.2017 {H:02}:{M:02}:{S:02}", "07/{d:02}/17 {I:02}:{M:02}:{S:02} {p}", "{d}.7.17 {H}:{M:02}:{S:02}",
-        "2017/07/{d:02} {H:02}:{M:02}:{S:02}", "2017-07-{d:02} {H:02}:{M:02}:{S:02}", "2017/07/{d:02}/{H:02}:{M:02}:{S:02}.000",
-        "07/{d:02}/2017 {H:02}:{M:02}:{S:02}", "{d:02}-Jul-2017 {H:02}:{M:02}:{S:02}", "Jul {d:02} 2017 {H:02}:{M:02}:{S:02}",
+        "2017/07/{d:02} {H:02}:{M:02}:{S:02}", "2017-07-{d:02} {H:02}:{M:02}:{S:02}",
+        "2017/07/{d:02}/{H:02}:{M:02}:{S:02}.000", "07/{d:02}/2017 {H:02}:{M:02}:{S:02}",
+        "{d:02}-Jul-2017 {H:02}:{M:02}:{S:02}", "Jul {d:02} 2017 {H:02}:{M:02}:{S:02}",
         "2017-07-{d:02}T{H:02}:{M:02}:{S:02},000Z", "201707{d:02}T{H:02}{M:02}{S:02}Z"}) {
     expect_even("time", 1.0, [&](int k) { return "\"" + late_evening(form, k) + "\""; });
     EXPECT_EQ(origin_ns(), start_s * 1'000'000'000) << form;
@@ -154,9 +161,10 @@ TEST_F(ImportStamps, DayAndMonthAreDecidedByValuesOrRefused) {
           }));
   };
   dated("log.csv", "01/02/2009 {:02}:{:02}:{:02}", 36000);
-  EXPECT_THAT(error<DataError>(),
-              AllOf(HasSubstr("log.csv:2: column time: \"01/02/2009 10:00:00\" is 2009-02-01T10:00:00.000Z by %d/%m/%Y"),
-                    HasSubstr("or 2009-01-02T10:00:00.000Z by %m/%d/%Y"), HasSubstr("data.time_format")));
+  EXPECT_THAT(
+      error<DataError>(),
+      AllOf(HasSubstr("log.csv:2: column time: \"01/02/2009 10:00:00\" is 2009-02-01T10:00:00.000Z by %d/%m/%Y"),
+            HasSubstr("or 2009-01-02T10:00:00.000Z by %m/%d/%Y"), HasSubstr("data.time_format")));
   options.time_format = "%m/%d/%Y %H:%M:%S";
   EXPECT_EQ(origin_ns(), 1'230'890'400'000'000'000);
   options.time_format = "%d/%m/%Y %H:%M:%S";
@@ -176,7 +184,8 @@ TEST_F(ImportStamps, DayAndMonthAreDecidedByValuesOrRefused) {
 TEST_F(ImportStamps, OneFileDecidesForTheOthers) {
   options.inputs = "run_*.csv";
   for (const auto& [name, day] : {std::pair{"run_1.csv", "01/02"}, {"run_2.csv", "02/13"}})
-    write(name, table("time", [&, date = day](int k) { return fmt::format("{}/2009 10:{:02}:{:02}", date, k / 60, k % 60); }));
+    write(name, table("time",
+                      [&, date = day](int k) { return fmt::format("{}/2009 10:{:02}:{:02}", date, k / 60, k % 60); }));
   EXPECT_EQ(import().recording.runs[0].time_origin_ns, 1'230'890'400'000'000'000) << "January 2";
   write("run_2.csv", table("time", [](int k) { return fmt::format("13.02.2009 10:{:02}:{:02}", k / 60, k % 60); }));
   EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("run_1.csv:2"), HasSubstr("run_2.csv:2"), HasSubstr("%d.%m.%Y"),
@@ -185,7 +194,7 @@ TEST_F(ImportStamps, OneFileDecidesForTheOthers) {
 
 TEST_F(ImportStamps, AFormThatTheTableLacks) {
   write("log.csv", table("time", [](int k) { return fmt::format("2017_211 10h{:02}m{:02}.5", k / 60, k % 60); }));
-  EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("log.csv:2: column time: \"2017_211 10h00m00.5\" is no time"),
+  EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("log.csv:2: column time: \"2017_211 10h00m00.5\" is not a time"),
                                         HasSubstr("data.time_format")));
   options.time_format = "%Y_%j %Hh%Mm%S.%f";
   EXPECT_EQ(origin_ns(), 1'501'408'800'500'000'000) << "day 211 of 2017 is July 30";
@@ -203,7 +212,7 @@ TEST_F(ImportStamps, DateAndTimeOfDayInTwoColumns) {
   EXPECT_EQ(run.time_s(rows - 1), rows - 1);
   options.time = {"x", "u"};
   write("log.csv", "x,u\n1.5,2\n");
-  EXPECT_THAT(error<DataError>(), HasSubstr("in two columns is no time"));
+  EXPECT_THAT(error<DataError>(), HasSubstr("in two columns is not a time"));
 }
 
 TEST_F(ImportStamps, RowsFromBeforeTheClockWasSetAreLeftOut) {
@@ -239,9 +248,11 @@ TEST(StampPattern, ReadsWhatStrptimeReads) {
   EXPECT_EQ(seconds("%m/%d/%y %I:%M:%S.%f %p", "07/30/17 11:58:00.5 PM"), start_s + 0.5);
   EXPECT_EQ(seconds("%H:%M:%S:%f", "00:00:01:250"), 1.25);
   EXPECT_EQ(seconds("%H:%M:%S", "26:00:01"), 26 * 3600 + 1);
-  for (const char* wrong : {"2017-02-29 10:00", "2017-07-30 24:00", "2017-07-30", "2017-07-30 10:00x", "", "1500-01-01 10:00"})
+  for (const char* wrong :
+       {"2017-02-29 10:00", "2017-07-30 24:00", "2017-07-30", "2017-07-30 10:00x", "", "1500-01-01 10:00"})
     EXPECT_EQ(seconds("%Y-%m-%d %H:%M", wrong), -1.0) << wrong;
-  for (const char* wrong : {"%Q", "%", "%Y", "text", "%S.%f.%f"}) EXPECT_THROW(StampPattern{wrong}, std::invalid_argument) << wrong;
+  for (const char* wrong : {"%Q", "%", "%Y", "text", "%S.%f.%f"})
+    EXPECT_THROW(StampPattern{wrong}, std::invalid_argument) << wrong;
 }
 
 }  // namespace
