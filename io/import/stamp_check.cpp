@@ -94,8 +94,10 @@ std::string disorder_hint(const FileStream& source, Index k) {
   if (whole && 2 * repeats > N)
     return fmt::format(" (seconds without their nanoseconds? data.time = {}, {})", source.time_column,
                        nanoseconds_beside(source.time_column));
-  constexpr double hour_s = 3600.0, near_hour = 0.01;
-  if (std::abs(time_s(k - 1) - time_s(k) - hour_s) < near_hour * hour_s && source.origin_ns != 0)
+  constexpr double hour_s = 3600.0;
+  const double step_s = k > 1 ? std::abs(time_s(k - 1) - time_s(k - 2)) : 0.0;
+  const bool an_hour = std::abs(time_s(k - 1) + step_s - time_s(k) - hour_s) <= std::min(step_s, 0.1 * hour_s);
+  if (an_hour && source.origin_ns != 0)
     return " (an hour back, as local time goes at the end of summer time: log UTC, or with the zone, as +02:00)";
   const double span = time_s(k - 1) - time_s(0);
   constexpr double near_start = 0.02;

@@ -112,7 +112,9 @@ TEST_F(ImportSampling, StepsThatScatterAreKeptAndSaid) {
   for (const double rate_hz : {0.0, 5.0, 1.25}) {
     options.rate_hz = rate_hz;
     const Trajectory run = read(uneven, slow, held);
-    if (rate_hz == 0.0) EXPECT_NEAR(run.time_s(1) - run.time_s(0), 0.24, 1e-9);
+    if (rate_hz == 0.0) {
+      EXPECT_NEAR(run.time_s(1) - run.time_s(0), 0.24, 1e-9);
+    }
     EXPECT_GT(data.step_scatter, 0.1) << rate_hz;
     EXPECT_THAT(data.notes, Contains(HasSubstr("modes are not judged"))) << rate_hz;
   }
