@@ -178,7 +178,7 @@ Guess guess_roles(const std::vector<SurveyedFile>& files) {
           if (!channel.why_text.empty()) why += fmt::format("; column {}: {}", channel.name, channel.why_text);
     }
     throw DataError(fmt::format("{}: no channel moves: nothing can be a state{}",
-                                         files.empty() ? "" : files.front().path.string(), why));
+                                files.empty() ? "" : files.front().path.string(), why));
   }
   Guess guess;
   guess_states(all, guess);

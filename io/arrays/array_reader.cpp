@@ -167,8 +167,7 @@ class ArrayReader : public TableReader {
     const std::vector<std::string> first = two || from.text ? texts(column) : std::vector<std::string>();
     const std::vector<std::string> second = two ? texts(stored(request, request.time.second)) : first;
     const std::vector<std::int64_t> whole = from.whole ? store_->whole_numbers(column) : std::vector<std::int64_t>();
-    const std::vector<double> values =
-        from.whole || from.text ? std::vector<double>() : values_of(column);
+    const std::vector<double> values = from.whole || from.text ? std::vector<double>() : values_of(column);
     for (std::size_t k = 0; k < table.rows(); ++k) {
       const NumberStatus status = two          ? stamps.add(first[k], second[k])
                                   : from.text  ? stamps.add(first[k])

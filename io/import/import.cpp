@@ -84,7 +84,7 @@ Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_
 std::vector<RunStreams> read_all(std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data,
                                  bool as_they_stand) {
   std::vector<RunStreams> runs;
-  std::vector<FileForm> forms;
+  std::vector<FileStamps> forms;
   UnsetRows unset;
   std::vector<Outcome> outcomes(plans.size());  // the pipeline passes positions on
   std::size_t next = 0;

@@ -15,9 +15,9 @@ namespace modebank {
 
 /// The content of one plan's files.
 struct FileContent {
-  std::vector<RunStreams> runs;  ///< sorted by name; roles not yet set, samples not yet in order
-  std::vector<InputFile> files;  ///< inputs before states
-  std::vector<FileForm> forms;   ///< of the stamps that were read
+  std::vector<RunStreams> runs;   ///< sorted by name; roles not yet set, samples not yet in order
+  std::vector<InputFile> files;   ///< inputs before states
+  std::vector<FileStamps> forms;  ///< of the stamps that were read
   UnsetRows unset;
   std::vector<std::string> notes;
   std::map<std::string, std::size_t> missing_words;  ///< Table::missing_words of all tables

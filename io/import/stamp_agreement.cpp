@@ -14,9 +14,9 @@ namespace modebank {
 namespace {
 
 using Ground = StampForm::Ground;
-using Pool = std::vector<const FileForm*>;
+using Pool = std::vector<const FileStamps*>;
 
-std::string shown(const FileForm& of) {
+std::string shown(const FileStamps& of) {
   return fmt::format("{}:{}: column {}: \"{}\"", of.file, of.form.line, of.column, of.form.value);
 }
 
@@ -30,9 +30,9 @@ std::string read_by(const std::string& pattern, const std::string& value) {
 /// The finest unit that spacings show serves all files of a logger: none is further apart than a robot samples.
 TimeUnit agreed_unit(const Pool& pool) {
   TimeUnit finest = pool.front()->form.unit;
-  for (const FileForm* of : pool) {
+  for (const FileStamps* of : pool) {
     const bool same = of->form.unit == pool.front()->form.unit;
-    const auto weak = [](const FileForm* f) { return f->form.ground != Ground::spacing; };
+    const auto weak = [](const FileStamps* f) { return f->form.ground != Ground::spacing; };
     if (!same && (weak(of) || weak(pool.front())))
       throw DataError(
           fmt::format("{} counts {} and {} counts {}, as their size and spacing show: data.time_unit = UNIT "
@@ -46,7 +46,7 @@ TimeUnit agreed_unit(const Pool& pool) {
 /// The patterns that fit all files, in the order in which they are tried.
 std::vector<std::string> common_patterns(const Pool& pool) {
   std::vector<std::string> common = pool.front()->form.patterns;
-  for (const FileForm* of : pool) {
+  for (const FileStamps* of : pool) {
     const std::vector<std::string> before = common;
     std::erase_if(common, [&](const std::string& pattern) {
       return std::count(of->form.patterns.begin(), of->form.patterns.end(), pattern) == 0;
@@ -60,16 +60,16 @@ std::vector<std::string> common_patterns(const Pool& pool) {
   return common;
 }
 
-[[noreturn]] void refuse_ambiguous(const FileForm& of, const std::vector<std::string>& patterns) {
+[[noreturn]] void refuse_ambiguous(const FileStamps& of, const std::vector<std::string>& patterns) {
   throw DataError(fmt::format("{} is {}, or {}: data.time_format = {} or {} states which", shown(of),
                               read_by(patterns[0], of.form.value), read_by(patterns[1], of.form.value), patterns[0],
                               patterns[1]));
 }
 
 /// The files of each pattern whose form was found, numbers and texts apart.
-std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools_of(const std::vector<FileForm>& forms) {
+std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools_of(const std::vector<FileStamps>& forms) {
   std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools;
-  for (const FileForm& of : forms)
+  for (const FileStamps& of : forms)
     if (of.form.ground != Ground::none && of.form.ground != Ground::stated)
       pools[{of.form.ground == Ground::text, of.path, of.column}].push_back(&of);
   return pools;
@@ -77,7 +77,7 @@ std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools_of(const std::v
 
 }  // namespace
 
-bool agree_on_stamps(const std::vector<FileForm>& forms, std::vector<FilePlan>& plans) {
+bool agree_on_stamps(const std::vector<FileStamps>& forms, std::vector<FilePlan>& plans) {
   bool changed = false;
   std::vector<std::string> decided;  // patterns that values decided on
   const auto pools = pools_of(forms);
@@ -97,7 +97,7 @@ bool agree_on_stamps(const std::vector<FileForm>& forms, std::vector<FilePlan>& 
     } else {
       agreed.unit = agreed_unit(pool);
     }
-    const bool as_read = std::all_of(pool.begin(), pool.end(), [&](const FileForm* of) {
+    const bool as_read = std::all_of(pool.begin(), pool.end(), [&](const FileStamps* of) {
       return is_text ? of->form.patterns.front() == agreed.format : of->form.unit == agreed.unit;
     });
     if (as_read) continue;

@@ -9,7 +9,7 @@
 namespace modebank {
 
 /// The form of one file's stamps.
-struct FileForm {
+struct FileStamps {
   std::string file, column;
   std::size_t path = 0;  ///< position in FilePlan::paths: inputs, states
   StampForm form;
@@ -18,6 +18,6 @@ struct FileForm {
 /// One form for all files that one pattern matches. Where some were read otherwise, sets it in the requests of `plans`
 /// and returns true: they are to be read again. Throws DataError, showing both readings and the key that decides, where
 /// the files' stamps contradict each other or allow several readings.
-bool agree_on_stamps(const std::vector<FileForm>& forms, std::vector<FilePlan>& plans);
+bool agree_on_stamps(const std::vector<FileStamps>& forms, std::vector<FilePlan>& plans);
 
 }  // namespace modebank

@@ -60,7 +60,7 @@ struct Table {
   /// The same times as they were written, where that is seconds in text, which may be finer; else empty.
   std::vector<double> time_s;
   std::map<std::string, std::size_t> missing_words;  ///< how often each word of data.na stands for a missing number
-  StampForm form = {};           ///< of the times, where they were found in numbers or text
+  StampForm form = {};                               ///< of the times, where they were found in numbers or text
   std::vector<std::string> notes;  ///< what the reader found out and the user should know; without the file's name, so
                                    ///< that many files say it once
 
