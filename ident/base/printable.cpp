@@ -1,5 +1,7 @@
 #include "ident/base/printable.hpp"
 
+#include "ident/base/utf8.hpp"
+
 namespace modebank {
 
 namespace {
@@ -14,25 +16,6 @@ const char* misleading(std::string_view text) {
   if (text.starts_with(first_bytes) && last >= 0xa8 && last <= 0xae) return first[last - 0xa8];
   if (text.starts_with(second_bytes) && last >= 0xa6 && last <= 0xa9) return second[last - 0xa6];
   return nullptr;
-}
-
-/// Bytes of the character of UTF-8 that a text begins with; 0: its first byte begins none.
-std::size_t character_bytes(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(0);
-  const std::size_t bytes = first < 0x80   ? 1
-                            : first < 0xc2 ? 0
-                            : first < 0xe0 ? 2
-                            : first < 0xf0 ? 3
-                            : first < 0xf5 ? 4
-                                           : 0;
-  if (bytes == 0 || bytes > text.size()) return 0;
-  for (std::size_t i = 1; i < bytes; ++i)
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  // Longer forms than needed, halves of pairs and what lies beyond Unicode.
-  const bool wrong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
-                     (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f);
-  return wrong ? 0 : bytes;
 }
 
 enum class Bytes { as_they_are, utf8_alone };

@@ -28,19 +28,6 @@ std::size_t ascii_bytes(std::string_view text) {
   return at;
 }
 
-/// Bytes of the character that begins here, which is not ASCII; 0: none does.
-std::size_t character_bytes(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(0);
-  const std::size_t bytes = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first < 0xC2 || first > 0xF4 || text.size() < bytes) return 0;
-  for (std::size_t i = 1; i < bytes; ++i)
-    if (byte(i) >> 6 != 2) return 0;
-  const bool too_long = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xF0 && byte(1) < 0x90);
-  const bool surrogate = first == 0xED && byte(1) > 0x9F, too_high = first == 0xF4 && byte(1) > 0x8F;
-  return too_long || surrogate || too_high ? 0 : bytes;
-}
-
 void append_from_windows_1252(std::string& text, std::string_view line) {
   for (const char c : line) {
     const auto byte = static_cast<unsigned char>(c);
@@ -49,6 +36,19 @@ void append_from_windows_1252(std::string& text, std::string_view line) {
 }
 
 }  // namespace
+
+std::size_t character_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t bytes = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  if (first < 0xC2 || first > 0xF4 || text.size() < bytes) return 0;
+  for (std::size_t i = 1; i < bytes; ++i)
+    if (byte(i) >> 6 != 2) return 0;
+  const bool too_long = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xF0 && byte(1) < 0x90);
+  const bool surrogate = first == 0xED && byte(1) > 0x9F, too_high = first == 0xF4 && byte(1) > 0x8F;
+  return too_long || surrogate || too_high ? 0 : bytes;
+}
 
 bool is_utf8(std::string_view bytes) {
   while (true) {

@@ -6,6 +6,9 @@
 
 namespace modebank {
 
+/// Bytes of the character of UTF-8 that a text, which is not empty, begins with; 0: its first byte begins none.
+std::size_t character_bytes(std::string_view text);
+
 /// Whether the bytes are text in UTF-8 (RFC 3629: no surrogates, nothing longer than needed, at most U+10FFFF).
 bool is_utf8(std::string_view bytes);
 

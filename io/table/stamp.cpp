@@ -13,8 +13,6 @@ namespace modebank {
 
 namespace {
 
-constexpr std::int64_t billion = 1'000'000'000;
-
 /// Takes digits off the front of `text`, at least one.
 std::optional<std::string_view> take_digits(std::string_view& text) {
   std::size_t count = 0;

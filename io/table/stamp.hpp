@@ -7,6 +7,8 @@
 
 namespace modebank {
 
+inline constexpr std::int64_t billion = 1'000'000'000;
+
 /// A stamp as it is written: whole units (of whatever it counts) and billionths of one, 0 to 999,999,999.
 struct Stamp {
   std::int64_t whole = 0;

@@ -16,8 +16,7 @@ namespace {
 
 constexpr double largest_whole = 9.2e18;  // that 64 bits hold
 constexpr double exact_below = 1e6;       // a double tells billionths of what is smaller
-constexpr std::int64_t billion = 1'000'000'000;
-constexpr std::size_t shown_bytes = 60;  // of an offending field in a message
+constexpr std::size_t shown_bytes = 60;   // of an offending field in a message
 
 /// Units of which billionths are coarser than what a double tells.
 bool is_long(TimeUnit unit) { return ns_per(unit) > billion; }

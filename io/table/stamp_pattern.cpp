@@ -17,7 +17,7 @@ namespace modebank {
 
 namespace {
 
-constexpr int day_s = 86400;
+constexpr int seconds_per_day = 86400;
 
 /// A host program may have set a locale of its own.
 locale_t c_locale() {
@@ -63,7 +63,7 @@ std::optional<std::int64_t> seconds_of(const tm& time, bool has_date) {
   }
   constexpr int leap_second = 60;
   if (time.tm_sec > leap_second) return std::nullopt;
-  return day_s * days + 3600 * time.tm_hour + 60 * time.tm_min + time.tm_sec - time.tm_gmtoff;
+  return seconds_per_day * days + 3600 * time.tm_hour + 60 * time.tm_min + time.tm_sec - time.tm_gmtoff;
 }
 
 /// Takes whole days off the hours at the front of an elapsed time: 26:10:00 becomes 02:10:00 and one day.
@@ -122,7 +122,7 @@ std::optional<Stamp> StampPattern::read(std::string_view value) const {
   if (rest == nullptr || rest != text.c_str() + text.size()) return std::nullopt;
   const std::optional<std::int64_t> seconds = seconds_of(time, has_date_);
   if (!seconds) return std::nullopt;
-  return normalised_stamp(*seconds + day_s * days, billionths);
+  return normalised_stamp(*seconds + seconds_per_day * days, billionths);
 }
 
 const std::vector<StampPattern>& known_stamp_patterns() {

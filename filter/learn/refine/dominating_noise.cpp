@@ -17,7 +17,7 @@ namespace {
 /// one.
 constexpr std::array<double, 2> R_shares{0.6, 0.25};
 constexpr double Q_share = 0.05;
-constexpr AscentLimits limits{100, 1e-7};
+constexpr AscentLimits climb_limits{100, 1e-7};
 
 /// One model with the bank's structure, R of these shares.
 Bank one_model(const Bank& bank, const GlobalModel& global, double R_share) {
@@ -40,7 +40,7 @@ LikelihoodMaximum climb(const RefineInput& in, const Recording& recording, const
   std::iota(free.R.begin(), free.R.end(), Index{0});
   free.least_R = least_measurement_noise(in.fits, in.options.tuning);
   free.transition = false;
-  return maximise_likelihood({recording, exact_filter(in.filter), std::nullopt}, free, start, limits);
+  return maximise_likelihood({recording, exact_filter(in.filter), std::nullopt}, free, start, climb_limits);
 }
 
 }  // namespace
