@@ -12,11 +12,6 @@
 
 namespace modebank {
 
-void check_writable(const std::filesystem::path& path) {
-  if (const std::string obstacle = write_obstacle(path); !obstacle.empty())
-    throw ConfigurationError("cannot write " + path.string() + ": " + obstacle);
-}
-
 namespace {
 
 /// Beyond this much an archive is made in the file system rather than in memory.

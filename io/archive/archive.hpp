@@ -115,10 +115,6 @@ struct Archive {
   bool one_motion_drifts() const { return one_motion && !one_motion->drift.empty(); }
 };
 
-/// Throws ConfigurationError when `path` cannot become an archive: its folder is missing or not writable, or it is a
-/// folder.
-void check_writable(const std::filesystem::path& path);
-
 /// Writes under a temporary name in the same folder, flushes, closes, hashes, renames. Throws DataError on failure and
 /// leaves nothing behind. The layout is described in docs/reference/archive.md; every number is stored as computed.
 void write_archive(const std::filesystem::path& path, const Archive& archive);
