@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <sstream>
+#include <tuple>
 
 #include "app/config/config.hpp"
 #include "app/config/config_file.hpp"
@@ -26,6 +27,7 @@ using test::TemporaryFolder;
 using test::write_file;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(NameWords, AreSplitWhereNamesChange) {
   EXPECT_EQ(words_of_name("/imu/data.angular_velocity.z"), " imu data angular velocity z ");
@@ -338,6 +340,37 @@ TEST_F(Init, TakesAColumnThatRisesSteadilyForTheTimes) {
   EXPECT_EQ(config.data.time.size(), 1U);
   const Trajectory run = import_data(config.data).recording.runs.front();
   EXPECT_NEAR(run.time_s(1) - run.time_s(0), 0.05, 1e-9);
+}
+
+TEST_F(Init, FindsOneHertzWhateverTheTimesCount) {
+  for (const auto& [name, per_s, start] : {std::tuple{"time [s]", 1.0, 0.0},
+                                           {"time [min]", 60.0, 0.0},
+                                           {"Time [h]", 3600.0, 0.0},
+                                           {"hours", 3600.0, 0.0},
+                                           {"t [d]", 86400.0, 0.0},
+                                           {"Time", 86400.0, 45764.5}}) {
+    std::string text = std::string(name) + ",u,y\n";
+    for (int k = 0; k < 300; ++k)
+      text += fmt::format("{:.9f},{},{}\n", start + k / per_s, std::cos(0.3 * k), std::sin(0.3 * k));
+    write_file(folder.path() / "log.csv", text);
+    const SurveyedFile file = survey_file(folder.path() / "log.csv");
+    EXPECT_NEAR(file.tables.at(0).sampling.rate_hz, 1.0, 1e-3) << name;
+    EXPECT_EQ(file.tables[0].time.at(0), name);
+  }
+}
+
+TEST_F(Init, LeavesOutRowsFromBeforeTheClockWasSet) {
+  std::string text = "time_s,u,y\n";
+  for (int k = 0; k < 300; ++k)
+    text += fmt::format("{:.1f},{},{}\n", k < 5 ? 0.0 : 1.7e9 + 0.1 * k, std::cos(0.3 * k), std::sin(0.3 * k));
+  write_file(folder.path() / "log.csv", text);
+  const SurveyedFile file = survey_file(folder.path() / "log.csv");
+  const SurveyedTable& table = file.tables.at(0);
+  EXPECT_EQ(table.unset_rows, 5U);
+  EXPECT_EQ(table.time_s.size(), 295);
+  EXPECT_NEAR(table.sampling.rate_hz, 10.0, 1e-6);
+  EXPECT_EQ(table.sampling.gaps, 0);
+  EXPECT_THAT(write({path("log.csv")}), Not(HasSubstr("disorder")));
 }
 
 TEST_F(Init, SaysWhatIsInDoubtOfDates) {
