@@ -21,9 +21,9 @@ struct Sampling {
   bool averages() const;
 };
 
-/// As data.rate_hz states; without it the inputs' own times are taken, however they scatter: one linear
-/// motion at steps that scatter by 15 % or 43 % shows modes at an even rate, too, interpolated at the log's rate as
-/// well as averaged over four steps. `runs`: in order of time. What the user should know is added to `notes`.
+/// As data.rate_hz states; without it the inputs' own times are taken, however they scatter. One linear motion showed
+/// modes at an even rate, too: interpolated or averaged over two steps where steps scatter by 15 %, averaged over four
+/// where they scatter by 43 %. `runs`: in order of time. What the user should know is added to `notes`.
 Sampling choose_sampling(const std::vector<RunStreams>& runs, const DataOptions& options,
                          std::vector<std::string>& notes);
 
