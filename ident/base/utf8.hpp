@@ -20,7 +20,7 @@ void append_utf8(std::string& text, std::uint32_t code);
 /// (`storage` keeps any other). By lines, because a program may add to a file that another one began.
 std::string_view utf8_or_windows_1252(std::string_view text, std::string& storage);
 
-/// What to tell people where it read any line so.
+/// The line for people where any line was read so.
 inline constexpr const char* read_as_windows_1252 = "bytes that are not UTF-8 are read as Windows-1252";
 
 }  // namespace modebank

@@ -12,9 +12,9 @@ namespace modebank {
 /// How a text file writes numbers: its decimal mark, with marks of thousands between groups of three digits, and the
 /// words that stand for a missing value (data.na).
 ///
-/// With a decimal comma, points, blanks and apostrophes are marks of thousands: 2.499 is 2499, and 2.49 is no number.
+/// With a decimal comma, points, blanks and apostrophes are marks of thousands: 2.499 is 2499, and 2.49 an error.
 /// With a decimal point, commas, blanks and apostrophes are, but a single comma is read so only beside a point: 2,499.5
-/// is 2499.5, and 2,499 is no number, because others write 2.499 so.
+/// is 2499.5, and 2,499 an error, because others write 2.499 so.
 class CsvNumbers {
  public:
   /// `missing`: words, compared without regard to case; numbers among them (-999) are compared by value.
@@ -37,7 +37,7 @@ class CsvNumbers {
   std::vector<double> values_;  // of the words that are numbers
 };
 
-/// What a field shows of the mark that its file uses: a comma in 1,5 and 2.499,50, a point in 1.5 and 2,499.50; 2.499
+/// The decimal mark that a field shows: a comma in 1,5 and 2.499,50, a point in 1.5 and 2,499.50; 2.499
 /// and 2,499 show neither.
 enum class MarkShown { none, point, comma, either_point, either_comma };
 MarkShown mark_shown(std::string_view field);
