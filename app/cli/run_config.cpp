@@ -8,6 +8,7 @@
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
+#include "app/config/path_text.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -26,7 +27,8 @@ std::string text_with_origins(const Config& config, const Origins& origins) {
     if (option.section() != section) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", option.section());
     section = option.section();
     const auto origin = origins.find(option.key);
-    const std::vector<std::string> values = lines_in(option.get(config));
+    std::vector<std::string> values = lines_in(option.get(config));
+    if (takes_quotes(option.key)) std::transform(values.begin(), values.end(), values.begin(), path_text);
     const std::vector<std::string> from = lines_in(origin == origins.end() ? "default" : origin->second);
     for (std::size_t i = 0; i < values.size(); ++i)
       text += fmt::format("{:<40}  # {}\n", option.name() + " =" + (values[i].empty() ? "" : " " + values[i]),
