@@ -72,15 +72,15 @@ void EstimateWriter::signal(std::size_t state, std::initializer_list<double> val
 void EstimateWriter::line(const std::string& run, double time_s, const FilterEstimate& e, const LiveVerdict& verdict,
                           const Forecast* forecast, fmt::memory_buffer& out) const {
   auto to = std::back_inserter(out);
-  const bool json = lines_.json;
+  const bool as_json = lines_.json;
   const auto named = [&](const char* name, double value) {
-    fmt::format_to(to, fmt::runtime(json ? ",\"{}\":" : ","), name);
-    number(out, value, json ? "null" : "");
+    fmt::format_to(to, fmt::runtime(as_json ? ",\"{}\":" : ","), name);
+    number(out, value, as_json ? "null" : "");
   };
-  if (json) fmt::format_to(to, "{{");
+  if (as_json) fmt::format_to(to, "{{");
   if (lines_.run && json) fmt::format_to(to, "\"run\":{},", json_quoted(run));
-  if (lines_.run && !json) fmt::format_to(to, "{},", csv_field(run));
-  fmt::format_to(to, fmt::runtime(json ? "\"time\":{},\"steps\":{}" : "{},{}"), time_s, e.steps);
+  if (lines_.run && !as_json) fmt::format_to(to, "{},", csv_field(run));
+  fmt::format_to(to, fmt::runtime(as_json ? "\"time\":{},\"steps\":{}" : "{},{}"), time_s, e.steps);
   for (std::size_t s = 0; s < states_.size(); ++s) {
     const auto i = static_cast<Index>(s);
     signal(s, {verdict.predicted(i), verdict.lower(i), verdict.upper(i), e.state(i), std::sqrt(e.covariance(i, i))},
@@ -88,23 +88,23 @@ void EstimateWriter::line(const std::string& run, double time_s, const FilterEst
   }
   named("nis", e.nis);
   named("log_density", e.log_density);
-  fmt::format_to(to, fmt::runtime(json ? ",\"alarm\":{},\"mode\":{}" : ",{:d},{}"), verdict.alarm, likeliest(e));
-  if (json) fmt::format_to(to, ",\"probability\":[");
+  fmt::format_to(to, fmt::runtime(as_json ? ",\"alarm\":{},\"mode\":{}" : ",{:d},{}"), verdict.alarm, likeliest(e));
+  if (as_json) fmt::format_to(to, ",\"probability\":[");
   for (Index j = 0; j < modes_; ++j) {
-    if (!json || j > 0) fmt::format_to(to, ",");
-    number(out, e.mode_probability(j), json ? "null" : "");
+    if (!as_json || j > 0) fmt::format_to(to, ",");
+    number(out, e.mode_probability(j), as_json ? "null" : "");
   }
-  if (json) fmt::format_to(to, "]");
+  if (as_json) fmt::format_to(to, "]");
   if (forecast != nullptr) {
-    fmt::format_to(to, fmt::runtime(json ? ",\"now\":{{\"time\":{}" : ",{}"), forecast->time_s);
+    fmt::format_to(to, fmt::runtime(as_json ? ",\"now\":{{\"time\":{}" : ",{}"), forecast->time_s);
     const LiveVerdict& expected = forecast->expected;
     for (std::size_t s = 0; s < states_.size(); ++s) {
       const auto i = static_cast<Index>(s);
       signal(s, {expected.predicted(i), expected.lower(i), expected.upper(i)}, {"predicted", "lower", "upper"}, out);
     }
-    if (json) fmt::format_to(to, "}}");
+    if (as_json) fmt::format_to(to, "}}");
   }
-  fmt::format_to(to, fmt::runtime(json ? "}}\n" : "\n"));
+  fmt::format_to(to, fmt::runtime(as_json ? "}}\n" : "\n"));
 }
 
 }  // namespace modebank::app

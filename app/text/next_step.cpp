@@ -95,7 +95,6 @@ const Rule rules[] = {
     {[](const Situation& s) { return s.answers(Answer::not_yet); },
      [](const Situation&) -> std::string {
        return "log at even steps: a model holds for one step length, and steps that scatter look like modes";
-       `modebank check CONFIG` shows the steps ";
      }},
     {[](const Situation& s) { return s.finding.without_noise; },
      [](const Situation&) -> std::string {
