@@ -78,7 +78,7 @@ void EstimateWriter::line(const std::string& run, double time_s, const FilterEst
     number(out, value, as_json ? "null" : "");
   };
   if (as_json) fmt::format_to(to, "{{");
-  if (lines_.run && json) fmt::format_to(to, "\"run\":{},", json_quoted(run));
+  if (lines_.run && as_json) fmt::format_to(to, "\"run\":{},", json_quoted(run));
   if (lines_.run && !as_json) fmt::format_to(to, "{},", csv_field(run));
   fmt::format_to(to, fmt::runtime(as_json ? "\"time\":{},\"steps\":{}" : "{},{}"), time_s, e.steps);
   for (std::size_t s = 0; s < states_.size(); ++s) {
