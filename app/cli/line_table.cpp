@@ -50,6 +50,8 @@ DataOptions of_a_stream(DataOptions data) {
   data.join = Join::time;
   data.lag_auto = false;
   data.missing = Missing::predict;
+  data.format.skip_rows = 0;
+  data.format.skip_automatic = false;
   return data;
 }
 

@@ -38,8 +38,6 @@ struct Case {
   std::vector<Resolution> states{{"wz", 0.0, 0.0, 0.01}};
   double step_scatter = 0.0;
 
-  double step_scatter = 0.0;
-
   static Bank with_errors(Bank bank, double error) {
     for (Mode& mode : bank.modes) mode.standard_error = VectorXd::Constant(bank.structure.parameters(), error);
     return bank;
@@ -49,15 +47,6 @@ struct Case {
     return judge_modes({bank, role, of_bank, competitors, summary, horizons, states, free_runs, false, step_scatter});
   }
 };
-
-TEST(Finding, StepsThatScatterAreNotYetJudged) {
-  Case uneven;
-  uneven.step_scatter = 0.43;
-  EXPECT_EQ(uneven.judged().answer, Answer::not_yet);
-  EXPECT_EQ(uneven.judged().step_scatter, 0.43);
-  uneven.step_scatter = 0.04;
-  EXPECT_EQ(uneven.judged().answer, Answer::evidence);
-}
 
 TEST(Finding, EvidenceIsAGainOverEveryCompetitor) {
   Case all_beaten;
