@@ -143,9 +143,11 @@ void expect_same(const DiagnosticsRow& actual, const DiagnosticsRow& expected) {
                             &DiagnosticsRow::nees_lower,
                             &DiagnosticsRow::nees_upper,
                             &DiagnosticsRow::whiteness_p,
+                            &DiagnosticsRow::autocorrelation,
                             &DiagnosticsRow::spread_share})
     EXPECT_EQ(actual.*member, expected.*member);
   EXPECT_TRUE(same_bits(actual.state_rmse, expected.state_rmse));
+  EXPECT_EQ(actual.autocorrelation_lag, expected.autocorrelation_lag);
   EXPECT_EQ(actual.verdict, expected.verdict);
   EXPECT_EQ(actual.flags, expected.flags);
 }

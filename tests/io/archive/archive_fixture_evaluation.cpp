@@ -108,6 +108,8 @@ DiagnosticsRow make_diagnostics(const std::string& filter, Index mode, Index n) 
           2.2,
           pattern(n, 1, 85.0),
           0.4,
+          0.63,
+          5,
           0.1,
           Verdict::overconfident,
           "probabilities flat; heavy tails"};

@@ -51,11 +51,11 @@ void expect_reference(const RosLog& log, const json& reference, const std::strin
       if (message[1].is_number()) values.push_back(message[1].get<double>());
     }
     EXPECT_EQ(read_column(log, topic, topic + ".receive_time", LogWant::Form::exact).exact, stamps) << name << topic;
-    if (!values.empty()) EXPECT_EQ(read_column(log, topic, topic + ".data").numbers, values) << name << topic;
+    if (!values.empty()) {
+      EXPECT_EQ(read_column(log, topic, topic + ".data").numbers, values) << name << topic;
+    }
   }
 }
-
-}  // namespace
 
 /// The topic stands in the connection record's header; the data repeat it for publishers in Python alone.
 TEST_F(Topics, OfBagsAreThoseThatRosbagReads) {
@@ -140,4 +140,5 @@ TEST_F(Topics, AlternatingFramesAreSaidWithTheKeyThatTakesThemApart) {
   }
 }
 
+}  // namespace
 }  // namespace modebank::test
