@@ -14,7 +14,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-constexpr int log_rows = 300;
+constexpr int stamped_rows = 300;
 
 class ImportStamps : public test::ImportFixture {
  protected:
@@ -26,7 +26,7 @@ class ImportStamps : public test::ImportFixture {
   /// A table of the named column of times, x and u.
   static std::string table(const std::string& time, const std::function<std::string(int)>& stamp) {
     std::string content = time + ",x,u\n";
-    for (int k = 0; k < log_rows; ++k) content += fmt::format("{},{},{}\n", stamp(k), 0.25 * (k % 17), k % 3);
+    for (int k = 0; k < stamped_rows; ++k) content += fmt::format("{},{},{}\n", stamp(k), 0.25 * (k % 17), k % 3);
     return content;
   }
 
@@ -36,8 +36,9 @@ class ImportStamps : public test::ImportFixture {
     write("log.csv", table(time, stamp));
     options.time = {time};
     const Trajectory run = import().recording.runs.at(0);
-    ASSERT_EQ(run.samples(), log_rows) << time;
-    for (int k = 1; k < log_rows; ++k) ASSERT_NEAR(run.time_s(k) - run.time_s(k - 1), step_s, tolerance_s) << time << k;
+    ASSERT_EQ(run.samples(), stamped_rows) << time;
+    for (int k = 1; k < stamped_rows; ++k)
+      ASSERT_NEAR(run.time_s(k) - run.time_s(k - 1), step_s, tolerance_s) << time << k;
   }
 
   std::int64_t origin_ns() const { return import().recording.runs.at(0).time_origin_ns; }
@@ -204,12 +205,12 @@ TEST_F(ImportStamps, AFormThatTheTableLacks) {
 
 TEST_F(ImportStamps, DateAndTimeOfDayInTwoColumns) {
   std::string content = "Time,Date,x,u\n";
-  for (int k = 0; k < log_rows; ++k) content += late_evening("{H:02}:{M:02}:{S:02}.250,{d:02}.07.2017,1,2\n", k);
+  for (int k = 0; k < stamped_rows; ++k) content += late_evening("{H:02}:{M:02}:{S:02}.250,{d:02}.07.2017,1,2\n", k);
   write("log.csv", content);
   options.time = {"Date", "Time"};
   const Trajectory run = import().recording.runs.at(0);
   EXPECT_EQ(run.time_origin_ns, start_s * 1'000'000'000 + 250'000'000);
-  EXPECT_EQ(run.time_s(log_rows - 1), log_rows - 1);
+  EXPECT_EQ(run.time_s(stamped_rows - 1), stamped_rows - 1);
   options.time = {"x", "u"};
   write("log.csv", "x,u\n1.5,2\n");
   EXPECT_THAT(error<DataError>(), HasSubstr("in two columns is not a time"));
@@ -221,7 +222,7 @@ TEST_F(ImportStamps, RowsFromBeforeTheClockWasSetAreLeftOut) {
             return fmt::format("{:.1f}", k < 5 ? (runs_on ? 0.1 * k : 0.0) : 1.7e9 + 0.1 * k);
           }));
     const ImportedData data = import();
-    ASSERT_EQ(data.recording.runs.at(0).samples(), log_rows - 5);
+    ASSERT_EQ(data.recording.runs.at(0).samples(), stamped_rows - 5);
     EXPECT_EQ(data.recording.runs[0].time_origin_ns, 1'700'000'000'500'000'000);
     EXPECT_THAT(data.notes, Contains(AllOf(HasSubstr("5 rows are stamped before the clock was set"),
                                            HasSubstr("log.csv:6: 0"), HasSubstr("then 1700000000.5 s"))));
