@@ -166,7 +166,9 @@ TEST_F(Robustness, D15TracksLinesAreUtf8WhateverTheName) {
     const std::string text = fmt::to_string(out);
     EXPECT_THAT(text, HasSubstr("gr\\"));
     EXPECT_EQ(printable(text), text);
-    if (as_json) EXPECT_TRUE(nlohmann::json::parse(text).contains("gr\\xf6\\xdfe"));
+    if (as_json) {
+      EXPECT_TRUE(nlohmann::json::parse(text).contains("gr\\xf6\\xdfe"));
+    }
   }
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string key(64, 'a'), another_key(64, 'b');
+const std::string key(64, 'a'), another_hash(64, 'b');
 
 /// A stage that takes longer than is worth a file, whose result is one number.
 struct SlowStage {
@@ -52,7 +52,7 @@ class StoppedRun : public CliTest {
       dup2(ends[1], STDERR_FILENO);
       app::KeptStages kept(output());
       SlowStage stage;
-      kept.provide(Stage::lag_counts, key, stage.part(result));
+      kept.provide(Stage::lag_counts, stage_hash, stage.part(result));
       const auto told = ::write(counts[1], &stage.computed, sizeof stage.computed);
       raise(told > 0 ? SIGINT : SIGKILL);
       _exit(0);
@@ -72,8 +72,8 @@ class StoppedRun : public CliTest {
   fs::path output() const { return file("robot.h5"); }
 };
 
-/// What a process that was stopped by Ctrl-C has kept is taken by the next, for the same key alone; after a run that
-/// ended nothing is left.
+/// What a process that was stopped by Ctrl-C has kept is taken by the next, for the same stage_hash alone; after a run
+/// that ended nothing is left.
 TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   int computed = -1;
   EXPECT_NE(stopped_after(3, computed).find("are kept in"), std::string::npos);
@@ -85,10 +85,10 @@ TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   {
     app::KeptStages kept(output());
     SlowStage same, other;
-    kept.provide(Stage::lag_counts, key, same.part(5));
+    kept.provide(Stage::lag_counts, stage_hash, same.part(5));
     EXPECT_EQ(same.computed, 0);
     EXPECT_EQ(same.value, 3.0);
-    kept.provide(Stage::lag_counts, another_key, other.part(7));
+    kept.provide(Stage::lag_counts, another_hash, other.part(7));
     EXPECT_EQ(other.computed, 1);
     EXPECT_EQ(other.value, 7.0);
   }
@@ -115,24 +115,24 @@ TEST_F(StoppedRun, KeepsWhatTakesLongerThanItsWritingAlone) {
   SlowStage stage;
   StagePart part = stage.part(3.0);
   part.writing_s = 1e6;
-  kept.provide(Stage::lag_counts, key, part);
-  EXPECT_FALSE(fs::exists(folder / stage_file_name(Stage::lag_counts, key)));
+  kept.provide(Stage::lag_counts, stage_hash, part);
+  EXPECT_FALSE(fs::exists(folder / stage_file_name(Stage::lag_counts, stage_hash)));
   part.writing_s = 0.5;
-  kept.provide(Stage::lag_counts, another_key, part);
-  EXPECT_TRUE(fs::exists(folder / stage_file_name(Stage::lag_counts, another_key)));
+  kept.provide(Stage::lag_counts, another_hash, part);
+  EXPECT_TRUE(fs::exists(folder / stage_file_name(Stage::lag_counts, another_hash)));
 }
 
 /// Beside the output may lie a folder, or a link to one, that somebody sent along.
 TEST_F(StoppedRun, NothingOfOthersIsRemovedOrWrittenThroughALink) {
   fs::create_directory(file("home"));
   const fs::path folder = file(".robot.h5.stages");
-  const std::string stage = stage_file_name(Stage::lag_counts, key);
+  const std::string stage = stage_file_name(Stage::lag_counts, stage_hash);
   for (const std::string& name : {std::string("mine.h5"), stage}) write("home/" + name, "precious");
   fs::create_directory_symlink("home", folder);
   {
     app::KeptStages kept(output());
     SlowStage slow;
-    kept.provide(Stage::lag_counts, another_key, slow.part(3));
+    kept.provide(Stage::lag_counts, another_hash, slow.part(3));
     EXPECT_EQ(slow.computed, 1);
   }
   EXPECT_TRUE(fs::is_symlink(folder));
