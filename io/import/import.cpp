@@ -231,7 +231,7 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory)
   refuse_control_characters(data.recording.inputs);
   std::vector<RunStreams> streams = named_streams(plans, options, data, false);
   for (std::string& line : dominating_values(streams, options)) data.notes.push_back(std::move(line));
-  const Sampling sampling = choose_sampling(streams, options, data.notes);
+  const LogSampling sampling = choose_sampling(streams, options, data.notes);
   data.step_scatter = sampling.step_scatter;
   if (options.lag_auto) data.lag = find_lags(streams, options.lag_range_s, sampling.rate_hz);
   auto& runs = data.recording.runs;

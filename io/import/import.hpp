@@ -22,7 +22,7 @@ struct ImportedData {
   std::vector<std::string> notes;   ///< what the user should know of the data
   std::optional<RunLabels> labels;  ///< with DataOptions::label
   std::optional<LagReport> lag;     ///< with DataOptions::lag_auto: what was found and applied
-  double step_scatter = 0.0;        ///< Sampling::step_scatter
+  double step_scatter = 0.0;        ///< LogSampling::step_scatter
   std::string data_hash;            ///< of files, see io/files/input_file.hpp
 };
 

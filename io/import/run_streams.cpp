@@ -109,7 +109,7 @@ void average_rows(const Stream& stream, const std::vector<bool>& rows, const Vec
 
 }  // namespace
 
-Trajectory join_run(const RunStreams& run, const DataOptions& options, const Sampling& sampling,
+Trajectory join_run(const RunStreams& run, const DataOptions& options, const LogSampling& sampling,
                     const InputClock& clock) {
   const Stream &states = run.states.stream, &inputs = run.inputs.stream;
   const bool shifted = options.lag_auto && (clock.lag_s != 0.0 || clock.drift != 0.0);

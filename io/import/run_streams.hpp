@@ -62,13 +62,13 @@ std::vector<bool> kept_samples(const RunStreams& run, const Trajectory& joined);
 /// Both streams, and what is sampled with them.
 void put_in_order(RunStreams& run, Disorder disorder);
 
-struct Sampling;
+struct LogSampling;
 
 /// The run as identification sees it, sampled as `sampling` says: states interpolated or averaged, inputs held or
 /// averaged, and delayed by the constant options.lag_s, or by
 /// `clock` when options.lag_auto (taken in the middle of each transition, see hold_mid_transition). Samples whose
 /// delayed input is not known are dropped. Throws DataError when fewer than two are left.
-Trajectory join_run(const RunStreams& run, const DataOptions& options, const Sampling& sampling,
+Trajectory join_run(const RunStreams& run, const DataOptions& options, const LogSampling& sampling,
                     const InputClock& clock);
 
 }  // namespace modebank

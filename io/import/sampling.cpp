@@ -37,7 +37,7 @@ std::vector<bool> averaged_rows(const std::vector<const Stream*>& streams, doubl
   return result;
 }
 
-std::string averaging_note(const Sampling& sampling, const DataOptions& options) {
+std::string averaging_note(const LogSampling& sampling, const DataOptions& options) {
   std::vector<std::string> averaged, held;
   for (std::size_t i = 0; i < sampling.states.size(); ++i)
     (sampling.states[i] ? averaged : held).push_back(options.state[i]);
@@ -51,7 +51,8 @@ std::string averaging_note(const Sampling& sampling, const DataOptions& options)
                      fmt::join(averaged, ", "), averaged.size() == 1 ? "is" : "are", delay);
 }
 
-Sampling sampling_of(const std::vector<RunStreams>& runs, const DataOptions& options, std::vector<std::string>& notes) {
+LogSampling sampling_of(const std::vector<RunStreams>& runs, const DataOptions& options,
+                        std::vector<std::string>& notes) {
   std::vector<const Stream*> states, inputs;
   Times times;
   for (const RunStreams& run : runs) {
@@ -60,7 +61,7 @@ Sampling sampling_of(const std::vector<RunStreams>& runs, const DataOptions& opt
     times.push_back(&run.inputs.stream.time_s);
   }
   constexpr double many_steps = 20.0;  // of the log in one: whose scatter is then small beside it
-  Sampling sampling{options.rate_hz, step_scatter(times)};
+  LogSampling sampling{options.rate_hz, step_scatter(times)};
   const double period_s = median_period_s(times);
   if (!(sampling.rate_hz > 0.0)) return sampling;
   if (period_s * sampling.rate_hz * many_steps <= 1.0) sampling.step_scatter = 0.0;
@@ -72,13 +73,13 @@ Sampling sampling_of(const std::vector<RunStreams>& runs, const DataOptions& opt
 
 }  // namespace
 
-bool Sampling::averages() const {
+bool LogSampling::averages() const {
   return std::count(states.begin(), states.end(), true) + std::count(inputs.begin(), inputs.end(), true) > 0;
 }
 
-Sampling choose_sampling(const std::vector<RunStreams>& runs, const DataOptions& options,
-                         std::vector<std::string>& notes) {
-  Sampling sampling = sampling_of(runs, options, notes);
+LogSampling choose_sampling(const std::vector<RunStreams>& runs, const DataOptions& options,
+                            std::vector<std::string>& notes) {
+  LogSampling sampling = sampling_of(runs, options, notes);
   if (sampling.step_scatter <= most_step_scatter)
     sampling.step_scatter = 0.0;
   else

@@ -9,7 +9,7 @@
 namespace modebank {
 
 /// How the streams of a data set become samples.
-struct Sampling {
+struct LogSampling {
   double rate_hz = 0.0;  ///< 0: the inputs' own times
   /// How the log's steps scatter (step_scatter in ident/data/streams.hpp), unless many of them make one new step. 0: no
   /// more than a model of one step length bears.
@@ -24,7 +24,7 @@ struct Sampling {
 /// As data.rate_hz states; without it the inputs' own times are taken, however they scatter. One linear motion showed
 /// modes at an even rate, too: interpolated or averaged over two steps where steps scatter by 15 %, averaged over four
 /// where they scatter by 43 %. `runs`: in order of time. What the user should know is added to `notes`.
-Sampling choose_sampling(const std::vector<RunStreams>& runs, const DataOptions& options,
-                         std::vector<std::string>& notes);
+LogSampling choose_sampling(const std::vector<RunStreams>& runs, const DataOptions& options,
+                            std::vector<std::string>& notes);
 
 }  // namespace modebank

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string key(64, 'a'), another_hash(64, 'b');
+const std::string stage_hash(64, 'a'), another_hash(64, 'b');
 
 /// A stage that takes longer than is worth a file, whose result is one number.
 struct SlowStage {
@@ -72,7 +72,7 @@ class StoppedRun : public CliTest {
   fs::path output() const { return file("robot.h5"); }
 };
 
-/// What a process that was stopped by Ctrl-C has kept is taken by the next, for the same stage_hash alone; after a run
+/// What a process that was stopped by Ctrl-C has kept is taken by the next, for the same key alone; after a run
 /// that ended nothing is left.
 TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   int computed = -1;
