@@ -72,8 +72,8 @@ class StoppedRun : public CliTest {
   fs::path output() const { return file("robot.h5"); }
 };
 
-/// What a process that was stopped by Ctrl-C has kept is taken by the next, for the same key alone; after a run
-/// that ended nothing is left.
+/// Stages that a process stopped by Ctrl-C has kept are taken by the next, for the same key alone; a run that ended
+/// leaves none.
 TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   int computed = -1;
   EXPECT_NE(stopped_after(3, computed).find("are kept in"), std::string::npos);
