@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,22 @@ HorizonEvaluation predict(const Forecaster& by, const Archive& archive, const Tr
   return evaluate_horizons(by.bank, run, by.filter, horizons);
 }
 
+/// A horizon that no judged run reaches has no scores: an error where it was stated, else it is left out.
+void keep_reached_horizons(Archive& archive, bool stated) {
+  std::vector<Index> unreached;
+  for (const HorizonRow& row : archive.horizons)
+    if (row.filter == "bank" && row.run == "*" && row.role == judged_role(archive) && row.samples == 0)
+      unreached.push_back(row.horizon);
+  // Lags take more of a run than was known before it was modelled.
+  if (stated && !unreached.empty())
+    throw DataError(fmt::format(
+        "filter.horizon = {}: no run reaches so many samples ahead of where the filter starts, its sample {}",
+        unreached.front(), archive.bank->structure.first_transition() + 1));
+  std::erase_if(archive.horizons, [&](const HorizonRow& row) {
+    return std::find(unreached.begin(), unreached.end(), row.horizon) != unreached.end();
+  });
+}
+
 }  // namespace
 
 void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive) {
@@ -62,13 +79,7 @@ void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Arc
     if (role == Role::train) tables.start_as_trained();
   }
   archive.horizons = tables.horizons();
-  // Lags take more of a run than was known before it was modelled.
-  for (const HorizonRow& row : archive.horizons)
-    if (row.filter == "bank" && row.run == "*" && row.role == judged_role(archive) && row.samples == 0)
-      throw DataError(
-          fmt::format("filter.horizon = {}: no run reaches so many samples ahead of where the filter starts, "
-                      "its sample {}",
-                      row.horizon, archive.bank->structure.first_transition() + 1));
+  keep_reached_horizons(archive, scoring.horizon != ScoringOptions::default_horizon);
   archive.combination = tables.combination();
 }
 

@@ -41,7 +41,8 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
   want();
   if (last >= Stage::lag_counts) {
     refuse_constant_states(*archive_.recording);
-    if (last >= Stage::bank_scores) refuse_unreached_horizons(*archive_.recording, options.scoring.horizon);
+    if (last >= Stage::bank_scores && options.scoring.horizon != ScoringOptions::default_horizon)
+      refuse_unreached_horizons(*archive_.recording, options.scoring.horizon);
     count_lags(inputs_.lag_counts);
   }
   if (archive_.lag_counts) {

@@ -16,7 +16,8 @@ namespace modebank {
 
 /// What is found out about a filter, beside how it steps.
 struct ScoringOptions {
-  std::vector<Index> horizon{1, 10};  ///< samples ahead; 1 alone is what the summary scores anyway
+  static inline const std::vector<Index> default_horizon{1, 10};
+  std::vector<Index> horizon = default_horizon;  ///< samples ahead; 1 alone is what the summary scores anyway
   bool smooth = true;                 ///< smoothed states and the most probable sequence of modes, too
   FreeRunOptions free_run = {};       ///< its seed is the chain's
   std::uint64_t seed = 1;             ///< of the transforms of quantised measurements; the chain's
