@@ -50,7 +50,7 @@ std::string instead_words(const Finding& finding) {
   // The best one was named before; a simpler one that is as good states what it costs.
   const std::string loss = finding.better_description == finding.best_competitor
                                ? ""
-                               : fmt::format(", the simplest that is about as good as {} ({:+.3f} nats per sample)",
+                               : fmt::format(", the simplest that is about as good as {} ({:+.3g} nats per sample)",
                                              finding.best_competitor, -finding.description_loss);
   // Only a gain beyond its margin is known: what cannot be told apart may be as good, or not.
   return fmt::format(" These runs {} by {} ({}){}.",
@@ -78,7 +78,10 @@ std::string why_not_told(const Finding& finding) {
     case Doubt::no_competitor:
       return "no competitor was scored";
     case Doubt::few_samples:
-      return "there are too few independent samples to know the error of a gain";
+      return fmt::format("there are too few independent samples to know the error of the gain over {}",
+                         std::find_if(finding.gains.begin(), finding.gains.end(), [](const PairedGain& gain) {
+                           return !std::isfinite(gain.margin);
+                         })->competitor);
     case Doubt::errors_unknown:
       return "the standard errors of the modes' parameters are not known, so that the modes may be alike";
     case Doubt::within_chance:

@@ -70,7 +70,8 @@ void set_better_description(const std::vector<Densities>& competitors, Finding& 
     finding.description_loss = loss.gain;
     return;
   }
-  finding.better_description = finding.best_competitor;
+  const PairedGain* over = gain_over(finding, finding.best_competitor);
+  if (over && is_as_good(*over)) finding.better_description = finding.best_competitor;
 }
 
 /// Whether the bank is beyond doubt better than the best competitor.
@@ -89,8 +90,8 @@ Answer answer_of(const Finding& finding) {
   if (!finding.coarse.empty()) return Answer::not_comparable;
   if (finding.gains.empty() || !finding.held_out()) return Answer::cannot_tell;
   const auto any = [&](auto holds) { return std::any_of(finding.gains.begin(), finding.gains.end(), holds); };
-  if (any([](const PairedGain& gain) { return !std::isfinite(gain.margin); })) return Answer::cannot_tell;
   if (any([](const PairedGain& gain) { return gain.gain <= 0.0; })) return Answer::no_evidence;
+  if (any([](const PairedGain& gain) { return !std::isfinite(gain.margin); })) return Answer::cannot_tell;
   if (!finding.modes_differ) return finding.errors_known ? Answer::no_evidence : Answer::cannot_tell;
   if (any([](const PairedGain& gain) { return !gain.exceeds(); })) return Answer::cannot_tell;
   return Answer::evidence;

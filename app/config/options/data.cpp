@@ -153,7 +153,7 @@ std::vector<Option> data_options() {
       text("data.state_unit", "units", "one per state, or one for all; written to the archive and the plots",
            MODEBANK_FIELD(data.state_unit)),
       text("data.input_unit", "units", "one per input, or one for all", MODEBANK_FIELD(data.input_unit)),
-      text("data.time", "one column name, or those of seconds and nanoseconds, or of date and time of day",
+      text("data.time", "one column name, or two of a stamp in two parts",
            "times: numbers or text. Of a recording: time is the header's stamp or, where there is none, when it was "
            "received; receive_time the latter. Empty: row k is at k / rate_hz",
            MODEBANK_FIELD(data.time)),
