@@ -193,7 +193,7 @@ TEST_F(Init, NamesWithControlCharactersAreNoSignals) {
   write_file(folder.path() / "odd.csv", log);
   write({path("odd.csv")});
   EXPECT_THAT(config.data.state, ElementsAre("wz [deg/s]"));
-  EXPECT_THAT(config.data.input, Contains("cmd"));
+  EXPECT_THAT(config.data.input, ::testing::Contains("cmd"));
   EXPECT_THAT(config.data.time, ElementsAre("t [ms]"));
 }
 

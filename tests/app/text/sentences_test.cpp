@@ -140,8 +140,9 @@ TEST(Sentences, OnTheGainsMeanWhatTheirRowsSay) {
     means(!unbeaten.empty(), [&] { return gain(unbeaten) <= margin(unbeaten); });
     means(has(text, "no evidence"), [&] { return gain(best) <= 0.0; });
     means(has(text, "errors of the modes' parameters are not known"), [&] { return !known; });
-    const std::string unknown = named(text, "too few independent samples to know the error of the gain over (\\w+)");
-    means(!unknown.empty(), [&] { return std::isnan(margin(unknown)); });
+    const std::string of_unknown_error =
+        named(text, "too few independent samples to know the error of the gain over (\\w+)");
+    means(!of_unknown_error.empty(), [&] { return std::isnan(margin(of_unknown_error)); });
   }
   for (const Answer answer : {Answer::evidence, Answer::no_evidence, Answer::cannot_tell})
     EXPECT_GT(answers[static_cast<std::size_t>(answer)], 20) << name_of(answer);
