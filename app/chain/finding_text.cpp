@@ -50,7 +50,7 @@ std::string instead_words(const Finding& finding) {
   // The best one was named before; a simpler one that is as good states what it costs.
   const std::string loss = finding.better_description == finding.best_competitor
                                ? ""
-                               : fmt::format(", the simplest that is about as good as {} ({:+.3g} nats per sample)",
+                               : fmt::format(", the simplest about as good as {} ({:+.3g} nats per sample)",
                                              finding.best_competitor, -finding.description_loss);
   // Only a gain beyond its margin is known: what cannot be told apart may be as good, or not.
   return fmt::format(" These runs {} by {} ({}){}.",

@@ -49,7 +49,7 @@ DiagnosticsRow random_row(Draw& draw) {
 TEST(Sentences, OnTheBandMeanWhatItsRowSays) {
   Draw draw{std::mt19937_64(3)};
   std::array<int, 4> verdicts{};
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < 1600; ++i) {
     const DiagnosticsRow row = random_row(draw);
     const std::string text = app::band_text(row);
     ++verdicts[static_cast<std::size_t>(row.verdict)];
@@ -105,7 +105,7 @@ std::string named(const std::string& text, const std::string& pattern) {
 TEST(Sentences, OnTheGainsMeanWhatTheirRowsSay) {
   Draw draw{std::mt19937_64(4)};
   std::array<int, 6> answers{};
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < 1600; ++i) {
     const std::vector<Densities> all = random_scores(draw);
     Bank bank = example_bank(1, 1, 2);
     const bool known = draw.whole(0, 3) > 0;
