@@ -13,8 +13,8 @@ namespace modebank {
 /// it without error.
 void refuse_constant_states(const Recording& recording);
 
-/// Throws DataError for a stated horizon (samples ahead) that the longest of the judged runs, those held out or else those
-/// trained on, does not reach: its errors would be those of no sample.
+/// Throws DataError for a stated horizon (samples ahead) that the longest of the judged runs, those held out or else
+/// those trained on, does not reach: its errors would be those of no sample.
 void refuse_unreached_horizons(const Recording& recording, const std::vector<Index>& horizons);
 
 /// A line on regressors of the linear model that they leave open; empty: none.
