@@ -18,9 +18,9 @@ namespace modebank {
 struct ScoringOptions {
   static inline const std::vector<Index> default_horizon{1, 10};
   std::vector<Index> horizon = default_horizon;  ///< samples ahead; 1 alone is what the summary scores anyway
-  bool smooth = true;                 ///< smoothed states and the most probable sequence of modes, too
-  FreeRunOptions free_run = {};       ///< its seed is the chain's
-  std::uint64_t seed = 1;             ///< of the transforms of quantised measurements; the chain's
+  bool smooth = true;                            ///< smoothed states and the most probable sequence of modes, too
+  FreeRunOptions free_run = {};                  ///< its seed is the chain's
+  std::uint64_t seed = 1;                        ///< of the transforms of quantised measurements; the chain's
 };
 
 /// Which numbers of lags are found by cross-validation (lag_counts_stage.cpp), whatever FitOptions say of them.
