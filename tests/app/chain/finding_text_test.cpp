@@ -41,7 +41,7 @@ TEST(FindingText, NoEvidenceNamesWhatDescribesTheRunsInstead) {
       finding_text(finding),
       AllOf(HasSubstr("no evidence for modes of motion"),
             HasSubstr("These runs may be described as well by one motion whose parameters drift (drifting), the "
-                      "simplest that is about as good as one_motion (-0.012 nats per sample).")));
+                      "simplest about as good as one_motion (-0.012 nats per sample).")));
   finding.better_description = "one_motion";
   EXPECT_THAT(finding_text(finding), HasSubstr("as well by one motion with changing noise (one_motion)."));
   finding.gains.front().gain = -0.2;
