@@ -30,7 +30,8 @@ struct Material {
   std::vector<RunPair> ordered;
   std::vector<Trajectory> parts;  // joined, split at gaps; all of them, whatever the role
   LinearStructure structure;
-  VectorXd still_level;  // per input
+  VectorXd still_level;                                      // per input
+  std::vector<std::vector<bool>> states_rest, inputs_still;  // per run, of its samples
 };
 
 /// The runs as `run` would join them if it accepted all that can be mended.
@@ -123,10 +124,10 @@ void check_all_channels(const DataOptions& data, const Material& material, DataC
 double repeats_of(const Material& material, bool is_state, Index row, const std::optional<Role>& role = {}) {
   std::vector<VectorXd> rows;
   std::vector<bool> at_rest;
-  for (const RunPair& run : material.ordered) {
+  for (std::size_t i = 0; i < material.ordered.size(); ++i) {
+    const RunPair& run = material.ordered[i];
     if (role && run.role != *role) continue;
-    const std::vector<bool> rests = is_state ? resting_samples(run.states, run.inputs, material.still_level)
-                                             : still_samples(run.inputs, material.still_level);
+    const std::vector<bool>& rests = (is_state ? material.states_rest : material.inputs_still)[i];
     at_rest.insert(at_rest.end(), rests.begin(), rests.end());
     rows.push_back((is_state ? run.states : run.inputs).values.row(row));
   }
@@ -139,6 +140,10 @@ void check_runs(Material& material, DataCheck& check) {
   for (Index i = 0; i < still_level.size(); ++i) {
     const ChannelCheck& values = check.channels[static_cast<std::size_t>(material.structure.states + i)].values;
     still_level(i) = still_share * std::max(std::abs(values.least), std::abs(values.largest));
+  }
+  for (const RunPair& run : material.ordered) {
+    material.states_rest.push_back(resting_samples(run.states, run.inputs, still_level));
+    material.inputs_still.push_back(still_samples(run.inputs, still_level));
   }
   for (std::size_t i = 0; i < check.channels.size(); ++i) {
     const auto row = static_cast<Index>(i);

@@ -69,7 +69,7 @@ void append_utf8(std::string& text, std::uint32_t code) {
     if (code < 0x10000) {
       put(0xE0 | (code >> 12));
     } else {
-      put(0xF0 | (code >> 18));
+      put(0xF0 | (code >> 18 & 7));
       put(0x80 | ((code >> 12) & 0x3F));
     }
     put(0x80 | ((code >> 6) & 0x3F));

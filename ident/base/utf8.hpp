@@ -12,7 +12,7 @@ std::size_t character_bytes(std::string_view text);
 /// Whether the bytes are text in UTF-8 (RFC 3629: no surrogates, nothing longer than needed, at most U+10FFFF).
 bool is_utf8(std::string_view bytes);
 
-/// Appends a code point.
+/// Appends a code point, of which 21 bits count.
 void append_utf8(std::string& text, std::uint32_t code);
 
 /// The text with every line that is not UTF-8 read as Windows-1252, as Excel and many loggers write it; the five bytes

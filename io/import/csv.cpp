@@ -27,7 +27,6 @@ namespace {
 
 constexpr std::size_t probed_bytes = 1 << 16;  // of a file, at first, to find its dialect and header
 constexpr std::size_t most_probed_bytes = 1 << 24;
-constexpr std::size_t shown_bytes = 60;  // of an offending field in a message
 
 std::string too_many_columns() { return fmt::format("more than {} columns", most_csv_columns); }
 
@@ -118,12 +117,6 @@ struct TableSink {
     return other_mark || !parse.decimal_comma() ? NumberStatus::text : stamps.add(commas_as_points(text));
   }
 
-  static std::string commas_as_points(std::string_view text) {
-    std::string result(text);
-    std::replace(result.begin(), result.end(), ',', '.');
-    return result;
-  }
-
   void number(std::size_t column, std::size_t position, std::string_view text) {
     const ParsedNumber parsed = parse.parse(text);
     const bool tolerated = parsed.status == NumberStatus::missing && may_miss[position];
@@ -134,11 +127,9 @@ struct TableSink {
   }
 
   std::string complaint(NumberStatus status, std::size_t column, std::string_view text) const {
-    const std::string shown =
-        fmt::format("\"{}\"{}", text.substr(0, shown_bytes), text.size() > shown_bytes ? "..." : "");
+    const std::string shown = shown_field(text);
     const std::string where = fmt::format("column {}: ", header[column]);
-    if (status == NumberStatus::missing) return where + "missing value" + (text.empty() ? "" : " (" + shown + ")");
-    if (status == NumberStatus::out_of_range) return where + shown + " is too large for a double";
+    if (status != NumberStatus::text) return where + unusable_number(status, text);
     const MarkShown mark = mark_shown(text);
     if (mark == MarkShown::none) return where + shown + " is not a number";
     return where + shown +

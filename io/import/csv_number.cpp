@@ -61,13 +61,13 @@ std::optional<Grouped> grouped(std::string_view field, char decimal, char mark) 
   return result;
 }
 
-std::string with_points(std::string_view field) {
+}  // namespace
+
+std::string commas_as_points(std::string_view field) {
   std::string text(field);
   std::replace(text.begin(), text.end(), ',', '.');
   return text;
 }
-
-}  // namespace
 
 CsvNumbers::CsvNumbers(bool decimal_comma, const std::vector<std::string>& missing)
     : decimal_comma_(decimal_comma), words_(missing) {
@@ -78,7 +78,8 @@ CsvNumbers::CsvNumbers(bool decimal_comma, const std::vector<std::string>& missi
 
 std::optional<std::string> CsvNumbers::with_point(std::string_view field) const {
   constexpr std::string_view marks_of_comma_files = ".' \xC2\xE2";
-  if (decimal_comma_ && field.find_first_of(marks_of_comma_files) == std::string_view::npos) return with_points(field);
+  if (decimal_comma_ && field.find_first_of(marks_of_comma_files) == std::string_view::npos)
+    return commas_as_points(field);
   std::optional<Grouped> number = grouped(field, decimal_comma_ ? ',' : '.', decimal_comma_ ? '.' : ',');
   if (number && number->marks > 0) {
     const bool either =
@@ -86,7 +87,7 @@ std::optional<std::string> CsvNumbers::with_point(std::string_view field) const 
     return either ? std::nullopt : std::optional(std::move(number->digits));
   }
   if (!decimal_comma_ || field.find('.') != std::string_view::npos) return std::nullopt;
-  return with_points(field);
+  return commas_as_points(field);
 }
 
 ParsedNumber CsvNumbers::parse(std::string_view field) const {

@@ -37,6 +37,9 @@ class CsvNumbers {
   std::vector<double> values_;  // of the words that are numbers
 };
 
+/// The field with each comma replaced by a point.
+std::string commas_as_points(std::string_view field);
+
 /// The decimal mark that a field shows: a comma in 1,5 and 2.499,50, a point in 1.5 and 2,499.50; 2.499
 /// and 2,499 show neither.
 enum class MarkShown { none, point, comma, either_point, either_comma };

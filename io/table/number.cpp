@@ -1,5 +1,7 @@
 #include "io/table/number.hpp"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <system_error>
@@ -52,6 +54,16 @@ ParsedNumber parse_number(std::string_view field) {
   if (error == std::errc::result_out_of_range) return parse_extreme(number);
   if (!std::isfinite(parsed.value)) parsed.status = NumberStatus::missing;
   return parsed;
+}
+
+std::string shown_field(std::string_view field) {
+  constexpr std::size_t shown_bytes = 60;
+  return fmt::format("\"{}\"{}", field.substr(0, shown_bytes), field.size() > shown_bytes ? "..." : "");
+}
+
+std::string unusable_number(NumberStatus status, std::string_view field) {
+  if (status == NumberStatus::out_of_range) return shown_field(field) + " is too large for a double";
+  return field.empty() ? "missing value" : fmt::format("missing value ({})", shown_field(field));
 }
 
 }  // namespace modebank

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double largest_whole = 9.2e18;  // that 64 bits hold
 constexpr double exact_below = 1e6;       // a double tells billionths of what is smaller
-constexpr std::size_t shown_bytes = 60;   // of an offending field in a message
 
 /// Units of which billionths are coarser than what a double tells.
 bool is_long(TimeUnit unit) { return ns_per(unit) > billion; }
@@ -160,10 +159,8 @@ bool StampColumn::Reading::is_even(const std::vector<double>& missing) const {
 }
 
 std::string StampColumn::complaint(NumberStatus status, std::string_view text) const {
-  const std::string shown =
-      fmt::format("\"{}\"{}", text.substr(0, shown_bytes), text.size() > shown_bytes ? "..." : "");
-  if (status == NumberStatus::missing) return text.empty() ? "missing value" : fmt::format("missing value ({})", shown);
-  if (status == NumberStatus::out_of_range) return shown + " is too large for a double";
+  if (status != NumberStatus::text) return unusable_number(status, text);
+  const std::string shown = shown_field(text);
   if (!patterns_.empty()) return fmt::format("{} does not fit data.time_format = {}", shown, request_.format);
   if (!readings_.empty())
     return fmt::format("{} does not fit {}, as \"{}\" before it does (data.time_format = PATTERN states the form)",
