@@ -26,7 +26,7 @@ class SampleReader {
   const std::string& reason() const { return reason_; }
   /// Which of the last sample's numbers are too large for a filter, and what becomes of them.
   const std::vector<std::string>& remarks() const { return remarks_; }
-  /// What acts where the next sample misses an input: that of a sample before the first line.
+  /// Sets the input that acts where the next sample lacks one: that of the sample before the first line.
   void remember(const Eigen::VectorXd& input);
   LineTable& table() { return table_; }
 

@@ -197,8 +197,8 @@ bool Tracker::flush() {
 
 void Tracker::save() const { filter_.save(config_.track.checkpoint, identity_); }
 
-/// A checkpoint on the way, after the estimates that it knows have left: whoever goes on from it lacks none. One that
-/// cannot be written is no reason to stop, and is tried again when the next is due.
+/// Saves a checkpoint on the way, after the estimates that it covers have left, so that a program that goes on from it
+/// lacks none. Where it cannot be written the filter goes on, and tries again when the next one is due.
 void Tracker::keep() {
   checkpoint_due_ = false;
   try {
