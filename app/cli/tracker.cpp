@@ -312,11 +312,11 @@ void Tracker::step(const TimedSample& sample) {
 void Tracker::write(const TimedSample& sample, const FilterEstimate& estimate) {
   if (!config_.track.forecast)
     return writer_->line(run_, sample.time_s, estimate, judge_.judge(estimate), nullptr, out_);
-  const FilterEstimate made = estimate;  // the forecast takes its place
+  made_ = estimate;  // the filter forecasts in its place
   const double now_s = std::max(sample.time_s, samples_.newest_s());
   const bool ahead = now_s > sample.time_s && filter_.started();
-  const Forecast forecast{now_s, forecast_judge_.judge(ahead ? filter_.forecast(now_s, sample.input) : made)};
-  writer_->line(run_, sample.time_s, made, judge_.judge(made), &forecast, out_);
+  const Forecast forecast{now_s, forecast_judge_.judge(ahead ? filter_.forecast(now_s, sample.input) : made_)};
+  writer_->line(run_, sample.time_s, made_, judge_.judge(made_), &forecast, out_);
 }
 
 }  // namespace modebank::app

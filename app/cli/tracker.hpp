@@ -49,6 +49,7 @@ class Tracker {
   const Bank& bank_ = opened_.bank;
   LiveFilter& filter_ = *opened_.filter;
   LiveJudge judge_, forecast_judge_;
+  FilterEstimate made_;  ///< the last estimate, while the filter forecasts from it
   SampleReader reader_;
   std::optional<EstimateWriter> writer_;
   std::string identity_, run_, place_;
