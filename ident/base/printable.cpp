@@ -1,5 +1,7 @@
 #include "ident/base/printable.hpp"
 
+#include <algorithm>
+
 #include "ident/base/utf8.hpp"
 
 namespace modebank {
@@ -36,17 +38,15 @@ std::string shown(std::string_view text, bool lines, Bytes bytes) {
     if (const char* const escaped = misleading(text.substr(i))) {
       result += escaped;
       i += 2;
-    } else if (second_set)
+    } else if (second_set) {
       add(static_cast<unsigned char>(text[++i]));
-    else if (is_control(c) && !(lines && (c == '\n' || c == '\t')))
-      add(static_cast<unsigned char>(c));
-    else if (bytes == Bytes::as_they_are)
-      result += c;
-    else if (const std::size_t count = character_bytes(text.substr(i)); count > 0) {
+    } else {
+      const bool escapes = is_control(c) && !(lines && (c == '\n' || c == '\t'));
+      const std::size_t count = escapes ? 0 : bytes == Bytes::as_they_are ? 1 : character_bytes(text.substr(i));
+      if (count == 0) add(static_cast<unsigned char>(c));
       result += text.substr(i, count);
-      i += count - 1;
-    } else
-      add(static_cast<unsigned char>(c));
+      i += std::max<std::size_t>(count, 1) - 1;
+    }
   }
   return result;
 }

@@ -59,13 +59,15 @@ class Grid {
     std::vector<double> times;
     const double last = std::floor((end_ - first_) * rate_hz_ + rounding);
     std::size_t gap = 0;
-    for (double k = 0.0; k <= last; ++k) {
+    double k = 0.0;
+    while (k <= last) {
       const double time = first_ + k / rate_hz_;
       while (gap < gaps_.size() && gaps_[gap].second <= time) ++gap;
       if (gap < gaps_.size() && gaps_[gap].first < time)
         k = std::max(k, std::floor((gaps_[gap].second - first_) * rate_hz_));
       else
         times.push_back(time);
+      ++k;
       if (std::ssize(times) > std::max(most_times, most_per_sample * samples_)) refuse(times.back());
     }
     return VectorXd::Map(times.data(), std::ssize(times));

@@ -43,7 +43,7 @@ bool is_above(const std::string& group, const std::string& below) {
 }
 
 /// Blocks without times join the nearest group above that has some of that length.
-std::vector<Block> joined(std::vector<Block> blocks) {
+std::vector<Block> joined(const std::vector<Block>& blocks) {
   std::vector<Block> result;
   for (const Block& block : blocks)
     if (block.timed) result.push_back(block);

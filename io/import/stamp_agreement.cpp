@@ -87,7 +87,9 @@ bool agree_on_stamps(const std::vector<FileStamps>& forms, std::vector<FilePlan>
       if (const auto patterns = common[&pool] = common_patterns(pool); patterns.size() == 1)
         decided.push_back(patterns.front());
   for (const auto& [key, pool] : pools) {
-    const auto& [is_text, path, column] = key;
+    const bool is_text = std::get<bool>(key);
+    const auto& path = std::get<1>(key);
+    const auto& column = std::get<2>(key);
     TimeRequest agreed;
     if (is_text) {
       const std::vector<std::string>& patterns = common[&pool];

@@ -16,7 +16,7 @@ namespace {
 template <class Integer>
 void set_integer(Value& value, Integer number) {
   value.form = Value::Form::integer;
-  value.exact = static_cast<std::int64_t>(number);
+  value.exact = static_cast<std::int64_t>(number);  // NOLINT(bugprone-signed-char-misuse): an int8 is a number here
   value.number = static_cast<double>(number);
 }
 

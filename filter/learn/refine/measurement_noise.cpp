@@ -85,22 +85,24 @@ LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const Refi
   return maximise_likelihood(target, free, bank, {in.options.max_iterations, in.options.tolerance});
 }
 
-/// R of a bank in this order: by the search for R alone, with theta where no R is likelier than none with the theta of
-/// exact states, and from one model where R dominates, all of theta, Q and R together. The first that finds some
-/// counts.
+/// R of a bank: by the search for R alone, or with theta where no R is likelier than none with the theta of exact
+/// states. Where R dominates, the theta of exact states is so wrong that both end beside the maximum: a bank that
+/// starts from one model with a large R competes with theirs, all of theta, Q and R at their maximum.
 MeasurementNoise find_R(const LikelihoodTarget& target, const RefineInput& in, const TrainingTransitions& transitions,
                         const GlobalModel& global, const SwitchingPrior& prior, const Bank& bank) {
   MeasurementNoise noise = estimate_measurement_noise(target, bank, in.options.tuning);
   if (!noise.bank) noise.bank = estimate_with_theta(target, in, transitions, prior, bank);
-  if (noise.bank) return noise;
   const std::optional<Bank> start = start_of_dominating_noise(in, target.recording, global, bank);
   if (!start) return noise;
-  const LikelihoodTarget with_prior{target.recording, learning_filter(target.filter),
-                                    prior_with_states_unknown(prior, *start, in.options.tuning), in.options.one_theta};
-  LikelihoodMaximum end = maximise_everything(with_prior, in, transitions, *start, true);
-  const double level = target.value(bank) +
-                       in.options.tuning.least_gain * static_cast<double>(target.recording.transitions(Role::train));
-  if (target.value(end.bank) > level) noise.bank = std::move(end.bank);
+  const auto at_maximum = [&](const Bank& from) {
+    const LikelihoodTarget with_prior{target.recording, learning_filter(target.filter),
+                                      prior_with_states_unknown(prior, from, in.options.tuning), in.options.one_theta};
+    return maximise_everything(with_prior, in, transitions, from, true).bank;
+  };
+  Bank dominated = at_maximum(*start);
+  const double rival = target.value(noise.bank ? at_maximum(*noise.bank) : bank);
+  const double least = in.options.tuning.least_gain * static_cast<double>(target.recording.transitions(Role::train));
+  if (target.value(dominated) > rival + least) noise.bank = std::move(dominated);
   return noise;
 }
 
