@@ -160,8 +160,14 @@ void Chain::learn_bank(const ChainInputs& inputs) {
   const Stopwatch watch;
   learn_competitor_banks(inputs.competitors);
   const auto learn = [&] {
-    LearnedBank learned = learn_modes({*archive_.recording, *archive_.windows, *archive_.mixture, *archive_.baseline},
-                                      inputs.bank, listener_);
+    BankInputs asked = inputs.bank;
+    // Steps of many lengths make modes of one motion, and least squares alone keeps its time constant.
+    if (archive_.step_scatter > most_step_scatter) {
+      asked.one_model = true;
+      listener_.progress("bank: that of baseline, as steps scatter");
+    }
+    LearnedBank learned =
+        learn_modes({*archive_.recording, *archive_.windows, *archive_.mixture, *archive_.baseline}, asked, listener_);
     archive_.bank = std::move(learned.bank);
     archive_.unrefined = std::move(learned.unrefined);
     archive_.measured_fit = learned.measured_fit;

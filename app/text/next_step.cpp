@@ -60,7 +60,7 @@ bool is_uncertain_wrongly(const Situation& s) {
 
 /// Whether a bank that is the mixture's own has few; refinement has starts of its own.
 bool has_few_agreeing_restarts(const Situation& s) {
-  if (!s.archive.mixture || s.archive.unrefined) return false;
+  if (!s.archive.mixture_makes_bank()) return false;
   const auto& all = s.archive.mixture->candidates;
   return std::any_of(all.begin(), all.end(),
                      [](const Candidate& c) { return c.selected && 2 * c.agreeing_restarts < c.restarts; });

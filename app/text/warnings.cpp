@@ -88,7 +88,7 @@ std::vector<Warning> archive_warnings(const Archive& archive) {
   const auto add = [&](WarningKind kind, const std::string& text) {
     if (!text.empty()) warnings.push_back({kind, text});
   };
-  if (archive.mixture && !archive.unrefined)
+  if (archive.mixture_makes_bank())
     for (const std::string& text : selection_warnings(archive.mixture->candidates)) add(WarningKind::mixture, text);
   if (archive.bank) {
     const bool limited = archive.measured_fit == MeasuredFit::iteration_limit;

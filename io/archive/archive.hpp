@@ -112,6 +112,8 @@ struct Archive {
 
   /// By the name of its filter, where there is one; of drifting its fixed_bank, whose states and measurements are its.
   std::optional<Bank> bank_of(const std::string& filter) const;
+  /// Whether modes of the bank are components of the mixture: neither refined nor left out because steps scatter.
+  bool mixture_makes_bank() const { return mixture && !unrefined && step_scatter == 0.0; }
   bool one_motion_drifts() const { return one_motion && !one_motion->drift.empty(); }
 };
 

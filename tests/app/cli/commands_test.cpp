@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <regex>
 #include <sstream>
 
@@ -144,6 +146,34 @@ TEST_F(Commands, DataWithoutNoiseEndInCoefficients) {
   const std::string screen = std::regex_replace(result.out, std::regex("\n +"), " ");
   for (const char* said : {"without noise", "y <- y -0.1, y <- u 0.2", "take the coefficients"})
     EXPECT_NE(screen.find(said), std::string::npos) << said << '\n' << screen;
+}
+
+/// A lag of 1 s and gain 2, discretised exactly between samples 0.05 to 0.35 s apart, came out as four modes.
+TEST_F(Commands, StepsThatScatterEndInOneModelAndItsTimeConstant) {
+  std::mt19937_64 generator(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  boost::random::normal_distribution<double> normal;
+  for (int run = 0; run < 8; ++run) {
+    std::string text = "time,y,u\n";
+    double t = 0.0, y = 0.0, u = 0.0;
+    for (int k = 0; k < 400; ++k) {
+      text += fmt::format("{:.6f},{:.6f},{:.4f}\n", t, y, u);
+      const double dt = 0.05 + 0.3 * uniform(generator), a = std::exp(-dt);
+      y = a * y + 2.0 * (1.0 - a) * u + 0.1 * std::sqrt((1.0 - a * a) / 2.0) * normal(generator);
+      t += dt;
+      if (uniform(generator) < 0.1) u = 2.0 * uniform(generator) - 1.0;
+    }
+    write(fmt::format("log_{}.csv", run), text);
+  }
+  write("uneven.ini", "[data]\ninputs = log_*.csv\nstate = y\ninput = u\n[archive]\noutput = uneven.h5\n");
+  const ProgramResult result = modebank({"run", file("uneven.ini").string()});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("not judged yet: steps scatter by 4"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("warning"), std::string::npos) << result.out;
+  const Archive archived = read_archive(file("uneven.h5"));
+  EXPECT_EQ(archived.finding->answer, Answer::not_yet);
+  ASSERT_EQ(archived.bank->mode_count(), 1);
+  EXPECT_NEAR(-archived.recording->median_period_s() / std::log1p(archived.bank->theta(0)(0)), 1.0, 0.1);
 }
 
 /// Import refuses values that have no square, so that none comes from a file.
