@@ -140,7 +140,8 @@ TEST_F(Commands, DataWithoutNoiseEndInCoefficients) {
     }
     write(name, text);
   }
-  write("exact.ini", "[data]\ninputs = run_*.csv\nstate = y\ninput = u\n[archive]\noutput = exact.h5\n");
+  write("exact.ini",
+        "[data]\ninputs = run_*.csv\nstate = y\ninput = u\n[archive]\noutput = " + file("exact.h5").string() + "\n");
   const ProgramResult result = modebank({"run", file("exact.ini").string()});
   ASSERT_EQ(result.status, 0) << result.err;
   const std::string screen = std::regex_replace(result.out, std::regex("\n +"), " ");
@@ -165,7 +166,8 @@ TEST_F(Commands, StepsThatScatterEndInOneModelAndItsTimeConstant) {
     }
     write(fmt::format("log_{}.csv", run), text);
   }
-  write("uneven.ini", "[data]\ninputs = log_*.csv\nstate = y\ninput = u\n[archive]\noutput = uneven.h5\n");
+  write("uneven.ini",
+        "[data]\ninputs = log_*.csv\nstate = y\ninput = u\n[archive]\noutput = " + file("uneven.h5").string() + "\n");
   const ProgramResult result = modebank({"run", file("uneven.ini").string()});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("not judged yet: steps scatter by 4"), std::string::npos) << result.out;
