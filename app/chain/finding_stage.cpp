@@ -108,7 +108,7 @@ std::optional<Finding> find_modes(const Archive& archive) {
   Finding finding =
       judge_modes({*archive.bank, role, densities_of(*bank, *archive.recording, role), competitors, archive.summary,
                    archive.horizons, resolutions(*bank, archive.bank->quantum, *archive.recording, role),
-                   archive.free_runs, archive.one_motion_drifts(), archive.step_scatter});
+                   archive.free_runs, archive.one_motion_drifts(), archive.step_scatter, archive.diagnostics});
   if (finding.without_noise && archive.baseline) finding.coefficients = coefficients_of(*archive.baseline);
   finding.text = finding_text(finding);
   return finding;

@@ -61,14 +61,20 @@ std::string instead_words(const Finding& finding) {
                      loss);
 }
 
+std::string gain_words(const PairedGain& gain) {
+  return fmt::format("the gain over {}, {:+.3f} +- {:.3f} nats per sample,", gain.competitor, gain.gain,
+                     gain.standard_error);
+}
+
 /// "the gain over one_motion, +0.849 +- 0.388 nats per sample, does not exceed what chance makes of 5 runs (0.911)"
 std::string within_chance_words(const PairedGain& gain, Eigen::Index runs) {
+  const std::string clusters =
+      gain.by_blocks ? counted(static_cast<Eigen::Index>(gain.degrees_of_freedom) + 1, "block") : counted(runs, "run");
+  if (!gain.exceeds())
+    return fmt::format("{} does not exceed what chance makes of {} ({:.3f})", gain_words(gain), clusters, gain.margin);
   return fmt::format(
-      "the gain over {}, {:+.3f} +- {:.3f} nats per sample, does not exceed what chance makes of {} "
-      "({:.3f})",
-      gain.competitor, gain.gain, gain.standard_error,
-      gain.by_blocks ? counted(static_cast<Eigen::Index>(gain.degrees_of_freedom) + 1, "block") : counted(runs, "run"),
-      gain.margin);
+      "{} rests on few of the {}: ranks as high come by chance in {:.0f} % (signed-rank test, 5 % asked)",
+      gain_words(gain), clusters, 100.0 * gain.rank_p);
 }
 
 std::string why_not_told(const Finding& finding) {
@@ -84,6 +90,14 @@ std::string why_not_told(const Finding& finding) {
                          })->competitor);
     case Doubt::errors_unknown:
       return "the standard errors of the modes' parameters are not known, so that the modes may be alike";
+    case Doubt::small_gain:
+      return fmt::format("{} is less than the {:g} that counts", gain_words(*least_beaten(finding)), negligible_gain);
+    case Doubt::short_stays:
+      return fmt::format(
+          "modes stay {:.1f} samples in the mean, and noisy inputs or a delay that differs between runs look like "
+          "modes "
+          "that stay fewer than {:.0f}",
+          finding.stay, finding.stay_asked);
     case Doubt::within_chance:
       break;
   }

@@ -77,7 +77,15 @@ const BetterMean* far_better_mean(const Situation& s) {
 }
 
 std::string advice_on_doubt(const Situation& s) {
-  if (doubt_of(s.finding) != Doubt::errors_unknown)
+  const Doubt doubt = doubt_of(s.finding);
+  if (doubt == Doubt::small_gain)
+    return fmt::format("use the simpler {0} ({1}), which is as good: `modebank track ARCHIVE --track.filter {0}`",
+                       least_beaten(s.finding)->competitor,
+                       description_of(least_beaten(s.finding)->competitor, s.archive.one_motion_drifts()));
+  if (doubt == Doubt::short_stays)
+    return "to predict, use it (`modebank track ARCHIVE`); to tell modes, measure the inputs with less noise and the "
+           "same delay in every run";
+  if (doubt != Doubt::errors_unknown)
     return fmt::format("more held-out runs than {}: record some, or name more of them with --data.test",
                        s.finding.runs);
   if (std::atoi(s.setting("bank.look_ahead").c_str()) > 1)

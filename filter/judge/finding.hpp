@@ -6,11 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "filter/judge/diagnostics.hpp"
 #include "filter/judge/free_run.hpp"
 #include "filter/judge/horizon.hpp"
 #include "filter/judge/paired_gain.hpp"
 #include "filter/judge/scores.hpp"
 #include "filter/step/bank.hpp"
+#include "ident/base/not_a_number.hpp"
 #include "ident/data/streams.hpp"
 #include "ident/data/trajectory.hpp"
 #include "modebank/base/names.hpp"
@@ -34,9 +36,29 @@ inline constexpr std::array<const char*, 4> competitor_names{"baseline", "noise_
 /// `one_motion_drifts`: whether the theta of `one_motion` does.
 const char* description_of(const std::string& competitor, bool one_motion_drifts);
 
+/// The simplest name that the scores leave for the motion of the judged runs. none: nothing was judged, or nothing is told.
+enum class Description { none, one_linear_motion, one_drifting_motion, several_modes };
+
+template <>
+struct EnumNames<Description> {
+  static constexpr Names<4> values{"none", "one linear motion", "one drifting motion", "several modes"};
+};
+
 /// Why an answer is `cannot tell`. errors_unknown: modes whose parameters have no standard error may be alike.
-/// within_chance: the gain over some competitor lies within its margin.
-enum class Doubt { nothing_held_out, no_competitor, few_samples, errors_unknown, within_chance };
+/// within_chance: the gain over some competitor is not told from zero. small_gain: it is, and less than counts.
+/// short_stays: Finding::stay is below stay_asked.
+enum class Doubt {
+  nothing_held_out,
+  no_competitor,
+  few_samples,
+  errors_unknown,
+  within_chance,
+  small_gain,
+  short_stays
+};
+
+/// A description that loses less is as good [nats per sample], as where modes are counted (model_choice.hpp).
+inline constexpr double negligible_gain = 0.02;
 
 /// What a filter said of the judged runs.
 struct Densities {
@@ -68,17 +90,20 @@ struct BetterMean {
 struct Finding {
   Answer answer = Answer::cannot_tell;
   Role role = Role::test;
-  Eigen::Index runs = 0;                    ///< judged, with scored samples
-  Eigen::Index modes = 0;                   ///< of the bank
-  bool modes_differ = false;                ///< in theta, beyond their errors
-  bool errors_known = true;                 ///< errors_known of the bank: else modes may differ all the same
-  double step_scatter = 0.0;                ///< standard deviation of the time steps over their median
-  std::vector<Resolution> coarse;           ///< states for which densities are not comparable
-  bool without_noise = false;               ///< one linear model leaves no more of the runs than rounding
-  bool one_motion_drifts = false;           ///< the competitor of that name learns within a run, as the bank does
-  std::vector<PairedGain> gains;            ///< of the bank over each competitor
-  std::string best_competitor;              ///< of highest log score; empty without competitors
+  Eigen::Index runs = 0;           ///< judged, with scored samples
+  Eigen::Index modes = 0;          ///< of the bank
+  bool modes_differ = false;       ///< in theta, beyond their errors
+  bool errors_known = true;        ///< errors_known of the bank: else modes may differ all the same
+  double step_scatter = 0.0;       ///< standard deviation of the time steps over their median
+  double stay = not_a_number;      ///< in a mode, harmonic mean over the samples judged [samples]; NaN: unknown
+  double stay_asked = 0.0;         ///< for evidence [samples]
+  std::vector<Resolution> coarse;  ///< states for which densities are not comparable
+  bool without_noise = false;      ///< one linear model leaves no more of the runs than rounding
+  bool one_motion_drifts = false;  ///< the competitor of that name learns within a run, as the bank does
+  std::vector<PairedGain> gains;   ///< of the bank over each competitor
+  std::string best_competitor;     ///< of highest log score; empty without competitors
   double gain = 0.0, standard_error = 0.0;  ///< over that one [nats/sample]; NaN where it is not known
+  Description description = Description::none;
   std::string better_description;  ///< the competitor that describes the runs instead; empty where there is none
   double description_loss = 0.0;   ///< of that one against the best competitor [nats/sample]
   std::vector<BetterMean> better_means;
@@ -96,7 +121,8 @@ bool errors_known(const Bank& bank);
 
 /// The first reason that the numbers of a finding give that cannot tell.
 Doubt doubt_of(const Finding& finding);
-/// The competitor that the bank's gain is least beyond chance over, in units of its margin; null without a margin.
+/// The competitor that the bank's gain is least beyond chance over, one that it is not told from if there is one, in
+/// units of its margin; null without a margin.
 const PairedGain* least_beaten(const Finding& finding);
 
 struct FindingInputs {
@@ -110,15 +136,17 @@ struct FindingInputs {
   const std::vector<FreeRunRow>& free_runs;
   bool one_motion_drifts = false;
   double step_scatter = 0.0;  ///< as in Finding
+  std::vector<DiagnosticsRow> diagnostics = {};
 };
 
 /// not yet: the steps scatter beyond most_step_scatter. one mode: the bank has one, or one linear model leaves no
-/// noise: scores are then those of rounding. evidence: the gain over each competitor exceeds its margin
-/// (paired_gain.hpp) and the modes differ. no evidence: a competitor has no lower score, or all modes have the same
-/// theta. cannot tell: all between, nothing held out, too few samples for a margin, or modes whose errors are not
-/// known. Where the bank is not beyond doubt better than the best competitor,
-/// better_description is the simplest one that is as good as both: it loses less than 0.02 nats, or neither a t-test
-/// nor Wilcoxon's over runs tells it apart.
+/// noise: scores are then those of rounding. evidence: the gain over each competitor is told (paired_gain.hpp) and
+/// not negligible, the modes differ, and they stay for five samples and for the model's memory. no evidence: a
+/// competitor has no lower score, or all modes have the same theta. cannot tell: all between, nothing held out, too few
+/// samples for a margin, or modes whose errors are not known. Modes that pass sooner are how noisy inputs and a delay
+/// that differs between runs come back: no competitor has them. Where the bank is not beyond doubt better than the best
+/// competitor, better_description is the simplest one that is as good as both: it loses less than 0.02 nats, or neither
+/// a t-test nor Wilcoxon's over runs tells it apart.
 Finding judge_modes(const FindingInputs& in);
 
 }  // namespace modebank

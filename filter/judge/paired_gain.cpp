@@ -39,11 +39,15 @@ double stretch_sum(const std::vector<double>& values, std::size_t first, std::si
   return sum;
 }
 
-std::vector<double> means_of_runs(const SeriesByRun& d) {
-  std::vector<double> means;
-  for (const std::vector<double>& run : d)
-    means.push_back(stretch_sum(run, 0, run.size()) / static_cast<double>(run.size()));
-  return means;
+/// Means of stretches of `length` samples side by side; 0: of whole runs.
+std::vector<double> means(const SeriesByRun& d, std::size_t length) {
+  std::vector<double> result;
+  for (const std::vector<double>& run : d) {
+    const std::size_t count = length > 0 ? length : run.size();
+    for (std::size_t first = 0; first + count <= run.size(); first += count)
+      result.push_back(stretch_sum(run, first, count) / static_cast<double>(count));
+  }
+  return result;
 }
 
 struct MeanError {
@@ -60,9 +64,13 @@ MeanError error_by_runs(const SeriesByRun& d) {
   return {clustered_error(sums, samples), static_cast<double>(sums.size()) - 1.0};
 }
 
-MeanError error_by_blocks(const SeriesByRun& d, double mean, double samples) {
-  const double time = cautious_time(autocorrelation_time(d), samples);
-  const auto length = static_cast<std::size_t>(std::ceil(times_per_block * time));
+std::size_t block_length(const SeriesByRun& d) {
+  const double time = cautious_time(autocorrelation_time(d), sample_count(d));
+  return static_cast<std::size_t>(std::ceil(times_per_block * time));
+}
+
+MeanError error_by_blocks(const SeriesByRun& d, double mean, std::size_t length) {
+  const double samples = sample_count(d);
   double side_by_side = 0.0, squares = 0.0, count = 0.0;
   for (const auto& run : d) {
     const std::size_t whole_blocks = run.size() / length;
@@ -94,11 +102,11 @@ PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::V
   result.by_blocks = d.size() < fewest_runs;
   result.standard_error = result.margin = not_a_number;
   if (!std::isfinite(result.gain)) return result;
-  const double samples = sample_count(d);
-  const MeanError error = result.by_blocks ? error_by_blocks(d, result.gain, samples) : error_by_runs(d);
+  const std::size_t length = result.by_blocks ? block_length(d) : 0;
+  const MeanError error = result.by_blocks ? error_by_blocks(d, result.gain, length) : error_by_runs(d);
   result.standard_error = error.standard_error;
   result.degrees_of_freedom = error.degrees_of_freedom;
-  if (!result.by_blocks) result.rank_p = signed_rank_p(means_of_runs(d));
+  result.rank_p = signed_rank_p(means(d, length));
   if (error.degrees_of_freedom > 0.0)
     result.margin = student_quantile(upper_probability, error.degrees_of_freedom) * error.standard_error;
   return result;

@@ -15,10 +15,13 @@ struct PairedGain {
   double degrees_of_freedom = 0.0;
   double margin = 0.0;     ///< what the gain has to exceed: t(0.975, degrees of freedom) standard errors; NaN likewise
   bool by_blocks = false;  ///< clustered by blocks of samples rather than by runs
-  double rank_p = 1.0;     ///< signed_rank_p of the runs' mean differences; 1 where blocks are counted
+  double rank_p = 1.0;     ///< signed_rank_p of the mean differences of runs, or of blocks side by side
 
   /// False where the error is not known.
   bool exceeds() const { return gain > margin; }
+  bool ranks_tell() const { return rank_p < 0.05; }
+  /// By the paired t-test, one-sided at 2.5 %, and by the signed ranks, one-sided at 5 %: one odd run ruins the former.
+  bool told() const { return exceeds() && ranks_tell(); }
   bool falls_short() const { return gain < -margin; }
 };
 

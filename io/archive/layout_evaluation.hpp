@@ -180,6 +180,9 @@ void exchange_finding(Io& io, F& finding) {
   io.attribute("best_competitor", finding.best_competitor);
   io.attribute("gain", finding.gain);
   io.attribute("standard_error", finding.standard_error, rule::not_negative_or_missing);
+  io.optional_attribute("description", finding.description);
+  io.optional_attribute("stay", finding.stay, rule::not_negative_or_missing);
+  io.optional_attribute("stay_asked", finding.stay_asked, rule::not_negative);
   io.attribute("better_description", finding.better_description);
   io.attribute("text", finding.text);
   io.optional_table("gains", finding.gains, column("competitor", &PairedGain::competitor),
@@ -187,7 +190,8 @@ void exchange_finding(Io& io, F& finding) {
                     column("gain", &PairedGain::gain, "nat"),
                     amount_column("standard_error", &PairedGain::standard_error, "nat"),
                     amount_column("degrees_of_freedom", &PairedGain::degrees_of_freedom),
-                    amount_column("margin", &PairedGain::margin, "nat"), column("by_blocks", &PairedGain::by_blocks));
+                    amount_column("margin", &PairedGain::margin, "nat"), column("by_blocks", &PairedGain::by_blocks),
+                    later_column("rank_p", &PairedGain::rank_p).obeying(rule::share));
   io.optional_table("better_means", finding.better_means, column("competitor", &BetterMean::competitor),
                     column("horizon", &BetterMean::horizon, "samples").obeying(rule::not_negative),
                     column("state", &BetterMean::state), amount_column("rmse_bank", &BetterMean::rmse_bank),

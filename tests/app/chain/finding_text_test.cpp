@@ -74,6 +74,15 @@ TEST(FindingText, WhatCannotBeToldSaysWhy) {
               AllOf(HasSubstr("cannot be told: the gain over one_motion, +0.849 +- 0.388 nats per sample, does not "
                               "exceed what chance makes of 5 runs (1.077)."),
                     HasSubstr("gains +0.717 +- 0.094 nats per sample over drifting")));
+  finding.gains.front() = {"one_motion", 700, 0.849, 0.388, 4.0, 0.8, false, 0.16};
+  finding.gains.back().rank_p = 0.03;
+  EXPECT_THAT(finding_text(finding), HasSubstr("rests on few of the 5 runs: ranks as high come by chance in 16 %"));
+  finding.gains.front() = {"one_motion", 700, 0.012, 0.002, 4.0, 0.006, false, 0.03};
+  EXPECT_THAT(finding_text(finding), HasSubstr("+0.012 +- 0.002 nats per sample, is less than the 0.02 that counts"));
+  finding.gains.front().gain = 0.12;
+  finding.stay = 2.34;
+  finding.stay_asked = 5.0;
+  EXPECT_THAT(finding_text(finding), HasSubstr("modes stay 2.3 samples in the mean"));
   finding.modes_differ = false;
   EXPECT_THAT(finding_text(finding), HasSubstr("the standard errors of the modes' parameters are not known"));
   finding.gains.front().margin = finding.standard_error = std::numeric_limits<double>::quiet_NaN();

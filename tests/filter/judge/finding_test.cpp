@@ -5,6 +5,7 @@
 
 #include <boost/random/normal_distribution.hpp>
 #include <random>
+#include <tuple>
 
 #include "tests/filter/filter_test_support.hpp"
 
@@ -37,6 +38,7 @@ struct Case {
   std::vector<FreeRunRow> free_runs;
   std::vector<Resolution> states{{"wz", 0.0, 0.0, 0.01}};
   double step_scatter = 0.0;
+  std::vector<DiagnosticsRow> diagnostics;
 
   static Bank with_errors(Bank bank, double error) {
     for (Mode& mode : bank.modes) mode.standard_error = VectorXd::Constant(bank.structure.parameters(), error);
@@ -44,7 +46,8 @@ struct Case {
   }
   Finding judged() const {
     const Densities of_bank = scores_of("bank", bank_gain);
-    return judge_modes({bank, role, of_bank, competitors, summary, horizons, states, free_runs, false, step_scatter});
+    return judge_modes(
+        {bank, role, of_bank, competitors, summary, horizons, states, free_runs, false, step_scatter, diagnostics});
   }
 };
 
@@ -85,6 +88,59 @@ TEST(Finding, AGainWithinItsErrorTellsNothing) {
   for (Densities& competitor : few.competitors)
     for (std::size_t r = 1; r < 6; ++r) competitor.of_runs[r].setConstant(std::nan(""));
   EXPECT_EQ(few.judged().answer, Answer::cannot_tell);
+}
+
+/// The gain over noise_only and one_motion is told from zero in each of these.
+TEST(Finding, AGainBelowWhatCountsIsNoEvidence) {
+  Case small;
+  small.bank_gain = 0.115;
+  const Finding finding = small.judged();
+  ASSERT_TRUE(least_beaten(finding)->told());
+  EXPECT_EQ(finding.answer, Answer::cannot_tell);
+  EXPECT_EQ(doubt_of(finding), Doubt::small_gain);
+  small.bank_gain = 0.125;
+  EXPECT_EQ(small.judged().answer, Answer::evidence);
+}
+
+/// All of the gain is from one of the runs' six: by t it may be told, by ranks it is not.
+TEST(Finding, AGainOfOneOddRunIsNoEvidence) {
+  Case odd;
+  odd.bank_gain = 0.0;
+  odd.competitors = {scores_of("baseline", -0.03)};
+  for (int r = 0; r < 3; ++r) odd.competitors[0].of_runs[static_cast<std::size_t>(r)].array() += 0.032;
+  odd.competitors[0].of_runs[5].array() -= 1.0;
+  const Finding finding = odd.judged();
+  EXPECT_GT(finding.gains[0].gain, 0.02);
+  EXPECT_GT(finding.gains[0].rank_p, 0.05);
+  EXPECT_EQ(finding.answer, Answer::cannot_tell);
+  EXPECT_EQ(doubt_of(finding), Doubt::within_chance);
+}
+
+/// Used for 3/4 and 1/4, left every 10th and every 2nd sample: 1 / (.75 / 10 + .25 / 2) = 5.
+TEST(Finding, ModesHaveToStayForFiveSamplesAndTheModelsMemory) {
+  Case passing;
+  for (const auto& [mode, usage, stay] : {std::tuple{0, 0.75, 10.0}, {1, 0.25, 2.0}}) {
+    DiagnosticsRow row;
+    row.filter = "bank";
+    row.role = Role::test;
+    row.mode = mode;
+    row.usage = usage;
+    row.dwell_model = stay;
+    passing.diagnostics.push_back(row);
+  }
+  const Finding stays = passing.judged();
+  EXPECT_NEAR(stays.stay, 5.0, 1e-12);
+  EXPECT_EQ(stays.stay_asked, 5.0);
+  passing.diagnostics[1].dwell_model = 1.9;
+  const Finding passes = passing.judged();
+  EXPECT_EQ(passes.answer, Answer::cannot_tell);
+  EXPECT_EQ(doubt_of(passes), Doubt::short_stays);
+  EXPECT_EQ(passes.description, Description::none);
+  passing.diagnostics[1].dwell_model = 2.1;
+  EXPECT_EQ(passing.judged().answer, Answer::evidence);
+  EXPECT_EQ(passing.judged().description, Description::several_modes);
+  passing.competitors[3] = scores_of("drifting", 0.5);
+  EXPECT_EQ(passing.judged().description, Description::one_drifting_motion);
 }
 
 TEST(Finding, OfSeveralThatAreAsGoodTheSimplestDescribesTheRuns) {

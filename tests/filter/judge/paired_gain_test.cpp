@@ -86,6 +86,19 @@ TEST(PairedGain, BlocksKnowAboutAutocorrelation) {
   }
 }
 
+/// By hand: a gain of one in each of eight stretches has ranks that chance makes in one of 2^8 cases.
+TEST(PairedGain, BlocksAreRankedToo) {
+  VectorXd run(4000);
+  std::mt19937_64 generator(7);
+  for (double& d : run) d = 1.0 + 0.1 * (static_cast<double>(generator() % 1000) / 500.0 - 1.0);
+  const PairedGain gain = gain_of({run});
+  ASSERT_TRUE(gain.by_blocks);
+  EXPECT_LT(gain.rank_p, std::pow(2.0, -8));
+  EXPECT_TRUE(gain.told());
+  run.head(3000).array() -= 2.0;
+  EXPECT_GT(gain_of({run}).rank_p, 0.9);
+}
+
 TEST(PairedGain, TooFewBlocksAndNoSamplesKnowNoError) {
   std::mt19937_64 generator(42);
   const PairedGain few = gain_of({autoregression(0.0, 5.0, 10, generator)});

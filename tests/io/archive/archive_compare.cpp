@@ -33,6 +33,7 @@ void expect_same(const PairedGain& actual, const PairedGain& expected) {
   EXPECT_EQ(actual.degrees_of_freedom, expected.degrees_of_freedom);
   EXPECT_EQ(actual.margin, expected.margin);
   EXPECT_EQ(actual.by_blocks, expected.by_blocks);
+  EXPECT_EQ(actual.rank_p, expected.rank_p);
 }
 
 void expect_same(const DriftingModel& actual, const DriftingModel& expected) {
@@ -63,6 +64,9 @@ void expect_same(const Finding& actual, const Finding& expected) {
   EXPECT_EQ(actual.best_competitor, expected.best_competitor);
   EXPECT_EQ(actual.gain, expected.gain);
   EXPECT_EQ(actual.standard_error, expected.standard_error);
+  EXPECT_EQ(actual.description, expected.description);
+  EXPECT_EQ(actual.stay, expected.stay);
+  EXPECT_EQ(actual.stay_asked, expected.stay_asked);
   EXPECT_EQ(actual.better_description, expected.better_description);
   EXPECT_EQ(actual.text, expected.text);
   ASSERT_EQ(actual.gains.size(), expected.gains.size());

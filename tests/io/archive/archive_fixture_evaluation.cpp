@@ -122,11 +122,14 @@ Finding make_finding() {
   finding.runs = 3;
   finding.modes = 3;
   finding.modes_differ = true;
-  finding.gains = {{"baseline", 30, 1.25, 0.25, 5.0, 0.5, false},
-                   {"one_motion", 29, -0.125, 0.0625, 11.0, 0.125, true}};
+  finding.gains = {{"baseline", 30, 1.25, 0.25, 5.0, 0.5, false, 0.03125},
+                   {"one_motion", 29, -0.125, 0.0625, 11.0, 0.125, true, 0.75}};
   finding.best_competitor = "one_motion";
   finding.gain = -0.125;
   finding.standard_error = 0.0625;
+  finding.description = Description::one_linear_motion;
+  finding.stay = 7.5;
+  finding.stay_asked = 5.0;
   finding.better_description = "noise_only";
   finding.better_means = {{"noise_only", 10, "wz", 0.5, 0.25}};
   finding.text = "3 held-out runs show no evidence for modes of motion.";
