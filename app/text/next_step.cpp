@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <vector>
 
@@ -58,9 +59,12 @@ bool is_uncertain_wrongly(const Situation& s) {
   return s.bank.verdict == Verdict::overconfident || s.bank.verdict == Verdict::underconfident;
 }
 
+constexpr int many_restarts = 20, many_iterations = 400;  // advised once: what does not help then never does
+
 /// Whether a bank that is the mixture's own has few; refinement has starts of its own.
 bool has_few_agreeing_restarts(const Situation& s) {
-  if (!s.archive.mixture_makes_bank()) return false;
+  if (!s.archive.mixture_makes_bank() || std::atoi(s.setting("mixture.restarts").c_str()) >= many_restarts)
+    return false;
   const auto& all = s.archive.mixture->candidates;
   return std::any_of(all.begin(), all.end(),
                      [](const Candidate& c) { return c.selected && 2 * c.agreeing_restarts < c.restarts; });
@@ -76,18 +80,34 @@ const BetterMean* far_better_mean(const Situation& s) {
   return best != all.end() && best->rmse < far * best->rmse_bank ? &*best : nullptr;
 }
 
+/// "record about 9 more runs like these": errors and margins fall with the root of the number of runs.
+std::string more_runs(const Finding& finding) {
+  constexpr double too_many = 20.0;  // times as many
+  const char* const name_them = ", or name more held-out ones with --data.test";
+  const PairedGain* const least = least_beaten(finding);
+  if (!least) return fmt::format("record more: longer runs, and more than {}{}", finding.runs, name_them);
+  const double times = std::pow(std::max(least->margin / least->gain, 1.0), 2.0);
+  if (times > too_many)
+    return fmt::format(
+        "the data cannot tell: a gain so small asks for more than {:.0f} times as many runs; to predict, "
+        "{} is as good (`modebank track ARCHIVE --track.filter {}`)",
+        too_many, least->competitor, least->competitor);
+  const double runs = std::ceil((times - 1.0) * static_cast<double>(finding.runs));
+  return fmt::format("record more: about {:.0f} runs like these, by which the gain over {} would be told{}",
+                     std::max(runs, 1.0), least->competitor, name_them);
+}
+
 std::string advice_on_doubt(const Situation& s) {
   const Doubt doubt = doubt_of(s.finding);
   if (doubt == Doubt::small_gain)
-    return fmt::format("use the simpler {0} ({1}), which is as good: `modebank track ARCHIVE --track.filter {0}`",
-                       least_beaten(s.finding)->competitor,
-                       description_of(least_beaten(s.finding)->competitor, s.archive.one_motion_drifts()));
+    return fmt::format(
+        "ready: use the simpler {0} ({1}), which is as good: `modebank track ARCHIVE --track.filter {0}`",
+        least_beaten(s.finding)->competitor,
+        description_of(least_beaten(s.finding)->competitor, s.archive.one_motion_drifts()));
   if (doubt == Doubt::short_stays)
-    return "to predict, use it (`modebank track ARCHIVE`); to tell modes, measure the inputs with less noise and the "
-           "same delay in every run";
-  if (doubt != Doubt::errors_unknown)
-    return fmt::format("more held-out runs than {}: record some, or name more of them with --data.test",
-                       s.finding.runs);
+    return "the data cannot tell: modes so short are those of noisy inputs, too; to predict, use it (`modebank track "
+           "ARCHIVE`)";
+  if (doubt != Doubt::errors_unknown) return more_runs(s.finding);
   if (std::atoi(s.setting("bank.look_ahead").c_str()) > 1)
     return "learn with standard errors, by which modes are told apart: repeat with --bank.look_ahead 1";
   return "leave out inputs that hardly vary, which leave modes without standard errors: `modebank check CONFIG` names "
@@ -106,7 +126,7 @@ const Rule rules[] = {
      }},
     {[](const Situation& s) { return s.finding.without_noise; },
      [](const Situation&) -> std::string {
-       return "nothing to filter: take the coefficients (`modebank export ARCHIVE --to json --track.filter baseline`)";
+       return "ready: take the coefficients (`modebank export ARCHIVE --to json --track.filter baseline`)";
      }},
     {[](const Situation& s) { return s.answers(Answer::not_comparable); },
      [](const Situation& s) -> std::string {
@@ -139,7 +159,7 @@ const Rule rules[] = {
      [](const Situation& s) {
        const std::string& simpler = s.finding.better_description;
        return fmt::format(
-           "use the simpler {0} ({1}){2}: `modebank track ARCHIVE --track.filter {0}`", simpler,
+           "ready: use the simpler {0} ({1}){2}: `modebank track ARCHIVE --track.filter {0}`", simpler,
            description_of(simpler, s.archive.one_motion_drifts()),
            simpler == s.finding.best_competitor ? "" : ", which is about as good as " + s.finding.best_competitor);
      }},
@@ -161,19 +181,24 @@ const Rule rules[] = {
        return s.bank.verdict == Verdict::undecided && reason_of(s.bank) != VerdictReason::close;
      },
      [](const Situation&) -> std::string {
-       return "more held-out samples, to know whether the band is false: record some, or name more with --data.test";
+       return "record more: held-out samples, to know whether the band is false, or name more with --data.test";
      }},
     {has_few_agreeing_restarts,
-     [](const Situation& s) {
-       return fmt::format("look for a better mixture: repeat with --mixture.restarts {}",
-                          4 * std::max(5, std::atoi(s.setting("mixture.restarts").c_str())));
+     [](const Situation&) {
+       return fmt::format("look for a better mixture: repeat with --mixture.restarts {}", many_restarts);
      }},
-    {[](const Situation& s) { return warns(s, WarningKind::iteration_limit); },
-     [](const Situation& s) {
+    {[](const Situation& s) {
+       return warns(s, WarningKind::iteration_limit) &&
+              std::atoi(s.setting("bank.max_iterations").c_str()) < many_iterations;
+     },
+     [](const Situation&) {
        return fmt::format("let the fit with measurement noise end: repeat with --bank.max_iterations {}",
-                          std::min(1000, 4 * std::max(25, std::atoi(s.setting("bank.max_iterations").c_str()))));
+                          many_iterations);
      }},
-    {[](const Situation& s) { return warns(s, WarningKind::stalled); },
+    {[](const Situation& s) {
+       return s.setting("bank.measurement_variance").empty() &&
+              (warns(s, WarningKind::stalled) || warns(s, WarningKind::iteration_limit));
+     },
      [](const Situation&) -> std::string {
        return "state the measurement noise from the sensor's data sheet: repeat with --bank.measurement_variance "
               "VARIANCE";
@@ -197,7 +222,7 @@ const Rule rules[] = {
      [](const Situation& s) {
        const BetterMean& mean = *far_better_mean(s);
        return fmt::format(
-           "to understand the motion, use it; to predict, {0} is closer{1}: `modebank track ARCHIVE "
+           "ready: to understand the motion, use it; to predict, {0} is closer{1}: `modebank track ARCHIVE "
            "--track.filter {0}`",
            mean.competitor,
            mean.horizon == 0   ? " in free run"
@@ -205,9 +230,7 @@ const Rule rules[] = {
                                : fmt::format(" {} samples ahead", mean.horizon));
      }},
     {[](const Situation&) { return true; },
-     [](const Situation&) -> std::string {
-       return "nothing: use it (`modebank track ARCHIVE` filters samples as they come)";
-     }},
+     [](const Situation&) -> std::string { return "ready: `modebank track ARCHIVE` filters samples as they come"; }},
 };
 
 }  // namespace

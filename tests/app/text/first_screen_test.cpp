@@ -41,7 +41,8 @@ void expect_fits(const Archive& archive, const std::string& what) {
 
 TEST(FirstScreen, NextNamesTheProgramAsItWasCalled) {
   const Archive archive = screen_archive(1, 2, 3);
-  EXPECT_THAT(first_screen(archive, defaults, "demo.h5", 0, "build/modebank"), HasSubstr("(`build/modebank track"));
+  EXPECT_THAT(first_screen(archive, defaults, "demo.h5", 0, "build/modebank"),
+              HasSubstr("ready: `build/modebank track demo.h5`"));
 }
 
 TEST(FirstScreen, SaysThatInputsAreNeededAhead) {
@@ -96,7 +97,7 @@ TEST(FirstScreen, SaysWhatMatters) {
               AllOf(HasSubstr("RMSE one step ahead 0.03 rad/s (drifting: 0.04 rad/s); 10 steps ahead 0.06 rad/s\n"),
                     HasSubstr("(drifting: 0.08 rad/s)\n"),
                     HasSubstr("1.2 s"),  // 12 samples of 0.1 s
-                    HasSubstr("nothing: use it"), HasSubstr("archive   demo.h5"), Not(HasSubstr("warning"))));
+                    HasSubstr("ready: `modebank track"), HasSubstr("archive   demo.h5"), Not(HasSubstr("warning"))));
   EXPECT_THAT(screen_of(screen_archive(1, 2, 3, Role::train)), HasSubstr("none held out"));
 }
 
@@ -158,8 +159,8 @@ TEST(FirstScreen, ItsFieldsAreTheArchivesNumbers) {
   std::replace(as_one_line.begin(), as_one_line.end(), '\n', ' ');
   for (const std::string& said : {screen.finding, screen.modes.rows[0].cells[4]})
     EXPECT_THAT(as_one_line, HasSubstr(said));
-  EXPECT_EQ(screen.next, "nothing: use it (`modebank track ARCHIVE` filters samples as they come)");
-  EXPECT_THAT(as_one_line, HasSubstr("use it (`modebank track demo.h5` filters")) << "as it can be typed";
+  EXPECT_EQ(screen.next, "ready: `modebank track ARCHIVE` filters samples as they come");
+  EXPECT_THAT(as_one_line, HasSubstr("ready: `modebank track demo.h5` filters")) << "as it can be typed";
 }
 
 TEST(FirstScreen, WhatIsNotKnownIsNoNumber) {
@@ -213,7 +214,7 @@ struct NextStep : testing::Test {
   std::string advice() const { return app::next_step(archive, settings); }
 };
 
-TEST_F(NextStep, NothingIsLeft) { EXPECT_THAT(advice(), HasSubstr("nothing: use it")); }
+TEST_F(NextStep, NothingIsLeft) { EXPECT_THAT(advice(), HasSubstr("ready: `modebank track")); }
 
 TEST_F(NextStep, WhatIsNotScoredHasNone) {
   archive.finding.reset();
@@ -233,7 +234,7 @@ TEST_F(NextStep, AnswersHaveTheirs) {
   archive.finding->answer = Answer::not_comparable;
   EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), HasSubstr("data.rate_hz")));
   archive.finding->answer = Answer::cannot_tell;
-  EXPECT_THAT(advice(), AllOf(HasSubstr("more held-out runs than 1"), HasSubstr("--data.test")));
+  EXPECT_THAT(advice(), AllOf(HasSubstr("record more: longer runs, and more than 1"), HasSubstr("--data.test")));
   archive.finding->role = Role::train;
   EXPECT_THAT(advice(), HasSubstr("hold runs out"));
   archive.recording.emplace().runs.resize(1);
@@ -287,13 +288,13 @@ TEST_F(NextStep, AFalseBandAsksForAdaptiveNoiseOnce) {
   }
   row().verdict = Verdict::undecided;
   row().coverage_95_lower = 0.9, row().coverage_95_upper = 0.99;
-  EXPECT_THAT(advice(), HasSubstr("more held-out samples"));
+  EXPECT_THAT(advice(), HasSubstr("record more: held-out samples"));
 }
 
 /// A flag's words decide nothing: what it is made of does.
 TEST_F(NextStep, GoesByNumbersAndNotByWords) {
   row().flags = "innovations not white: autocorrelation 0.45 at lag 1";
-  EXPECT_THAT(advice(), HasSubstr("nothing: use it"));
+  EXPECT_THAT(advice(), HasSubstr("ready: `modebank track"));
 }
 
 TEST_F(NextStep, UnknownErrorsAskForThem) {
@@ -302,6 +303,23 @@ TEST_F(NextStep, UnknownErrorsAskForThem) {
   EXPECT_THAT(advice(), HasSubstr("inputs that hardly vary"));
   settings["bank.look_ahead"] = "10";
   EXPECT_THAT(advice(), HasSubstr("--bank.look_ahead 1"));
+}
+
+/// Twice the gain's error asks for four times the runs: margins are taken to fall as 1 / sqrt(runs).
+TEST_F(NextStep, ADoubtfulGainAsksForSoManyRuns) {
+  archive.finding->answer = Answer::cannot_tell;
+  archive.finding->modes_differ = true;
+  archive.finding->runs = 6;
+  archive.finding->gains = {{"drifting", 700, 0.1, 0.08, 5.0, 0.2, false}};
+  EXPECT_THAT(advice(), HasSubstr("record more: about 18 runs like these, by which the gain over drifting"));
+  archive.finding->gains[0].margin = 0.5;
+  EXPECT_THAT(advice(), HasSubstr("the data cannot tell"));
+  archive.finding->gains[0] = {"drifting", 700, 0.01, 0.001, 5.0, 0.003, false, 0.01};
+  EXPECT_THAT(advice(), HasSubstr("ready: use the simpler drifting"));
+  archive.finding->gains[0].gain = 0.1;
+  archive.finding->stay = 2.0;
+  archive.finding->stay_asked = 5.0;
+  EXPECT_THAT(advice(), HasSubstr("the data cannot tell: modes so short"));
 }
 
 TEST_F(NextStep, APredictorThatIsFarCloserIsNamed) {
@@ -340,17 +358,21 @@ TEST_F(NextStep, WarningsComeBeforeUse) {
   archive.mixture->candidates[0].selected = true;
   archive.mixture->candidates[0].restarts = 5;
   EXPECT_THAT(advice(), HasSubstr("--mixture.restarts 20"));
+  settings["mixture.restarts"] = "20";
+  EXPECT_THAT(advice(), Not(HasSubstr("--mixture.restarts")));
   archive.unrefined = archive.bank;
-  EXPECT_THAT(advice(), HasSubstr("nothing: use it")) << "refinement replaced the mixture";
+  EXPECT_THAT(advice(), HasSubstr("ready: `modebank track")) << "refinement replaced the mixture";
   archive.unrefined.reset();
   archive.mixture->candidates[0].agreeing_restarts = 5;
   archive.mixture->candidates[0].converged = true;
-  EXPECT_THAT(advice(), HasSubstr("nothing: use it"));
+  EXPECT_THAT(advice(), HasSubstr("ready: `modebank track"));
   archive.mixture->candidates[0].floor_active = true;
-  EXPECT_THAT(advice(), AllOf(HasSubstr("--mixture.components"), Not(HasSubstr("nothing"))));
+  EXPECT_THAT(advice(), AllOf(HasSubstr("--mixture.components"), Not(HasSubstr("ready"))));
   archive.measured_fit = MeasuredFit::iteration_limit;
   settings["bank.max_iterations"] = "100";
   EXPECT_THAT(advice(), HasSubstr("--bank.max_iterations 400"));
+  settings["bank.max_iterations"] = "400";
+  EXPECT_THAT(advice(), HasSubstr("--bank.measurement_variance VARIANCE"));
 }
 
 }  // namespace
