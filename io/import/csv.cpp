@@ -13,10 +13,10 @@
 #include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
 #include "io/import/csv_dialect.hpp"
+#include "io/import/csv_head.hpp"
 #include "io/import/csv_number.hpp"
 #include "io/import/csv_pass.hpp"
 #include "io/import/csv_text.hpp"
-#include "io/table/name_unit.hpp"
 #include "io/table/number.hpp"
 #include "io/table/stamp_column.hpp"
 #include "modebank/base/error.hpp"
@@ -24,29 +24,6 @@
 namespace modebank {
 
 namespace {
-
-constexpr std::size_t probed_bytes = 1 << 16;  // of a file, at first, to find its dialect and header
-constexpr std::size_t most_probed_bytes = 1 << 24;
-
-std::string too_many_columns() { return fmt::format("more than {} columns", most_csv_columns); }
-
-/// Collects the first rows that are not empty.
-struct HeaderSink {
-  std::size_t wanted = 1;
-  std::vector<std::vector<std::string>> rows = {};
-  std::size_t complete = 0;
-  std::size_t fields = 0;
-  std::uint64_t line = 1;
-  std::string error;
-
-  bool done() const { return complete == wanted; }
-  void field(std::string_view text) {
-    if (fields++ == 0) rows.emplace_back();
-    if (fields > most_csv_columns) return void(error = too_many_columns());
-    rows.back().emplace_back(text);
-  }
-  void row() { complete += fields > 0 ? 1 : 0; }
-};
 
 /// Collects the wanted columns of all rows after the header.
 struct TableSink {
@@ -162,48 +139,7 @@ struct TableSink {
   }
 };
 
-/// What the first rows say: how the text is written, and its columns.
-struct Head {
-  CsvDialect dialect;
-  std::vector<std::string> names, units;
-};
-
-std::string no_header(std::string_view file, const CsvDialect& dialect) {
-  return fmt::format(
-      "{} is empty{}: no header", file,
-      dialect.skipped > 0 ? fmt::format(" behind its first {} lines (data.skip_rows)", dialect.skipped) : "");
-}
-
-/// Of a text, or (unless `complete`) of its beginning.
-Head read_head(std::string_view file, std::string_view text, bool complete, const FormatOptions& options) {
-  Head head;
-  head.dialect = find_dialect(text, complete, options);
-  head.names = head.dialect.names;
-  text = without_first_lines(text, head.dialect.skipped);
-  if (head.dialect.header_rows > 0) {
-    HeaderSink sink;
-    sink.wanted = head.dialect.header_rows;
-    CsvPass pass(file, sink, head.dialect.delimiter(), head.dialect.first_line());
-    std::string prepared;
-    if (head.dialect.rewritten()) {
-      prepared = prepare_text(text, head.dialect.separator == Separator::blank, head.dialect.first_line()).text;
-      text = prepared;
-    }
-    pass.feed(text);
-    if (complete) pass.finish();
-    if (sink.rows.empty()) throw ConfigurationError(no_header(file, head.dialect));
-    head.names = sink.rows.front();
-    if (sink.rows.size() > 1 && head.dialect.header_rows > 1) head.units = sink.rows[1];
-  }
-  if (head.names.empty()) throw ConfigurationError(no_header(file, head.dialect));
-  if (head.names.size() > most_csv_columns) throw DataError(fmt::format("{}: {}", file, too_many_columns()));
-  head.units.resize(head.names.size());
-  for (std::size_t i = 0; i < head.names.size(); ++i)
-    head.units[i] = head.units[i].empty() ? split_unit(head.names[i]).unit : bare_unit(head.units[i]);
-  return head;
-}
-
-TableInfo table_of(Head head) {
+TableInfo table_of(CsvHead head) {
   TableInfo table;
   for (std::size_t i = 0; i < head.names.size(); ++i)
     table.columns.push_back({std::move(head.names[i]), std::move(head.units[i])});
@@ -211,7 +147,7 @@ TableInfo table_of(Head head) {
   return table;
 }
 
-TableSink make_sink(std::string_view file, const Head& head, const TableRequest& request, std::size_t rows,
+TableSink make_sink(std::string_view file, const CsvHead& head, const TableRequest& request, std::size_t rows,
                     const std::vector<std::string>& na) {
   std::vector<std::string> header = head.names;
   const auto time = std::find(header.begin(), header.end(), request.time.column);
@@ -237,26 +173,6 @@ TableSink make_sink(std::string_view file, const Head& head, const TableRequest&
   return sink;
 }
 
-Head head_of_file(const std::filesystem::path& path, const FormatOptions& options) {
-  std::ifstream stream = open_file(path);
-  std::string content;
-  for (std::size_t wanted = probed_bytes;; wanted *= 4) {
-    const std::size_t had = content.size();
-    content.resize(wanted);
-    stream.read(content.data() + had, static_cast<std::streamsize>(wanted - had));
-    content.resize(had + static_cast<std::size_t>(stream.gcount()));
-    const bool complete = content.size() < wanted;
-    std::string storage;
-    const std::string_view text = as_utf8(content, storage);
-    // Rows, of which a file of long ones gives no more at first; behind a title that is to be skipped.
-    const std::size_t enough = options.skip_automatic ? rows_looked_at_for_table : 4;
-    const bool enough_bytes = options.skip_automatic && content.size() >= most_probed_bytes;
-    if (complete || enough_bytes ||
-        first_records(without_first_lines(text, options.skip_rows), false, enough).size() == enough)
-      return read_head(path.string(), text, complete, options);
-  }
-}
-
 /// Beyond the first rows.
 bool has_late_comment(std::string_view text) {
   for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1))
@@ -265,7 +181,7 @@ bool has_late_comment(std::string_view text) {
 }
 
 /// One request, of a text whose head is known.
-Table parse_rows(std::string_view file, std::string_view text, const Head& head, const TableRequest& request,
+Table parse_rows(std::string_view file, std::string_view text, const CsvHead& head, const TableRequest& request,
                  const std::vector<std::string>& na) {
   const auto rows_at_most = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   TableSink sink = make_sink(file, head, request, rows_at_most, na);
@@ -297,7 +213,7 @@ std::vector<Table> parse_all(std::string_view file, std::string_view content, co
                              const FormatOptions& options) {
   std::string storage;
   const std::string_view text = as_utf8(content, storage);
-  const Head head = read_head(file, text, true, options);
+  const CsvHead head = read_csv_head(file, text, true, options);
   std::vector<Table> tables;
   const std::string_view rows =
       without_empty_tail(without_first_lines(text, head.dialect.skipped),
@@ -311,7 +227,7 @@ std::vector<Table> parse_all(std::string_view file, std::string_view content, co
 
 }  // namespace
 
-std::vector<std::string> read_csv_header(const std::filesystem::path& path) { return head_of_file(path, {}).names; }
+std::vector<std::string> read_csv_header(const std::filesystem::path& path) { return read_csv_head(path, {}).names; }
 
 Table parse_csv(std::string_view file, std::string_view content, const TableRequest& request,
                 const FormatOptions& options) {
@@ -320,10 +236,10 @@ Table parse_csv(std::string_view file, std::string_view content, const TableRequ
 
 TableInfo csv_columns(std::string_view file, std::string_view content, const FormatOptions& options) {
   std::string storage;
-  return table_of(read_head(file, as_utf8(content, storage), true, options));
+  return table_of(read_csv_head(file, as_utf8(content, storage), true, options));
 }
 
-std::vector<TableInfo> CsvReader::tables() const { return {table_of(head_of_file(path_, options_))}; }
+std::vector<TableInfo> CsvReader::tables() const { return {table_of(read_csv_head(path_, options_))}; }
 
 InputFile CsvReader::describe(const std::vector<TableRequest>&) const { return describe_file(path_); }
 

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/import/csv_dialect.hpp"
+
+namespace modebank {
+
+/// What the first rows of a text say: how it is written, and its columns.
+struct CsvHead {
+  CsvDialect dialect;
+  std::vector<std::string> names, units;
+};
+
+/// The head of a text, or (unless `complete`) of one that begins so. `file` is named in messages. Throws
+/// ConfigurationError without a header, DataError where its quotes are malformed.
+CsvHead read_csv_head(std::string_view file, std::string_view text, bool complete, const FormatOptions& options);
+
+/// Of a file, which is read as far as that takes.
+CsvHead read_csv_head(const std::filesystem::path& path, const FormatOptions& options);
+
+}  // namespace modebank
