@@ -166,8 +166,8 @@ void Chain::learn_bank(const ChainInputs& inputs) {
       asked.one_model = true;
       listener_.progress("bank: that of baseline, as steps scatter");
     }
-    LearnedBank learned =
-        learn_modes({*archive_.recording, *archive_.windows, *archive_.mixture, *archive_.baseline}, asked, listener_);
+    const LearnedFrom from{*archive_.recording, *archive_.windows, *archive_.mixture, *archive_.baseline};
+    LearnedBank learned = learn_modes(from, asked, listener_);
     archive_.bank = std::move(learned.bank);
     archive_.unrefined = std::move(learned.unrefined);
     archive_.measured_fit = learned.measured_fit;
@@ -175,10 +175,13 @@ void Chain::learn_bank(const ChainInputs& inputs) {
     archive_.learned_transitions = learned.learned_transitions;
     listener_.progress(fmt::format("bank: {} modes, {} screened, in {:.2f} s", archive_.bank->mode_count(),
                                    archive_.bank->screened.size(), watch.seconds()));
+    archive_.one_motion.reset();
+    if (asked.one_motion) archive_.one_motion = learn_one_motion(from, *archive_.bank, asked, listener_);
   };
   const auto copy = [&] {
     Archive part;
     part.bank = archive_.bank;
+    part.one_motion = archive_.one_motion;
     part.unrefined = archive_.unrefined;
     part.measured_fit = archive_.measured_fit;
     part.merging = archive_.merging;
@@ -187,6 +190,7 @@ void Chain::learn_bank(const ChainInputs& inputs) {
   };
   const auto take = [&](Archive&& part) {
     archive_.bank = std::move(part.bank);
+    archive_.one_motion = std::move(part.one_motion);
     archive_.unrefined = std::move(part.unrefined);
     archive_.measured_fit = part.measured_fit;
     archive_.merging = std::move(part.merging);

@@ -6,25 +6,21 @@ namespace modebank {
 
 void Chain::learn_competitor_banks(const CompetitorInputs& inputs) {
   const auto learn_all = [&] {
-    Competitors learned = learn_competitors(*archive_.recording, *archive_.windows,
-                                            archive_.mixture->mixture.components(), inputs, listener_);
+    Competitors learned = learn_competitors(*archive_.recording, *archive_.windows, inputs, listener_);
     archive_.baseline = std::move(learned.baseline);
     archive_.noise_only = std::move(learned.noise_only);
-    archive_.one_motion = std::move(learned.one_motion);
     archive_.drifting = std::move(learned.drifting);
   };
   const auto copy_all = [&] {
     Archive part;
     part.baseline = archive_.baseline;
     part.noise_only = archive_.noise_only;
-    part.one_motion = archive_.one_motion;
     part.drifting = archive_.drifting;
     return part;
   };
   const auto take_all = [&](Archive&& part) {
     archive_.baseline = std::move(part.baseline);
     archive_.noise_only = std::move(part.noise_only);
-    archive_.one_motion = std::move(part.one_motion);
     archive_.drifting = std::move(part.drifting);
   };
   provide(Stage::competitors, {learn_all, copy_all, take_all});

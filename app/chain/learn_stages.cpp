@@ -26,23 +26,6 @@ void tell_of_shrinking(const std::string& whose, const Bank& bank, const Listene
   if (bank.shrinking.modes > 0) listener.warning(fmt::format("{}: {}", whose, shrinking_words(bank.shrinking)));
 }
 
-constexpr Index fewest_levels = 8;  // noise levels that one_motion may have at least (method: section 6)
-
-Bank one_motion(const Recording& recording, const WindowFits& windows, const Bank& baseline, Index components,
-                const CompetitorInputs& inputs, const Listener& listener) {
-  const Stopwatch watch;
-  Bank bank = learn_one_motion(recording, windows, linear_global(recording, windows, inputs.window), baseline.R,
-                               std::max(fewest_levels, components), *inputs.one_motion, inputs.filter);
-  tell_of_shrinking("one_motion", bank, listener);
-  const DriftRates& rates = bank.drift.rates;
-  listener.progress(fmt::format("one_motion: {} noise levels{} in {:.2f} s", bank.mode_count(),
-                                bank.drift.empty() ? ""
-                                                   : fmt::format(", theta drifts (rate {:g}, start {:g}, leak {:g})",
-                                                                 rates.q, rates.p0, rates.leak),
-                                watch.seconds()));
-  return bank;
-}
-
 DriftingModel drifting(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
                        const Listener& listener) {
   const Stopwatch watch;
@@ -66,18 +49,16 @@ Bank learn_single_filter(const Recording& recording, const WindowFits& windows, 
   return std::move(baseline.bank);
 }
 
-Competitors learn_competitors(const Recording& all, const WindowFits& windows, Index components,
-                              const CompetitorInputs& inputs, const Listener& listener) {
+Competitors learn_competitors(const Recording& all, const WindowFits& windows, const CompetitorInputs& inputs,
+                              const Listener& listener) {
   const std::optional<Recording> part = learning_part(all, inputs.transitions, inputs.seed);
   const Recording& recording = part ? *part : all;
   if (part)
     listener.progress(fmt::format("competitors: learned {}",
                                   learned_words(part->transitions(Role::train), all.transitions(Role::train))));
-  Competitors learned{learn_single_filter(recording, windows, inputs.window, inputs.filter, listener), {}, {}, {}};
+  Competitors learned{learn_single_filter(recording, windows, inputs.window, inputs.filter, listener), {}, {}};
   learned.drifting = drifting(recording, windows, inputs, listener);
   learned.noise_only = learn_noise_only(recording, windows.structure, learned.baseline.R);
-  if (inputs.one_motion)
-    learned.one_motion = one_motion(recording, windows, learned.baseline, components, inputs, listener);
   if (inputs.filter.noise == FilterNoise::adaptive)
     learned.noise_only.noise_adaptation = most_likely_adaptation(learned.noise_only, recording, inputs.filter, {});
   return learned;
@@ -182,6 +163,26 @@ LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const
   if (inputs.bank.refine == Refine::em) learned.unrefined = std::move(refined.start);
   learned.merging = merging_of(from, inputs, learned.bank);
   return learned;
+}
+
+Bank learn_one_motion(const LearnedFrom& from, const Bank& rival, const BankInputs& inputs, const Listener& listener) {
+  constexpr Index fewest_levels = 8;  // noise levels that it may have at least (method: section 6)
+  const Stopwatch watch;
+  const OneMotionInputs& learned = *inputs.one_motion;
+  const std::optional<Recording> part =
+      learning_part(from.recording, learned.bank.em.transitions, learned.bank.em.seed);
+  const Recording& recording = part ? *part : from.recording;
+  Bank bank = learn_one_motion(recording, from.windows, linear_global(recording, from.windows, inputs.window), rival,
+                               from.baseline.R, std::max(fewest_levels, from.mixture.mixture.components()),
+                               learned.bank, learned.filter);
+  tell_of_shrinking("one_motion", bank, listener);
+  const DriftRates& rates = bank.drift.rates;
+  listener.progress(fmt::format("one_motion: {} noise levels{} in {:.2f} s", bank.mode_count(),
+                                bank.drift.empty() ? ""
+                                                   : fmt::format(", theta drifts (rate {:g}, start {:g}, leak {:g})",
+                                                                 rates.q, rates.p0, rates.leak),
+                                watch.seconds()));
+  return bank;
 }
 
 }  // namespace modebank

@@ -1,5 +1,7 @@
 #include "app/chain/stage_inputs.hpp"
 
+#include <utility>
+
 #include "filter/learn/learn.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "io/import/import.hpp"
@@ -18,21 +20,19 @@ BankInputs bank_inputs(const ChainOptions& options, const FitOptions& window) {
   return inputs;
 }
 
-/// one_motion is learned by refinement, whatever makes the bank; a single Kalman filter has no use for it.
 CompetitorInputs competitor_inputs(const ChainOptions& options, const FitOptions& window) {
-  CompetitorInputs inputs{window,
-                          {},
-                          competitor_filter("one_motion", options.filter),
-                          options.scoring.horizon,
-                          options.bank.em.transitions,
-                          options.seed};
-  if (options.filter.variant == FilterVariant::kf) return inputs;
+  return {window, competitor_filter("one_motion", options.filter), options.scoring.horizon, options.bank.em.transitions,
+          options.seed};
+}
+
+/// Learned by refinement, whatever makes the bank.
+std::optional<OneMotionInputs> one_motion_inputs(const ChainOptions& options) {
+  if (options.filter.variant == FilterVariant::kf) return std::nullopt;
   BankOptions learned;
   learned.measurement_variance = options.bank.measurement_variance;
   learned.em = options.bank.em;
   learned.em.seed = options.seed;
-  inputs.one_motion = learned;
-  return inputs;
+  return OneMotionInputs{learned, competitor_filter("one_motion", options.filter)};
 }
 
 }  // namespace
@@ -94,12 +94,14 @@ LearningInputs learning_inputs(const ChainOptions& options) {
 ChainInputs chain_inputs(const ChainOptions& options) {
   const FitOptions window = window_inputs(options);
   const ScoringOptions scoring = scoring_inputs(options);
+  BankInputs bank = bank_inputs(options, window);
+  bank.one_motion = one_motion_inputs(options);
   return {{options.data},
           lag_count_inputs(options),
           {window},
           mixture_inputs(options),
           competitor_inputs(options, window),
-          bank_inputs(options, window),
+          std::move(bank),
           {window, competitor_filter("one_motion", options.filter), scoring},
           {options.filter, scoring}};
 }

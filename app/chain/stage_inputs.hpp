@@ -30,11 +30,16 @@ struct MixtureInputs {
 /// the mixture has components.
 struct CompetitorInputs {
   FitOptions window;
-  std::optional<BankOptions> one_motion;  ///< how it is learned: as the bank; empty where there is none
-  FilterOptions filter;                   ///< that runs competitors, for the noise scale's memory
-  std::vector<Index> horizon;             ///< that drifting is to widen its predictions for
-  Index transitions = 0;                  ///< that they learn from at most, as the bank does; 0: from all
-  std::uint64_t seed = 1;                 ///< which these are
+  FilterOptions filter;        ///< that runs competitors, for the noise scale's memory
+  std::vector<Index> horizon;  ///< that drifting is to widen its predictions for
+  Index transitions = 0;       ///< that they learn from at most, as the bank does; 0: from all
+  std::uint64_t seed = 1;      ///< which these are
+};
+
+/// How the competitor one_motion is learned: as the bank.
+struct OneMotionInputs {
+  BankOptions bank;
+  FilterOptions filter;  ///< that runs it
 };
 
 struct BankInputs {
@@ -42,6 +47,7 @@ struct BankInputs {
   BankOptions bank;                     ///< with the chain's seed
   bool one_model = false;               ///< the bank is the baseline: a single Kalman filter was asked for
   std::optional<FilterOptions> filter;  ///< where learning runs the filter: refinement, and what merging modes costs
+  std::optional<OneMotionInputs> one_motion = {};  ///< empty: a single Kalman filter has no use for it
 };
 
 struct CompetitorScoreInputs {

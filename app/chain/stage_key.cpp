@@ -91,8 +91,9 @@ MODEBANK_KEY_FIELDS(AutomaticLags, state, input)
 MODEBANK_KEY_FIELDS(DataInputs, data)
 MODEBANK_KEY_FIELDS(WindowInputs, window)
 MODEBANK_KEY_FIELDS(MixtureInputs, mixture, start_file, start_sha256, seed)
-MODEBANK_KEY_FIELDS(CompetitorInputs, window, one_motion, filter, horizon, transitions, seed)
-MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter)
+MODEBANK_KEY_FIELDS(CompetitorInputs, window, filter, horizon, transitions, seed)
+MODEBANK_KEY_FIELDS(OneMotionInputs, bank, filter)
+MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter, one_motion)
 MODEBANK_KEY_FIELDS(LearningInputs, mixture, baseline_filter, bank, filter)
 MODEBANK_KEY_FIELDS(LagCountInputs, automatic, learning)
 MODEBANK_KEY_FIELDS(CompetitorScoreInputs, window, filter, scoring)
@@ -123,7 +124,7 @@ StageKeys stage_keys(const ChainInputs& inputs, const std::string& data_hash) {
   key(mixture) = key_of(mixture, inputs.mixture, key(windows));
   key(competitors) = key_of(competitors, inputs.competitors, key(mixture));
   key(bank) = key_of(bank, inputs.bank, key(mixture), key(competitors));
-  key(competitor_scores) = key_of(competitor_scores, inputs.competitor_scores, key(competitors));
+  key(competitor_scores) = key_of(competitor_scores, inputs.competitor_scores, key(bank));
   key(bank_scores) = key_of(bank_scores, inputs.bank_scores, key(bank));
   return keys;
 }

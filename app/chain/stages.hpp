@@ -42,14 +42,12 @@ Bank learn_single_filter(const Recording& recording, const WindowFits& windows, 
                          const FilterOptions& filter, const Listener& listener);
 
 struct Competitors {
-  Bank baseline;                   ///< one Kalman filter
-  Bank noise_only;                 ///< switches noise alone
-  std::optional<Bank> one_motion;  ///< learned as the bank, with one theta
-  DriftingModel drifting;          ///< one linear model whose coefficients wander
+  Bank baseline;           ///< one Kalman filter
+  Bank noise_only;         ///< switches noise alone
+  DriftingModel drifting;  ///< one linear model whose coefficients wander
 };
-/// `components`: of the mixture.
-Competitors learn_competitors(const Recording& recording, const WindowFits& windows, Index components,
-                              const CompetitorInputs& inputs, const Listener& listener);
+Competitors learn_competitors(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
+                              const Listener& listener);
 
 /// What a bank is learned from.
 struct LearnedFrom {
@@ -66,6 +64,9 @@ struct LearnedBank {
   Index learned_transitions = 0;     ///< that refinement learned from; 0: all of the training runs'
 };
 LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const Listener& listener);
+
+/// The competitor that is learned as the bank, with one theta, and from the bank's noises, too.
+Bank learn_one_motion(const LearnedFrom& from, const Bank& bank, const BankInputs& inputs, const Listener& listener);
 
 /// What a filter said about every run, and how good that was.
 struct FilterScores {

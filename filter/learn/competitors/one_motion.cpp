@@ -32,9 +32,20 @@ std::vector<Bank> level_starts(const Recording& recording, const LinearStructure
   return starts;
 }
 
+/// A frame with the noises and the chain of `rival`, and one theta.
+Bank with_noises_of(const Bank& rival, Bank frame, const GlobalModel& global) {
+  const Index n = frame.structure.states, p = frame.structure.parameters();
+  frame.modes.clear();
+  for (const Mode& mode : rival.modes)
+    frame.modes.push_back(make_mode(frame.structure, global.theta, mode.Q.topLeftCorner(n, n),
+                                    Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Zero(p), mode.weight));
+  set_mode_sequence(frame, rival.transition);
+  return frame;
+}
+
 }  // namespace
 
-Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global,
+Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global, const Bank& rival,
                       const Eigen::MatrixXd& R, Index most_levels, const BankOptions& options,
                       const FilterOptions& filter) {
   RefineOptions em = options.em;
@@ -42,12 +53,13 @@ Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const 
   em.guards = options.transition == TransitionSource::logit;
   em.restarts = 0;  // stretches of the runs differ in theta, which there is one of
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
-  const std::vector<Bank> starts =
+  std::vector<Bank> starts =
       level_starts(recording, fits.structure,
                    options.measurement_variance
                        ? Eigen::MatrixXd(*options.measurement_variance * Eigen::MatrixXd::Identity(R.rows(), R.cols()))
                        : R,
                    most_levels, em.tuning.modes_kept);
+  if (rival.mode_count() > 1) starts.push_back(with_noises_of(rival, starts.front(), global));
   Bank bank = refine_bank(recording, linear_frame(fits, global), starts, em, filter).bank;
   leave_open(bank, global.covariance);
   return bank;
