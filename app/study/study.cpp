@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <tbb/global_control.h>
 
 #include "app/chain/provenance.hpp"
 #include "app/study/answers/answers_text.hpp"
@@ -66,16 +65,9 @@ void check_folder(const StudyCommand& command, const StudyPlan& plan) {
   }
 }
 
-/// Runs are made by processes that are forked from this one, which must have no other thread by then: a lock that such
-/// a thread holds would stay locked in them. Reading compressed recordings would start some.
-StudyPlan planned_by_one_thread(const StudyCommand& command) {
-  const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
-  return make_plan(command.config, make_provenance(config_hash(command.config), command.call.typed));
-}
-
 /// The plan of the configuration, written to the folder; one that is there must go on in it.
 StudyPlan settle_plan(const StudyCommand& command) {
-  StudyPlan plan = planned_by_one_thread(command);
+  StudyPlan plan = make_plan(command.config, make_provenance(config_hash(command.config), command.call.typed));
   check_folder(command, plan);
   command.store.create();
   const FileLocks locks(command.store.lock_file());

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/study/run/child_process.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -72,12 +72,6 @@ ssize_t receive(int channel, void* data, std::size_t bytes) {
   ::_exit(status);  // what the parent will do at its exit is not ours to do
 }
 
-std::string how_it_ended(int status) {
-  if (WIFSIGNALED(status))
-    return fmt::format("its process was ended by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
-  return fmt::format("its process ended with status {}", WEXITSTATUS(status));
-}
-
 }  // namespace
 
 WorkerPool::WorkerPool(std::size_t workers, double timeout_s, MakeWork make_work)
@@ -96,13 +90,8 @@ void WorkerPool::start(Worker& worker) {
   int channels[2];
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, channels) != 0)
     throw DataError("cannot make a socket for a worker: " + std::generic_category().message(errno));
-  const pid_t parent = ::getpid();
-  std::fflush(nullptr);
-  const pid_t child = ::fork();
-  if (child < 0) throw DataError("cannot start a worker: " + std::generic_category().message(errno));
+  const pid_t child = fork_child();
   if (child == 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(1);  // it was gone before that took effect
     ::close(channels[0]);
     for (const Worker& other : workers_)
       if (other.channel >= 0) ::close(other.channel);

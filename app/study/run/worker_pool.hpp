@@ -21,7 +21,8 @@ class WorkerPool {
   using TellWaiting = std::function<void(bool)>;
   using MakeWork = std::function<Work(const TellWaiting&)>;
 
-  /// `make_work` is called in every new process. timeout_s 0: no limit. The calling process must have no threads yet.
+  /// `make_work` is called in every new process. timeout_s 0: no limit. The calling process must have no other thread
+  /// whenever one starts: a lock that such a thread holds would stay locked in it.
   WorkerPool(std::size_t workers, double timeout_s, MakeWork make_work);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;

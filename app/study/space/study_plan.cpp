@@ -9,50 +9,17 @@
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "app/config/option_text.hpp"
+#include "app/study/space/data_hashes.hpp"
 #include "app/study/space/study_space.hpp"
 #include "ident/base/seed.hpp"
 #include "io/archive/study_file.hpp"
+#include "io/files/input_file.hpp"
 #include "io/files/look_twice.hpp"
 #include "io/files/sha256.hpp"
-#include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
-
-/// What the trials' data are, read once for all trials that read the same.
-class DataHashes {
- public:
-  /// Of the files that such a [data] section reads.
-  std::string of(const Config& config) {
-    std::string section;
-    for (const Option& option : option_table())
-      if (option.section() == "data") section += "\n" + option.get(config);
-    auto [known, fresh] = by_section_.try_emplace(section);
-    if (fresh) {
-      std::vector<InputFile> files;
-      for (const DataFile& file : data_files(config.data)) files.push_back(describe(file));
-      known->second = data_hash(files);
-    }
-    return known->second;
-  }
-
-  std::vector<InputFile> files() const {
-    std::vector<InputFile> all;
-    for (const auto& [use, file] : by_use_) all.push_back(file);
-    return all;
-  }
-
- private:
-  const InputFile& describe(const DataFile& file) {
-    auto [known, fresh] = by_use_.try_emplace({std::filesystem::absolute(file.path).string(), file.tables});
-    if (fresh) known->second = file.describe();
-    return known->second;
-  }
-
-  std::map<std::string, std::string> by_section_;
-  std::map<std::pair<std::string, std::vector<std::string>>, InputFile> by_use_;  // by path and tables
-};
 
 /// Small enough for every reader of the table, JavaScript's doubles included.
 std::uint64_t repeat_seed(std::uint64_t seed, std::int64_t repeat) {
@@ -89,7 +56,7 @@ void add_point(const Config& config, const StudySpace& space, const StudyPoint& 
     const Config trial = trial_config(config, space.keys, row);
     row.message = objection(trial);
     row.status = row.message.empty() ? TrialStatus::planned : TrialStatus::dropped;
-    if (row.message.empty()) row.key = trial_key(trial, data.of(trial), plan.provenance.modebank_version);
+    if (row.message.empty()) data.add(trial);
     plan.table.rows.push_back(row);
     if (row.status == TrialStatus::dropped) return;
   }
@@ -186,6 +153,12 @@ StudyPlan make_plan(const Config& config, Provenance provenance) {
   plan.repeated_points = space.repeated;
   DataHashes data;
   for (const StudyPoint& point : space.points) add_point(config, space, point, data, plan);
+  data.read();
+  for (TrialRow& row : plan.table.rows) {
+    if (row.status == TrialStatus::dropped) continue;
+    const Config trial = trial_config(config, space.keys, row);
+    row.key = trial_key(trial, data.of(trial), plan.provenance.modebank_version);
+  }
   plan.provenance.inputs = data.files();
   plan.provenance.data_hash = data_hash(plan.provenance.inputs);
   return plan;

@@ -439,6 +439,41 @@ TEST_F(StudyCommands, OfARecordingGoFromStartToItsBestConfiguration) {
   }
 }
 
+std::string first_line(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  std::string line;
+  std::getline(stream, line);
+  return line;
+}
+
+/// While workers are there, the program that forked them has one thread, also where it has read packed chunks.
+TEST_F(StudyCommands, WorkersAreForkedFromAProgramOfOneThread) {
+  const std::string script = (project_dir() / "tests/io/recording/topics.py").string();
+  ASSERT_EQ(run_program({"/usr/bin/python3", "-B", script, "write", file("").string()}).status, 0);
+  write("drive.ini",
+        "[data]\ninputs = drive.bag\nstate = /speed.data\ninput = /cmd.data\nrate_hz = 10\n"
+        "[window]\nlength = 10\n[mixture]\nrestarts = 2\n");
+  const pid_t program = ::fork();
+  if (program == 0) {
+    for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(::open("/dev/null", O_WRONLY), stream);
+    ::execl(MODEBANK_PROGRAM, MODEBANK_PROGRAM, "study", file("drive.ini").c_str(), "--study.vary",
+            "mixture.components = 1 | 2 | 3", "--study.output", file("s").c_str(), "--study.jobs", "2", nullptr);
+    ::_exit(127);
+  }
+  const std::filesystem::path tasks = "/proc/" + std::to_string(program) + "/task";
+  const std::filesystem::path children = tasks / std::to_string(program) / "children";
+  std::ptrdiff_t most_threads = 0;
+  int status = 0;
+  while (::waitpid(program, &status, WNOHANG) == 0) {
+    std::error_code gone;
+    const bool before = !first_line(children).empty();
+    const auto threads = std::distance(std::filesystem::directory_iterator(tasks, gone), {});
+    if (before && !first_line(children).empty()) most_threads = std::max(most_threads, threads);
+  }
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(most_threads, 1);
+}
+
 TEST_F(StudyCommands, UsageErrorsLeaveNothing) {
   const ProgramResult nothing = study({});
   EXPECT_EQ(nothing.status, 2);
