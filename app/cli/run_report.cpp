@@ -34,6 +34,7 @@ void report_run(const std::filesystem::path& file, const std::filesystem::path& 
   const Archive archive = read_archive_by_runs(file);
   const report::FigureSet figures =
       options.figures.empty() ? report::FigureSet() : report::run_figures(archive, options.run);
+  if (!options.figures.empty()) report::check_figures(figures, options, {file});
   if (!page.empty()) report::write_page(page, report::run_page(archive, file.filename().string(), options), written);
   // Last: a figure that cannot be drawn must not cost the page.
   if (!options.figures.empty()) report::write_figures(figures, options, written);

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "io/files/csv_field.hpp"
+#include "io/files/output_file.hpp"
+#include "io/files/read_file.hpp"
 #include "io/files/replace_file.hpp"
 #include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
@@ -51,6 +54,44 @@ void refuse_other_runs(const fs::path& folder, const std::set<std::string>& ours
   }
 }
 
+/// The names in a file's first line; empty without such a file.
+std::set<std::string> columns_of(const fs::path& path) {
+  constexpr std::size_t longest = 1 << 16;
+  if (!fs::is_regular_file(path)) return {};
+  std::string line(longest, '\0');
+  std::ifstream stream = open_file(path);
+  stream.read(line.data(), static_cast<std::streamsize>(longest));
+  line.resize(static_cast<std::size_t>(stream.gcount()));
+  std::set<std::string> names;
+  std::string name;
+  bool quoted = false;
+  for (const char c : line.substr(0, line.find('\n')) + ',') {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c != ',' || quoted)
+      name += c;
+    else
+      names.insert(std::exchange(name, {}));
+  }
+  return names;
+}
+
+bool has_truth(const std::set<std::string>& columns) {
+  return columns.count("mode") > 0 &&
+         std::any_of(columns.begin(), columns.end(), [](const auto& name) { return name.starts_with("true_"); });
+}
+
+/// One of a run's files has the truth, the other one columns that the truth is of.
+bool is_simulated(const fs::path& path) {
+  const std::set<std::string> columns = columns_of(path);
+  if (has_truth(columns)) return true;
+  const std::string name = path.filename().string(), other = (name.starts_with("pro") ? "imu" : "pro") + name.substr(3);
+  const std::set<std::string> truth = columns_of(path.parent_path() / other);
+  return has_truth(truth) && std::all_of(columns.begin(), columns.end(), [&](const std::string& column) {
+           return column == "time" || truth.count("true_" + column.substr(column.starts_with("cmd_") ? 4 : 0)) > 0;
+         });
+}
+
 /// A folder inside the target, on the same file system, gone with this object; so is the target if it was made for this
 /// and nothing came into it.
 class StagingFolder {
@@ -88,8 +129,8 @@ class StagingFolder {
 void check_targets(const fs::path& folder, const std::vector<std::string>& names) {
   refuse_other_runs(folder, {names.begin(), names.end()});
   for (const std::string& name : names)
-    if (fs::exists(folder / name) && !fs::is_regular_file(folder / name))
-      throw ConfigurationError(fmt::format("cannot write {}: it is not a regular file", (folder / name).string()));
+    if (fs::exists(folder / name))
+      check_output({"simulate.output", folder / name, {"a simulated run", is_simulated}}, {});
 }
 
 /// Moves the files to their places. What was there is kept beside them until all are moved, and put back when one

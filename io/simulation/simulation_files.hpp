@@ -30,8 +30,8 @@ bool is_run_file(const std::string& name);
 
 /// Writes pro_NN.csv and imu_NN.csv of `runs` runs, numbers in their shortest form that reads back exactly. All files
 /// or none: they are written to a folder beside the old ones and moved when all are complete. The folder is made if its
-/// parent exists. Throws ConfigurationError when it cannot be made, or holds pro_ or imu_ files that would stay,
-/// because `run` would read them as further runs.
+/// parent exists. Throws ConfigurationError when it cannot be made, holds pro_ or imu_ files that would stay, because
+/// `run` would read them as further runs, or files of these names that are no simulated run.
 void write_simulation_files(const std::filesystem::path& folder, std::size_t runs,
                             const std::function<SimulationTables(std::size_t)>& tables_of);
 

@@ -19,8 +19,8 @@ struct SimulationLayout {
   double state_rate_hz = 65.0;
 };
 
-/// Truth columns are named true_<state>; `mode` counts from 0. All files or none; existing ones of the same names are
-/// replaced. Throws ConfigurationError when the folder cannot be made or holds other runs' files.
+/// Truth columns are named true_<state>; `mode` counts from 0. All files or none; simulated runs of the same names
+/// are replaced. Throws ConfigurationError when the folder cannot be made or holds other runs' files.
 void write_simulation(const std::vector<SimulatedRun>& runs, const SimulationLayout& layout);
 
 /// Names of the measured columns of a simulated vehicle; all others are fixed.

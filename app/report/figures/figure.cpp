@@ -54,11 +54,18 @@ std::string latex_text(const std::string& text) {
 
 }  // namespace
 
+std::string Figure::latex_sign() const {
+  return fmt::format("% \\usepackage{{graphicx}}; the file is {}.pdf\n", name_);
+}
+
+std::string Figure::script_sign() const { return comment("Drawn by gnuplot 5 or later: gnuplot " + name_ + ".gp"); }
+
 std::string Figure::latex() const {
-  return fmt::format(
-      "% \\usepackage{{graphicx}}; the file is {0}.pdf\n\\begin{{figure}}\n  \\centering\n  "
-      "\\includegraphics[width=\\columnwidth]{{{0}}}\n  \\caption{{{1}}}\n  \\label{{fig:{0}}}\n\\end{{figure}}\n",
-      name_, latex_text(caption_));
+  return latex_sign() + fmt::format(
+                            "\\begin{{figure}}\n  \\centering\n  "
+                            "\\includegraphics[width=\\columnwidth]{{{0}}}\n  \\caption{{{1}}}\n  "
+                            "\\label{{fig:{0}}}\n\\end{{figure}}\n",
+                            name_, latex_text(caption_));
 }
 
 void Figure::set(const std::string& variable, double value) {
@@ -89,8 +96,8 @@ void Figure::add_block(const std::string& title, const std::vector<std::string>&
 
 std::string Figure::script() const {
   const Palette colours = palette();
-  return comment("Drawn by gnuplot 5 or later: gnuplot " + name_ + ".gp") + "figure = " + quoted(name_) + "\n" +
-         array_text("palette", colours.modes) + "bank_colour = " + quoted(colours.filters.at("bank")) +
+  return script_sign() + "figure = " + quoted(name_) + "\n" + array_text("palette", colours.modes) +
+         "bank_colour = " + quoted(colours.filters.at("bank")) +
          "\nbaseline_colour = " + quoted(colours.filters.at("baseline")) +
          "\noutlier_colour = " + quoted(colours.outlier) + "\n" + settings_ + "load 'style.gp'\n" +
          std::string(script_);

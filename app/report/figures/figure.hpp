@@ -30,6 +30,9 @@ class Figure {
   std::string script() const;  ///< complete: settings, common style, drawing
   const std::string& data() const { return data_; }
   std::string latex() const;  ///< a figure environment that includes the PDF or PNG
+  /// The first lines of scripts and snippets of a figure of this name.
+  std::string script_sign() const;
+  std::string latex_sign() const;
 
  private:
   std::string name_;

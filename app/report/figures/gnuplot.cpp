@@ -12,9 +12,11 @@
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "app/report/page/assets.hpp"
 #include "io/files/memory_file.hpp"
+#include "io/files/output_file.hpp"
 #include "io/files/replace_file.hpp"
 #include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
@@ -100,6 +102,34 @@ std::string draw(const Figure& figure, const fs::path& folder, const char* forma
   return content;
 }
 
+const char* const style_file = "style.gp";
+const char* const strip_file = "strip.gp";
+
+std::vector<std::string> formats_of(const FigureOptions& options) {
+  std::vector<std::string> formats{"svg", "pdf"};
+  if (options.png) formats.emplace_back("png");
+  return formats;
+}
+
+/// The endings of a figure's files.
+std::vector<std::string> endings_of(const FigureOptions& options) {
+  std::vector<std::string> endings = formats_of(options);
+  endings.emplace_back("tex");
+  if (options.sources) endings.insert(endings.end(), {"gp", "dat"});
+  return endings;
+}
+
+/// Form of a figure's files with one ending: those with a sign of their own, or beside a file with its.
+FileForm figure_form(const Figure& figure, const std::string& ending) {
+  const bool source = ending == "gp" || ending == "dat";
+  const std::string sign = source ? figure.script_sign() : figure.latex_sign();
+  const FileForm bearer = form_by_front("a figure of a report", sign, sign.size());
+  return {bearer.name, [bearer, name = figure.name() + (source ? ".gp" : ".tex")](const fs::path& path) {
+            const fs::path shown = path.parent_path() / name;
+            return fs::is_regular_file(shown) && bearer.is_one(shown);
+          }};
+}
+
 /// Files on their way into the folder.
 class FigureFolder {
  public:
@@ -128,22 +158,18 @@ std::vector<std::string> stage_figure(const Figure& figure, const FigureFolder& 
   std::vector<std::string> files;
   folder.stage(figure.name() + ".gp", figure.script());
   folder.stage(figure.name() + ".dat", figure.data());
-  for (const char* format : {"svg", "pdf", "png"}) {
-    if (format == std::string_view("png") && !options.png) continue;
-    files.push_back(figure.name() + "." + format);
-    folder.stage(files.back(), draw(figure, folder.work(), format));
-  }
-  files.push_back(figure.name() + ".tex");
-  folder.stage(files.back(), figure.latex());
-  if (options.sources) files.insert(files.end(), {figure.name() + ".gp", figure.name() + ".dat"});
+  for (const std::string& format : formats_of(options))
+    folder.stage(figure.name() + "." + format, draw(figure, folder.work(), format.c_str()));
+  folder.stage(figure.name() + ".tex", figure.latex());
+  for (const std::string& ending : endings_of(options)) files.push_back(figure.name() + "." + ending);
   return files;
 }
 
 /// What is wrong with the disk concerns every figure, what is wrong with a figure that one alone.
 DrawnFigures draw_into(const FigureFolder& folder, const std::vector<Figure>& figures, const FigureOptions& options) {
   DrawnFigures drawn;
-  folder.stage("style.gp", assets::figure_style());
-  folder.stage("strip.gp", assets::figure_strip());
+  folder.stage(style_file, assets::figure_style());
+  folder.stage(strip_file, assets::figure_strip());
   for (const Figure& figure : figures) {
     std::vector<std::string> files;
     try {
@@ -156,13 +182,33 @@ DrawnFigures draw_into(const FigureFolder& folder, const std::vector<Figure>& fi
     drawn.files.insert(drawn.files.end(), files.begin(), files.end());
   }
   if (options.sources && !drawn.files.empty()) {
-    folder.finish({"style.gp", "strip.gp"});
-    drawn.files.insert(drawn.files.end(), {"style.gp", "strip.gp"});
+    folder.finish({style_file, strip_file});
+    drawn.files.insert(drawn.files.end(), {style_file, strip_file});
   }
   return drawn;
 }
 
+/// A file is checked as what a user names, where there is one: the folder may have yet to be made.
+void check_file(const FigureOptions& options, const std::string& name, const FileForm& form,
+                const std::vector<fs::path>& sources) {
+  const fs::path path = options.folder / name;
+  if (fs::exists(path)) check_output({"report.figures", path, form}, sources);
+}
+
 }  // namespace
+
+void check_figure_files(const std::vector<Figure>& figures, const FigureOptions& options,
+                        const std::vector<fs::path>& sources) {
+  for (const Figure& figure : figures)
+    for (const std::string& ending : endings_of(options))
+      check_file(options, figure.name() + "." + ending, figure_form(figure, ending), sources);
+  if (!options.sources) return;
+  for (const auto& [name, content] : {std::pair<const char*, std::string_view>{style_file, assets::figure_style()},
+                                      {strip_file, assets::figure_strip()}}) {
+    const std::string first(content.substr(0, content.find('\n')));
+    check_file(options, name, form_by_front("a script of figures", first, first.size()), sources);
+  }
+}
 
 DrawnFigures draw_figures(const std::vector<Figure>& figures, const FigureOptions& options) {
   std::error_code error;

@@ -14,6 +14,11 @@ struct FigureOptions {
   bool sources = false;          ///< gnuplot scripts and data beside them, to restyle
 };
 
+/// Throws ConfigurationError where draw_figures would replace a file that is not of a figure, or is one of `sources`
+/// (files that the command reads). A figure's LaTeX snippet and script show that the files beside them are its.
+void check_figure_files(const std::vector<Figure>& figures, const FigureOptions& options,
+                        const std::vector<std::filesystem::path>& sources);
+
 /// What became of the figures.
 struct DrawnFigures {
   std::vector<std::string> files;   ///< their names in the folder

@@ -110,9 +110,11 @@ void report_study(const fs::path& study, const fs::path& page, const ReportConfi
   if (!page.empty()) check_page_path(page, {path});
   const StudyFile file = read_study_file(path, "study");
   const StudyTable table = study_table_of(file);
+  const FigureSet figures = options.figures.empty() ? FigureSet() : study_figures(table);
+  if (!options.figures.empty()) check_figures(figures, options, {path});
   if (!page.empty()) write_study_page(study, path, file, table, page, options, written);
   // Last: a figure that cannot be drawn must not cost the page.
-  if (!options.figures.empty()) write_figures(study_figures(table), options, written);
+  if (!options.figures.empty()) write_figures(figures, options, written);
 }
 
 }  // namespace modebank::app::report

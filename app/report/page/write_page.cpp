@@ -24,8 +24,19 @@ void write_page(const std::filesystem::path& path, const Page& page, Written& wr
                           static_cast<double>(html.size()) / bytes_per_MB));
 }
 
+namespace {
+
+FigureOptions figure_options(const ReportConfig& options) { return {options.figures, options.png, options.sources}; }
+
+}  // namespace
+
+void check_figures(const FigureSet& set, const ReportConfig& options,
+                   const std::vector<std::filesystem::path>& sources) {
+  check_figure_files(set.figures, figure_options(options), sources);
+}
+
 void write_figures(const FigureSet& set, const ReportConfig& options, Written& written) {
-  const DrawnFigures drawn = draw_figures(set.figures, {options.figures, options.png, options.sources});
+  const DrawnFigures drawn = draw_figures(set.figures, figure_options(options));
   for (const std::string& file : drawn.files)
     written.files.push_back((std::filesystem::path(options.figures) / file).string());
   if (!drawn.files.empty()) written.say(fmt::format("{}: {}\n", options.figures, fmt::join(drawn.files, ", ")));

@@ -24,6 +24,10 @@ struct Written {
 /// Writes the page under a temporary name and renames it; says how large it is.
 void write_page(const std::filesystem::path& path, const Page& page, Written& written);
 
+/// Throws ConfigurationError where a figure would replace a file that is not of one, or is among `sources`.
+void check_figures(const FigureSet& set, const ReportConfig& options,
+                   const std::vector<std::filesystem::path>& sources);
+
 /// Draws the figures into report.figures and says what was written; throws DataError that names those which could not
 /// be drawn, after the others.
 void write_figures(const FigureSet& set, const ReportConfig& options, Written& written);

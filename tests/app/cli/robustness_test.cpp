@@ -270,6 +270,18 @@ TEST_F(Robustness, P8NoOutputTakesThePlaceOfWhatIsReadOrOfAnotherForm) {
     refuses({command, config(), "--force", "--archive.output"}, config(), read);
     for (const std::string& mine : {log, page}) refuses({command, config(), "--force", "--archive.output"}, mine, form);
   }
+  fs::create_directories(file("drives"));
+  for (const char* name : {"pro_00.csv", "imu_00.csv"}) {
+    const fs::path mine = file("drives") / name;
+    fs::copy_file(log, mine);
+    const std::string before = read_file(mine);
+    const ProgramResult result = modebank({"simulate", (project_dir() / "configs/simulate_ice.ini").string(),
+                                           "--simulate.output", file("drives").string(), "--simulate.runs=1"});
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_THAT(result.err, AllOf(HasSubstr(mine.string()), HasSubstr(form)));
+    EXPECT_EQ(read_file(mine), before);
+    fs::remove(mine);
+  }
 }
 
 TEST_F(Robustness, P8AnOutputIsReplacedByItsLike) {

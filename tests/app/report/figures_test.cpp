@@ -171,6 +171,29 @@ TEST_F(Figures, OneThatFailsIsNamedAndDoesNotLoseTheOthers) {
   EXPECT_EQ(written.size(), drawn().size() + 1) << result.out;
 }
 
+TEST_F(Figures, ReplaceFiguresAlone) {
+  MODEBANK_NEEDS_GNUPLOT();
+  ASSERT_EQ(run().status, 0);
+  std::filesystem::create_directory(file("figures"));
+  const std::vector<std::string> all{"--report.sources", "true", "--report.png", "true", "-o", file("p.html").string()};
+  for (const char* name :
+       {"nis.pdf", "nis.tex", "selection.svg", "pit.png", "coverage.gp", "coverage.dat", "style.gp"}) {
+    const std::filesystem::path mine = file("figures") / name;
+    write(std::string("figures/") + name, "mine");
+    const ProgramResult result = report(all);
+    EXPECT_EQ(result.status, 2) << name;
+    EXPECT_NE(result.err.find(std::string(name) + " is there and not replaced"), std::string::npos) << result.err;
+    EXPECT_EQ(text_of(mine), "mine");
+    EXPECT_EQ(drawn(), std::set<std::string>{name});
+    EXPECT_FALSE(std::filesystem::exists(file("p.html"))) << "refused before the page is written";
+    std::filesystem::remove(mine);
+  }
+  for (int time = 0; time < 2; ++time) EXPECT_EQ(report(all).status, 0);
+  std::filesystem::remove(file("figures/nis.svg"));
+  std::filesystem::create_symlink(archive(), file("figures/nis.svg"));
+  EXPECT_NE(report().err.find("nis.svg is read by this command"), std::string::npos);
+}
+
 TEST_F(Figures, TheNextOnesTakeAwayWhatAKilledProcessLeft) {
   MODEBANK_NEEDS_GNUPLOT();
   ASSERT_EQ(run().status, 0);

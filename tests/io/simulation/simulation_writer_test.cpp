@@ -10,6 +10,7 @@
 namespace modebank {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -158,6 +159,30 @@ TEST_F(SimulationWriter, RefusesToMixWithOtherRuns) {
               HasSubstr("_01.csv"));
   EXPECT_NO_THROW(write_simulation({make_run(4, 0), make_run(4, 1)}, layout));
   EXPECT_EQ(import().recording.runs[1].samples(), 4);
+}
+
+TEST_F(SimulationWriter, ReplacesSimulatedRunsAlone) {
+  const auto refuses = [&](const std::string& name, const std::string& mine) {
+    const std::string before = read_file(layout.folder / name);
+    test::write_file(layout.folder / name, mine);
+    EXPECT_THAT(test::message_of<ConfigurationError>([&] { write_simulation({make_run(9, 1)}, layout); }),
+                AllOf(HasSubstr("simulate.output: "), HasSubstr(name + " is there and not replaced")));
+    EXPECT_EQ(read_file(layout.folder / name), mine);
+    test::write_file(layout.folder / name, before);
+  };
+  layout.states = {"wz,x", "vx"};  // a name that is quoted
+  write_simulation({make_run(3, 0)}, layout);
+  for (const char* mine : {"precious", "time,left,right,mode\n0,1,2,3\n"}) refuses("pro_00.csv", mine);
+  for (const char* mine : {"precious", "time,wz,vx,left\n0,1,2,3\n"}) refuses("imu_00.csv", mine);
+  layout.inputs = {"throttle", "steering"};
+  write_simulation({make_run(4, 0)}, layout);
+  test::write_file(layout.folder / "pro_00.csv", "");  // holds nothing that could be lost
+  test::write_file(layout.folder / "imu_00.csv", "");
+  write_simulation({make_run(4, 0)}, layout);
+  std::filesystem::remove(layout.folder / "pro_00.csv");
+  EXPECT_THAT(test::message_of<ConfigurationError>([&] { write_simulation({make_run(9, 1)}, layout); }),
+              HasSubstr("imu_00.csv is there"))
+      << "nothing shows that it is simulated";
 }
 
 TEST_F(SimulationWriter, LayoutThatDoesNotFit) {
