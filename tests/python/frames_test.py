@@ -51,6 +51,23 @@ class Frames(unittest.TestCase):
     def test_as_they_stand(self):
         self.compare({})
 
+    def test_names_with_commas_and_quotes(self):
+        names = {"wz": "wz, filtered", "cmd_velL": "'left' [m/s]", "cmd_velR": "right, m/s"}
+        plain = {name: pair for name, pair in frames().items()}
+        renamed = {name: tuple(frame.rename(columns=names) for frame in pair) for name, pair in plain.items()}
+        ours = modebank.run(renamed, state=[names["wz"]], input=[names["cmd_velL"], names["cmd_velR"]], **QUICK)
+        theirs = modebank.run(plain, **COLUMNS, **QUICK)
+        self.assertEqual(ours.state_names, [names["wz"]])
+        for path in ("/data/01/state", "/data/01/input", "/bank/A", "/bank/B"):
+            np.testing.assert_array_equal(ours[path], theirs[path], path)
+
+    def test_a_list_of_derived_channels(self):
+        derive = ["turn = 2 * wz", "both = max(cmd_velL, cmd_velR)"]
+        archive = modebank.run(frames(), state=["turn"], input=["both"], **QUICK, **{"data.derive": derive})
+        wheels, gyro = frames()["01"]
+        run = archive["/data/01/input"]
+        np.testing.assert_array_equal(run[:, 0], np.fmax(wheels.cmd_velL, wheels.cmd_velR)[:len(run)])
+
     def test_roles_rate_lag_and_units(self):
         self.compare({"data.train": ["02", "03"], "data.test": "00", "data.rate_hz": 5, "data.lag_s": 0.1,
                       "data.state_unit": "rad/s"})
