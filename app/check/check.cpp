@@ -48,7 +48,7 @@ void join_parts(const CheckOptions& options, Material& material, DataCheck& chec
     ordered[i].truth.clear();
   }
   std::vector<std::string> notes;  // `run` has them
-  const LogSampling sampling = choose_sampling(ordered, lenient, notes);
+  const LogSampling sampling = choose_sampling(ordered, lenient, nullptr, notes);
   for (std::size_t i = 0; i < ordered.size(); ++i) {
     try {
       for (Trajectory& part : split_at_gaps(join_run(ordered[i], lenient, sampling, {}), false)) {

@@ -260,6 +260,13 @@ double LineTable::time_s(const Table& table, std::size_t row) const {
   return table.time_s.empty() ? static_cast<double>(table.time_ns[row]) / ns_per_s : table.time_s[row];
 }
 
+double LineTable::rest_s(const Table& table, std::size_t row) const {
+  const double seconds = time_s(table, row);
+  if (!has_times() || !std::isfinite(seconds)) return 0.0;
+  const double whole = std::floor(seconds);
+  return static_cast<double>(table.time_ns[row] - static_cast<std::int64_t>(whole) * billion) / 1e9 - (seconds - whole);
+}
+
 void LineTable::derive(Table& table) {
   const SourcePlan& source = plan_->sources.front();
   if (source.derived.empty()) return;

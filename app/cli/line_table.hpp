@@ -7,6 +7,7 @@
 
 #include "app/config/config.hpp"
 #include "io/import/import_plan.hpp"
+#include "io/table/stamp.hpp"
 
 namespace modebank::app {
 
@@ -32,6 +33,8 @@ class LineTable {
   const FilePlan& plan() const { return *plan_; }
   /// Seconds of a row of the table that was read last; NaN: missing.
   double time_s(const Table& table, std::size_t row) const;
+  /// The remainder to add to it: a double of seconds since 1970 lacks nanoseconds.
+  double rest_s(const Table& table, std::size_t row) const;
   /// Whether rows have times; else row k is k / data.rate_hz.
   bool has_times() const { return !plan_->sources.front().request.time.column.empty(); }
   /// The first row's time, where the second row has shown that its unit is another than was taken. Once.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "io/archive/load_averaged.hpp"
 #include "io/archive/load_lag.hpp"
 #include "modebank/base/error.hpp"
 
@@ -33,16 +34,20 @@ void turn_to_new_files(const CommandLine& line, DataOptions& data) {
   if (!given(line, "data.split")) data.split = {};
 }
 
-void take_lag(const CommandLine& line, double period_s, DataOptions& data) {
-  if (!data.lag_auto || given(line, "data.lag_s")) return;
+AveragedColumns take_sampling(const CommandLine& line, double period_s, DataOptions& data) {
   const std::string& archive = line.files.front();
+  AveragedColumns averaged;
+  if (data.rate_hz > 0.0) averaged = load_averaged(archive);
+  if (!data.lag_auto || given(line, "data.lag_s")) return averaged;
   const std::optional<LagReport> lag = load_lag(archive);
   data.lag_auto = false;
   data.lag_s = 0.0;
-  if (!lag || lag->correction == LagCorrection::none) return;
-  data.lag_s = lag->lag.mean - 0.5 * period_s;
+  if (!lag || lag->correction == LagCorrection::none) return averaged;
+  averaged.further_lag_s = 0.5 * period_s;
+  data.lag_s = lag->lag.mean - averaged.further_lag_s;
   if (lag->correction == LagCorrection::drift)
     spdlog::warn("{}: its lag drifts; new data have the constant lag of {:.3g} s", archive, lag->lag.mean);
+  return averaged;
 }
 
 }  // namespace modebank::app

@@ -4,6 +4,7 @@
 
 #include "app/cli/command_line.hpp"
 #include "app/config/config.hpp"
+#include "ident/data/streams.hpp"
 
 namespace modebank::app {
 
@@ -14,8 +15,9 @@ bool given(const CommandLine& line, const std::string& key);
 /// their measurements may end. Throws ConfigurationError where states came from files of their own and none are named.
 void turn_to_new_files(const CommandLine& line, DataOptions& data);
 
-/// The lag of new inputs, where the archive's was estimated: the pooled one, as held-out runs had it, taken in the
-/// middle of each step of `period_s`. A lag that is stated stays.
-void take_lag(const CommandLine& line, double period_s, DataOptions& data);
+/// How new data are brought to the archive's rate: which columns are averaged. Where the archive's lag was estimated,
+/// sets data.lag_s to the pooled one, as held-out runs had it, taken in the middle of each step of `period_s`. A lag
+/// that is stated stays.
+AveragedColumns take_sampling(const CommandLine& line, double period_s, DataOptions& data);
 
 }  // namespace modebank::app

@@ -13,6 +13,7 @@
 #include "app/config/config_file.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
+#include "io/archive/load_averaged.hpp"
 #include "io/files/output_file.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/replace_file.hpp"
@@ -57,22 +58,31 @@ FileForm predictions_form() {
           }};
 }
 
-Config predict_config(const CommandLine& line) {
+/// A prediction: its configuration and the sampling of its data.
+struct Task {
+  Config config;
+  AveragedColumns averaged;
+};
+
+Task task_of(const CommandLine& line) {
   const std::string& archive = line.files.front();
   judge_archive(archive);
-  Config config = stored_config(load_configuration(archive), line.overrides);
+  Task task{stored_config(load_configuration(archive), line.overrides), {}};
+  Config& config = task.config;
   if (config.scoring.free_run.samples == 0)
     throw ConfigurationError(
         "predict needs the number of measured samples that it starts from: --samples N (filter.simulate)");
   if (given(line, "data.inputs")) {
     turn_to_new_files(line, config.data);
-    if (config.data.lag_auto) take_lag(line, period_of(archive, config), config.data);
+    task.averaged = take_sampling(line, config.data.lag_auto ? period_of(archive, config) : 0.0, config.data);
+  } else if (config.data.rate_hz > 0.0) {
+    task.averaged = load_averaged(archive);
   }
-  if (line.output.empty()) return config;
+  if (line.output.empty()) return task;
   std::vector<std::filesystem::path> sources{archive};
   for (const DataFile& file : data_files(config.data)) sources.push_back(file.path);
   check_output({"-o", line.output, predictions_form()}, sources);
-  return config;
+  return task;
 }
 
 }  // namespace
@@ -80,9 +90,10 @@ Config predict_config(const CommandLine& line) {
 int run_predict(const CommandLine& line) {
   if (line.files.size() != 1)
     throw ConfigurationError("predict needs one archive: modebank predict ARCHIVE --data.inputs FILES --samples N");
-  const Config config = predict_config(line);
+  const Task task = task_of(line);
+  const Config& config = task.config;
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
-  const ImportedData data = import_data(data_options_of(config));
+  const ImportedData data = import_data(data_options_of(config), nullptr, &task.averaged);
   for (const std::string& note : data.notes) spdlog::warn("{}", note);
   const std::vector<FreeRun> predicted = predict_all(line.files.front(), config, data.recording);
   for (const std::string& remark : remarks("bank", data.recording.runs, predicted)) spdlog::warn("{}", remark);

@@ -18,8 +18,9 @@ namespace modebank::app {
 namespace {
 
 /// Runs as `run` imports them, but in one piece each: what is missing is predicted.
-std::vector<Trajectory> read_runs(const std::string& archive, const Config& config, const Bank& bank) {
-  const ImportedData data = import_data(data_options_of(config));
+std::vector<Trajectory> read_runs(const std::string& archive, const Config& config, const Bank& bank,
+                                  const AveragedColumns& averaged) {
+  const ImportedData data = import_data(data_options_of(config), nullptr, &averaged);
   for (const std::string& note : data.notes) spdlog::warn("{}", note);
   if (const std::string remark = period_remark(archive, bank, data.recording); !remark.empty())
     spdlog::warn("{}", remark);
@@ -48,9 +49,10 @@ int run_track(const CommandLine& line) {
   if (files) turn_to_new_files(line, config.data);
   check_checkpoint(archive, config, files);
   OpenedFilter opened = open_filter(archive, config);
-  take_lag(line, opened.bank.dt_s, config.data);
-  const Alignment alignment{config.data.rate_hz, config.data.lag_s};
-  const std::vector<Trajectory> runs = files ? read_runs(archive, config, opened.bank) : std::vector<Trajectory>();
+  const AveragedColumns averaged = take_sampling(line, opened.bank.dt_s, config.data);
+  const Alignment alignment{config.data.rate_hz, config.data.lag_s, averaged};
+  const std::vector<Trajectory> runs =
+      files ? read_runs(archive, config, opened.bank, averaged) : std::vector<Trajectory>();
   Tracker tracker(archive, config, std::move(opened), files ? Alignment{} : alignment);
   std::exception_ptr trouble;
   try {

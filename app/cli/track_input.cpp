@@ -106,6 +106,7 @@ SampleReader::Line SampleReader::accept(const Table& table, std::size_t row) {
   const FilePlan& plan = table_.plan();
   remarks_.clear();
   next_.time_s = table_.time_s(table, row);
+  next_.rest_s = table_.rest_s(table, row);
   if (!std::isfinite(next_.time_s))
     return malformed(fmt::format("{} is missing", data_.time.empty() ? "time" : data_.time.front()));
   for (const ColumnRef where : plan.where)

@@ -42,7 +42,7 @@ Tracker::Tracker(const std::string& archive, const Config& config, OpenedFilter 
       reader_(config.data, config.track.format),
       identity_(identity_of(archive, config, opened_.options)),
       samples_(alignment),
-      lag_s_(alignment.lag_s),
+      alignment_(alignment),
       watchdog_(config.track.watchdog_s, now_s()),
       thinning_(opened_.options.time_steps == TimeSteps::single || alignment.rate_hz > 0.0 ? 0.0 : bank_.dt_s) {
   check_columns(config, bank_, archive);
@@ -53,26 +53,27 @@ void Tracker::go_on() {
   const Resumed resumed = filter_.resume(config_.track.resume, identity_);
   if (std::isnan(resumed.time_s)) return;
   resumed_s_ = stepped_s_ = resumed.time_s;
-  last_s_ = resumed.time_s - std::max(0.0, lag_s_);
+  last_s_ = resumed.time_s - alignment_.reach_s();
   reader_.remember(resumed.input);
   samples_.go_on_after(resumed.time_s);
-  messages_.say(
-      fmt::format("goes on after the sample at {} s ({}); send what follows {}, and drop what was written of later "
-                  "samples: they are estimated again",
-                  resumed.time_s, config_.track.resume, lag_s_ > 0.0 ? fmt::format("{} s", *last_s_) : "it"));
+  messages_.say(fmt::format(
+      "goes on after the sample at {} s ({}); send what follows {}, and drop what was written of later "
+      "samples: they are estimated again",
+      resumed.time_s, config_.track.resume, *last_s_ < resumed.time_s ? fmt::format("{} s", *last_s_) : "it"));
 }
 
 void Tracker::follow_lines() {
   constexpr std::size_t most_at_once = 512;
-  if (lag_s_ < 0.0)
+  const double lag_s = alignment_.lag_s;
+  if (lag_s < 0.0)
     messages_.say(fmt::format(
         "inputs come {:.3g} s after the states that they act on: each estimate waits for its input and has the time "
         "that it is for. {}",
-        -lag_s_,
+        -lag_s,
         config_.track.forecast ? "The columns of now forecast to the newest sample"
                                : "--track.forecast true adds the forecast to the newest sample"));
-  if (lag_s_ > 0.0)
-    messages_.say(fmt::format("inputs come {:.3g} s before the states that they act on: they are held back", lag_s_));
+  if (lag_s > 0.0)
+    messages_.say(fmt::format("inputs come {:.3g} s before the states that they act on: they are held back", lag_s));
   lines_.emplace();
   std::vector<std::string> batch;
   std::string_view line;
@@ -177,7 +178,7 @@ void Tracker::finish(bool failed) {
     throw DataError(fmt::format("no sample could be used: {} of {} were left out", refused_, refused_ + came_));
   throw DataError(
       fmt::format("no sample could be used: {} came, and inputs come {:.3g} s {} the states that they act on", came_,
-                  std::abs(lag_s_), lag_s_ < 0.0 ? "after" : "before"));
+                  std::abs(alignment_.lag_s), alignment_.lag_s < 0.0 ? "after" : "before"));
 }
 
 void Tracker::complain(const std::string& reason) {
@@ -240,6 +241,7 @@ void Tracker::correct_first(double time_s) {
   if (has_left)
     messages_.say(fmt::format("{}: times count another unit than seconds; the first sample's is {} s", place_, time_s));
   first_->time_s = time_s;
+  first_->rest_s = 0.0;
   last_s_ = time_s;
   filter_.restart();
   samples_.restart();

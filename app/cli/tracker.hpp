@@ -54,7 +54,7 @@ class Tracker {
   std::optional<EstimateWriter> writer_;
   std::string identity_, run_, place_;
   AlignedSamples samples_;
-  double lag_s_;
+  Alignment alignment_;
   double stepped_s_ = 0.0;           ///< of the last estimate
   std::optional<double> last_s_;     ///< of the samples that came
   std::optional<double> resumed_s_;  ///< the estimates up to then are made

@@ -138,6 +138,12 @@ MatrixXd average_ending(const Stream& stream, const VectorXd& time_s, double ste
   return result;
 }
 
+void average_rows(const Stream& stream, const std::vector<Index>& rows, const VectorXd& time_s, double step_s,
+                  MatrixXd& values) {
+  if (rows.empty()) return;
+  values(rows, Eigen::all) = average_ending({stream.time_s, stream.values(rows, Eigen::all)}, time_s, step_s);
+}
+
 VectorXd interpolate_weights(const Stream& weights, const VectorXd& time_s) {
   const MatrixXd positive = (weights.values.array() > 0.0).cast<double>();
   const MatrixXd share = interpolate({weights.time_s, positive}, time_s);

@@ -21,6 +21,27 @@ Eigen::MatrixXd interpolate(const Stream& stream, const Eigen::VectorXd& time_s)
 /// samples at the step's ends weigh half. Missing values (NaN) make those means NaN that they lie in. Requires N >= 1.
 Eigen::MatrixXd average_ending(const Stream& stream, const Eigen::VectorXd& time_s, double step_s);
 
+/// Which columns are averaged where a log is brought to a lower rate, because they move at each sample of the log; all
+/// others are picked: states interpolated, inputs held.
+struct AveragedColumns {
+  std::vector<Eigen::Index> states = {}, inputs = {};  ///< positions
+  /// Added to the lag of averaged inputs, not of held ones: where a lag was found, these are taken in the middle of
+  /// each transition (hold_mid_transition).
+  double further_lag_s = 0.0;
+
+  bool any() const { return !states.empty() || !inputs.empty(); }
+};
+
+/// Whether samples that are `period_s` apart come so fast that columns are averaged at `rate_hz`.
+inline bool is_averaged_at(double rate_hz, double period_s) {
+  constexpr double faster = 1.5;
+  return period_s > 0.0 && rate_hz > 0.0 && rate_hz * period_s * faster <= 1.0;
+}
+
+/// Replaces these rows of `values`, one column for each of `time_s`, by average_ending.
+void average_rows(const Stream& stream, const std::vector<Eigen::Index>& rows, const Eigen::VectorXd& time_s,
+                  double step_s, Eigen::MatrixXd& values);
+
 /// Zero-order hold: the value of the last sample at or before each of `time_s` (increasing); before the first sample,
 /// its value. Times that miss a sample by no more than rounding count as equal to it. Requires N >= 1.
 Eigen::MatrixXd hold(const Stream& stream, const Eigen::VectorXd& time_s);

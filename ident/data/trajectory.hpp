@@ -12,10 +12,10 @@ namespace modebank {
 
 using Eigen::Index;
 
-/// A signal's name and unit; the unit is empty when nobody stated it.
 struct Channel {
   std::string name;
-  std::string unit;
+  std::string unit;       ///< empty when nobody stated it
+  bool averaged = false;  ///< brought to a lower rate by means over its steps (AveragedColumns), else picked
 };
 
 std::vector<std::string> names_of(const std::vector<Channel>& channels);

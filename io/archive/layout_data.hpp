@@ -36,17 +36,23 @@ void exchange_origin(Io& io, A& archive) {
   io.group("provenance", {}, [&](auto& member) { exchange_provenance(member, archive.provenance); });
 }
 
-/// `labels`: with data.label.
-template <class Io, class R, class L, class S>
-void exchange_recording(Io& io, R& recording, L& labels, S& step_scatter) {
+template <class Io, class R>
+void exchange_channels(Io& io, R& recording) {
   const auto channels = [&](auto& list, const std::string& kind) {
     io.through(list, store_channels, restore_channels, [&](auto& stored) {
       io.attribute_texts(kind + "_names", stored.names);
       io.attribute_texts(kind + "_units", stored.units);
+      io.optional_attribute_texts(kind + "_averaged", stored.averaged);
     });
   };
   channels(recording.states, "state");
   channels(recording.inputs, "input");
+}
+
+/// `labels`: with data.label.
+template <class Io, class R, class L, class S>
+void exchange_recording(Io& io, R& recording, L& labels, S& step_scatter) {
+  exchange_channels(io, recording);
   const auto named_runs = [](const std::vector<std::string>& names) {
     check_run_names(names);
     std::vector<Trajectory> runs(names.size());

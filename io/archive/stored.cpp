@@ -18,6 +18,7 @@ StoredChannels store_channels(const std::vector<Channel>& channels) {
   for (const Channel& channel : channels) {
     stored.names.push_back(channel.name);
     stored.units.push_back(channel.unit);
+    if (channel.averaged) stored.averaged.push_back(channel.name);
   }
   return stored;
 }
@@ -26,6 +27,12 @@ std::vector<Channel> restore_channels(const StoredChannels& stored) {
   if (stored.names.size() != stored.units.size()) throw DataError("as many channel names as units are needed");
   std::vector<Channel> channels;
   for (std::size_t i = 0; i < stored.names.size(); ++i) channels.push_back({stored.names[i], stored.units[i]});
+  for (const std::string& name : stored.averaged) {
+    const auto is_it = [&](const Channel& channel) { return channel.name == name; };
+    const auto channel = std::find_if(channels.begin(), channels.end(), is_it);
+    if (channel == channels.end()) throw DataError("averaged channel " + name + " is not among the channels");
+    channel->averaged = true;
+  }
   return channels;
 }
 

@@ -218,9 +218,14 @@ LagReport find_lags(const std::vector<RunStreams>& streams, double range_s, doub
   return choose_lag(pairs, {range_s, rate_hz});
 }
 
+void mark_averaged(const AveragedColumns& averaged, Recording& recording) {
+  for (const Index i : averaged.states) recording.states[static_cast<std::size_t>(i)].averaged = true;
+  for (const Index i : averaged.inputs) recording.inputs[static_cast<std::size_t>(i)].averaged = true;
+}
+
 }  // namespace
 
-ImportedData import_data(const DataOptions& options, const MemoryTables* memory) {
+ImportedData import_data(const DataOptions& options, const MemoryTables* memory, const AveragedColumns* learned) {
   ImportedData data;
   check_units("state", options.state, options.state_unit);
   check_units("input", options.input, options.input_unit);
@@ -231,7 +236,8 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory)
   refuse_control_characters(data.recording.inputs);
   std::vector<RunStreams> streams = named_streams(plans, options, data, false);
   for (std::string& line : dominating_values(streams, options)) data.notes.push_back(std::move(line));
-  const LogSampling sampling = choose_sampling(streams, options, data.notes);
+  const LogSampling sampling = choose_sampling(streams, options, learned, data.notes);
+  mark_averaged(sampling.averaged, data.recording);
   data.step_scatter = sampling.step_scatter;
   if (options.lag_auto) data.lag = find_lags(streams, options.lag_range_s, sampling.rate_hz);
   auto& runs = data.recording.runs;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ident/data/run_labels.hpp"
+#include "ident/data/streams.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/lag/report.hpp"
 #include "io/files/input_file.hpp"
@@ -30,8 +31,10 @@ struct ImportedData {
 /// without a match, a run without its states file, empty file, missing column: lists those that exist, unknown run
 /// name) and DataError, naming file and line, for content (text in a number, NaN, time not increasing, too few samples,
 /// streams that do not overlap, row counts that differ under Join::row).
-/// With `memory` the runs are those tables: data.root, data.inputs and data.states do not count.
-ImportedData import_data(const DataOptions& options, const MemoryTables* memory = nullptr);
+/// With `memory` the runs are those tables: data.root, data.inputs and data.states do not count. `learned`: as in
+/// choose_sampling (io/import/sampling.hpp), for data that a bank of other data is to read.
+ImportedData import_data(const DataOptions& options, const MemoryTables* memory = nullptr,
+                         const AveragedColumns* learned = nullptr);
 
 /// All runs' streams as they stand in the files, for advice on them: nothing is sorted, missing values are NaN (missing
 /// times too), roles are set, runs are sorted by name. Throws as import_data does, but for what data.missing and

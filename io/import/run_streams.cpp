@@ -95,20 +95,6 @@ std::vector<bool> kept_samples(const RunStreams& run, const Trajectory& joined) 
   return kept;
 }
 
-namespace {
-
-/// Replaces the rows that are averaged by their means over the steps that end at `time_s`.
-void average_rows(const Stream& stream, const std::vector<bool>& rows, const VectorXd& time_s, double step_s,
-                  Eigen::MatrixXd& values) {
-  std::vector<Index> averaged;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    if (rows[i]) averaged.push_back(static_cast<Index>(i));
-  if (averaged.empty()) return;
-  values(averaged, Eigen::all) = average_ending({stream.time_s, stream.values(averaged, Eigen::all)}, time_s, step_s);
-}
-
-}  // namespace
-
 Trajectory join_run(const RunStreams& run, const DataOptions& options, const LogSampling& sampling,
                     const InputClock& clock) {
   const Stream &states = run.states.stream, &inputs = run.inputs.stream;
@@ -121,25 +107,26 @@ Trajectory join_run(const RunStreams& run, const DataOptions& options, const Log
   joined.time_origin_ns = run.states.origin_ns;
   joined.time_s =
       joint_times(states.time_s, inputs.time_s, {sampling.rate_hz, applied.lag_s, applied.drift, applied.reference_s});
+  const AveragedColumns& averaged = sampling.averaged;
   const double step_s = sampling.rate_hz > 0.0 ? 1.0 / sampling.rate_hz : 0.0;
-  if (sampling.averages() && joined.time_s.size() > 0)  // no whole step ends at the first time
+  if (averaged.any() && joined.time_s.size() > 0)  // no whole step ends at the first time
     joined.time_s = joined.time_s.tail(joined.time_s.size() - 1).eval();
   check_samples(run, joined.time_s.size(), options, clock);
   joined.state = interpolate(states, joined.time_s);
-  average_rows(states, sampling.states, joined.time_s, step_s, joined.state);
+  average_rows(states, averaged.states, joined.time_s, step_s, joined.state);
   blank_gaps(states.time_s, joined.time_s, joined.state);
-  if (sampling.averages()) blank_gaps(states.time_s, joined.time_s.array() - step_s, joined.state);
+  if (averaged.any()) blank_gaps(states.time_s, joined.time_s.array() - step_s, joined.state);
   joined.input = shifted ? hold_mid_transition(inputs, joined.time_s, applied)
                          : hold(inputs, joined.time_s.array() - applied.lag_s);
   const VectorXd recorded_s =
-      joined.time_s.unaryExpr([&](double time_s) { return time_s - applied.at(time_s); });  // when inputs were
-  average_rows(inputs, sampling.inputs, recorded_s, step_s, joined.input);
+      joined.time_s.unaryExpr([&](double time_s) { return time_s - applied.at(time_s) - averaged.further_lag_s; });
+  average_rows(inputs, averaged.inputs, recorded_s, step_s, joined.input);
   joined.truth.resize(static_cast<Index>(run.truth.size()), run.truth.empty() ? 0 : joined.time_s.size());
   for (std::size_t i = 0; i < run.truth.size(); ++i) {
     const Stream truth{run.truth[i].with_states ? states.time_s : inputs.time_s, run.truth[i].values.transpose()};
-    const bool averaged = !sampling.states.empty() && sampling.states[i];
-    joined.truth.row(static_cast<Index>(i)) =
-        averaged ? average_ending(truth, joined.time_s, step_s) : interpolate(truth, joined.time_s);
+    const auto row = static_cast<Index>(i);
+    const bool is_mean = std::count(averaged.states.begin(), averaged.states.end(), row) > 0;
+    joined.truth.row(row) = is_mean ? average_ending(truth, joined.time_s, step_s) : interpolate(truth, joined.time_s);
   }
   for (const RunStreams::Companion& weight : run.weight) {
     const Stream stream{weight.with_states ? states.time_s : inputs.time_s, weight.values.transpose()};

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace modebank {
 
@@ -12,11 +13,13 @@ namespace {
 using Times = std::vector<const Eigen::VectorXd*>;
 
 /// Whether a column changes with every sample while it changes at all: one that is held for several samples, as a
-/// slower sensor's value or a test signal's level, rarely changes twice in a row.
+/// slower sensor's value or a test signal's level, rarely changes twice in a row. Nor does one whose values are missing
+/// in between.
 bool moves_at_each_sample(const std::vector<const Stream*>& streams, Index row) {
   Index changes = 0, again = 0;
   for (const Stream* stream : streams) {
-    const auto changed = [&](Index k) { return stream->values(row, k) != stream->values(row, k - 1); };
+    const auto values = stream->values.row(row);
+    const auto changed = [&](Index k) { return std::abs(values(k) - values(k - 1)) > 0.0; };
     for (Index k = 2; k < stream->time_s.size(); ++k) {
       if (!changed(k - 1)) continue;
       ++changes;
@@ -26,23 +29,27 @@ bool moves_at_each_sample(const std::vector<const Stream*>& streams, Index row) 
   return 2 * again > changes;
 }
 
-std::vector<bool> averaged_rows(const std::vector<const Stream*>& streams, double rate_hz, std::size_t rows) {
-  constexpr double faster = 1.5;  // than the new rate
+/// Positions of the columns that are averaged.
+std::vector<Index> averaged_rows(const std::vector<const Stream*>& streams, double rate_hz, std::size_t rows,
+                                 const std::vector<Index>* learned) {
   Times times;
   for (const Stream* stream : streams) times.push_back(&stream->time_s);
-  const double period_s = median_period_s(times);
-  std::vector<bool> result(rows, false);
-  if (!(period_s > 0.0) || rate_hz * period_s * faster > 1.0) return result;
-  for (std::size_t i = 0; i < rows; ++i) result[i] = moves_at_each_sample(streams, static_cast<Index>(i));
+  std::vector<Index> result;
+  if (!is_averaged_at(rate_hz, median_period_s(times))) return result;
+  if (learned) return *learned;
+  for (Index i = 0; i < static_cast<Index>(rows); ++i)
+    if (moves_at_each_sample(streams, i)) result.push_back(i);
   return result;
 }
 
 std::string averaging_note(const LogSampling& sampling, const DataOptions& options) {
   std::vector<std::string> averaged, held;
-  for (std::size_t i = 0; i < sampling.states.size(); ++i)
-    (sampling.states[i] ? averaged : held).push_back(options.state[i]);
-  for (std::size_t i = 0; i < sampling.inputs.size(); ++i)
-    (sampling.inputs[i] ? averaged : held).push_back(options.input[i]);
+  const auto add = [&](const std::vector<std::string>& names, const std::vector<Index>& rows) {
+    for (std::size_t i = 0; i < names.size(); ++i)
+      (std::count(rows.begin(), rows.end(), static_cast<Index>(i)) > 0 ? averaged : held).push_back(names[i]);
+  };
+  add(options.state, sampling.averaged.states);
+  add(options.input, sampling.averaged.inputs);
   const std::string delay =
       held.empty() ? ""
                    : fmt::format(", which delays them by half a step ({:.3g} s) against {} (held values are picked)",
@@ -51,7 +58,7 @@ std::string averaging_note(const LogSampling& sampling, const DataOptions& optio
                      fmt::join(averaged, ", "), averaged.size() == 1 ? "is" : "are", delay);
 }
 
-LogSampling sampling_of(const std::vector<RunStreams>& runs, const DataOptions& options,
+LogSampling sampling_of(const std::vector<RunStreams>& runs, const DataOptions& options, const AveragedColumns* learned,
                         std::vector<std::string>& notes) {
   std::vector<const Stream*> states, inputs;
   Times times;
@@ -65,21 +72,19 @@ LogSampling sampling_of(const std::vector<RunStreams>& runs, const DataOptions& 
   const double period_s = median_period_s(times);
   if (!(sampling.rate_hz > 0.0)) return sampling;
   if (period_s * sampling.rate_hz * many_steps <= 1.0) sampling.step_scatter = 0.0;
-  sampling.states = averaged_rows(states, sampling.rate_hz, options.state.size());
-  sampling.inputs = averaged_rows(inputs, sampling.rate_hz, options.input.size());
-  if (sampling.averages()) notes.push_back(averaging_note(sampling, options));
+  sampling.averaged = {
+      averaged_rows(states, sampling.rate_hz, options.state.size(), learned ? &learned->states : nullptr),
+      averaged_rows(inputs, sampling.rate_hz, options.input.size(), learned ? &learned->inputs : nullptr),
+      learned ? learned->further_lag_s : 0.0};
+  if (sampling.averaged.any()) notes.push_back(averaging_note(sampling, options));
   return sampling;
 }
 
 }  // namespace
 
-bool LogSampling::averages() const {
-  return std::count(states.begin(), states.end(), true) + std::count(inputs.begin(), inputs.end(), true) > 0;
-}
-
 LogSampling choose_sampling(const std::vector<RunStreams>& runs, const DataOptions& options,
-                            std::vector<std::string>& notes) {
-  LogSampling sampling = sampling_of(runs, options, notes);
+                            const AveragedColumns* learned, std::vector<std::string>& notes) {
+  LogSampling sampling = sampling_of(runs, options, learned, notes);
   if (sampling.step_scatter <= most_step_scatter)
     sampling.step_scatter = 0.0;
   else

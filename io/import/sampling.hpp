@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "ident/data/streams.hpp"
 #include "io/import/options.hpp"
 #include "io/import/run_streams.hpp"
 
@@ -14,17 +15,14 @@ struct LogSampling {
   /// How the log's steps scatter (step_scatter in ident/data/streams.hpp), unless many of them make one new step. 0: no
   /// more than a model of one step length bears.
   double step_scatter = 0.0;
-  /// Per state and input: whether it is averaged over the step that ends at each sample, because it moves at a higher
-  /// rate; all others are picked: states interpolated, inputs held.
-  std::vector<bool> states = {}, inputs = {};
-
-  bool averages() const;
+  AveragedColumns averaged = {};  ///< none at a rate near the log's or above
 };
 
 /// As data.rate_hz states; without it the inputs' own times are taken, however they scatter. One linear motion showed
 /// modes at an even rate, too: interpolated or averaged over two steps where steps scatter by 15 %, averaged over four
-/// where they scatter by 43 %. `runs`: in order of time. What the user should know is added to `notes`.
+/// where they scatter by 43 %. `runs`: in order of time. `learned`: which columns were averaged in the data that a bank
+/// was learned from; null: these data decide. What the user should know is added to `notes`.
 LogSampling choose_sampling(const std::vector<RunStreams>& runs, const DataOptions& options,
-                            std::vector<std::string>& notes);
+                            const AveragedColumns* learned, std::vector<std::string>& notes);
 
 }  // namespace modebank

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <deque>
 
 #include "ident/base/not_a_number.hpp"
+#include "ident/data/streams.hpp"
 
 namespace modebank {
 
@@ -13,18 +15,26 @@ struct TimedSample {
   double time_s = 0.0;
   Eigen::VectorXd input;        ///< m
   Eigen::VectorXd measurement;  ///< n_y, NaN where missing
+  double rest_s = 0.0;          ///< to be added to time_s: what a double cannot hold of a time since 1970
 };
 
 /// How samples that come one by one become those that a bank was learned from.
 struct Alignment {
   double rate_hz = 0.0;  ///< above 0: faster samples are brought to this rate; 0: samples keep their times
   double lag_s = 0.0;    ///< the input in force at time t is the one recorded at t - lag_s
+  AveragedColumns averaged = {};
+
+  /// How far before an estimate the samples reach that later ones are made of.
+  double reach_s() const {
+    return std::max(0.0, lag_s + averaged.further_lag_s) + (rate_hz > 0.0 && averaged.any() ? 1.0 / rate_hz : 0.0);
+  }
 };
 
 /// Applies a lag between inputs and states, and a rate, to samples as they come, as io/import does with whole runs:
-/// states are interpolated, inputs held. The stream that is early waits for the other: with a negative lag a state
-/// waits for the input that acts on it, which comes -lag_s later. Samples slower than three quarters of the rate pass
-/// whole.
+/// states are interpolated, inputs held, and where samples come so fast that averages are due (is_averaged_at) columns
+/// are averaged over the step that ends at the new sample. The stream that is early waits for the other: with a
+/// negative lag a state waits for the input that acts on it, which comes -lag_s later. Samples slower than three
+/// quarters of the rate pass whole.
 class AlignedSamples {
  public:
   explicit AlignedSamples(const Alignment& alignment) : alignment_(alignment) {}
@@ -32,28 +42,42 @@ class AlignedSamples {
   /// The next sample in the order of time.
   void push(const TimedSample& sample);
   /// The next one that is ready, valid until the next call; null: none is. What a positive lag leaves without an input
-  /// is left out.
+  /// is left out, and the first sample where no whole step ends at it.
   const TimedSample* next();
   /// Forgets all samples.
   void restart() { *this = AlignedSamples(alignment_); }
   /// Before the first sample: times at the rate go on from a sample that was taken before.
   void go_on_after(double time_s) { before_s_ = time_s; }
   /// Time of the sample that was pushed last; NaN: none was.
-  double newest_s() const { return samples_.empty() ? not_a_number : samples_.back().time_s; }
+  double newest_s() const { return samples_.empty() ? not_a_number : samples_.back().sample.time_s; }
 
  private:
+  struct Kept {
+    double at_s;  ///< since origin_s_, as all times below
+    TimedSample sample;
+  };
+
   Alignment alignment_;
-  std::deque<TimedSample> samples_;  ///< that are still needed; the last one always
-  std::size_t next_ = 0;             ///< position of the next sample to pass, where samples keep their times
+  double origin_s_ = 0.0;
+  std::deque<Kept> samples_;  ///< that are still needed; the last one always
+  std::size_t next_ = 0;      ///< position of the next sample to pass, where samples keep their times
   std::size_t pushed_ = 0;
-  bool resamples_ = false;
-  double before_s_ = not_a_number;
+  bool resamples_ = false, averages_ = false;
+  double before_s_ = not_a_number;  ///< as the user has it
   double first_s_ = 0.0, spacing_s_ = 0.0;
-  double steps_ = 0.0;  ///< of the rate, from first_s_ to the next sample
+  std::deque<double> recent_s_;  ///< steps, until samples are found to come faster than the rate
+  double steps_ = 0.0;           ///< of the rate, from first_s_ to the next sample
+  double ready_s_ = 0.0;
   TimedSample ready_;
 
   bool passes() const { return alignment_.lag_s == 0.0 && !resamples_; }
+  double newest_at_s() const { return samples_.empty() ? not_a_number : samples_.back().at_s; }
+  void learn_rate(double since_s);
   double due_s() const;
+  double step_s() const { return 1.0 / alignment_.rate_hz; }
+  bool in_gap(double time_s) const;
+  Stream between(double from_s, double to_s, Eigen::VectorXd TimedSample::*signal) const;
+  void average(Eigen::VectorXd TimedSample::*signal, const std::vector<Eigen::Index>& rows, double time_s);
   void measure_at(double time_s);
   void take_input_of(double time_s);
   void forget();

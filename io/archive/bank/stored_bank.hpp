@@ -34,6 +34,7 @@ Eigen::MatrixXd one_of(const Eigen::MatrixXd& columns, Eigen::Index k, Eigen::In
 struct StoredChannels {
   std::vector<std::string> names;
   std::vector<std::string> units;
+  std::vector<std::string> averaged = {};  ///< of recorded channels: the names of those that are
 };
 
 /// Names and units of a motion model's parameters; where a search starts is not kept.

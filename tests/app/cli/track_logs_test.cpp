@@ -37,6 +37,22 @@ class TrackLogs : public Track {
       write(name, text);
     }
   }
+  /// Both runs at 51.5 Hz: wz and left move at each row, right is held for five.
+  void write_faster(const std::function<std::string(double)>& stamp) const {
+    for (const char* name : {"run_00.csv", "run_01.csv"}) {
+      const std::vector<Row> slow = rows(name);
+      std::string text = "time,wz,left,right\n";
+      for (std::size_t k = 0; k + 1 < slow.size(); ++k)
+        for (int i = 0; i < 5; ++i) {
+          const double t = slow[k].time_s + 0.003 + 0.0194 * i, share = 0.2 * i;
+          const auto between = [&](double Row::*signal) {
+            return (1.0 - share) * slow[k].*signal + share * slow[k + 1].*signal + 0.05 * std::sin(283.0 * t);
+          };
+          text += fmt::format("{},{},{},{}\n", stamp(t), between(&Row::wz), between(&Row::left), slow[k].right);
+        }
+      write(name, text);
+    }
+  }
   ProgramResult track(const std::string& input, const std::string& options = "") const {
     return run_program({"/bin/sh", "-c",
                         fmt::format("cd '{}' && '{}' track out.h5 {} {}", file("").string(), MODEBANK_PROGRAM, options,
@@ -148,17 +164,57 @@ TEST_F(TrackLogs, DerivesChannelsRowByRow) {
 }
 
 TEST_F(TrackLogs, BringsAFasterLogToTheArchivesRate) {
+  write_faster([](double time_s) { return fmt::format("{}", time_s); });
+  for (const char* lag_s : {"0", "0.17", "-0.23"}) {
+    const ProgramResult made = run({"--data.rate_hz", "10", "--data.lag_s", lag_s});
+    ASSERT_EQ(made.status, 0);
+    EXPECT_THAT(made.err, HasSubstr("wz, left are the mean over the step")) << made.out;
+    const ProgramResult result = track("run_01.csv");
+    expect_evaluated(result, 0.0, 1e-9);
+    EXPECT_EQ(track("", "--data.inputs run_01.csv").out, result.out);
+    // The first half, then a filter that goes on from there.
+    const std::vector<std::string> samples = lines("run_01.csv");
+    std::string first = samples[0] + "\n", second = first;
+    for (std::size_t k = 1; k < samples.size(); ++k)
+      for (std::string* half : {&first, &second})
+        if ((half == &first) == (k <= 200) || (half == &second && k > 150)) *half += samples[k] + "\n";
+    write("first.csv", first);
+    write("second.csv", second);
+    const auto head = table(track("first.csv", "--track.checkpoint half.h5").out);
+    const auto tail = table(track("second.csv", "--track.resume half.h5").out), whole = table(result.out);
+    ASSERT_EQ(head.size() + tail.size(), whole.size());
+    for (std::size_t i = 0; i < tail.size(); ++i) EXPECT_NEAR(tail[i][5], whole[head.size() + i][5], 1e-12) << i;
+  }
+}
+
+/// A double of seconds since 1970 would move each step's ends by up to .1 us.
+TEST_F(TrackLogs, BringsDatesToTheArchivesRate) {
+  write_faster([](double time_s) { return fmt::format("2024-05-01T10:00:{:09.6f}Z", time_s); });
+  ASSERT_EQ(run({"--data.rate_hz", "10"}).status, 0);
+  expect_evaluated(track("run_01.csv"), day_s + 0.003, 1e-9);  // the first row
+}
+
+/// In the new log every column is held; in the archive's wz and left moved.
+TEST_F(TrackLogs, AveragesWhatWasAveragedForTheArchive) {
+  const std::vector<Row> slow = rows("run_01.csv");
   for (const char* name : {"run_00.csv", "run_01.csv"}) {
-    const std::vector<Row> slow = rows(name);
     std::string text = "time,wz,left,right\n";
-    for (std::size_t k = 0; k + 1 < slow.size(); ++k)
+    const std::vector<Row> own = rows(name);
+    for (std::size_t k = 0; k + 1 < own.size(); ++k)
       for (int i = 0; i < 5; ++i)
-        text += fmt::format("{},{},{},{}\n", slow[k].time_s + 0.003 + 0.0194 * i, slow[k].wz, slow[k].left,
-                            slow[k].right);  // held: import averages what moves, track does not yet
+        text += fmt::format("{},{},{},{}\n", own[k].time_s + 0.02 * i, own[k].wz + 0.1 * std::sin(1.0 + i),
+                            own[k].left + 0.1 * std::sin(2.0 + i), own[k].right);
     write(name, text);
   }
   ASSERT_EQ(run({"--data.rate_hz", "10"}).status, 0);
-  expect_evaluated(track("run_01.csv"));
+  std::string text = "time,wz,left,right\n";
+  for (std::size_t k = 0; k + 1 < slow.size(); ++k)
+    for (int i = 0; i < 5; ++i)
+      text += fmt::format("{},{},{},{}\n", slow[k].time_s + 0.02 * i, slow[k].wz, slow[k].left, slow[k].right);
+  write("held.csv", text);
+  const ProgramResult live = track("held.csv"), read = track("", "--data.inputs held.csv");
+  EXPECT_EQ(live.out, read.out) << live.err;
+  EXPECT_THAT(read.err, HasSubstr("wz, left are the mean over the step"));
 }
 
 TEST_F(TrackLogs, HoldsBackTheStreamThatIsEarly) {

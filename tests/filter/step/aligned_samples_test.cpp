@@ -62,11 +62,55 @@ TEST(AlignedSamples, AreThoseOfTheWholeRun) {
       }
 }
 
+TEST(AlignedSamples, AverageWhatTheWholeRunAverages) {
+  for (const double jitter : {0.0, 0.2})
+    for (const double lag_s : {0.0, 0.17, -0.17})
+      for (const double further_lag_s : {0.0, 0.05}) {
+        const Recorded run(400, 0.01, jitter);
+        const VectorXd whole_s = joint_times(run.time_s, run.time_s, {10.0, lag_s, 0.0, 0.0});
+        const VectorXd time_s = whole_s.tail(whole_s.size() - 1);
+        const MatrixXd state = average_ending({run.time_s, run.state}, time_s, 0.1);
+        const VectorXd recorded_s = time_s.array() - lag_s - further_lag_s;
+        const MatrixXd input = average_ending({run.time_s, run.input}, recorded_s, 0.1);
+        const std::vector<TimedSample> samples = aligned(run, {10.0, lag_s, {{0}, {0}, further_lag_s}});
+        ASSERT_EQ(std::ssize(samples), time_s.size()) << "lag " << lag_s << ", " << jitter;
+        for (Index k = 0; k < time_s.size(); ++k) {
+          const TimedSample& sample = samples[static_cast<std::size_t>(k)];
+          EXPECT_NEAR(sample.time_s, time_s(k), 1e-12);
+          EXPECT_NEAR(sample.measurement(0), state(0, k), 1e-12) << k;
+          EXPECT_NEAR(sample.input(0), input(0, k), 1e-12) << "lag " << lag_s << ", sample " << k;
+        }
+      }
+}
+
+/// At .07 s a rate of 10 Hz is too near for averages, at .12 s it is the log that is slow.
+TEST(AlignedSamples, AverageOnlyWhatIsFasterByHalf) {
+  for (const double period_s : {0.07, 0.12}) {
+    const Recorded run(50, period_s, 0.0);
+    const std::vector<TimedSample> picked = aligned(run, {10.0, 0.0}), all = aligned(run, {10.0, 0.0, {{0}, {0}}});
+    ASSERT_EQ(all.size(), picked.size());
+    for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(all[k].measurement, picked[k].measurement);
+  }
+}
+
 TEST(AlignedSamples, OfASlowStreamKeepTheirTimes) {
   const Recorded run(50, 0.1, 0.2);
   const std::vector<TimedSample> samples = aligned(run, {10.0, 0.0});
   ASSERT_EQ(samples.size(), 50U);
   for (Index k = 0; k < 50; ++k) EXPECT_EQ(samples[static_cast<std::size_t>(k)].time_s, run.time_s(k));
+}
+
+/// A pause before a fast log costs three samples that pass whole; then come those at the rate.
+TEST(AlignedSamples, FindTheRateAfterAPause) {
+  Recorded run(400, 0.01, 0.0);
+  run.time_s.tail(399).array() += 0.7;
+  const std::vector<TimedSample> samples = aligned(run, {10.0, 0.0, {{0}, {}}});
+  ASSERT_GE(samples.size(), 30U);
+  EXPECT_NEAR(samples[2].time_s, 0.72, 1e-12);
+  const VectorXd time_s = VectorXd::Constant(1, 0.82);
+  EXPECT_NEAR(samples[3].time_s, time_s(0), 1e-12);
+  EXPECT_NEAR(samples[3].measurement(0), average_ending({run.time_s, run.state}, time_s, 0.1)(0, 0), 1e-12);
+  for (std::size_t k = 4; k < samples.size(); ++k) EXPECT_NEAR(samples[k].time_s - samples[k - 1].time_s, 0.1, 1e-9);
 }
 
 TEST(AlignedSamples, GoOnAtTheRateAfterAPause) {

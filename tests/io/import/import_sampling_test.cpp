@@ -83,6 +83,37 @@ TEST_F(ImportSampling, HeldColumnsArePickedAndSoIsARateNearTheLogs) {
   EXPECT_NEAR(read(at_100_hz, slow, held).state(0, 45), slow(0.5), 1e-5);
 }
 
+/// A slower sensor's values in a table of a faster one's rows.
+TEST_F(ImportSampling, ColumnsWithValuesInFewRowsArePicked) {
+  std::string content = "time,x,u\n";
+  for (int k = 0; k < 1000; ++k)
+    content += fmt::format("{:.2f},{:.9f},{}\n", at_100_hz(k), slow(at_100_hz(k)),
+                           k % 5 == 0 ? fmt::format("{:.9f}", slow(at_100_hz(k))) : "");
+  write("log.csv", content);
+  options.rate_hz = 10.0;
+  options.missing = Missing::predict;
+  const Trajectory run = import().recording.runs.at(0);
+  for (Index k = 0; k < run.samples(); ++k) EXPECT_NEAR(run.input(0, k), slow(run.time_s(k)), 1e-8) << k;
+}
+
+/// The data that a bank was learned from decide on the data that it is to read.
+TEST_F(ImportSampling, ColumnsOfABankAreAveragedAsItsOwnDataWere) {
+  options.rate_hz = 10.0;
+  const auto x = [](double t) { return std::cos(91.0 * t * t); };
+  read(at_100_hz, x, held);
+  EXPECT_TRUE(data.recording.states[0].averaged);
+  EXPECT_FALSE(data.recording.inputs[0].averaged);
+  const AveragedColumns inputs_alone{{}, {0}, 0.02};
+  const Trajectory run = import_data(options, nullptr, &inputs_alone).recording.runs.at(0);
+  for (Index k = 0; k < run.samples(); ++k) {
+    const double t = run.time_s(k);
+    EXPECT_NEAR(run.state(0, k), x(t), 1e-8);
+    double mean = 0.0;
+    for (int i = 0; i <= 10; ++i) mean += (i == 0 || i == 10 ? 0.05 : 0.1) * held(std::max(0.0, t - 0.12 + 0.01 * i));
+    EXPECT_NEAR(run.input(0, k), mean, 1e-8) << t;
+  }
+}
+
 TEST_F(ImportSampling, MissingStatesMakeTheirOwnMeansMissing) {
   std::string content = "time,x,u\n";
   for (int k = 0; k < 1000; ++k)

@@ -1,0 +1,23 @@
+#include "io/archive/load_averaged.hpp"
+
+#include "io/archive/bank/load_bank.hpp"
+#include "io/archive/layout_data.hpp"
+#include "io/hdf5/group_reader.hpp"
+
+namespace modebank {
+
+AveragedColumns load_averaged(const std::filesystem::path& path) {
+  Recording recording;
+  read_root(path, [&](GroupReader& root) {
+    root.optional_group("data", true, {}, [&](GroupReader& member) { layout::exchange_channels(member, recording); });
+  });
+  const auto positions = [](const std::vector<Channel>& channels) {
+    std::vector<Index> averaged;
+    for (std::size_t i = 0; i < channels.size(); ++i)
+      if (channels[i].averaged) averaged.push_back(static_cast<Index>(i));
+    return averaged;
+  };
+  return {positions(recording.states), positions(recording.inputs)};
+}
+
+}  // namespace modebank
