@@ -223,6 +223,7 @@ Table LineTable::read(const std::vector<std::string>& lines) {
   }
   rows_before_ = rows_;
   rows_ += table.rows();
+  if (table.form.clock) pass_midnights(table);
   derive(table);
   return table;
 }
@@ -265,6 +266,12 @@ double LineTable::rest_s(const Table& table, std::size_t row) const {
   if (!has_times() || !std::isfinite(seconds)) return 0.0;
   const double whole = std::floor(seconds);
   return static_cast<double>(table.time_ns[row] - static_cast<std::int64_t>(whole) * billion) / 1e9 - (seconds - whole);
+}
+
+/// The reader has counted days from the first row to these alone.
+void LineTable::pass_midnights(Table& table) {
+  for (std::int64_t& time_ns : table.time_ns)
+    if (time_ns != missing_stamp) time_ns = days_.on(time_ns / billion) * billion + time_ns % billion;
 }
 
 void LineTable::derive(Table& table) {

@@ -57,6 +57,7 @@ class LineTable {
   bool unit_known_ = false, after_header_ = false;
   std::vector<Expression::Memory> memory_;  ///< per derived channel
   std::optional<std::int64_t> origin_ns_;
+  DayCount days_;  ///< of times of day, over all rows so far
   std::vector<std::string> notes_;
 
   void open_csv();
@@ -69,6 +70,7 @@ class LineTable {
   Table json_rows(const std::vector<std::string>& lines, const TableRequest& request) const;
   void begin(const std::string& line, const Table& table);
   void learn_unit(const std::vector<std::string>& lines, const Table& table);
+  void pass_midnights(Table& table);
   void derive(Table& table);
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -64,6 +65,19 @@ Stamp stamp_of(double value) {
   const double whole = std::floor(value);
   return normalised_stamp(static_cast<std::int64_t>(whole),
                           std::llround((value - whole) * static_cast<double>(billion)));
+}
+
+std::int64_t DayCount::on(std::int64_t time_of_day_s) {
+  constexpr std::int64_t day_s = 86400, most_disorder_s = 7200;
+  std::int64_t time_s = time_of_day_s + day_s * days_;
+  if (latest_ && time_s < *latest_ - most_disorder_s) {
+    ++days_;
+    time_s += day_s;
+  } else if (days_ > 0 && time_s > *latest_ + day_s - most_disorder_s) {
+    time_s -= day_s;
+  }
+  latest_ = latest_ ? std::max(*latest_, time_s) : time_s;
+  return time_s;
 }
 
 std::string seconds_text(std::int64_t time_ns) {

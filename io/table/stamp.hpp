@@ -30,6 +30,18 @@ std::optional<Stamp> parse_decimal_stamp(std::string_view text);
 /// Of a finite number whose magnitude is below 9.2e18.
 Stamp stamp_of(double value);
 
+/// Times of day that go on past midnight, taken in the order of a log.
+class DayCount {
+ public:
+  /// Seconds since the midnight before the first. A time of day that falls by hours belongs to the next day; one that
+  /// rises by nearly a day, once midnight has passed, to a row of the day before that came late.
+  std::int64_t on(std::int64_t time_of_day_s);
+
+ private:
+  std::int64_t days_ = 0;
+  std::optional<std::int64_t> latest_;
+};
+
 /// Seconds as text, exact: "1700000000.02".
 std::string seconds_text(std::int64_t time_ns);
 

@@ -123,20 +123,8 @@ NumberStatus StampColumn::add_by_patterns(std::string_view text) {
   return NumberStatus::ok;
 }
 
-/// A time of day that falls by hours belongs to the next day; one that rises by nearly a day, once midnight has passed,
-/// to a row of the day before that came late.
 void StampColumn::Reading::push(Stamp stamp) {
-  constexpr std::int64_t day_s = 86400, most_disorder_s = 7200;
-  if (!pattern.has_date()) {
-    stamp.whole += day_s * days;
-    if (latest && stamp.whole < *latest - most_disorder_s) {
-      ++days;
-      stamp.whole += day_s;
-    } else if (days > 0 && stamp.whole > *latest + day_s - most_disorder_s) {
-      stamp.whole -= day_s;
-    }
-    latest = latest ? std::max(*latest, stamp.whole) : stamp.whole;
-  }
+  if (!pattern.has_date()) stamp.whole = days.on(stamp.whole);
   stamps.push_back(stamp);
 }
 

@@ -43,8 +43,7 @@ class StampColumn {
   struct Reading {
     StampPattern pattern;
     std::vector<Stamp> stamps;
-    std::int64_t days = 0;                 ///< that a time of day has gone on for
-    std::optional<std::int64_t> latest{};  ///< of the times of day
+    DayCount days{};  ///< of times of day
     bool fits = true;
 
     void push(Stamp stamp);

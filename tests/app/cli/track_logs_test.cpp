@@ -262,6 +262,28 @@ TEST_F(TrackLogs, ReadsFilesAsRunDoes) {
   EXPECT_EQ(nlohmann::json::parse(ndjson.out.substr(0, ndjson.out.find('\n'))).at("time"), 0.0);
 }
 
+/// A row every two hours for a week, in one batch of lines and line by line.
+TEST_F(TrackLogs, PassesEveryMidnight) {
+  std::string text = "time,wz,left,right\n";
+  std::vector<double> times_s;
+  for (int hour = 11; hour < 7 * 24; hour += 2) {
+    text += fmt::format("{:02}:30:00.25,0.1,0,0\n", hour % 24);
+    times_s.push_back(3600.0 * hour + 1800.25);
+  }
+  write("week.csv", text);
+  const auto at_once = table(track("week.csv").out);
+  ASSERT_EQ(at_once.size(), times_s.size());
+  PipedProgram program(command());
+  const std::vector<std::string> samples = lines("week.csv");
+  program.write(samples[0] + "\n");
+  ASSERT_TRUE(program.read_line());
+  for (std::size_t k = 0; k < times_s.size(); ++k) {
+    EXPECT_EQ(at_once[k][0], times_s[k]) << k;
+    program.write(samples[k + 1] + "\n");
+    EXPECT_EQ(numbers(program.read_line().value())[0], times_s[k]) << k;
+  }
+}
+
 TEST_F(TrackLogs, FailsWhereNoSampleCouldBeUsed) {
   write("junk.csv", "time,wz,left,right\n" + std::string("soon,0,0,0\n") + "later,0,0,0\n" + "last,0,0,0\n");
   const ProgramResult result = track("junk.csv");
