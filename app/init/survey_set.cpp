@@ -27,14 +27,15 @@ void widen(ChannelCheck& check, const ChannelCheck& other) {
   check.missing += other.missing;
 }
 
+/// Text in one of the files.
+void be_text(SurveyedChannel& ours, const SurveyedChannel& theirs) {
+  ours.values.resize(0);
+  if (ours.why_text.empty()) ours.why_text = theirs.why_text;
+}
+
 /// Takes another file's table in; its channels that are not in both are `partial`.
 void merge(SurveyedTable& table, const SurveyedTable& other, Names& partial) {
-  const Names& theirs_fit = other.form.patterns;
-  if (std::find_first_of(theirs_fit.begin(), theirs_fit.end(), table.form.patterns.begin(),
-                         table.form.patterns.end()) != theirs_fit.end())
-    std::erase_if(table.form.patterns, [&](const std::string& pattern) {
-      return std::find(theirs_fit.begin(), theirs_fit.end(), pattern) == theirs_fit.end();
-    });
+  if (!table.form.patterns.empty() && !other.form.patterns.empty()) join_patterns(table.form, other.form);
   std::erase_if(table.channels, [&](const SurveyedChannel& channel) {
     if (other.find(channel.name) != nullptr) return false;
     add_once(partial, channel.name);
@@ -48,7 +49,7 @@ void merge(SurveyedTable& table, const SurveyedTable& other, Names& partial) {
     else if (ours->is_number() && theirs.is_number())
       widen(ours->check, theirs.check);
     else
-      ours->values.resize(0);  // text in one of them
+      be_text(*ours, theirs);
   }
 }
 

@@ -43,24 +43,23 @@ TimeUnit agreed_unit(const Pool& pool) {
   return finest;
 }
 
-/// The patterns that fit all files, in the order in which they are tried.
+/// The patterns that fit all files, one of those that read all alike.
 std::vector<std::string> common_patterns(const Pool& pool) {
-  std::vector<std::string> common = pool.front()->form.patterns;
-  for (const FileStamps* of : pool) {
-    const std::vector<std::string> before = common;
-    std::erase_if(common, [&](const std::string& pattern) {
-      return std::count(of->form.patterns.begin(), of->form.patterns.end(), pattern) == 0;
-    });
-    if (common.empty())
+  StampForm common = pool.front()->form;
+  for (const FileStamps* of : pool)
+    if (of != pool.front() && !join_patterns(common, of->form))
       throw DataError(
           fmt::format("{} is a time by {}, but {} by {}: data.time_format = PATTERN states one form for all "
                       "files",
-                      shown(*pool.front()), before.front(), shown(*of), of->form.patterns.front()));
-  }
-  return common;
+                      shown(*pool.front()), common.patterns.front(), shown(*of), of->form.patterns.front()));
+  return common.patterns;
 }
 
-[[noreturn]] void refuse_ambiguous(const FileStamps& of, const std::vector<std::string>& patterns) {
+/// Names the first file in which the readings differ.
+[[noreturn]] void refuse_ambiguous(const Pool& pool, const std::vector<std::string>& patterns) {
+  const auto differing =
+      std::find_if(pool.begin(), pool.end(), [](const FileStamps* f) { return f->form.patterns.size() > 1; });
+  const FileStamps& of = differing == pool.end() ? *pool.front() : **differing;
   throw DataError(fmt::format("{} is {}, or {}: data.time_format = {} or {} states which", shown(of),
                               read_by(patterns[0], of.form.value), read_by(patterns[1], of.form.value), patterns[0],
                               patterns[1]));
@@ -94,7 +93,7 @@ bool agree_on_stamps(const std::vector<FileStamps>& forms, std::vector<FilePlan>
     if (is_text) {
       const std::vector<std::string>& patterns = common[&pool];
       const auto known = std::find_first_of(patterns.begin(), patterns.end(), decided.begin(), decided.end());
-      if (patterns.size() > 1 && known == patterns.end()) refuse_ambiguous(*pool.front(), patterns);
+      if (patterns.size() > 1 && known == patterns.end()) refuse_ambiguous(pool, patterns);
       agreed.format = known == patterns.end() ? patterns.front() : *known;
     } else {
       agreed.unit = agreed_unit(pool);

@@ -193,10 +193,12 @@ void StampColumn::decide_reading(Table& table) {
   if (readings_.size() > 1 && !std::all_of(readings_.begin(), readings_.end(), uneven))
     std::erase_if(readings_, uneven);
   const Reading& chosen = readings_.front();
-  table.form = {StampForm::Ground::text, TimeUnit::s, 0, {}, first_value_, table.line[first_row_]};
+  table.form = {StampForm::Ground::text, TimeUnit::s, 0, {}, {}, first_value_, table.line[first_row_]};
   table.form.clock = !chosen.pattern.has_date();
-  for (const Reading& reading : readings_)
-    if (&reading == &chosen || reading.stamps != chosen.stamps) table.form.patterns.push_back(reading.pattern.text());
+  for (const Reading& reading : readings_) {
+    const bool alike = &reading != &chosen && reading.stamps == chosen.stamps;
+    (alike ? table.form.alike : table.form.patterns).push_back(reading.pattern.text());
+  }
   table.time_ns.resize(as_written_.size());
   for (std::size_t k = 0; k < as_written_.size(); ++k)
     table.time_ns[k] =

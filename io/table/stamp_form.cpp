@@ -16,6 +16,7 @@ constexpr double minute_s = 60.0, hour_s = 3600.0, day_s = 86400.0;
 struct Numbers {
   double size = 0.0;     ///< median
   double spacing = 0.0;  ///< median of those that advance; 0: none does
+  std::vector<double> first;
 };
 
 double median(std::vector<double> values) {
@@ -33,7 +34,7 @@ Numbers first_numbers(const std::vector<double>& values) {
     if (!known.empty() && value > known.back()) spacings.push_back(value - known.back());
     known.push_back(value);
   }
-  return {median(std::move(known)), median(std::move(spacings))};
+  return {median(known), median(std::move(spacings)), known};
 }
 
 bool is_multiple(double value, double of) { return std::fmod(value, of) == 0.0; }
@@ -75,10 +76,24 @@ TimeUnit unit_of_spacing(const Numbers& numbers) {
   return TimeUnit::ns;
 }
 
-/// Days since an epoch with the time of day as their fraction: as seconds they would be sampled faster than 20 kHz.
+/// Whether numbers, read as days, lie on the full seconds or minutes at which loggers write: one each 5 or 10 s, each
+/// minute, each quarter of an hour.
+bool are_at_logging_intervals(const Numbers& numbers) {
+  constexpr double rounding_s = 0.1;  // of days with six decimals
+  const double interval_s = std::round(numbers.spacing * day_s);
+  if (interval_s < 2.0 || !is_logging_interval(interval_s)) return false;
+  const double grid_s = std::min(interval_s, minute_s);
+  return std::all_of(numbers.first.begin(), numbers.first.end(), [&](double days) {
+    return std::abs(std::remainder((days - std::floor(days)) * day_s, grid_s)) < rounding_s;
+  });
+}
+
+/// Days since an epoch with the time of day as their fraction: as seconds they would be sampled faster than 20 kHz, or
+/// faster than 1 kHz at what are full seconds of days.
 bool are_serial_days(const Numbers& numbers) {
-  constexpr double fastest_s = 5e-5;
-  return first_day_of(numbers.size) != 0 && numbers.spacing > 0.0 && numbers.spacing < fastest_s;
+  constexpr double fastest_s = 5e-5, fast_s = 1e-3;
+  return first_day_of(numbers.size) != 0 && numbers.spacing > 0.0 &&
+         (numbers.spacing < fastest_s || (numbers.spacing < fast_s && are_at_logging_intervals(numbers)));
 }
 
 }  // namespace
@@ -87,6 +102,29 @@ std::int64_t first_day_of(double serial_day) {
   constexpr std::int64_t spreadsheet = 25569, matlab = 719529;
   if (serial_day > 2e4 && serial_day < 8e4) return spreadsheet;  // 1954 to 2119
   return serial_day > 7.1e5 && serial_day < 8e5 ? matlab : 0;    // 1943 to 2190
+}
+
+bool join_patterns(StampForm& ours, const StampForm& theirs) {
+  using Names = std::vector<std::string>;
+  const auto has = [](const Names& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  const auto reads_as_first = [&](const StampForm& form, const std::string& pattern) {
+    return pattern == form.patterns.front() || has(form.alike, pattern);
+  };
+  StampForm both;
+  for (const Names* names : {&ours.patterns, &ours.alike})
+    for (const std::string& pattern : *names) {
+      if (!has(theirs.patterns, pattern) && !has(theirs.alike, pattern)) continue;
+      const bool as_first = !both.patterns.empty() && reads_as_first(ours, pattern) &&
+                            reads_as_first(theirs, pattern) && reads_as_first(ours, both.patterns.front()) &&
+                            reads_as_first(theirs, both.patterns.front());
+      (as_first ? both.alike : both.patterns).push_back(pattern);
+    }
+  if (both.patterns.empty()) return false;
+  ours.patterns = std::move(both.patterns);
+  ours.alike = std::move(both.alike);
+  return true;
 }
 
 StampForm form_of_numbers(std::string_view column, const std::vector<double>& values, bool all_whole,
@@ -104,7 +142,7 @@ StampForm form_of_numbers(std::string_view column, const std::vector<double>& va
   }
   if (are_serial_days(numbers)) return {Ground::magnitude, TimeUnit::d};
   constexpr double doubtful_s = 1e-3;
-  if (first_day_of(numbers.size) != 0 && numbers.spacing < doubtful_s)
+  if (first_day_of(numbers.size) != 0 && (numbers.spacing < doubtful_s || are_at_logging_intervals(numbers)))
     notes.push_back(fmt::format("column {}: numbers {:.3g} apart are taken for seconds (data.time_unit = d reads days)",
                                 column, numbers.spacing));
   return {Ground::assumed, TimeUnit::s};

@@ -23,6 +23,7 @@ struct StampForm {
   TimeUnit unit = TimeUnit::s;             ///< of numbers
   std::int64_t first_day = 0;              ///< of days: the number of 1970-01-01 where they count from another epoch
   std::vector<std::string> patterns = {};  ///< of text: all that fit every value; several: the values do not tell which
+  std::vector<std::string> alike = {};     ///< of text: others that read every value as the first of `patterns` does
   std::string value = {};                  ///< the first stamp, as it is written
   std::uint64_t line = 0;                  ///< where it stands
   bool clock = false;                      ///< whether it is a time of day, which counts from midnight
@@ -32,6 +33,9 @@ struct StampForm {
 /// `all_whole`: of all of them. What the user should know is added to `notes`.
 StampForm form_of_numbers(std::string_view column, const std::vector<double>& values, bool all_whole,
                           std::vector<std::string>& notes);
+
+/// Makes `patterns` and `alike` of one file's texts those of two files. False: no pattern fits both, and all stays.
+bool join_patterns(StampForm& ours, const StampForm& theirs);
 
 /// The number of 1970-01-01 in serial days of this size: those of spreadsheets (since 1899-12-30) and of MATLAB (since
 /// the year 0). 0: others.

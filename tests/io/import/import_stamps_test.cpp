@@ -94,6 +94,16 @@ TEST_F(ImportStamps, SerialDaysOfSpreadsheetsAndMatlab) {
     EXPECT_NEAR(static_cast<double>(origin_ns()), 1744891200e9, 1e5) << "2025-04-17T12:00:00Z";
     EXPECT_THAT(import().notes, Contains(HasSubstr("counts days (data.time_unit = d)")));
   }
+  expect_even(
+      "Time", 60.0, [](int k) { return fmt::format("{:.6f}", 45764.5 + k / 1440.0); }, 0.1);
+  expect_even(
+      "Timestamp", 10.0, [](int k) { return fmt::format("{:.9f}", 45764.25 + k / 8640.0); }, 1e-3);
+  // As seconds: 1,440 Hz, off the full seconds of days; 288 Hz, which is doubted because days would be 5 minutes apart.
+  expect_even(
+      "Time", 1.0 / 1440.0, [](int k) { return fmt::format("{:.9f}", 45764.51234 + k / 1440.0); }, 1e-8);
+  expect_even(
+      "Time", 1.0 / 288.0, [](int k) { return fmt::format("{:.9f}", 45764.5 + k / 288.0); }, 1e-8);
+  EXPECT_THAT(import().notes, Contains(HasSubstr("are taken for seconds (data.time_unit = d reads days)")));
 }
 
 TEST_F(ImportStamps, OneUnitForAllFilesOfAPattern) {
@@ -191,6 +201,22 @@ TEST_F(ImportStamps, OneFileDecidesForTheOthers) {
   write("run_2.csv", table("time", [](int k) { return fmt::format("13.02.2009 10:{:02}:{:02}", k / 60, k % 60); }));
   EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("run_1.csv:2"), HasSubstr("run_2.csv:2"), HasSubstr("%d.%m.%Y"),
                                         HasSubstr("data.time_format = PATTERN")));
+}
+
+/// A date that both readings take for the same day decides nothing for other files.
+TEST_F(ImportStamps, AFileOfOneReadingAloneDoesNotDecide) {
+  options.inputs = "run_*.csv";
+  const auto dated = [&](const std::string& name, const std::string& date) {
+    write(name, table("time", [&](int k) { return fmt::format("{}/2009 10:{:02}:{:02}", date, k / 60, k % 60); }));
+  };
+  for (const auto& [first, second] : {std::pair{"02/02", "01/02"}, {"01/02", "02/02"}}) {
+    dated("run_1.csv", first);
+    dated("run_2.csv", second);
+    EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("column time: \"01/02/2009 10:00:00\" is 2009-02-01T10:00:00.000Z"),
+                                          HasSubstr("or 2009-01-02T10:00:00.000Z"), HasSubstr("data.time_format")));
+  }
+  dated("run_1.csv", "03/03");
+  EXPECT_EQ(import().recording.runs.size(), 2U) << "each of one reading alone";
 }
 
 TEST_F(ImportStamps, AFormThatTheTableLacks) {
