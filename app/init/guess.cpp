@@ -211,13 +211,21 @@ std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, c
         const SurveyedTable& table = files[f].tables[t];
         const SurveyedChannel& channel = channel_at(files, place);
         const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
-        if (!channel.moves() || is_time || channel.name == table.run || has(guess.states, place) ||
-            has(guess.inputs, place))
-          continue;
+        const bool is_run = !channel.name.empty() && channel.name == table.run;
+        if (is_time || is_run || has(guess.states, place) || has(guess.inputs, place)) continue;
         const NameScore score = score_name(channel.name);
+        if (!channel.is_number() && !channel.why_text.empty() && !score.ignored)
+          left.push_back({channel.name, fmt::format("text ({})", channel.why_text)});
+        if (!channel.moves()) continue;
         const bool beside = same_table(place, guess.states.front());
         const bool with_inputs = !guess.inputs.empty() && same_table(place, guess.inputs.front());
-        left.push_back({channel.name, score.ignored    ? "its name is that of a time, counter, pose, place or label"
+        if (channel.name.empty()) {
+          left.push_back({fmt::format("column {}", c + 1), "without a name"});
+          continue;
+        }
+        left.push_back({channel.name, score.ignored ? "its name is that of a time, counter, pose, place or label"
+                                      : !may_be_named(channel.name)
+                                          ? "its name has a line end or another control character"
                                       : channel.counts ? "counts up evenly, as times and counters do"
                                       : score.input > score.state && with_inputs
                                           ? fmt::format("others are likelier inputs, {} at most are taken", most_inputs)

@@ -71,7 +71,10 @@ class Proposer {
   void add(std::string key, std::string value, std::string why = {}) {
     proposal_.keys.push_back({std::move(key), std::move(value), std::move(why)});
   }
-  void doubt(std::string text) { proposal_.doubts.push_back(std::move(text)); }
+  void doubt(std::string text) {
+    if (std::count(proposal_.doubts.begin(), proposal_.doubts.end(), text) == 0)
+      proposal_.doubts.push_back(std::move(text));
+  }
 
   std::string runs_text(const FileSet& set, bool listed) const {
     if (set.files.size() == 1) return "one file";
@@ -257,13 +260,20 @@ class Proposer {
   static std::string why_time(const SurveyedTable& of) {
     using Ground = StampForm::Ground;
     if (of.time.size() > 1) return of.form.ground == Ground::text ? "date and time of day" : "seconds and nanoseconds";
-    return of.form.ground == Ground::stated ? fmt::format("{}", fmt::join(of.time_notes, "; ")) : "";
+    for (const std::string& note : of.time_notes)
+      if (is_of_stated_unit(of, note)) return note;
+    return "";
+  }
+
+  /// Whether a note repeats the unit in the column's name; others tell what values showed.
+  static bool is_of_stated_unit(const SurveyedTable& of, const std::string& note) {
+    return of.form.ground == StampForm::Ground::stated && note.starts_with(fmt::format("column {} ", of.time.front()));
   }
 
   /// Adds doubts about the form of the stamps.
   void stamps(const SurveyedTable& of) {
-    if (of.form.ground != StampForm::Ground::stated)
-      for (const std::string& note : of.time_notes) doubt(note);
+    for (const std::string& note : of.time_notes)
+      if (!is_of_stated_unit(of, note)) doubt(note);
     const SurveyedChannel* column = of.find(of.time.front());
     const std::string unit = column == nullptr ? "" : column->unit;
     if (!unit.empty() && column->type != "time" && !stated_time_unit(unit))

@@ -1,18 +1,20 @@
 #include "app/init/survey.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "app/init/why_text.hpp"
 #include "app/init/words.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/trajectory.hpp"
-#include "io/import/csv_number.hpp"
 #include "io/import/open_table.hpp"
 #include "io/import/read_columns.hpp"
 #include "io/import/stamp_check.hpp"
+#include "io/table/stamp_pattern.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -54,22 +56,6 @@ class TableSurvey {
   const TableInfo& info_;
   std::vector<FileColumn>& columns_;
   std::string time_problem_;
-
-  /// The first text that begins like a number and cannot be read as one, with the mark that it has.
-  static std::string why_no_numbers(const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) {
-      const bool begins = text.find_first_of("0123456789") < 2;
-      if (!begins || parse_number(text).status != NumberStatus::text) continue;
-      const MarkShown mark = mark_shown(text);
-      const bool comma = mark == MarkShown::comma || mark == MarkShown::either_comma;
-      return fmt::format(
-          "\"{}\" is not a number{}", text.substr(0, 30),
-          comma || mark == MarkShown::either_point
-              ? fmt::format(": other numbers have a decimal {} (data.decimal)", comma ? "point" : "comma")
-              : "");
-    }
-    return "";
-  }
 
   /// Stamps in seconds.
   static Eigen::VectorXd numbers_of(const FileColumn& column) {
@@ -123,7 +109,15 @@ class TableSurvey {
     for (const SurveyedChannel& channel : table.channels)
       if (channel.type == "time" && channel.name.ends_with("receive_time")) typed.push_back({channel.name});
     typed.insert(typed.end(), named.begin(), named.end());
+    for (std::size_t i = 0; i < table.channels.size(); ++i)
+      if (!names_time(table.channels[i].name) && begins_with_time(i)) typed.push_back({table.channels[i].name});
     return typed;
+  }
+
+  /// Whether a column of text, whatever its name, begins with a time of day or a date.
+  bool begins_with_time(std::size_t column) const {
+    const auto* texts = std::get_if<std::vector<std::string>>(&columns_[column]);
+    return texts != nullptr && !texts->empty() && is_known_time(texts->front());
   }
 
   /// The name of the date beside a time of day, both of which are text.
@@ -153,7 +147,12 @@ class TableSurvey {
       if (!take_times(table, stamps_of(candidate))) continue;
       table.time = candidate;
       const Eigen::Index jumps = jumps_back(table.time_s), stands = stands_still(table.time_s);
-      if (stands > table.time_s.size() / 2) continue;
+      if (stands > table.time_s.size() / 2) {
+        if (time_problem_.empty())
+          time_problem_ = fmt::format("column {}: {} of {} rows repeat the time of the row before",
+                                      fmt::join(candidate, " + "), stands, table.time_s.size());
+        continue;
+      }
       if (jumps == 0) return;
       if (jumps < table.time_s.size() / 10 && !jumping) jumping = candidate;
     }

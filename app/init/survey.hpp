@@ -17,7 +17,7 @@ struct SurveyedChannel {
   std::string name, unit, type;
   ChannelCheck check = {};
   Eigen::VectorXd values = {};  ///< one per row, NaN where missing; empty for text
-  std::string why_text = {};    ///< of a column of text that begins like one of numbers: what keeps it from being one
+  std::string why_text = {};    ///< of a column of text that changes: the value that is not a number
   bool counts = false;          ///< rises in steps as even as those of times and counters
 
   bool is_number() const { return values.size() > 0; }

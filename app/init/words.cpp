@@ -78,7 +78,7 @@ constexpr std::array time_names{" time ",      " t ",       " stamp ",   " times
                                 " clock ",     " time s ",  " t s ",     " header stamp ",  " time ns ",
                                 " time ms ",   " time us ", " t block ", " stamp ns ",      " header stamp secs ",
                                 " time min ",  " time h ",  " hours ",   " minutes ",       " datetime ",
-                                " date time ", " date "};
+                                " date time ", " date ",    " elapsed ", " uptime "};
 constexpr std::array run_names{" run ",     " run id ",   " block ", " trial ",   " episode ", " experiment ",
                                " segment ", " sequence ", " file ",  " session ", " lap "};
 

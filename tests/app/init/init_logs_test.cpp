@@ -23,7 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 using test::TemporaryFolder;
 using test::write_file;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 using Names = std::vector<std::string>;
 
 struct Written {
@@ -204,6 +206,90 @@ TEST_F(InitLogs, ListsWhatMovesAndWasNotTaken) {
   EXPECT_THAT(written.text,
               HasSubstr("# not taken, its name is that of a time, counter, pose, place or label: icp_x\n"));
   EXPECT_THAT(written.text, HasSubstr("# not taken, measured beside the state, or no hint tells its part: pressure\n"));
+}
+
+/// Columns that are no numbers are channels that their user misses.
+TEST_F(InitLogs, SaysWhyTextIsNotTaken) {
+  int k = 0;
+  const auto cell = [&k](double value, const char* word) {
+    return ++k % 37 == 0 ? std::string(word) : fmt::format("{:.5f}", value);
+  };
+  for (const char* const word : {"#N/A", "---", "?"}) {
+    const Written written =
+        init({write("words.csv", log_of("time,wz,cmd,pressure\n", 400, [&](const Drive& d) {
+                      return fmt::format("{:.3f},{:.5f},{},{}", d.t, d.rate, d.left, cell(d.right, word));
+                    }))});
+    EXPECT_THAT(written.text, HasSubstr(fmt::format("# not taken, text (\"{}\" is not a number, as others are (data.na "
+                                                    "lists words for missing values)): pressure\n",
+                                                    word)));
+  }
+  const Written brake = init({write("switch.csv", log_of("time,wz,brake,note,ground\n", 400, [](const Drive& d) {
+                                      return fmt::format("{:.3f},{:.5f},{},dry,{}", d.t, d.rate,
+                                                         d.left > 0 ? "on" : "off", d.right > 0 ? "ice" : "grip");
+                                    }))});
+  EXPECT_THAT(brake.text, HasSubstr("# not taken, text (\"off\" is not a number): brake\n")) << "labels are text";
+  EXPECT_EQ(brake.text.find("note"), std::string::npos) << "it does not change";
+  const std::string minus =
+      write("minus.csv", log_of("time,wz\n", 400, [](const Drive& d) {
+              return fmt::format("{:.3f},{}{:.5f}", d.t, d.rate < 0 ? "\u2212" : "", std::abs(d.rate));
+            }));
+  EXPECT_THAT([&] { init({minus}); },
+              ThrowsMessage<DataError>(HasSubstr("nothing can be a state; column wz: \"\u2212")));
+}
+
+TEST_F(InitLogs, NamesChannelsThatAConfigurationCannotName) {
+  const auto row = [](const Drive& d) { return fmt::format("{:.3f},{:.5f},{},{}", d.t, d.rate, d.left, d.right); };
+  EXPECT_THAT(init({write("nameless.csv", log_of("time,wz,cmd,\n", 400, row))}).text,
+              HasSubstr("# not taken, without a name: column 4\n"));
+  EXPECT_THAT(init({write("lines.csv", log_of("time,wz,cmd,\"u\nV\"\n", 400, row))}).text,
+              HasSubstr("# not taken, its name has a line end or another control character: u\\x0aV\n"));
+}
+
+/// Whatever a column is called, clocks in it are times; what cannot be read as times is said once.
+TEST_F(InitLogs, TimesOfAnyName) {
+  const auto log = [](const std::string& name, auto stamp) {
+    return log_of(name + ",wz,cmd\n", 400, [&](const Drive& d) {
+      return fmt::format("{},{:.5f},{}", stamp(static_cast<int>(std::lround(20 * d.t))), d.rate, d.left);
+    });
+  };
+  const std::string elapsed =
+      log("since start", [](int k) { return fmt::format("{}:{:02}:{:02}", k / 60, k % 60, 0); });
+  EXPECT_THAT(init({write("elapsed.csv", elapsed)}).text, HasSubstr("time = since start"));
+  const auto count = [](const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+    return found;
+  };
+  const std::string days =
+      init({write("days.csv", log("time", [](int k) { return fmt::format("0 days 00:00:{:02}", k % 60); }))}).text;
+  EXPECT_EQ(count(days, "\"0 days 00:00:00\" is not a time"), 1u) << days;
+  const std::string minutes =
+      init({write("minutes.csv", log("time", [](int k) { return fmt::format("2025-04-13 10:{:02}", k / 60); }))}).text;
+  EXPECT_THAT(minutes, HasSubstr("# ! column time: 393 of 400 rows repeat the time of the row before"));
+}
+
+/// Dates of two files that allow two readings together: the form is written and doubted.
+TEST_F(InitLogs, DatesOfSeveralFiles) {
+  const auto dated = [&](const std::string& name, const std::string& date) {
+    return write(name, log_of("time,wz,cmd\n", 400, [&](const Drive& d) {
+                   const auto k = static_cast<int>(std::lround(20 * d.t));
+                   return fmt::format("{}/2009 10:{:02}:{:02},{:.5f},{}", date, k / 60, k % 60, d.rate, d.left);
+                 }));
+  };
+  for (const auto& [first, second] : {std::pair{"02/02", "01/02"}, {"01/02", "02/02"}})
+    EXPECT_THAT(init({dated("run_1.csv", first), dated("run_2.csv", second)}).text,
+                AllOf(HasSubstr("allow two readings: %d/%m/%Y"), HasSubstr("time_format = %d/%m/%Y")))
+        << first;
+}
+
+/// Notes of the table's reader are doubts, also where the name of the times has their unit.
+TEST_F(InitLogs, NotesOfTheTableAreDoubts) {
+  std::string text = "Rig 3\n" + log_of("Time [ms];wz;cmd\n", 400, [](const Drive& d) {
+                       return fmt::format("{:.0f};{:.5f};{}", 1e3 * d.t, d.rate, d.left);
+                     });
+  const Written written = init({write("title.csv", text)});
+  EXPECT_THAT(written.text, HasSubstr("# ! 1 line above the table is skipped (data.skip_rows)\n"));
+  EXPECT_THAT(written.text, HasSubstr("# column Time [ms] counts milliseconds (data.time_unit = ms)\n"));
 }
 
 /// Readings of few levels repeat: no slower rate mends that.
