@@ -6,6 +6,8 @@
 #include <cmath>
 #include <system_error>
 
+#include "ident/base/printable.hpp"
+
 namespace modebank {
 
 namespace {
@@ -58,7 +60,7 @@ ParsedNumber parse_number(std::string_view field) {
 
 std::string shown_field(std::string_view field) {
   constexpr std::size_t shown_bytes = 60;
-  return fmt::format("\"{}\"{}", field.substr(0, shown_bytes), field.size() > shown_bytes ? "..." : "");
+  return fmt::format("\"{}\"{}", printable_name(field.substr(0, shown_bytes)), field.size() > shown_bytes ? "..." : "");
 }
 
 std::string unusable_number(NumberStatus status, std::string_view field) {

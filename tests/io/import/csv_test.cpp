@@ -96,6 +96,9 @@ TEST(Csv, TextInANumber) {
   for (const char* text : {"0x10", "1e", "+-1", "++1", "+", ".", "1 2", "1;2"})
     EXPECT_THAT(data_error("a,b\n1," + std::string(text) + "\n"), HasSubstr(std::string(text) + "\" is not a number"));
   EXPECT_LT(data_error("a,b\n1," + std::string(5000, 'x') + "\n").size(), 200) << "long text is cut";
+  EXPECT_EQ(data_error("a,b\n1,2\n" + std::string(2, '\0') + ",1\n"),
+            "f.csv:3: column a: \"\\x00\\x00\" is not a number")
+      << "a file system fills the end of a file that was not closed";
 }
 
 TEST(Csv, MissingValue) {
