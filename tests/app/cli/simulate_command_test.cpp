@@ -26,6 +26,20 @@ TEST_F(SimulateCommand, SimulateWritesRunsThatRunReads) {
   EXPECT_EQ(content.recording->runs[0].truth.cols(), 120);
 }
 
+/// The configuration that a simulation was made by reads it, too.
+TEST_F(SimulateCommand, ShippedSimulationsAreReadByTheirOwnConfiguration) {
+  for (const char* name : {"simulate_ice.ini", "simulate_linear.ini"}) {
+    const std::string config = (project_dir() / "configs" / name).string(), folder = file(name).string() + ".runs";
+    const ProgramResult simulated =
+        modebank({"simulate", config, "--simulate.output", folder, "--simulate.runs", "4", "--simulate.samples", "60"});
+    ASSERT_EQ(simulated.status, 0) << simulated.err;
+    const ProgramResult read =
+        modebank({"identify", config, "--data.root", folder, "--archive.output", file(name).string() + ".h5"});
+    ASSERT_EQ(read.status, 0) << read.err;
+    EXPECT_EQ(read_archive(file(name).string() + ".h5").recording->runs.size(), 4u);
+  }
+}
+
 TEST_F(SimulateCommand, SimulatedVehicleRunsWithItsLagUndone) {
   const std::string folder = file("vehicle").string();
   write("vehicle.ini",
