@@ -203,34 +203,61 @@ Index spikes(const VectorXd& values, double quantum) {
   return count;
 }
 
+namespace {
+
+/// Least numbers of values at an end of the range where they pile up.
+struct PileUp {
+  double least_share;  ///< of all values
+  double ratio;        ///< to those next to it
+  double errors;       ///< standard errors by which that is exceeded
+};
+
+/// Values, each of which lasts for `held` samples in the mean: so many tell as much as one that is drawn anew.
+struct Held {
+  std::vector<double> values;
+  double held = 1.0;
+};
+
+/// Whether the values v with end - outer < sign * v <= end are more than those of the width `next` below them.
+bool piles_up(const Held& of, double sign, double end, double outer, double next, const PileUp& least) {
+  const std::vector<double>& values = of.values;
+  const auto between = [&](double from, double to) {
+    return static_cast<double>(
+        std::count_if(values.begin(), values.end(), [&](double v) { return sign * v > from && sign * v <= to; }));
+  };
+  const double top = between(end - outer, end), below = between(end - outer - next, end - outer);
+  return top > least.least_share * static_cast<double>(values.size()) &&
+         top - least.ratio * below > least.errors * std::sqrt(of.held * (top + least.ratio * least.ratio * below));
+}
+
+/// Adds the values of a run to `all`, and those that do not repeat the one before to `fresh`.
+void gather(const VectorXd& run, std::vector<double>& all, std::vector<double>& fresh) {
+  const std::vector<double> known = finite_values(run);
+  all.insert(all.end(), known.begin(), known.end());
+  std::unique_copy(known.begin(), known.end(), std::back_inserter(fresh));
+}
+
+}  // namespace
+
 SaturationLimits saturation_limits(const std::vector<VectorXd>& runs) {
-  constexpr double band = 0.02, least_share = 0.005, pile_up = 1.5, full = 0.8;
-  constexpr double fifth = 0.2, soft_share = 0.02, soft_pile_up = 1.2;
-  std::vector<double> all;
-  for (const VectorXd& run : runs) {
-    const std::vector<double> known = finite_values(run);
-    all.insert(all.end(), known.begin(), known.end());
-  }
+  constexpr double band = 0.02, full = 0.8, fifth = 0.2;
+  constexpr PileUp hard{0.005, 1.5, 3.0}, soft{0.02, 1.2, 3.0};
+  Held samples, fresh;
+  for (const VectorXd& run : runs) gather(run, samples.values, fresh.values);
+  const std::vector<double>& all = samples.values;
+  if (!all.empty()) samples.held = static_cast<double>(all.size()) / static_cast<double>(fresh.values.size());
   SaturationLimits limits{not_a_number, not_a_number, false};
   if (all.empty() || is_of_few_levels(all) || has_two_levels(VectorXd::Map(all.data(), std::ssize(all)))) return limits;
   const auto [least, largest] = std::minmax_element(all.begin(), all.end());
   const double low = *least, high = *largest, width = band * (high - low), scale = std::max(-low, high);
   if (!(width > 0.0)) return limits;
-  // Samples with from < sign * v <= to, as a share of all.
-  const auto share = [&](double sign, double from, double to) {
-    const auto inside = [&](double v) { return sign * v > from && sign * v <= to; };
-    return static_cast<double>(std::count_if(all.begin(), all.end(), inside)) / static_cast<double>(all.size());
-  };
-  const auto piled = [&](double sign, double end, double outer, double next, double least_of_all, double ratio) {
-    const double top = share(sign, end - outer, end);
-    return end >= full * scale && top > least_of_all && top > ratio * share(sign, end - outer - next, end - outer);
-  };
-  if (piled(-1.0, -low, width, 2.0 * width, least_share, pile_up)) limits.low = low + width;
-  if (piled(1.0, high, width, 2.0 * width, least_share, pile_up)) limits.high = high - width;
+  const bool reaches_low = -low >= full * scale, reaches_high = high >= full * scale;
+  if (reaches_low && piles_up(samples, -1.0, -low, width, 2.0 * width, hard)) limits.low = low + width;
+  if (reaches_high && piles_up(samples, 1.0, high, width, 2.0 * width, hard)) limits.high = high - width;
   if (std::isfinite(limits.low) || std::isfinite(limits.high)) return limits;
   const double outer = fifth * scale;
-  if (piled(-1.0, -low, outer, outer, soft_share, soft_pile_up)) limits.low = low + 0.5 * outer;
-  if (piled(1.0, high, outer, outer, soft_share, soft_pile_up)) limits.high = high - 0.5 * outer;
+  if (reaches_low && piles_up(fresh, -1.0, -low, outer, outer, soft)) limits.low = low + 0.5 * outer;
+  if (reaches_high && piles_up(fresh, 1.0, high, outer, outer, soft)) limits.high = high - 0.5 * outer;
   limits.soft = std::isfinite(limits.low) || std::isfinite(limits.high);
   return limits;
 }

@@ -50,10 +50,11 @@ Eigen::Index spikes(const Eigen::VectorXd& values, double quantum);
 
 /// Where a signal presses against an end of its range, as a limiter makes it. Full scale is its largest absolute value
 /// over all runs; ends below 0.8 of that are none. Hard: more than 0.5 % of the samples lie in the outermost 2 % of the
-/// range, and at least 1.5 times as many as in the next 4 %. Soft: the outermost fifth of full scale holds at least 2 %
-/// of the samples, and 1.2 times as many as the next fifth; its outer half then counts.
-/// A signal of two levels has none, and one of up to ten levels only where an end has three times the share of the
-/// commonest level inside the range: test signals and gears take each of few values often.
+/// range, and more than 1.5 times as many as in the next 4 %. Soft: the outermost fifth of full scale holds more than 2
+/// % of the samples that do not repeat the one before, and more than 1.2 times as many as the next fifth; its outer
+/// half then counts. More: by three standard errors of counts, in which values that are held count once. A signal of
+/// two levels has none, and one of up to ten levels only where an end has three times the share of the commonest level
+/// inside the range: test signals and gears take each of few values often.
 struct SaturationLimits {
   double low, high;   ///< samples at or below low, or at or above high, count as saturated; NaN: no such end
   bool soft = false;  ///< no hard end was found, but a soft one

@@ -79,6 +79,26 @@ TEST(Saturation, IsAPileUpAtFullScale) {
   EXPECT_FALSE(std::isfinite(upper.low)) << "far from full scale: a rest, not a limit";
 }
 
+/// A test signal that holds random levels has few of them, so that chance alone puts more of them near one end.
+TEST(Saturation, IsNotSeenInHeldRandomLevels) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 generator(seed);
+    std::vector<VectorXd> runs;
+    double level = 1.0;
+    for (int run = 0; run < 12; ++run)
+      runs.push_back(VectorXd::NullaryExpr(400, [&] {
+        if (generator() % 5 == 0) level = 3.4 * static_cast<double>(generator() >> 11) * 0x1p-53 - 1.7;
+        return level;
+      }));
+    const SaturationLimits limits = saturation_limits(runs);
+    EXPECT_FALSE(std::isfinite(limits.low) || std::isfinite(limits.high)) << seed;
+    const SaturationLimits alone = saturation_limits({runs.front()});
+    EXPECT_FALSE(std::isfinite(alone.low) || std::isfinite(alone.high)) << seed << ", one run";
+  }
+  const SaturationLimits tube = saturation_limits({(1.2 * noise(20000, 8)).array().tanh().matrix()});
+  EXPECT_TRUE(tube.soft) << "a soft limiter pushes what is large towards the end of the range";
+}
+
 TEST(Saturation, IsNotSeenInSignalsOfFewLevels) {
   std::mt19937_64 generator(5);
   const auto held = [&](std::vector<double> levels, double sd) {
