@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -31,7 +32,11 @@ class LiveMessages {
     }
     repeats.last = place;
   }
-  /// How often each of them was repeated.
+  /// Says what was found out about the stream; what was said before is not said again, nor counted.
+  void say_note(const std::string& place, const std::string& text) {
+    if (notes_.insert(text).second) say(fmt::format("{}: {}", place, text));
+  }
+  /// How often each message of say_once was repeated.
   void say_repeats() {
     for (const auto& [kind, repeats] : repeats_)
       if (repeats.count > 1)
@@ -47,6 +52,7 @@ class LiveMessages {
   };
   std::size_t dropped_ = 0;
   std::map<std::string, Repeats> repeats_;
+  std::set<std::string> notes_;
 
   static std::string kind_of(const std::string& text) {
     std::string kind;

@@ -125,7 +125,7 @@ void Tracker::take_last_line(const std::string& line) {
 }
 
 void Tracker::take(SampleReader::Line kind) {
-  for (const std::string& note : reader_.table().notes()) messages_.say_once("standard input", note);
+  for (const std::string& note : reader_.table().notes()) messages_.say_note("standard input", note);
   if (kind == SampleReader::Line::blank) return;
   if (kind == SampleReader::Line::malformed) return complain(reader_.reason());
   if (!writer_) open_writer({reader_.table().format() == LineFormat::ndjson, false, config_.track.forecast});

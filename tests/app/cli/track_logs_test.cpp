@@ -14,6 +14,7 @@
 namespace modebank::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -117,7 +118,11 @@ TEST_F(TrackLogs, ReadsSemicolonsDecimalCommasUnitsAndNoHeader) {
   const auto line = [](const Row& row) { return fmt::format("{},{},{},{}", row.time_s, row.wz, row.left, row.right); };
   rewrite("time;wz;left;right\ns;rad/s;m/s;m/s\n", [&](const Row& row) { return german(line(row)); });
   ASSERT_EQ(run().status, 0);
-  expect_evaluated(track("run_01.csv"));
+  const ProgramResult semicolons = track("run_01.csv");
+  expect_evaluated(semicolons);
+  EXPECT_THAT(semicolons.err,
+              AllOf(HasSubstr("separated by semicolons"), Not(HasSubstr("times more")), Not(HasSubstr("time more"))))
+      << "what was found out is said once";
   for (const char* name : {"run_00.csv", "run_01.csv"}) {
     std::string text = read_file(file(name));
     text.erase(0, text.find('\n', text.find('\n') + 1) + 1);
