@@ -26,7 +26,8 @@ struct Alignment {
 
   /// How far before an estimate the samples reach that later ones are made of.
   double reach_s() const {
-    return std::max(0.0, lag_s + averaged.further_lag_s) + (rate_hz > 0.0 && averaged.any() ? 1.0 / rate_hz : 0.0);
+    const double oldest_s = lag_s + (averaged.inputs.empty() ? 0.0 : averaged.further_lag_s);
+    return std::max(0.0, oldest_s) + (rate_hz > 0.0 && averaged.any() ? 1.0 / rate_hz : 0.0);
   }
 };
 
