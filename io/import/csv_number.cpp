@@ -58,8 +58,9 @@ std::optional<Grouped> grouped(std::string_view field, char decimal, char mark) 
     rest.remove_prefix(1);
   }
   const bool has_exponent = rest.find_first_of("eE") != std::string_view::npos;
-  if (result.marks > 0 && has_exponent) return std::nullopt;  // the mark of 2.499e3 is one of decimals
-  result.digits += rest;                                      // decimals and an exponent, which are not checked here
+  if (result.marks > 0 && !result.has_decimals && has_exponent)
+    return std::nullopt;  // the mark of 2.499e3 is one of decimals
+  result.digits += rest;  // decimals and an exponent, which are not checked here
   return result;
 }
 

