@@ -94,7 +94,7 @@ std::string why_not_told(const Finding& finding) {
       return fmt::format("{} is less than the {:g} that counts", gain_words(*least_beaten(finding)), negligible_gain);
     case Doubt::short_stays:
       return fmt::format(
-          "modes stay {:.1f} samples in the mean, and noisy inputs or a delay that differs between runs look like "
+          "modes stay {:.3g} samples in the mean, and noisy inputs or a delay that differs between runs look like "
           "modes "
           "that stay fewer than {:.0f}",
           finding.stay, finding.stay_asked);

@@ -143,7 +143,6 @@ const Rule rules[] = {
                             proposed_split(s.archive.recording->runs.front().samples(), window_and_lags(s)));
        return "hold runs out, for only they can be evidence: record another, or name some with --data.test";
      }},
-    {[](const Situation& s) { return s.answers(Answer::cannot_tell); }, advice_on_doubt},
     {[](const Situation& s) { return errors_follow_a_pattern(s.bank) && may_have_more_lags(s); },
      [](const Situation& s) {
        const bool acted_on = !s.archive.recording || !s.archive.recording->inputs.empty();
@@ -155,6 +154,7 @@ const Rule rules[] = {
            "{}{}",
            lags, s.setting("data.lag_s") == "auto" ? "" : ", or with --data.lag_s auto");
      }},
+    {[](const Situation& s) { return s.answers(Answer::cannot_tell); }, advice_on_doubt},
     {[](const Situation& s) { return s.answers(Answer::no_evidence) && !s.finding.better_description.empty(); },
      [](const Situation& s) {
        const std::string& simpler = s.finding.better_description;

@@ -82,7 +82,7 @@ TEST(FindingText, WhatCannotBeToldSaysWhy) {
   finding.gains.front().gain = 0.12;
   finding.stay = 2.34;
   finding.stay_asked = 5.0;
-  EXPECT_THAT(finding_text(finding), HasSubstr("modes stay 2.3 samples in the mean"));
+  EXPECT_THAT(finding_text(finding), HasSubstr("modes stay 2.34 samples in the mean"));
   finding.modes_differ = false;
   EXPECT_THAT(finding_text(finding), HasSubstr("the standard errors of the modes' parameters are not known"));
   finding.gains.front().margin = finding.standard_error = std::numeric_limits<double>::quiet_NaN();
