@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How often modes of motion are claimed: where there are none, where one motion bends, and where there are some (make evidence).
 
-  measure_evidence.py build/modebank [--table docs/results/evidence.csv] [--seeds 12] [--first 0] [--jobs N] [--only NAME,NAME] [--quantum auto]
+  measure_evidence.py build/modebank [--table docs/results/evidence.csv] [--seeds N] [--first 0] [--jobs N] [--only NAME,NAME] [--quantum auto]
 
 Every system is simulated here, by numpy, as twelve runs of 400 samples with inputs redrawn or held; six train and six
 are held out, as `modebank run` divides them by default, and the program runs with nothing but [data] configured. A row per system and
@@ -44,6 +44,7 @@ def modes_apart(g, dwell=None):
 
 MODES = {"modes": modes_apart, "modes that stay 3 to 10 samples": lambda g: modes_apart(g, lambda h: float(h.uniform(3, 10)))}
 GROUPS = {"one linear motion": LINEAR, "one bent motion": BENT, "modes": MODES}
+SEEDS = collections.defaultdict(lambda: 12, zip(MODES, (60, 20)))
 
 
 def trial(program, quantum, revision, group, name, seed):
@@ -94,7 +95,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--table", type=pathlib.Path)
     parser.add_argument("--revision", default="")
-    parser.add_argument("--seeds", type=int, default=12)
+    parser.add_argument("--seeds", type=int, help="of each system; default: 12, of those with modes 60 and 20")
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--only", default="")
@@ -102,8 +103,9 @@ def main():
     options = parser.parse_args()
     wanted = options.only.split(",") if options.only else [name for systems in GROUPS.values() for name in systems]
     known = {(r["system"], int(r["seed"])) for r in read(options.table)} if options.table else set()
-    jobs = [(group, name, seed) for seed in range(options.first, options.first + options.seeds)
-            for group, systems in GROUPS.items() for name in systems if name in wanted and (name, seed) not in known]
+    jobs = [(group, name, seed) for seed in range(options.first, options.first + (options.seeds or max(SEEDS[name] for name in wanted)))
+            for group, systems in GROUPS.items() for name in systems
+            if name in wanted and (name, seed) not in known and seed < options.first + (options.seeds or SEEDS[name])]
     rows = []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for row in pool.map(lambda job: trial(options.program, options.quantum, options.revision, *job), jobs):
