@@ -7,7 +7,9 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <utility>
 
+#include "app/init/proposed_times.hpp"
 #include "app/init/words.hpp"
 #include "ident/base/characters.hpp"
 #include "ident/base/printable.hpp"
@@ -47,7 +49,7 @@ class Proposer {
     files(config_folder);
     mounting();
     channels();
-    times();
+    propose_times(table(state()), table(input()), proposal_);
     sampling();
     runs();
     proposal_.left = channels_left(surveyed_, guess_);
@@ -69,12 +71,9 @@ class Proposer {
   bool one_table() const { return state().file == input().file && state().table == input().table; }
 
   void add(std::string key, std::string value, std::string why = {}) {
-    proposal_.keys.push_back({std::move(key), std::move(value), std::move(why)});
+    proposal_.add(std::move(key), std::move(value), std::move(why));
   }
-  void doubt(std::string text) {
-    if (std::count(proposal_.doubts.begin(), proposal_.doubts.end(), text) == 0)
-      proposal_.doubts.push_back(std::move(text));
-  }
+  void doubt(const std::string& text) { proposal_.doubt(text); }
 
   std::string runs_text(const FileSet& set, bool listed) const {
     if (set.files.size() == 1) return "one file";
@@ -227,64 +226,6 @@ class Proposer {
     if (!guess_.inputs.empty()) units("input_unit", guess_.inputs);
   }
 
-  void times() {
-    const SurveyedTable &states = table(state()), &inputs = table(input());
-    const auto own = [](const SurveyedTable& of) {
-      const SurveyedChannel* first = of.time.empty() ? nullptr : of.find(of.time.front());
-      return first != nullptr && first->type == "time";
-    };
-    if (states.time.empty() || inputs.time.empty()) {
-      add("time", "", "");
-      proposal_.keys.back() = {"time", " ", "no column of times was found: row k is k / rate_hz"};
-      add("rate_hz", "1", "samples per second: CHANGE THIS to what it was");
-      doubt("no column of times was found: data.rate_hz = 1 stands for whatever it was");
-      for (const SurveyedTable* of : {&states, &inputs})
-        if (!of->time_problem.empty()) doubt(of->time_problem);
-      return;
-    }
-    if (states.time_guessed)
-      doubt(fmt::format("{} rises steadily, {:.4g} times a second: it is taken for the times", states.time.front(),
-                        states.sampling.rate_hz));
-    stamps(states);
-    if (own(states) && own(inputs)) return;  // what a recording calls its stamps needs no key
-    std::vector<std::string> stamps;
-    for (const std::string& name : states.time)
-      stamps.push_back(name.find(',') == std::string::npos ? name : quoted_channel_name(name));
-    const std::string time = fmt::format("{}", fmt::join(stamps, ", "));
-    if (states.time != inputs.time)
-      doubt(fmt::format("times are called {} in one table and {} in the other: data.time takes one name", time,
-                        fmt::join(inputs.time, ", ")));
-    if (time != "time") add("time", time, why_time(states));
-  }
-
-  static std::string why_time(const SurveyedTable& of) {
-    using Ground = StampForm::Ground;
-    if (of.time.size() > 1) return of.form.ground == Ground::text ? "date and time of day" : "seconds and nanoseconds";
-    for (const std::string& note : of.time_notes)
-      if (is_of_stated_unit(of, note)) return note;
-    return "";
-  }
-
-  /// Whether a note repeats the unit in the column's name; others tell what values showed.
-  static bool is_of_stated_unit(const SurveyedTable& of, const std::string& note) {
-    return of.form.ground == StampForm::Ground::stated && note.starts_with(fmt::format("column {} ", of.time.front()));
-  }
-
-  /// Adds doubts about the form of the stamps.
-  void stamps(const SurveyedTable& of) {
-    for (const std::string& note : of.time_notes)
-      if (!is_of_stated_unit(of, note)) doubt(note);
-    const SurveyedChannel* column = of.find(of.time.front());
-    const std::string unit = column == nullptr ? "" : column->unit;
-    if (!unit.empty() && column->type != "time" && !stated_time_unit(unit))
-      doubt(fmt::format("{} is not known as a unit of time: {} is taken for {} (data.time_unit)", unit, of.time.front(),
-                        in_words(of.form.unit)));
-    if (of.form.patterns.size() < 2) return;
-    add("time_format", of.form.patterns.front(), "a guess: day and month may be the other way round");
-    doubt(fmt::format("the times, as {}, allow two readings: {} and {}", of.form.value, of.form.patterns[0],
-                      of.form.patterns[1]));
-  }
-
   double repeated(const std::vector<ChannelPlace>& places) const {
     double least = 1.0;
     for (const ChannelPlace& place : places) least = std::min(least, channel(place).check.repeated);
@@ -342,30 +283,19 @@ class Proposer {
   }
 };
 
-/// Channels of one reason on one line, the first of them by name.
-std::string left_text(const std::vector<ChannelLeft>& left) {
-  constexpr std::size_t named = 8;
-  std::vector<std::string> reasons;
-  for (const ChannelLeft& channel : left)
-    if (std::find(reasons.begin(), reasons.end(), channel.reason) == reasons.end()) reasons.push_back(channel.reason);
-  std::string text;
-  for (const std::string& reason : reasons) {
-    std::vector<std::string> names;
-    for (const ChannelLeft& channel : left)
-      if (channel.reason == reason) names.push_back(printable_name(channel.name));
-    const std::size_t more = names.size() - std::min(names.size(), named);
-    names.resize(names.size() - more);
-    text += fmt::format("# not taken, {}: {}{}\n", reason, fmt::join(names, ", "),
-                        more > 0 ? fmt::format(" and {} more", more) : "");
-  }
-  return text;
-}
-
 }  // namespace
 
 const ProposedKey* Proposal::find(const std::string& key) const {
   const auto found = std::find_if(keys.begin(), keys.end(), [&](const ProposedKey& k) { return k.key == key; });
   return found == keys.end() ? nullptr : &*found;
+}
+
+void Proposal::add(std::string key, std::string value, std::string why) {
+  keys.push_back({std::move(key), std::move(value), std::move(why)});
+}
+
+void Proposal::doubt(const std::string& text) {
+  if (std::count(doubts.begin(), doubts.end(), text) == 0) doubts.push_back(text);
 }
 
 void Proposal::drop(const std::string& key) {
@@ -380,29 +310,6 @@ void Proposal::set(const std::string& key, const std::string& value, const std::
 Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
                  const std::string& config_folder) {
   return Proposer(sets, surveyed, guess).propose(config_folder);
-}
-
-std::string configuration_text(const Proposal& proposal, const std::string& command) {
-  constexpr std::size_t longest = 100;
-  const std::string shown =
-      command.size() > longest ? command.substr(0, command.rfind(' ', longest)) + " ..." : command;
-  std::string text = fmt::format("# Written by {}: a start, to be looked at.\n", printable_name(shown));
-  for (const std::string& doubt : proposal.doubts) text += fmt::format("# ! {}\n", printable_name(doubt));
-  text += "\n[data]\n";
-  for (const ProposedKey& key : proposal.keys) {
-    if (key.value.empty()) {
-      text += fmt::format("# {}\n", key.why);
-      continue;
-    }
-    const std::string line = fmt::format("{} = {}", key.key, key.value == " " ? "" : key.value);
-    text += key.why.empty() ? line + "\n" : fmt::format("{:<40}  # {}\n", line, printable_name(key.why));
-  }
-  if (!proposal.left.empty()) text += "\n" + left_text(proposal.left);
-  text +=
-      "\n# What is not named stands at its default; `modebank help KEY` says what a key means, `modebank check` on "
-      "this "
-      "file what\n# the data allow and which settings gain.\n";
-  return text;
 }
 
 }  // namespace modebank::app

@@ -20,6 +20,8 @@ struct Proposal {
   std::vector<ChannelLeft> left;    ///< channels that move and were not taken
 
   const ProposedKey* find(const std::string& key) const;
+  void add(std::string key, std::string value, std::string why = {});
+  void doubt(const std::string& text);  ///< once
   void drop(const std::string& key);
   void set(const std::string& key, const std::string& value, const std::string& why);
 };

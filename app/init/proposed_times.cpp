@@ -1,0 +1,69 @@
+#include "app/init/proposed_times.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/init/words.hpp"
+#include "io/import/expression.hpp"
+
+namespace modebank::app {
+namespace {
+
+/// Whether a note repeats the unit in the column's name; others tell what values showed.
+bool is_of_stated_unit(const SurveyedTable& of, const std::string& note) {
+  return of.form.ground == StampForm::Ground::stated && note.starts_with(fmt::format("column {} ", of.time.front()));
+}
+
+std::string why_time(const SurveyedTable& of) {
+  using Ground = StampForm::Ground;
+  if (of.time.size() > 1) return of.form.ground == Ground::text ? "date and time of day" : "seconds and nanoseconds";
+  for (const std::string& note : of.time_notes)
+    if (is_of_stated_unit(of, note)) return note;
+  return "";
+}
+
+/// Adds doubts about the form of the stamps.
+void propose_form(const SurveyedTable& of, Proposal& proposal) {
+  for (const std::string& note : of.time_notes)
+    if (!is_of_stated_unit(of, note)) proposal.doubt(note);
+  const SurveyedChannel* column = of.find(of.time.front());
+  if (column != nullptr && column->type != "time" && !column->unit.empty() && !stated_time_unit(column->unit))
+    proposal.doubt(fmt::format("{} is not known as a unit of time: {} is taken for {} (data.time_unit)", column->unit,
+                               of.time.front(), in_words(of.form.unit)));
+  if (of.form.patterns.size() < 2) return;
+  proposal.add("time_format", of.form.patterns.front(), "a guess: day and month may be the other way round");
+  proposal.doubt(fmt::format("the times, as {}, allow two readings: {} and {}", of.form.value, of.form.patterns[0],
+                             of.form.patterns[1]));
+}
+
+}  // namespace
+
+void propose_times(const SurveyedTable& states, const SurveyedTable& inputs, Proposal& proposal) {
+  const auto own = [](const SurveyedTable& of) {
+    const SurveyedChannel* first = of.time.empty() ? nullptr : of.find(of.time.front());
+    return first != nullptr && first->type == "time";
+  };
+  if (states.time.empty() || inputs.time.empty()) {
+    proposal.add("time", " ", "no column of times was found: row k is k / rate_hz");
+    proposal.add("rate_hz", "1", "samples per second: CHANGE THIS to what it was");
+    proposal.doubt("no column of times was found: data.rate_hz = 1 stands for whatever it was");
+    for (const SurveyedTable* of : {&states, &inputs})
+      if (!of->time_problem.empty()) proposal.doubt(of->time_problem);
+    return;
+  }
+  if (states.time_guessed)
+    proposal.doubt(fmt::format("{} rises steadily, {:.4g} times a second: it is taken for the times",
+                               states.time.front(), states.sampling.rate_hz));
+  propose_form(states, proposal);
+  if (own(states) && own(inputs)) return;  // what a recording calls its stamps needs no key
+  std::vector<std::string> stamps;
+  for (const std::string& name : states.time)
+    stamps.push_back(name.find(',') == std::string::npos ? name : quoted_channel_name(name));
+  const std::string time = fmt::format("{}", fmt::join(stamps, ", "));
+  if (states.time != inputs.time)
+    proposal.doubt(fmt::format("times are called {} in one table and {} in the other: data.time takes one name", time,
+                               fmt::join(inputs.time, ", ")));
+  if (time != "time") proposal.add("time", time, why_time(states));
+}
+
+}  // namespace modebank::app
