@@ -241,8 +241,7 @@ FitOptions options_for(const MotionModel& model, const Recording& recording, Fit
 }
 
 void check_model(const FitOptions& options, Index states, Index inputs) {
-  const bool lags = options.state_lags != 1 || options.input_lags != 1 || options.input_delay != 1;
-  if (lags && options.model != "varx")
+  if (has_lags(options) && options.model != "varx")
     throw ConfigurationError("state_lags, input_lags and input_delay are those of model = varx, not of " +
                              options.model);
   if (options.model == "varx" && options.residual == ResidualKind::simulation)

@@ -5,6 +5,9 @@
 
 namespace modebank {
 
+/// Whether lags or a delay are stated that `linear` does not have.
+inline bool has_lags(const FitOptions& o) { return o.state_lags != 1 || o.input_lags != 1 || o.input_delay != 1; }
+
 inline bool is_linear(const FitOptions& options) { return options.model == "linear" || options.model == "varx"; }
 
 /// The linear model that the options name, for n states and m inputs; of a motion model the structure of its

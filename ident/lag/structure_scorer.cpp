@@ -1,0 +1,156 @@
+#include "ident/lag/structure_scorer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ident/base/linalg.hpp"
+#include "ident/fit/loss.hpp"
+#include "ident/fit/minimise.hpp"
+#include "ident/fit/scale.hpp"
+#include "ident/lag/student_density.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Added to the diagonal of a Gram matrix of columns of unit root mean square, as a share of the rows: what collinear
+/// columns share is shared out among them, and nothing else moves.
+constexpr double collinear_ridge = 1e-11;
+constexpr double exact_share = 1e-9;         // of the increments: what is predicted more closely is predicted exactly
+constexpr double least_share_of_rms = 1e-3;  // of the errors' root mean square, for more than half of them may be zero
+constexpr double least_normal_scale = 1e-150;  // its square is still a normal number
+
+/// Rows of one response outside of rows first .. first + count - 1.
+Transitions outside(const LaggedRows& rows, const std::vector<Index>& columns, Index response, Index first,
+                    Index count) {
+  const Index N = rows.count(), after = N - first - count;
+  const auto without = [&](const auto& from, auto to) {
+    to.topRows(first) = from.topRows(first);
+    to.bottomRows(after) = from.bottomRows(after);
+  };
+  Transitions kept{MatrixXd(N - count, std::ssize(columns)), MatrixXd(N - count, 1)};
+  for (std::size_t j = 0; j < columns.size(); ++j)
+    without(rows.X.col(columns[j]), kept.regressors.col(static_cast<Index>(j)));
+  without(rows.Y.col(response), kept.increments.col(0));
+  if (rows.weight.size() == 0) return kept;
+  kept.weight = VectorXd(N - count);
+  without(rows.weight, kept.weight.col(0));
+  return finite_rows(kept);
+}
+
+/// Coefficients by the loss and the scale of a window's fit; empty where that fails.
+VectorXd robust_coefficients(const Transitions& transitions, const RobustLoss& loss, const FitOptions& options) {
+  const Decomposition decomposition = decompose(transitions.regressors, excitation_tolerance);
+  const double rms = std::sqrt(residuals(decomposition, transitions.increments).squaredNorm() /
+                               static_cast<double>(transitions.count()));
+  const double robust = robust_scale(transitions, decomposition)(0);
+  VectorXd sigma(1);
+  sigma << std::max({std::isfinite(robust) ? robust : 0.0, least_share_of_rms * rms, least_normal_scale});
+  const WhitenedProblem problem = whiten(transitions, decomposition, sigma, nullptr);
+  const Minimum minimum = minimise(problem, loss, options.max_iterations);
+  return minimum.status == FitStatus::failed ? VectorXd() : problem.theta(minimum.z);
+}
+
+}  // namespace
+
+StructureScorer::StructureScorer(const LaggedRows& rows, const VectorXd& quantum) : rows_(rows) {
+  least_scale_ = exact_share * (rows.Y.colwise().squaredNorm() / static_cast<double>(rows.count())).cwiseSqrt();
+  for (Index i = 0; i < quantum.size(); ++i) least_scale_(i) = std::max(least_scale_(i), quantum(i) / std::sqrt(12.0));
+  part_weight_ = VectorXd::Zero(rows.parts);
+  for (Index k = 0; k < rows.count(); ++k) part_weight_(rows.part[static_cast<std::size_t>(k)]) += rows.weight_of(k);
+  for (Index f = 0; f < rows.folds(); ++f) {
+    const Index first = rows.fold_begin[static_cast<std::size_t>(f)];
+    const Index count = rows.fold_begin[static_cast<std::size_t>(f) + 1] - first;
+    MatrixXd X = rows.X.middleRows(first, count), Y = rows.Y.middleRows(first, count);
+    if (rows.weight.size() > 0) {
+      const VectorXd root = rows.weight.segment(first, count).cwiseSqrt();
+      X.array().colwise() *= root.array();
+      Y.array().colwise() *= root.array();
+    }
+    gram_.emplace_back(X.transpose() * X);
+    cross_.emplace_back(X.transpose() * Y);
+  }
+  MatrixXd all_gram = MatrixXd::Zero(rows.X.cols(), rows.X.cols()),
+           all_cross = MatrixXd::Zero(rows.X.cols(), rows.states);
+  for (std::size_t f = 0; f < gram_.size(); ++f) {
+    all_gram += gram_[f];
+    all_cross += cross_[f];
+  }
+  for (std::size_t f = 0; f < gram_.size(); ++f) {
+    gram_[f] = all_gram - gram_[f];
+    cross_[f] = all_cross - cross_[f];
+  }
+}
+
+MatrixXd StructureScorer::least_squares_errors(const LinearStructure& structure) const {
+  const std::vector<Index> columns = rows_.columns(structure);
+  const Index q = std::ssize(columns), of_states = structure.dimension(), of_inputs = structure.acting_inputs();
+  MatrixXd errors = rows_.Y;
+  for (Index f = 0; f < rows_.folds(); ++f) {
+    const Index first = rows_.fold_begin[static_cast<std::size_t>(f)];
+    const Index count = rows_.fold_begin[static_cast<std::size_t>(f) + 1] - first;
+    if (count == 0 || count == rows_.count()) continue;
+    MatrixXd gram = gram_[static_cast<std::size_t>(f)](columns, columns);
+    gram.diagonal().array() += collinear_ridge * static_cast<double>(rows_.count());
+    const MatrixXd cross = cross_[static_cast<std::size_t>(f)](columns, Eigen::all);
+    const Cholesky factor(gram);
+    MatrixXd coefficients(q, rows_.states);
+    for (Index i = 0; i < rows_.states; ++i)
+      coefficients.col(i) =
+          factor.definite() ? factor.solve(cross.col(i)) : solve_semidefinite(gram, VectorXd(cross.col(i)));
+    auto left_out = errors.middleRows(first, count);
+    const auto X = rows_.X.middleRows(first, count);
+    left_out.noalias() -= X.leftCols(of_states) * coefficients.topRows(of_states);
+    if (of_inputs > 0)
+      left_out.noalias() -= X.middleCols(columns[static_cast<std::size_t>(of_states)], of_inputs) *
+                            coefficients.middleRows(of_states, of_inputs);
+    if (structure.intercept) left_out.noalias() -= X.rightCols(1) * coefficients.bottomRows(1);
+  }
+  return errors;
+}
+
+MatrixXd StructureScorer::robust_errors(const LinearStructure& structure, const FitOptions& options) const {
+  const RobustLoss loss(options.loss, options.loss_scale);
+  const std::vector<Index> columns = rows_.columns(structure);
+  MatrixXd errors = least_squares_errors(structure);
+  for (Index f = 0; f < rows_.folds(); ++f) {
+    const Index first = rows_.fold_begin[static_cast<std::size_t>(f)];
+    const Index count = rows_.fold_begin[static_cast<std::size_t>(f) + 1] - first;
+    if (count == 0 || count == rows_.count()) continue;
+    const MatrixXd X = rows_.X.middleRows(first, count)(Eigen::all, columns);
+    for (Index i = 0; i < rows_.states; ++i) {
+      const VectorXd theta = robust_coefficients(outside(rows_, columns, i, first, count), loss, options);
+      if (theta.size() > 0) errors.col(i).segment(first, count) = rows_.Y.col(i).segment(first, count) - X * theta;
+    }
+  }
+  return errors;
+}
+
+LeftOutForecast StructureScorer::forecast(const MatrixXd& errors) const {
+  LeftOutForecast forecast{VectorXd::Zero(rows_.parts), VectorXd(rows_.states)};
+  VectorXd density = VectorXd::Zero(rows_.count());
+  for (Index i = 0; i < rows_.states; ++i) {
+    const VectorXd of_state = errors.col(i);
+    const double square = rows_.weight.size() > 0 ? of_state.cwiseAbs2().dot(rows_.weight) / rows_.weight.sum()
+                                                  : of_state.squaredNorm() / static_cast<double>(rows_.count());
+    forecast.rmse(i) = std::sqrt(square);
+    const double floor = std::max({least_scale_(i), least_share_of_rms * forecast.rmse(i), least_normal_scale});
+    density += fitted_student_log_density(of_state, rows_.weight, floor);
+  }
+  for (Index k = 0; k < rows_.count(); ++k)
+    forecast.of_part(rows_.part[static_cast<std::size_t>(k)]) += rows_.weight_of(k) * density(k);
+  forecast.log_score = forecast.of_part.sum() / part_weight_.sum();
+  return forecast;
+}
+
+LeftOutForecast StructureScorer::least_squares(const LinearStructure& structure) const {
+  return forecast(least_squares_errors(structure));
+}
+
+LeftOutForecast StructureScorer::robust(const LinearStructure& structure, const FitOptions& options) const {
+  return forecast(robust_errors(structure, options));
+}
+
+}  // namespace modebank

@@ -1,0 +1,310 @@
+// The lags and the delay of systems whose structure is known.
+#include "ident/lag/structure_search.hpp"
+
+#include <gmock/gmock.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "ident/lag/feedback.hpp"
+#include "ident/lag/lagged_rows.hpp"
+#include "ident/lag/structure_scorer.hpp"
+#include "ident/lag/student_density.hpp"
+#include "tests/ident/ident_test_support.hpp"
+
+namespace modebank::test {
+namespace {
+
+constexpr SearchedLags all_lags{true, true, true};
+
+/// y[k+1] = sum_i a_i y[k-i] + sum_j b_j u[k+1-delay-j] + e, e[k+1] = rho e[k] + noise; u held for some samples.
+struct System {
+  std::vector<double> a{0.8}, b{0.3};
+  Index delay = 1, hold = 4;
+  double rho = 0.0, noise_sd = 0.02, offset = 0.0;
+  Index runs = 6, samples = 400;
+};
+
+Recording simulate(const System& system, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  boost::random::normal_distribution<double> normal;
+  std::vector<Trajectory> runs;
+  for (Index r = 0; r < system.runs; ++r) {
+    Eigen::MatrixXd y = Eigen::MatrixXd::Zero(1, system.samples), u(1, system.samples);
+    double level = 0.0, e = 0.0;
+    for (Index k = 0; k < system.samples; ++k) {
+      if (k % system.hold == 0) level = normal(generator);
+      u(0, k) = level;
+    }
+    for (Index k = 0; k + 1 < system.samples; ++k) {
+      e = system.rho * e + system.noise_sd * normal(generator);
+      double next = system.offset + e;
+      for (Index i = 0; i < std::ssize(system.a) && i <= k; ++i)
+        next += system.a[static_cast<std::size_t>(i)] * y(0, k - i);
+      for (Index j = 0; j < std::ssize(system.b); ++j)
+        if (const Index at = k + 1 - system.delay - j; at >= 0)
+          next += system.b[static_cast<std::size_t>(j)] * u(0, at);
+      y(0, k + 1) = next;
+    }
+    runs.push_back(make_run(y, u));
+    runs.back().run = "run" + std::to_string(r);
+  }
+  return make_recording(std::move(runs));
+}
+
+FoundStructure find(const Recording& recording, const SearchedLags& searched = all_lags,
+                    const FitOptions& options = {}) {
+  return find_structure(recording, options, searched);
+}
+
+std::array<Index, 3> lags_of(const FoundStructure& found) {
+  return {found.state_lags, found.input_lags, found.input_delay};
+}
+
+int seeds_with(const System& system, const std::array<Index, 3>& expected, int seeds) {
+  int right = 0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    const auto lags = lags_of(find(simulate(system, static_cast<std::uint64_t>(seed))));
+    right += lags == expected;
+  }
+  return right;
+}
+
+TEST(StructureSearch, FindsOneLagWhereThereIsOne) { EXPECT_GE(seeds_with({}, {1, 1, 1}, 20), 18); }
+
+TEST(StructureSearch, FindsADeadTime) {
+  System late;
+  late.delay = 4;  // three samples without an effect
+  EXPECT_GE(seeds_with(late, {1, 1, 4}, 20), 17);
+}
+
+TEST(StructureSearch, FindsTheOrderOfASecondOrderMotion) {
+  System second;
+  second.a = {1.5, -0.7};
+  EXPECT_GE(seeds_with(second, {2, 1, 1}, 20), 18);
+}
+
+/// Multiplied by 1 - rho q^-1 it is an ARX with one more lag of each.
+TEST(StructureSearch, FindsTheLagsThatColouredNoiseNeeds) {
+  System coloured;
+  coloured.rho = 0.7;
+  EXPECT_GE(seeds_with(coloured, {2, 2, 1}, 20), 18);
+}
+
+/// Few runs are left out in stretches.
+TEST(StructureSearch, FindsTheStructureInOneRun) {
+  System second;
+  second.a = {1.5, -0.7};
+  second.runs = 1;
+  second.samples = 2000;
+  EXPECT_GE(seeds_with(second, {2, 1, 1}, 10), 8);
+  const FoundStructure found = find(simulate(second, 0));
+  EXPECT_FALSE(found.by_runs);
+  EXPECT_EQ(found.parts, 10);
+}
+
+/// An input that acts at once must gain 0.02 nats over the best later one; held over four samples it need not.
+TEST(StructureSearch, TakesNoDelayOnlyWhereItPays) {
+  System at_once;
+  at_once.delay = 0;
+  EXPECT_EQ(lags_of(find(simulate(at_once, 1))), (std::array<Index, 3>{1, 1, 0}));
+  System faint = at_once;
+  faint.b = {0.002};
+  faint.hold = 1;
+  EXPECT_GT(find(simulate(faint, 1)).input_delay, 0);
+}
+
+/// Outliers decide little: a hundredth of the noise is fifty times as large.
+TEST(StructureSearch, IsNotMisledByOutliers) {
+  int right = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    System second;
+    second.a = {1.5, -0.7};
+    Recording recording = simulate(second, seed);
+    std::mt19937_64 generator(seed);
+    boost::random::uniform_real_distribution<double> uniform(0.0, 1.0);
+    for (Trajectory& run : recording.runs)
+      for (Index k = 0; k < run.samples(); ++k)
+        if (uniform(generator) < 0.005) run.state(0, k) += 1.0;
+    const FoundStructure found = find(recording);
+    right += found.state_lags >= 2 && found.state_lags <= 6;
+  }
+  EXPECT_EQ(right, 10);
+}
+
+TEST(StructureSearch, MovesAnEndWhereTheBestLiesThere) {
+  System late;
+  late.delay = 16;
+  EXPECT_EQ(lags_of(find(simulate(late, 0))), (std::array<Index, 3>{1, 1, 16}));
+}
+
+TEST(StructureSearch, KeepsWhatIsStated) {
+  System second;
+  second.a = {1.5, -0.7};
+  const Recording recording = simulate(second, 0);
+  FitOptions options;
+  options.input_lags = 3;
+  options.input_delay = 1;
+  EXPECT_EQ(lags_of(find(recording, {true, false, false}, options)), (std::array<Index, 3>{2, 3, 1}));
+  options.state_lags = 4;
+  EXPECT_EQ(find(recording, {false, true, true}, options).state_lags, 4);
+}
+
+TEST(StructureSearch, KeepsToTheSamplesThatAFreeRunStartsFrom) {
+  System coloured;
+  coloured.a = {0.5, 0.1, 0.1, 0.1, 0.1};
+  const FoundStructure found = find(simulate(coloured, 0), {true, true, true, 3});
+  EXPECT_LE(std::max(found.state_lags, found.input_delay + found.input_lags - 1), 3);
+}
+
+TEST(StructureSearch, WorksWithoutInputs) {
+  System alone;
+  alone.a = {1.2, -0.5};
+  alone.b = {0.0};
+  Recording recording = simulate(alone, 0);
+  recording.inputs.clear();
+  for (Trajectory& run : recording.runs) run.input.resize(0, run.samples());
+  const FoundStructure found = find(recording);
+  EXPECT_EQ(lags_of(found), (std::array<Index, 3>{2, 1, 1}));
+  EXPECT_TRUE(std::isnan(found.feedback_t));
+}
+
+TEST(StructureSearch, DoesNotDependOnTheScaleOfChannels) {
+  System second;
+  second.a = {1.5, -0.7};
+  Recording recording = simulate(second, 2);
+  const FoundStructure before = find(recording);
+  for (Trajectory& run : recording.runs) {
+    run.state *= 1e4;
+    run.input *= 1e-3;
+  }
+  const FoundStructure after = find(recording);
+  EXPECT_EQ(lags_of(before), lags_of(after));
+  ASSERT_EQ(before.scores.size(), after.scores.size());
+  for (std::size_t i = 0; i < before.scores.size(); ++i) {
+    EXPECT_NEAR(before.scores[i].log_score - std::log(1e4), after.scores[i].log_score, 1e-6);
+    EXPECT_NEAR(before.scores[i].rmse(0) * 1e4, after.scores[i].rmse(0), 1e-6 * after.scores[i].rmse(0));
+  }
+}
+
+TEST(StructureSearch, IsTheSameForAnyNumberOfThreads) {
+  const Recording recording = simulate({}, 5);
+  const auto with = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return find(recording);
+  };
+  const FoundStructure one = with(1), four = with(4);
+  ASSERT_EQ(one.scores.size(), four.scores.size());
+  for (std::size_t i = 0; i < one.scores.size(); ++i) EXPECT_EQ(one.scores[i].log_score, four.scores[i].log_score);
+}
+
+TEST(StructureSearch, HasASmallerRangeForShortRunsAndSaysSo) {
+  System brief;
+  brief.runs = 40;
+  brief.samples = 25;
+  const FoundStructure found = find(simulate(brief, 0));
+  EXPECT_LE(found.state_lags, 6);
+  EXPECT_THAT(found.remark, testing::HasSubstr("searched up to"));
+}
+
+/// Nothing to learn from, nothing that moves, columns that repeat each other: a result all the same.
+TEST(StructureSearch, SurvivesDataThatDetermineNothing) {
+  System tiny;
+  tiny.runs = 1;
+  tiny.samples = 6;
+  EXPECT_THAT(find(simulate(tiny, 0)).remark, testing::HasSubstr("no search"));
+  Recording recording = simulate({}, 0);
+  for (Trajectory& run : recording.runs) run.input.setConstant(0.7);
+  FitOptions options;
+  for (const bool intercept : {false, true}) {
+    options.intercept = intercept;
+    EXPECT_GE(find(recording, all_lags, options).state_lags, 1);
+  }
+  for (Trajectory& run : recording.runs) {
+    run.input = run.input.replicate(2, 1).eval();
+    run.state = (run.state.array() * 5.0).round() / 5.0;  // coarse steps
+  }
+  recording.inputs.resize(2);
+  EXPECT_GE(find(recording).state_lags, 1);
+  for (Trajectory& run : recording.runs) run.state.setZero();
+  const FoundStructure still = find(recording);
+  EXPECT_EQ(still.state_lags, 1);
+  for (const StructureScore& score : still.scores) EXPECT_TRUE(std::isfinite(score.log_score));
+}
+
+/// A motion without noise is predicted exactly by any structure that holds it: the smallest is taken.
+TEST(StructureSearch, TakesTheSmallestExactStructure) {
+  System exact;
+  exact.a = {1.5, -0.7};
+  exact.noise_sd = 0.0;
+  EXPECT_EQ(lags_of(find(simulate(exact, 0))), (std::array<Index, 3>{2, 1, 1}));
+}
+
+TEST(StructureSearch, LeavesOutSamplesOfNoWeight) {
+  System second;
+  second.a = {1.5, -0.7};
+  Recording recording = simulate(second, 4);
+  for (Trajectory& run : recording.runs) {
+    run.weight = Eigen::VectorXd::Ones(run.samples());
+    run.state.row(0).segment(100, 30).array() += 100.0;
+    run.weight.segment(100, 45).setZero();  // of transitions that end there, or whose lags reach there
+  }
+  EXPECT_EQ(lags_of(find(recording)), (std::array<Index, 3>{2, 1, 1}));
+}
+
+/// Rows at the start of runs and behind missing samples are the same for all structures: those with the most lags.
+TEST(LaggedRows, HaveTheirFullHistory) {
+  Recording recording = simulate({}, 0);
+  recording.runs[0].state(0, 50) = std::numeric_limits<double>::quiet_NaN();
+  const StructureRanges ranges{{1, 4}, {1, 3}, {0, 5}};
+  const LaggedRows rows = make_lagged_rows(recording, ranges, true);
+  const Index first = 5 + 3 - 2;    // transitions 0 .. 5 reach before the run
+  const Index lost_behind_gap = 5;  // the missing sample is in the increments of two, and a lag of three more
+  EXPECT_EQ(rows.count(), 6 * (399 - first) - lost_behind_gap);
+  EXPECT_EQ(rows.X.cols(), 4 + 8 + 1);
+  EXPECT_EQ(rows.folds(), 5);
+  EXPECT_TRUE(rows.X.allFinite());
+}
+
+TEST(StructureScorer, LeftOutErrorsAreThoseOfDirectLeastSquares) {
+  const nlohmann::json golden = read_golden("structure_search");
+  std::vector<Trajectory> runs;
+  for (const nlohmann::json& run : golden.at("runs"))
+    runs.push_back(make_run(golden_columns(run.at("state")), golden_columns(run.at("input"))));
+  const Recording recording = make_recording(std::move(runs));
+  const LaggedRows rows = make_lagged_rows(recording, {{1, 4}, {1, 3}, {0, 2}}, true);
+  const StructureScorer scorer(rows, {});
+  for (const nlohmann::json& of : golden.at("cases")) {
+    const nlohmann::json& lags = of.at("structure");
+    const LinearStructure structure{2, 1, true, lags.at(0), lags.at(1), lags.at(2)};
+    const Eigen::MatrixXd expected = golden_rows(of.at("errors")), errors = scorer.least_squares_errors(structure);
+    ASSERT_EQ(errors.rows(), expected.rows());
+    EXPECT_LT((errors - expected).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_NEAR(scorer.least_squares(structure).log_score, of.at("log_score").get<double>(), 1e-7);
+  }
+}
+
+/// Inputs that answer to what the state did a sample before, and inputs that do not.
+TEST(InputFeedback, IsSeenWhereInputsAnswer) {
+  int false_alarms = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed)
+    false_alarms += input_feedback(simulate({}, seed)).past_t > FoundStructure::feedback_limit;
+  EXPECT_LE(false_alarms, 1);
+  std::mt19937_64 generator(1);
+  boost::random::normal_distribution<double> normal;
+  std::vector<Trajectory> runs;
+  for (int r = 0; r < 6; ++r) {
+    Eigen::MatrixXd y = Eigen::MatrixXd::Zero(1, 400), u = y;
+    for (Index k = 0; k + 1 < 400; ++k) {
+      y(0, k + 1) = 0.8 * y(0, k) + 0.3 * u(0, k) + 0.02 * normal(generator);
+      u(0, k + 1) = -0.5 * y(0, k) + 0.1 * normal(generator);
+    }
+    runs.push_back(make_run(y, u));
+  }
+  EXPECT_GT(input_feedback(make_recording(std::move(runs))).past_t, FoundStructure::feedback_limit);
+}
+
+}  // namespace
+}  // namespace modebank::test
