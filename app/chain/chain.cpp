@@ -39,14 +39,14 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
     wanted_[index_of(Stage::data)] = data_key;
   };
   want();
-  if (last >= Stage::lag_counts) {
+  if (last >= Stage::structure) {
     refuse_constant_states(*archive_.recording);
     if (last >= Stage::bank_scores && options.scoring.horizon != ScoringOptions::default_horizon)
       refuse_unreached_horizons(*archive_.recording, options.scoring.horizon);
-    count_lags(inputs_.lag_counts);
+    find_lags(inputs_.structure);
   }
-  if (archive_.lag_counts) {
-    inputs_ = chain_inputs(with_lag_counts(options, *archive_.lag_counts));
+  if (archive_.structure) {
+    inputs_ = chain_inputs(with_structure(options, *archive_.structure));
     want();
   }
   const ChainInputs& inputs = inputs_;
@@ -97,22 +97,20 @@ void Chain::import(const DataInputs& inputs) {
   provide(Stage::data, {compute, copy, take});
 }
 
-void Chain::count_lags(const std::optional<LagCountInputs>& inputs) {
+void Chain::find_lags(const std::optional<StructureInputs>& inputs) {
   if (!inputs) {
-    archive_.lag_counts.reset();
-    held_[index_of(Stage::lag_counts)].clear();
+    archive_.structure.reset();
+    held_[index_of(Stage::structure)].clear();
     return;
   }
-  const auto compute = [&] { archive_.lag_counts = find_lag_counts(*archive_.recording, *inputs, listener_); };
+  const auto compute = [&] { archive_.structure = search_structure(*archive_.recording, *inputs, listener_); };
   const auto copy = [&] {
     Archive part;
-    part.lag_counts = archive_.lag_counts;
+    part.structure = archive_.structure;
     return part;
   };
-  const auto take = [&](Archive&& part) { archive_.lag_counts = std::move(part.lag_counts); };
-  provide(Stage::lag_counts, {compute, copy, take});
-  listener_.progress(fmt::format("lags: {} of the state, {} of the inputs", archive_.lag_counts->state_lags,
-                                 archive_.lag_counts->input_lags));
+  const auto take = [&](Archive&& part) { archive_.structure = std::move(part.structure); };
+  provide(Stage::structure, {compute, copy, take});
 }
 
 void Chain::identify_windows(const WindowInputs& inputs) {

@@ -66,7 +66,7 @@ class Chain {
   const Archive& judge_stored(const std::filesystem::path& banks, const ChainOptions& options,
                               const Execution& execution, const EvaluationSink* sink = nullptr);
 
-  /// Of the last run, with the numbers of lags that it found.
+  /// Inputs of the last run, with the structure that it found.
   const ChainInputs& inputs() const { return inputs_; }
 
   /// Seconds that the last run spent on each stage; 0 for those left as they were.
@@ -75,7 +75,7 @@ class Chain {
  private:
   void provide(Stage stage, const StagePart& part);
   void import(const DataInputs& inputs);
-  void count_lags(const std::optional<LagCountInputs>& inputs);
+  void find_lags(const std::optional<StructureInputs>& inputs);
   void identify_windows(const WindowInputs& inputs);
   void cluster_windows(const MixtureInputs& inputs);
   void learn_competitor_banks(const CompetitorInputs& inputs);

@@ -8,6 +8,7 @@
 #include "filter/judge/free_run.hpp"
 #include "filter/learn/learn.hpp"
 #include "ident/fit/options.hpp"
+#include "ident/lag/structure.hpp"
 #include "io/import/options.hpp"
 #include "mixture/select.hpp"
 #include "modebank/mixture/options.hpp"
@@ -23,15 +24,6 @@ struct ScoringOptions {
   std::uint64_t seed = 1;                        ///< of the transforms of quantised measurements; the chain's
 };
 
-/// Which numbers of lags are found by cross-validation (lag_counts_stage.cpp), whatever FitOptions say of them.
-struct AutomaticLags {
-  bool state = false;
-  bool input = false;
-  bool any() const { return state || input; }
-};
-/// The most that are tried.
-inline constexpr Index most_automatic_lags = 4;
-
 /// Everything that decides the numbers of a chain beside its data. `seed` is the one seed: it takes the place of those
 /// in `window` and `bank`.
 struct ChainOptions {
@@ -43,7 +35,7 @@ struct ChainOptions {
   FilterOptions filter;
   ScoringOptions scoring;
   std::uint64_t seed = 1;
-  AutomaticLags automatic_lags = {};
+  SearchedLags searched_lags = {};           ///< that are found by runs left out, whatever `window` has
   std::vector<std::string> mode_names = {};  ///< of the bank; they change no number
 };
 

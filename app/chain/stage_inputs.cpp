@@ -73,14 +73,20 @@ MixtureInputs mixture_inputs(const ChainOptions& options) {
   return {options.mixture, start, start.empty() ? "" : describe_file(start).sha256, options.seed};
 }
 
-/// What options say of the lags that are found counts for nothing. Random starts of refinement, half of the time or
-/// more, are for the bank that is kept.
-std::optional<LagCountInputs> lag_count_inputs(ChainOptions options) {
-  if (!options.automatic_lags.any()) return std::nullopt;
-  if (options.automatic_lags.state) options.window.state_lags = 1;
-  if (options.automatic_lags.input) options.window.input_lags = 1;
-  options.bank.em.restarts = 0;
-  return LagCountInputs{options.automatic_lags, learning_inputs(options)};
+/// Free runs may not need more measured samples than they start from.
+std::optional<StructureInputs> structure_inputs(const ChainOptions& options) {
+  if (!options.searched_lags.any()) return std::nullopt;
+  StructureInputs inputs{options.searched_lags, {}};
+  inputs.searched.most_samples = options.scoring.free_run.samples;
+  const FitOptions& window = options.window;
+  if (!options.searched_lags.state) inputs.window.state_lags = window.state_lags;
+  if (!options.searched_lags.input) inputs.window.input_lags = window.input_lags;
+  if (!options.searched_lags.delay) inputs.window.input_delay = window.input_delay;
+  inputs.window.loss = window.loss;
+  inputs.window.loss_scale = window.loss_scale;
+  inputs.window.intercept = window.intercept;
+  inputs.window.max_iterations = window.max_iterations;
+  return inputs;
 }
 
 }  // namespace
@@ -97,7 +103,7 @@ ChainInputs chain_inputs(const ChainOptions& options) {
   BankInputs bank = bank_inputs(options, window);
   bank.one_motion = one_motion_inputs(options);
   return {{options.data},
-          lag_count_inputs(options),
+          structure_inputs(options),
           {window},
           mixture_inputs(options),
           competitor_inputs(options, window),

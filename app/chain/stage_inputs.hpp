@@ -69,16 +69,16 @@ struct LearningInputs {
   FilterOptions filter;  ///< that predicts
 };
 
-/// How the numbers of lags are found; those not automatic are in learning.bank.window.
-struct LagCountInputs {
-  AutomaticLags automatic;
-  LearningInputs learning;
+/// The inputs of the search for a structure.
+struct StructureInputs {
+  SearchedLags searched;
+  FitOptions window;  ///< the lags that are not searched for, and how a model is fitted; the rest as by default
 };
 
 /// Of a whole chain.
 struct ChainInputs {
   DataInputs data;
-  std::optional<LagCountInputs> lag_counts;  ///< empty where none is automatic
+  std::optional<StructureInputs> structure;  ///< empty where nothing is searched for
   WindowInputs windows;
   MixtureInputs mixture;
   CompetitorInputs competitors;

@@ -87,15 +87,14 @@ MODEBANK_KEY_FIELDS(FilterOptions, variant, parameter_noise, time_steps, noise)
 MODEBANK_KEY_FIELDS(FreeRunOptions, samples, horizon, start, method, paths, seed)
 MODEBANK_KEY_FIELDS(ScoringOptions, horizon, smooth, free_run, seed)
 
-MODEBANK_KEY_FIELDS(AutomaticLags, state, input)
+MODEBANK_KEY_FIELDS(SearchedLags, state, input, delay, most_samples)
 MODEBANK_KEY_FIELDS(DataInputs, data)
 MODEBANK_KEY_FIELDS(WindowInputs, window)
 MODEBANK_KEY_FIELDS(MixtureInputs, mixture, start_file, start_sha256, seed)
 MODEBANK_KEY_FIELDS(CompetitorInputs, window, filter, horizon, transitions, seed)
 MODEBANK_KEY_FIELDS(OneMotionInputs, bank, filter)
 MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter, one_motion)
-MODEBANK_KEY_FIELDS(LearningInputs, mixture, baseline_filter, bank, filter)
-MODEBANK_KEY_FIELDS(LagCountInputs, automatic, learning)
+MODEBANK_KEY_FIELDS(StructureInputs, searched, window)
 MODEBANK_KEY_FIELDS(CompetitorScoreInputs, window, filter, scoring)
 MODEBANK_KEY_FIELDS(BankScoreInputs, filter, scoring)
 
@@ -119,7 +118,7 @@ StageKeys stage_keys(const ChainInputs& inputs, const std::string& data_hash) {
   StageKeys keys;
   const auto key = [&](Stage stage) -> std::string& { return keys[index_of(stage)]; };
   key(data) = key_of(data, inputs.data, data_hash);
-  key(lag_counts) = key_of(lag_counts, inputs.lag_counts, key(data));
+  key(structure) = key_of(structure, inputs.structure, key(data));
   key(windows) = key_of(windows, inputs.windows, key(data));
   key(mixture) = key_of(mixture, inputs.mixture, key(windows));
   key(competitors) = key_of(competitors, inputs.competitors, key(mixture));

@@ -9,13 +9,13 @@
 namespace modebank {
 
 /// The stages of the chain, in their order.
-enum class Stage { data, lag_counts, windows, mixture, competitors, bank, competitor_scores, bank_scores };
+enum class Stage { data, structure, windows, mixture, competitors, bank, competitor_scores, bank_scores };
 inline constexpr std::size_t stage_count = 8;
 
 template <>
 struct EnumNames<Stage> {
-  static constexpr Names<stage_count> values{"data",        "lag_counts", "windows",           "mixture",
-                                             "competitors", "bank",       "competitor_scores", "bank_scores"};
+  static constexpr Names<stage_count> values{"data",        "structure", "windows",           "mixture",
+                                             "competitors", "bank",      "competitor_scores", "bank_scores"};
 };
 
 constexpr std::size_t index_of(Stage stage) { return static_cast<std::size_t>(stage); }

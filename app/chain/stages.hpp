@@ -13,13 +13,10 @@
 /// ConfigurationError for inputs that do not fit the data, DataError for data that cannot be used.
 namespace modebank {
 
-/// The numbers of lags that predict training runs left out in turn as well as the best, the fewest within one standard
-/// error of it, or within 0.001 nats per sample: of the state with as many input lags as there may be, then of the
-/// inputs. Each is learned as `run` learns, but for random starts, and all are scored on the same samples. Throws
-/// DataError where nothing can be left out.
-LagCounts find_lag_counts(const Recording& recording, const LagCountInputs& inputs, const Listener& listener);
-/// The options with these lags, which stay automatic.
-ChainOptions with_lag_counts(ChainOptions options, const LagCounts& found);
+/// The lags and the delay of one linear model of the training runs (ident/lag/structure_search.hpp).
+FoundStructure search_structure(const Recording& recording, const StructureInputs& inputs, const Listener& listener);
+/// The options with that structure, which stays one that is searched for.
+ChainOptions with_structure(ChainOptions options, const FoundStructure& found);
 
 /// Whether there are too many windows to hold in memory, so that they are best written as they are fitted.
 bool streams_windows(const Recording& recording, const WindowInputs& inputs);

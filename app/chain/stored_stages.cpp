@@ -19,14 +19,14 @@ void StoredStages::provide(Stage stage, const std::string& /*key*/, const StageP
     result.labels = std::move(stored_.labels);
     result.step_scatter = stored_.step_scatter;
     result.provenance = stored_.provenance;
-  } else if (stage == Stage::lag_counts && stage <= until_) {
-    result.lag_counts = std::move(stored_.lag_counts);
+  } else if (stage == Stage::structure && stage <= until_) {
+    result.structure = std::move(stored_.structure);
   } else if (stage == Stage::windows && stage <= until_) {
     result.windows = std::move(stored_.windows);
   } else if (stage == Stage::mixture && stage <= until_) {
     result.mixture = std::move(stored_.mixture);
   }
-  if (result.recording || result.lag_counts || result.windows || result.mixture)
+  if (result.recording || result.structure || result.windows || result.mixture)
     part.take(std::move(result));
   else
     part.compute();

@@ -8,11 +8,12 @@
 #include "app/cli/check_output.hpp"
 #include "app/cli/check_suggestions.hpp"
 #include "app/cli/commands.hpp"
+#include "app/cli/json_number.hpp"
 #include "app/cli/progress_meter.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/configuration_output.hpp"
 #include "app/config/valid_config.hpp"
-#include "app/text/lag_counts_text.hpp"
+#include "app/text/structure_text.hpp"
 #include "app/text/terminal.hpp"
 #include "ident/base/printable.hpp"
 #include "io/files/replace_file.hpp"
@@ -44,25 +45,36 @@ class ScoringLog : public Listener {
   void progress(const std::string& line) const override { spdlog::info("{}", line); }
 };
 
-/// Numbers of lags that are automatic are found first: what is suggested is tried with them.
-std::optional<LagCounts> lags_found(const ChainOptions& options) {
-  const std::optional<LagCountInputs> inputs = chain_inputs(options).lag_counts;
+/// Lags that are to be found are found first: what is suggested is tried with them.
+std::optional<FoundStructure> structure_of(const ChainOptions& options) {
+  const std::optional<StructureInputs> inputs = chain_inputs(options).structure;
   if (!inputs) return std::nullopt;
-  return find_lag_counts(import_data(options.data).recording, *inputs, ScoringLog());
+  return search_structure(import_data(options.data).recording, *inputs, ScoringLog());
 }
 
-nlohmann::json lag_counts_json(const LagCounts& found) {
+nlohmann::json structure_json(const FoundStructure& found) {
   nlohmann::json scores = nlohmann::json::array();
-  for (const LagCountScore& s : found.scores)
-    scores.push_back({{"varied", s.varied},
-                      {"state_lags", s.state_lags},
+  for (const StructureScore& s : found.scores)
+    scores.push_back({{"state_lags", s.state_lags},
                       {"input_lags", s.input_lags},
-                      {"samples", s.samples},
+                      {"input_delay", s.input_delay},
                       {"log_score", s.log_score},
                       {"loss", s.loss},
                       {"loss_standard_error", s.loss_standard_error},
+                      {"rmse", json_numbers(s.rmse)},
+                      {"drifting_score", json_number(s.drifting_score)},
                       {"chosen", s.chosen}});
-  return {{"state_lags", found.state_lags}, {"input_lags", found.input_lags}, {"scores", scores}};
+  return {{"state_lags", found.state_lags},
+          {"input_lags", found.input_lags},
+          {"input_delay", found.input_delay},
+          {"samples", found.samples},
+          {"structures", found.structures},
+          {"by_drifting", found.by_drifting},
+          {"feedback", found.feedback()},
+          {"feedback_t", json_number(found.feedback_t)},
+          {"same_sample_t", json_number(found.same_sample_t)},
+          {"remark", found.remark},
+          {"scores", scores}};
 }
 
 /// Findings come at once, suggestions when they are scored.
@@ -71,14 +83,17 @@ Suggestions tell(const CommandLine& line, const Config& config, const DataCheck&
   print_text(line, check_text(check, findings));
   const bool usable = check.unusable.empty(), scored = usable && !line.findings;
   ChainOptions options = chain_options(config);
-  const std::optional<LagCounts> lags = scored ? lags_found(options) : std::nullopt;
-  if (lags) options = with_lag_counts(options, *lags);
-  if (lags) print_text(line, "\n" + wrapped(lag_counts_text(*lags), standard_output().width));
+  const std::optional<FoundStructure> found = scored ? structure_of(options) : std::nullopt;
+  if (found) {
+    options = with_structure(options, *found);
+    const int width = standard_output().width;
+    print_text(line, "\n" + wrapped(structure_text(*found, !config.data.input.empty(), width), width));
+  }
   const Suggestions suggestions = scored ? suggest(options, check, ScoringLog()) : Suggestions{};
   if (scored) print_text(line, suggestions_text(suggestions, config));
   if (line.json) {
     page = check_json(check, findings);
-    page["lag_counts"] = lags ? lag_counts_json(*lags) : nlohmann::json(nullptr);
+    page["structure"] = found ? structure_json(*found) : nlohmann::json(nullptr);
     page["suggestions"] = scored ? suggestions_json(suggestions, config) : nlohmann::json(nullptr);
   }
   if (usable) return suggestions;

@@ -136,7 +136,7 @@ Result execute(const CommandLine& line, const Config& config, StageSource& sourc
   const ChainOptions options = chain_options(config);
   const Execution execution{resolved_text(config), make_provenance(config_hash(config), line.typed)};
   if (line.command == "identify") {
-    const Archive& data = chain.run(options, Stage::lag_counts, execution);
+    const Archive& data = chain.run(options, Stage::structure, execution);
     if (streams_windows(*data.recording, chain.inputs().windows)) return identify_many(config, chain, data, log);
   }
   const Archive& archive =

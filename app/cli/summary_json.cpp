@@ -37,6 +37,7 @@ json summary_json(const Archive& archive, const Settings& settings) {
   json answer = nullptr;
   if (screen.answer) answer = name_of(*screen.answer);
   return {{"read", screen.read},
+          {"structure", screen.structure},
           {"finding", screen.finding},
           {"band", screen.band},
           {"mean", screen.mean},

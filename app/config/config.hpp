@@ -68,12 +68,21 @@ struct SimulateConfig {
   double state_rate_hz = 65.0;
 };
 
+/// How a number of lags, or the delay, came into a configuration.
+enum class LagChoice { by_model, automatic, number };
+
+/// The numbers of the model's structure that are searched for.
+struct StructureConfig {
+  bool automatic_model = false;  ///< window.model = auto: by_model means automatic
+  LagChoice state = LagChoice::by_model, input = LagChoice::by_model, delay = LagChoice::by_model;
+};
+
 /// Every stage's options, as one configuration file states them. The option table lists their keys.
 struct Config {
   DataOptions data;
   FitOptions window;
   ClusterOptions mixture;
-  AutomaticLags automatic_lags;
+  StructureConfig structure;
   std::string mixture_start;  ///< an archive as mixture.start; empty: none
   BankOptions bank;
   std::vector<std::string> mode_names;
@@ -92,6 +101,11 @@ ChainOptions chain_options(const Config& config);
 
 /// The data section with what it takes from others: how much of a window lies between the blocks of data.split.
 DataOptions data_options_of(const Config& config);
+
+/// The window section as a model is fitted, before anything is found.
+FitOptions window_options_of(const Config& config);
+/// Which of its lags are found.
+SearchedLags searched_lags_of(const Config& config);
 
 /// Checks values against each other, before any file of data is opened. Throws ConfigurationError naming the keys.
 void validate(const Config& config);

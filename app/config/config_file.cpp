@@ -145,8 +145,20 @@ void clear_overridden(Config& config, const KeyValues& overrides) {
     if (const Option* option = find_option(key); option && option->repeatable) option->set(config, "");
 }
 
+/// A model that the command line asks to be found takes none of the file's lags.
+void forget_lags(Config& config, const KeyValues& overrides) {
+  if (std::find(overrides.begin(), overrides.end(), KeyValues::value_type("window.model", "auto")) == overrides.end())
+    return;
+  const FitOptions standard;
+  config.window.state_lags = standard.state_lags;
+  config.window.input_lags = standard.input_lags;
+  config.window.input_delay = standard.input_delay;
+  config.structure = {};
+}
+
 void apply_overrides(Config& config, const KeyValues& overrides) {
   clear_overridden(config, overrides);
+  forget_lags(config, overrides);
   for (const auto& [key, value] : overrides) {
     if (value.find('#') != std::string::npos && !takes_quotes(key))
       throw ConfigurationError(fmt::format(

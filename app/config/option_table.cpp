@@ -12,16 +12,31 @@ namespace modebank::app {
 DataOptions data_options_of(const Config& c) {
   DataOptions data = c.data;
   if (data.split.kind == SplitKind::none) return data;
-  const Index automatic = most_automatic_lags;
-  const Index states = c.automatic_lags.state ? automatic : c.window.state_lags;
-  const Index inputs = c.automatic_lags.input ? automatic : c.window.input_lags;
+  const SearchedLags searched = searched_lags_of(c);
+  const Index states = searched.state ? usual_lags : c.window.state_lags;
+  const Index inputs = searched.input ? usual_lags : c.window.input_lags;
   data.split.gap_samples = c.window.length + std::max(states, inputs + c.window.input_delay);
   return data;
 }
 
+FitOptions window_options_of(const Config& c) {
+  FitOptions window = c.window;
+  if (c.structure.automatic_model && has_lags(window)) window.model = "varx";
+  return window;
+}
+
+SearchedLags searched_lags_of(const Config& c) {
+  // One whole window is simulated without lags.
+  const bool by_model = c.structure.automatic_model && c.window.residual == ResidualKind::one_step;
+  const auto searched = [&](LagChoice choice) {
+    return choice == LagChoice::automatic || (choice == LagChoice::by_model && by_model);
+  };
+  return {searched(c.structure.state), searched(c.structure.input), searched(c.structure.delay)};
+}
+
 ChainOptions chain_options(const Config& c) {
-  return {data_options_of(c), c.window,  c.mixture,  c.mixture_start,  c.bank,
-          c.filter,           c.scoring, c.job.seed, c.automatic_lags, c.mode_names};
+  return {data_options_of(c), window_options_of(c), c.mixture,           c.mixture_start, c.bank, c.filter,
+          c.scoring,          c.job.seed,           searched_lags_of(c), c.mode_names};
 }
 
 namespace {

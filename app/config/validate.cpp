@@ -35,21 +35,21 @@ void check_logit(const Config& config) {
           "transition matrix alone");
 }
 
-/// The window options with the most lags that may be found: whatever is, must do. Motion models and linear have none.
-FitOptions most_lags(const Config& config) {
-  FitOptions window = config.window;
-  const AutomaticLags& automatic = config.automatic_lags;
-  require(!automatic.any() || window.model == "varx",
-          fmt::format("window.state_lags = auto and window.input_lags = auto are those of model = varx, not of {}",
-                      window.model));
-  require(!automatic.any() || window.prior_sd.size() <= 1,
-          "window.prior_sd: with window.state_lags or window.input_lags = auto the number of parameters is not known "
-          "beforehand; give one value for all, or none");
-  require(!automatic.input || !config.data.input.empty(),
-          "window.input_lags = auto needs inputs (data.input): without one there is no lag");
-  if (automatic.state) window.state_lags = most_automatic_lags;
-  if (automatic.input) window.input_lags = most_automatic_lags;
-  return window;
+/// Motion models and linear have no lags to find.
+void check_searched(const Config& config) {
+  const SearchedLags searched = searched_lags_of(config);
+  if (!searched.any()) return;
+  const StructureConfig& structure = config.structure;
+  require(structure.automatic_model || config.window.model == "varx",
+          fmt::format("window.state_lags, window.input_lags and window.input_delay = auto are those of model = varx or "
+                      "auto, not of {}",
+                      config.window.model));
+  require(config.window.prior_sd.size() <= 1,
+          "window.prior_sd: where lags are found the number of parameters is not known beforehand; give one value for "
+          "all, or none");
+  const bool of_inputs = structure.input == LagChoice::automatic || structure.delay == LagChoice::automatic;
+  require(!of_inputs || !config.data.input.empty(),
+          "window.input_lags = auto and window.input_delay = auto need inputs: name them with data.input");
 }
 
 /// Modes that drift are learned by refinement, for states measured exactly and the one filter that knows them.
@@ -57,7 +57,7 @@ void check_drift(const Config& config) {
   if (config.bank.em.drift.how == Drift::none) return;
   const std::string drift = fmt::format("bank.drift = {}", name_of(config.bank.em.drift.how));
   require(is_linear(config.window),
-          fmt::format("{} needs window.model = linear or varx, not {}", drift, config.window.model));
+          fmt::format("{} needs window.model = linear, varx or auto, not {}", drift, config.window.model));
   require(refinement_asked(config.bank, true) == Refine::em,
           drift + " is learned by refinement: it needs bank.refine = em, or auto with nothing that keeps it from em");
   require(!config.bank.measurement_variance,
@@ -85,10 +85,11 @@ void validate(const Config& config) {
           fmt::format("data.truth names {} columns, data.state {}: there must be as many, or none", data.truth.size(),
                       data.state.size()));
   const Index states = std::ssize(data.state), inputs = std::ssize(data.input);
-  const FitOptions widest = most_lags(config);
-  in_section("window", [&] { check_model(widest, states, inputs); });
-  check_free_run(linear_structure(states, inputs, widest), config.scoring.free_run);
-  check_prior(config.window, parameter_count(config.window, states, inputs));
+  check_searched(config);
+  const FitOptions window = window_options_of(config);
+  in_section("window", [&] { check_model(window, states, inputs); });
+  check_free_run(linear_structure(states, inputs, window), config.scoring.free_run);
+  check_prior(window, parameter_count(window, states, inputs));
   require(config.window.scale != ScaleSource::fixed || config.window.sigma > 0.0,
           "window.scale = fixed needs window.sigma, the residual standard deviation, above 0");
   require(

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "app/chain/judged_runs.hpp"
-#include "app/chain/options.hpp"
 #include "app/text/warnings.hpp"
 #include "filter/judge/verdict_reason.hpp"
+#include "ident/lag/structure.hpp"
 #include "io/import/split.hpp"
 
 namespace modebank::app {
@@ -43,16 +43,14 @@ int state_lags(const Situation& s) { return std::atoi(s.setting("window.state_la
 
 /// What is dropped between blocks of a run.
 Index window_and_lags(const Situation& s) {
-  const Index lags = s.setting("window.state_lags") == "auto" ? most_automatic_lags : state_lags(s);
+  const Index lags = s.setting("window.state_lags") == "auto" ? usual_lags : state_lags(s);
   return std::atoi(s.setting("window.length").c_str()) + lags;
 }
 
-/// Beyond a few it is not lags that a model lacks.
+/// Where lags were found it is not lags that a model lacks.
 bool may_have_more_lags(const Situation& s) {
-  constexpr int most_lags = 5;
   const std::string model = s.setting("window.model");
-  return (model == "linear" || model == "varx") && s.setting("window.state_lags") != "auto" &&
-         state_lags(s) < most_lags;
+  return (model == "linear" || model == "varx") && s.setting("window.state_lags") != "auto";
 }
 
 bool is_uncertain_wrongly(const Situation& s) {
@@ -145,14 +143,8 @@ const Rule rules[] = {
      }},
     {[](const Situation& s) { return errors_follow_a_pattern(s.bank) && may_have_more_lags(s); },
      [](const Situation& s) {
-       const bool acted_on = !s.archive.recording || !s.archive.recording->inputs.empty();
-       const std::string lags = state_lags(s) >= most_automatic_lags ? fmt::to_string(state_lags(s) + 1)
-                                : acted_on                           ? "auto --window.input_lags auto"
-                                                                     : "auto";
-       return fmt::format(
-           "errors follow a pattern, so the model lacks memory: repeat with --window.model varx --window.state_lags "
-           "{}{}",
-           lags, s.setting("data.lag_s") == "auto" ? "" : ", or with --data.lag_s auto");
+       return fmt::format("errors follow a pattern, so the model lacks memory: repeat with --window.model auto{}",
+                          s.setting("data.lag_s") == "auto" ? "" : ", or with --data.lag_s auto");
      }},
     {[](const Situation& s) { return s.answers(Answer::cannot_tell); }, advice_on_doubt},
     {[](const Situation& s) { return s.answers(Answer::no_evidence) && !s.finding.better_description.empty(); },

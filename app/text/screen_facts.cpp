@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "app/chain/judged_runs.hpp"
+#include "app/text/structure_text.hpp"
 #include "app/text/verdict_text.hpp"
 #include "app/text/warnings.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -49,9 +50,6 @@ std::string read_words(const Archive& archive, const Settings& settings) {
     text += fmt::format("{}the filter needs inputs {:.3f} s ahead of the states", archive.lag ? ": " : "; ", -lag_s);
   if (archive.learned_transitions > 0)
     text += fmt::format("; the bank learned {}", learned_words(archive.learned_transitions, steps));
-  if (archive.lag_counts)
-    text += fmt::format("; lags found: {} of the state, {} of the inputs", archive.lag_counts->state_lags,
-                        archive.lag_counts->input_lags);
   return text;
 }
 
@@ -244,6 +242,7 @@ bool has_first_screen(const Archive& archive) { return archive.bank && !archive.
 FirstScreen make_first_screen(const Archive& archive, const Settings& settings) {
   FirstScreen screen;
   screen.read = read_words(archive, settings);
+  if (archive.structure) screen.structure = structure_sentence(*archive.structure, acted_on(archive));
   screen.inputs_ahead = input_lag(archive, settings) < 0.0;
   screen.warning = warning_words(archive);
   screen.next = next_step(archive, settings);

@@ -27,7 +27,7 @@ struct ErrorAhead {
 /// What the screen says, computed once: first_screen prints it, the report's page shows it. Sentences are empty where
 /// there is nothing to say.
 struct FirstScreen {
-  std::string read, finding, band, mean, warning, next;
+  std::string read, structure, finding, band, mean, warning, next;
   bool inputs_ahead = false;  ///< the filter needs inputs earlier than the states they act on
   Role role = Role::test;     ///< of the judged runs
   std::string competitor;     ///< that of highest log score, which the gain is over; empty without

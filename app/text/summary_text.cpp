@@ -8,10 +8,10 @@
 
 #include "app/chain/judged_runs.hpp"
 #include "app/text/confusion_text.hpp"
-#include "app/text/lag_counts_text.hpp"
 #include "app/text/lag_text.hpp"
 #include "app/text/mode_words.hpp"
 #include "app/text/number_text.hpp"
+#include "app/text/structure_text.hpp"
 #include "app/text/summary_tables.hpp"
 #include "app/text/terminal.hpp"
 #include "ident/model/parameter_labels.hpp"
@@ -243,7 +243,7 @@ std::string summary_text(const Archive& archive, int width) {
   std::string text;
   if (archive.recording) text += data_text(*archive.recording);
   if (archive.lag) text += lag_text(*archive.lag);
-  if (archive.lag_counts) text += lag_counts_text(*archive.lag_counts);
+  if (archive.structure) text += structure_text(*archive.structure, acted_on(archive), width);
   if (archive.windows) {
     WindowCounts counts;
     counts.add(*archive.windows);

@@ -75,8 +75,8 @@ WindowFits write_archive(const std::filesystem::path& path, const Archive& archi
       layout::exchange_part(root, "lag", archive.lag, {},
                             [](GroupWriter& member, const LagReport& lag) { layout::exchange_lag(member, lag); });
       layout::exchange_part(
-          root, "lag_counts", archive.lag_counts, {},
-          [](GroupWriter& member, const LagCounts& counts) { layout::exchange_lag_counts(member, counts); });
+          root, "structure", archive.structure, {},
+          [](GroupWriter& member, const FoundStructure& found) { layout::exchange_structure(member, found); });
       root.group("windows", {}, [&](GroupWriter& member) {
         common = produce([&](const WindowFits& fits, Index first) {
           member.windows_from(static_cast<hsize_t>(first), static_cast<hsize_t>(fits.count()),

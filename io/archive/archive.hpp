@@ -21,8 +21,8 @@
 #include "ident/data/run_labels.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/fit/fit_windows.hpp"
-#include "ident/fit/lag_counts.hpp"
 #include "ident/lag/report.hpp"
+#include "ident/lag/structure.hpp"
 #include "ident/model/local_model.hpp"
 #include "ident/model/residual_tests.hpp"
 #include "io/archive/bank/open_archive.hpp"
@@ -84,10 +84,10 @@ struct Archive {
   Provenance provenance;
   std::string config;  ///< fully resolved, itself a valid configuration file
   std::optional<Recording> recording;
-  std::optional<RunLabels> labels;      ///< with data.label
-  double step_scatter = 0.0;            ///< of the recording's steps, in their median (io/import/sampling.hpp)
-  std::optional<LagReport> lag;         ///< with data.lag_s = auto
-  std::optional<LagCounts> lag_counts;  ///< with window.state_lags = auto or window.input_lags = auto
+  std::optional<RunLabels> labels;          ///< with data.label
+  double step_scatter = 0.0;                ///< of the recording's steps, in their median (io/import/sampling.hpp)
+  std::optional<LagReport> lag;             ///< with data.lag_s = auto
+  std::optional<FoundStructure> structure;  ///< with window.model = auto, or lags = auto
   std::optional<WindowFits> windows;
   std::optional<MixtureResult> mixture;
   std::optional<Bank> bank;

@@ -152,8 +152,8 @@ void exchange_archive(Io& io, A& archive) {
     exchange_recording(member, part, archive.labels, archive.step_scatter);
   });
   exchange_part(io, "lag", archive.lag, {}, [](auto& member, auto& part) { exchange_lag(member, part); });
-  exchange_part(io, "lag_counts", archive.lag_counts, {},
-                [](auto& member, auto& part) { exchange_lag_counts(member, part); });
+  exchange_part(io, "structure", archive.structure, {},
+                [](auto& member, auto& part) { exchange_structure(member, part); });
   const Recording none;
   const Recording& recording = archive.recording ? *archive.recording : none;
   const Units units(recording);

@@ -130,18 +130,27 @@ void exchange_lag(Io& io, L& lag) {
            column("applied_reference_s", &RunLag::applied_reference_s, "s"));
 }
 
-/// /lag_counts: what window.state_lags = auto and window.input_lags = auto found.
-template <class Io, class L>
-void exchange_lag_counts(Io& io, L& counts) {
-  io.attribute("state_lags", counts.state_lags, rule::lags);
-  io.attribute("input_lags", counts.input_lags, rule::lags);
-  io.table("scores", counts.scores, column("varied", &LagCountScore::varied),
-           column("state_lags", &LagCountScore::state_lags).obeying(rule::lags),
-           column("input_lags", &LagCountScore::input_lags).obeying(rule::lags),
-           column("samples", &LagCountScore::samples).obeying(rule::not_negative),
-           column("log_score", &LagCountScore::log_score, "nat"), column("loss", &LagCountScore::loss, "nat"),
-           amount_column("loss_standard_error", &LagCountScore::loss_standard_error, "nat"),
-           column("chosen", &LagCountScore::chosen));
+/// /structure: the lags and the delay that were found, and the structures that were compared.
+template <class Io, class F>
+void exchange_structure(Io& io, F& found) {
+  io.attribute("state_lags", found.state_lags, rule::lags);
+  io.attribute("input_lags", found.input_lags, rule::lags);
+  io.attribute("input_delay", found.input_delay, rule::delay);
+  io.attribute("samples", found.samples, rule::not_negative);
+  io.attribute("parts", found.parts, rule::not_negative);
+  io.attribute("by_runs", found.by_runs);
+  io.attribute("by_drifting", found.by_drifting);
+  io.attribute("structures", found.structures, rule::not_negative);
+  io.attribute("feedback_t", found.feedback_t, rule::not_negative_or_missing);
+  io.attribute("same_sample_t", found.same_sample_t, rule::not_negative_or_missing);
+  io.attribute("remark", found.remark);
+  io.table("scores", found.scores, column("state_lags", &StructureScore::state_lags).obeying(rule::lags),
+           column("input_lags", &StructureScore::input_lags).obeying(rule::lags),
+           column("input_delay", &StructureScore::input_delay).obeying(rule::delay),
+           column("log_score", &StructureScore::log_score, "nat"), column("loss", &StructureScore::loss, "nat"),
+           amount_column("loss_standard_error", &StructureScore::loss_standard_error, "nat"),
+           amount_column("rmse", &StructureScore::rmse), column("chosen", &StructureScore::chosen),
+           column("drifting_score", &StructureScore::drifting_score, "nat"));
 }
 
 }  // namespace modebank::layout

@@ -57,8 +57,8 @@ Windows identify(const std::vector<Samples>& states, const std::vector<Samples>&
     throw std::invalid_argument("as many states as inputs are needed");
   if (!(dt_s > 0.0) || !std::isfinite(dt_s)) throw std::invalid_argument("dt must be a positive number of seconds");
   app::Config config = config_of(keys, "window.");
-  if (config.automatic_lags.any())
-    throw ConfigurationError("window.state_lags and window.input_lags = auto are found by run; give numbers here");
+  if (app::searched_lags_of(config).any())
+    throw ConfigurationError("lags and delay = auto, and window.model = auto, are found by run; give numbers here");
   const bool in_place = is_linear(config.window) && config.window.residual == ResidualKind::one_step;
   Recording recording;
   for (std::size_t i = 0; i < states.size(); ++i)

@@ -48,11 +48,15 @@ const std::unordered_map<std::string_view, std::string_view>& data_keys() {
 const std::unordered_map<std::string_view, std::string_view>& learning_keys() {
   static const std::unordered_map<std::string_view, std::string_view> sentences{
       {"window.model",
-       "varx, when the screen's last lines say that errors follow a pattern; a motion model, when its "
+       "auto, when the screen's last lines say that errors follow a pattern, or the plant answers late; a motion "
+       "model, when its "
        "parameters (a track, a radius) are what you are after"},
-      {"window.state_lags", "with varx: one more as long as errors follow a pattern and the score gains"},
-      {"window.input_lags", "with varx: when the plant answers to what was commanded some samples ago"},
-      {"window.input_delay", "with varx: when a dead time of whole samples is known; for lags of clocks data.lag_s"},
+      {"window.state_lags", "with varx, or to keep auto from searching: when the order of the motion is known"},
+      {"window.input_lags",
+       "with varx, or to keep auto from searching: when the length of the input's effect is known"},
+      {"window.input_delay",
+       "with varx, or to keep auto from searching: when a dead time of whole samples is known; for lags of clocks "
+       "data.lag_s"},
       {"window.wheel_radius_m", "with icr and slip, when inputs are wheel speeds in rad/s"},
       {"window.residual", "simulation, when noise is in the measurement and not in the motion; it takes much longer"},
       {"window.length",

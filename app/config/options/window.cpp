@@ -7,34 +7,42 @@
 namespace modebank::app {
 namespace {
 
-/// linear, varx and every motion model that is compiled in.
+/// auto, linear, varx and every motion model that is compiled in.
 Option model_option() {
-  const std::vector<std::string> models = model_names();
-  Option result = text("window.model", fmt::format("{}", fmt::join(models, " | ")),
-                       "A x + B u; with lags; or a motion model of ident/model/models", MODEBANK_FIELD(window.model));
+  std::vector<std::string> models = model_names();
+  models.insert(models.begin() + 2, "auto");
+  Option result =
+      text("window.model", fmt::format("{}", fmt::join(models, " | ")),
+           "A x + B u; with lags; with lags and a delay chosen by training runs left out; or a motion model of "
+           "ident/model/models",
+           MODEBANK_FIELD(window.model));
   result.set = [set = result.set, models](Config& config, const std::string& value) {
     if (std::find(models.begin(), models.end(), value) == models.end())
       throw std::invalid_argument("is none of its words");
-    set(config, value);
+    config.structure.automatic_model = value == "auto";
+    set(config, value == "auto" ? "linear" : value);
+  };
+  result.get = [get = result.get](const Config& config) {
+    return config.structure.automatic_model ? "auto" : get(config);
   };
   return result;
 }
 
 /// A number, or a word in its place.
-Option lag_count_option(std::string key, const std::string& help, Field<std::ptrdiff_t> count, Field<bool> automatic) {
-  Option result = numeric(
-      std::move(key), between(1, 100), "samples",
-      fmt::format("{}; auto: of 1 to {} what training runs left out ask for, the fewest within one standard error",
-                  help, most_automatic_lags),
-      count);
+Option lag_option(std::string key, const Range& range, const std::string& help, Field<std::ptrdiff_t> count,
+                  Field<LagChoice> choice) {
+  Option result = numeric(std::move(key), range, "samples",
+                          fmt::format("{}; auto: chosen by training runs left out, as with model = auto", help), count);
   result.range += " or auto";
-  result.set = [set = result.set, count, automatic](Config& config, const std::string& text) {
+  result.set = [set = result.set, count, choice](Config& config, const std::string& text) {
     if (text != "auto") set(config, text);
-    automatic.in(config) = text == "auto";
+    choice.in(config) = text == "auto" ? LagChoice::automatic : LagChoice::number;
     if (text == "auto") count.in(config) = 1;
   };
-  result.get = [get = result.get, automatic](const Config& config) {
-    return automatic.of(config) ? "auto" : get(config);
+  result.get = [get = result.get, choice](const Config& config) {
+    const LagChoice chosen = choice.of(config);
+    const bool by_model = chosen == LagChoice::by_model && config.structure.automatic_model;
+    return by_model || chosen == LagChoice::automatic ? "auto" : get(config);
   };
   return result;
 }
@@ -44,12 +52,13 @@ Option lag_count_option(std::string key, const std::string& help, Field<std::ptr
 std::vector<Option> window_options() {
   return {
       model_option(),
-      lag_count_option("window.state_lags", "varx: states x[k], x[k-1], ... that predict x[k+1]",
-                       MODEBANK_FIELD(window.state_lags), MODEBANK_FIELD(automatic_lags.state)),
-      lag_count_option("window.input_lags", "varx: input samples that act on one transition",
-                       MODEBANK_FIELD(window.input_lags), MODEBANK_FIELD(automatic_lags.input)),
-      numeric("window.input_delay", between(0, 1000), "samples",
-              "varx: from an input to its first effect; 0: u[k+1] acts on x[k+1]", MODEBANK_FIELD(window.input_delay)),
+      lag_option("window.state_lags", between(1, 100), "varx: states x[k], x[k-1], ... that predict x[k+1]",
+                 MODEBANK_FIELD(window.state_lags), MODEBANK_FIELD(structure.state)),
+      lag_option("window.input_lags", between(1, 100), "varx: input samples that act on one transition",
+                 MODEBANK_FIELD(window.input_lags), MODEBANK_FIELD(structure.input)),
+      lag_option("window.input_delay", between(0, 1000),
+                 "varx: from an input to its first effect; 0: u[k+1] acts on x[k+1]",
+                 MODEBANK_FIELD(window.input_delay), MODEBANK_FIELD(structure.delay)),
       numeric("window.wheel_radius_m", above(0), "m",
               "icr and slip: turns wheel speeds in rad/s into m/s; 1 for inputs that are m/s",
               MODEBANK_FIELD(window.wheel_radius_m)),

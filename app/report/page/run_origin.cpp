@@ -4,6 +4,7 @@
 #include "app/config/option_table.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
+#include "app/text/structure_text.hpp"
 #include "app/text/summary_text.hpp"
 
 namespace modebank::app::report {
@@ -48,6 +49,21 @@ json inputs_of(const Provenance& provenance) {
   return inputs;
 }
 
+json structures_of(const Archive& archive) {
+  json rows = json::array();
+  if (!archive.structure) return rows;
+  for (const StructureScore& s : archive.structure->scores)
+    rows.push_back({{"state_lags", count(s.state_lags)},
+                    {"input_lags", count(s.input_lags)},
+                    {"input_delay", count(s.input_delay)},
+                    {"log_score", number(s.log_score, fmt::format("{:.4f}", s.log_score))},
+                    {"loss", estimate(s.loss, s.loss_standard_error)},
+                    {"rmse", number_list(s.rmse)},
+                    {"drifting", number(s.drifting_score)},
+                    {"chosen", s.chosen}});
+  return rows;
+}
+
 }  // namespace
 
 nlohmann::json origin_section(const Archive& archive) {
@@ -59,6 +75,7 @@ nlohmann::json origin_section(const Archive& archive) {
     known.push_back({"Runs", roles_text(*archive.recording)});
     known.push_back({"Sample period", number_text(archive.recording->median_period_s()) + " s (median)"});
   }
+  if (archive.structure) known.push_back({"Lags and delay", structure_sentence(*archive.structure, acted_on(archive))});
   if (archive.windows) known.push_back({"Windows", windows_line(*archive.windows)});
   return {{"created", provenance.created},
           {"facts", known},
@@ -70,6 +87,7 @@ nlohmann::json origin_section(const Archive& archive) {
           {"inputs", inputs_of(provenance)},
           {"config", archive.config},
           {"changed", changed_settings(archive.config)},
+          {"structures", structures_of(archive)},
           {"summary", summary_text(archive)}};
 }
 

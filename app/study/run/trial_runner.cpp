@@ -8,7 +8,7 @@ namespace modebank::app {
 void CachedStages::provide(Stage stage, const std::string& key, const StagePart& part) {
   constexpr double worth_a_file_s = 0.2;
   const bool shared =
-      stage == Stage::lag_counts || stage == Stage::windows || stage == Stage::mixture || stage == Stage::bank;
+      stage == Stage::structure || stage == Stage::windows || stage == Stage::mixture || stage == Stage::bank;
   if (!cache_ || !shared) return part.compute();
   const auto compute = [&] {
     const Stopwatch watch;

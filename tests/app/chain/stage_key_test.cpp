@@ -134,6 +134,7 @@ const std::map<std::string, std::vector<std::string>> texts{
     {"filter.paths", {"20", "50"}},
     {"window.state_lags", {"2", "auto"}},
     {"window.input_lags", {"2", "auto"}},
+    {"window.input_delay", {"2", "auto"}},
     {"data.quantum", {"0.02", "auto"}},
     {"bank.refine_transitions", {"0", "100"}},
 };
@@ -325,8 +326,8 @@ TEST_F(StageKey, OfABankWhoseModesAreMergedHoldsTheFilter) {
   EXPECT_EQ(automatic("icr"), Refine::none) << "shares its bank with what says none";
 }
 
-/// Which lags are found hangs on how banks are learned; what follows from them alone does not.
-TEST_F(StageKey, OfLagsThatAreFoundHoldsWhatLearnsBanks) {
+/// Which lags are found depends on how one model is fitted, and on nothing of the bank.
+TEST_F(StageKey, OfAStructureThatIsFoundHoldsHowOneModelIsFitted) {
   const auto options = [&](KeyValues keys) {
     keys.emplace_back("window.model", "varx");
     return chain_options(configured(keys));
@@ -336,18 +337,22 @@ TEST_F(StageKey, OfLagsThatAreFoundHoldsWhatLearnsBanks) {
   const auto counts = [&](const char* key, const char* value) {
     KeyValues other = found;
     other.emplace_back(key, value);
-    return keys(options(other))[index_of(Stage::lag_counts)];
+    return keys(options(other))[index_of(Stage::structure)];
   };
-  const std::string base = keys(options(found))[index_of(Stage::lag_counts)];
-  EXPECT_NE(counts("bank.folds", "3"), base);
-  EXPECT_NE(counts("mixture.components", "2"), base);
+  const std::string base = keys(options(found))[index_of(Stage::structure)];
+  EXPECT_EQ(counts("bank.folds", "3"), base);
+  EXPECT_EQ(counts("mixture.components", "2"), base);
+  EXPECT_EQ(counts("window.length", "12"), base);
+  EXPECT_NE(counts("window.loss", "trivial"), base);
+  EXPECT_NE(counts("window.intercept", "true"), base);
+  EXPECT_NE(counts("filter.simulate", "20"), base) << "which bounds the lags";
   EXPECT_NE(counts("window.input_lags", "2"), base);
   EXPECT_NE(counts("window.input_lags", "auto"), base);
   EXPECT_EQ(counts("filter.horizon", "2"), base);
-  const StageKeys two = keys(with_lag_counts(options(found), {2, 1, {}}));
-  EXPECT_EQ(two[index_of(Stage::lag_counts)], base) << "what is found is no part of how it is found";
+  const StageKeys two = keys(with_structure(options(found), {2, 1}));
+  EXPECT_EQ(two[index_of(Stage::structure)], base) << "the result does not decide the search";
   EXPECT_EQ(two[index_of(Stage::windows)], keys(options({{"window.state_lags", "2"}}))[index_of(Stage::windows)]);
-  EXPECT_NE(two[index_of(Stage::windows)], keys(with_lag_counts(options(found), {3, 1, {}}))[index_of(Stage::windows)]);
+  EXPECT_NE(two[index_of(Stage::windows)], keys(with_structure(options(found), {3, 1}))[index_of(Stage::windows)]);
 }
 
 TEST_F(StageKey, HoldsTheContentOfFiles) {

@@ -32,11 +32,11 @@ struct SlowStage {
             },
             [this] {
               Archive archive;
-              archive.lag_counts = LagCounts{};
-              archive.lag_counts->state_lags = static_cast<Index>(value);
+              archive.structure = FoundStructure{};
+              archive.structure->state_lags = static_cast<Index>(value);
               return archive;
             },
-            [this](Archive&& archive) { value = static_cast<double>(archive.lag_counts->state_lags); }};
+            [this](Archive&& archive) { value = static_cast<double>(archive.structure->state_lags); }};
   }
 };
 
@@ -52,7 +52,7 @@ class StoppedRun : public CliTest {
       dup2(ends[1], STDERR_FILENO);
       app::KeptStages kept(output());
       SlowStage stage;
-      kept.provide(Stage::lag_counts, stage_hash, stage.part(result));
+      kept.provide(Stage::structure, stage_hash, stage.part(result));
       const auto told = ::write(counts[1], &stage.computed, sizeof stage.computed);
       raise(told > 0 ? SIGINT : SIGKILL);
       _exit(0);
@@ -85,10 +85,10 @@ TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   {
     app::KeptStages kept(output());
     SlowStage same, other;
-    kept.provide(Stage::lag_counts, stage_hash, same.part(5));
+    kept.provide(Stage::structure, stage_hash, same.part(5));
     EXPECT_EQ(same.computed, 0);
     EXPECT_EQ(same.value, 3.0);
-    kept.provide(Stage::lag_counts, another_hash, other.part(7));
+    kept.provide(Stage::structure, another_hash, other.part(7));
     EXPECT_EQ(other.computed, 1);
     EXPECT_EQ(other.value, 7.0);
   }
@@ -115,24 +115,24 @@ TEST_F(StoppedRun, KeepsWhatTakesLongerThanItsWritingAlone) {
   SlowStage stage;
   StagePart part = stage.part(3.0);
   part.writing_s = 1e6;
-  kept.provide(Stage::lag_counts, stage_hash, part);
-  EXPECT_FALSE(fs::exists(folder / stage_file_name(Stage::lag_counts, stage_hash)));
+  kept.provide(Stage::structure, stage_hash, part);
+  EXPECT_FALSE(fs::exists(folder / stage_file_name(Stage::structure, stage_hash)));
   part.writing_s = 0.5;
-  kept.provide(Stage::lag_counts, another_hash, part);
-  EXPECT_TRUE(fs::exists(folder / stage_file_name(Stage::lag_counts, another_hash)));
+  kept.provide(Stage::structure, another_hash, part);
+  EXPECT_TRUE(fs::exists(folder / stage_file_name(Stage::structure, another_hash)));
 }
 
 /// Beside the output may lie a folder, or a link to one, that somebody sent along.
 TEST_F(StoppedRun, NothingOfOthersIsRemovedOrWrittenThroughALink) {
   fs::create_directory(file("home"));
   const fs::path folder = file(".robot.h5.stages");
-  const std::string stage = stage_file_name(Stage::lag_counts, stage_hash);
+  const std::string stage = stage_file_name(Stage::structure, stage_hash);
   for (const std::string& name : {std::string("mine.h5"), stage}) write("home/" + name, "precious");
   fs::create_directory_symlink("home", folder);
   {
     app::KeptStages kept(output());
     SlowStage slow;
-    kept.provide(Stage::lag_counts, another_hash, slow.part(3));
+    kept.provide(Stage::structure, another_hash, slow.part(3));
     EXPECT_EQ(slow.computed, 1);
   }
   EXPECT_TRUE(fs::is_symlink(folder));

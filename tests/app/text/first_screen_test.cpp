@@ -253,18 +253,13 @@ TEST_F(NextStep, ColouredErrorsAskForMemory) {
   row().whiteness_p = 1e-6;
   row().autocorrelation = 0.45;
   settings["window.state_lags"] = "2";
-  EXPECT_THAT(advice(), HasSubstr("--window.model varx --window.state_lags auto --window.input_lags auto"));
-  archive.recording->inputs.clear();  // input_lags = auto is refused without any
-  EXPECT_THAT(advice(), AllOf(HasSubstr("--window.state_lags auto"), Not(HasSubstr("input_lags"))));
-  settings["window.state_lags"] = "4";  // the most that auto tries
-  EXPECT_THAT(advice(), HasSubstr("--window.state_lags 5"));
-  EXPECT_THAT(advice(), HasSubstr("--data.lag_s auto"));
+  EXPECT_THAT(advice(), AllOf(HasSubstr("--window.model auto"), HasSubstr("--data.lag_s auto")));
   settings["data.lag_s"] = "auto";
   EXPECT_THAT(advice(), Not(HasSubstr("lag_s")));
-  settings["window.state_lags"] = "5";
-  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("state_lags"))));
+  settings["window.model"] = "auto";
+  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("window.model"))));
   settings["window.model"] = "slip";
-  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("state_lags"))));
+  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("window.model"))));
 }
 
 /// Which of two models that both lack memory predicts better says little.
@@ -273,7 +268,10 @@ TEST_F(NextStep, MemoryComesBeforeASimplerModel) {
   row().autocorrelation = -0.92;
   archive.finding->answer = Answer::no_evidence;
   archive.finding->better_description = "one_motion";
-  EXPECT_THAT(advice(), HasSubstr("--window.state_lags auto"));
+  EXPECT_THAT(advice(), HasSubstr("--window.model auto"));
+  settings["window.model"] = "auto";
+  EXPECT_THAT(advice(), HasSubstr("use the simpler one_motion"));
+  settings["window.model"] = "varx";
   settings["window.state_lags"] = "auto";
   EXPECT_THAT(advice(), HasSubstr("use the simpler one_motion"));
 }

@@ -8,6 +8,15 @@ const changedColumns = [
   {name: 'Value', text: true, of: (row) => row.value},
   {name: 'Default', text: true, of: (row) => row.standard},
 ];
+const structureColumns = [
+  {name: 'State lags', of: (row) => row.state_lags},
+  {name: 'Input lags', of: (row) => row.input_lags},
+  {name: 'Delay', of: (row) => row.input_delay},
+  {name: 'Log score', of: (row) => row.log_score},
+  {name: 'Below the best', of: (row) => row.loss},
+  {name: 'RMSE', of: (row) => row.rmse},
+  {name: 'Drifting', of: (row) => row.drifting},
+];
 const fileColumns = [
   {name: 'File', text: true, of: (row) => row.path},
   {name: 'Bytes', of: (row) => row.bytes},
@@ -30,6 +39,13 @@ export function drawOrigin(origin) {
           origin.changed.length ? table(changedColumns, origin.changed, changed) :
                                   note('All settings are the defaults.'),
           details('The whole configuration', listing(origin.config))),
+      origin.structures.length ?
+          details(
+              'Lags and delay that were compared on training runs left out',
+              table(
+                  structureColumns, origin.structures,
+                  {caption: 'Structures of one linear model', chosen: (row) => row.chosen})) :
+          null,
       details(`${origin.inputs.length} input files`, table(fileColumns, origin.inputs, {caption: 'Input files'})),
       details('Versions', facts(origin.versions)),
       details('The summary as the program prints it, with its audit', listing(origin.summary)));

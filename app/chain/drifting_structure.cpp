@@ -1,0 +1,128 @@
+#include "app/chain/drifting_structure.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "filter/learn/competitors/drifting.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/data/stretch.hpp"
+#include "ident/fit/global_model.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+namespace {
+
+constexpr Index most_asked_transitions = 20000, most_equal_lags = 8;
+constexpr double least_drifting_gain = 0.02, negligible_nats = 1e-3,
+                 chance_nats = 6.0;  // [nats/sample], the last altogether
+
+/// Fewer settings than the competitor tries: structures are compared, not forecasts.
+DriftingGrid coarse_grid() {
+  return {{0.0, 1e-4, 1e-3, 1e-2}, {0.0, 1e-2, 1.0}, {1.0, 0.97}, {0.7, 0.85, 0.93, 0.97}, {0.0, 4.0, 10.0}, {1e-3}};
+}
+
+LinearStructure structure_of(const StructureScore& s, const Recording& recording, const FitOptions& window) {
+  return {
+      recording.state_count(), recording.input_count(), window.intercept, s.state_lags, s.input_lags, s.input_delay};
+}
+
+/// The training runs from where the structure with the longest memory predicts, with the history that this one needs.
+Recording from_common_start(const Recording& recording, Index earlier) {
+  Recording part{recording.states, recording.inputs, {}, recording.quantum};
+  for (const Trajectory& run : recording.runs)
+    if (run.role == Role::train && run.samples() > earlier + 2)
+      part.runs.push_back(stretch(run, earlier, run.samples() - earlier));
+  return part;
+}
+
+class DriftingChoice {
+ public:
+  DriftingChoice(const Recording& recording, const FitOptions& window, Index latest)
+      : recording_(recording), window_(window), latest_(latest) {}
+
+  /// Minus infinity where it cannot be learned.
+  double score(const StructureScore& of, const DriftingGrid& grid) const {
+    const LinearStructure structure = structure_of(of, recording_, window_);
+    const Recording part = from_common_start(recording_, latest_ - structure.first_transition());
+    try {
+      return learn_drifting(part, fit_global(part, structure), structure, TimeSteps::single, {1}, grid)
+          .tuning.log_score;
+    } catch (const DataError&) {
+      return -std::numeric_limits<double>::infinity();
+    }
+  }
+
+ private:
+  const Recording& recording_;
+  const FitOptions& window_;
+  Index latest_;
+};
+
+/// The finalists, and others that only wandering coefficients are asked about.
+std::vector<StructureScore> candidates_of(const FoundStructure& found, const StructureInputs& inputs) {
+  std::vector<StructureScore> candidates = found.scores;
+  const auto is_there = [&](const StructureScore& s) {
+    return std::any_of(candidates.begin(), candidates.end(), [&](const StructureScore& c) {
+      return c.state_lags == s.state_lags && c.input_lags == s.input_lags && c.input_delay == s.input_delay;
+    });
+  };
+  for (Index k = 1; k <= most_equal_lags; ++k) {
+    StructureScore equal;
+    equal.state_lags = inputs.searched.state ? k : found.state_lags;
+    equal.input_lags = inputs.searched.input ? k : found.input_lags;
+    equal.input_delay = found.scores.front().input_delay;
+    const Index memory = std::max(equal.state_lags, equal.input_delay + equal.input_lags - 1);
+    if (inputs.searched.most_samples > 0 && memory > inputs.searched.most_samples) break;
+    equal.log_score = equal.loss = equal.loss_standard_error = not_a_number;
+    equal.rmse = Eigen::VectorXd::Constant(found.scores.front().rmse.size(), not_a_number);
+    if (!is_there(equal)) candidates.push_back(equal);
+  }
+  return candidates;
+}
+
+void choose(FoundStructure& found, std::vector<StructureScore> candidates, const Recording& recording, double samples) {
+  double best = -std::numeric_limits<double>::infinity();
+  for (const StructureScore& c : candidates) best = std::max(best, c.drifting_score);
+  const double slack = std::max(negligible_nats, chance_nats / samples);
+  const auto size = [&](const StructureScore& c) {
+    return c.state_lags * recording.state_count() + c.input_lags * recording.input_count();
+  };
+  StructureScore* chosen = nullptr;
+  for (StructureScore& c : candidates) {
+    c.chosen = false;
+    if (c.drifting_score < best - slack) continue;
+    if (!chosen || size(c) < size(*chosen)) chosen = &c;
+  }
+  chosen->chosen = true;
+  found.state_lags = chosen->state_lags;
+  found.input_lags = chosen->input_lags;
+  found.input_delay = chosen->input_delay;
+  found.by_drifting = true;
+  found.scores = std::move(candidates);
+}
+
+}  // namespace
+
+void let_drifting_choose(const Recording& recording, const StructureInputs& inputs, FoundStructure& found) {
+  const Index transitions = recording.transitions(Role::train);
+  if (found.scores.empty() || transitions > most_asked_transitions) return;
+  std::vector<StructureScore> candidates = candidates_of(found, inputs);
+  Index latest = 0;
+  for (const StructureScore& c : candidates)
+    latest = std::max(latest, structure_of(c, recording, inputs.window).first_transition());
+  const DriftingChoice choice(recording, inputs.window, latest);
+  DriftingGrid constant = coarse_grid();
+  constant.q = constant.p0 = {0.0};
+  constant.leak = {1.0};
+  const auto found_one =
+      std::find_if(candidates.begin(), candidates.end(), [](const StructureScore& c) { return c.chosen; });
+  if (found_one == candidates.end()) return;
+  found_one->drifting_score = choice.score(*found_one, coarse_grid());
+  if (!(found_one->drifting_score >= choice.score(*found_one, constant) + least_drifting_gain)) return;
+  for (StructureScore& c : candidates)
+    if (&c != &*found_one) c.drifting_score = choice.score(c, coarse_grid());
+  choose(found, std::move(candidates), recording, static_cast<double>(transitions));
+}
+
+}  // namespace modebank

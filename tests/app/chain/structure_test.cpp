@@ -1,0 +1,113 @@
+// window.model = auto in the program: what is found, stored and shown, and which keys stay as they are given.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "app/config/config_file.hpp"
+#include "app/config/option_table.hpp"
+#include "io/archive/archive.hpp"
+#include "tests/app/cli_fixture.hpp"
+
+namespace modebank::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class StructureOfRuns : public CliTest {
+ protected:
+  ProgramResult run_automatic(std::vector<std::string> more = {}) const {
+    const std::vector<std::string> automatic{"--window.length", "10", "--window.model", "auto"};
+    more.insert(more.begin(), automatic.begin(), automatic.end());
+    return run(more);
+  }
+  ProgramResult run_stated(const FoundStructure& found) const {
+    return run({"--window.length", "10", "--window.model", "varx", "--window.state_lags",
+                std::to_string(found.state_lags), "--window.input_lags", std::to_string(found.input_lags),
+                "--window.input_delay", std::to_string(found.input_delay)});
+  }
+};
+
+TEST_F(StructureOfRuns, IsInTheArchiveWithItsScoresAndInWhatIsPrinted) {
+  const ProgramResult result = run_automatic();
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("\nstructure "), HasSubstr("left out")));
+  const Archive made = read_archive(archive());
+  ASSERT_TRUE(made.structure.has_value());
+  const FoundStructure& found = *made.structure;
+  ASSERT_FALSE(found.scores.empty());
+  EXPECT_EQ(std::count_if(found.scores.begin(), found.scores.end(), [](const StructureScore& s) { return s.chosen; }),
+            1);
+  for (const StructureScore& s : found.scores) {
+    EXPECT_NEAR(s.loss, found.scores.front().log_score - s.log_score, 1e-12);
+    EXPECT_EQ(s.rmse.size(), made.recording->state_count());
+    if (!s.chosen) continue;
+    EXPECT_EQ(s.state_lags, found.state_lags);
+    EXPECT_EQ(s.input_lags, found.input_lags);
+    EXPECT_EQ(s.input_delay, found.input_delay);
+  }
+  EXPECT_EQ(made.windows->structure.state_lags, found.state_lags);
+  EXPECT_EQ(made.bank->structure.input_lags, found.input_lags);
+  EXPECT_EQ(made.bank->structure.input_delay, found.input_delay);
+  EXPECT_THAT(made.config, AllOf(HasSubstr("model = auto"), HasSubstr("state_lags = auto"),
+                                 HasSubstr("input_lags = auto"), HasSubstr("input_delay = auto")));
+  EXPECT_THAT(modebank({"show", archive()}).out, AllOf(HasSubstr("log score"), HasSubstr("state lags")));
+  const ProgramResult verified = modebank({"verify", archive()});
+  EXPECT_EQ(verified.status, 0) << verified.err;
+  // The bank is the one that the same numbers give when they are stated.
+  ASSERT_EQ(run_stated(found).status, 0);
+  const Archive stated = read_archive(archive());
+  EXPECT_FALSE(stated.structure.has_value());
+  EXPECT_EQ(stated.bank->modes.front().model.A, made.bank->modes.front().model.A);
+}
+
+TEST_F(StructureOfRuns, KeepsTheNumbersThatAreGiven) {
+  ASSERT_EQ(run_automatic({"--window.state_lags", "2", "--window.input_delay", "2"}).status, 0);
+  const Archive made = read_archive(archive());
+  EXPECT_EQ(made.bank->structure.state_lags, 2);
+  EXPECT_EQ(made.bank->structure.input_delay, 2);
+  for (const StructureScore& s : made.structure->scores) {
+    EXPECT_EQ(s.state_lags, 2);
+    EXPECT_EQ(s.input_delay, 2);
+  }
+  EXPECT_THAT(made.config, AllOf(HasSubstr("state_lags = 2"), HasSubstr("input_lags = auto")));
+}
+
+TEST_F(StructureOfRuns, IsRefusedWhereThereAreNoLags) {
+  for (const char* model : {"linear", "icr", "slip"}) {
+    const ProgramResult result = run({"--window.model", model, "--window.state_lags", "auto"});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_THAT(result.err, HasSubstr(std::string("auto are those of model = varx or auto, not of ") + model));
+  }
+  EXPECT_THAT(run_automatic({"--window.prior_sd", "1, 2"}).err, HasSubstr("give one value for all"));
+  EXPECT_THAT(run({"--window.model", "varx", "--window.state_lags", "automatic"}).err, HasSubstr("1 to 100 or auto"));
+  EXPECT_EQ(run({"--window.model", "varx", "--window.input_lags", "0"}).status, 2);
+}
+
+/// On the command line the model takes the place of the file's, lags and all.
+TEST_F(StructureOfRuns, OfTheCommandLineForgetsTheLagsOfTheFile) {
+  write_file(file("lags.ini"), "[window]\nmodel = varx\nstate_lags = 3\n");
+  const auto text = [&](const app::KeyValues& keys) {
+    return app::resolved_text(app::load_config(file("lags.ini"), keys));
+  };
+  EXPECT_THAT(text({{"window.model", "auto"}}), HasSubstr("state_lags = auto"));
+  EXPECT_THAT(text({{"window.state_lags", "4"}, {"window.model", "auto"}}), HasSubstr("state_lags = 4"));
+  EXPECT_THAT(text({}), AllOf(HasSubstr("state_lags = 3"), HasSubstr("input_lags = 1")));
+  write_file(file("lags.ini"), "[window]\nstate_lags = 3\nmodel = auto\n");
+  EXPECT_THAT(text({}), AllOf(HasSubstr("state_lags = 3"), HasSubstr("input_delay = auto")));
+}
+
+/// A window that is simulated has no lags to find.
+TEST_F(StructureOfRuns, IsOneLagWhereWindowsAreSimulated) {
+  app::Config config;
+  app::find_option("window.model")->set(config, "auto");
+  app::find_option("window.residual")->set(config, "simulation");
+  const ChainOptions options = app::chain_options(config);
+  EXPECT_FALSE(options.searched_lags.any());
+  EXPECT_EQ(options.window.model, "linear");
+}
+
+}  // namespace
+}  // namespace modebank::test
