@@ -18,6 +18,8 @@ namespace {
 constexpr std::array<double, 2> R_shares{0.6, 0.25};
 constexpr double Q_share = 0.05;
 constexpr AscentLimits climb_limits{100, 1e-7};
+/// Beyond so many coefficients of lagged states these stand in for R, and a climb in all of them takes minutes.
+constexpr Index most_coefficients = 4;
 
 /// One model with the bank's structure, R of these shares.
 Bank one_model(const Bank& bank, const GlobalModel& global, double R_share) {
@@ -47,7 +49,8 @@ LikelihoodMaximum climb(const RefineInput& in, const Recording& recording, const
 
 std::optional<Bank> start_of_dominating_noise(const RefineInput& in, const Recording& recording,
                                               const GlobalModel& global, const Bank& bank) {
-  if (bank.is_quantised() || !global.covariance.allFinite()) return std::nullopt;
+  if (bank.is_quantised() || !global.covariance.allFinite() || bank.structure.dimension() > most_coefficients)
+    return std::nullopt;
   std::optional<LikelihoodMaximum> best;
   for (const double share : R_shares) {
     LikelihoodMaximum end = climb(in, recording, global, one_model(bank, global, share));

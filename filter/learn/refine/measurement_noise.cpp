@@ -198,6 +198,10 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
 
 namespace {
 
+/// Coefficients of more lags than these predict what R would let a filter predict. On ICE with 17 the search took a
+/// minute for the bank and another for one_motion, and found none.
+constexpr Index most_lags_beside_R = 8;
+
 /// R where the data ask for some and the runs left out do not lose by it: of the bank and of the splits.
 bool take_R(const RefineInput& in, const SwitchingPrior& prior, std::optional<MeasuredSplits>& splits,
             MeasuredBank& fit) {
@@ -244,7 +248,7 @@ MeasuredBank fit_untimed(const RefineInput& in, const CrossValidation& validatio
   MeasuredBank fit{bank, {}, prior};
   std::optional<MeasuredSplits> splits;
   if (validation.possible()) splits.emplace(in, validation, chosen, bank.noise_adaptation);
-  const bool with_R = in.options.measurement_noise;
+  const bool with_R = in.options.measurement_noise && bank.structure.state_lags <= most_lags_beside_R;
   const bool quantised = bank.is_quantised();
   if (with_R && !quantised && !take_R(in, prior, splits, fit)) return fit;
   if (with_R || quantised ||

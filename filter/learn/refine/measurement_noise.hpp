@@ -51,7 +51,7 @@ struct ChosenFit {
 /// together, to the maximum of the filter's likelihood; that is kept if it pays on the runs left out, each scored by a
 /// fit that has not seen it: its R, its prior and all else are those of the other runs. Rounded states are unknown
 /// whatever R is: their fit goes on so in any case, and R is looked for afterwards, what rounding alone explains being
-/// in the likelihood by then.
+/// in the likelihood by then. R is not looked for beside more than eight lags of the state.
 MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation,
                                         const ChosenFit& chosen, const SwitchingPrior& prior, const Bank& bank);
 
