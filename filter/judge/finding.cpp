@@ -89,7 +89,8 @@ Answer answer_of(const Finding& finding) {
   if (!finding.coarse.empty()) return Answer::not_comparable;
   if (finding.gains.empty() || !finding.held_out()) return Answer::cannot_tell;
   const auto any = [&](auto holds) { return std::any_of(finding.gains.begin(), finding.gains.end(), holds); };
-  if (any([](const PairedGain& gain) { return gain.gain <= 0.0; })) return Answer::no_evidence;
+  if (any([](const PairedGain& gain) { return gain.gain <= 0.0 || gain.gain + gain.margin < negligible_gain; }))
+    return Answer::no_evidence;
   if (any([](const PairedGain& gain) { return !std::isfinite(gain.margin); })) return Answer::cannot_tell;
   if (!finding.modes_differ) return finding.errors_known ? Answer::no_evidence : Answer::cannot_tell;
   if (any([](const PairedGain& gain) { return !gain.told() || gain.gain < negligible_gain; }))

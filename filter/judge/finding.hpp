@@ -36,7 +36,8 @@ inline constexpr std::array<const char*, 4> competitor_names{"baseline", "noise_
 /// `one_motion_drifts`: whether the theta of `one_motion` does.
 const char* description_of(const std::string& competitor, bool one_motion_drifts);
 
-/// The simplest name that the scores leave for the motion of the judged runs. none: nothing was judged, or nothing is told.
+/// The simplest name that the scores leave for the motion of the judged runs. none: nothing was judged, or nothing is
+/// told.
 enum class Description { none, one_linear_motion, one_drifting_motion, several_modes };
 
 template <>
@@ -142,11 +143,11 @@ struct FindingInputs {
 /// not yet: the steps scatter beyond most_step_scatter. one mode: the bank has one, or one linear model leaves no
 /// noise: scores are then those of rounding. evidence: the gain over each competitor is told (paired_gain.hpp) and
 /// not negligible, the modes differ, and they stay for five samples and for the model's memory. no evidence: a
-/// competitor has no lower score, or all modes have the same theta. cannot tell: all between, nothing held out, too few
-/// samples for a margin, or modes whose errors are not known. Modes that pass sooner are how noisy inputs and a delay
-/// that differs between runs come back: no competitor has them. Where the bank is not beyond doubt better than the best
-/// competitor, better_description is the simplest one that is as good as both: it loses less than 0.02 nats, or neither
-/// a t-test nor Wilcoxon's over runs tells it apart.
+/// competitor has no lower score, the gain over one is known to be negligible, or all modes have the same theta. cannot
+/// tell: all between, nothing held out, too few samples for a margin, or modes whose errors are not known. Modes that
+/// pass sooner are how noisy inputs and a delay that differs between runs come back: no competitor has them. Where the
+/// bank is not beyond doubt better than the best competitor, better_description is the simplest one that is as good as
+/// both: it loses less than 0.02 nats, or neither a t-test nor Wilcoxon's over runs tells it apart.
 Finding judge_modes(const FindingInputs& in);
 
 }  // namespace modebank
