@@ -85,9 +85,8 @@ std::string first_screen(const Archive& archive, const Settings& settings, const
   const auto part = [columns](const char* label, const std::string& text, int most) {
     return section(label, text, most, columns);
   };
-  const std::string before =
-      part("read", screen.read, screen.inputs_ahead ? 3 : 2) + part("structure", screen.structure, 2) +
-      part("finding", screen.finding, finding_lines);
+  const std::string before = part("read", screen.read, screen.inputs_ahead ? 3 : 2) +
+                             part("structure", screen.structure, 2) + part("finding", screen.finding, finding_lines);
   const std::string after =
       part("band", screen.band, 3) + part("mean", screen.mean, screen.free_run_start == 0 ? 2 : 3) +
       part("warning", screen.warning, 2) +

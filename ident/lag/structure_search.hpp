@@ -14,9 +14,9 @@ namespace modebank {
 /// within 0.001 nats. A delay of 0 must gain 0.02 nats over the best longer one, since an input that answers to the
 /// state within its sample looks the same.
 ///
-/// Numbers that are not `searched` for stay as `window` has them. Never throws for data that determine little: ranges become
-/// smaller where lags would cost more than a quarter of the transitions, and the result has a remark. The same for
-/// any number of threads.
+/// Numbers that are not `searched` for stay as `window` has them. Never throws for data that determine little: ranges
+/// become smaller where lags would cost more than a quarter of the transitions, and the result has a remark. The same
+/// for any number of threads.
 FoundStructure find_structure(const Recording& recording, const FitOptions& window, const SearchedLags& searched);
 
 }  // namespace modebank

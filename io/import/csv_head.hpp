@@ -9,7 +9,7 @@
 
 namespace modebank {
 
-/// What the first rows of a text say: how it is written, and its columns.
+/// The first rows of a text: how it is written, and its columns.
 struct CsvHead {
   CsvDialect dialect;
   std::vector<std::string> names, units;
@@ -19,7 +19,7 @@ struct CsvHead {
 /// ConfigurationError without a header, DataError where its quotes are malformed.
 CsvHead read_csv_head(std::string_view file, std::string_view text, bool complete, const FormatOptions& options);
 
-/// Of a file, which is read as far as that takes.
+/// The head of a file, which is read as far as that takes.
 CsvHead read_csv_head(const std::filesystem::path& path, const FormatOptions& options);
 
 }  // namespace modebank

@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-
 #include <nlohmann/json.hpp>
 
 #include "app/config/config_file.hpp"

@@ -39,13 +39,12 @@ export function drawOrigin(origin) {
           origin.changed.length ? table(changedColumns, origin.changed, changed) :
                                   note('All settings are the defaults.'),
           details('The whole configuration', listing(origin.config))),
-      origin.structures.length ?
-          details(
-              'Lags and delay that were compared on training runs left out',
-              table(
-                  structureColumns, origin.structures,
-                  {caption: 'Structures of one linear model', chosen: (row) => row.chosen})) :
-          null,
+      origin.structures.length ? details(
+                                     'Lags and delay that were compared on training runs left out',
+                                     table(
+                                         structureColumns, origin.structures,
+                                         {caption: 'Structures of one linear model', chosen: (row) => row.chosen})) :
+                                 null,
       details(`${origin.inputs.length} input files`, table(fileColumns, origin.inputs, {caption: 'Input files'})),
       details('Versions', facts(origin.versions)),
       details('The summary as the program prints it, with its audit', listing(origin.summary)));
