@@ -8,14 +8,14 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/stretch.hpp"
 #include "ident/fit/global_model.hpp"
+#include "ident/lag/structure_choice.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
 
 constexpr Index most_asked_transitions = 20000, most_equal_lags = 8;
-constexpr double least_drifting_gain = 0.02, negligible_nats = 1e-3,
-                 chance_nats = 6.0;  // [nats/sample], the last altogether
+constexpr double least_drifting_gain = 0.02;  // [nats/sample]
 
 /// Fewer settings than the competitor tries: structures are compared, not forecasts.
 DriftingGrid coarse_grid() {
@@ -84,16 +84,16 @@ std::vector<StructureScore> candidates_of(const FoundStructure& found, const Str
 void choose(FoundStructure& found, std::vector<StructureScore> candidates, const Recording& recording, double samples) {
   double best = -std::numeric_limits<double>::infinity();
   for (const StructureScore& c : candidates) best = std::max(best, c.drifting_score);
-  const double slack = std::max(negligible_nats, chance_nats / samples);
-  const auto size = [&](const StructureScore& c) {
-    return c.state_lags * recording.state_count() + c.input_lags * recording.input_count();
-  };
+  const double slack = loss_by_chance(samples);
+  const StructureSize of_lags{recording.state_count(), recording.input_count()};
+  const auto size = [&](const StructureScore& c) { return of_lags({c.state_lags, c.input_lags, c.input_delay}); };
   StructureScore* chosen = nullptr;
   for (StructureScore& c : candidates) {
     c.chosen = false;
     if (c.drifting_score < best - slack) continue;
     if (!chosen || size(c) < size(*chosen)) chosen = &c;
   }
+  if (!chosen) return;  // without candidates
   chosen->chosen = true;
   found.state_lags = chosen->state_lags;
   found.input_lags = chosen->input_lags;

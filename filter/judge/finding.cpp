@@ -73,10 +73,13 @@ void set_better_description(const std::vector<Densities>& competitors, Finding& 
   if (over && is_as_good(*over)) finding.better_description = finding.best_competitor;
 }
 
+/// Whether a gain is told from zero, and large enough to count.
+bool is_beaten(const PairedGain& over) { return over.told() && over.gain >= negligible_gain; }
+
 /// Whether the bank is beyond doubt better than the best competitor.
 bool beats_the_best(const Finding& finding) {
   const PairedGain* gain = gain_over(finding, finding.best_competitor);
-  return gain && gain->told() && gain->gain >= negligible_gain;
+  return gain && is_beaten(*gain);
 }
 
 bool is_coarse(const Resolution& state) {
@@ -93,8 +96,7 @@ Answer answer_of(const Finding& finding) {
     return Answer::no_evidence;
   if (any([](const PairedGain& gain) { return !std::isfinite(gain.margin); })) return Answer::cannot_tell;
   if (!finding.modes_differ) return finding.errors_known ? Answer::no_evidence : Answer::cannot_tell;
-  if (any([](const PairedGain& gain) { return !gain.told() || gain.gain < negligible_gain; }))
-    return Answer::cannot_tell;
+  if (any([](const PairedGain& gain) { return !is_beaten(gain); })) return Answer::cannot_tell;
   return finding.stay < finding.stay_asked ? Answer::cannot_tell : Answer::evidence;
 }
 

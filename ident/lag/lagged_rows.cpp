@@ -37,10 +37,6 @@ struct GatheredRows {
   double share = 0.0;
 };
 
-Index finite_count(const Trajectory& run, Index start, Index count, const LinearStructure& structure) {
-  return finite_rows(stack_transitions(run, start, count, structure)).count();
-}
-
 GatheredRows gather(const Recording& recording, const LinearStructure& widest) {
   GatheredRows gathered;
   LinearStructure narrowest = widest;
@@ -53,13 +49,9 @@ GatheredRows gather(const Recording& recording, const LinearStructure& widest) {
     const Index before = gathered.rows;
     for (Index start = 0; start < run.transitions(); start += rows_together * stride) {
       const Index count = std::min(rows_together, run.transitions() - start);
-      possible += finite_count(run, start, count, narrowest);
-      Transitions stacked = stack_transitions(run, start, count, widest);
-      std::vector<Index> kept;
-      for (Index k = 0; k < count; ++k)
-        if (stacked.regressors.row(k).allFinite() && stacked.increments.row(k).allFinite() &&
-            !(stacked.weight.size() > 0 && stacked.weight(k) == 0.0))
-          kept.push_back(k);
+      possible += std::ssize(usable_rows(stack_transitions(run, start, count, narrowest)));
+      const Transitions stacked = stack_transitions(run, start, count, widest);
+      const std::vector<Index> kept = usable_rows(stacked);
       if (kept.empty()) continue;
       VectorXd weight = VectorXd::Ones(std::ssize(kept));
       if (stacked.weight.size() > 0) weight = stacked.weight(kept);

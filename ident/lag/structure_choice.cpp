@@ -55,9 +55,9 @@ Lags best_with_delay_rule(const ScoredStructures& all, const Eigen::VectorXd& we
   return best_of(later);
 }
 
-bool StructureLoss::negligible() const {
-  return !(mean > std::max({standard_error, negligible_loss, chance_gain / weight}));
-}
+double loss_by_chance(double samples) { return std::max(negligible_loss, chance_gain / samples); }
+
+bool StructureLoss::negligible() const { return !(mean > std::max(standard_error, loss_by_chance(weight))); }
 
 StructureLoss loss_against(const LeftOutForecast& best, const LeftOutForecast& other, const Eigen::VectorXd& weight) {
   const Eigen::VectorXd lost = best.of_part - other.of_part;

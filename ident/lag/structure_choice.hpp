@@ -36,11 +36,14 @@ bool gains_enough(const ScoredStructures& at_once, const ScoredStructures& later
 /// The best of all structures, one without delay only where it gains enough.
 Lags best_with_delay_rule(const ScoredStructures& all, const Eigen::VectorXd& weight);
 
+/// A loss over so many samples [nats/sample] that chance makes, or that is next to nothing.
+double loss_by_chance(double samples);
+
 /// The loss of a structure against another [nats/sample], and its standard error over parts.
 struct StructureLoss {
   double mean = 0.0, standard_error = 0.0;
   double weight = 1.0;  ///< samples
-  /// Whether it is no more than an error of its own, or than what is gained by chance, or next to nothing.
+  /// Whether the mean is at most its error or loss_by_chance.
   bool negligible() const;
 };
 StructureLoss loss_against(const LeftOutForecast& best, const LeftOutForecast& other, const Eigen::VectorXd& weight);

@@ -117,12 +117,17 @@ void fill_transitions(const Trajectory& run, Index start, Index count, const Lin
   fill_rows(run, start, count, structure, 0, transitions);
 }
 
-Transitions finite_rows(const Transitions& transitions) {
+std::vector<Index> usable_rows(const Transitions& transitions) {
   std::vector<Index> rows;
   for (Index k = 0; k < transitions.count(); ++k)
     if (transitions.regressors.row(k).allFinite() && transitions.increments.row(k).allFinite() &&
         !(transitions.weight.size() > 0 && transitions.weight(k) == 0.0))
       rows.push_back(k);
+  return rows;
+}
+
+Transitions finite_rows(const Transitions& transitions) {
+  const std::vector<Index> rows = usable_rows(transitions);
   Transitions kept{transitions.regressors(rows, Eigen::all), transitions.increments(rows, Eigen::all)};
   if (transitions.weight.size() == 0 || rows.empty()) return kept;
   kept.weight = transitions.weight(rows);

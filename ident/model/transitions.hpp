@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <vector>
 
 #include "ident/data/trajectory.hpp"
 #include "ident/model/linear_model.hpp"
@@ -19,6 +20,9 @@ struct Transitions {
   Index count() const { return regressors.rows(); }
   bool finite() const { return regressors.allFinite() && increments.allFinite(); }
 };
+
+/// The rows that finite_rows takes.
+std::vector<Eigen::Index> usable_rows(const Transitions& transitions);
 
 /// Transitions start .. start + count - 1 of a run, rows not yet multiplied by anything; NaN where a lagged sample lies
 /// before the run. Throws std::invalid_argument for weights that are not one per sample, negative or not finite.

@@ -19,7 +19,7 @@ class DataHashes {
   /// Reads all that was added. Throws as data_files does (io/import/import.hpp), and as readers do.
   void read();
 
-  /// Of the files that such a [data] section reads.
+  /// The hash of the files that such a [data] section reads.
   const std::string& of(const Config& config) const { return hashes_.at(section_of(config)); }
   const std::vector<InputFile>& files() const { return files_; }
 
