@@ -22,7 +22,7 @@ constexpr double steps = 2000.0;                     // that heights are rounded
 int most_frequent(const Eigen::VectorXi& values, Index first, Index count, std::size_t names) {
   std::vector<Index> counts(names + 1, 0);
   for (Index i = first; i < std::min(first + count, values.size()); ++i)
-    ++counts[static_cast<std::size_t>(values(i) + 1)];
+    ++counts[static_cast<std::size_t>(1L + values(i))];
   return static_cast<int>(std::max_element(counts.begin(), counts.end()) - counts.begin()) - 1;
 }
 

@@ -23,10 +23,11 @@ Eigen::VectorXi window_modes(const std::vector<Window>& windows, Eigen::Index le
   for (std::size_t i = 0; i < windows.size(); ++i) of_runs[windows[i].run].push_back(i);
   Eigen::VectorXi modes(static_cast<Eigen::Index>(windows.size()));
   for (const auto& [run, positions] : of_runs)
-    evaluation.with_run(static_cast<std::size_t>(run), {"mode_probability"}, [&](const RunEvaluation& said) {
-      for (const std::size_t i : positions)
-        modes(static_cast<Eigen::Index>(i)) = mode_of(windows[i], length, said.mode_probability);
-    });
+    evaluation.with_run(static_cast<std::size_t>(run), {"mode_probability"},
+                        [&, &own = positions](const RunEvaluation& said) {
+                          for (const std::size_t i : own)
+                            modes(static_cast<Eigen::Index>(i)) = mode_of(windows[i], length, said.mode_probability);
+                        });
   return modes;
 }
 
