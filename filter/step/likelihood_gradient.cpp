@@ -1,5 +1,6 @@
 #include "filter/step/likelihood_gradient.hpp"
 
+#include "filter/step/dense_gradient.hpp"
 #include "filter/step/detail/vector/vector_gradient.hpp"
 #include "filter/step/feed/run_samples.hpp"
 
@@ -35,12 +36,13 @@ double BankGradient::along(const Bank& from, const Bank& to) const {
 }
 
 bool has_likelihood_gradient(const Bank& bank, const FilterOptions& options) {
-  return VectorGradient::can_step(bank, options);
+  return VectorGradient::can_step(bank, options) || has_dense_gradient(bank, options);
 }
 
 BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,
                                      const FilterOptions& options) {
   check_run(bank, run);
+  if (!VectorGradient::can_step(bank, options)) return dense_gradient(bank, run, weight, options);
   VectorGradient gradient(bank, options);
   gradient.reserve(run.samples());
   RunSamples(bank, run, options.time_steps).for_each([&](const SampleFeed& feed, Index k, bool starts) {

@@ -78,9 +78,19 @@ Eigen::MatrixXd RegressionSums::scatter_after(const Eigen::MatrixXd& change) con
 
 RegressionSums regression_sums(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& weights,
                                const Eigen::MatrixXd& residuals) {
-  const Eigen::MatrixXd weighted = weights.asDiagonal() * regressors;
-  return {weighted.transpose() * regressors, weighted.transpose() * residuals,
-          residuals.transpose() * weights.asDiagonal() * residuals, weights.sum()};
+  constexpr double negligible = 1e-12;  // a mode has most transitions with less than this
+  const Index q = regressors.cols(), n = residuals.cols();
+  std::vector<Index> rows;
+  for (Index k = 0; k < weights.size(); ++k)
+    if (weights(k) > negligible) rows.push_back(k);
+  Eigen::MatrixXd weighted(std::ssize(rows), q + n);
+  const Eigen::VectorXd root = weights(rows).cwiseSqrt();
+  for (Index c = 0; c < q; ++c) weighted.col(c) = root.cwiseProduct(regressors.col(c)(rows));
+  for (Index c = 0; c < n; ++c) weighted.col(q + c) = root.cwiseProduct(residuals.col(c)(rows));
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(q + n, q + n);
+  gram.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  return {gram.topLeftCorner(q, q), gram.topRightCorner(q, n), gram.bottomRightCorner(n, n), weights.sum()};
 }
 
 Recording training_part(const Recording& recording) {

@@ -53,6 +53,7 @@ class BankCoordinates {
   Eigen::Index size() const;
   const Bank& origin() const { return origin_; }
   const Eigen::VectorXd& weight_unit() const { return free_.weight_unit; }
+  const Eigen::VectorXd& least_R() const { return free_.least_R; }
   bool has_one_theta() const { return free_.theta_unit.cols() == 1; }
   /// `at`: size(); zero is the origin.
   Bank decode(const Eigen::VectorXd& at) const;

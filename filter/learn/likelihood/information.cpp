@@ -75,6 +75,22 @@ SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::Vec
   return result;
 }
 
+SampleGradients exact_sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
+                                       const TrainingTransitions& transitions) {
+  Eigen::MatrixXd gradients(transitions.count(), around.size());
+  tbb::parallel_for(Index{0}, around.size(), [&](Index c) {
+    const Eigen::VectorXd step = steps(c) * Eigen::VectorXd::Unit(around.size(), c);
+    gradients.col(c) = (predictive_log_densities(transitions, switching_model(around.decode(step))) -
+                        predictive_log_densities(transitions, switching_model(around.decode(-step)))) /
+                       (2.0 * steps(c));
+  });
+  gradients = gradients.array().isNaN().select(0.0, gradients).eval();
+  SampleGradients result{gradients.colwise().sum().transpose(), Eigen::MatrixXd::Zero(around.size(), around.size())};
+  result.information.selfadjointView<Eigen::Lower>().rankUpdate(gradients.transpose());
+  result.information.triangularView<Eigen::StrictlyUpper>() = result.information.transpose();
+  return result;
+}
+
 Eigen::MatrixXd prior_information(const BankCoordinates& around, const SwitchingPrior& prior) {
   const ParameterPlaces at = around.places();
   const Eigen::MatrixXd J = around.jacobian();

@@ -26,6 +26,11 @@ struct SampleGradients {
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                  const Recording& recording, const FilterOptions& filter, const LookAhead& look = {});
 
+/// The same of states measured exactly (R = 0), without weights: by the switching regression, whose densities are the
+/// filter's at a fraction of the cost, the smaller the more lags there are.
+SampleGradients exact_sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
+                                       const TrainingTransitions& transitions);
+
 /// What the prior adds to the information about the coordinates, at their origin: of theta exactly, of Q as so many
 /// observations of a normal scatter, of T as so many counts, of a guard's memory
 /// exactly. A prior on one theta of all modes counts once.

@@ -37,7 +37,7 @@ class Neighbourhood {
 
   /// Where the value is wanted besides: back over the filter's steps where they know the way, else by differences.
   Eigen::VectorXd gradient(const Eigen::VectorXd& at) const {
-    if (!target_.look.is_likelihood() || !has_likelihood_gradient(coordinates_.origin(), target_.filter))
+    if (!is_exact())
       return differences(at, [this](const Bank& bank) { return target_.value(bank); });
     const BankGradient by_bank = training_gradient(decode(at), target_.recording, target_.filter);
     Eigen::VectorXd result(size());
@@ -51,12 +51,16 @@ class Neighbourhood {
     return result;
   }
 
-  /// Gradient and information of likelihood and prior at the origin.
+  /// Gradient and information of likelihood and prior at the origin. The gradient is the one that the search follows:
+  /// where the search ends, another would not vanish.
   SampleGradients gradients() const {
     SampleGradients result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter, target_.look);
+    const Eigen::VectorXd origin = Eigen::VectorXd::Zero(size());
+    if (is_exact())
+      result.sum = gradient(origin);
+    else if (target_.prior)
+      result.sum += differences(origin, [this](const Bank& bank) { return target_.log_prior(bank); });
     if (!target_.prior) return result;
-    result.sum +=
-        differences(Eigen::VectorXd::Zero(size()), [this](const Bank& bank) { return target_.log_prior(bank); });
     result.information += prior_information(coordinates_, *target_.prior);
     return result;
   }
@@ -65,6 +69,10 @@ class Neighbourhood {
   const LikelihoodTarget& target_;
   BankCoordinates coordinates_;
   Eigen::VectorXd steps_;
+
+  bool is_exact() const {
+    return target_.look.is_likelihood() && has_likelihood_gradient(coordinates_.origin(), target_.filter);
+  }
 
   template <class Value>
   Eigen::VectorXd differences(const Eigen::VectorXd& at, Value value) const {

@@ -55,12 +55,23 @@ void add_weights_gradient(const BankCoordinates& around, const SwitchingPrior& p
         around.origin().transition_logit.weights.col(a);
 }
 
+/// Whether the states count as measured exactly: R stands at its bound.
+bool is_exact(const LikelihoodTarget& target, const BankCoordinates& around) {
+  const Bank& bank = around.origin();
+  return around.places().outputs == 0 && (bank.R.diagonal().array() <= around.least_R().array()).all() &&
+         target.filter.noise == FilterNoise::gaussian && !target.recording.weighted() && !bank.is_quantised() &&
+         bank.drift.empty();
+}
+
 /// Empty where the information has no inverse.
 std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordinates& around) {
   const ErrorSamples samples = error_samples(target.recording, around.size());
   const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), difference_step);
+  const Recording& recording = samples.part ? *samples.part : target.recording;
   const SampleGradients gradients =
-      sample_gradients(around, steps, samples.part ? *samples.part : target.recording, target.filter);
+      is_exact(target, around)
+          ? exact_sample_gradients(around, steps, gather_training_transitions(recording, around.origin().structure))
+          : sample_gradients(around, steps, recording, target.filter);
   const Eigen::MatrixXd information = samples.factor * gradients.information + prior_information(around, *target.prior);
   if (!information.allFinite()) return std::nullopt;
   // Coordinates differ in scale by orders of magnitude: the factorisation sees correlations.

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -13,6 +14,7 @@
 #include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
 #include "ident/base/linalg.hpp"
+#include "ident/base/not_a_number.hpp"
 #include "ident/base/work_counter.hpp"
 
 namespace modebank {
@@ -53,6 +55,26 @@ bool promises(const LikelihoodTarget& target, const FreeParameters& free, const 
   return target.value(start) + 0.5 * information.whiten(gradients.sum).squaredNorm() > level;
 }
 
+/// Beyond so many states a filter pass takes so long that R is looked for from one start, and with theta only where
+/// that has few coordinates.
+constexpr Index most_states_of_wide_search = 4, most_coordinates_of_large_filters = 40;
+
+bool is_large(const Bank& bank) { return bank.structure.dimension() > most_states_of_wide_search; }
+
+/// All shares of the tuning; of a large filter the likeliest alone, if its gradient promises anything.
+std::vector<Bank> starts_of_R(const LikelihoodTarget& target, const FreeParameters& free, const Bank& bank,
+                              double level, const RefineTuning& tuning) {
+  std::vector<Bank> starts;
+  for (const double share : tuning.R_start_shares) starts.push_back(with_share_as_R(bank, share));
+  if (!is_large(bank)) return starts;
+  Bank likeliest = *std::max_element(starts.begin(), starts.end(), [&](const Bank& a, const Bank& b) {
+    return is_below(target.value(a), target.value(b));
+  });
+  starts.clear();
+  if (promises(target, free, likeliest, level)) starts.push_back(std::move(likeliest));
+  return starts;
+}
+
 /// The fit that took the state as measured exactly has its theta drawn to errors in variables, at times so far that
 /// with this theta no R is likelier than none. Then theta is searched with R and one factor on Q, if the gradient
 /// promises anything. Empty where that does not lead above the bank by least_gain per sample either. `transitions`: of
@@ -66,6 +88,8 @@ std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const Re
   free.theta_unit =
       all_parameters(bank, sums, prior, in.options.one_theta, false, least_measurement_noise(in.fits, tuning))
           .theta_unit;
+  if (is_large(bank) && BankCoordinates(bank, free).size() > most_coordinates_of_large_filters)
+    return std::nullopt;
   const double level =
       target.value(bank) + tuning.least_gain * static_cast<double>(target.recording.transitions(Role::train));
   const Bank start = with_share_as_R(bank, tuning.R_start_share_with_theta);
@@ -158,16 +182,18 @@ class MeasuredSplits {
 
 MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
                                             const RefineTuning& tuning) {
-  std::vector<LikelihoodMaximum> ends(tuning.R_start_shares.size());
+  const double transitions = static_cast<double>(target.recording.transitions(Role::train));
+  const double level = target.value(bank) + tuning.least_gain * transitions;
+  const FreeParameters free = free_noise(bank.R.rows());
+  const std::vector<Bank> starts = starts_of_R(target, free, bank, level, tuning);
+  std::vector<LikelihoodMaximum> ends(starts.size());
   WorkCounter counter("searches for measurement noise", ends.size());
   tbb::parallel_for(std::size_t{0}, ends.size(), [&](std::size_t i) {
-    ends[i] = maximise_likelihood(target, free_noise(bank.R.rows()), with_share_as_R(bank, tuning.R_start_shares[i]),
-                                  search_limits);
+    ends[i] = maximise_likelihood(target, free, starts[i], search_limits);
     counter.add();
   });
   MeasurementNoise result;
-  result.starts = std::ssize(ends);
-  const double transitions = static_cast<double>(target.recording.transitions(Role::train));
+  result.starts = std::ssize(tuning.R_start_shares);
   LikelihoodMaximum* best = nullptr;
   for (LikelihoodMaximum& end : ends) {
     if (!std::isfinite(end.value) || !end.rose) {
@@ -177,7 +203,7 @@ MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, cons
     // Ends that differ by less than they are searched to are one.
     if (!best || end.value > best->value + search_limits.tolerance * transitions) best = &end;
   }
-  if (best && best->value > target.value(bank) + tuning.least_gain * transitions) result.bank = std::move(best->bank);
+  if (best && best->value > level) result.bank = std::move(best->bank);
   return result;
 }
 

@@ -27,6 +27,15 @@ Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eige
   return (-0.5 * (whitened.colwise().squaredNorm().array() + constant)).transpose() * transitions.usable.array();
 }
 
+/// N x K.
+Eigen::MatrixXd densities_of_modes(const TrainingTransitions& transitions, const SwitchingRegression& model) {
+  Eigen::MatrixXd log_density(transitions.count(), model.modes());
+  tbb::parallel_for(Index{0}, model.modes(), [&](Index j) {
+    log_density.col(j) = log_densities(transitions, model.theta.col(j), model.Q[static_cast<std::size_t>(j)]);
+  });
+  return log_density;
+}
+
 /// Forward-backward over the rows of one run; adds to the posterior's sums and fills its rows.
 class RunSmoother {
  public:
@@ -34,23 +43,38 @@ class RunSmoother {
               const Eigen::MatrixXd& log_density)
       : model_(model), transitions_(transitions), log_density_(log_density), transition_(model.modes(), model.logit) {}
 
-  /// Leading transitions that are not usable are left out, as the filter starts after them.
-  void add(RunRows rows, const Eigen::VectorXd& usable, ModePosterior& posterior) {
-    while (rows.count > 0 && usable(rows.first) == 0.0) {
-      ++rows.first;
-      --rows.count;
-    }
+  void add(const RunRows& all, ModePosterior& posterior) {
+    const RunRows rows = from_first_usable(all);
     if (rows.count == 0) return;
-    forward(rows, posterior);
+    forward(rows);
+    posterior.log_likelihood += log_scale_.sum();
     backward(rows, posterior);
   }
 
+  /// log p(transition | those before) of the run's rows.
+  void predict(const RunRows& all, Eigen::VectorXd& log_density) {
+    const RunRows rows = from_first_usable(all);
+    if (rows.count == 0) return;
+    forward(rows);
+    log_density.segment(rows.first, rows.count) = log_scale_;
+  }
+
  private:
-  void forward(const RunRows& rows, ModePosterior& posterior) {
+  /// Leading transitions that are not usable are left out, as the filter starts after them.
+  RunRows from_first_usable(RunRows rows) const {
+    while (rows.count > 0 && transitions_.usable(rows.first) == 0.0) {
+      ++rows.first;
+      --rows.count;
+    }
+    return rows;
+  }
+
+  void forward(const RunRows& rows) {
     const Index K = model_.modes();
     density_.resize(K, rows.count);
     filtered_.resize(K, rows.count);
     scale_.resize(rows.count);
+    log_scale_.resize(rows.count);
     for (Index k = 0; k < rows.count; ++k) {
       const auto of_step = log_density_.row(rows.first + k).transpose();
       filtered_.col(k).noalias() = transition_of(rows.first + k).transpose() * before(k);
@@ -60,7 +84,7 @@ class RunSmoother {
       filtered_.col(k).array() *= density_.col(k).array();
       scale_(k) = filtered_.col(k).sum();
       filtered_.col(k) /= scale_(k);
-      posterior.log_likelihood += largest + std::log(scale_(k));
+      log_scale_(k) = largest + std::log(scale_(k));
     }
   }
 
@@ -98,7 +122,7 @@ class RunSmoother {
   const Eigen::MatrixXd& log_density_;
   TransitionWorkspace transition_;
   Eigen::MatrixXd density_, filtered_;
-  Eigen::VectorXd scale_;
+  Eigen::VectorXd scale_, log_scale_;
 };
 
 }  // namespace
@@ -133,16 +157,21 @@ Bank with_modes(const Bank& frame, const SwitchingRegression& model) {
 
 ModePosterior smooth_modes(const TrainingTransitions& transitions, const SwitchingRegression& model) {
   const Index K = model.modes();
-  Eigen::MatrixXd log_density(transitions.count(), K);
-  tbb::parallel_for(Index{0}, K, [&](Index j) {
-    log_density.col(j) = log_densities(transitions, model.theta.col(j), model.Q[static_cast<std::size_t>(j)]);
-  });
+  const Eigen::MatrixXd log_density = densities_of_modes(transitions, model);
   ModePosterior posterior{Eigen::MatrixXd::Zero(transitions.count(), K), Eigen::MatrixXd::Zero(K, K),
                           Eigen::VectorXd::Zero(K)};
   if (!model.logit.empty()) posterior.pairs.setZero(K * K, transitions.count());
   RunSmoother smoother(model, transitions, log_density);
-  for (const RunRows& rows : transitions.runs) smoother.add(rows, transitions.usable, posterior);
+  for (const RunRows& rows : transitions.runs) smoother.add(rows, posterior);
   return posterior;
+}
+
+Eigen::VectorXd predictive_log_densities(const TrainingTransitions& transitions, const SwitchingRegression& model) {
+  const Eigen::MatrixXd log_density = densities_of_modes(transitions, model);
+  Eigen::VectorXd predictive = Eigen::VectorXd::Zero(transitions.count());
+  RunSmoother smoother(model, transitions, log_density);
+  for (const RunRows& rows : transitions.runs) smoother.predict(rows, predictive);
+  return predictive;
 }
 
 SwitchingSums sum_transitions(const TrainingTransitions& transitions, const ModePosterior& posterior,

@@ -57,6 +57,10 @@ struct ModePosterior {
 /// the power of its density. The log-likelihood is that of the IMM filter for R = 0.
 ModePosterior smooth_modes(const TrainingTransitions& transitions, const SwitchingRegression& model);
 
+/// log p(transition | those before it in its run) of every row, N; 0 of rows before a run's first usable one. Their sum
+/// is smooth_modes' log-likelihood.
+Eigen::VectorXd predictive_log_densities(const TrainingTransitions& transitions, const SwitchingRegression& model);
+
 /// Expected sums over the transitions: of every mode's regression, each weighted with the mode's probability, about
 /// what the prior's mean predicts, and how the modes follow each other.
 struct SwitchingSums {

@@ -102,6 +102,20 @@ TEST(LikelihoodGradient, IsThatOfEverySize) {
       }
 }
 
+/// Sizes without vector kernels, and single modes, which have none of any size.
+TEST(LikelihoodGradient, IsThatOfSizesWithoutKernels) {
+  for (const auto& [n, K] : {std::pair<Index, Index>{1, 1}, {2, 1}, {4, 1}, {4, 2}, {5, 3}}) {
+    SCOPED_TRACE(testing::Message() << "n " << n << ", K " << K);
+    const Bank bank = bank_of(n, K, 1e-3);
+    Trajectory run = test::simulate_bank(bank, 120, 7);
+    run.state(0, 10) = std::nan("");
+    run.state.middleCols(20, 2).setConstant(std::nan(""));
+    run.time_s.tail(50).array() += 2.0 * longest_gap_steps;
+    expect_gradient(bank, run, {});
+    expect_gradient(bank, run, {}, Eigen::VectorXd::LinSpaced(120, 0.0, 2.0));
+  }
+}
+
 TEST(LikelihoodGradient, SeesPartOfTheState) {
   Bank bank = bank_of(2, 3, 1e-3);
   bank.C = Eigen::MatrixXd{{1.0, 0.5}};
@@ -189,7 +203,6 @@ TEST(LikelihoodGradient, IsThatOfIntervalsOfSomeSignals) {
 }
 
 TEST(LikelihoodGradient, IsNotThereWhereStepsHaveNoKernel) {
-  EXPECT_FALSE(has_likelihood_gradient(test::single_mode(bank_of(1, 2, 1e-3), 0), {}));
   Bank logit = bank_of(1, 2, 1e-3);
   logit.transition_logit = {Eigen::MatrixXd::Ones(2, 3), Eigen::VectorXd::Zero(3)};
   EXPECT_FALSE(has_likelihood_gradient(logit, {}));
