@@ -3,7 +3,7 @@
 JOBS := $(shell awk -v cores=$$(nproc) '/^MemAvailable/ { most = int($$2 / 2500000); print most < 1 ? 1 : most < cores ? most : cores }' /proc/meminfo)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test dist dist-test pip-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
+.PHONY: all api build demo packages package-test dist dist-test pip-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale cost features track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
 
 all: build
 
@@ -111,6 +111,14 @@ systems: build
 # Time and memory of five million rows and of ten thousand runs, as docs/results/scale.md has them; ten minutes of two processors and 10 GB of disk.
 scale: build
 	/usr/bin/python3 tests/bench/scale.py build/modebank build/scale
+
+# Processor time against states, lags and samples, as docs/results/cost.md has it; half an hour of a processor.
+cost: build
+	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_cost.py build/modebank build/cost
+
+# Which features of windows with many lags find the modes, as docs/results/mixture.md has it; ten minutes of a processor.
+features: build
+	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_features.py build/modebank build/features
 
 # A robot's day through `modebank track`, killed every ten minutes of the log; docs/results/track.md.
 track-day: demo

@@ -43,6 +43,11 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
+/// As many features as are clustered.
+Index features_kept(FeatureSet features, Index all) {
+  return features == FeatureSet::automatic ? std::min<Index>(all, most_features) : all;
+}
+
 /// Median standard deviation of the clustered windows' errors; 0 where it is not known.
 Eigen::VectorXd typical_error(const WindowFits& fits, const std::vector<Index>& windows, Index features) {
   const Index p = fits.parameter_count();
@@ -67,7 +72,7 @@ class CloudBuilder {
     const Index p = fits.parameter_count(), n = fits.structure.states;
     if (static_cast<Index>(states.size()) != n)
       throw std::invalid_argument(fmt::format("features of {} states are given {} state names", n, states.size()));
-    noises_ = features == FeatureSet::parameters_and_noise ? n : 0;
+    noises_ = features == FeatureSet::parameters ? 0 : n;
     cloud_.names = fits.parameter_names();
     for (Index i = 0; i < noises_; ++i)
       cloud_.names.push_back("log_noise_variance_" + states[static_cast<std::size_t>(i)].name);
@@ -125,6 +130,21 @@ class CloudBuilder {
   Eigen::MatrixXd error_, covariance_;
 };
 
+/// Variance of values that are drawn in to their 5 % and 95 % quantiles, of some where they are many.
+double central_variance(const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& all) {
+  constexpr Index enough = 20'000;
+  constexpr double tail = 0.05;
+  const Index stride = std::max<Index>(1, all.size() / enough);
+  std::vector<double> values;
+  for (Index i = 0; i < all.size(); i += stride) values.push_back(all(i));
+  if (values.size() < 2) return 0.0;
+  std::sort(values.begin(), values.end());
+  const auto cut = static_cast<std::size_t>(tail * static_cast<double>(values.size() - 1));
+  const Eigen::Map<const Eigen::ArrayXd> sorted(values.data(), std::ssize(values));
+  const Eigen::ArrayXd drawn_in = sorted.max(values[cut]).min(values[values.size() - 1 - cut]);
+  return (drawn_in - drawn_in.mean()).square().mean();
+}
+
 std::vector<bool> left_out(const WindowFits& fits, StraddlingWindows straddling) {
   return straddling != StraddlingWindows::keep ? straddling_windows(fits)
                                                : std::vector<bool>(static_cast<std::size_t>(fits.count()), false);
@@ -135,7 +155,7 @@ std::vector<bool> left_out(const WindowFits& fits, StraddlingWindows straddling)
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
                            const std::vector<Channel>& states, StraddlingWindows straddling, WindowErrors errors) {
   CloudBuilder builder(fits, features, states, errors);
-  const bool all = resolved(fits, choice, errors, builder.features()) == WindowChoice::all;
+  const bool all = resolved(fits, choice, errors, features_kept(features, builder.features())) == WindowChoice::all;
   const std::vector<bool> out = left_out(fits, straddling);
   for (Index window = 0; window < fits.count(); ++window)
     if (!failed(fits, window) && !out[static_cast<std::size_t>(window)] && (all || full_rank(fits, window)))
@@ -144,21 +164,69 @@ FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowCh
 }
 
 FeatureCloud make_features(const WindowFits& fits, const std::vector<Channel>& states, const ClusterOptions& options) {
-  return make_features(fits, options.features, options.windows, states, options.straddling,
-                       options.error_aware ? WindowErrors::include : WindowErrors::ignore);
+  FeatureCloud cloud = make_features(fits, options.features, options.windows, states, options.straddling,
+                                     options.error_aware ? WindowErrors::include : WindowErrors::ignore);
+  const Index kept = features_kept(options.features, cloud.points.rows());
+  if (kept == cloud.points.rows()) return cloud;
+  const std::vector<std::string> names = most_varied(cloud, kept);
+  return in_features(std::move(cloud), names);
+}
+
+bool clusters_one_lag(const WindowFits& fits, FeatureSet features) {
+  if (!fits.model_parameters.empty() || !fits.structure.has_several_lags()) return false;
+  return features == FeatureSet::one_lag ||
+         (features == FeatureSet::automatic && fits.parameter_count() + fits.structure.states > most_features);
+}
+
+FeatureCloud in_features(FeatureCloud cloud, const std::vector<std::string>& names) {
+  std::vector<Index> rows, entries;
+  for (const std::string& name : names) {
+    const auto found = std::find(cloud.names.begin(), cloud.names.end(), name);
+    if (found == cloud.names.end()) throw std::invalid_argument("the cloud has no feature " + name);
+    rows.push_back(found - cloud.names.begin());
+  }
+  for (const Index column : rows)
+    for (const Index row : rows) entries.push_back(row + column * cloud.points.rows());
+  if (cloud.covariances.size() > 0) cloud.covariances = cloud.covariances(entries, Eigen::all).eval();
+  if (cloud.typical_error.size() > 0) cloud.typical_error = cloud.typical_error(rows).eval();
+  cloud.points = cloud.points(rows, Eigen::all).eval();
+  cloud.names = names;
+  return cloud;
+}
+
+std::vector<std::string> most_varied(const FeatureCloud& cloud, Index most) {
+  std::vector<std::pair<double, std::size_t>> ranked;
+  for (std::size_t f = 0; f < cloud.names.size(); ++f) {
+    const double error = cloud.typical_error(static_cast<Index>(f));
+    const double ratio =
+        error > 0.0 ? std::sqrt(central_variance(cloud.points.row(static_cast<Index>(f)))) / error : 0.0;
+    ranked.emplace_back(-ratio, f);
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  ranked.resize(std::min(ranked.size(), static_cast<std::size_t>(most)));
+  std::vector<std::size_t> kept;
+  for (const auto& [ratio, f] : ranked) kept.push_back(f);
+  std::sort(kept.begin(), kept.end());
+  std::vector<std::string> names;
+  for (const std::size_t f : kept) names.push_back(cloud.names[f]);
+  return names;
 }
 
 FeatureCloud assigned_features(const WindowFits& fits, const std::vector<Channel>& states,
-                               const ClusterOptions& options) {
+                               const ClusterOptions& options, const std::vector<std::string>& names) {
   CloudBuilder builder(fits, options.features, states, WindowErrors::include);
+  const auto taken = [&] {
+    FeatureCloud cloud = builder.take();
+    return names.empty() ? cloud : in_features(std::move(cloud), names);
+  };
   const WindowErrors errors = options.error_aware ? WindowErrors::include : WindowErrors::ignore;
-  if (fits.prior_sd.size() == 0 || resolved(fits, options.windows, errors, builder.features()) == WindowChoice::all)
-    return builder.take();
+  const Index kept = features_kept(options.features, builder.features());
+  if (fits.prior_sd.size() == 0 || resolved(fits, options.windows, errors, kept) == WindowChoice::all) return taken();
   const std::vector<bool> out = left_out(fits, options.straddling);
   for (Index window = 0; window < fits.count(); ++window)
     if (!failed(fits, window) && !out[static_cast<std::size_t>(window)] && !full_rank(fits, window))
       builder.add(window);
-  return builder.take();
+  return taken();
 }
 
 }  // namespace modebank

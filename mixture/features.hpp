@@ -34,13 +34,24 @@ enum class WindowErrors { ignore, include };
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
                            const std::vector<Channel>& states, StraddlingWindows straddling = StraddlingWindows::keep,
                            WindowErrors errors = WindowErrors::ignore);
-/// The same as the options say.
+/// The same as the options say; with FeatureSet::automatic the cloud has most_features features at most.
 FeatureCloud make_features(const WindowFits& fits, const std::vector<Channel>& states, const ClusterOptions& options);
+
+/// Whether one-lag fits of the windows are clustered in place of `fits`.
+bool clusters_one_lag(const WindowFits& fits, FeatureSet features);
+
+/// The cloud in the features of these names alone, in their order. Throws std::invalid_argument for one that it lacks.
+FeatureCloud in_features(FeatureCloud cloud, const std::vector<std::string>& names);
+
+/// Names of the `most` features that vary most beyond their errors, in the cloud's order: by the variance of the points
+/// between their 5 % and 95 % quantiles over the typical error's. Features of unknown error come last.
+std::vector<std::string> most_varied(const FeatureCloud& cloud, Eigen::Index most);
 
 /// The windows that are not clustered because their data do not determine all parameters, but belong to a component as
 /// far as data say: with their errors, which are large in the other directions. Empty without a prior (their theta is
 /// then no estimate) and where all windows are clustered. Of these the mixture says how probable each component is.
+/// `names`: the features of the cloud that is clustered; empty: all.
 FeatureCloud assigned_features(const WindowFits& fits, const std::vector<Channel>& states,
-                               const ClusterOptions& options);
+                               const ClusterOptions& options, const std::vector<std::string>& names = {});
 
 }  // namespace modebank

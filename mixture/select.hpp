@@ -31,6 +31,7 @@ struct MixtureErrors {
 struct Selection {
   GaussianMixture mixture;  ///< physical units
   std::vector<Candidate> candidates;
+  Eigen::Index compared = 0;  ///< points that candidates were compared on, whose numbers they have; 0: all
   MixtureErrors standard_error;
 };
 
@@ -39,9 +40,10 @@ std::ptrdiff_t most_components(const SelectionOptions& options);
 
 /// Fits every candidate (in parallel over candidates and restarts, seeds split by both) and keeps the best by the
 /// criterion (the smaller on a tie). The table is sorted by components, each once. `start`: where the first restart of
-/// the candidate of its size begins, in physical units; may be null. Throws DataError when every candidate asks for
-/// more components than there are distinct points, or none can be scored (held-out: fewer than two runs);
-/// std::invalid_argument for no candidate or one below 1.
+/// the candidate of its size begins, in physical units; may be null. Of more than 100,000 points the candidates are
+/// fitted to some 50,000 drawn by the seed, and the chosen one then to all of them from there. Throws DataError when
+/// every candidate asks for more components than there are distinct points, or none can be scored (held-out: fewer than
+/// two runs); std::invalid_argument for no candidate or one below 1.
 Selection select(const PointSet& points, const SampleDesign& design, const SelectionOptions& options,
                  std::uint64_t seed, const GaussianMixture* start = nullptr);
 
@@ -49,10 +51,13 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
 struct MixtureResult {
   GaussianMixture mixture;                 ///< physical units
   std::vector<std::string> feature_names;  ///< F
-  Eigen::VectorXi labels;                  ///< M, -1: neither clustered nor assigned, or noise
-  Eigen::Index clustered = 0;              ///< windows that the mixture is fitted to; 0: not known (older archives)
+  /// F x M, NaN where a window has none; empty: the features begin with the parameters of the windows themselves.
+  Eigen::MatrixXd features;
+  Eigen::VectorXi labels;      ///< M, -1: neither clustered nor assigned, or noise
+  Eigen::Index clustered = 0;  ///< windows that the mixture is fitted to; 0: not known (older archives)
   WindowResponsibilities responsibilities;
   std::vector<Candidate> candidates;
+  Eigen::Index compared = 0;               ///< windows that candidates were compared on; 0: all that are clustered
   Eigen::VectorXd weights_standard_error;  ///< K; empty without a bootstrap
   Eigen::MatrixXd means_standard_error;    ///< F x K; empty without a bootstrap
 };

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "app/chain/expected_time.hpp"
 #include "app/chain/mode_names.hpp"
 #include "app/chain/model_rows.hpp"
 #include "app/chain/stored_banks.hpp"
 #include "app/chain/training_check.hpp"
+#include "ident/fit/window_length.hpp"
 #include "io/import/import.hpp"
 
 namespace modebank {
@@ -45,8 +47,10 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
       refuse_unreached_horizons(*archive_.recording, options.scoring.horizon);
     find_lags(inputs_.structure);
   }
-  if (archive_.structure) {
-    inputs_ = chain_inputs(with_structure(options, *archive_.structure));
+  if (last >= Stage::windows && (archive_.structure || options.automatic_length)) {
+    ChainOptions found = archive_.structure ? with_structure(options, *archive_.structure) : options;
+    if (options.automatic_length) found.window.length = automatic_length(*archive_.recording, found.window);
+    inputs_ = chain_inputs(found);
     want();
   }
   const ChainInputs& inputs = inputs_;
@@ -118,6 +122,8 @@ void Chain::identify_windows(const WindowInputs& inputs) {
   const auto compute = [&] {
     if (const std::string open = open_effects(*archive_.recording, inputs.window); !open.empty())
       listener_.warning(open);
+    tell_if_long(listener_, "windows", expected_windows_s(*archive_.recording, inputs.window),
+                 "--window.step 10 fits every tenth window");
     const Stopwatch watch;
     archive_.windows = identify(*archive_.recording, inputs);
     listener_.progress(fmt::format("windows: {} fitted in {:.2f} s", archive_.windows->count(), watch.seconds()));
@@ -137,6 +143,8 @@ void Chain::identify_windows(const WindowInputs& inputs) {
 void Chain::cluster_windows(const MixtureInputs& inputs) {
   const std::string& start = inputs.start_file;
   const auto compute = [&] {
+    tell_if_long(listener_, "mixture", expected_mixture_s(*archive_.windows, inputs.mixture),
+                 "--mixture.components 4 tries one number of components");
     archive_.mixture = cluster(*archive_.recording, *archive_.windows, inputs, listener_);
     mixture_files_.clear();
     if (!start.empty()) mixture_files_.push_back(describe_file(start));
@@ -165,6 +173,9 @@ void Chain::learn_bank(const ChainInputs& inputs) {
       listener_.progress("bank: that of baseline, as steps scatter");
     }
     const LearnedFrom from{*archive_.recording, *archive_.windows, *archive_.mixture, *archive_.baseline};
+    const double expected_s = expected_learning_s(*archive_.recording, archive_.windows->structure, asked.bank.em);
+    if (asked.bank.refine == Refine::em && !asked.one_model)
+      tell_if_long(listener_, "bank", expected_s, "--bank.refine none leaves this out");
     LearnedBank learned = learn_modes(from, asked, listener_);
     archive_.bank = std::move(learned.bank);
     archive_.unrefined = std::move(learned.unrefined);
@@ -174,6 +185,8 @@ void Chain::learn_bank(const ChainInputs& inputs) {
     listener_.progress(fmt::format("bank: {} modes, {} screened, in {:.2f} s", archive_.bank->mode_count(),
                                    archive_.bank->screened.size(), watch.seconds()));
     archive_.one_motion.reset();
+    if (asked.one_motion)
+      tell_if_long(listener_, "one_motion", expected_s, "--bank.refine_transitions 10000 learns from fewer");
     if (asked.one_motion) archive_.one_motion = learn_one_motion(from, *archive_.bank, asked, listener_);
   };
   const auto copy = [&] {

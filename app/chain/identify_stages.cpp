@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <optional>
 
+#include "app/chain/judged_runs.hpp"
 #include "app/chain/section.hpp"
 #include "app/chain/stages.hpp"
+#include "filter/learn/from_mixture/cluster_windows.hpp"
 #include "ident/fit/fit_windows.hpp"
-#include "mixture/features.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -58,14 +59,15 @@ GaussianMixture stored_start(const MixtureInputs& inputs, const std::vector<std:
 MixtureResult cluster(const Recording& recording, const WindowFits& windows, const MixtureInputs& inputs,
                       const Listener& listener) {
   const Stopwatch watch;
-  const FeatureCloud cloud = make_features(windows, recording.states, inputs.mixture);
-  std::optional<GaussianMixture> start;
-  if (!inputs.start_file.empty()) start = stored_start(inputs, cloud.names, listener);
-  MixtureResult result =
-      select_mixture(windows, cloud, inputs.mixture.selection, inputs.seed, start ? &*start : nullptr,
-                     assigned_features(windows, recording.states, inputs.mixture));
-  listener.progress(fmt::format("mixture: {} components from {} windows in {:.2f} s", result.mixture.components(),
-                                cloud.windows.size(), watch.seconds()));
+  const auto start = [&](const FeatureCloud& cloud) -> std::optional<GaussianMixture> {
+    if (inputs.start_file.empty()) return std::nullopt;
+    return stored_start(inputs, cloud.names, listener);
+  };
+  MixtureResult result = cluster_windows(recording, windows, inputs.window, inputs.mixture, inputs.seed, start);
+  const std::string part =
+      result.compared > 0 ? ", candidates compared on " + of_all(result.compared, result.clustered) + "," : "";
+  listener.progress(fmt::format("mixture: {} components from {} windows{} in {:.2f} s", result.mixture.components(),
+                                result.clustered, part, watch.seconds()));
   return result;
 }
 

@@ -37,8 +37,10 @@ std::string grouped(Eigen::Index count) {
 
 }  // namespace
 
+std::string of_all(Eigen::Index part, Eigen::Index all) { return grouped(part) + " of " + grouped(all); }
+
 std::string learned_words(Eigen::Index learned, Eigen::Index all) {
-  return "from " + grouped(learned) + " of " + grouped(all) + " training transitions";
+  return "from " + of_all(learned, all) + " training transitions";
 }
 
 std::string shrinking_words(const Shrinking& shrinking) {

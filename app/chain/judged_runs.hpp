@@ -21,6 +21,9 @@ std::vector<std::size_t> positions_of(const Recording& recording, Role role);
 /// "held-out" or "training".
 const char* words_for(Role role);
 
+/// "200,000 of 2,500,000".
+std::string of_all(Eigen::Index part, Eigen::Index all);
+
 /// "from 200,000 of 2,500,000 training transitions".
 std::string learned_words(Eigen::Index learned, Eigen::Index all);
 

@@ -36,6 +36,7 @@ struct ChainOptions {
   ScoringOptions scoring;
   std::uint64_t seed = 1;
   SearchedLags searched_lags = {};           ///< that are found by runs left out, whatever `window` has
+  bool automatic_length = false;             ///< of windows (ident/fit/window_length.hpp), whatever `window` has
   std::vector<std::string> mode_names = {};  ///< of the bank; they change no number
 };
 

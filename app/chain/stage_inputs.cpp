@@ -70,7 +70,8 @@ FitOptions window_inputs(const ChainOptions& options) {
 
 MixtureInputs mixture_inputs(const ChainOptions& options) {
   const std::string& start = options.mixture_start;
-  return {options.mixture, start, start.empty() ? "" : describe_file(start).sha256, options.seed};
+  return {window_inputs(options), options.mixture, start, start.empty() ? "" : describe_file(start).sha256,
+          options.seed};
 }
 
 /// Free runs may not need more measured samples than they start from.

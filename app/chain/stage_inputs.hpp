@@ -20,6 +20,7 @@ struct WindowInputs {
 };
 
 struct MixtureInputs {
+  FitOptions window;  ///< for fits of the same windows with one lag
   ClusterOptions mixture;
   std::string start_file;    ///< archive whose mixture is a start; empty without one
   std::string start_sha256;  ///< of its content; empty without one

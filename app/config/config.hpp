@@ -68,13 +68,14 @@ struct SimulateConfig {
   double state_rate_hz = 65.0;
 };
 
-/// How a number of lags, or the delay, came into a configuration.
+/// How a number of lags, the delay or the windows' length came into a configuration.
 enum class LagChoice { by_model, automatic, number };
 
-/// The numbers of the model's structure that are searched for.
+/// The numbers of the model's structure that are searched for, and the length that follows from it.
 struct StructureConfig {
   bool automatic_model = false;  ///< window.model = auto: by_model means automatic
   LagChoice state = LagChoice::by_model, input = LagChoice::by_model, delay = LagChoice::by_model;
+  LagChoice length = LagChoice::by_model;  ///< of windows
 };
 
 /// Every stage's options, as one configuration file states them. The option table lists their keys.
@@ -106,6 +107,8 @@ DataOptions data_options_of(const Config& config);
 FitOptions window_options_of(const Config& config);
 /// Which of its lags are found.
 SearchedLags searched_lags_of(const Config& config);
+/// Whether the windows' length follows from the structure and the data.
+bool automatic_length_of(const Config& config);
 
 /// Checks values against each other, before any file of data is opened. Throws ConfigurationError naming the keys.
 void validate(const Config& config);

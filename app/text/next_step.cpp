@@ -10,6 +10,7 @@
 #include "app/chain/judged_runs.hpp"
 #include "app/text/warnings.hpp"
 #include "filter/judge/verdict_reason.hpp"
+#include "ident/fit/window_length.hpp"
 #include "ident/lag/structure.hpp"
 #include "io/import/split.hpp"
 
@@ -44,7 +45,8 @@ int state_lags(const Situation& s) { return std::atoi(s.setting("window.state_la
 /// What is dropped between blocks of a run.
 Index window_and_lags(const Situation& s) {
   const Index lags = s.setting("window.state_lags") == "auto" ? usual_lags : state_lags(s);
-  return std::atoi(s.setting("window.length").c_str()) + lags;
+  const std::string length = s.setting("window.length");
+  return (length == "auto" ? shortest_automatic_length : std::atoi(length.c_str())) + lags;
 }
 
 /// Where lags were found it is not lags that a model lacks.

@@ -50,6 +50,9 @@ std::string read_words(const Archive& archive, const Settings& settings) {
     text += fmt::format("{}the filter needs inputs {:.3f} s ahead of the states", archive.lag ? ": " : "; ", -lag_s);
   if (archive.learned_transitions > 0)
     text += fmt::format("; the bank learned {}", learned_words(archive.learned_transitions, steps));
+  if (archive.mixture && archive.mixture->compared > 0)
+    text += fmt::format("; mixtures were compared on {} windows",
+                        of_all(archive.mixture->compared, archive.mixture->clustered));
   return text;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "app/chain/judged_runs.hpp"
 #include "app/text/confusion_text.hpp"
@@ -32,14 +33,13 @@ Index member_windows(const MixtureResult& result) {
   return count;
 }
 
-/// `labels`: of the first features, the parameters.
-std::string mixture_text(const MixtureResult& result, const std::vector<std::string>& labels) {
+std::string mixture_text(const Archive& archive) {
+  const MixtureResult& result = *archive.mixture;
   const auto& candidates = result.candidates;
   const auto chosen = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.selected; });
-  std::vector<std::string> features = result.feature_names;
-  std::copy_n(labels.begin(), std::min(labels.size(), features.size()), features.begin());
   std::string text =
-      fmt::format("mixture   {} components over {}", result.mixture.components(), fmt::join(features, ", "));
+      fmt::format("mixture   {} components over {}{}", result.mixture.components(),
+                  fmt::join(feature_labels(archive, result.feature_names), ", "), features_origin(archive));
   if (chosen == candidates.end()) return text + "\n";
   const Index members = member_windows(result), clustered = result.clustered > 0 ? result.clustered : members;
   text +=
@@ -50,6 +50,7 @@ std::string mixture_text(const MixtureResult& result, const std::vector<std::str
                         members - (result.labels.array() >= 0).count());
   if (candidates.size() > 1)
     text += fmt::format("; chosen from {}..{}", candidates.front().components, candidates.back().components);
+  if (result.compared > 0) text += fmt::format(" on {} windows", of_all(result.compared, clustered));
   text += fmt::format("; {} of {} restarts agree\n", chosen->agreeing_restarts, chosen->restarts);
   for (const std::string& warning : selection_warnings(candidates)) text += "          warning: " + warning + "\n";
   return text;
@@ -220,6 +221,31 @@ std::vector<std::string> window_labels(const Archive& archive) {
   return parameter_labels(*archive.windows, names_of(recording.states), names_of(recording.inputs));
 }
 
+std::vector<std::string> feature_labels(const Archive& archive, std::vector<std::string> names) {
+  if (!archive.windows) return names;
+  const WindowFits& fits = *archive.windows;
+  const Recording none;
+  const Recording& recording = archive.recording ? *archive.recording : none;
+  std::map<std::string, std::string> label_of;
+  const auto add = [&](const std::vector<std::string>& parameters, const std::vector<std::string>& labels) {
+    for (std::size_t i = 0; i < parameters.size(); ++i) label_of.emplace(parameters[i], labels[i]);
+  };
+  add(fits.parameter_names(), window_labels(archive));
+  const LinearStructure one_lag = fits.structure.with_one_lag();
+  if (fits.model_parameters.empty())
+    add(one_lag.parameter_names(), parameter_labels(one_lag, names_of(recording.states), names_of(recording.inputs)));
+  for (std::string& name : names)
+    if (const auto found = label_of.find(name); found != label_of.end()) name = found->second;
+  return names;
+}
+
+std::string features_origin(const Archive& archive) {
+  const bool others = archive.mixture && archive.mixture->features.size() > 0;
+  return others && archive.windows && archive.windows->structure.has_several_lags()
+             ? " of one-lag fits of the same windows"
+             : "";
+}
+
 std::string windows_text(const WindowFits& fits, const WindowCounts& counts, const std::vector<std::string>& labels) {
   std::string text = fmt::format(
       "windows   {} of {} transitions: {} converged, {} rank deficient, {} at the iteration limit, {} failed\n",
@@ -249,7 +275,7 @@ std::string summary_text(const Archive& archive, int width) {
     counts.add(*archive.windows);
     text += windows_text(*archive.windows, counts, window_labels(archive));
   }
-  if (archive.mixture) text += mixture_text(*archive.mixture, window_labels(archive));
+  if (archive.mixture) text += mixture_text(archive);
   if (archive.bank) {
     text += bank_text(*archive.bank) + merging_text(archive);
     if (archive.learned_transitions > 0 && archive.recording)

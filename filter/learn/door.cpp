@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "filter/learn/from_mixture/cluster_windows.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 #include "ident/data/public_recording.hpp"
@@ -59,8 +60,7 @@ Learned learn_from(const Recording& recording, const LearnOptions& options, cons
   const auto named = own ? nullptr : motion_model(window, recording.state_count(), recording.input_count());
   const MotionModel* const motion = own ? own : named.get();
   const WindowFits fits = own ? fit_windows(recording, window, *own) : fit_windows(recording, window);
-  const MixtureResult mixture = select_mixture(fits, make_features(fits, recording.states, options.mixture),
-                                               options.mixture.selection, options.seed);
+  const MixtureResult mixture = cluster_windows(recording, fits, window, options.mixture, options.seed);
   Baseline baseline = learn_baseline(recording, linear_global(recording, fits, motion), fits.structure);
   baseline.bank.model = fits.model;
   const bool one_model = options.filter.variant == FilterVariant::kf;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <random>
 #include <string_view>
+#include <vector>
 
 namespace modebank {
 
@@ -13,5 +15,8 @@ std::uint64_t derive_seed(std::uint64_t seed, std::string_view use, std::uint64_
 inline std::mt19937_64 make_generator(std::uint64_t seed, std::string_view use, std::uint64_t index = 0) {
   return std::mt19937_64(derive_seed(seed, use, index));
 }
+
+/// One position of each of `count` equal shares of 0 .. size - 1, in order; fewer where shares are shorter than one.
+std::vector<std::ptrdiff_t> one_of_each_share(std::ptrdiff_t size, std::ptrdiff_t count, std::mt19937_64& generator);
 
 }  // namespace modebank

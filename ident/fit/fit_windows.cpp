@@ -92,10 +92,11 @@ ModelChoice choose_model(const Recording& recording, const FitOptions& options) 
 /// All windows of a recording, to be fitted range by range.
 class Fitting {
  public:
-  /// `motion`: null for linear models; must outlive it, as recording and options must.
+  /// `motion`: null for linear models; must outlive it, as recording and options must. `first`: no window of a run
+  /// begins before this transition, or before its regressors lie inside the run.
   Fitting(const Recording& recording, const FitOptions& options, const LinearStructure& structure,
-          const MotionModel* motion)
-      : plan_(recording, options.length, options.step, structure.first_transition()) {
+          const MotionModel* motion, Index first = 0)
+      : plan_(recording, options.length, options.step, std::max(first, structure.first_transition())) {
     describe(options, structure, motion);
     common_.global = motion ? fit_global(recording, *motion) : fit_global(recording, structure);
     if (motion) {
@@ -273,6 +274,19 @@ Index count_windows(const Recording& recording, const FitOptions& options) {
 WindowFits fit_windows(const Recording& recording, const FitOptions& options) {
   const ModelChoice model = choose_model(recording, options);
   return collect(Fitting(recording, options, model.structure, model.motion.get()));
+}
+
+WindowFits fit_one_lag(const Recording& recording, const WindowFits& fits, FitOptions options) {
+  const LinearStructure structure = fits.structure.with_one_lag();
+  options.state_lags = options.input_lags = 1;
+  options.input_delay = structure.input_delay;
+  options.intercept = structure.intercept;
+  options.model = structure.lagged() ? "varx" : "linear";
+  options.length = fits.length;
+  options.step = fits.step;
+  if (options.prior_sd.size() > 1) options.prior_sd.clear();
+  check_options(options, structure.parameters());
+  return collect(Fitting(recording, options, structure, nullptr, fits.structure.first_transition()));
 }
 
 WindowFits fit_windows(const Recording& recording, const FitOptions& options, const MotionModel& model) {

@@ -20,6 +20,10 @@ namespace modebank {
 /// transitions; ConfigurationError for an option out of range or a solver that does not have the model.
 WindowFits fit_windows(const Recording& recording, const FitOptions& options);
 
+/// The windows of `fits`, which have lags, fitted with one lag each, otherwise as the options have it: window i is the
+/// same transitions. Standard deviations of the prior that are given one per parameter are not used.
+WindowFits fit_one_lag(const Recording& recording, const WindowFits& fits, FitOptions options);
+
 /// Windows that fit_windows will return.
 Index count_windows(const Recording& recording, const FitOptions& options);
 

@@ -28,6 +28,10 @@ struct LinearStructure {
   Eigen::Index regressors() const { return dimension() + acting_inputs() + (intercept ? 1 : 0); }  ///< q
   Eigen::Index parameters() const { return states * regressors(); }                                ///< p
   bool lagged() const { return state_lags != 1 || input_lags != 1 || input_delay != 1; }
+  /// Whether older samples than the newest of states and inputs predict.
+  bool has_several_lags() const { return state_lags > 1 || input_lags > 1; }
+  /// The same with one state lag and one input lag.
+  LinearStructure with_one_lag() const { return {states, inputs, intercept, 1, 1, input_delay}; }
   /// First transition of a run whose regressors lie inside the run.
   Eigen::Index first_transition() const {
     return std::max({Eigen::Index{0}, state_lags - 1, input_delay + input_lags - 2});

@@ -112,11 +112,9 @@ void exchange_candidates(Io& io, C& candidates) {
            later_column("failed", &Candidate::failed));
 }
 
-/// `parameters`: units of theta, the first features; the others are logarithms, without unit.
+/// `features`: units of the features.
 template <class Io, class X>
-void exchange_mixture(Io& io, X& result, const Unit& parameters) {
-  Unit features = parameters;
-  features.resize(result.feature_names.size(), "1");
+void exchange_mixture(Io& io, X& result, const Unit& features) {
   exchange_candidates(io, result.candidates);
   io.attribute_texts("feature_names", result.feature_names);
   io.attribute("covariance", result.mixture.type);
@@ -132,6 +130,8 @@ void exchange_mixture(Io& io, X& result, const Unit& parameters) {
   io.optional_field("means_standard_error", result.means_standard_error, {"K", "F"}, features,
                     rule::not_negative_or_missing);
   io.optional_attribute("clustered_windows", result.clustered, rule::count_of("M"));
+  io.attribute_unless(Index{0}, "compared_windows", result.compared, rule::count_of("M"));
+  io.optional_field("features", result.features, {"M", "F"}, features);
   io.optional_attribute("noise_weight", result.mixture.noise.weight, rule::share);
   io.optional_field("noise_lower", result.mixture.noise.lower, {"F"}, features, rule::finite);
   io.optional_field("noise_upper", result.mixture.noise.upper, {"F"}, features, rule::finite);
@@ -163,13 +163,13 @@ void exchange_archive(Io& io, A& archive) {
   exchange_part(io, "windows", archive.windows, channels,
                 [&](auto& member, auto& part) { exchange_windows(member, part, recording, units); });
   Sizes known;
-  Unit parameters;
+  Unit features;
   if (archive.windows) {
     if (archive.windows->count() > 0) known.set("M", static_cast<hsize_t>(archive.windows->count()));
-    parameters = window_units(*archive.windows, units);
+    if (archive.mixture) features = feature_units(archive.mixture->feature_names, *archive.windows, units);
   }
   exchange_part(io, "mixture", archive.mixture, known,
-                [&](auto& member, auto& part) { exchange_mixture(member, part, parameters); });
+                [&](auto& member, auto& part) { exchange_mixture(member, part, features); });
   const auto exchange_one = [&](auto& member, auto& part) { exchange_bank(member, part, units); };
   exchange_part(io, "bank", archive.bank, {}, [&](auto& member, auto& part) {
     exchange_one(member, part);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "ident/base/not_a_number.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -107,6 +109,78 @@ TEST(Features, WindowWithoutNoiseHasNoLogVariance) {
 
 TEST(Features, StateNamesMustMatch) {
   EXPECT_THROW(make_features(five_windows(), FeatureSet::parameters, WindowChoice::all, {}), std::invalid_argument);
+}
+
+/// Points of four features whose central variances are 8/9 of squared spreads, in units of different errors.
+FeatureCloud four_features() {
+  FeatureCloud cloud;
+  cloud.names = {"a", "b", "c", "d"};
+  cloud.points.resize(4, 3);
+  cloud.points << -1.0, 0.0, 1.0, -3.0, 0.0, 3.0, -2.0, 0.0, 2.0, -100.0, 0.0, 100.0;
+  cloud.typical_error = Eigen::Vector4d(0.1, 1.0, 0.1, 0.0);
+  cloud.covariances = Eigen::VectorXd::LinSpaced(16, 0.0, 15.0).replicate(1, 3);
+  cloud.windows = {0, 1, 2};
+  return cloud;
+}
+
+TEST(Features, MostVariedAreMeasuredInTheirErrors) {
+  const FeatureCloud cloud = four_features();
+  EXPECT_EQ(most_varied(cloud, 2), (std::vector<std::string>{"a", "c"})) << "10 and 20 errors; b 3; of d it is unknown";
+  EXPECT_EQ(most_varied(cloud, 3), (std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_EQ(most_varied(cloud, 9), cloud.names);
+}
+
+TEST(Features, FarOutliersDoNotMakeAFeatureVaried) {
+  FeatureCloud cloud;
+  cloud.names = {"with an outlier", "spread"};
+  cloud.points = Eigen::MatrixXd::Zero(2, 100);
+  cloud.points.row(1) = Eigen::RowVectorXd::LinSpaced(100, -1.0, 1.0);
+  cloud.points(0, 50) = 1e6;
+  cloud.typical_error = Eigen::Vector2d::Ones();
+  EXPECT_EQ(most_varied(cloud, 1), std::vector<std::string>{"spread"});
+}
+
+TEST(Features, PartOfACloudKeepsItsErrors) {
+  const FeatureCloud cloud = in_features(four_features(), {"d", "b"});
+  EXPECT_EQ(cloud.names, (std::vector<std::string>{"d", "b"}));
+  EXPECT_TRUE(near(cloud.points.col(2), Eigen::Vector2d(100.0, 3.0), 0.0));
+  EXPECT_TRUE(near(cloud.typical_error, Eigen::Vector2d(0.0, 1.0), 0.0));
+  EXPECT_TRUE(near(cloud.covariances.col(1), Eigen::Vector4d(15.0, 13.0, 7.0, 5.0), 0.0));
+  EXPECT_THROW(in_features(four_features(), {"e"}), std::invalid_argument);
+}
+
+TEST(Features, AutomaticKeepsAllOfFewAndTwelveOfMany) {
+  ClusterOptions options;
+  options.straddling = StraddlingWindows::keep;
+  options.windows = WindowChoice::all;
+  EXPECT_EQ(make_features(five_windows(), states, options).names.size(), 4u);
+  WindowFits fits = five_windows();
+  fits.structure = LinearStructure{1, 20, false};
+  fits.parameters = Eigen::MatrixXd::Zero(21, 5);
+  fits.parameters.row(7).setLinSpaced(-1.0, 1.0);
+  fits.covariance = Eigen::MatrixXd::Identity(21, 21).reshaped(441, 1).replicate(1, 5);
+  fits.rank.setConstant(21);
+  fits.transitions = Eigen::VectorXi::Constant(5, 40);
+  const FeatureCloud cloud = make_features(fits, states, options);
+  EXPECT_EQ(cloud.names.size(), 12u);
+  EXPECT_EQ(std::count(cloud.names.begin(), cloud.names.end(), "B7"), 1);
+  EXPECT_EQ(std::count(cloud.names.begin(), cloud.names.end(), "log_noise_variance_wz"), 1);
+  options.features = FeatureSet::parameters_and_noise;
+  EXPECT_EQ(make_features(fits, states, options).names.size(), 22u);
+}
+
+TEST(Features, OneLagFitsStandInForModelsOfManyLagsAlone) {
+  WindowFits fits;
+  const auto automatic = [&] { return clusters_one_lag(fits, FeatureSet::automatic); };
+  fits.structure = LinearStructure{1, 20, false};
+  EXPECT_FALSE(automatic()) << "many inputs, no lags";
+  EXPECT_FALSE(clusters_one_lag(fits, FeatureSet::one_lag));
+  fits.structure = LinearStructure{1, 2, false, 3, 4};
+  EXPECT_FALSE(automatic()) << "11 coefficients and a noise";
+  EXPECT_TRUE(clusters_one_lag(fits, FeatureSet::one_lag));
+  fits.structure = LinearStructure{1, 2, true, 3, 4};
+  EXPECT_TRUE(automatic()) << "13 numbers";
+  EXPECT_FALSE(clusters_one_lag(fits, FeatureSet::parameters_and_noise));
 }
 
 }  // namespace

@@ -169,6 +169,38 @@ TEST(Select, OtherCandidatesDoNotChangeARow) {
   EXPECT_EQ(one.candidates[0].iterations, all.candidates[3].iterations);
 }
 
+/// 120,000 points of three clusters: a part chooses, all points make the mixture, and threads change nothing.
+TEST(Select, OfManyPointsAPartIsComparedAndAllAreFitted) {
+  const FeatureCloud cloud = cloud_of(draw(three_clusters(6.0), 120'000, 8), 4);
+  SelectionOptions options = up_to(4);
+  options.em.restarts = 2;
+  const auto chosen = [&](std::size_t threads, std::uint64_t seed) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return select_mixture(fits_of(cloud, 25, 1), cloud, options, seed);
+  };
+  const MixtureResult result = chosen(1, 1), again = chosen(2, 1), other = chosen(1, 2);
+  EXPECT_EQ(selected(result), 3);
+  EXPECT_EQ(result.clustered, 120'000);
+  EXPECT_GT(result.compared, 45'000);
+  EXPECT_LE(result.compared, 50'000);
+  EXPECT_EQ(result.mixture.means, again.mixture.means);
+  EXPECT_EQ(result.candidates[1].bic, again.candidates[1].bic);
+  EXPECT_NE(result.candidates[1].bic, other.candidates[1].bic) << "another part";
+  EXPECT_DOUBLE_EQ(result.candidates[0].effective_samples, 4800.0) << "what all windows are worth";
+  // At the maximum of all points: from there EM gains nothing.
+  const double found = log_density(result.mixture, cloud.points).sum();
+  const EmResult on = fit_em(PointSet(cloud.points), result.mixture, options.em);
+  EXPECT_LT(on.log_likelihood - found, 0.01);
+  EXPECT_TRUE(near(result.mixture.means, other.mixture.means, 1e-3));
+}
+
+TEST(Select, AHundredThousandPointsAreAllCompared) {
+  const FeatureCloud cloud = cloud_of(draw(three_clusters(6.0), 100'000, 8), 4);
+  SelectionOptions options;
+  options.components = {1};
+  EXPECT_EQ(select_mixture(fits_of(cloud, 25, 1), cloud, options, 1).compared, 0);
+}
+
 TEST(Select, CandidatesAboveTheNumberOfPointsSaySo) {
   const FeatureCloud cloud = cloud_of(draw(three_clusters(3.0), 4, 5), 2);
   SelectionOptions options;

@@ -32,8 +32,14 @@ std::vector<Option> mixture_options() {
       numeric("mixture.components", each(at_least(1)), "", "a number, a range such as 1..12, or a list",
               MODEBANK_FIELD(mixture.selection.components)),
       words("mixture.covariance", "shape of the components", MODEBANK_FIELD(mixture.selection.em.covariance)),
-      words("mixture.criterion", "chooses the number of components", MODEBANK_FIELD(mixture.selection.criterion)),
-      words("mixture.features", "what is clustered", MODEBANK_FIELD(mixture.features)),
+      words("mixture.criterion",
+            "chooses the number of components, from 50,000 windows where there are more than 100,000",
+            MODEBANK_FIELD(mixture.selection.criterion)),
+      words("mixture.features",
+            "what of a window is clustered: its coefficients, logarithms of its noise variances, too, or both of a fit "
+            "of the same window with one lag; auto: parameters+noise up to 12 numbers, beyond one_lag where the model "
+            "has lags, and of that the 12 that vary most beyond their errors",
+            MODEBANK_FIELD(mixture.features)),
       words("mixture.windows",
             "which windows are clustered; automatic: full_rank, if there are enough (others are assigned afterwards); "
             "all with "

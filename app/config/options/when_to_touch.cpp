@@ -61,7 +61,7 @@ const std::unordered_map<std::string_view, std::string_view>& learning_keys() {
       {"window.residual", "simulation, when noise is in the measurement and not in the motion; it takes much longer"},
       {"window.length",
        "when `modebank check` suggests another: longer where windows are rank deficient, shorter where "
-       "modes last less than a window"},
+       "modes last less than a window; auto, when the model has many lags"},
       {"window.step", "larger, when windows are too many to wait for: neighbours share most of their samples"},
       {"window.loss", "when `modebank check` suggests it: tukey for gross errors, trivial for clean data"},
       {"window.loss_scale", "never, unless you study the loss itself"},
@@ -79,7 +79,9 @@ const std::unordered_map<std::string_view, std::string_view>& learning_keys() {
       {"mixture.criterion",
        "rarely: a refined bank chooses its number of modes by runs left out; the others are for studies of the "
        "mixture"},
-      {"mixture.features", "parameters, when modes should differ in motion and not in noise alone"},
+      {"mixture.features",
+       "parameters, when modes should differ in motion and not in noise alone; parameters+noise with bank.theta = "
+       "mean"},
       {"mixture.windows", "all, with error_aware, when hardly any window is of full rank"},
       {"mixture.straddling", "never, unless you study how windows over a switch blur the components"},
       {"mixture.start", "an archive, to go on from a mixture found before"},

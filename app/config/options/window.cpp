@@ -3,6 +3,7 @@
 #include "app/config/option_builders.hpp"
 #include "app/config/options/sections.hpp"
 #include "ident/fit/fit_windows.hpp"
+#include "ident/fit/window_length.hpp"
 
 namespace modebank::app {
 namespace {
@@ -28,16 +29,16 @@ Option model_option() {
   return result;
 }
 
-/// A number, or a word in its place.
-Option lag_option(std::string key, const Range& range, const std::string& help, Field<std::ptrdiff_t> count,
-                  Field<LagChoice> choice) {
-  Option result = numeric(std::move(key), range, "samples",
-                          fmt::format("{}; auto: chosen by training runs left out, as with model = auto", help), count);
+/// A number, or auto in its place, which with model = auto is the default. `meanwhile`: the number until it is found.
+Option number_or_auto(Option number, const std::string& means, std::ptrdiff_t meanwhile, Field<std::ptrdiff_t> count,
+                      Field<LagChoice> choice) {
+  Option result = std::move(number);
+  result.help += fmt::format("; auto: {}, as with model = auto", means);
   result.range += " or auto";
-  result.set = [set = result.set, count, choice](Config& config, const std::string& text) {
+  result.set = [set = result.set, meanwhile, count, choice](Config& config, const std::string& text) {
     if (text != "auto") set(config, text);
     choice.in(config) = text == "auto" ? LagChoice::automatic : LagChoice::number;
-    if (text == "auto") count.in(config) = 1;
+    if (text == "auto") count.in(config) = meanwhile;
   };
   result.get = [get = result.get, choice](const Config& config) {
     const LagChoice chosen = choice.of(config);
@@ -45,6 +46,12 @@ Option lag_option(std::string key, const Range& range, const std::string& help, 
     return by_model || chosen == LagChoice::automatic ? "auto" : get(config);
   };
   return result;
+}
+
+Option lag_option(std::string key, const Range& range, const std::string& help, Field<std::ptrdiff_t> count,
+                  Field<LagChoice> choice) {
+  return number_or_auto(numeric(std::move(key), range, "samples", help, count), "chosen by training runs left out", 1,
+                        count, choice);
 }
 
 }  // namespace
@@ -65,7 +72,10 @@ std::vector<Option> window_options() {
       words("window.residual",
             "each sample predicted from the one before, or the window simulated from its first sample (estimated)",
             MODEBANK_FIELD(window.residual)),
-      numeric("window.length", between(1, 1e6), "transitions", "length of a window", MODEBANK_FIELD(window.length)),
+      number_or_auto(
+          numeric("window.length", between(1, 1e6), "transitions", "length of a window", MODEBANK_FIELD(window.length)),
+          "25, or 1.5 to 3 times the model's regressors where that is more, the less the more often motion changes",
+          shortest_automatic_length, MODEBANK_FIELD(window.length), MODEBANK_FIELD(structure.length)),
       numeric("window.step", between(1, 1e6), "transitions", "from one window's start to the next",
               MODEBANK_FIELD(window.step)),
       words("window.loss", "robust loss of a sample's residual", MODEBANK_FIELD(window.loss)),

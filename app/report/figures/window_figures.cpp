@@ -42,12 +42,13 @@ Eigen::MatrixXd points_of(const Archive& archive, const std::vector<Index>& comp
   for (Index i = 0; i < archive.windows->count(); i += stride)
     if (std::find(components.begin(), components.end(), archive.mixture->labels(i)) != components.end())
       columns.push_back(i);
-  return archive.windows->parameters(axes, columns).transpose();
+  const Eigen::MatrixXd& features = archive.mixture->features;
+  return (features.size() > 0 ? features : archive.windows->parameters)(axes, columns).transpose();
 }
 
 /// The bank's modes that figures tell apart, at `axes`.
 Eigen::MatrixXd modes_at(const Archive& archive, const std::vector<Index>& axes) {
-  if (!archive.bank) return Eigen::MatrixXd(0, std::ssize(axes));
+  if (!archive.bank || archive.mixture->features.size() > 0) return Eigen::MatrixXd(0, std::ssize(axes));
   const std::vector<Index> modes = shown_modes(archive).shown;
   Eigen::MatrixXd rows(std::ssize(modes), std::ssize(axes));
   for (Index i = 0; i < rows.rows(); ++i) {
@@ -79,22 +80,19 @@ void add_ellipses(const GaussianMixture& mixture, const std::vector<Index>& comp
     }
 }
 
-/// Unit of a parameter; "" without.
-std::string unit_at(const Archive& archive, Index parameter) {
-  const WindowFits& fits = *archive.windows;
-  const Units units(archive.recording.value_or(Recording()));
-  const Unit all = fits.model_parameters.empty() ? parameter_units(fits.structure, units.states(), units.inputs())
-                                                 : unit_of(fits.model_parameters);
-  const auto at = static_cast<std::size_t>(parameter);
-  return at < all.size() && all[at] != "1" ? all[at] : "";
+/// Names of the axes that a cloud can have: of the windows' parameters, or of what was clustered in their place.
+std::vector<std::string> axis_names(const Archive& archive) {
+  return archive.mixture->features.size() > 0 ? archive.mixture->feature_names : archive.windows->parameter_names();
 }
 
 /// ", wz <- velL in (rad/s)/(m/s)": panels are too narrow for it.
 std::string units_words(const Archive& archive, const std::vector<Index>& axes,
                         const std::vector<std::string>& labels) {
+  const Unit units =
+      feature_units(axis_names(archive), *archive.windows, Units(archive.recording.value_or(Recording())));
   std::string words;
   for (std::size_t i = 0; i < axes.size(); ++i)
-    if (const std::string unit = unit_at(archive, axes[i]); !unit.empty())
+    if (const std::string& unit = units[static_cast<std::size_t>(axes[i])]; !unit.empty() && unit != "1")
       words += fmt::format("; {} in {}", labels[i], unit);
   return words;
 }
@@ -127,8 +125,9 @@ Figure local_models(const Archive& archive, const std::vector<Index>& axes) {
   const ShownGroups groups = shown_groups(mixture.weights);
   const std::vector<Index> order = by_weight(mixture, groups.shown);
   Figure figure("local_models", assets::figure_local_models());
+  const std::vector<std::string> all = feature_labels(archive, axis_names(archive));
   std::vector<std::string> labels;
-  for (const Index axis : axes) labels.push_back(window_labels(archive)[static_cast<std::size_t>(axis)]);
+  for (const Index axis : axes) labels.push_back(all[static_cast<std::size_t>(axis)]);
   figure.set("axes", static_cast<Index>(axes.size()));
   figure.set("axis_label", labels);
   name_components(mixture, groups, order, figure);
@@ -144,10 +143,10 @@ Figure local_models(const Archive& archive, const std::vector<Index>& axes) {
   figure.set("modes", modes.rows());
   figure.add_block("modes of the bank", labels, modes);
   figure.set_caption(
-      fmt::format("Local models of {} windows, coloured by mixture component, with the components' 95 % "
+      fmt::format("Local models{} of {} windows, coloured by mixture component, with the components' 95 % "
                   "ellipses{}{}.",
-                  archive.windows->count(), modes.rows() > 0 ? "; diamonds: modes of the bank" : "",
-                  units_words(archive, axes, labels)));
+                  features_origin(archive).empty() ? "" : " with one lag", archive.windows->count(),
+                  modes.rows() > 0 ? "; diamonds: modes of the bank" : "", units_words(archive, axes, labels)));
   return figure;
 }
 
@@ -180,7 +179,7 @@ void add_window_figures(const Archive& archive, FigureSet& set) {
     set.left_out.emplace_back("local_models and selection: the archive holds no mixture");
     return;
   }
-  const std::vector<Index> axes = projection_axes(archive.windows->parameter_names());
+  const std::vector<Index> axes = projection_axes(axis_names(archive));
   if (axes.size() >= 2)
     set.figures.push_back(local_models(archive, axes));
   else

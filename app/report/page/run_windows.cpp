@@ -20,22 +20,16 @@ constexpr Index most_windows = 100'000;
 /// And no more numbers of covariances than this: beyond, windows have no ellipsoids.
 constexpr Index most_covariances = 2'000'000;
 
-Unit units_of_parameters(const Archive& archive) {
-  const Units units(*archive.recording);
-  const WindowFits& fits = *archive.windows;
-  return fits.model_parameters.empty() ? parameter_units(fits.structure, units.states(), units.inputs())
-                                       : unit_of(fits.model_parameters);
-}
-
-/// As people read them: the parameters, which are the first of the features, by their labels, noise in words.
+/// As people read them: parameters by their labels, noise in words, what is of one-lag fits with a note.
 std::vector<std::string> with_labels(std::vector<std::string> features, const Archive& archive) {
   const std::string noise = "log_noise_variance_";
   for (std::string& feature : features)
     if (feature.starts_with(noise)) feature = "log noise variance of " + feature.substr(noise.size());
-  std::vector<std::string> labels = window_labels(archive);
+  features = feature_labels(archive, std::move(features));
   for (std::size_t i = 0; i < archive.windows->model_parameters.size(); ++i)
-    labels[i] = parameter_words(labels[i], archive.windows->model_parameters[i].unit);
-  std::copy_n(labels.begin(), std::min(labels.size(), features.size()), features.begin());
+    features[i] = parameter_words(features[i], archive.windows->model_parameters[i].unit);
+  if (!features_origin(archive).empty())
+    for (std::string& feature : features) feature += " (one-lag fit)";
   return features;
 }
 
@@ -48,10 +42,10 @@ json axes_of(const std::vector<std::string>& names, const Unit& units) {
 }
 
 /// The axes to begin with: the paper's A, B1, B2, which with lags are the first of each.
-std::vector<Index> default_axes(const WindowFits& fits, Index axes) {
+std::vector<Index> default_axes(const WindowFits& fits, bool of_parameters, Index axes) {
   const Index inputs = fits.structure.dimension();
   std::vector<Index> chosen{0, 1, 2};
-  if (fits.model_parameters.empty() && fits.structure.inputs >= 2) chosen = {0, inputs, inputs + 1};
+  if (of_parameters && fits.model_parameters.empty() && fits.structure.inputs >= 2) chosen = {0, inputs, inputs + 1};
   chosen.resize(static_cast<std::size_t>(std::min<Index>(axes, 3)));
   return chosen;
 }
@@ -130,6 +124,19 @@ Drawn choose(const FeatureCloud& cloud) {
   return drawn;
 }
 
+/// The points of all windows: the features that were clustered where these are not the windows' own parameters.
+FeatureCloud cloud_of(const Archive& archive) {
+  FeatureCloud cloud =
+      make_features(*archive.windows, FeatureSet::parameters_and_noise, WindowChoice::all, archive.recording->states);
+  if (!archive.mixture || archive.mixture->features.size() == 0) return cloud;
+  cloud.names = archive.mixture->feature_names;
+  cloud.windows.clear();
+  for (Index i = 0; i < archive.mixture->features.cols(); ++i)
+    if (archive.mixture->features.col(i).allFinite()) cloud.windows.push_back(i);
+  cloud.points = archive.mixture->features(Eigen::all, cloud.windows);
+  return cloud;
+}
+
 /// Run, first and last time of each drawn window.
 void add_places(json& section, PageArrays& arrays, const Archive& archive, const std::vector<Index>& drawn) {
   const WindowFits& fits = *archive.windows;
@@ -152,28 +159,29 @@ void add_places(json& section, PageArrays& arrays, const Archive& archive, const
 nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
   if (!archive.windows || !archive.recording || archive.windows->count() == 0) return nullptr;
   const WindowFits& fits = *archive.windows;
-  const FeatureCloud cloud =
-      make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::all, archive.recording->states);
+  const FeatureCloud cloud = cloud_of(archive);
+  const bool of_parameters = !archive.mixture || archive.mixture->features.size() == 0;
   const Drawn drawn = choose(cloud);
   json values = json::array();
   for (Index i = 0; i < cloud.points.rows(); ++i) {
     const Eigen::VectorXd row = cloud.points(i, drawn.points).transpose();
     values.push_back(arrays.add(row));
   }
-  json section = {{"count", count(fits.count())},
-                  {"drawn", count(static_cast<long long>(drawn.windows.size()))},
-                  {"step", drawn.step},
-                  {"length", fits.length},
-                  {"model", fits.model},
-                  {"parameters", fits.parameter_count()},
-                  {"axes", axes_of(with_labels(cloud.names, archive), units_of_parameters(archive))},
-                  {"default_axes", default_axes(fits, cloud.points.rows())},
-                  {"values", values},
-                  {"covariance", covariances_of(arrays, fits, drawn.windows)},
-                  {"refined", archive.unrefined.has_value()},
-                  {"level", drawn_level},
-                  {"limit2", chi_square_quantile(drawn_level, 2.0)},
-                  {"limit3", chi_square_quantile(drawn_level, 3.0)}};
+  json section = {
+      {"count", count(fits.count())},
+      {"drawn", count(static_cast<long long>(drawn.windows.size()))},
+      {"step", drawn.step},
+      {"length", fits.length},
+      {"model", fits.model},
+      {"parameters", of_parameters ? fits.parameter_count() : 0},
+      {"axes", axes_of(with_labels(cloud.names, archive), feature_units(cloud.names, fits, Units(*archive.recording)))},
+      {"default_axes", default_axes(fits, of_parameters, cloud.points.rows())},
+      {"values", values},
+      {"covariance", of_parameters ? covariances_of(arrays, fits, drawn.windows) : json()},
+      {"refined", archive.unrefined.has_value()},
+      {"level", drawn_level},
+      {"limit2", chi_square_quantile(drawn_level, 2.0)},
+      {"limit3", chi_square_quantile(drawn_level, 3.0)}};
   add_places(section, arrays, archive, drawn.windows);
   if (archive.mixture) {
     section["label"] = labels_of(arrays, archive.mixture->labels, drawn.windows);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -14,13 +15,19 @@
 #include "filter/learn/learn.hpp"
 #include "filter/learn/refine/learning_part.hpp"
 #include "mixture/select.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
 
 void check(const BankOptions& options, const WindowFits& fits, const MixtureResult& mixture) {
-  if (mixture.mixture.components() < 1 || mixture.mixture.features() < fits.parameter_count())
+  const bool of_parameters = mixture.features.size() == 0;
+  if (mixture.mixture.components() < 1 || (of_parameters && mixture.mixture.features() < fits.parameter_count()))
     throw std::invalid_argument("the mixture's features do not begin with the model's parameters");
+  if (!of_parameters && options.theta == ThetaSource::mean)
+    throw ConfigurationError(
+        "theta = mean takes modes from the means of components, which are over other features than the model's "
+        "parameters here: set mixture.features = parameters+noise, or theta = pooled");
   if (options.noise == NoiseSource::fixed && !(options.process_variance >= 0.0))
     throw std::invalid_argument("process variance " + std::to_string(options.process_variance) + " is negative");
   if (options.measurement_variance && !(*options.measurement_variance >= 0.0))
@@ -118,6 +125,27 @@ void set_process_noise(std::vector<ComponentEstimate>& modes, const BankOptions&
   }
 }
 
+/// Covariance of the windows' parameters in component k, p x p: the component's own block, or the windows' weighted by
+/// their responsibilities where the component is over other features.
+Eigen::MatrixXd spread_of(const WindowFits& fits, const MixtureResult& mixture, Index k) {
+  const Index p = fits.parameter_count();
+  if (mixture.features.size() == 0) return mixture.mixture.covariances[static_cast<std::size_t>(k)].topLeftCorner(p, p);
+  Eigen::VectorXd weights = mixture.responsibilities.all().row(k).transpose();
+  for (Index i = 0; i < weights.size(); ++i)
+    if (!std::isfinite(weights(i)) || !fits.parameters.col(i).allFinite()) weights(i) = 0.0;
+  const double total = std::max(weights.sum(), std::numeric_limits<double>::min());
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(p);
+  for (Index i = 0; i < weights.size(); ++i)
+    if (weights(i) > 0.0) mean += weights(i) / total * fits.parameters.col(i);
+  Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(p, p);
+  for (Index i = 0; i < weights.size(); ++i) {
+    if (!(weights(i) > 0.0)) continue;
+    const Eigen::VectorXd offset = fits.parameters.col(i) - mean;
+    spread += weights(i) / total * offset * offset.transpose();
+  }
+  return spread;
+}
+
 TransitionMatrix learn_transition(const WindowFits& fits, const Eigen::VectorXi& labels, const std::vector<Index>& kept,
                                   const BankOptions& options) {
   if (options.transition == TransitionSource::stay) return TransitionMatrix::sticky(std::ssize(kept), options.stay);
@@ -177,10 +205,9 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
   for (const Index k : kept) modes.push_back(estimates[k]);
   set_process_noise(modes, options);
 
-  const Index p = fits.parameter_count();
   const double kept_weight = components.weights(kept).sum();
   for (Index j = 0; j < std::ssize(kept); ++j)
-    bank.modes.push_back(bank_mode(fits.structure, modes[j], components.covariances[kept[j]].topLeftCorner(p, p),
+    bank.modes.push_back(bank_mode(fits.structure, modes[j], spread_of(fits, mixture, kept[j]),
                                    components.weights(kept[j]) / kept_weight));
   set_mode_sequence(bank, learn_transition(fits, mixture.labels, kept, options));
   return bank;

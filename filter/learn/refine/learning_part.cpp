@@ -35,19 +35,6 @@ std::vector<Piece> pieces_of(const Recording& recording, Index longest) {
   return pieces;
 }
 
-/// One position of each of `count` equal shares of 0 .. size - 1, in order.
-std::vector<Index> one_of_each_share(Index size, Index count, std::uint64_t seed) {
-  std::mt19937_64 generator = make_generator(seed, "learning part");
-  std::vector<Index> drawn;
-  for (Index share = 0; share < count; ++share) {
-    const double draw = static_cast<double>(generator() >> 11U) * 0x1p-53;
-    const double at = (static_cast<double>(share) + draw) * static_cast<double>(size) / static_cast<double>(count);
-    const Index position = std::min(size - 1, static_cast<Index>(at));
-    if (drawn.empty() || drawn.back() != position) drawn.push_back(position);
-  }
-  return drawn;
-}
-
 /// Appends a piece, to the one before where it goes on from there.
 void append(std::vector<Piece>& drawn, const Piece& piece) {
   const bool goes_on =
@@ -68,7 +55,8 @@ std::optional<Recording> learning_part(const Recording& recording, Index most, s
   const Index count = std::max(Index{1}, static_cast<Index>(share * static_cast<double>(pieces.size())));
   std::vector<Piece> drawn;
   Index left = most;
-  for (const Index position : one_of_each_share(std::ssize(pieces), count, seed)) {
+  std::mt19937_64 generator = make_generator(seed, "learning part");
+  for (const Index position : one_of_each_share(std::ssize(pieces), count, generator)) {
     Piece piece = pieces[static_cast<std::size_t>(position)];
     piece.transitions = std::min(piece.transitions, left);
     if (piece.transitions > 0) append(drawn, piece);

@@ -1,6 +1,7 @@
 #include "io/archive/bank/units.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace modebank {
 
@@ -78,6 +79,26 @@ Unit Units::of(const std::vector<Channel>& channels, const std::vector<std::stri
 Unit unit_of(const std::vector<ModelParameter>& parameters) {
   Unit result;
   for (const ModelParameter& parameter : parameters) result.push_back(parameter.unit);
+  return result;
+}
+
+Unit feature_units(const std::vector<std::string>& names, const WindowFits& fits, const Units& units) {
+  std::map<std::string, std::string> unit_of_name;
+  const auto add = [&](const std::vector<std::string>& parameters, const Unit& of_parameters) {
+    for (std::size_t i = 0; i < parameters.size(); ++i) unit_of_name.emplace(parameters[i], of_parameters[i]);
+  };
+  const LinearStructure one_lag = fits.structure.with_one_lag();
+  if (fits.model_parameters.empty()) {
+    add(fits.parameter_names(), parameter_units(fits.structure, units.states(), units.inputs()));
+    add(one_lag.parameter_names(), parameter_units(one_lag, units.states(), units.inputs()));
+  } else {
+    add(fits.parameter_names(), unit_of(fits.model_parameters));
+  }
+  Unit result;
+  for (const std::string& name : names) {
+    const auto found = unit_of_name.find(name);
+    result.push_back(found == unit_of_name.end() ? "1" : found->second);
+  }
   return result;
 }
 

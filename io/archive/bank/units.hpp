@@ -5,6 +5,7 @@
 
 #include "ident/data/trajectory.hpp"
 #include "ident/model/linear_model.hpp"
+#include "ident/model/local_model.hpp"
 #include "ident/model/motion_model.hpp"
 #include "io/hdf5/sizes.hpp"
 
@@ -46,6 +47,10 @@ class Units {
 
 /// Units of a motion model's parameters.
 Unit unit_of(const std::vector<ModelParameter>& parameters);
+
+/// Units of the features of a mixture of these windows by name: of their parameters, of those of their one-lag fits,
+/// "1" of logarithms.
+Unit feature_units(const std::vector<std::string>& names, const WindowFits& fits, const Units& units);
 
 /// Units of theta, the row-major vec of [A B (c)].
 Unit parameter_units(const LinearStructure& structure, const Unit& states, const Unit& inputs);

@@ -98,6 +98,45 @@ TEST_F(StructureOfRuns, OfTheCommandLineForgetsTheLagsOfTheFile) {
   EXPECT_THAT(text({}), AllOf(HasSubstr("state_lags = 3"), HasSubstr("input_delay = auto")));
 }
 
+TEST(WindowLengthKey, FollowsTheModelUnlessItIsGiven) {
+  app::Config config;
+  const app::Option& length = *app::find_option("window.length");
+  EXPECT_EQ(length.get(config), "25");
+  EXPECT_FALSE(app::chain_options(config).automatic_length);
+  app::find_option("window.model")->set(config, "auto");
+  EXPECT_EQ(length.get(config), "auto");
+  EXPECT_TRUE(app::chain_options(config).automatic_length);
+  length.set(config, "40");
+  EXPECT_EQ(length.get(config), "40");
+  EXPECT_FALSE(app::chain_options(config).automatic_length);
+  app::find_option("window.model")->set(config, "linear");
+  length.set(config, "auto");
+  EXPECT_EQ(length.get(config), "auto");
+  EXPECT_TRUE(app::chain_options(config).automatic_length);
+}
+
+/// Thirteen coefficients and more: windows are longer, the cloud is of one-lag fits, and both are told.
+TEST_F(StructureOfRuns, WindowsOfManyLagsAreLongerAndClusteredByOneLagFits) {
+  ASSERT_EQ(
+      run({"--window.model", "varx", "--window.state_lags", "6", "--window.input_lags", "6", "--window.length", "auto"})
+          .status,
+      0);
+  const Archive made = read_archive(archive());
+  const Index regressors = made.windows->structure.regressors();
+  EXPECT_GE(2 * made.windows->length, 3 * regressors);
+  EXPECT_LE(made.windows->length, 3 * regressors);
+  EXPECT_EQ(made.mixture->feature_names.front(), "A");
+  EXPECT_EQ(made.mixture->features.cols(), made.windows->count());
+  EXPECT_EQ(made.bank->structure.state_lags, 6);
+  EXPECT_THAT(modebank({"show", archive()}).out, HasSubstr("of one-lag fits of the same windows"));
+  EXPECT_EQ(modebank({"verify", archive()}).status, 0);
+  EXPECT_EQ(modebank({"report", archive(), "-o", file("page.html")}).status, 0);
+  EXPECT_EQ(
+      run({"--window.model", "varx", "--window.state_lags", "8", "--window.input_lags", "8", "--bank.theta", "mean"})
+          .status,
+      2);
+}
+
 /// A window that is simulated has no lags to find.
 TEST_F(StructureOfRuns, IsOneLagWhereWindowsAreSimulated) {
   app::Config config;

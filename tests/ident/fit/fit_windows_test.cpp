@@ -105,6 +105,37 @@ TEST(FitWindows, TakeSigmaFromWhereTheyAreTold) {
   }
 }
 
+/// Windows of four lags, and one-lag fits of the same transitions, which are those of fit_windows that begin there.
+TEST(FitWindows, OneLagFitsAreOfTheSameTransitions) {
+  const Recording recording = mixed_recording();
+  FitOptions options;
+  options.length = 20;
+  options.prior_sd = {0.5};
+  const WindowFits one = fit_windows(recording, options);
+  options.model = "varx";
+  options.state_lags = 4;
+  options.input_lags = 2;
+  const WindowFits many = fit_windows(recording, options), same = fit_one_lag(recording, many, options);
+  ASSERT_EQ(same.count(), many.count());
+  EXPECT_EQ(same.structure, test::skid_structure);
+  Index compared = 0;
+  for (Index i = 0, j = 0; i < same.count(); ++i) {
+    const Window &window = same.windows[static_cast<std::size_t>(i)], &of = many.windows[static_cast<std::size_t>(i)];
+    EXPECT_EQ(window.run, of.run);
+    EXPECT_EQ(window.start, of.start);
+    const auto elsewhere = [&] {
+      const Window& at = one.windows[static_cast<std::size_t>(j)];
+      return at.run != window.run || at.start != window.start;
+    };
+    while (elsewhere()) ++j;
+    EXPECT_TRUE(near(same.parameters.col(i), one.parameters.col(j), 1e-9)) << i;
+    ++compared;
+  }
+  EXPECT_EQ(compared, one.count() - 3 * 3) << "three runs, each without its first three windows";
+  options.prior_sd.assign(static_cast<std::size_t>(many.parameter_count()), 0.5);
+  EXPECT_NO_THROW(fit_one_lag(recording, many, options)) << "a prior of other parameters is not used";
+}
+
 TEST(FitWindows, MarkUnexcitedWindows) {
   const Recording recording = mixed_recording();
   for (const Prior kind : {Prior::global, Prior::none}) {

@@ -51,6 +51,18 @@ TEST(ArchiveRoundTrip, KeepsANoiseComponent) {
   expect_same(round_trip(archive), archive);
 }
 
+/// Features of one-lag fits and how many windows candidates were compared on.
+TEST(ArchiveRoundTrip, KeepsFeaturesThatAreNotTheWindowsOwn) {
+  Archive archive = full_archive(2, 1);
+  MixtureResult& mixture = *archive.mixture;
+  mixture.features = Eigen::MatrixXd::Random(mixture.mixture.features(), archive.windows->count());
+  mixture.compared = 3;
+  const Archive read = round_trip(archive);
+  expect_same(read, archive);
+  EXPECT_EQ(read.mixture->features, mixture.features);
+  EXPECT_EQ(read.mixture->compared, 3);
+}
+
 TEST(ArchiveRoundTrip, ModesThatDriftComeBackOrAreRefused) {
   Archive archive = full_archive(2, 1);
   archive.bank->R.setZero();
