@@ -11,7 +11,7 @@ import sys
 IDENT = ["ident/base", "ident/data", "ident/model"]
 FIT = IDENT + ["ident/model/models", "ident/fit"]
 STEP = IDENT + ["filter/step"]
-LIBRARIES = FIT + ["ident/lag", "ident/check", "ident/simulate", "mixture", "filter/step", "filter/judge", "filter/learn"]
+LIBRARIES = FIT + ["ident/lag", "ident/terms", "ident/check", "ident/simulate", "mixture", "filter/step", "filter/judge", "filter/learn"]
 IO = ["io/files", "io/hdf5", "io/table", "io/arrays", "io/archive/bank", "io/archive", "io/recording", "io/import", "io/simulation"]
 BELOW_APP = LIBRARIES + IO
 MAY_INCLUDE = {
@@ -21,6 +21,7 @@ MAY_INCLUDE = {
     "ident/model/models": IDENT,
     "ident/fit": FIT,
     "ident/lag": FIT,
+    "ident/terms": FIT + ["ident/lag"],
     "ident/check": FIT + ["ident/lag"],
     "ident/simulate": IDENT,
     "mixture": IDENT,

@@ -272,6 +272,7 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   archive_.noise_only = std::move(stored.noise_only);
   archive_.one_motion = std::move(stored.one_motion);
   archive_.drifting = std::move(stored.drifting);
+  archive_.nonlinear = std::move(stored.nonlinear);
   archive_.unrefined = std::move(stored.unrefined);
   archive_.measured_fit = stored.measured_fit;
   const ScoringOptions scoring = scoring_inputs(options);

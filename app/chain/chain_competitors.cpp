@@ -10,18 +10,21 @@ void Chain::learn_competitor_banks(const CompetitorInputs& inputs) {
     archive_.baseline = std::move(learned.baseline);
     archive_.noise_only = std::move(learned.noise_only);
     archive_.drifting = std::move(learned.drifting);
+    archive_.nonlinear = std::move(learned.nonlinear);
   };
   const auto copy_all = [&] {
     Archive part;
     part.baseline = archive_.baseline;
     part.noise_only = archive_.noise_only;
     part.drifting = archive_.drifting;
+    part.nonlinear = archive_.nonlinear;
     return part;
   };
   const auto take_all = [&](Archive&& part) {
     archive_.baseline = std::move(part.baseline);
     archive_.noise_only = std::move(part.noise_only);
     archive_.drifting = std::move(part.drifting);
+    archive_.nonlinear = std::move(part.nonlinear);
   };
   provide(Stage::competitors, {learn_all, copy_all, take_all});
 }

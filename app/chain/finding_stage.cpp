@@ -6,6 +6,7 @@
 #include "app/chain/stages.hpp"
 #include "ident/check/run_check.hpp"
 #include "ident/check/stream_check.hpp"
+#include "ident/model/equations.hpp"
 #include "ident/model/parameter_labels.hpp"
 
 namespace modebank {
@@ -110,6 +111,11 @@ std::optional<Finding> find_modes(const Archive& archive) {
                    archive.horizons, resolutions(*bank, archive.bank->quantum, *archive.recording, role),
                    archive.free_runs, archive.one_motion_drifts(), archive.step_scatter, archive.diagnostics});
   if (finding.without_noise && archive.baseline) finding.coefficients = coefficients_of(*archive.baseline);
+  if (finding.description == Description::one_nonlinear_motion && archive.nonlinear) {
+    const Bank& bent = *archive.nonlinear;
+    finding.equations = equations(bent.structure, bent.modes.front().model, bent.terms, bent.modes.front().bend,
+                                  bent.state_names, bent.input_names);
+  }
   finding.text = finding_text(finding);
   return finding;
 }

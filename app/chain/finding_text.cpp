@@ -141,6 +141,11 @@ std::string one_mode_words(const Finding& finding) {
   return text + fmt::format(" Its log scores say little: {}.", coarse_reasons(finding));
 }
 
+bool was_asked(const Finding& finding, const std::string& competitor) {
+  return std::any_of(finding.gains.begin(), finding.gains.end(),
+                     [&](const PairedGain& gain) { return gain.competitor == competitor; });
+}
+
 std::string answer_words(const Finding& finding) {
   switch (finding.answer) {
     case Answer::one_mode:
@@ -158,10 +163,9 @@ std::string answer_words(const Finding& finding) {
                          shows(finding)) +
              least_gain_words(finding) + instead_words(finding);
     case Answer::evidence:
-      return fmt::format(
-                 "{} evidence for modes of motion: several linear models describe them better than one does (a "
-                 "motion that is nonlinear would show so, too).",
-                 shows(finding)) +
+      return fmt::format("{} evidence for modes of motion: several linear models describe them better than one does{}.",
+                         shows(finding),
+                         was_asked(finding, "nonlinear") ? "" : " (a motion that is nonlinear would show so, too)") +
              least_gain_words(finding);
     case Answer::not_yet:
       return fmt::format(
@@ -189,6 +193,9 @@ std::string better_means_words(const Finding& finding) {
 
 }  // namespace
 
-std::string finding_text(const Finding& finding) { return answer_words(finding) + better_means_words(finding); }
+std::string finding_text(const Finding& finding) {
+  const std::string equation = finding.equations.empty() ? "" : " `modebank show ARCHIVE` prints its equation.";
+  return answer_words(finding) + equation + better_means_words(finding);
+}
 
 }  // namespace modebank

@@ -12,6 +12,7 @@
 #include "filter/learn/refine/learning_part.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/linearise.hpp"
+#include "ident/terms/find_terms.hpp"
 
 namespace modebank {
 
@@ -34,6 +35,35 @@ DriftingModel drifting(const Recording& recording, const WindowFits& windows, co
   listener.progress(fmt::format("drifting: q {:g}, p0 {:g}, leak {:g}, lam {:g}, nu {:g} in {:.2f} s", model.rates.q,
                                 model.rates.p0, model.rates.leak, model.lam, model.nu, watch.seconds()));
   return model;
+}
+
+std::string lags_of(const LinearStructure& s) {
+  return fmt::format("({}, {}, {})", s.state_lags, s.input_lags, s.input_delay);
+}
+
+std::optional<Bank> nonlinear(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
+                              const Listener& listener) {
+  if (inputs.terms == TermsChoice::none) return {};
+  const Stopwatch watch;
+  const FoundTerms found = find_terms(recording, windows.structure, inputs.window);
+  for (const TriedTerms& tried : found.tried)
+    listener.detail(fmt::format("nonlinear: {} terms with lags {}: {:.4f} nats/sample left out", tried.terms,
+                                lags_of(tried.structure), tried.log_score));
+  const std::string gain = found.terms_asked == 0
+                               ? "no terms that gain"
+                               : fmt::format(
+                                     "{} terms gain {:.4f} +- {:.4f} nats/sample on halves that did not choose "
+                                     "them",
+                                     found.terms_asked, found.gain, found.gain_standard_error);
+  if (found.terms.empty()) {
+    listener.progress(fmt::format("nonlinear: {}: not taken, in {:.2f} s", gain, watch.seconds()));
+    return {};
+  }
+  Bank bank = learn_nonlinear(recording, found.structure, found.terms, inputs.em, inputs.filter);
+  tell_of_shrinking("nonlinear", bank, listener);
+  listener.progress(fmt::format("nonlinear: {}: taken with lags {}, {} noise levels, in {:.2f} s", gain,
+                                lags_of(found.structure), bank.mode_count(), watch.seconds()));
+  return bank;
 }
 
 }  // namespace
@@ -61,6 +91,7 @@ Competitors learn_competitors(const Recording& all, const WindowFits& windows, c
   learned.noise_only = learn_noise_only(recording, windows.structure, learned.baseline.R);
   if (inputs.filter.noise == FilterNoise::adaptive)
     learned.noise_only.noise_adaptation = most_likely_adaptation(learned.noise_only, recording, inputs.filter, {});
+  learned.nonlinear = nonlinear(recording, windows, inputs, listener);
   return learned;
 }
 

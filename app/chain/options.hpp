@@ -9,6 +9,7 @@
 #include "filter/learn/learn.hpp"
 #include "ident/fit/options.hpp"
 #include "ident/lag/structure.hpp"
+#include "ident/terms/find_terms.hpp"
 #include "io/import/options.hpp"
 #include "mixture/select.hpp"
 #include "modebank/mixture/options.hpp"
@@ -35,9 +36,10 @@ struct ChainOptions {
   FilterOptions filter;
   ScoringOptions scoring;
   std::uint64_t seed = 1;
-  SearchedLags searched_lags = {};           ///< that are found by runs left out, whatever `window` has
-  bool automatic_length = false;             ///< of windows (ident/fit/window_length.hpp), whatever `window` has
-  std::vector<std::string> mode_names = {};  ///< of the bank; they change no number
+  SearchedLags searched_lags = {};             ///< that are found by runs left out, whatever `window` has
+  bool automatic_length = false;               ///< of windows (ident/fit/window_length.hpp), whatever `window` has
+  std::vector<std::string> mode_names = {};    ///< of the bank; they change no number
+  TermsChoice terms = TermsChoice::automatic;  ///< whether one motion may bend
 };
 
 }  // namespace modebank

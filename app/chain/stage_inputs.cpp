@@ -21,8 +21,17 @@ BankInputs bank_inputs(const ChainOptions& options, const FitOptions& window) {
 }
 
 CompetitorInputs competitor_inputs(const ChainOptions& options, const FitOptions& window) {
-  return {window, competitor_filter("one_motion", options.filter), options.scoring.horizon, options.bank.em.transitions,
-          options.seed};
+  // A single Kalman filter has no use for rivals that are learned as a bank is.
+  const bool rivals = options.filter.variant != FilterVariant::kf;
+  RefineOptions em = options.bank.em;
+  em.seed = options.seed;
+  return {window,
+          competitor_filter("one_motion", options.filter),
+          options.scoring.horizon,
+          options.bank.em.transitions,
+          options.seed,
+          rivals ? options.terms : TermsChoice::none,
+          em};
 }
 
 /// Learned by refinement, whatever makes the bank.

@@ -31,10 +31,12 @@ struct MixtureInputs {
 /// the mixture has components.
 struct CompetitorInputs {
   FitOptions window;
-  FilterOptions filter;        ///< that runs competitors, for the noise scale's memory
-  std::vector<Index> horizon;  ///< that drifting is to widen its predictions for
-  Index transitions = 0;       ///< that they learn from at most, as the bank does; 0: from all
-  std::uint64_t seed = 1;      ///< which these are
+  FilterOptions filter;                        ///< that runs competitors, for the noise scale's memory
+  std::vector<Index> horizon;                  ///< that drifting is to widen its predictions for
+  Index transitions = 0;                       ///< that they learn from at most, as the bank does; 0: from all
+  std::uint64_t seed = 1;                      ///< which these are
+  TermsChoice terms = TermsChoice::automatic;  ///< of nonlinear
+  RefineOptions em = {};                       ///< how that is learned
 };
 
 /// How the competitor one_motion is learned: as the bank.

@@ -39,9 +39,10 @@ Bank learn_single_filter(const Recording& recording, const WindowFits& windows, 
                          const FilterOptions& filter, const Listener& listener);
 
 struct Competitors {
-  Bank baseline;           ///< one Kalman filter
-  Bank noise_only;         ///< switches noise alone
-  DriftingModel drifting;  ///< one linear model whose coefficients wander
+  Bank baseline;                       ///< one Kalman filter
+  Bank noise_only;                     ///< switches noise alone
+  DriftingModel drifting;              ///< one linear model whose coefficients wander
+  std::optional<Bank> nonlinear = {};  ///< one motion that bends; empty where training runs ask for none
 };
 Competitors learn_competitors(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
                               const Listener& listener);
@@ -82,7 +83,7 @@ struct EvaluationStream {
 /// Whether there are too many samples to hold all filters' evaluations in memory.
 bool streams_evaluations(const Recording& recording);
 
-/// `name`: bank, baseline, noise_only or one_motion. `stream`: null keeps all in memory.
+/// `name`: bank, baseline, noise_only, one_motion or nonlinear. `stream`: null keeps all in memory.
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
                           const FilterOptions& filter, const ScoringOptions& scoring,
                           const EvaluationStream* stream = nullptr);

@@ -61,15 +61,24 @@ StoredBanks read_banks(const std::filesystem::path& path, const Recording& recor
   if (one_model && !stored.baseline && stored.bank->mode_count() > 1)
     throw DataError(fmt::format("{}: holds no baseline, which the single Kalman filter kf runs", file));
   if (one_model && stored.baseline)
-    return {*stored.baseline,           stored.baseline,  std::move(stored.noise_only), {}, {},
-            std::move(stored.drifting), MeasuredFit::none};
+    return {*stored.baseline,
+            stored.baseline,
+            std::move(stored.noise_only),
+            {},
+            {},
+            std::move(stored.drifting),
+            MeasuredFit::none,
+            {},
+            {}};
   StoredBanks banks{std::move(*stored.bank),
                     std::move(stored.baseline),
                     std::move(stored.noise_only),
                     std::move(stored.one_motion),
                     {},
                     std::move(stored.drifting),
-                    MeasuredFit::none};
+                    MeasuredFit::none,
+                    {},
+                    std::move(stored.nonlinear)};
   if (one_model) return banks;
   banks.unrefined = std::move(stored.unrefined);
   banks.measured_fit = stored.measured_fit;

@@ -17,6 +17,7 @@ struct StoredBanks {
   std::optional<DriftingModel> drifting;
   MeasuredFit measured_fit = MeasuredFit::none;
   std::vector<std::string> mode_names = {};
+  std::optional<Bank> nonlinear = {};
 };
 
 /// What is to be said where data are sampled at another period than the bank's steps take; empty where they are not.

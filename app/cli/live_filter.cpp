@@ -106,6 +106,8 @@ void require_bank(const Config& config, const std::string& what) {
     throw ConfigurationError(what + ": a model whose coefficients learn in every run is no bank");
   if (config.track.filter == TrackedFilter::combined)
     throw ConfigurationError(what + ": several filters together are no bank");
+  if (config.track.filter == TrackedFilter::nonlinear)
+    throw ConfigurationError(what + ": exported filters are linear; bank, baseline, noise_only and one_motion are");
 }
 
 namespace {

@@ -36,6 +36,8 @@ void print_overview(const CommandLine& line) {
   if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(archive, width));
   if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture, width));
   if (archive.bank) fmt::print("\nmodes\n{}", modes_text(archive, full_form, width));
+  if (archive.nonlinear)
+    fmt::print("\none nonlinear motion (competitor nonlinear)\n{}", equations_text(*archive.nonlinear, width));
   fmt::print("{}{}", modes_in_words(archive, width), mode_diagnostics_text(archive, width));
 }
 

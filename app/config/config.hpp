@@ -14,7 +14,7 @@
 namespace modebank::app {
 
 /// Which filter of an archive `track` runs.
-enum class TrackedFilter { bank, baseline, noise_only, one_motion, drifting, combined };
+enum class TrackedFilter { bank, baseline, noise_only, one_motion, drifting, combined, nonlinear };
 
 /// Of the lines that `track` reads and writes.
 enum class LineFormat { automatic, csv, ndjson };
@@ -84,6 +84,7 @@ struct Config {
   FitOptions window;
   ClusterOptions mixture;
   StructureConfig structure;
+  TermsChoice terms = TermsChoice::automatic;
   std::string mixture_start;  ///< an archive as mixture.start; empty: none
   BankOptions bank;
   std::vector<std::string> mode_names;
@@ -117,7 +118,7 @@ void validate(const Config& config);
 
 template <>
 struct modebank::EnumNames<modebank::app::TrackedFilter> {
-  static constexpr Names<6> values{"bank", "baseline", "noise_only", "one_motion", "drifting", "combined"};
+  static constexpr Names<7> values{"bank", "baseline", "noise_only", "one_motion", "drifting", "combined", "nonlinear"};
 };
 
 template <>

@@ -10,8 +10,10 @@
 #include "app/text/mode_words.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/summary_text.hpp"
+#include "app/text/terminal.hpp"
 #include "app/text/text_table.hpp"
 #include "ident/fit/window_summary.hpp"
+#include "ident/model/equations.hpp"
 #include "ident/model/parameter_labels.hpp"
 
 namespace modebank::app {
@@ -202,6 +204,15 @@ std::string switches_text(const Bank& bank, const std::vector<std::string>& name
   return "\nswitches to each mode: log odds per unit of state and input (no error: data say that they are large, no "
          "more)\n" +
          table.text(width);
+}
+
+std::string equations_text(const Bank& bank, int width) {
+  const Mode& mode = bank.modes.front();
+  std::string text;
+  for (const std::string& line :
+       equations(bank.structure, mode.model, bank.terms, mode.bend, bank.state_names, bank.input_names))
+    text += wrapped(line + "\n", width);
+  return text;
 }
 
 std::string modes_text(const Archive& archive, bool full_form, int width) {

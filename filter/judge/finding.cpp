@@ -121,6 +121,7 @@ Description description_of(const Finding& finding, const Bank& bank) {
   const bool drifts = simpler.empty() ? !bank.drift.empty()
                                       : simpler == "drifting" || (simpler == "one_motion" && finding.one_motion_drifts);
   if (simpler.empty() && finding.answer != Answer::one_mode) return Description::none;
+  if (simpler == "nonlinear") return Description::one_nonlinear_motion;
   return drifts ? Description::one_drifting_motion : Description::one_linear_motion;
 }
 
@@ -201,6 +202,7 @@ const char* description_of(const std::string& competitor, bool one_motion_drifts
   if (competitor == "baseline") return "one linear model with constant noise";
   if (competitor == "noise_only" || competitor == "one_motion") return "one motion with changing noise";
   if (competitor == "drifting") return "one motion whose parameters drift";
+  if (competitor == "nonlinear") return "one nonlinear motion";
   return "";
 }
 

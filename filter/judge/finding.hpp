@@ -31,18 +31,20 @@ struct EnumNames<Answer> {
 };
 
 /// The competitors that a bank is asked to beat, the simplest description first.
-inline constexpr std::array<const char*, 4> competitor_names{"baseline", "noise_only", "one_motion", "drifting"};
+inline constexpr std::array<const char*, 5> competitor_names{"baseline", "noise_only", "one_motion", "drifting",
+                                                             "nonlinear"};
 /// What a competitor says that the runs are, "one linear model with constant noise"; empty for other names.
 /// `one_motion_drifts`: whether the theta of `one_motion` does.
 const char* description_of(const std::string& competitor, bool one_motion_drifts);
 
 /// The simplest name that the scores leave for the motion of the judged runs. none: nothing was judged, or nothing is
 /// told.
-enum class Description { none, one_linear_motion, one_drifting_motion, several_modes };
+enum class Description { none, one_linear_motion, one_drifting_motion, one_nonlinear_motion, several_modes };
 
 template <>
 struct EnumNames<Description> {
-  static constexpr Names<4> values{"none", "one linear motion", "one drifting motion", "several modes"};
+  static constexpr Names<5> values{"none", "one linear motion", "one drifting motion", "one nonlinear motion",
+                                   "several modes"};
 };
 
 /// Why an answer is `cannot tell`. errors_unknown: modes whose parameters have no standard error may be alike.
@@ -109,7 +111,8 @@ struct Finding {
   double description_loss = 0.0;   ///< of that one against the best competitor [nats/sample]
   std::vector<BetterMean> better_means;
   std::vector<std::pair<std::string, double>> coefficients;  ///< of one linear model, where that leaves no noise
-  std::string text;  ///< all of it in plain sentences, by whoever has words for it
+  std::vector<std::string> equations;  ///< of the nonlinear motion that describes the runs instead
+  std::string text;                    ///< all of it in plain sentences, by whoever has words for it
 
   bool held_out() const { return role == Role::test; }
 };

@@ -98,6 +98,12 @@ void SamplePaths::add_parameter_noise(Index mode, const Vector& state, const Vec
   for (Index i = 0; i < bank_.structure.states; ++i) next_(i) += regressor_.dot(deviation_.segment(i * q, q));
 }
 
+void SamplePaths::add_terms(Index mode, const Vector& state, const Vector& inputs) {
+  fill_regressor(bank_.structure, state, inputs, regressor_);
+  terms_.evaluate(bank_.terms, regressor_);
+  next_.head(bank_.structure.states) += bank_.modes[static_cast<std::size_t>(mode)].bend * terms_.value();
+}
+
 void SamplePaths::step(const Vector& inputs) {
   std::vector<Index> finite;
   for (Index i = 0; i < count(); ++i) {
@@ -106,6 +112,7 @@ void SamplePaths::step(const Vector& inputs) {
     mode = draw_mode(probability_);
     const LinearModel& model = bank_.modes[static_cast<std::size_t>(mode)].model;
     propagate(model.A, model.B, model.c, states_.col(i), inputs, next_);
+    if (!bank_.terms.empty()) add_terms(mode, states_.col(i), inputs);
     predicted_.col(i) = next_;
     add_parameter_noise(mode, states_.col(i), inputs);
     add_draw(noise_root_[static_cast<std::size_t>(mode)], next_);

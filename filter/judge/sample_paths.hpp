@@ -50,8 +50,10 @@ class SamplePaths {
   Eigen::MatrixXd states_, predicted_;
   std::vector<Eigen::Index> modes_;
   Eigen::VectorXd probability_, regressor_, next_, normal_, deviation_;
+  TermValues terms_;
 
   Eigen::Index draw_mode(const Eigen::VectorXd& probability);
+  void add_terms(Eigen::Index mode, const Vector& state, const Vector& inputs);
   void add_parameter_noise(Eigen::Index mode, const Vector& state, const Vector& inputs);
   void keep(const std::vector<Eigen::Index>& which);
 };

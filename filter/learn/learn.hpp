@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "filter/judge/evaluate.hpp"
 #include "filter/learn/refine/refine.hpp"
@@ -46,6 +47,18 @@ NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& record
 Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global, const Bank& rival,
                       const Eigen::MatrixXd& R, Eigen::Index most_levels, const BankOptions& options,
                       const FilterOptions& filter);
+
+/// The competitor whose one motion bends: theta of linear regressors and terms by expectation-maximisation with one
+/// theta that all noise levels share, as learn_one_motion's, from up to eight levels. Each transition's terms are known
+/// inputs then, since states count as measured exactly: R is as good as none. `em`: its prior, iterations and folds.
+/// `structure`: with the lags that the terms want. `filter`: that will run it.
+Bank learn_nonlinear(const Recording& recording, const LinearStructure& structure, const MotionTerms& terms,
+                     const RefineOptions& em, const FilterOptions& filter);
+
+/// Banks of one theta with `most` noise levels, and with three quarters as many again and again: where such a learning
+/// starts.
+std::vector<Bank> level_starts(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
+                               Eigen::Index most, double kept);
 
 /// Turns clustered windows into a bank (method: section 4). `R` is used unless options.measurement_variance is set.
 /// `motion`: the model that the windows were fitted with, null for linear ones; its modes are linearised at their mean

@@ -22,12 +22,13 @@ void expect_size(const std::string& what, Index rows, Index cols, Index expected
                               std::to_string(expected_rows) + " x " + std::to_string(expected_cols));
 }
 
-void check_mode(const Mode& mode, const LinearStructure& s, const std::string& name) {
+void check_mode(const Mode& mode, const LinearStructure& s, Index terms, const std::string& name) {
   const Index n = s.dimension(), p = s.parameters();
   expect_size(name + " A", mode.model.A.rows(), mode.model.A.cols(), n, n);
   expect_size(name + " B", mode.model.B.rows(), mode.model.B.cols(), n, s.acting_inputs());
   expect_size(name + " c", mode.model.c.size(), 1, n, 1);
   expect_size(name + " Q", mode.Q.rows(), mode.Q.cols(), n, n);
+  expect_size(name + " bend", mode.bend.rows(), mode.bend.cols(), terms > 0 ? s.states : 0, terms);
   if (mode.spread.size() > 0) expect_size(name + " spread", mode.spread.rows(), mode.spread.cols(), p, p);
   if (mode.standard_error.size() > 0) expect_size(name + " standard error", mode.standard_error.size(), 1, p, 1);
 }
@@ -39,6 +40,7 @@ void require(bool holds, const std::string& what) {
 void check_numbers(const Mode& mode, const std::string& of_mode) {
   require(mode.model.A.allFinite() && mode.model.B.allFinite() && mode.model.c.allFinite(),
           "model" + of_mode + " is not finite");
+  require(mode.bend.allFinite(), "coefficients of terms" + of_mode + " are not finite");
   require(is_covariance(mode.Q), "Q" + of_mode + " is no covariance");
 }
 
@@ -69,6 +71,7 @@ void check_drift(const Bank& bank) {
   require(bank.motion_parameters.empty(), "drift needs linear modes, not those of " + bank.model);
   require((bank.R.array() == 0.0).all(), "drift needs states measured exactly: R must be 0");
   require(bank.C.isIdentity(0.0) && bank.C.rows() == s.states, "drift needs each state measured by itself");
+  require(bank.terms.empty(), "drift is of linear coefficients alone, and it has terms");
   if (!has_one_theta(bank)) return;
   double weight = 0.0;
   for (const Mode& mode : bank.modes) {
@@ -121,7 +124,7 @@ void check_sizes(const Bank& bank) {
   if (bank.structure.states < 1) throw std::invalid_argument("a bank needs at least one state");
   if (bank.modes.empty()) throw std::invalid_argument("a bank needs at least one mode");
   for (std::size_t j = 0; j < bank.modes.size(); ++j)
-    check_mode(bank.modes[j], bank.structure, "mode " + std::to_string(j));
+    check_mode(bank.modes[j], bank.structure, bank.terms.count(), "mode " + std::to_string(j));
   const Index n_y = bank.C.rows(), K = bank.mode_count();
   if (n_y < 1) throw std::invalid_argument("C of the bank is empty");
   expect_size("C", n_y, bank.C.cols(), n_y, bank.structure.dimension());
@@ -137,7 +140,8 @@ void check_sizes(const Bank& bank) {
 
 bool has_one_theta(const Bank& bank) {
   for (Eigen::Index k = 1; k < bank.mode_count(); ++k)
-    if (bank.theta(k) != bank.theta(0)) return false;
+    if (bank.theta(k) != bank.theta(0) || bank.modes[static_cast<std::size_t>(k)].bend != bank.modes.front().bend)
+      return false;
   return bank.mode_count() > 1;
 }
 
@@ -153,6 +157,7 @@ void validate(const Bank& bank) {
   for (std::size_t j = 0; j < bank.modes.size(); ++j) check_numbers(bank.modes[j], " of mode " + std::to_string(j));
   require(bank.transition_logit.weights.allFinite() && bank.transition_logit.reference.allFinite(),
           "weights of the transition are not finite");
+  check_terms(bank.terms, bank.structure.regressors());
   check_adaptation(bank.noise_adaptation);
   check_drift(bank);
 }

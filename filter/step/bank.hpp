@@ -8,6 +8,7 @@
 #include "filter/step/transition_logit.hpp"
 #include "ident/model/linear_model.hpp"
 #include "ident/model/motion_model.hpp"
+#include "ident/model/terms.hpp"
 #include "modebank/filter/screened_mode.hpp"
 
 namespace modebank {
@@ -42,6 +43,9 @@ struct Mode {
   Eigen::VectorXd motion_theta = {};
   Eigen::VectorXd motion_standard_error = {};
   Eigen::MatrixXd Q_standard_error = {};  ///< n x n; of refined banks, empty otherwise
+  /// Of banks with terms: measured states x T coefficients, which times the terms are added to x[k+1].
+  Eigen::MatrixXd bend = {};
+  Eigen::MatrixXd bend_standard_error = {};  ///< the same of their errors; empty otherwise
 };
 
 /// How fast the scale of the noise follows a run (filter/step/equations/noise_scale.hpp).
@@ -71,6 +75,7 @@ struct Bank {
   std::vector<ModelParameter> motion_parameters;  ///< of a motion model; empty for linear ones
   NoiseAdaptation noise_adaptation;               ///< for filters whose noise is adaptive
   BankDrift drift;                                ///< how theta of each mode wanders in a run; empty: not at all
+  MotionTerms terms = {};                         ///< what bends the modes' motion, the same for all; empty: nothing
   Eigen::MatrixXd R_standard_error;               ///< n_y x n_y; empty unless R was estimated with the bank
   Eigen::MatrixXd transition_standard_error;      ///< K x K; of refined banks, empty otherwise
   Eigen::MatrixXd transition_weight_error;        ///< K x d standard errors of the logit's weights; empty: not known

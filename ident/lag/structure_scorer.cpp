@@ -4,9 +4,7 @@
 #include <cmath>
 
 #include "ident/base/linalg.hpp"
-#include "ident/fit/loss.hpp"
-#include "ident/fit/minimise.hpp"
-#include "ident/fit/scale.hpp"
+#include "ident/fit/robust_coefficients.hpp"
 #include "ident/lag/student_density.hpp"
 
 namespace modebank {
@@ -38,19 +36,6 @@ Transitions outside(const LaggedRows& rows, const std::vector<Index>& columns, I
   kept.weight = VectorXd(N - count);
   without(rows.weight, kept.weight.col(0));
   return finite_rows(kept);
-}
-
-/// Coefficients by the loss and the scale of a window's fit; empty where that fails.
-VectorXd robust_coefficients(const Transitions& transitions, const RobustLoss& loss, const FitOptions& options) {
-  const Decomposition decomposition = decompose(transitions.regressors, excitation_tolerance);
-  const double rms = std::sqrt(residuals(decomposition, transitions.increments).squaredNorm() /
-                               static_cast<double>(transitions.count()));
-  const double robust = robust_scale(transitions, decomposition)(0);
-  VectorXd sigma(1);
-  sigma << std::max({std::isfinite(robust) ? robust : 0.0, least_share_of_rms * rms, least_normal_scale});
-  const WhitenedProblem problem = whiten(transitions, decomposition, sigma, nullptr);
-  const Minimum minimum = minimise(problem, loss, options.max_iterations);
-  return minimum.status == FitStatus::failed ? VectorXd() : problem.theta(minimum.z);
 }
 
 }  // namespace
@@ -112,7 +97,6 @@ MatrixXd StructureScorer::least_squares_errors(const LinearStructure& structure)
 }
 
 MatrixXd StructureScorer::robust_errors(const LinearStructure& structure, const FitOptions& options) const {
-  const RobustLoss loss(options.loss, options.loss_scale);
   const std::vector<Index> columns = rows_.columns(structure);
   MatrixXd errors = least_squares_errors(structure);
   for (Index f = 0; f < rows_.folds(); ++f) {
@@ -121,7 +105,7 @@ MatrixXd StructureScorer::robust_errors(const LinearStructure& structure, const 
     if (count == 0 || count == rows_.count()) continue;
     const MatrixXd X = rows_.X.middleRows(first, count)(Eigen::all, columns);
     for (Index i = 0; i < rows_.states; ++i) {
-      const VectorXd theta = robust_coefficients(outside(rows_, columns, i, first, count), loss, options);
+      const VectorXd theta = robust_coefficients(outside(rows_, columns, i, first, count), options);
       if (theta.size() > 0) errors.col(i).segment(first, count) = rows_.Y.col(i).segment(first, count) - X * theta;
     }
   }

@@ -96,6 +96,7 @@ std::optional<Bank> Archive::bank_of(const std::string& filter) const {
   if (filter == "baseline") return baseline;
   if (filter == "noise_only") return noise_only;
   if (filter == "one_motion") return one_motion;
+  if (filter == "nonlinear") return nonlinear;
   if (filter == "drifting" && drifting) return fixed_bank(*drifting);
   return {};
 }

@@ -99,6 +99,7 @@ struct Archive {
   std::optional<Bank> noise_only;
   std::optional<Bank> one_motion;
   std::optional<DriftingModel> drifting;
+  std::optional<Bank> nonlinear = {};
   std::vector<FilterEvaluation> evaluations;
   std::vector<SummaryRow> summary;
   std::vector<HorizonRow> horizons;              ///< with filter.horizon

@@ -185,6 +185,7 @@ void exchange_archive(Io& io, A& archive) {
   exchange_part(io, "one_motion", archive.one_motion, {}, exchange_one);
   exchange_part(io, "drifting", archive.drifting, {},
                 [&](auto& member, auto& part) { exchange_drifting(member, part, units); });
+  exchange_part(io, "nonlinear", archive.nonlinear, {}, exchange_one);
   io.optional_group("residual_tests", !archive.residual_tests.empty(), {},
                     [&](auto& member) { exchange_residual_tests(member, archive.residual_tests, recording); });
   io.optional_group("evaluation", !archive.evaluations.empty() || !archive.summary.empty(),

@@ -185,6 +185,7 @@ void exchange_finding(Io& io, F& finding) {
   io.optional_attribute("stay_asked", finding.stay_asked, rule::not_negative);
   io.attribute("better_description", finding.better_description);
   io.attribute("text", finding.text);
+  io.optional_attribute_texts("equations", finding.equations);
   io.optional_table("gains", finding.gains, column("competitor", &PairedGain::competitor),
                     column("samples", &PairedGain::samples).obeying(rule::count_of("samples")),
                     column("gain", &PairedGain::gain, "nat"),

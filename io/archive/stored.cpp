@@ -112,7 +112,7 @@ void check_mixture(const MixtureResult& result) {
 
 namespace {
 
-constexpr std::array filters{"bank", "baseline", "noise_only", "one_motion", "drifting"};
+constexpr std::array filters{"bank", "baseline", "noise_only", "one_motion", "drifting", "nonlinear"};
 template <class Row>
 bool may_name(const std::string& filter) {
   return std::find(filters.begin(), filters.end(), filter) != filters.end() ||

@@ -69,6 +69,7 @@ const std::unordered_map<std::string_view, std::string_view>& learning_keys() {
       {"window.sigma", "with scale = fixed: from the sensor's data sheet or a standstill"},
       {"window.prior", "none, when windows excite everything and you want each one's own fit, as the published recipe"},
       {"window.prior_sd", "when the prior pulls windows of a rare ground towards the common one: larger"},
+      {"window.terms", "none, to leave the competitor nonlinear and its time out"},
       {"window.intercept", "when the motion has a constant part: a slope, a leak, a sensor's offset"},
       {"window.covariance", "sandwich, when noise differs within a window and you use the windows' standard errors"},
       {"window.solver", "never, unless a warning says that the batch solver's cost was above Ceres'"},

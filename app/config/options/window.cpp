@@ -90,6 +90,9 @@ std::vector<Option> window_options() {
               "the prior's standard deviations, one per parameter or one for all; empty: 3 x the spread of full-rank "
               "windows",
               MODEBANK_FIELD(window.prior_sd)),
+      words("window.terms",
+            "whether one motion may bend, as the competitor nonlinear: terms that training runs left out ask for",
+            MODEBANK_FIELD(terms)),
       flag("window.intercept", "estimate a constant term c", MODEBANK_FIELD(window.intercept)),
       words("window.covariance", "covariance of a window's parameters: M-estimator or HC3 sandwich",
             MODEBANK_FIELD(window.covariance)),

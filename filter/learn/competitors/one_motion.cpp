@@ -23,15 +23,6 @@ WindowFits linear_frame(const WindowFits& fits, const GlobalModel& global) {
   return frame;
 }
 
-/// Banks of `most` noise scales, and of three quarters as many again and again.
-std::vector<Bank> level_starts(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
-                               Index most, double kept) {
-  std::vector<Bank> starts;
-  for (Index levels = most; levels >= 1; levels = static_cast<Index>(kept * static_cast<double>(levels)))
-    starts.push_back(learn_noise_levels(recording, structure, R, levels));
-  return starts;
-}
-
 /// A frame with the noises and the chain of `rival`, and one theta.
 Bank with_noises_of(const Bank& rival, Bank frame, const GlobalModel& global) {
   const Index n = frame.structure.states, p = frame.structure.parameters();
@@ -44,6 +35,14 @@ Bank with_noises_of(const Bank& rival, Bank frame, const GlobalModel& global) {
 }
 
 }  // namespace
+
+std::vector<Bank> level_starts(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
+                               Index most, double kept) {
+  std::vector<Bank> starts;
+  for (Index levels = most; levels >= 1; levels = static_cast<Index>(kept * static_cast<double>(levels)))
+    starts.push_back(learn_noise_levels(recording, structure, R, levels));
+  return starts;
+}
 
 Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global, const Bank& rival,
                       const Eigen::MatrixXd& R, Index most_levels, const BankOptions& options,

@@ -60,7 +60,7 @@ bool is_exact(const LikelihoodTarget& target, const BankCoordinates& around) {
   const Bank& bank = around.origin();
   return around.places().outputs == 0 && (bank.R.diagonal().array() <= around.least_R().array()).all() &&
          target.filter.noise == FilterNoise::gaussian && !target.recording.weighted() && !bank.is_quantised() &&
-         bank.drift.empty();
+         bank.drift.empty() && bank.terms.empty();
 }
 
 /// Empty where the information has no inverse.

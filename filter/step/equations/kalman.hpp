@@ -96,7 +96,8 @@ struct KalmanStep {
         NY_(n, n_y),
         phi_(regressors) {}
 
-  /// x = x + A x + B u + c, P = F P F' + noise_scale Q (+ the spread of the parameters).
+  /// x = x + A x + B u + c, P = F P F' + noise_scale Q (+ the spread of the parameters). With terms g these are added
+  /// to x, and F has their derivative at the mean: the extended Kalman filter, exact where P is zero.
   template <class U>
   void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
                const U& u, double noise_scale = 1.0);
@@ -120,7 +121,14 @@ struct KalmanStep {
   Eigen::Matrix<double, N, N> closed_loop_;
   Eigen::Matrix<double, N, NY> NY_;
   Eigen::VectorXd phi_;
+  TermValues terms_;
+  Eigen::Matrix<double, N, N> bent_F_;
 
+  /// Adds terms to the predicted mean; F with their derivatives.
+  template <class U>
+  const Eigen::Matrix<double, N, N>& bend(const FilterModel<N, NY>& model,
+                                          const typename FilterModel<N, NY>::Mode& mode,
+                                          const Eigen::Matrix<double, N, 1>& x, const U& u);
   template <class U>
   void add_parameter_noise(const LinearStructure& s, const Eigen::MatrixXd& spread,
                            const Eigen::Matrix<double, N, 1>& x, const U& u);
@@ -174,10 +182,27 @@ void KalmanStep<N, NY>::predict(const Gaussian<N>& from, const FilterModel<N, NY
   propagate(mode.A, mode.B, mode.c, from.mean, u, predicted.mean);
   process_noise = noise_scale * mode.Q;
   if (mode.spread.size() > 0) add_parameter_noise(model.structure, mode.spread, from.mean, u);
-  small::multiply(NN_, mode.F, from.covariance);
+  const auto& F = model.terms.empty() ? mode.F : bend(model, mode, from.mean, u);
+  small::multiply(NN_, F, from.covariance);
   predicted.covariance = process_noise;
-  small::add_symmetric_product(predicted.covariance, NN_, mode.F);
+  small::add_symmetric_product(predicted.covariance, NN_, F);
   make_usable(predicted);
+}
+
+template <int N, int NY>
+template <class U>
+const Eigen::Matrix<double, N, N>& KalmanStep<N, NY>::bend(const FilterModel<N, NY>& model,
+                                                           const typename FilterModel<N, NY>::Mode& mode,
+                                                           const Eigen::Matrix<double, N, 1>& x, const U& u) {
+  fill_regressor(model.structure, x, u, phi_);
+  terms_.evaluate(model.terms, phi_);
+  bent_F_ = mode.F;
+  const Eigen::MatrixXd& slope = terms_.slope();
+  for (Eigen::Index a = 0; a < mode.bend.rows(); ++a) {
+    predicted.mean(a) += mode.bend.row(a).dot(terms_.value());
+    for (Eigen::Index i = 0; i < bent_F_.cols(); ++i) bent_F_(a, i) += mode.bend.row(a).dot(slope.col(i));
+  }
+  return bent_F_;
 }
 
 /// (I (x) phi') Sigma_theta (I (x) phi')' with theta the row-major vec of [A B (c)].

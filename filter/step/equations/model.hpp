@@ -21,6 +21,7 @@ struct FilterModel {
     Eigen::Matrix<double, N, 1> c;
     Eigen::Matrix<double, N, N> Q;
     Eigen::MatrixXd spread;  ///< p x p; empty: the parameters are taken as known
+    Eigen::MatrixXd bend;    ///< measured states x T; empty without terms
   };
 
   LinearStructure structure;
@@ -38,6 +39,7 @@ struct FilterModel {
   Eigen::Matrix<double, N, Eigen::Dynamic> start_gain;  ///< x[0] = start_gain y[0], y[0] all of z with lags
   Eigen::Matrix<double, N, N> start_covariance;         ///< P[0]
   DriftModel drift;                                     ///< how the modes' coefficients wander
+  MotionTerms terms;                                    ///< what bends the motion; empty: nothing
 
   /// Requires check_sizes(bank). Throws std::invalid_argument for FilterVariant::kf of several modes.
   FilterModel(const Bank& bank, const FilterOptions& options);
@@ -58,7 +60,8 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
       transition(bank.transition),
       transition_logit(bank.transition_logit),
       initial_probability(bank.initial_probability),
-      drift(bank) {
+      drift(bank),
+      terms(bank.terms) {
   if (variant == FilterVariant::kf && bank.mode_count() != 1)
     throw std::invalid_argument("a Kalman filter (kf) steps a bank of one mode, this one has " +
                                 std::to_string(bank.mode_count()));
@@ -72,7 +75,7 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
   for (const modebank::Mode& mode : bank.modes) {
     const bool noisy = options.parameter_noise && mode.spread.size() > 0;
     modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q,
-                     noisy ? mode.spread : Eigen::MatrixXd()});
+                     noisy ? mode.spread : Eigen::MatrixXd(), mode.bend});
   }
   const StartMoments start = start_moments(bank);
   start_gain = start.gain;

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "ident/model/equations.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/bank/stored_bank.hpp"
 #include "io/archive/bank/units.hpp"
@@ -40,6 +41,21 @@ void exchange_model_parameters(Io& io, P& parameters, const std::string& kind) {
   });
 }
 
+/// What bends the motion: V variables, T terms.
+template <class Io, class S>
+void exchange_terms(Io& io, S& stored) {
+  io.optional_attribute_texts("term_kinds", stored.term_kinds);
+  io.optional_field("term_variables", stored.term_variables, {"T", "factors"}, {}, rule::finite);
+  io.optional_field("term_knots", stored.term_knots, {"T"}, {}, rule::finite);
+  io.optional_field("term_directions", stored.term_directions, {"V", "regressors"}, {}, rule::finite);
+  io.optional_field("term_low", stored.term_low, {"V"}, {}, rule::finite);
+  io.optional_field("term_high", stored.term_high, {"V"}, {}, rule::finite);
+  io.optional_field("term_unit", stored.term_unit, {"V"}, {}, rule::positive);
+  io.optional_field("term_coefficients", stored.bend, {"K", "n_y", "T"}, {}, rule::finite);
+  io.optional_field("term_coefficients_standard_error", stored.bend_standard_error, {"K", "n_y", "T"}, {},
+                    rule::not_negative_or_missing);
+}
+
 /// The filter measures the recorded states, so outputs have the states' units where there are as many.
 template <class Io, class S>
 void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, const Unit& motion) {
@@ -69,6 +85,7 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.field("initial_probability", stored.initial_probability, {"K"}, {}, rule::probabilities);
   io.optional_field("drift_scale", stored.drift_scale, {"regressors"}, {}, rule::positive);
   io.optional_field("drift_rates", stored.drift_rates, {"rates"}, {}, rule::not_negative);
+  exchange_terms(io, stored);
   io.optional_field("motion_parameters", stored.motion_parameters, {"K", "p_motion"}, motion, rule::finite);
   io.optional_field("motion_standard_error", stored.motion_standard_error, {"K", "p_motion"}, motion, error);
   exchange_structure(io, stored.structure, stored.model);
@@ -83,6 +100,10 @@ void exchange_bank(Io& io, B& bank, const Units& units) {
   io.attribute_texts("input_names", bank.input_names);
   if constexpr (!Io::reads)
     io.attribute_texts("parameter_labels", parameter_labels(bank.structure, bank.state_names, bank.input_names));
+  if constexpr (!Io::reads)
+    if (!bank.terms.empty())
+      io.attribute_texts("equations", equations(bank.structure, bank.modes.front().model, bank.terms,
+                                                bank.modes.front().bend, bank.state_names, bank.input_names));
   io.attribute("dt_s", bank.dt_s, rule::positive);
   io.optional_attribute("noise_forgetting", bank.noise_adaptation.forgetting, rule::share);
   io.optional_attribute("noise_prior_samples", bank.noise_adaptation.prior_samples, rule::positive);

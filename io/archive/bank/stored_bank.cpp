@@ -61,7 +61,7 @@ enum class Presence { always, if_any };
 /// Every array of the modes: visit(where it is stored, its name in messages, rows, columns, how a mode holds it, and
 /// whether banks may lack it).
 template <class Visit>
-void for_each_mode_array(const LinearStructure& s, Index p_motion, Visit visit) {
+void for_each_mode_array(const LinearStructure& s, Index p_motion, Index terms, Visit visit) {
   const Index n = s.dimension(), p = s.parameters();
   const Presence always = Presence::always, if_any = Presence::if_any;
   visit(
@@ -80,6 +80,11 @@ void for_each_mode_array(const LinearStructure& s, Index p_motion, Visit visit) 
   visit(
       &StoredBank::Q_standard_error, "Q standard error", n, n,
       [](auto& mode) -> auto& { return mode.Q_standard_error; }, if_any);
+  visit(
+      &StoredBank::bend, "term coefficients", s.states, terms, [](auto& mode) -> auto& { return mode.bend; }, if_any);
+  visit(
+      &StoredBank::bend_standard_error, "term coefficients standard error", s.states, terms,
+      [](auto& mode) -> auto& { return mode.bend_standard_error; }, if_any);
   if (p_motion == 0) return;
   visit(
       &StoredBank::motion_parameters, "motion parameters", p_motion, Index{1},
@@ -123,6 +128,48 @@ TransitionLogit restore_logit(const StoredBank& stored, Index modes) {
   return {one_of(weights, 0, modes, stored.transition_reference.size()), stored.transition_reference};
 }
 
+constexpr Index most_factors = 3;
+
+void store_terms(const MotionTerms& terms, StoredBank& stored) {
+  if (terms.empty()) return;
+  stored.term_variables.setConstant(most_factors, terms.count(), -1.0);
+  stored.term_knots.resize(terms.count());
+  for (Index t = 0; t < terms.count(); ++t) {
+    const Term& term = terms.terms[static_cast<std::size_t>(t)];
+    stored.term_kinds.emplace_back(name_of(term.kind));
+    stored.term_knots(t) = term.knot;
+    for (std::size_t i = 0; i < term.variables.size(); ++i)
+      stored.term_variables(static_cast<Index>(i), t) = static_cast<double>(term.variables[i]);
+  }
+  stored.term_directions = terms.direction;
+  stored.term_low = terms.low;
+  stored.term_high = terms.high;
+  stored.term_unit = terms.unit;
+}
+
+/// Sizes that do not fit are left for check_terms.
+MotionTerms restore_terms(const StoredBank& stored) {
+  MotionTerms terms{stored.term_directions, stored.term_low, stored.term_high, stored.term_unit, {}};
+  const Index T = std::ssize(stored.term_kinds);
+  if (stored.term_knots.size() != T || stored.term_variables.cols() != T ||
+      stored.bend.size() % std::max(T, Index{1}) != 0)
+    throw DataError("the terms have " + std::to_string(T) + " kinds, " + std::to_string(stored.term_knots.size()) +
+                    " knots and the variables of " + std::to_string(stored.term_variables.cols()));
+  if (T > 0 && stored.bend.rows() != T * stored.structure.states)
+    throw DataError("the terms have " + std::to_string(stored.bend.rows()) + " coefficients for " + std::to_string(T) +
+                    " terms of " + std::to_string(stored.structure.states) + " states");
+  for (Index t = 0; t < T; ++t) {
+    const auto kind = parse_name<TermKind>(stored.term_kinds[static_cast<std::size_t>(t)]);
+    if (!kind) throw DataError("'" + stored.term_kinds[static_cast<std::size_t>(t)] + "' is no kind of term");
+    Term term{*kind, {}, stored.term_knots(t)};
+    for (const double variable : stored.term_variables.col(t))
+      if (variable >= 0.0 && variable < static_cast<double>(terms.variables()))
+        term.variables.push_back(static_cast<Index>(variable));
+    terms.terms.push_back(std::move(term));
+  }
+  return terms;
+}
+
 BankDrift restore_drift(const StoredBank& stored) {
   if (stored.drift_scale.size() == 0 && stored.drift_rates.size() == 0) return {};
   if (stored.drift_scale.size() != stored.structure.regressors() || stored.drift_rates.size() != 3)
@@ -138,7 +185,7 @@ StoredBank store_bank(const Bank& bank) {
   StoredBank stored;
   stored.model = bank.model;
   stored.structure = bank.structure;
-  for_each_mode_array(bank.structure, std::ssize(bank.motion_parameters),
+  for_each_mode_array(bank.structure, std::ssize(bank.motion_parameters), bank.terms.count(),
                       [&](auto array, const char* what, Index rows, Index cols, auto of, Presence presence) {
                         const auto absent = [&](const Mode& mode) { return of(mode).size() == 0; };
                         if (presence == Presence::if_any && std::all_of(bank.modes.begin(), bank.modes.end(), absent))
@@ -156,6 +203,7 @@ StoredBank store_bank(const Bank& bank) {
   for_each_bank_matrix([&](auto array, auto matrix) { stored.*array = (bank.*matrix).transpose(); });
   stored.transition = bank.transition.matrix().transpose();
   store_logit(bank, stored);
+  store_terms(bank.terms, stored);
   stored.quantum = bank.quantum;
   stored.initial_probability = bank.initial_probability;
   if (const DriftRates& rates = bank.drift.rates; !bank.drift.empty()) {
@@ -175,13 +223,16 @@ Bank restore_bank(const StoredBank& stored, Bank bank) {
     throw DataError("the motion parameters are not as many as their names");
   bank.model = stored.model;
   bank.structure = s;
+  bank.terms = restore_terms(stored);
   bank.modes.assign(static_cast<std::size_t>(stored.weight.size()), Mode());
   for (Index k = 0; k < stored.weight.size(); ++k) {
     Mode& mode = bank.modes[static_cast<std::size_t>(k)];
     mode.weight = stored.weight(k);
-    for_each_mode_array(s, p_motion, [&](auto array, const char*, Index rows, Index cols, auto of, Presence presence) {
-      if (presence == Presence::always || (stored.*array).size() > 0) of(mode) = one_of(stored.*array, k, rows, cols);
-    });
+    for_each_mode_array(s, p_motion, bank.terms.count(),
+                        [&](auto array, const char*, Index rows, Index cols, auto of, Presence presence) {
+                          if (presence == Presence::always || (stored.*array).size() > 0)
+                            of(mode) = one_of(stored.*array, k, rows, cols);
+                        });
   }
   for_each_bank_matrix([&](auto array, auto matrix) { bank.*matrix = (stored.*array).transpose(); });
   bank.transition = TransitionMatrix(stored.transition.transpose());

@@ -78,6 +78,14 @@ struct StoredBank {
   Eigen::VectorXd initial_probability;
   Eigen::VectorXd drift_scale;  ///< r, empty unless modes drift
   Eigen::VectorXd drift_rates;  ///< q, p0, leak; empty unless modes drift
+  // Of terms, all empty without.
+  std::vector<std::string> term_kinds;             ///< T
+  Eigen::MatrixXd term_variables;                  ///< 3 x T positions, -1 where there is none
+  Eigen::VectorXd term_knots;                      ///< T
+  Eigen::MatrixXd term_directions;                 ///< q x V
+  Eigen::VectorXd term_low, term_high, term_unit;  ///< V
+  Eigen::MatrixXd bend;                            ///< n_y*T x K
+  Eigen::MatrixXd bend_standard_error;             ///< n_y*T x K
 };
 StoredBank store_bank(const Bank& bank);
 /// Fills what StoredBank holds and leaves names, dt_s and the screened modes as they are.

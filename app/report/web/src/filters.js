@@ -5,6 +5,7 @@ export const filterNames = {
   noise_only: 'Noise only',
   one_motion: 'One motion, changing noise',
   drifting: 'One drifting motion',
+  nonlinear: 'One nonlinear motion',
   combined: 'All filters combined',
   global: 'Global model',
 };
@@ -14,6 +15,7 @@ export const shortNames = {
   noise_only: 'noise only',
   one_motion: 'one motion',
   drifting: 'drifting',
+  nonlinear: 'nonlinear',
   combined: 'combined',
   global: 'global model'
 };

@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/from_mixture/training_transitions.hpp"
+#include "filter/learn/learn.hpp"
+#include "filter/learn/refine/training_fit.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/data/stretch.hpp"
+#include "ident/fit/global_model.hpp"
+#include "ident/model/transitions.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index most_levels = 8;  // as many as noise_only has
+
+/// The structure of runs whose inputs are all that acts on a transition, its terms last.
+LinearStructure with_known_terms(const LinearStructure& s, const MotionTerms& terms) {
+  return {s.states, s.acting_inputs() + terms.count(), s.intercept, s.state_lags};
+}
+
+/// Holds the last known values in columns that are not finite; zeros before the first.
+void fill_unknown(MatrixXd& columns) {
+  for (Index k = 0; k < columns.cols(); ++k) {
+    if (columns.col(k).allFinite()) continue;
+    if (k > 0)
+      columns.col(k) = columns.col(k - 1);
+    else
+      columns.col(k).setZero();
+  }
+}
+
+/// From where filters of the lags start on, each sample with the acting inputs and the terms of its transition.
+Trajectory with_known_terms(const Trajectory& run, const LinearStructure& s, const MotionTerms& terms) {
+  const Index first = s.first_transition() - (s.state_lags - 1);
+  Trajectory known = stretch(run, first, run.samples() - first);
+  const MatrixXd phi = stack_transitions(run, first, known.transitions(), s).regressors;
+  known.input.resize(s.acting_inputs() + terms.count(), known.samples());
+  known.input.leftCols(phi.rows()).topRows(s.acting_inputs()) =
+      phi.middleCols(s.dimension(), s.acting_inputs()).transpose();
+  known.input.leftCols(phi.rows()).bottomRows(terms.count()) = term_columns(terms, phi).transpose();
+  for (Index k = 0; k < phi.rows(); ++k)
+    if (!phi.row(k).allFinite()) known.input.col(k).setConstant(not_a_number);
+  known.input.rightCols(1).setConstant(not_a_number);  // acts on nothing
+  fill_unknown(known.input);
+  return known;
+}
+
+Recording with_known_terms(const Recording& recording, const LinearStructure& s, const MotionTerms& terms) {
+  Recording known{recording.states, {}, {}, recording.quantum};
+  known.inputs.resize(static_cast<std::size_t>(s.acting_inputs() + terms.count()));
+  for (const Trajectory& run : recording.runs)
+    if (run.role == Role::train && run.transitions() > s.first_transition())
+      known.runs.push_back(with_known_terms(run, s, terms));
+  return known;
+}
+
+/// Parameters of the terms apart from those of the linear regressors, equation by equation.
+struct SplitParameters {
+  VectorXd linear;
+  MatrixXd bend;
+};
+
+SplitParameters split(const VectorXd& all, const LinearStructure& s, Index terms) {
+  const Index before = s.dimension() + s.acting_inputs(), wide = s.regressors() + terms;
+  SplitParameters parts{VectorXd(s.parameters()), MatrixXd(s.states, terms)};
+  for (Index i = 0; i < s.states; ++i) {
+    parts.linear.segment(i * s.regressors(), before) = all.segment(i * wide, before);
+    if (s.intercept) parts.linear((i + 1) * s.regressors() - 1) = all((i + 1) * wide - 1);
+    parts.bend.row(i) = all.segment(i * wide + before, terms).transpose();
+  }
+  return parts;
+}
+
+Bank with_terms(Bank known, const Recording& recording, const LinearStructure& s, const MotionTerms& terms) {
+  const Bank frame = bank_frame(recording, s, known.R);
+  std::vector<Mode> modes;
+  for (Index k = 0; k < known.mode_count(); ++k) {
+    const Mode& of = known.modes[static_cast<std::size_t>(k)];
+    const SplitParameters theta = split(known.theta(k), s, terms.count());
+    const bool errors = of.standard_error.size() == known.structure.parameters();
+    const SplitParameters error = errors ? split(of.standard_error, s, terms.count()) : SplitParameters();
+    Mode mode = make_mode(s, theta.linear, of.Q.topLeftCorner(s.states, s.states),
+                          MatrixXd::Zero(s.parameters(), s.parameters()), error.linear, of.weight);
+    mode.Q_standard_error = of.Q_standard_error;
+    mode.bend = theta.bend;
+    mode.bend_standard_error = error.bend;
+    modes.push_back(std::move(mode));
+  }
+  known.modes = std::move(modes);
+  known.model = s.lagged() ? "varx" : "linear";
+  known.structure = s;
+  known.terms = terms;
+  known.C = frame.C;
+  known.state_names = frame.state_names;
+  known.input_names = frame.input_names;
+  known.dt_s = frame.dt_s;
+  return known;
+}
+
+}  // namespace
+
+Bank learn_nonlinear(const Recording& recording, const LinearStructure& structure, const MotionTerms& terms,
+                     const RefineOptions& options, const FilterOptions& filter) {
+  const Recording known = with_known_terms(recording, structure, terms);
+  if (known.runs.empty()) throw DataError("no training run has a transition to learn from");
+  WindowFits frame;
+  frame.structure = with_known_terms(structure, terms);
+  frame.global = fit_global(known, frame.structure);
+  RefineOptions em = options;
+  em.one_theta = true;
+  em.guards = false;
+  em.drift = {};
+  em.members = 1;
+  em.restarts = 0;
+  em.look_ahead = 1;
+  em.measurement_noise = false;
+  const MatrixXd R = least_measurement_noise(frame, em.tuning).asDiagonal();
+  Bank bank =
+      refine_bank(known, frame, level_starts(known, frame.structure, R, most_levels, em.tuning.modes_kept), em, filter)
+          .bank;
+  return with_terms(std::move(bank), recording, structure, terms);
+}
+
+}  // namespace modebank

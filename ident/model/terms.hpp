@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "modebank/base/names.hpp"
+
+/// What bends a motion: functions of the regressors beside the linear ones, each with a coefficient of its own per
+/// state, so that the model stays linear in its parameters.
+namespace modebank {
+
+/// product: of up to three variables. magnitude: |z|. hinge: max(0, z - knot).
+enum class TermKind { product, magnitude, hinge };
+
+template <>
+struct EnumNames<TermKind> {
+  static constexpr Names<3> values{"product", "magnitude", "hinge"};
+};
+
+struct Term {
+  TermKind kind = TermKind::product;
+  std::vector<Eigen::Index> variables;  ///< one to three of a product, which may repeat; one of the others
+  double knot = 0.0;                    ///< of a hinge, in units of its variable
+
+  bool operator==(const Term&) const = default;
+};
+
+/// V variables and T terms of them. Variable i is z_i = clip(direction_i' phi, low_i, high_i) / unit_i, phi being the q
+/// regressors of LinearStructure: a single one of them, or a direction of the linear fit. The range is that of the
+/// training runs, beyond which products would run away.
+struct MotionTerms {
+  Eigen::MatrixXd direction = {};  ///< q x V
+  Eigen::VectorXd low, high = {};  ///< V
+  Eigen::VectorXd unit = {};       ///< V, positive
+  std::vector<Term> terms = {};    ///< T
+
+  bool empty() const { return terms.empty(); }
+  Eigen::Index count() const { return static_cast<Eigen::Index>(terms.size()); }
+  Eigen::Index variables() const { return direction.cols(); }
+};
+
+/// Throws std::invalid_argument naming the first thing that makes no terms of q regressors.
+void check_terms(const MotionTerms& terms, Eigen::Index regressors);
+
+/// The variables that some term uses, and these terms.
+MotionTerms used_part(const MotionTerms& terms, const std::vector<Term>& used);
+
+/// Terms at one point. Sized at the first use; later ones allocate nothing.
+class TermValues {
+ public:
+  void evaluate(const MotionTerms& terms, const Eigen::Ref<const Eigen::VectorXd>& regressors);
+  const Eigen::VectorXd& value() const { return value_; }  ///< T
+  const Eigen::MatrixXd& slope() const { return slope_; }  ///< T x q, derivatives; 0 through a clipped variable
+  bool outside() const { return outside_; }                ///< whether some variable is clipped
+
+ private:
+  Eigen::VectorXd variable_, per_unit_, value_;
+  Eigen::MatrixXd by_variable_, slope_;
+  bool outside_ = false;
+};
+
+/// Terms of many rows of regressors (N x q): N x T.
+Eigen::MatrixXd term_columns(const MotionTerms& terms, const Eigen::Ref<const Eigen::MatrixXd>& regressors);
+
+/// Share of the rows that lie outside the range of some variable; rows that are not finite do not count.
+double share_outside(const MotionTerms& terms, const Eigen::Ref<const Eigen::MatrixXd>& regressors);
+
+}  // namespace modebank
