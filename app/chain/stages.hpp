@@ -42,7 +42,7 @@ struct Competitors {
   Bank baseline;                       ///< one Kalman filter
   Bank noise_only;                     ///< switches noise alone
   DriftingModel drifting;              ///< one linear model whose coefficients wander
-  std::optional<Bank> nonlinear = {};  ///< one motion that bends; empty where training runs ask for none
+  std::optional<Bank> nonlinear = {};  ///< one motion that bends; empty where no term gains on the training runs
 };
 Competitors learn_competitors(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
                               const Listener& listener);

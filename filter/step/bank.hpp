@@ -43,9 +43,10 @@ struct Mode {
   Eigen::VectorXd motion_theta = {};
   Eigen::VectorXd motion_standard_error = {};
   Eigen::MatrixXd Q_standard_error = {};  ///< n x n; of refined banks, empty otherwise
-  /// Of banks with terms: measured states x T coefficients, which times the terms are added to x[k+1].
+  /// Coefficients of the terms, measured states x T, empty without terms: their product with the terms is added to
+  /// x[k+1].
   Eigen::MatrixXd bend = {};
-  Eigen::MatrixXd bend_standard_error = {};  ///< the same of their errors; empty otherwise
+  Eigen::MatrixXd bend_standard_error = {};  ///< in the same order; empty without terms
 };
 
 /// How fast the scale of the noise follows a run (filter/step/equations/noise_scale.hpp).

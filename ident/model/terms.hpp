@@ -5,7 +5,7 @@
 
 #include "modebank/base/names.hpp"
 
-/// What bends a motion: functions of the regressors beside the linear ones, each with a coefficient of its own per
+/// Terms bend a motion: functions of the regressors beside the linear ones, each with a coefficient of its own per
 /// state, so that the model stays linear in its parameters.
 namespace modebank {
 

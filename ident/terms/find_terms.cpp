@@ -51,7 +51,7 @@ VectorXd densities_of(const TermRows& on, const LinearStructure& structure, cons
   return student_densities(on.Y - design_of(on, structure, terms) * coefficients);
 }
 
-/// What terms of this structure gain over the linear model on each half, chosen and fitted on the other.
+/// The gain of this structure's terms over the linear model on each half, chosen and fitted on the other.
 PartGain measured_gain(const TermRows& rows, const LinearStructure& structure, const FitOptions& options) {
   std::array<VectorXd, 2> gained;
   std::array<std::vector<bool>, 2> half;

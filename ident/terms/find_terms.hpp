@@ -10,7 +10,7 @@
 
 namespace modebank {
 
-/// Which terms the competitor `nonlinear` has: those that training runs ask for, or there is no such competitor.
+/// automatic: terms that gain on training runs make the competitor `nonlinear`; none: it is left out.
 enum class TermsChoice { automatic, none };
 
 template <>

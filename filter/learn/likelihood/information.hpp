@@ -26,8 +26,8 @@ struct SampleGradients {
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                  const Recording& recording, const FilterOptions& filter, const LookAhead& look = {});
 
-/// The same of states measured exactly (R = 0), without weights: by the switching regression, whose densities are the
-/// filter's at a fraction of the cost, the smaller the more lags there are.
+/// Gradients where states are measured exactly (R = 0) and samples have no weights: by the switching regression, whose
+/// densities are the filter's at a fraction of the cost, the smaller the more lags there are.
 SampleGradients exact_sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                        const TrainingTransitions& transitions);
 

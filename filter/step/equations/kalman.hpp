@@ -96,8 +96,8 @@ struct KalmanStep {
         NY_(n, n_y),
         phi_(regressors) {}
 
-  /// x = x + A x + B u + c, P = F P F' + noise_scale Q (+ the spread of the parameters). With terms g these are added
-  /// to x, and F has their derivative at the mean: the extended Kalman filter, exact where P is zero.
+  /// x = x + A x + B u + c, P = F P F' + noise_scale Q (+ the covariance of the parameters). With terms g these are
+  /// added to x, and F has their derivative at the mean: the extended Kalman filter, exact where P is zero.
   template <class U>
   void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
                const U& u, double noise_scale = 1.0);

@@ -41,7 +41,7 @@ void exchange_model_parameters(Io& io, P& parameters, const std::string& kind) {
   });
 }
 
-/// What bends the motion: V variables, T terms.
+/// Terms that bend the motion: V variables, T terms.
 template <class Io, class S>
 void exchange_terms(Io& io, S& stored) {
   io.optional_attribute_texts("term_kinds", stored.term_kinds);

@@ -160,7 +160,9 @@ MotionTerms restore_terms(const StoredBank& stored) {
                     " terms of " + std::to_string(stored.structure.states) + " states");
   for (Index t = 0; t < T; ++t) {
     const auto kind = parse_name<TermKind>(stored.term_kinds[static_cast<std::size_t>(t)]);
-    if (!kind) throw DataError("'" + stored.term_kinds[static_cast<std::size_t>(t)] + "' is no kind of term");
+    if (!kind)
+      throw DataError("unknown kind of term '" + stored.term_kinds[static_cast<std::size_t>(t)] +
+                      "'; expected product, magnitude or hinge");
     Term term{*kind, {}, stored.term_knots(t)};
     for (const double variable : stored.term_variables.col(t))
       if (variable >= 0.0 && variable < static_cast<double>(terms.variables()))

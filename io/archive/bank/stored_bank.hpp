@@ -78,7 +78,7 @@ struct StoredBank {
   Eigen::VectorXd initial_probability;
   Eigen::VectorXd drift_scale;  ///< r, empty unless modes drift
   Eigen::VectorXd drift_rates;  ///< q, p0, leak; empty unless modes drift
-  // Of terms, all empty without.
+  // Terms; all empty without.
   std::vector<std::string> term_kinds;             ///< T
   Eigen::MatrixXd term_variables;                  ///< 3 x T positions, -1 where there is none
   Eigen::VectorXd term_knots;                      ///< T

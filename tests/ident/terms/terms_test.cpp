@@ -15,7 +15,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Of x, u0 and the direction .5 u0 - u1: a product, a magnitude and a hinge.
+/// Three terms of x, u0 and the direction .5 u0 - u1: a product, a magnitude and a hinge.
 MotionTerms example_terms() {
   MotionTerms terms;
   terms.direction = MatrixXd::Zero(3, 3);
