@@ -11,7 +11,7 @@ namespace modebank {
 
 double expected_windows_s(const Recording& recording, const FitOptions& window);
 double expected_mixture_s(const WindowFits& windows, const ClusterOptions& options);
-/// Seconds of refinement, and those of the competitor one_motion.
+/// Refinement takes so long, and the competitor one_motion about the same.
 double expected_learning_s(const Recording& recording, const LinearStructure& structure, const RefineOptions& options);
 
 /// One line of progress where `seconds` are more than 30: "bank: about 2 min of processor time; --bank.refine none

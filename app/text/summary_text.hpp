@@ -14,7 +14,7 @@ std::string windows_text(const WindowFits& common, const WindowCounts& counts, c
 
 /// parameter_labels of the archive's windows; empty without windows.
 std::vector<std::string> window_labels(const Archive& archive);
-/// Labels of the mixture's features: parameters (those of one-lag fits, too) by their labels, others by their names.
+/// The features' names with labels in place of parameter names, those of one-lag fits included.
 std::vector<std::string> feature_labels(const Archive& archive, std::vector<std::string> names);
 /// " of one-lag fits of the same windows" where the mixture is over these, else nothing.
 std::string features_origin(const Archive& archive);

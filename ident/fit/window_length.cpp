@@ -74,7 +74,7 @@ Index automatic_length(const Recording& recording, const LinearStructure& struct
     const Index length = length_of(per_regressor);
     if (length > shortest && changed_share(recording, structure.with_one_lag(), length) <= most_changed) return length;
   }
-  // Runs that hold no such window may hold the shortest one; where they do not, forming windows fails with a message.
+  // Runs too short for such a window may hold one of the least length; forming windows reports where they do not.
   return WindowPlan(recording, shortest, 1, structure.first_transition()).count() > 0 ? shortest
                                                                                       : shortest_automatic_length;
 }
