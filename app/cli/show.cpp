@@ -37,7 +37,7 @@ void print_overview(const CommandLine& line) {
   if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture, width));
   if (archive.bank) fmt::print("\nmodes\n{}", modes_text(archive, full_form, width));
   if (archive.nonlinear)
-    fmt::print("\none nonlinear motion (competitor nonlinear)\n{}", equations_text(*archive.nonlinear, width));
+    fmt::print("\none nonlinear motion (competitor nonlinear)\n{}", equations_text(archive, width));
   fmt::print("{}{}", modes_in_words(archive, width), mode_diagnostics_text(archive, width));
 }
 

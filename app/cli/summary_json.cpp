@@ -44,6 +44,7 @@ json summary_json(const Archive& archive, const Settings& settings) {
           {"warning", screen.warning},
           {"next", screen.next},
           {"answer", answer},
+          {"equations", archive.finding ? archive.finding->equations : std::vector<std::string>()},
           {"competitor", screen.competitor},
           {"gain", json_number(screen.gain)},
           {"gain_error", json_number(screen.gain_error)},

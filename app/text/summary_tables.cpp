@@ -15,6 +15,8 @@
 #include "ident/fit/window_summary.hpp"
 #include "ident/model/equations.hpp"
 #include "ident/model/parameter_labels.hpp"
+#include "ident/model/terms.hpp"
+#include "ident/model/transitions.hpp"
 
 namespace modebank::app {
 namespace {
@@ -206,12 +208,25 @@ std::string switches_text(const Bank& bank, const std::vector<std::string>& name
          table.text(width);
 }
 
-std::string equations_text(const Bank& bank, int width) {
+std::string equations_text(const Archive& archive, int width) {
+  const Bank& bank = *archive.nonlinear;
   const Mode& mode = bank.modes.front();
   std::string text;
   for (const std::string& line :
        equations(bank.structure, mode.model, bank.terms, mode.bend, bank.state_names, bank.input_names))
     text += wrapped(line + "\n", width);
+  const Role role = judged_role(archive);
+  double outside = 0.0, transitions = 0.0;
+  for (const Trajectory& run : archive.recording ? archive.recording->runs : std::vector<Trajectory>()) {
+    if (run.role != role || run.samples() < 2) continue;
+    const auto count = static_cast<double>(run.transitions());
+    outside +=
+        count * share_outside(bank.terms, stack_transitions(run, 0, run.transitions(), bank.structure).regressors);
+    transitions += count;
+  }
+  if (transitions > 0.0)
+    text += fmt::format("{:.1f} % of the {} samples lie outside of these ranges, where terms stay as at the edge\n",
+                        100.0 * outside / transitions, words_for(role));
   return text;
 }
 

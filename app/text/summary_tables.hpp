@@ -20,8 +20,8 @@ std::string window_parameters_text(const Archive& archive, int width = 0);
 /// calibrated.
 std::string mode_diagnostics_text(const Archive& archive, int width = 0);
 
-/// The equations of a motion that bends, one or more lines each.
-std::string equations_text(const Bank& bank, int width = 0);
+/// The equations of the archive's motion that bends, and how many judged samples lie outside of its training ranges.
+std::string equations_text(const Archive& archive, int width = 0);
 /// One line per mode: parameters, noise, weight. `full_form` prints I + A instead of A.
 std::string modes_text(const Archive& archive, bool full_form, int width = 0);
 

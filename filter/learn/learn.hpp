@@ -49,9 +49,9 @@ Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const 
                       const FilterOptions& filter);
 
 /// The competitor whose one motion bends: theta of linear regressors and terms by expectation-maximisation with one
-/// theta that all noise levels share, as learn_one_motion's, from up to eight levels. Each transition's terms are known
-/// inputs then, since states count as measured exactly: R is as good as none. `em`: its prior, iterations and folds.
-/// `structure`: with the lags that the terms want. `filter`: that will run it.
+/// theta that all noise levels share, as learn_one_motion's, from up to four levels and with a wide one more. Each
+/// transition's terms are known inputs then, since states count as measured exactly: R is as good as none. `em`: its
+/// prior, iterations and folds. `structure`: with the lags that the terms want. `filter`: that will run it.
 Bank learn_nonlinear(const Recording& recording, const LinearStructure& structure, const MotionTerms& terms,
                      const RefineOptions& em, const FilterOptions& filter);
 

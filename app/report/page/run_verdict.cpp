@@ -130,6 +130,7 @@ nlohmann::json verdict_section(const Archive& archive) {
   return {{"headline", headline(screen)},
           {"answer", screen.answer ? json(name_of(*screen.answer)) : json()},
           {"good", goodness(screen)},
+          {"equations", archive.finding ? archive.finding->equations : std::vector<std::string>()},
           {"text", screen.answer ? with_signs(screen.finding)
                                  : std::string("No bank was scored, so there is nothing to judge yet.")},
           {"next", screen.next},

@@ -19,7 +19,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index most_levels = 8;  // as many as noise_only has
+constexpr Index most_levels = 4;  // beside the wide one
+constexpr std::ptrdiff_t most_iterations = 35;
+constexpr double wide_factor = 9.0;  // of the widest level's variance
+constexpr double wide_share = 0.01;  // of the steps that enter the wide level
+constexpr double wide_stay = 0.9;
 
 /// The structure of runs whose inputs are all that acts on a transition, its terms last.
 LinearStructure with_known_terms(const LinearStructure& s, const MotionTerms& terms) {
@@ -105,6 +109,30 @@ Bank with_terms(Bank known, const Recording& recording, const LinearStructure& s
   return known;
 }
 
+/// One more noise level, that training runs did not ask for: terms may err by several times their training error
+/// where inputs move otherwise, and a bank without such a level has no density left for it.
+void add_wide_level(Bank& bank) {
+  const Index K = bank.mode_count();
+  const auto widest = std::max_element(bank.modes.begin(), bank.modes.end(),
+                                       [](const Mode& a, const Mode& b) { return a.Q.trace() < b.Q.trace(); });
+  Mode wide = *widest;
+  wide.Q *= wide_factor;
+  wide.Q_standard_error.setConstant(not_a_number);
+  wide.weight = wide_share;
+  for (Mode& mode : bank.modes) mode.weight *= 1.0 - wide_share;
+  MatrixXd T(K + 1, K + 1);
+  T.topLeftCorner(K, K) = (1.0 - wide_share) * bank.transition.matrix();
+  T.col(K).head(K).setConstant(wide_share);
+  T.row(K).head(K).setConstant((1.0 - wide_stay) / static_cast<double>(K));
+  T(K, K) = wide_stay;
+  VectorXd initial(K + 1);
+  initial << (1.0 - wide_share) * bank.initial_probability, wide_share;
+  bank.modes.push_back(std::move(wide));
+  bank.transition = TransitionMatrix(T);
+  bank.initial_probability = initial;
+  bank.transition_standard_error.resize(0, 0);
+}
+
 }  // namespace
 
 Bank learn_nonlinear(const Recording& recording, const LinearStructure& structure, const MotionTerms& terms,
@@ -122,10 +150,12 @@ Bank learn_nonlinear(const Recording& recording, const LinearStructure& structur
   em.restarts = 0;
   em.look_ahead = 1;
   em.measurement_noise = false;
+  em.max_iterations = std::min(em.max_iterations, most_iterations);
   const MatrixXd R = least_measurement_noise(frame, em.tuning).asDiagonal();
   Bank bank =
       refine_bank(known, frame, level_starts(known, frame.structure, R, most_levels, em.tuning.modes_kept), em, filter)
           .bank;
+  add_wide_level(bank);
   return with_terms(std::move(bank), recording, structure, terms);
 }
 

@@ -29,6 +29,10 @@ Bank load_bank(const std::filesystem::path& path, const std::string& which) {
     layout::exchange_part(root, which, bank, {}, [](GroupReader& member, Bank& part) {
       layout::exchange_bank(member, part, Units(Recording()));
     });
+    if (!bank && which == "nonlinear")
+      throw DataError(
+          "holds no nonlinear, as its training runs asked for no terms or window.terms = none; its filters are bank, "
+          "baseline, noise_only, one_motion, drifting and combined");
     if (!bank) throw DataError("holds no " + which);
   });
   return *bank;

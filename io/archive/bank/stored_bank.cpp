@@ -164,9 +164,13 @@ MotionTerms restore_terms(const StoredBank& stored) {
       throw DataError("unknown kind of term '" + stored.term_kinds[static_cast<std::size_t>(t)] +
                       "'; expected product, magnitude or hinge");
     Term term{*kind, {}, stored.term_knots(t)};
-    for (const double variable : stored.term_variables.col(t))
-      if (variable >= 0.0 && variable < static_cast<double>(terms.variables()))
-        term.variables.push_back(static_cast<Index>(variable));
+    for (const double variable : stored.term_variables.col(t)) {
+      if (variable == -1.0) continue;
+      if (!(variable >= 0.0 && variable < static_cast<double>(terms.variables())))
+        throw DataError("term " + std::to_string(t) + " names a variable that is none of the " +
+                        std::to_string(terms.variables()));
+      term.variables.push_back(static_cast<Index>(variable));
+    }
     terms.terms.push_back(std::move(term));
   }
   return terms;

@@ -68,6 +68,7 @@ void expect_same(const Finding& actual, const Finding& expected) {
   EXPECT_EQ(actual.stay, expected.stay);
   EXPECT_EQ(actual.stay_asked, expected.stay_asked);
   EXPECT_EQ(actual.better_description, expected.better_description);
+  EXPECT_EQ(actual.equations, expected.equations);
   EXPECT_EQ(actual.text, expected.text);
   ASSERT_EQ(actual.gains.size(), expected.gains.size());
   for (std::size_t i = 0; i < actual.gains.size(); ++i) expect_same(actual.gains[i], expected.gains[i]);
@@ -221,8 +222,15 @@ void expect_same(const Bank& actual, const Bank& expected) {
     EXPECT_TRUE(same_bits(a.spread, e.spread));
     EXPECT_TRUE(same_bits(a.standard_error, e.standard_error));
     EXPECT_TRUE(same_bits(a.Q_standard_error, e.Q_standard_error));
+    EXPECT_TRUE(same_bits(a.bend, e.bend));
+    EXPECT_TRUE(same_bits(a.bend_standard_error, e.bend_standard_error));
     EXPECT_EQ(a.weight, e.weight);
   }
+  EXPECT_EQ(actual.terms.terms, expected.terms.terms);
+  EXPECT_TRUE(same_bits(actual.terms.direction, expected.terms.direction));
+  EXPECT_TRUE(same_bits(actual.terms.low, expected.terms.low));
+  EXPECT_TRUE(same_bits(actual.terms.high, expected.terms.high));
+  EXPECT_TRUE(same_bits(actual.terms.unit, expected.terms.unit));
   EXPECT_TRUE(same_bits(actual.C, expected.C));
   EXPECT_TRUE(same_bits(actual.R, expected.R));
   EXPECT_TRUE(same_bits(actual.transition.matrix(), expected.transition.matrix()));
@@ -299,6 +307,7 @@ void expect_same(const Archive& actual, const Archive& expected) {
   expect_same_part(actual.noise_only, expected.noise_only, "noise_only");
   expect_same_part(actual.one_motion, expected.one_motion, "one_motion");
   expect_same_part(actual.drifting, expected.drifting, "drifting");
+  expect_same_part(actual.nonlinear, expected.nonlinear, "nonlinear");
   expect_same_part(actual.finding, expected.finding, "finding");
   ASSERT_EQ(actual.evaluations.size(), expected.evaluations.size());
   for (std::size_t f = 0; f < actual.evaluations.size(); ++f) {

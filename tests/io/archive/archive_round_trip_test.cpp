@@ -63,6 +63,32 @@ TEST(ArchiveRoundTrip, KeepsFeaturesThatAreNotTheWindowsOwn) {
   EXPECT_EQ(read.mixture->compared, 3);
 }
 
+TEST(ArchiveRoundTrip, TermsComeBackOrAreRefused) {
+  Archive archive = full_archive(2, 1);
+  Bank bent = *archive.one_motion;
+  const Eigen::Index q = bent.structure.regressors();
+  bent.terms.direction = Eigen::MatrixXd::Identity(q, 2);
+  bent.terms.low = Eigen::Vector2d(-1.5, -0.25);
+  bent.terms.high = Eigen::Vector2d(2.5, 0.75);
+  bent.terms.unit = Eigen::Vector2d(0.5, 0.125);
+  bent.terms.terms = {{TermKind::product, {0, 1, 1}},
+                      {TermKind::magnitude, {1}},
+                      {TermKind::hinge, {0}, -0.375},
+                      {TermKind::product, {0, 0}}};
+  for (Mode& mode : bent.modes) {
+    mode.bend = Eigen::MatrixXd::Random(2, 4);
+    mode.bend_standard_error = Eigen::MatrixXd::Constant(2, 4, 0.0625);
+  }
+  archive.nonlinear = bent;
+  archive.finding->description = Description::one_nonlinear_motion;
+  archive.finding->equations = {"a[k+1] = 0.5 a[k]", "p1 = b[k]"};
+  expect_same(round_trip(archive), archive);
+  archive.nonlinear->terms.terms[1].variables = {2};  // there is no such variable
+  const test::TemporaryFolder folder;
+  write_archive(folder.path() / "a.h5", archive);
+  EXPECT_THROW(read_archive(folder.path() / "a.h5"), DataError);
+}
+
 TEST(ArchiveRoundTrip, ModesThatDriftComeBackOrAreRefused) {
   Archive archive = full_archive(2, 1);
   archive.bank->R.setZero();
