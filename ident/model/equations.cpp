@@ -96,6 +96,7 @@ std::pair<std::string, double> in_units(const Term& term, const MotionTerms& ter
 std::vector<std::string> equations(const LinearStructure& s, const LinearModel& model, const MotionTerms& terms,
                                    const Eigen::MatrixXd& bend, const std::vector<std::string>& state_names,
                                    const std::vector<std::string>& input_names) {
+  if (std::ssize(state_names) != s.dimension() || std::ssize(input_names) != s.acting_inputs()) return {};
   const std::vector<std::string> regressors = regressor_names(s, state_names, input_names);
   const VariableNames variables(terms, regressors);
   std::vector<std::string> lines;

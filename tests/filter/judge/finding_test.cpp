@@ -217,6 +217,20 @@ TEST(Finding, ADescriptionThatLosesInEveryRunIsNotAsGood) {
   EXPECT_EQ(even.judged().better_description, "drifting");
 }
 
+TEST(Finding, AMotionThatBendsIsNamedWhereItBeatsAllSimplerOnes) {
+  Case bent;
+  bent.bank_gain = 0.3;
+  bent.competitors.push_back(scores_of("nonlinear", 0.5));
+  Finding finding = bent.judged();
+  EXPECT_EQ(finding.answer, Answer::no_evidence);
+  EXPECT_EQ(finding.best_competitor, "nonlinear");
+  EXPECT_EQ(finding.description, Description::one_nonlinear_motion);
+  bent.competitors[3] = scores_of("drifting", 0.5);  // as good, and simpler
+  EXPECT_EQ(bent.judged().description, Description::one_drifting_motion);
+  bent.bank_gain = 0.8;
+  EXPECT_EQ(bent.judged().answer, Answer::evidence);
+}
+
 // With one parameter and two modes the limit is the normal quantile 1.96 of the difference over its standard error.
 TEST(Finding, TheLimitForOneComparisonIsTheNormalQuantile) {
   Bank bank = test::example_bank(1, 0, 2);

@@ -83,7 +83,7 @@ TEST(ArchiveRoundTrip, TermsComeBackOrAreRefused) {
   archive.finding->description = Description::one_nonlinear_motion;
   archive.finding->equations = {"a[k+1] = 0.5 a[k]", "p1 = b[k]"};
   expect_same(round_trip(archive), archive);
-  archive.nonlinear->terms.terms[1].variables = {2};  // there is no such variable
+  archive.nonlinear->terms.unit(1) = 0.0;
   const test::TemporaryFolder folder;
   write_archive(folder.path() / "a.h5", archive);
   EXPECT_THROW(read_archive(folder.path() / "a.h5"), DataError);
