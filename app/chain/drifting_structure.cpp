@@ -6,7 +6,6 @@
 
 #include "filter/learn/competitors/drifting.hpp"
 #include "ident/base/not_a_number.hpp"
-#include "ident/data/stretch.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/lag/structure_choice.hpp"
 #include "modebank/base/error.hpp"
@@ -17,23 +16,9 @@ namespace {
 constexpr Index most_asked_transitions = 20000, most_equal_lags = 8;
 constexpr double least_drifting_gain = 0.02;  // [nats/sample]
 
-/// Fewer settings than the competitor tries: structures are compared, not forecasts.
-DriftingGrid coarse_grid() {
-  return {{0.0, 1e-4, 1e-3, 1e-2}, {0.0, 1e-2, 1.0}, {1.0, 0.97}, {0.7, 0.85, 0.93, 0.97}, {0.0, 4.0, 10.0}, {1e-3}};
-}
-
 LinearStructure structure_of(const StructureScore& s, const Recording& recording, const FitOptions& window) {
   return {
       recording.state_count(), recording.input_count(), window.intercept, s.state_lags, s.input_lags, s.input_delay};
-}
-
-/// The training runs from where the structure with the longest memory predicts, with the history that this one needs.
-Recording from_common_start(const Recording& recording, Index earlier) {
-  Recording part{recording.states, recording.inputs, {}, recording.quantum};
-  for (const Trajectory& run : recording.runs)
-    if (run.role == Role::train && run.samples() > earlier + 2)
-      part.runs.push_back(stretch(run, earlier, run.samples() - earlier));
-  return part;
 }
 
 class DriftingChoice {
@@ -112,16 +97,16 @@ void let_drifting_choose(const Recording& recording, const StructureInputs& inpu
   for (const StructureScore& c : candidates)
     latest = std::max(latest, structure_of(c, recording, inputs.window).first_transition());
   const DriftingChoice choice(recording, inputs.window, latest);
-  DriftingGrid constant = coarse_grid();
+  DriftingGrid constant = coarse_drifting_grid();
   constant.q = constant.p0 = {0.0};
   constant.leak = {1.0};
   const auto found_one =
       std::find_if(candidates.begin(), candidates.end(), [](const StructureScore& c) { return c.chosen; });
   if (found_one == candidates.end()) return;
-  found_one->drifting_score = choice.score(*found_one, coarse_grid());
+  found_one->drifting_score = choice.score(*found_one, coarse_drifting_grid());
   if (!(found_one->drifting_score >= choice.score(*found_one, constant) + least_drifting_gain)) return;
   for (StructureScore& c : candidates)
-    if (&c != &*found_one) c.drifting_score = choice.score(c, coarse_grid());
+    if (&c != &*found_one) c.drifting_score = choice.score(c, coarse_drifting_grid());
   choose(found, std::move(candidates), recording, static_cast<double>(transitions));
 }
 

@@ -30,10 +30,11 @@ void tell_of_shrinking(const std::string& whose, const Bank& bank, const Listene
 DriftingModel drifting(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
                        const Listener& listener) {
   const Stopwatch watch;
-  DriftingModel model = learn_drifting(recording, linear_global(recording, windows, inputs.window), windows.structure,
-                                       inputs.filter.time_steps, inputs.horizon);
-  listener.progress(fmt::format("drifting: q {:g}, p0 {:g}, leak {:g}, lam {:g}, nu {:g} in {:.2f} s", model.rates.q,
-                                model.rates.p0, model.rates.leak, model.lam, model.nu, watch.seconds()));
+  DriftingModel model = learn_likeliest_drifting(recording, linear_global(recording, windows, inputs.window),
+                                                 windows.structure, inputs.filter.time_steps, inputs.horizon);
+  listener.progress(fmt::format("drifting: {} with {} lags, q {:g}, p0 {:g}, leak {:g}, lam {:g}, nu {:g} in {:.2f} s",
+                                name_of(model.wandering), model.structure.state_lags, model.rates.q, model.rates.p0,
+                                model.rates.leak, model.lam, model.nu, watch.seconds()));
   return model;
 }
 

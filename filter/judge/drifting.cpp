@@ -105,7 +105,7 @@ DriftingForecasts forecast(const DriftingModel& model, const Trajectory& run, Ti
   DriftingForecasts out{empty_horizons(std::move(horizons), n, run.samples()), {}};
   out.whitened = out.predictions.error;
   const RunInstants instants(bank, run, time_steps);
-  DriftingRecursion recursion(model.structure, model.theta0, model.scale, model.rates);
+  DriftingRecursion recursion(model.structure, model.theta0, model.scale, model.rates, model.direction());
   Eigen::VectorXd v = model.v0;
   DriftingLookAhead look(model, instants, run, out);
   for (Index t = 0; t < instants.count(); ++t) {

@@ -34,6 +34,7 @@ DriftingForecast::DriftingForecast(const DriftingModel& model)
       theta0_(scaled_coefficients(model.structure, model.theta0, model.scale)),
       stable_theta0_(contracted(model.structure, model.scale, theta0_)),
       h_(model.structure.regressors()),
+      direction_(model.direction()),
       cross_(static_cast<std::size_t>(model.structure.states)),
       next_cross_(cross_) {}
 
@@ -96,7 +97,10 @@ void DriftingForecast::propagate_errors() {
     const auto at = static_cast<std::size_t>(i);
     const auto& P = origin_->P[static_cast<std::size_t>(origin_->P_of[at])];
     Eigen::VectorXd Ph = P.selfadjointView<Eigen::Lower>() * h_;
-    Ph = of_origin_ * Ph + of_drift_ * h_;
+    if (direction_.size() == 0)
+      Ph = of_origin_ * Ph + of_drift_ * h_;
+    else
+      Ph = of_origin_ * Ph + of_drift_ * direction_.col(i).dot(h_) * direction_.col(i);
     covariance_(i, i) += v_(i) * (1.0 + std::max(0.0, h_.dot(Ph)));
     Eigen::MatrixXd& next = next_cross_[at];
     next.leftCols(n).noalias() = cross_[at] * of_lagged_.transpose();

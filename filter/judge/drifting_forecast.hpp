@@ -15,7 +15,7 @@ namespace modebank {
 /// towards it does not undo that. The first step is the filter's own.
 ///
 /// Variance, to first order in the errors of coefficients and samples: with e the error of a sample, d that of theta,
-///   e[j] = h[j]' d[j] + phi[j]' (e[j-1], e[j-2], ...) + noise of variance v,  d[j] = leak d[j-1] + w,  cov(w) = q v I,
+///   e[j] = h[j]' d[j] + phi[j]' (e[j-1], e[j-2], ...) + noise of variance v,  d[j] = leak d[j-1] + w,  cov(w) = q v W,
 /// phi the coefficients of the lagged samples; joint covariance of d and the lagged e, v as at the origin.
 class DriftingForecast {
  public:
@@ -35,7 +35,8 @@ class DriftingForecast {
   const DriftingMemory* origin_ = nullptr;
   Eigen::VectorXd v_, z_, h_, prediction_;
   Eigen::MatrixXd towards_, deviation_, theta_;         ///< r x n: what is leaked to, and the difference from it
-  double of_origin_ = 1.0, of_drift_ = 0.0;             ///< cov(d) / v = of_origin P + of_drift I
+  Eigen::MatrixXd direction_;                           ///< r x n, what wanders; empty: all
+  double of_origin_ = 1.0, of_drift_ = 0.0;             ///< cov(d) / v = of_origin P + of_drift W
   Eigen::MatrixXd Z_, next_Z_;                          ///< covariance of the lagged errors
   std::vector<Eigen::MatrixXd> cross_, next_cross_;     ///< per output r x dimension: of d with the lagged errors
   Eigen::MatrixXd covariance_, with_lagged_, through_;  ///< n x n, n x dimension, n x dimension

@@ -189,7 +189,7 @@ FreeRun free_run(const DriftingModel& model, const Trajectory& run, TimeSteps ti
   check_run(bank, run);
   const Given given(bank, run, time_steps, options);
   FreeRun out = sized_free_run(bank.C.rows(), run.samples());
-  DriftingRecursion recursion(model.structure, model.theta0, model.scale, model.rates);
+  DriftingRecursion recursion(model.structure, model.theta0, model.scale, model.rates, model.direction());
   DriftingFreeForecast forecast(model);
   Eigen::VectorXd v = model.v0;
   given.for_each(out, [&](Index first, Index last, Index end) {

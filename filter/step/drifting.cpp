@@ -20,6 +20,19 @@ double DriftingModel::factor_at(Index horizon) const {
   return factor;
 }
 
+Eigen::MatrixXd DriftingModel::direction() const {
+  if (wandering == Wandering::all) return {};
+  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(structure.regressors(), structure.states);
+  if (wandering == Wandering::constant) {
+    d.bottomRows(1).setOnes();
+    return d;
+  }
+  const auto inputs = Eigen::seqN(structure.dimension(), structure.acting_inputs());
+  d(inputs, Eigen::all) = scaled_coefficients(structure, theta0, scale)(inputs, Eigen::all);
+  d.colwise().normalize();  // of an output that no input moves nothing wanders
+  return d;
+}
+
 void validate(const DriftingModel& m) {
   const auto need = [](bool holds, const char* what) {
     if (!holds) throw std::invalid_argument(std::string("drifting model: ") + what);
@@ -35,6 +48,8 @@ void validate(const DriftingModel& m) {
        "needs a quantum per state, or none");
   need(m.rates.q >= 0.0 && m.rates.p0 >= 0.0 && std::isfinite(m.rates.q + m.rates.p0), "q and p0 are variances");
   need(m.rates.leak > 0.0 && m.rates.leak <= 1.0, "leak lies in (0, 1]");
+  need(m.wandering != Wandering::constant || m.structure.intercept, "has no constant that could wander");
+  need(m.wandering != Wandering::gain || m.structure.inputs > 0, "has no inputs whose gain could wander");
   need(m.lam >= 0.0 && m.lam <= 1.0, "lam lies in [0, 1]");
   for (const auto& [ahead, factor] : m.horizon_factor)
     need(ahead > 1 && factor > 0.0 && std::isfinite(factor), "a horizon's factor is positive, and 1 at horizon 1");
@@ -106,7 +121,7 @@ struct DriftingFilter::Parts : FilterShell {
       : FilterShell(fixed_bank(m), time_steps),
         model(m),
         noise(m.nu),
-        recursion(m.structure, m.theta0, m.scale, m.rates),
+        recursion(m.structure, m.theta0, m.scale, m.rates, m.direction()),
         v(m.v0) {}
 
   void start() {

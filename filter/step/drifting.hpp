@@ -9,6 +9,7 @@
 #include "filter/step/bank.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/drifting_recursion.hpp"
+#include "modebank/base/names.hpp"
 #include "modebank/filter/options.hpp"
 
 namespace modebank {
@@ -22,10 +23,20 @@ struct DriftingTuning {
   std::vector<std::string> at_grid_end;
 };
 
+/// What of an ARX model wanders. all: every coefficient by itself. constant: the constant. gain: one factor on all
+/// coefficients of inputs, each keeping its share. The others of the last two are learned in a run, from p0 on.
+enum class Wandering { all, constant, gain };
+
+template <>
+struct EnumNames<Wandering> {
+  static constexpr Names<3> values{"all", "constant", "gain"};
+};
+
 /// One ARX model whose coefficients wander, the competitor `drifting` (method: section 6). With h the regressors
 /// [z; v; (1)] of LinearStructure, each over its `scale`,
-///   x[k+1] = x[k] + theta[k]' h[k] + e[k],  theta[k] = theta0 + leak (theta[k-1] - theta0) + w[k],  cov(w) = q v I,
-/// e Student t of variance v, and v a running variance of each output by itself:
+///   x[k+1] = x[k] + theta[k]' h[k] + e[k],  theta[k] = theta0 + leak (theta[k-1] - theta0) + w[k],  cov(w) = q v W,
+/// W = I, or d d' of the direction that wanders, e Student t of variance v, and v a running variance of each output by
+/// itself:
 ///   v <- max(lam v + (1 - lam) e^2 / (1 + h'Ph), floor), from v0 at a start.
 /// theta0 is in increment form and of the regressors as they are, as everywhere: the coefficient of x[k] in x[k+1] is 1
 /// more. The increment wanders as x[k+1] itself would, because x[k] is known. Given the past, outputs are independent.
@@ -33,10 +44,11 @@ struct DriftingModel {
   LinearStructure structure;
   std::vector<std::string> state_names;  ///< as a bank's of this structure
   std::vector<std::string> input_names;
-  double dt_s = 0.0;               ///< median sample period of the training data
-  Eigen::VectorXd theta0;          ///< p, least squares of the training runs
-  Eigen::VectorXd scale;           ///< r, root mean square of each regressor there; 1 where that is zero
-  DriftRates rates;                ///< q, p0, leak
+  double dt_s = 0.0;       ///< median sample period of the training data
+  Eigen::VectorXd theta0;  ///< p, least squares of the training runs
+  Eigen::VectorXd scale;   ///< r, root mean square of each regressor there; 1 where that is zero
+  DriftRates rates;        ///< q, p0, leak
+  Wandering wandering = Wandering::all;
   double lam = 0.9;                ///< forgetting of the running variance, in (0, 1)
   double nu = 0.0;                 ///< degrees of freedom, above 2; 0: Gaussian
   Eigen::VectorXd v0;              ///< n, variance of the training residuals: v at a start
@@ -49,6 +61,8 @@ struct DriftingModel {
 
   /// Of the longest horizon that is not longer than this one; 1 without.
   double factor_at(Eigen::Index horizon) const;
+  /// r x n, as DriftingRecursion takes it.
+  Eigen::MatrixXd direction() const;
 };
 
 /// Throws std::invalid_argument naming the first thing that no filter can work with.

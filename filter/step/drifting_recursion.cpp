@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "filter/step/equations/bounds.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -29,11 +31,12 @@ void make_usable(Eigen::MatrixXd& P) {
 }  // namespace
 
 DriftingRecursion::DriftingRecursion(const LinearStructure& structure, const Eigen::VectorXd& theta0,
-                                     const Eigen::VectorXd& scale, const DriftRates& rates)
+                                     const Eigen::VectorXd& scale, const DriftRates& rates, Eigen::MatrixXd direction)
     : structure_(structure),
       theta0_(scaled_coefficients(structure, theta0, scale)),
       inverse_scale_(scale.cwiseInverse()),
       rates_(rates),
+      direction_(std::move(direction)),
       h_(structure.regressors()),
       prediction_(structure.states),
       innovation_(structure.states),
@@ -52,6 +55,11 @@ void DriftingRecursion::start(const Vector& z) {
   memory_.P[0].diagonal().setConstant(rates_.p0);
   std::fill(memory_.P_of.begin(), memory_.P_of.end(), Index{0});
   memory_.P_count = 1;
+  if (direction_.size() > 0) {  // each output has its own
+    std::iota(memory_.P_of.begin(), memory_.P_of.end(), Index{0});
+    memory_.P_count = structure_.states;
+    for (Eigen::MatrixXd& P : memory_.P) P = memory_.P[0];
+  }
   memory_.z = z;
   memory_.fresh = true;
 }
@@ -61,7 +69,14 @@ void DriftingRecursion::drift() {
     memory_.theta = theta0_ + rates_.leak * (memory_.theta - theta0_);
     for (Index g = 0; g < memory_.P_count; ++g) memory_.P[static_cast<std::size_t>(g)] *= rates_.leak * rates_.leak;
   }
-  for (Index g = 0; g < memory_.P_count; ++g) memory_.P[static_cast<std::size_t>(g)].diagonal().array() += rates_.q;
+  for (Index g = 0; g < memory_.P_count; ++g) {
+    Eigen::MatrixXd& P = memory_.P[static_cast<std::size_t>(g)];
+    if (direction_.size() == 0)
+      P.diagonal().array() += rates_.q;
+    else
+      for (Index j = 0; j < P.cols(); ++j)
+        P.col(j).tail(P.rows() - j) += rates_.q * direction_(j, g) * direction_.col(g).tail(P.rows() - j);
+  }
 }
 
 void DriftingRecursion::predict(const Vector& inputs) {

@@ -32,9 +32,10 @@ struct DriftingMemory {
 /// - Between samples further apart a step is taken per sample period with the inputs held, as banks do.
 class DriftingRecursion {
  public:
-  /// theta0: p, of the regressors as they are; scale: r, positive.
+  /// theta0: p, of the regressors as they are; scale: r, positive. `direction`: r x n, of unit length, what of an
+  /// output's scaled coefficients wanders: cov(w) = q v d d'; empty: all of them, cov(w) = q v I.
   DriftingRecursion(const LinearStructure& structure, const Eigen::VectorXd& theta0, const Eigen::VectorXd& scale,
-                    const DriftRates& rates);
+                    const DriftRates& rates, Eigen::MatrixXd direction = {});
 
   void start(const Eigen::Ref<const Eigen::VectorXd>& z);
   /// To the next model step; `inputs`: those that act on it.
@@ -58,6 +59,7 @@ class DriftingRecursion {
   Eigen::MatrixXd theta0_;  ///< r x n, scaled
   Eigen::VectorXd inverse_scale_;
   DriftRates rates_;
+  Eigen::MatrixXd direction_;
   DriftingMemory memory_;
   Eigen::VectorXd h_, prediction_, innovation_, sample_;
   Eigen::MatrixXd Ph_;      ///< r x n, one column per P in use

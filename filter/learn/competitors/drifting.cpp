@@ -45,6 +45,14 @@ DriftingModel undecided_model(const Recording& recording, const GlobalModel& glo
   return model;
 }
 
+void take_own_variance(DriftingModel& model, const Recording& recording, TimeSteps time_steps) {
+  const DriftingGrid grid = coarse_drifting_grid();
+  const DriftingScores scores = score_drifting_grid(model, recording, time_steps, grid);
+  const Index drift = scores.best() / (std::ssize(grid.lam) * std::ssize(grid.nu) * std::ssize(grid.floor));
+  model.v0.array() *= scores.error_ratio.col(drift).array();
+  model.v0 = model.v0.unaryExpr(&positive_variance);
+}
+
 /// Settings that may be better beyond the grid; a floor that the next one equals never mattered.
 std::vector<std::string> grid_ends(const DriftingGrid& grid, const DriftingScores& scores, Index best) {
   const std::array<Index, 6> at = grid.point(best), size = grid.sizes();
@@ -129,10 +137,24 @@ void choose_horizon_factors(DriftingModel& model, const Recording& recording, Ti
 }  // namespace
 
 DriftingModel learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
-                             TimeSteps time_steps, const std::vector<Index>& horizons, const DriftingGrid& grid) {
+                             TimeSteps time_steps, const std::vector<Index>& horizons, const DriftingGrid& grid,
+                             Wandering wandering) {
   DriftingModel model = undecided_model(recording, global, structure);
+  model.wandering = wandering;
+  if (wandering == Wandering::gain) take_own_variance(model, recording, time_steps);
   settle(model, grid, score_drifting_grid(model, recording, time_steps, grid));
   choose_horizon_factors(model, recording, time_steps, horizons);
+  return model;
+}
+
+DriftingModel relearn_drifting(const DriftingModel& like, const Recording& recording, const GlobalModel& global) {
+  const DriftingModel own = undecided_model(recording, global, like.structure);
+  DriftingModel model = like;
+  model.theta0 = own.theta0;
+  model.scale = own.scale;
+  if (like.wandering == Wandering::gain) return model;  // whose variance is that of its own errors
+  model.variance_floor = (like.variance_floor.array() / like.v0.array() * own.v0.array()).matrix();
+  model.v0 = own.v0;
   return model;
 }
 

@@ -32,12 +32,14 @@ struct DriftingGrid {
 struct DriftingScores {
   Eigen::VectorXd log_score;
   Eigen::Index samples = 0;  ///< scored, each counting the same whatever its weight
+  /// n x (q, p0, leak): the mean of e^2 / (1 + h'Ph), over v0.
+  Eigen::MatrixXd error_ratio = {};
   /// The point of the highest score, the first of equals.
   Eigen::Index best() const;
 };
 
-/// `start`: a model whose theta0, scale and v0 are those of the training runs; its other settings do not matter.
-/// One recursion of the coefficients per (q, p0, leak), from which all running variances follow, from which all
+/// `start`: a model whose theta0, scale, v0 and what wanders are those of the training runs; its other settings do not
+/// matter. One recursion of the coefficients per (q, p0, leak), from which all running variances follow, from which all
 /// densities follow. Throws std::invalid_argument for an empty grid, and DataError when nothing can be scored.
 DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& recording, TimeSteps time_steps,
                                    const DriftingGrid& grid);
@@ -49,9 +51,27 @@ Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructur
 /// The competitor `drifting`. `global`: least squares of this structure on the training runs. Its settings are the best
 /// of the grid by the training runs' log score, one sample ahead; then for each of `horizons` from 2 on the factor of
 /// its variance is the one of 2^(-4), 2^(-3.75), ..., 2^8 that makes the training runs' errors most likely. Samples
-/// count the same whatever their weights.
+/// count the same whatever their weights. Where one factor wanders v0 is the variance of the model's own errors: those
+/// of constant coefficients hold what wanders.
 DriftingModel learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
                              TimeSteps time_steps, const std::vector<Eigen::Index>& horizons,
-                             const DriftingGrid& grid = {});
+                             const DriftingGrid& grid = {}, Wandering wandering = Wandering::all);
+
+/// A model with the settings of `like`, its theta0 and variances of these training runs.
+DriftingModel relearn_drifting(const DriftingModel& like, const Recording& recording, const GlobalModel& global);
+
+/// Fewer settings, to compare models rather than to forecast with one.
+DriftingGrid coarse_drifting_grid();
+/// The training runs from where the model with the longest memory predicts, with the history that this one needs:
+/// without their first samples.
+Recording from_common_start(const Recording& recording, Eigen::Index earlier);
+
+/// learn_drifting of whatever wanders most likely in the training runs: all coefficients of `structure`, its constant
+/// (which it has then), one factor on the coefficients of its inputs, or the same with one lag. The causal score of at
+/// most 20,000 transitions and settings of the coarse grid choose; all coefficients of `structure` stay where nothing
+/// gains 0.02 nats per sample.
+DriftingModel learn_likeliest_drifting(const Recording& recording, const GlobalModel& global,
+                                       const LinearStructure& structure, TimeSteps time_steps,
+                                       const std::vector<Eigen::Index>& horizons);
 
 }  // namespace modebank

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -61,7 +62,7 @@ struct DriftTrace {
 
 DriftTrace trace_drift(const DriftingModel& model, const DriftRates& rates, const std::vector<GridRun>& runs) {
   DriftTrace trace(static_cast<std::size_t>(model.v0.size()));
-  DriftingRecursion recursion(model.structure, model.theta0, model.scale, rates);
+  DriftingRecursion recursion(model.structure, model.theta0, model.scale, rates, model.direction());
   for (const GridRun& run : runs)
     for (Index t = 0; t < run.instants.count(); ++t) {
       const Instant& instant = run.instants.instants[static_cast<std::size_t>(t)];
@@ -117,7 +118,7 @@ DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& 
     if (values == 0) throw std::invalid_argument("a setting of the drifting model has no value to choose from");
   const std::vector<GridRun> runs = training_instants(start, recording, time_steps);
   const Index drifts = size[0] * size[1] * size[2], rest = size[3] * size[4] * size[5];
-  DriftingScores scores{Eigen::VectorXd(drifts * rest), 0};
+  DriftingScores scores{Eigen::VectorXd(drifts * rest), 0, Eigen::MatrixXd(start.v0.size(), drifts)};
   std::vector<Index> samples(static_cast<std::size_t>(drifts), 0);
   WorkCounter counter("settings of the drifting model", static_cast<std::size_t>(drifts));
   tbb::parallel_for(Index{0}, drifts, [&](Index d) {
@@ -129,11 +130,16 @@ DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& 
     const DriftTrace trace = trace_drift(start, rates, runs);
     score_trace(trace, grid, scores.log_score.segment(d * rest, rest));
     samples[static_cast<std::size_t>(d)] = trace.samples;
+    for (std::size_t i = 0; i < trace.ratio.size(); ++i)
+      scores.error_ratio(static_cast<Index>(i), d) =
+          std::accumulate(trace.ratio[i].begin(), trace.ratio[i].end(), 0.0) /
+          static_cast<double>(trace.ratio[i].size());
   });
   for (Index d = 0; d < drifts; ++d) {
     if (samples[static_cast<std::size_t>(d)] > 0 || d == 0) continue;
     const Index first = d - grid.point(d * rest)[2];
     scores.log_score.segment(d * rest, rest) = scores.log_score.segment(first * rest, rest);
+    scores.error_ratio.col(d) = scores.error_ratio.col(first);
   }
   scores.samples = samples.front();
   if (scores.samples == 0) throw DataError("no training run has a sample to score a drifting model on");

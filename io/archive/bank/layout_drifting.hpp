@@ -43,6 +43,7 @@ void exchange_drifting(Io& io, M& model, const Units& units) {
   io.attribute("q", model.rates.q);
   io.attribute("p0", model.rates.p0);
   io.attribute("leak", model.rates.leak);
+  io.attribute_unless(Wandering::all, "wandering", model.wandering);
   io.attribute("lam", model.lam);
   io.attribute("nu", model.nu);
   io.attribute("training_log_score", model.tuning.log_score);

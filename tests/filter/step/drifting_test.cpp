@@ -41,6 +41,42 @@ TEST(StudentNoise, DensityIsTheSlopeOfTheProbabilityAndHasVarianceOne) {
     EXPECT_THROW(StudentNoise{nu}, std::invalid_argument);
 }
 
+/// One factor on the input's coefficient, known noise: x[k+1] = (1 + a) x[k] + g[k] b u[k] + e, g a random walk. The
+/// Kalman filter of (a, b g) written out.
+TEST(Drifting, OneFactorWandersAlongTheInputsCoefficients) {
+  DriftingModel model = example_drifting(1, 2, 1);
+  model.wandering = Wandering::gain;
+  model.rates = {0.01, 0.1, 1.0};
+  const Trajectory run = simulate_drifting(model, 60, 3);
+  const Eigen::MatrixXd d = model.direction();
+  ASSERT_EQ(d.rows(), 4);
+  EXPECT_NEAR(d.norm(), 1.0, drift_digits);
+  EXPECT_EQ(d(0, 0), 0.0);  // the state's coefficient
+  EXPECT_EQ(d(3, 0), 0.0);  // the constant
+  EXPECT_NEAR(d(1, 0) / d(2, 0), model.theta0(1) * model.scale(1) / (model.theta0(2) * model.scale(2)), drift_digits);
+  Eigen::VectorXd theta = model.scale.asDiagonal() * model.theta0;
+  Eigen::MatrixXd P = 0.1 * Eigen::MatrixXd::Identity(4, 4);
+  DriftingRecursion recursion(model.structure, model.theta0, model.scale, model.rates, d);
+  recursion.start(run.state.col(0));
+  for (Index k = 0; k + 1 < run.samples(); ++k) {
+    if (k > 0) P += 0.01 * d * d.transpose();
+    Eigen::VectorXd h(4);
+    h << run.state(0, k), run.input.col(k), 1.0;
+    h.array() /= model.scale.array();
+    const double predicted = run.state(0, k) + theta.dot(h), growth = 1.0 + h.dot(P * h);
+    recursion.predict(run.input.col(k));
+    EXPECT_NEAR(recursion.prediction()(0), predicted, drift_digits);
+    EXPECT_NEAR(recursion.growth(0), growth, drift_digits);
+    const Eigen::VectorXd gain = P * h / growth;
+    theta += gain * (run.state(0, k + 1) - predicted);
+    P -= (gain * h.transpose() * P).eval();
+    recursion.update(run.state.col(k + 1));
+  }
+  model.structure.intercept = false;
+  model.wandering = Wandering::constant;
+  EXPECT_THROW(validate(model), std::invalid_argument);
+}
+
 TEST(Drifting, FixedCoefficientsAndVarianceAreOneKalmanFilter) {
   for (const Index n : {1, 2})
     for (const Index lags : {1, 3}) {

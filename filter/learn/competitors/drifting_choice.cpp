@@ -1,0 +1,85 @@
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "filter/learn/competitors/drifting.hpp"
+#include "filter/learn/refine/learning_part.hpp"
+#include "ident/data/stretch.hpp"
+#include "ident/fit/global_model.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+
+constexpr Index most_asked_transitions = 20000;
+constexpr double least_wandering_gain = 0.02;  // [nats/sample]
+
+struct Wanderer {
+  LinearStructure structure;
+  Wandering wandering;
+};
+
+/// The one that stays where nothing gains first.
+std::vector<Wanderer> candidates_of(const LinearStructure& structure) {
+  LinearStructure one_lag = structure;
+  one_lag.state_lags = one_lag.input_lags = 1;
+  std::vector<Wanderer> candidates{{structure, Wandering::all}};
+  if (one_lag != structure) candidates.push_back({one_lag, Wandering::all});
+  for (const Wanderer& with : std::vector<Wanderer>(candidates)) {
+    LinearStructure constant = with.structure;
+    constant.intercept = true;
+    candidates.push_back({constant, Wandering::constant});
+    if (with.structure.inputs > 0) candidates.push_back({with.structure, Wandering::gain});
+  }
+  return candidates;
+}
+
+/// Minus infinity where it cannot be learned.
+double training_score(const Wanderer& candidate, const Recording& part, TimeSteps time_steps) {
+  try {
+    DriftingGrid grid = coarse_drifting_grid();
+    grid.p0.push_back(10.0);  // what differs between runs is learned anew in each
+    return learn_drifting(part, fit_global(part, candidate.structure), candidate.structure, time_steps, {1}, grid,
+                          candidate.wandering)
+        .tuning.log_score;
+  } catch (const DataError&) {
+    return -std::numeric_limits<double>::infinity();
+  }
+}
+
+}  // namespace
+
+DriftingGrid coarse_drifting_grid() {
+  return {{0.0, 1e-4, 1e-3, 1e-2}, {0.0, 1e-2, 1.0}, {1.0, 0.97}, {0.7, 0.85, 0.93, 0.97}, {0.0, 4.0, 10.0}, {1e-3}};
+}
+
+Recording from_common_start(const Recording& recording, Index earlier) {
+  Recording part{recording.states, recording.inputs, {}, recording.quantum};
+  for (const Trajectory& run : recording.runs)
+    if (run.role == Role::train && run.samples() > earlier + 2)
+      part.runs.push_back(stretch(run, earlier, run.samples() - earlier));
+  return part;
+}
+
+DriftingModel learn_likeliest_drifting(const Recording& recording, const GlobalModel& global,
+                                       const LinearStructure& structure, TimeSteps time_steps,
+                                       const std::vector<Index>& horizons) {
+  const std::optional<Recording> fewer = learning_part(recording, most_asked_transitions, 1);
+  const std::vector<Wanderer> candidates = candidates_of(structure);
+  const Wanderer* chosen = &candidates.front();
+  double best = -std::numeric_limits<double>::infinity();
+  for (const Wanderer& candidate : candidates) {
+    const Index earlier = structure.first_transition() - candidate.structure.first_transition();
+    const double score = training_score(candidate, from_common_start(fewer ? *fewer : recording, earlier), time_steps);
+    if (!(score > best)) continue;
+    best = &candidate == &candidates.front() ? score + least_wandering_gain : score;
+    chosen = &candidate;
+  }
+  if (chosen == &candidates.front()) return learn_drifting(recording, global, structure, time_steps, horizons);
+  return learn_drifting(recording, fit_global(recording, chosen->structure), chosen->structure, time_steps, horizons,
+                        {}, chosen->wandering);
+}
+
+}  // namespace modebank
