@@ -6,39 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "app/chain/forecasters.hpp"
 #include "app/chain/judged_runs.hpp"
 #include "app/chain/stages.hpp"
 #include "filter/judge/combination.hpp"
-#include "filter/judge/drifting.hpp"
-#include "filter/judge/finding.hpp"
-#include "filter/judge/horizon.hpp"
 #include "ident/base/work_counter.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
-
-/// A filter of the archive as the chain runs it.
-struct Forecaster {
-  std::string name;
-  Bank bank;  ///< of drifting: its sizes
-  FilterOptions filter;
-};
-
-std::vector<Forecaster> forecasters_of(const Archive& archive, const FilterOptions& filter) {
-  std::vector<Forecaster> all;
-  if (archive.bank) all.push_back({"bank", *archive.bank, filter});
-  for (const char* name : competitor_names)
-    if (const std::optional<Bank> bank = archive.bank_of(name))
-      all.push_back({name, *bank, competitor_filter(name, filter)});
-  return all;
-}
-
-HorizonEvaluation predict(const Forecaster& by, const Archive& archive, const Trajectory& run,
-                          const std::vector<Index>& horizons) {
-  if (by.name == "drifting") return evaluate_horizons(*archive.drifting, run, by.filter.time_steps, horizons);
-  return evaluate_horizons(by.bank, run, by.filter, horizons);
-}
 
 /// A horizon that no judged run reaches has no scores: an error where it was stated, else it is left out.
 void keep_reached_horizons(Archive& archive, bool stated) {
@@ -59,26 +35,31 @@ void keep_reached_horizons(Archive& archive, bool stated) {
 }  // namespace
 
 void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive) {
-  archive.horizons.clear();
-  archive.combination.clear();
-  if (scoring.horizon == std::vector<Index>{1}) return;  // that the summary scores
   const std::vector<Trajectory>& runs = archive.recording->runs;
   const std::vector<Forecaster> all = forecasters_of(archive, filter);
   std::vector<std::string> names;
   for (const Forecaster& one : all) names.push_back(one.name);
-  ForecastTables tables(names, runs);
+  std::vector<Index> horizons = scoring.horizon;
+  horizons.push_back(1);  // that live filters are weighted by
+  std::sort(horizons.begin(), horizons.end());
+  horizons.erase(std::unique(horizons.begin(), horizons.end()), horizons.end());
+  ForecastTables tables(names, runs, start_weights(archive.left_out, horizons, names));
   WorkCounter counter("runs predicted ahead", runs.size());
   for (const Role role : {Role::train, Role::test}) {
     tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
       if (runs[i].role != role) return;
       std::vector<HorizonEvaluation> said;
-      for (const Forecaster& one : all) said.push_back(predict(one, archive, runs[i], scoring.horizon));
+      for (const Forecaster& one : all) said.push_back(one.ahead(runs[i], horizons));
       tables.add(i, said);
       counter.add();
     });
     if (role == Role::train) tables.start_as_trained();
   }
-  archive.horizons = tables.horizons();
+  archive.horizons.clear();
+  if (scoring.horizon != std::vector<Index>{1}) archive.horizons = tables.horizons();  // else the summary scores it
+  std::erase_if(archive.horizons, [&](const HorizonRow& row) {
+    return std::find(scoring.horizon.begin(), scoring.horizon.end(), row.horizon) == scoring.horizon.end();
+  });
   keep_reached_horizons(archive, scoring.horizon != ScoringOptions::default_horizon);
   archive.combination = tables.combination();
 }

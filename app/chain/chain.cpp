@@ -185,9 +185,14 @@ void Chain::learn_bank(const ChainInputs& inputs) {
     listener_.progress(fmt::format("bank: {} modes, {} screened, in {:.2f} s", archive_.bank->mode_count(),
                                    archive_.bank->screened.size(), watch.seconds()));
     archive_.one_motion.reset();
-    if (asked.one_motion)
+    std::vector<std::pair<std::string, std::vector<Bank>>> of_splits{{"bank", std::move(learned.of_splits)}};
+    if (asked.one_motion) {
       tell_if_long(listener_, "one_motion", expected_s, "--bank.refine_transitions 10000 learns from fewer");
-    if (asked.one_motion) archive_.one_motion = learn_one_motion(from, *archive_.bank, asked, listener_);
+      Refinement one_motion = learn_one_motion(from, *archive_.bank, asked, listener_);
+      archive_.one_motion = std::move(one_motion.bank);
+      of_splits.emplace_back("one_motion", std::move(one_motion.of_splits));
+    }
+    archive_.left_out = score_left_out(archive_, asked, of_splits, listener_);
   };
   const auto copy = [&] {
     Archive part;
@@ -196,6 +201,7 @@ void Chain::learn_bank(const ChainInputs& inputs) {
     part.unrefined = archive_.unrefined;
     part.measured_fit = archive_.measured_fit;
     part.merging = archive_.merging;
+    part.left_out = archive_.left_out;
     part.learned_transitions = archive_.learned_transitions;
     return part;
   };
@@ -205,6 +211,7 @@ void Chain::learn_bank(const ChainInputs& inputs) {
     archive_.unrefined = std::move(part.unrefined);
     archive_.measured_fit = part.measured_fit;
     archive_.merging = std::move(part.merging);
+    archive_.left_out = std::move(part.left_out);
     archive_.learned_transitions = part.learned_transitions;
   };
   provide(Stage::bank, {learn, copy, take});
@@ -218,6 +225,16 @@ void Chain::score(const std::string& filter, const FilterOptions& options, const
     put(score_drifting(*archive_.drifting, *archive_.recording, options.time_steps, scoring, to));
   else if (const std::optional<Bank> bank = archive_.bank_of(filter))
     put(score_filter(filter, *bank, *archive_.recording, options, scoring, to));
+}
+
+/// Several steps ahead, and all filters together.
+void Chain::score_together(const FilterOptions& filter, const ScoringOptions& scoring) {
+  score_ahead(filter, scoring, archive_);
+  forget(combined_name);
+  std::optional<EvaluationStream> stream;
+  if (sink_) stream = EvaluationStream{*sink_, archive_.labels.has_value()};
+  if (std::optional<FilterScores> together = score_combined(filter, scoring, archive_, stream ? &*stream : nullptr))
+    put(std::move(*together));
 }
 
 void Chain::put(FilterScores scores) {
@@ -253,7 +270,7 @@ void Chain::judge(const ChainInputs& inputs) {
   const auto score_bank = [&] { score("bank", inputs.bank_scores.filter, inputs.bank_scores.scoring); };
   const auto copy = [&] { return scores_of({"bank"}, archive_); };
   provide(Stage::bank_scores, {score_bank, copy, [&](Archive&& part) { put_scores(std::move(part)); }});
-  score_ahead(inputs.bank_scores.filter, inputs.bank_scores.scoring, archive_);
+  score_together(inputs.bank_scores.filter, inputs.bank_scores.scoring);
   archive_.finding = find_modes(archive_);
   archive_.confusion = confusion_of(archive_);
   listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
@@ -278,7 +295,7 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   const ScoringOptions scoring = scoring_inputs(options);
   score("bank", options.filter, scoring);
   for (const char* filter : competitor_names) score(filter, competitor_filter(filter, options.filter), scoring);
-  score_ahead(options.filter, scoring, archive_);
+  score_together(options.filter, scoring);
   archive_.finding = find_modes(archive_);
   archive_.confusion = confusion_of(archive_);
   archive_.mode_names =

@@ -82,8 +82,10 @@ class Chain {
   void learn_bank(const ChainInputs& inputs);
   void judge(const ChainInputs& inputs);
   void score(const std::string& filter, const FilterOptions& options, const ScoringOptions& scoring);
+  void score_together(const FilterOptions& filter, const ScoringOptions& scoring);
   void put(FilterScores scores);
   void put_scores(Archive&& part);
+  void forget(const std::string& filter);
   void forget_competitors();
   void score_competitors(const CompetitorScoreInputs& inputs);
   void put(ResidualTestSet tests);

@@ -29,15 +29,17 @@ void Chain::learn_competitor_banks(const CompetitorInputs& inputs) {
   provide(Stage::competitors, {learn_all, copy_all, take_all});
 }
 
+void Chain::forget(const std::string& filter) {
+  put_rows<FilterEvaluation>(filter, {}, archive_.evaluations);
+  put_rows<SummaryRow>(filter, {}, archive_.summary);
+  put_rows<FreeRunRow>(filter, {}, archive_.free_runs);
+  put_rows<DiagnosticsRow>(filter, {}, archive_.diagnostics);
+  put_rows<ResidualTestSet>(filter, {}, archive_.residual_tests);
+}
+
 /// A run may have fewer than the one before.
 void Chain::forget_competitors() {
-  for (const char* filter : competitor_names) {
-    put_rows<FilterEvaluation>(filter, {}, archive_.evaluations);
-    put_rows<SummaryRow>(filter, {}, archive_.summary);
-    put_rows<FreeRunRow>(filter, {}, archive_.free_runs);
-    put_rows<DiagnosticsRow>(filter, {}, archive_.diagnostics);
-    put_rows<ResidualTestSet>(filter, {}, archive_.residual_tests);
-  }
+  for (const char* filter : competitor_names) forget(filter);
 }
 
 void Chain::score_competitors(const CompetitorScoreInputs& inputs) {

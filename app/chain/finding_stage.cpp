@@ -102,7 +102,7 @@ std::optional<Finding> find_modes(const Archive& archive) {
   for (const FilterEvaluation& evaluation : archive.evaluations) {
     if (evaluation.filter == "bank")
       bank = &evaluation;
-    else
+    else if (evaluation.filter != combined_name)
       competitors.push_back(densities_of(evaluation, *archive.recording, role));
   }
   if (!bank || !archive.bank) return {};

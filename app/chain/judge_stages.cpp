@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <iterator>
 
+#include "app/chain/forecasters.hpp"
 #include "app/chain/stages.hpp"
+#include "filter/judge/combination.hpp"
 #include "filter/judge/diagnostics.hpp"
 #include "filter/judge/drifting.hpp"
 #include "filter/judge/evaluate.hpp"
@@ -150,6 +152,58 @@ FilterScores score_drifting(const DriftingModel& model, const Recording& recordi
   return score_runs({name, bank, filter, runs, scoring, stream}, free_runs(model, runs, time_steps, scoring.free_run),
                     [&](std::size_t i) {
                       RunEvaluation said = evaluate_run(model, runs[i], time_steps);
+                      draw_pit(runs[i], scoring.seed, said);
+                      return said;
+                    });
+}
+
+namespace {
+
+/// Their free runs, mixed by the weights that make the training runs most likely; rows on the weights are added.
+std::vector<FreeRun> combined_free_runs(const std::vector<Forecaster>& all, const std::vector<Trajectory>& runs,
+                                        const FreeRunOptions& options, std::vector<CombinationRow>& rows) {
+  if (options.samples == 0) return {};
+  std::vector<std::vector<FreeRun>> members;
+  for (const Forecaster& one : all) members.push_back(one.free(runs, options));
+  std::vector<Eigen::MatrixXd> densities;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].role != Role::train) continue;
+    densities.emplace_back(std::ssize(all), runs[i].samples());
+    for (std::size_t f = 0; f < all.size(); ++f)
+      densities.back().row(static_cast<Index>(f)) = members[f][i].log_density.transpose();
+  }
+  const std::vector<double> weights = stacked_weights(densities);
+  for (const Role role : {Role::train, Role::test})
+    for (std::size_t f = 0; f < all.size(); ++f) rows.push_back({role, 0, all[f].name, weights[f], weights[f]});
+  std::vector<FreeRun> mixed;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    std::vector<const FreeRun*> of_run;
+    for (const std::vector<FreeRun>& one : members) of_run.push_back(&one[i]);
+    mixed.push_back(combine_free_runs(of_run, weights));
+  }
+  return mixed;
+}
+
+}  // namespace
+
+std::optional<FilterScores> score_combined(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive,
+                                           const EvaluationStream* stream) {
+  const std::vector<Forecaster> all = forecasters_of(archive, filter);
+  if (all.size() < 2) return std::nullopt;
+  std::vector<std::string> names;
+  for (const Forecaster& one : all) names.push_back(one.name);
+  const std::vector<double> start = start_weights(archive.combination, 1, names);
+  const std::vector<Trajectory>& runs = archive.recording->runs;
+  FilterOptions options = filter;
+  options.noise = FilterNoise::adaptive;  // a mixture's NIS is not chi-square
+  const std::string name = combined_name;
+  const Bank frame = combined_frame(all.front().bank);
+  return score_runs({name, frame, options, runs, scoring, stream},
+                    combined_free_runs(all, runs, scoring.free_run, archive.combination), [&](std::size_t i) {
+                      std::vector<std::unique_ptr<AnyFilter>> filters;
+                      for (const Forecaster& one : all) filters.push_back(one.start());
+                      CombinedFilter together(std::move(filters), start);
+                      RunEvaluation said = evaluate_run(frame, runs[i], together);
                       draw_pit(runs[i], scoring.seed, said);
                       return said;
                     });

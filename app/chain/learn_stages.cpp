@@ -191,22 +191,25 @@ LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const
   if (const Index learned_from = refined.learned_transitions; learned_from > 0)
     listener.progress(
         fmt::format("refine: learned {}", learned_words(learned_from, from.recording.transitions(Role::train))));
-  LearnedBank learned{std::move(refined.bank), {}, refined.measurement.end, {}, refined.learned_transitions};
+  LearnedBank learned{std::move(refined.bank),     {}, refined.measurement.end, {}, refined.learned_transitions,
+                      std::move(refined.of_splits)};
   if (inputs.bank.refine == Refine::em) learned.unrefined = std::move(refined.start);
   learned.merging = merging_of(from, inputs, learned.bank);
   return learned;
 }
 
-Bank learn_one_motion(const LearnedFrom& from, const Bank& rival, const BankInputs& inputs, const Listener& listener) {
+Refinement learn_one_motion(const LearnedFrom& from, const Bank& rival, const BankInputs& inputs,
+                            const Listener& listener) {
   constexpr Index fewest_levels = 8;  // noise levels that it may have at least (method: section 6)
   const Stopwatch watch;
   const OneMotionInputs& learned = *inputs.one_motion;
   const std::optional<Recording> part =
       learning_part(from.recording, learned.bank.em.transitions, learned.bank.em.seed);
   const Recording& recording = part ? *part : from.recording;
-  Bank bank = learn_one_motion(recording, from.windows, linear_global(recording, from.windows, inputs.window), rival,
-                               from.baseline.R, std::max(fewest_levels, from.mixture.mixture.components()),
-                               learned.bank, learned.filter);
+  Refinement refined = learn_one_motion(
+      recording, from.windows, linear_global(recording, from.windows, inputs.window), rival, from.baseline.R,
+      std::max(fewest_levels, from.mixture.mixture.components()), learned.bank, learned.filter);
+  const Bank& bank = refined.bank;
   tell_of_shrinking("one_motion", bank, listener);
   const DriftRates& rates = bank.drift.rates;
   listener.progress(fmt::format("one_motion: {} noise levels{} in {:.2f} s", bank.mode_count(),
@@ -214,7 +217,7 @@ Bank learn_one_motion(const LearnedFrom& from, const Bank& rival, const BankInpu
                                                    : fmt::format(", theta drifts (rate {:g}, start {:g}, leak {:g})",
                                                                  rates.q, rates.p0, rates.leak),
                                 watch.seconds()));
-  return bank;
+  return refined;
 }
 
 }  // namespace modebank

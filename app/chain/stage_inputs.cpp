@@ -41,7 +41,7 @@ std::optional<OneMotionInputs> one_motion_inputs(const ChainOptions& options) {
   learned.measurement_variance = options.bank.measurement_variance;
   learned.em = options.bank.em;
   learned.em.seed = options.seed;
-  return OneMotionInputs{learned, competitor_filter("one_motion", options.filter)};
+  return OneMotionInputs{learned, competitor_filter("one_motion", options.filter), options.scoring.horizon};
 }
 
 }  // namespace

@@ -42,7 +42,8 @@ struct CompetitorInputs {
 /// How the competitor one_motion is learned: as the bank.
 struct OneMotionInputs {
   BankOptions bank;
-  FilterOptions filter;  ///< that runs it
+  FilterOptions filter;             ///< that runs it
+  std::vector<Index> horizon = {};  ///< that left-out training runs are predicted for, beside one sample ahead
 };
 
 struct BankInputs {

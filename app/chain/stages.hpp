@@ -60,11 +60,19 @@ struct LearnedBank {
   MeasuredFit measured_fit = MeasuredFit::none;
   std::vector<MergingCost> merging;  ///< where a limit on the number of modes merged some
   Index learned_transitions = 0;     ///< that refinement learned from; 0: all of the training runs'
+  std::vector<Bank> of_splits = {};  ///< as Refinement has them
 };
 LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const Listener& listener);
 
 /// The competitor that is learned as the bank, with one theta, and from the bank's noises, too.
-Bank learn_one_motion(const LearnedFrom& from, const Bank& bank, const BankInputs& inputs, const Listener& listener);
+Refinement learn_one_motion(const LearnedFrom& from, const Bank& bank, const BankInputs& inputs,
+                            const Listener& listener);
+
+/// What bank, competitors and all combined predict of the training runs, each run by filters that were learned without
+/// it; empty where nothing was left out. `of_splits`: of bank and one_motion, the others are learned anew.
+std::vector<LeftOutRow> score_left_out(const Archive& learned, const BankInputs& inputs,
+                                       const std::vector<std::pair<std::string, std::vector<Bank>>>& of_splits,
+                                       const Listener& listener);
 
 /// What a filter said about every run, and how good that was.
 struct FilterScores {
@@ -91,6 +99,11 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
 /// The same of the drifting competitor.
 FilterScores score_drifting(const DriftingModel& model, const Recording& recording, TimeSteps time_steps,
                             const ScoringOptions& scoring, const EvaluationStream* stream = nullptr);
+
+/// Scores all filters of the archive together, after score_ahead; none where there is one. Adds rows on their weights
+/// in free runs.
+std::optional<FilterScores> score_combined(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive,
+                                           const EvaluationStream* stream = nullptr);
 
 /// Adds what all filters of the archive, and their combination, predict as far ahead as is asked for.
 void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive);

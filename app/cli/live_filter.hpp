@@ -2,9 +2,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/config/config.hpp"
-#include "filter/step/bank_filter.hpp"
+#include "filter/step/any_filter.hpp"
 
 namespace modebank::app {
 
@@ -14,30 +15,16 @@ struct Resumed {
   Eigen::VectorXd input;
 };
 
-/// One of an archive's filters at work: a bank's, the drifting model's or several together.
-class LiveFilter {
- public:
-  virtual ~LiveFilter() = default;
-  virtual const FilterEstimate& step(double time_s, const Eigen::VectorXd& input,
-                                     const Eigen::VectorXd& measurement) = 0;
-  /// The prediction for a later time, `input` held until then, as an estimate without a measurement. The filter stays
-  /// as it was.
-  virtual FilterEstimate forecast(double time_s, const Eigen::VectorXd& input) = 0;
-  virtual bool started() const = 0;
-  virtual void restart() = 0;
-  /// Remembers what it knows now, and goes back to it.
-  virtual void remember() = 0;
-  virtual void go_back() = 0;
-  /// What it knows as a file. Throws as save_checkpoint and load_checkpoint do.
-  virtual void save(const std::string& file, const std::string& identity) const = 0;
-  virtual Resumed resume(const std::string& file, const std::string& identity) = 0;
-};
+/// Writes what the filter remembers, and goes on from it. Throw as save_checkpoint and load_checkpoint do, and
+/// ConfigurationError for a filter that is no bank's.
+void save(AnyFilter& filter, const std::string& file, const std::string& identity);
+Resumed resume(AnyFilter& filter, const std::string& file, const std::string& identity);
 
 /// The filter that the configuration asks for. `bank`: whose sizes and period it has.
 struct OpenedFilter {
   Bank bank;
   FilterOptions options;
-  std::unique_ptr<LiveFilter> filter;
+  std::unique_ptr<AnyFilter> filter;
 };
 /// Throws ConfigurationError for filters that are no bank: `what` is done with banks alone.
 void require_bank(const Config& config, const std::string& what);
@@ -47,6 +34,13 @@ std::string tracked_bank(const Config& config);
 FilterOptions tracked_options(const Config& config);
 /// Throws ConfigurationError when the columns named are more or fewer than the bank has.
 void check_columns(const Config& config, const Bank& bank, const std::string& archive);
+/// The filters that an archive has combined at a horizon (0: in free run), the bank first, and the weights that they
+/// start with; of the longest horizon where it has none of this one. Throws DataError where it has none at all.
+struct CombinedMembers {
+  std::vector<std::string> names;
+  std::vector<double> weights;
+};
+CombinedMembers combined_members(const std::string& archive, Eigen::Index horizon);
 /// Throws as load_bank does, and ConfigurationError for what the filter cannot do.
 OpenedFilter open_filter(const std::string& archive, const Config& config);
 

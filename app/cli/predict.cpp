@@ -11,6 +11,7 @@
 #include "app/cli/predict_text.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
+#include "filter/judge/combination.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/load_averaged.hpp"
@@ -28,25 +29,41 @@ double period_of(const std::string& archive, const Config& config) {
                                                         : load_bank(archive, tracked_bank(config)).dt_s;
 }
 
-std::vector<FreeRun> predict_all(const std::string& archive, const Config& config, const Recording& recording) {
+/// By one filter of the archive.
+std::vector<FreeRun> predict_alone(const std::string& archive, const Config& config, const Recording& recording) {
   const FilterOptions options = tracked_options(config);
   const FreeRunOptions how = scoring_inputs(chain_options(config)).free_run;
-  const auto check = [&](const Bank& bank) {
-    check_columns(config, bank, archive);
-    if (const std::string remark = period_remark(archive, bank, recording); !remark.empty()) spdlog::warn("{}", remark);
-  };
-  if (config.track.filter == TrackedFilter::combined)
-    throw ConfigurationError(
-        "track.filter = combined: its weights follow what is measured, and free runs measure nothing; choose one "
-        "filter");
-  if (config.track.filter == TrackedFilter::drifting) {
-    const DriftingModel model = load_drifting(archive);
-    check(fixed_bank(model));
-    return free_runs(model, recording.runs, options.time_steps, how);
+  if (config.track.filter == TrackedFilter::drifting)
+    return free_runs(load_drifting(archive), recording.runs, options.time_steps, how);
+  return free_runs(load_bank(archive, tracked_bank(config)), recording.runs, options, how);
+}
+
+/// By all of them, with the weights that made the training runs' free runs most likely: nothing is measured on the way
+/// by which weights could move.
+std::vector<FreeRun> predict_together(const std::string& archive, const Config& config, const Recording& recording) {
+  const CombinedMembers members = combined_members(archive, 0);
+  std::vector<std::vector<FreeRun>> of_filters;
+  for (const std::string& name : members.names) {
+    Config one = config;
+    one.track.filter = parse_name<TrackedFilter>(name).value();
+    of_filters.push_back(predict_alone(archive, one, recording));
   }
-  const Bank bank = load_bank(archive, tracked_bank(config));
-  check(bank);
-  return free_runs(bank, recording.runs, options, how);
+  std::vector<FreeRun> mixed;
+  for (std::size_t i = 0; i < recording.runs.size(); ++i) {
+    std::vector<const FreeRun*> of_run;
+    for (const std::vector<FreeRun>& runs : of_filters) of_run.push_back(&runs[i]);
+    mixed.push_back(combine_free_runs(of_run, members.weights));
+  }
+  return mixed;
+}
+
+std::vector<FreeRun> predict_all(const std::string& archive, const Config& config, const Recording& recording) {
+  const Bank bank = config.track.filter == TrackedFilter::drifting ? fixed_bank(load_drifting(archive))
+                                                                   : load_bank(archive, tracked_bank(config));
+  check_columns(config, bank, archive);
+  if (const std::string remark = period_remark(archive, bank, recording); !remark.empty()) spdlog::warn("{}", remark);
+  return config.track.filter == TrackedFilter::combined ? predict_together(archive, config, recording)
+                                                        : predict_alone(archive, config, recording);
 }
 
 FileForm predictions_form() {

@@ -20,6 +20,19 @@ json errors_json(const std::vector<ErrorAhead>& errors) {
   return list;
 }
 
+json forecasts_json(const std::vector<NamedForecast>& forecasts) {
+  json list = json::array();
+  for (const NamedForecast& forecast : forecasts)
+    list.push_back({{"steps", forecast.steps},
+                    {"filter", forecast.filter},
+                    {"other", forecast.other},
+                    {"gain", json_number(forecast.gain)},
+                    {"gain_error", json_number(forecast.error)},
+                    {"c_filter", forecast.c_filter.empty() ? forecast.filter : forecast.c_filter},
+                    {"c_loss", forecast.c_filter.empty() ? json(0.0) : json_number(forecast.c_loss)}});
+  return list;
+}
+
 json modes_json(const Archive& archive) {
   json list = json::array();
   for (const UsedMode& mode : used_modes(archive))
@@ -43,6 +56,8 @@ json summary_json(const Archive& archive, const Settings& settings) {
           {"mean", screen.mean},
           {"warning", screen.warning},
           {"next", screen.next},
+          {"use", screen.use},
+          {"forecasts", forecasts_json(screen.forecasts)},
           {"answer", answer},
           {"equations", archive.finding ? archive.finding->equations : std::vector<std::string>()},
           {"competitor", screen.competitor},

@@ -50,7 +50,7 @@ Tracker::Tracker(const std::string& archive, const Config& config, OpenedFilter 
 }
 
 void Tracker::go_on() {
-  const Resumed resumed = filter_.resume(config_.track.resume, identity_);
+  const Resumed resumed = resume(filter_, config_.track.resume, identity_);
   if (std::isnan(resumed.time_s)) return;
   resumed_s_ = stepped_s_ = resumed.time_s;
   last_s_ = resumed.time_s - alignment_.reach_s();
@@ -196,7 +196,7 @@ bool Tracker::flush() {
   return read;
 }
 
-void Tracker::save() const { filter_.save(config_.track.checkpoint, identity_); }
+void Tracker::save() const { app::save(filter_, config_.track.checkpoint, identity_); }
 
 /// Saves a checkpoint on the way, after the estimates that it covers have left, so that a program that goes on from it
 /// lacks none. Where it cannot be written the filter goes on, and tries again when the next one is due.

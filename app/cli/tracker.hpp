@@ -26,7 +26,7 @@ namespace modebank::app {
 class Tracker {
  public:
   /// `alignment`: of the samples that follow. Throws ConfigurationError where the bank has other columns or a
-  /// checkpoint cannot be written, and as LiveFilter::resume does.
+  /// checkpoint cannot be written, and as resume does.
   Tracker(const std::string& archive, const Config& config, OpenedFilter opened, const Alignment& alignment);
 
   /// Samples from standard input, line by line, until it ends.
@@ -47,7 +47,7 @@ class Tracker {
   const Config& config_;
   OpenedFilter opened_;
   const Bank& bank_ = opened_.bank;
-  LiveFilter& filter_ = *opened_.filter;
+  AnyFilter& filter_ = *opened_.filter;
   LiveJudge judge_, forecast_judge_;
   FilterEstimate made_;  ///< the last estimate, while the filter forecasts from it
   SampleReader reader_;

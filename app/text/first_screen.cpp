@@ -87,10 +87,11 @@ std::string first_screen(const Archive& archive, const Settings& settings, const
   };
   const std::string before = part("read", screen.read, screen.inputs_ahead ? 3 : 2) +
                              part("structure", screen.structure, 2) + part("finding", screen.finding, finding_lines);
-  const std::string after =
-      part("band", screen.band, 3) + part("mean", screen.mean, screen.free_run_start == 0 ? 2 : 3) +
-      part("warning", screen.warning, 2) +
-      part("next", typed(screen.next, program, file), program == "modebank" ? 2 : 3) + file_line(file, columns);
+  const std::string after = part("band", screen.band, 3) +
+                            part("mean", screen.mean, screen.free_run_start == 0 ? 2 : 3) +
+                            part("warning", screen.warning, 2) +
+                            part("next", typed(screen.next, program, file), program == "modebank" ? 2 : 3) +
+                            part("use", screen.use, 3) + file_line(file, columns);
   return before + modes_section(archive, screen, screen_lines - line_count(before) - line_count(after), columns) +
          after;
 }

@@ -70,16 +70,6 @@ bool has_few_agreeing_restarts(const Situation& s) {
                      [](const Candidate& c) { return c.selected && 2 * c.agreeing_restarts < c.restarts; });
 }
 
-/// The largest way in which a competitor predicts the mean better than the bank, beyond a tenth.
-const BetterMean* far_better_mean(const Situation& s) {
-  constexpr double far = 0.9;
-  const auto& all = s.finding.better_means;
-  const auto best = std::min_element(all.begin(), all.end(), [](const BetterMean& a, const BetterMean& b) {
-    return a.rmse * b.rmse_bank < b.rmse * a.rmse_bank;
-  });
-  return best != all.end() && best->rmse < far * best->rmse_bank ? &*best : nullptr;
-}
-
 /// "record about 9 more runs like these": errors and margins fall with the root of the number of runs.
 std::string more_runs(const Finding& finding) {
   constexpr double too_many = 20.0;  // times as many
@@ -211,17 +201,6 @@ const Rule rules[] = {
     {[](const Situation& s) { return warns(s, WarningKind::mixture); },
      [](const Situation&) -> std::string {
        return "see to the mixture first (`modebank show ARCHIVE` has its warning): widen --mixture.components";
-     }},
-    {[](const Situation& s) { return far_better_mean(s) != nullptr; },
-     [](const Situation& s) {
-       const BetterMean& mean = *far_better_mean(s);
-       return fmt::format(
-           "ready: to understand the motion, use it; to predict, {0} is closer{1}: `modebank track ARCHIVE "
-           "--track.filter {0}`",
-           mean.competitor,
-           mean.horizon == 0   ? " in free run"
-           : mean.horizon == 1 ? ""
-                               : fmt::format(" {} samples ahead", mean.horizon));
      }},
     {[](const Situation&) { return true; },
      [](const Situation&) -> std::string { return "ready: `modebank track ARCHIVE` filters samples as they come"; }},

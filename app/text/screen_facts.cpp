@@ -129,13 +129,13 @@ std::string words_of_best(const Best& best, const std::string& together, const s
 
 /// The bank's row of a number of steps ahead with what is beside it. `row_of`: of a filter, null without.
 template <class RowOf>
-void add_error(Index steps, RowOf row_of, const Archive& archive, Role role, std::vector<ErrorAhead>& errors) {
+void add_error(Index steps, RowOf row_of, const Archive& archive, std::vector<ErrorAhead>& errors) {
   const auto* bank = row_of("bank");
   if (!bank) return;
   const std::vector<Channel> states = archive.recording ? archive.recording->states : std::vector<Channel>();
   const auto value_of = [&](const char* name) { return row_of(name) ? &row_of(name)->rmse : nullptr; };
   const Best other = best_of_competitors(value_of, std::less<>());
-  const HorizonRow* row = horizon_row(archive, combined_name, role, steps);
+  const auto* row = row_of(combined_name);
   const Eigen::VectorXd combined = row ? row->rmse : Eigen::VectorXd();
   errors.push_back({steps, bank->rmse, other.values, combined, rmse_words(bank->rmse, states),
                     words_of_best(other, rmse_words(other.values, states), rmse_parts(other.values, states)),
@@ -146,11 +146,11 @@ void add_error(Index steps, RowOf row_of, const Archive& archive, Role role, std
 std::vector<ErrorAhead> errors_ahead(const Archive& archive, Role role) {
   std::vector<ErrorAhead> errors;
   add_error(
-      1, [&](const char* filter) { return pooled_row(archive, filter, role); }, archive, role, errors);
+      1, [&](const char* filter) { return pooled_row(archive, filter, role); }, archive, errors);
   if (const HorizonRow* far = longest_horizon(archive, "bank", role))
     add_error(
         far->horizon, [&](const char* filter) { return horizon_row(archive, filter, role, far->horizon); }, archive,
-        role, errors);
+        errors);
   return errors;
 }
 
@@ -249,6 +249,8 @@ FirstScreen make_first_screen(const Archive& archive, const Settings& settings) 
   screen.inputs_ahead = input_lag(archive, settings) < 0.0;
   screen.warning = warning_words(archive);
   screen.next = next_step(archive, settings);
+  screen.use = use_words(archive);
+  screen.forecasts = named_forecasts(archive);
   screen.role = judged_role(archive);
   screen.gain = screen.gain_error = not_a_number;
   if (archive.finding) {

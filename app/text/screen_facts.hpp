@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/text/mode_words.hpp"
+#include "app/text/named_forecasts.hpp"
 #include "app/text/next_step.hpp"
 #include "io/archive/archive.hpp"
 
@@ -28,9 +29,11 @@ struct ErrorAhead {
 /// there is nothing to say.
 struct FirstScreen {
   std::string read, structure, finding, band, mean, warning, next;
-  bool inputs_ahead = false;  ///< the filter needs inputs earlier than the states they act on
-  Role role = Role::test;     ///< of the judged runs
-  std::string competitor;     ///< that of highest log score, which the gain is over; empty without
+  std::string use;                       ///< which filter to understand the motion by, and which to predict with
+  std::vector<NamedForecast> forecasts;  ///< the latter in numbers
+  bool inputs_ahead = false;             ///< the filter needs inputs earlier than the states they act on
+  Role role = Role::test;                ///< of the judged runs
+  std::string competitor;                ///< that of highest log score, which the gain is over; empty without
   std::optional<Answer> answer;
   double gain = 0.0, gain_error = 0.0;  ///< of log score over the competitor [nats/sample]; NaN where not known
   double coverage = 0.0, coverage_lower = 0.0, coverage_upper = 0.0;  ///< of the 95 % band; NaN where not known

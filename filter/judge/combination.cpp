@@ -5,7 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "ident/base/not_a_number.hpp"
+#include "filter/judge/forecast.hpp"
+#include "ident/base/distributions.hpp"
 #include "modebank/filter/forecast_weights.hpp"
 
 namespace modebank {
@@ -14,6 +15,8 @@ namespace {
 
 using Eigen::Index;
 using filter::ForecastWeights;
+
+constexpr Index enough_densities = 20000;  // samples, to stack weights by
 
 void check_members(const std::vector<const HorizonEvaluation*>& members) {
   if (members.empty()) throw std::invalid_argument("no forecasts to combine");
@@ -83,11 +86,156 @@ CombinedForecasts combine_forecasts(const std::vector<const HorizonEvaluation*>&
   return out;
 }
 
-ForecastTables::ForecastTables(std::vector<std::string> filters, const std::vector<Trajectory>& runs)
+namespace {
+
+/// The edge of the band at this quantile.
+double mixed_edge(const std::vector<const FreeRun*>& members, const std::vector<double>& weights, bool upper, Index i,
+                  Index k) {
+  const double probability = upper ? 0.975 : 0.025, score = normal_quantile(probability);
+  NormalMixture mixture;
+  mixture.weight = Eigen::VectorXd::Map(weights.data(), std::ssize(weights));
+  mixture.mean = Eigen::VectorXd::Zero(mixture.weight.size());
+  mixture.deviation = Eigen::VectorXd::Ones(mixture.weight.size());
+  for (std::size_t f = 0; f < members.size(); ++f) {
+    const FreeRun& one = *members[f];
+    const auto at = static_cast<Index>(f);
+    if (weights[f] == 0.0) continue;
+    mixture.mean(at) = one.mean(i, k);
+    mixture.deviation(at) =
+        std::max(((upper ? one.upper : one.lower)(i, k) - one.mean(i, k)) / score, std::sqrt(least_variance));
+  }
+  return mixture.quantile(probability, score);
+}
+
+void mix_sample(const std::vector<const FreeRun*>& members, const std::vector<double>& weights, Index k, FreeRun& out) {
+  std::vector<double> known, densities;
+  for (const FreeRun* one : members) {
+    known.push_back(one->mean.col(k).allFinite() ? 0.0 : not_a_number);
+    densities.push_back(one->log_density(k));
+  }
+  const std::vector<double> share = ForecastWeights::spoken_weights(weights, known);
+  const auto mix = [&](auto value) {
+    double sum = 0.0;
+    for (std::size_t f = 0; f < members.size(); ++f)
+      if (share[f] > 0.0) sum += share[f] * value(*members[f]);
+    return sum;
+  };
+  for (Index i = 0; i < out.mean.rows(); ++i) {
+    const double mean = out.mean(i, k) = mix([&](const FreeRun& one) { return one.mean(i, k); });
+    out.deviation(i, k) = std::sqrt(mix([&](const FreeRun& one) {
+      return one.deviation(i, k) * one.deviation(i, k) + (one.mean(i, k) - mean) * (one.mean(i, k) - mean);
+    }));
+    out.pit(i, k) = mix([&](const FreeRun& one) { return one.pit(i, k); });
+    out.lower(i, k) = mixed_edge(members, share, false, i, k);
+    out.upper(i, k) = mixed_edge(members, share, true, i, k);
+  }
+  out.log_density(k) = ForecastWeights::mixed_log_density(share, densities);
+}
+
+}  // namespace
+
+FreeRun combine_free_runs(const std::vector<const FreeRun*>& members, const std::vector<double>& weights) {
+  if (members.empty()) throw std::invalid_argument("no free runs to combine");
+  FreeRun out = *members.front();  // of its samples, with its modes
+  for (Index k = 0; k < out.mode.size(); ++k)
+    if (out.mode(k) >= 0) mix_sample(members, weights, k, out);
+  return out;
+}
+
+std::vector<double> start_weights(const std::vector<CombinationRow>& rows, Index horizon,
+                                  const std::vector<std::string>& filters) {
+  std::vector<double> weights;
+  for (const std::string& filter : filters)
+    for (const CombinationRow& row : rows) {
+      if (row.role != Role::train || row.horizon != horizon || row.filter != filter) continue;
+      weights.push_back(std::isnan(row.start) ? row.weight : row.start);
+      break;
+    }
+  if (weights.size() != filters.size()) return {};
+  double sum = 0.0;
+  for (const double weight : weights) sum += weight;
+  if (!(sum > 0.0)) weights.assign(weights.size(), 1.0);  // no training sample was scored
+  return weights;
+}
+
+std::vector<LeftOutRow> left_out_rows(const std::vector<std::string>& filters,
+                                      const std::vector<std::vector<HorizonEvaluation>>& forecasts) {
+  std::vector<LeftOutRow> rows;
+  if (forecasts.empty() || forecasts.front().empty()) return rows;
+  const std::vector<HorizonEvaluation>& of_bank = forecasts.front();
+  const auto row_of = [](const std::string& filter, const HorizonSums& sums, double start) {
+    const double N = sums.samples > 0 ? static_cast<double>(sums.samples) : not_a_number;
+    return LeftOutRow{filter, sums.horizon, sums.samples, sums.log_density / N, (sums.squared_error / N).sqrt(), start};
+  };
+  std::vector<std::vector<double>> start;
+  for (std::size_t h = 0; h < of_bank.front().horizons.size(); ++h) {
+    std::vector<Eigen::MatrixXd> densities;
+    for (std::size_t r = 0; r < of_bank.size(); ++r) {
+      densities.emplace_back(std::ssize(filters), of_bank[r].log_density.cols());
+      for (std::size_t f = 0; f < filters.size(); ++f)
+        densities.back().row(static_cast<Index>(f)) = forecasts[f][r].log_density.row(static_cast<Index>(h));
+    }
+    start.push_back(stacked_weights(densities));
+  }
+  const auto add = [&](const std::string& filter, const std::vector<HorizonEvaluation>& runs, std::ptrdiff_t f) {
+    std::vector<HorizonSums> sums = sum_horizons(runs.front());
+    for (std::size_t r = 1; r < runs.size(); ++r) {
+      const std::vector<HorizonSums> of_run = sum_horizons(runs[r]);
+      for (std::size_t h = 0; h < sums.size(); ++h) sums[h] += of_run[h];
+    }
+    for (std::size_t h = 0; h < sums.size(); ++h)
+      rows.push_back(row_of(filter, sums[h], f < 0 ? not_a_number : start[h][static_cast<std::size_t>(f)]));
+  };
+  for (std::size_t f = 0; f < filters.size(); ++f) add(filters[f], forecasts[f], static_cast<std::ptrdiff_t>(f));
+  if (filters.size() < 2) return rows;
+  std::vector<HorizonEvaluation> combined;
+  for (std::size_t r = 0; r < of_bank.size(); ++r) {
+    std::vector<const HorizonEvaluation*> members;
+    for (const std::vector<HorizonEvaluation>& one : forecasts) members.push_back(&one[r]);
+    combined.push_back(combine_forecasts(members, start).predictions);
+  }
+  add(combined_name, combined, -1);
+  return rows;
+}
+
+std::vector<std::vector<double>> start_weights(const std::vector<LeftOutRow>& rows, const std::vector<Index>& horizons,
+                                               const std::vector<std::string>& filters) {
+  std::vector<std::vector<double>> weights;
+  for (const Index horizon : horizons) {
+    std::vector<double>& of_horizon = weights.emplace_back();
+    for (const std::string& filter : filters)
+      for (const LeftOutRow& row : rows)
+        if (row.filter == filter && row.horizon == horizon && row.start > 0.0) of_horizon.push_back(row.start);
+    if (of_horizon.size() != filters.size()) return {};
+  }
+  return weights;
+}
+
+std::vector<double> stacked_weights(const std::vector<Eigen::MatrixXd>& log_densities) {
+  Index samples = 0;
+  for (const Eigen::MatrixXd& run : log_densities) samples += run.cols();
+  const Index every = 1 + samples / enough_densities;
+  std::vector<std::vector<double>> of_filters(log_densities.empty() ? 0 : log_densities.front().rows());
+  for (const Eigen::MatrixXd& run : log_densities)
+    for (Index k = 0; k < run.cols(); k += every) {
+      if (std::isnan(run(0, k))) continue;  // combined forecasts are of the first one's samples
+      for (Index f = 0; f < run.rows(); ++f) of_filters[static_cast<std::size_t>(f)].push_back(run(f, k));
+    }
+  return ForecastWeights::stacked(of_filters);
+}
+
+ForecastTables::ForecastTables(std::vector<std::string> filters, const std::vector<Trajectory>& runs,
+                               std::vector<std::vector<double>> start)
     : filters_(std::move(filters)),
       runs_(runs),
       sums_(filters_.size() + 1, std::vector<std::vector<HorizonSums>>(runs.size())),
-      weights_(runs.size()) {}
+      weights_(runs.size()),
+      densities_(runs.size()),
+      start_(std::move(start)) {
+  Index samples = 0;
+  for (const Trajectory& run : runs) samples += run.role == Role::train ? run.samples() : 0;
+  every_ = 1 + samples / enough_densities;
+}
 
 ForecastTables::Weights ForecastTables::sum_weights(const std::vector<Eigen::MatrixXd>& weight) {
   const auto horizons = static_cast<Index>(weight.size());
@@ -112,6 +260,14 @@ void ForecastTables::add(std::size_t run, const std::vector<HorizonEvaluation>& 
   const CombinedForecasts combined = combine_forecasts(members, start_);
   sums_.back().at(run) = sum_horizons(combined.predictions);
   weights_.at(run) = sum_weights(combined.weight);
+  if (runs_[run].role != Role::train || !start_.empty()) return;
+  for (std::size_t h = 0; h < combined.weight.size(); ++h) {
+    const Index samples = of_filters.front().log_density.cols();
+    Eigen::MatrixXd& kept = densities_.at(run).emplace_back(std::ssize(members), (samples + every_ - 1) / every_);
+    for (std::size_t f = 0; f < members.size(); ++f)
+      for (Index k = 0; k < kept.cols(); ++k)
+        kept(static_cast<Index>(f), k) = members[f]->log_density(static_cast<Index>(h), k * every_);
+  }
 }
 
 std::vector<HorizonRow> ForecastTables::horizons() const {
@@ -139,13 +295,16 @@ ForecastTables::Weights ForecastTables::weights_of(Role role) const {
 }
 
 void ForecastTables::start_as_trained() {
-  const Weights trained = weights_of(Role::train);
-  start_.clear();
-  for (Index h = 0; h < trained.samples.size(); ++h) {
-    const bool known = trained.samples(h) > 0.0;
-    const Eigen::VectorXd sum = known ? trained.sum.col(h).eval() : Eigen::VectorXd::Ones(trained.sum.rows()).eval();
-    start_.emplace_back(sum.data(), sum.data() + sum.size());
+  if (!start_.empty() || !combines()) return;
+  std::size_t horizons = 0;
+  for (const std::vector<Eigen::MatrixXd>& run : densities_) horizons = std::max(horizons, run.size());
+  for (std::size_t h = 0; h < horizons; ++h) {
+    std::vector<Eigen::MatrixXd> of_runs;
+    for (const std::vector<Eigen::MatrixXd>& run : densities_)
+      if (!run.empty()) of_runs.push_back(run[h]);
+    start_.push_back(stacked_weights(of_runs));
   }
+  densities_.assign(densities_.size(), {});
 }
 
 std::vector<CombinationRow> ForecastTables::combination() const {
@@ -159,7 +318,8 @@ std::vector<CombinationRow> ForecastTables::combination() const {
     for (Index h = 0; h < total.samples.size(); ++h)
       for (std::size_t f = 0; f < filters_.size(); ++f)
         rows.push_back({role, horizons[static_cast<std::size_t>(h)].horizon, filters_[f],
-                        total.sum(static_cast<Index>(f), h) / total.samples(h)});
+                        total.sum(static_cast<Index>(f), h) / total.samples(h),
+                        start_.empty() ? not_a_number : start_.at(static_cast<std::size_t>(h)).at(f)});
   }
   return rows;
 }

@@ -67,7 +67,7 @@ void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions&
 
 /// `bank`: one of the sizes of what the filter says.
 template <class Filter>
-RunEvaluation evaluate_samples(const Bank& bank, Filter filter, const Trajectory& run) {
+RunEvaluation evaluate_samples(const Bank& bank, Filter&& filter, const Trajectory& run) {
   RunEvaluation evaluation = sized_evaluation(bank, run.samples());
   for (Index k = 0; k < run.samples(); ++k)
     record(filter.step(sample_time_s(run, k), run.input.col(k), run.state.col(k)), k, evaluation);
@@ -86,6 +86,11 @@ RunEvaluation evaluate_run(const DriftingModel& model, const Trajectory& run, Ti
   const Bank bank = fixed_bank(model);
   check_run(bank, run);
   return evaluate_samples(bank, DriftingFilter(model, time_steps), run);
+}
+
+RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, AnyFilter& filter) {
+  check_run(frame, run);
+  return evaluate_samples(frame, filter, run);
 }
 
 void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluation) {

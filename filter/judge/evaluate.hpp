@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "filter/step/any_filter.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
 #include "modebank/filter/options.hpp"
@@ -36,6 +37,9 @@ struct RunEvaluation {
 /// samples are all measured. Longer times between samples: see TimeSteps. Throws std::invalid_argument when sizes
 /// disagree and DataError for an input that is not finite.
 RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options);
+
+/// The same of any filter, whose estimates have the sizes of `frame`.
+RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, AnyFilter& filter);
 
 /// Draws the transforms of quantised measurements within their intervals (pit_draw.hpp), by the seed, the run's name
 /// and the sample.

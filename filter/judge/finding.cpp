@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "filter/judge/combination.hpp"
+#include "filter/step/combined_filter.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/streams.hpp"
@@ -168,13 +168,15 @@ class BestMeans {
 
 std::vector<BetterMean> better_means(const FindingInputs& in) {
   BestMeans means;
+  const auto counts = [&](const auto& row) {
+    return row.run == "*" && row.role == in.role && row.filter != combined_name;
+  };
   for (const SummaryRow& row : in.summary)
-    if (row.run == "*" && row.role == in.role) means.add(row.filter, 1, row.rmse);
+    if (counts(row)) means.add(row.filter, 1, row.rmse);
   for (const HorizonRow& row : in.horizons)
-    if (row.run == "*" && row.role == in.role && row.horizon > 1 && row.filter != combined_name)
-      means.add(row.filter, row.horizon, row.rmse);
+    if (counts(row) && row.horizon > 1) means.add(row.filter, row.horizon, row.rmse);
   for (const FreeRunRow& row : in.free_runs)
-    if (row.run == "*" && row.role == in.role) means.add(row.filter, free_run_horizon, row.rmse);
+    if (counts(row)) means.add(row.filter, free_run_horizon, row.rmse);
   return means.better(in.states);
 }
 

@@ -44,9 +44,9 @@ NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& record
 /// modes share, from `most_levels` noise scales and fewer down to one, chosen by its own cross-validation
 /// (refine_bank), averaged and with measurement noise as `options` say; one more start has the noises and the chain of
 /// `rival`, the bank that it is asked to describe as well. `global`: of linear terms. `filter`: that will run it.
-Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global, const Bank& rival,
-                      const Eigen::MatrixXd& R, Eigen::Index most_levels, const BankOptions& options,
-                      const FilterOptions& filter);
+Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global,
+                            const Bank& rival, const Eigen::MatrixXd& R, Eigen::Index most_levels,
+                            const BankOptions& options, const FilterOptions& filter);
 
 /// The competitor whose one motion bends: theta of linear regressors and terms by expectation-maximisation with one
 /// theta that all noise levels share, as learn_one_motion's, from up to four levels and with a wide one more. Each

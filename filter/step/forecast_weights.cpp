@@ -39,32 +39,91 @@ ForecastWeights::ForecastWeights(const std::vector<double>& start, std::ptrdiff_
 }
 
 void ForecastWeights::restart() {
-  log_weights_ = start_;
+  evidence_.assign(start_.size(), 0.0);
   normalise();
 }
 
 void ForecastWeights::observe(const std::vector<double>& log_densities) {
-  if (log_densities.size() != log_weights_.size())
+  if (log_densities.size() != evidence_.size())
     throw std::invalid_argument(std::to_string(log_densities.size()) + " log densities of " +
-                                std::to_string(log_weights_.size()) + " forecasters");
+                                std::to_string(evidence_.size()) + " forecasters");
   // The silent are taken to have said what all say together, so that the others' scores do not move them.
   const double together = mixed_log_density(weights_, log_densities);
   if (std::isnan(together)) return;
-  for (std::size_t i = 0; i < log_weights_.size(); ++i) {
+  for (std::size_t i = 0; i < evidence_.size(); ++i) {
     const double said = std::isnan(log_densities[i]) ? together : log_densities[i];
-    log_weights_[i] = kept_per_sample * log_weights_[i] + share_of_a_sample_ * std::max(said, least_log_weight);
+    evidence_[i] = kept_per_sample * evidence_[i] + share_of_a_sample_ * std::max(said, least_log_weight);
   }
   normalise();
 }
 
 void ForecastWeights::normalise() {
-  const double most = largest(log_weights_);
-  double sum = 0.0;
+  const double most = largest(evidence_);
+  double highest = least_log_weight;
   for (std::size_t i = 0; i < weights_.size(); ++i) {
-    log_weights_[i] = std::max(log_weights_[i] - most, least_log_weight);
-    sum += weights_[i] = std::exp(log_weights_[i]);
+    evidence_[i] = std::max(evidence_[i] - most, least_log_weight);
+    weights_[i] = start_[i] + evidence_[i];
+    highest = std::max(highest, weights_[i]);
   }
+  double sum = 0.0;
+  for (double& weight : weights_) sum += weight = std::exp(std::max(weight - highest, least_log_weight));
   for (double& weight : weights_) weight /= sum;
+}
+
+namespace {
+
+/// Per sample the densities of all forecasters in units of the largest, one after the other; NaN of the silent.
+std::vector<double> relative_densities(const std::vector<std::vector<double>>& log_densities) {
+  const std::size_t forecasters = log_densities.size();
+  std::vector<double> densities, one(forecasters);
+  for (std::size_t k = 0; k < log_densities.front().size(); ++k) {
+    for (std::size_t i = 0; i < forecasters; ++i) one[i] = log_densities[i].at(k);
+    const double most = largest(one);
+    if (!std::isfinite(most)) continue;
+    for (const double value : one) densities.push_back(std::exp(value - most));
+  }
+  return densities;
+}
+
+/// One step of expectation-maximisation. The silent of a sample keep their weight.
+std::vector<double> likelier_weights(const std::vector<double>& weights, const std::vector<double>& densities) {
+  const std::size_t forecasters = weights.size();
+  std::vector<double> next(forecasters, 0.0);
+  for (std::size_t first = 0; first < densities.size(); first += forecasters) {
+    double mixed = 0.0, spoken = 0.0;
+    for (std::size_t i = 0; i < forecasters; ++i) {
+      if (std::isnan(densities[first + i])) continue;
+      mixed += weights[i] * densities[first + i];
+      spoken += weights[i];
+    }
+    for (std::size_t i = 0; i < forecasters; ++i) {
+      const double density = densities[first + i];
+      next[i] += std::isnan(density) || !(mixed > 0.0) ? weights[i] : weights[i] * density * spoken / mixed;
+    }
+  }
+  for (double& weight : next) weight /= static_cast<double>(densities.size() / forecasters);
+  return next;
+}
+
+}  // namespace
+
+std::vector<double> ForecastWeights::stacked(const std::vector<std::vector<double>>& log_densities) {
+  constexpr int most_steps = 500;
+  constexpr double least_weight = 1e-3, close = 1e-6;
+  std::vector<double> weights(log_densities.size(), 1.0 / static_cast<double>(log_densities.size()));
+  if (weights.size() < 2) return weights;
+  const std::vector<double> densities = relative_densities(log_densities);
+  double change = densities.empty() ? 0.0 : 1.0;
+  for (int step = 0; step < most_steps && change > close; ++step) {
+    const std::vector<double> next = likelier_weights(weights, densities);
+    change = 0.0;
+    for (std::size_t i = 0; i < next.size(); ++i) change = std::max(change, std::abs(next[i] - weights[i]));
+    weights = next;
+  }
+  double sum = 0.0;
+  for (double& weight : weights) sum += weight = std::max(weight, least_weight);
+  for (double& weight : weights) weight /= sum;
+  return weights;
 }
 
 std::vector<double> ForecastWeights::spoken_weights(const std::vector<double>& weights,

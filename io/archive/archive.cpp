@@ -98,6 +98,7 @@ std::optional<Bank> Archive::bank_of(const std::string& filter) const {
   if (filter == "one_motion") return one_motion;
   if (filter == "nonlinear") return nonlinear;
   if (filter == "drifting" && drifting) return fixed_bank(*drifting);
+  if (filter == combined_name && bank) return combined_frame(*bank);
   return {};
 }
 

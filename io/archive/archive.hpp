@@ -106,12 +106,14 @@ struct Archive {
   std::vector<CombinationRow> combination = {};  ///< how much each filter counted in combined_name's forecasts
   std::vector<DiagnosticsRow> diagnostics;
   std::vector<ResidualTestSet> residual_tests;
+  std::vector<LeftOutRow> left_out = {};     ///< where filters were learned without some training runs
   std::vector<MergingCost> merging = {};     ///< with bank.modes, where components were merged
   std::vector<FreeRunRow> free_runs = {};    ///< with filter.simulate
   std::vector<ConfusionRow> confusion = {};  ///< with data.label, where a bank was scored
   std::optional<Finding> finding = {};       ///< where a bank was scored
 
-  /// By the name of its filter, where there is one; of drifting its fixed_bank, whose states and measurements are its.
+  /// By the name of its filter, where there is one; of drifting its fixed_bank, whose states and measurements are its;
+  /// of all combined their combined_frame.
   std::optional<Bank> bank_of(const std::string& filter) const;
   /// Whether modes of the bank are components of the mixture: neither refined nor left out because steps scatter.
   bool mixture_makes_bank() const { return mixture && !unrefined && step_scatter == 0.0; }

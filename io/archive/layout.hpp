@@ -179,6 +179,7 @@ void exchange_archive(Io& io, A& archive) {
     if constexpr (Io::reads) member.finish([&] { check_count("mode_names", archive.mode_names, part.modes.size()); });
     exchange_part(member, "unrefined", archive.unrefined, {}, exchange_one);
     exchange_merging(member, archive.merging);
+    exchange_left_out(member, archive.left_out, units.states());
   });
   exchange_part(io, "baseline", archive.baseline, {}, exchange_one);
   exchange_part(io, "noise_only", archive.noise_only, {}, exchange_one);

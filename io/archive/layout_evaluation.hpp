@@ -25,6 +25,16 @@ void exchange_merging(Io& io, R& rows) {
                     column("log_score", &MergingCost::log_score, "nat"), column("loss", &MergingCost::loss, "nat"));
 }
 
+template <class Io, class R>
+void exchange_left_out(Io& io, R& rows, const Unit& states) {
+  io.optional_table("left_out", rows, column("filter", &LeftOutRow::filter),
+                    column("horizon", &LeftOutRow::horizon, "samples").obeying(rule::at_least_one),
+                    column("samples", &LeftOutRow::samples).obeying(rule::not_negative),
+                    column("log_score", &LeftOutRow::log_score, "nat"),
+                    amount_column("rmse", &LeftOutRow::rmse, joined(states)),
+                    share_column("start", &LeftOutRow::start));
+}
+
 template <class Io, class E>
 void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.field("prediction", evaluation.prediction, {"N", "n"}, states);
@@ -121,8 +131,9 @@ void exchange_horizon(Io& io, R& rows, const Unit& states) {
 template <class Io, class R>
 void exchange_combination(Io& io, R& rows) {
   io.optional_table("combination", rows, column("role", &CombinationRow::role),
-                    column("horizon", &CombinationRow::horizon, "samples").obeying(rule::at_least_one),
-                    column("filter", &CombinationRow::filter), share_column("weight", &CombinationRow::weight));
+                    column("horizon", &CombinationRow::horizon, "samples").obeying(rule::not_negative),
+                    column("filter", &CombinationRow::filter), share_column("weight", &CombinationRow::weight),
+                    later_column("start", &CombinationRow::start).obeying(rule::share_or_missing));
 }
 
 template <class Io, class R>

@@ -112,18 +112,15 @@ void check_mixture(const MixtureResult& result) {
 
 namespace {
 
-constexpr std::array filters{"bank", "baseline", "noise_only", "one_motion", "drifting", "nonlinear"};
-template <class Row>
-bool may_name(const std::string& filter) {
-  return std::find(filters.begin(), filters.end(), filter) != filters.end() ||
-         (std::is_same_v<Row, HorizonRow> && filter == combined_name);
-}
+constexpr std::array filters{"bank", "baseline", "noise_only", "one_motion", "drifting", "nonlinear", combined_name};
+
+bool is_filter(const std::string& name) { return std::find(filters.begin(), filters.end(), name) != filters.end(); }
 
 /// Of rows that have a filter and a run.
 template <class Row>
 void check_rows(const std::vector<Row>& rows, const std::set<std::string>& runs, const std::string& table) {
   for (const Row& row : rows) {
-    if (!may_name<Row>(row.filter)) throw DataError(table + " names the unknown filter '" + row.filter + "'");
+    if (!is_filter(row.filter)) throw DataError(table + " names the unknown filter '" + row.filter + "'");
     if constexpr (requires { row.run; })
       if (!runs.empty() && row.run != "*" && !runs.contains(row.run))
         throw DataError(table + " names the unknown run '" + row.run + "'");
@@ -160,7 +157,7 @@ void check_labels(const Archive& archive) {
 /// The names of competitors in what was found; empty where there was none to name.
 void check_competitors(const Finding& finding) {
   const auto known = [](const std::string& name, bool may_be_empty) {
-    if ((name.empty() && may_be_empty) || may_name<Finding>(name)) return;
+    if ((name.empty() && may_be_empty) || (is_filter(name) && name != combined_name)) return;
     throw DataError("evidence names the unknown filter '" + name + "'");
   };
   known(finding.best_competitor, true);
@@ -198,6 +195,7 @@ void check_score_names(const Archive& archive) {
   check_rows(archive.summary, runs, "summary");
   check_rows(archive.horizons, runs, "horizon");
   check_rows(archive.combination, runs, "combination");
+  check_rows(archive.left_out, runs, "left_out");
   check_rows(archive.free_runs, runs, "free_run");
   check_rows(archive.diagnostics, runs, "diagnostics");
   check_rows(archive.confusion, runs, "confusion");

@@ -134,6 +134,7 @@ nlohmann::json verdict_section(const Archive& archive) {
           {"text", screen.answer ? with_signs(screen.finding)
                                  : std::string("No bank was scored, so there is nothing to judge yet.")},
           {"next", screen.next},
+          {"use", screen.use},
           {"warning", screen.warning},
           {"read", screen.read},
           {"role", name_of(screen.role)},

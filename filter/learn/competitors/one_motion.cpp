@@ -44,9 +44,9 @@ std::vector<Bank> level_starts(const Recording& recording, const LinearStructure
   return starts;
 }
 
-Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global, const Bank& rival,
-                      const Eigen::MatrixXd& R, Index most_levels, const BankOptions& options,
-                      const FilterOptions& filter) {
+Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global,
+                            const Bank& rival, const Eigen::MatrixXd& R, Index most_levels, const BankOptions& options,
+                            const FilterOptions& filter) {
   RefineOptions em = options.em;
   em.one_theta = true;
   em.guards = options.transition == TransitionSource::logit;
@@ -59,9 +59,9 @@ Bank learn_one_motion(const Recording& recording, const WindowFits& fits, const 
                        : R,
                    most_levels, em.tuning.modes_kept);
   if (rival.mode_count() > 1) starts.push_back(with_noises_of(rival, starts.front(), global));
-  Bank bank = refine_bank(recording, linear_frame(fits, global), starts, em, filter).bank;
-  leave_open(bank, global.covariance);
-  return bank;
+  Refinement learned = refine_bank(recording, linear_frame(fits, global), starts, em, filter);
+  leave_open(learned.bank, global.covariance);
+  return learned;
 }
 
 NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& recording, const FilterOptions& filter,

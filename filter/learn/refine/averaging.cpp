@@ -126,7 +126,9 @@ AveragedBank average_fits(const RefineInput& in, const CrossValidation& validati
   result.bank->shrinking = std::max_element(members.begin(), members.end(), [](const Bank& a, const Bank& b) {
                              return a.shrinking.share < b.shrinking.share;
                            })->shrinking;
-  result.bank->noise_adaptation = validation.adaptation(united_on_splits(fits, members.size(), switching));
+  result.of_splits = united_on_splits(fits, members.size(), switching);
+  result.bank->noise_adaptation = validation.adaptation(result.of_splits);
+  for (Bank& bank : result.of_splits) bank.noise_adaptation = result.bank->noise_adaptation;
   return result;
 }
 

@@ -22,6 +22,7 @@ struct AveragedBank {
   Averaging averaging;
   std::optional<Bank> bank;  ///< empty where one fit is as good
   std::vector<std::size_t> rows;
+  std::vector<Bank> of_splits = {};
 };
 
 /// Expectation-maximisation ends in one of many optima that training runs hardly tell apart but new runs do. Instead of

@@ -94,7 +94,7 @@ Bank without_errors(Bank bank) {
 
 /// Whether the runs left out, each scored by a fit that has not seen it, gain enough.
 bool gains(const LookAheadFit& fit, const CrossValidation& validation, const ChosenFit& chosen, const Bank& bank,
-           LookAheadStage& stage) {
+           LookAheadStage& stage, std::vector<Bank>& of_splits) {
   std::vector<Bank> banks = chosen.of_splits;
   for (Bank& of_split : banks) of_split.noise_adaptation = bank.noise_adaptation;
   stage.score_before = validation.score(banks, fit.look);
@@ -106,14 +106,16 @@ bool gains(const LookAheadFit& fit, const CrossValidation& validation, const Cho
     banks[s] = fit.taken_on(split.runs.training, of_split, banks[s]);
   });
   stage.score = validation.score(banks, fit.look);
-  return stage.score > stage.score_before + fit.in.options.tuning.least_gain;
+  if (!(stage.score > stage.score_before + fit.in.options.tuning.least_gain)) return false;
+  of_splits = std::move(banks);
+  return true;
 }
 
 }  // namespace
 
 std::optional<Bank> fit_looking_ahead(const RefineInput& in, const CrossValidation& validation, const ChosenFit& chosen,
                                       const SwitchingPrior& prior, bool R_estimated, const Bank& bank,
-                                      LookAheadStage& stage) {
+                                      LookAheadStage& stage, std::vector<Bank>& of_splits) {
   if (!validation.possible() && in.options.folds > 1) return std::nullopt;
   const std::optional<LookAhead> look = look_of(in, bank);
   if (!look ||
@@ -121,7 +123,7 @@ std::optional<Bank> fit_looking_ahead(const RefineInput& in, const CrossValidati
     return std::nullopt;
   const LookAheadFit fit{in, *look, R_estimated};
   stage.of_errors = look->counts_errors();
-  stage.taken = !validation.possible() || gains(fit, validation, chosen, bank, stage);
+  stage.taken = !validation.possible() || gains(fit, validation, chosen, bank, stage, of_splits);
   if (!stage.taken) return std::nullopt;
   return without_errors(fit.taken_on(in.recording, prior, bank));
 }

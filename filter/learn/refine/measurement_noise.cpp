@@ -140,6 +140,7 @@ class MeasuredSplits {
     for (Bank& bank : banks_) bank.noise_adaptation = adaptation;
   }
 
+  const std::vector<Bank>& banks() const { return banks_; }
   /// Mean log score of the runs left out.
   double score() const { return validation_.score(banks_); }
 
@@ -276,12 +277,13 @@ MeasuredBank fit_untimed(const RefineInput& in, const CrossValidation& validatio
   if (validation.possible()) splits.emplace(in, validation, chosen, bank.noise_adaptation);
   const bool with_R = in.options.measurement_noise && bank.structure.state_lags <= most_lags_beside_R;
   const bool quantised = bank.is_quantised();
-  if (with_R && !quantised && !take_R(in, prior, splits, fit)) return fit;
-  if (with_R || quantised ||
-      (bank.R.diagonal().array() > least_measurement_noise(in.fits, in.options.tuning).array()).any())
+  const bool asks_for_R = !with_R || quantised || take_R(in, prior, splits, fit);
+  if (asks_for_R && (with_R || quantised ||
+                     (bank.R.diagonal().array() > least_measurement_noise(in.fits, in.options.tuning).array()).any()))
     go_on(in, prior, splits, fit);
   // Rounding stands in the Q of states taken as exact: only beside a fit by intervals is R told from it.
   if (with_R && quantised && take_R(in, prior, splits, fit)) go_on(in, prior, splits, fit);
+  if (splits) fit.of_splits = splits->banks();
   return fit;
 }
 

@@ -36,6 +36,7 @@ struct MeasuredBank {
   MeasurementStage stage;
   SwitchingPrior prior;
   bool R_estimated = false;
+  std::vector<Bank> of_splits = {};  ///< the same on every split; empty where nothing was left out
 };
 
 /// The fit that goes on, on every split of the cross-validation.

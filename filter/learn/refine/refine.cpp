@@ -93,6 +93,7 @@ Refinement drifting_refinement(const RefineInput& in, const CrossValidation& val
   result.drift = stage;
   for (std::size_t row = 0; row < result.candidates.size(); ++row)
     result.candidates[row].selected = row == drift.fit.row;
+  for (const Bank& bank : drift.fit.banks) result.of_splits.push_back(with_drift(bank, drift));
   return result;
 }
 
@@ -132,8 +133,9 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
                     validation.table(), fit.objective, measured.stage};
   result.switching = switching;
   result.drift = drift_stage;
+  result.of_splits = measured.of_splits;
   if (std::optional<Bank> ahead = fit_looking_ahead(in, validation, on_splits, measured.prior, measured.R_estimated,
-                                                    result.bank, result.look_ahead))
+                                                    result.bank, result.look_ahead, result.of_splits))
     result.bank = std::move(*ahead);
   if (options.members == 1 || result.look_ahead.taken || guards || measured.R_estimated ||
       measured.stage.iterations > 0)
@@ -142,6 +144,7 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   result.averaging = averaged.averaging;
   if (!averaged.bank) return result;
   result.bank = std::move(*averaged.bank);
+  result.of_splits = std::move(averaged.of_splits);
   for (RefineCandidate& row : result.candidates) row.selected = false;
   for (const std::size_t row : averaged.rows) result.candidates[row].selected = true;
   return result;

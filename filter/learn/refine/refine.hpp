@@ -31,6 +31,9 @@ struct Refinement {
   SwitchingStage switching = {};
   DriftStage drift = {};
   LookAheadStage look_ahead = {};
+  /// The same fit to the training part of each split (validation_splits), in their order, to be scored on what it has
+  /// not seen; empty where nothing was left out.
+  std::vector<Bank> of_splits = {};
   Eigen::Index learned_transitions = 0;  ///< that a part of the training runs has (learning_part.hpp); 0: all
 };
 

@@ -65,7 +65,7 @@ TEST_F(Predict, RunScoresEveryFilter) {
   const ProgramResult result = run({"--filter.simulate", "5"});
   ASSERT_EQ(result.status, 0) << result.err;
   const Archive stored = read_archive(archive());
-  EXPECT_EQ(stored.free_runs.size(), 5u * 4u);  // five filters, two runs, each alone and pooled
+  EXPECT_EQ(stored.free_runs.size(), 6u * 4u);  // five filters, two runs, each alone and pooled
   for (const FreeRunRow& row : stored.free_runs) {
     EXPECT_EQ(row.samples, 75);
     EXPECT_NEAR(row.fit(0), 100.0 * (1.0 - row.nrmse(0)), 1e-12);

@@ -132,17 +132,16 @@ TEST_F(Track, CombinedFiltersAreThoseThatWereScored) {
     log_density += said.at(column("log_density"));
     squares += std::pow(numbers(samples[k])[1] - said.at(column("wz_predicted")), 2);
   }
-  const auto row = std::find_if(stored.horizons.begin(), stored.horizons.end(), [](const HorizonRow& r) {
-    return r.filter == "combined" && r.horizon == 1 && r.run == "01";
-  });
-  ASSERT_NE(row, stored.horizons.end());
+  const auto row = std::find_if(stored.summary.begin(), stored.summary.end(),
+                                [](const SummaryRow& r) { return r.filter == "combined" && r.run == "01"; });
+  ASSERT_NE(row, stored.summary.end());
   EXPECT_EQ(scored, row->samples);
   EXPECT_NEAR(log_density / static_cast<double>(scored), row->log_score, 1e-9);
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(scored)), row->rmse(0), 1e-9);
   for (const char* key : {"--track.checkpoint", "--track.resume"})
     EXPECT_EQ(modebank({"track", archive(), "--track.filter", "combined", key, "c.json"}).status, 2);
   EXPECT_EQ(modebank({"export", archive(), "--to", "json", "--track.filter", "combined"}).status, 2);
-  EXPECT_EQ(modebank({"predict", archive(), "--samples", "3", "--track.filter", "combined"}).status, 2);
+  EXPECT_EQ(modebank({"predict", archive(), "--samples", "3", "--track.filter", "combined"}).status, 0);
 }
 
 /// Where no training sample was scored nothing tells filters apart: each has the same weight.
@@ -152,7 +151,7 @@ TEST_F(Track, CombinedFiltersStartEquallyWhereTrainingScoredNothing) {
   for (CombinationRow& row : unscored.combination) {
     if (row.role != Role::train) continue;
     if (row.horizon == 1) filters.push_back(row.filter);
-    row.weight = not_a_number;
+    row.weight = row.start = not_a_number;
   }
   write_archive(archive(), unscored);
   const std::vector<std::string> samples = lines("run_01.csv");

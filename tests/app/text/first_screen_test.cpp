@@ -122,11 +122,49 @@ TEST(FirstScreen, StaysAreThoseOfTheTransitionMatrixWhereGapsCutRuns) {
 
 TEST(FirstScreen, SaysWhatTheFiltersPredictTogether) {
   Archive archive = screen_archive(1, 2, 3);
-  for (const Index ahead : {1, 10})
-    archive.horizons.push_back(
-        {"combined", Role::test, "*", ahead, 100, 0.0, Eigen::VectorXd::Constant(1, ahead == 1 ? 0.02 : 0.05)});
+  archive.summary.push_back(archive.summary.back());
+  archive.summary.back().filter = "combined";
+  archive.summary.back().rmse.setConstant(0.02);
+  archive.horizons.push_back({"combined", Role::test, "*", 10, 100, 0.0, Eigen::VectorXd::Constant(1, 0.05)});
   EXPECT_THAT(screen_of(archive), AllOf(HasSubstr("0.03 rad/s (drifting: 0.04 rad/s, combined: 0.02 rad/s)"),
                                         HasSubstr("(drifting: 0.08 rad/s, combined: 0.05 rad/s)")));
+}
+
+/// Training runs that were left out choose; judged runs state what that is worth.
+TEST(FirstScreen, EndsInWhatToUnderstandAndWhatToPredictWith) {
+  Archive archive = screen_archive(1, 2, 3);
+  const Eigen::VectorXd rmse = Eigen::VectorXd::Constant(1, 0.03);
+  for (const Index steps : {1, 10}) {
+    archive.left_out.push_back({"bank", steps, 100, 1.0, rmse, 0.5});
+    archive.left_out.push_back({"drifting", steps, 100, steps == 1 ? 0.9 : 1.2, rmse, 0.5});
+    archive.left_out.push_back({"combined", steps, 100, steps == 1 ? 1.05 : 1.2, rmse, not_a_number});
+  }
+  for (const char* run : {"01", "02"})
+    for (const char* filter : {"bank", "combined"}) {
+      SummaryRow row = archive.summary.front();
+      row.filter = filter;
+      row.run = run;
+      row.samples = 100;
+      row.log_score = std::string(filter) == "bank" ? 1.0 : std::string(run) == "01" ? 1.1 : 1.3;
+      archive.summary.push_back(row);
+    }
+  const std::vector<app::NamedForecast> named = app::named_forecasts(archive);
+  ASSERT_EQ(named.size(), 2);
+  EXPECT_EQ(named[0].filter, "combined");
+  EXPECT_EQ(named[0].other, "bank");
+  EXPECT_NEAR(named[0].gain, 0.2, 1e-12);
+  EXPECT_NEAR(named[0].error, 0.1, 1e-12);  // of 0.1 and 0.3 in runs of the same length
+  EXPECT_EQ(named[0].c_filter, "bank");
+  EXPECT_NEAR(named[0].c_loss, 0.2, 1e-12);
+  EXPECT_EQ(named[1].steps, 10);
+  EXPECT_EQ(named[1].filter, "drifting");  // as good as combined, and one filter
+  EXPECT_THAT(app::use_words(archive),
+              testing::StartsWith("to understand: the bank of 3 modes; to predict 1 step: `--track.filter combined`, "
+                                  "+0.200 +- 0.100 nats over bank, in C bank (-0.200); 10 steps: "
+                                  "`--track.filter drifting`"));
+  // Two per cent of error count as much as 0.02 nats.
+  archive.left_out[2].rmse *= 1.1;
+  EXPECT_EQ(app::named_forecasts(archive)[0].filter, "bank");
 }
 
 /// Halves and less: 0.5, 0.3, 0.18, ... falls below a hundredth after the eighth.
@@ -318,12 +356,6 @@ TEST_F(NextStep, ADoubtfulGainAsksForSoManyRuns) {
   archive.finding->stay = 2.0;
   archive.finding->stay_asked = 5.0;
   EXPECT_THAT(advice(), HasSubstr("the data cannot tell: modes so short"));
-}
-
-TEST_F(NextStep, APredictorThatIsFarCloserIsNamed) {
-  archive.finding->better_means = {{"drifting", 1, "", 0.03, 0.029}, {"baseline", 10, "", 0.167, 0.043}};
-  EXPECT_THAT(advice(), HasSubstr("to predict, baseline is closer 10 samples ahead: `modebank track ARCHIVE "
-                                  "--track.filter baseline`"));
 }
 
 TEST_F(NextStep, RoundedValuesAreNotAskedForTwice) {

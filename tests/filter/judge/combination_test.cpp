@@ -108,8 +108,8 @@ TEST(Combination, LosesLittleAgainstTheBestOfARun) {
   EXPECT_NEAR(weights[0].weight + weights[1].weight, 1.0, combined_digits);
 }
 
-/// A held-out run starts where the training runs were on average.
-TEST(Combination, HeldOutRunsStartAsTrainingRunsEnded) {
+/// A held-out run starts with the weights that make the training runs most likely.
+TEST(Combination, HeldOutRunsStartWithStackedWeights) {
   const Index N = 100;
   std::vector<Trajectory> runs(2);
   for (Trajectory& run : runs) run.state.setZero(1, N);
@@ -118,15 +118,78 @@ TEST(Combination, HeldOutRunsStartAsTrainingRunsEnded) {
   const HorizonEvaluation bad = forecasts(N, {1}, 8, 3.0), good = forecasts(N, {1}, 9, 1.0);
   ForecastTables tables({"bank", "drifting"}, runs);
   tables.add(0, {bad, good});
-  const std::vector<CombinationRow> trained = tables.combination();
   tables.start_as_trained();
   tables.add(1, {bad, good});
-  const double start = trained[1].weight;  // of drifting
+  const double start = tables.combination()[1].start;  // of drifting
+  const std::vector<double> stacked =
+      stacked_weights({(Eigen::MatrixXd(2, N) << bad.log_density.row(0), good.log_density.row(0)).finished()});
+  EXPECT_NEAR(start, stacked[1], combined_digits);
+  EXPECT_EQ(start_weights(tables.combination(), 1, {"bank", "drifting"}), stacked);
   const CombinedForecasts run = combine_forecasts({&bad, &good}, {{1.0 - start, start}});
   EXPECT_GT(start, 0.8);
   EXPECT_NEAR(run.weight[0](1, 1), start, combined_digits);
   const std::vector<HorizonRow> rows = tables.horizons();
   EXPECT_NEAR(rows.back().log_score, run.predictions.log_density.row(0).tail(N - 1).mean(), combined_digits);
+}
+
+/// A run too short to tell the filters apart loses next to nothing against the one that was best in training.
+TEST(Combination, ShortRunsKeepWhatTrainingFound) {
+  const HorizonEvaluation good = forecasts(30, {10}, 6, 1.0), bad = forecasts(30, {10}, 7, 3.0);
+  const std::vector<double> start =
+      stacked_weights({(Eigen::MatrixXd(2, 30) << good.log_density.row(0), bad.log_density.row(0)).finished()});
+  const CombinedForecasts together = combine_forecasts({&good, &bad}, {start});
+  EXPECT_GT(together.predictions.log_density.row(0).tail(20).mean(), good.log_density.row(0).tail(20).mean() - 0.02);
+}
+
+TEST(Combination, LeftOutRowsChooseWeightsAndScoreAllTogether) {
+  const HorizonEvaluation a = forecasts(60, {1, 5}, 10, 1.0), b = forecasts(60, {1, 5}, 11, 2.0);
+  const std::vector<LeftOutRow> rows = left_out_rows({"bank", "baseline"}, {{a, b}, {b, a}});
+  ASSERT_EQ(rows.size(), 6);  // of three filters, two horizons
+  EXPECT_EQ(rows[5].filter, "combined");
+  EXPECT_EQ(rows[5].horizon, 5);
+  EXPECT_EQ(rows[0].samples, 2 * 59);
+  EXPECT_NEAR(rows[0].log_score, (a.log_density.row(0).tail(59).sum() + b.log_density.row(0).tail(59).sum()) / 118.0,
+              combined_digits);
+  EXPECT_NEAR(rows[0].rmse(0),
+              std::sqrt((a.error[0].rightCols(59).squaredNorm() + b.error[0].rightCols(59).squaredNorm()) / 118.0),
+              combined_digits);
+  const std::vector<std::vector<double>> start = start_weights(rows, {1, 5}, {"bank", "baseline"});
+  ASSERT_EQ(start.size(), 2);
+  EXPECT_NEAR(start[0][0], 0.5, 1e-3);  // alike, run for run
+  EXPECT_TRUE(start_weights(rows, {1, 7}, {"bank", "baseline"}).empty());
+  EXPECT_TRUE(start_weights(rows, {1}, {"bank", "nonlinear"}).empty());
+}
+
+/// Two normal distributions: moments in closed form, and a band whose edges have 2.5 % of the mixture beyond them.
+TEST(Combination, FreeRunsAreMixed) {
+  FreeRun a, b;
+  for (FreeRun* one : {&a, &b}) {
+    for (Eigen::MatrixXd* values : {&one->mean, &one->deviation, &one->lower, &one->upper, &one->pit})
+      values->setConstant(1, 2, not_a_number);
+    one->log_density.setConstant(2, not_a_number);
+    one->mode.setConstant(2, -1);
+    const double mean = one == &a ? 0.0 : 2.0, sd = one == &a ? 1.0 : 0.5, edge = 1.959963984540054;
+    one->mean(0, 1) = mean;
+    one->deviation(0, 1) = sd;
+    one->lower(0, 1) = mean - edge * sd;
+    one->upper(0, 1) = mean + edge * sd;
+    one->pit(0, 1) = one == &a ? 0.75 : 0.25;
+    one->log_density(1) = one == &a ? -1.0 : -2.0;
+    one->mode(1) = 0;
+  }
+  const FreeRun mixed = combine_free_runs({&a, &b}, {0.25, 0.75});
+  EXPECT_TRUE(std::isnan(mixed.mean(0, 0)));
+  EXPECT_NEAR(mixed.mean(0, 1), 1.5, combined_digits);
+  EXPECT_NEAR(mixed.deviation(0, 1), std::sqrt(0.25 * (1.0 + 2.25) + 0.75 * (0.25 + 0.25)), combined_digits);
+  EXPECT_NEAR(mixed.pit(0, 1), 0.375, combined_digits);
+  EXPECT_NEAR(mixed.log_density(1), std::log(0.25 * std::exp(-1.0) + 0.75 * std::exp(-2.0)), combined_digits);
+  const auto below = [](double y) {
+    return 0.25 * 0.5 * std::erfc(-y / std::sqrt(2.0)) + 0.75 * 0.5 * std::erfc(-(y - 2.0) / 0.5 / std::sqrt(2.0));
+  };
+  EXPECT_NEAR(below(mixed.lower(0, 1)), 0.025, 1e-9);
+  EXPECT_NEAR(below(mixed.upper(0, 1)), 0.975, 1e-9);
+  const FreeRun alone = combine_free_runs({&a, &b}, {1.0, 0.0});
+  EXPECT_NEAR(alone.lower(0, 1), a.lower(0, 1), 1e-9);
 }
 
 TEST(Combination, WhatDoesNotFitIsRefused) {

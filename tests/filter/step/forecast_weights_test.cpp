@@ -32,7 +32,9 @@ TEST(ForecastWeights, MayStartUnequal) {
   ForecastWeights weights({1.0, 3.0}, 1);
   EXPECT_NEAR(weights.weights()[1], 0.75, digits);
   weights.observe({0.5, 0.25});
-  EXPECT_NEAR(log_odds(weights), 0.99 * std::log(1.0 / 3.0) + 0.25, digits);
+  EXPECT_NEAR(log_odds(weights), std::log(1.0 / 3.0) + 0.25, digits);
+  weights.observe({0.0, 0.0});
+  EXPECT_NEAR(log_odds(weights), std::log(1.0 / 3.0) + 0.99 * 0.25, digits);  // the start is not forgotten
   weights.restart();
   EXPECT_NEAR(weights.weights()[1], 0.75, digits);
 }
@@ -72,6 +74,19 @@ TEST(ForecastWeights, DensitiesAreMixedByWeight) {
               std::log((0.2 * 2 + 0.5 * 4) / 0.7), digits);
   EXPECT_TRUE(std::isnan(ForecastWeights::mixed_log_density({0.5, 0.5}, {silent, silent})));
   EXPECT_NEAR(ForecastWeights::mixed_log_density({0.5, 0.5}, {-1e6, -1e6}), -1e6, digits);
+}
+
+/// Where each sample has one forecaster of density zero, the likeliest constant weights are the shares of samples.
+TEST(ForecastWeights, StackedWeightsAreTheLikeliest) {
+  const double never = -std::numeric_limits<double>::infinity();
+  const std::vector<double> stacked = ForecastWeights::stacked({{1.0, 2.0, 0.5, never}, {never, never, never, 3.0}});
+  EXPECT_NEAR(stacked[0], 0.75, 1e-12);
+  EXPECT_NEAR(stacked[1], 0.25, 1e-12);
+  // d/dw of log(2 w + 1 - w) + 2 log(w + 3 (1 - w)) is zero at w = -1/6: all weight but the least goes to the second.
+  const double ln2 = std::log(2.0), ln3 = std::log(3.0);
+  EXPECT_NEAR(ForecastWeights::stacked({{ln2, 0.0, 0.0}, {0.0, ln3, ln3}})[0], 0.001, 2e-4);
+  EXPECT_NEAR(ForecastWeights::stacked({{0.0, silent, ln2}, {silent, 1.0, 0.0}})[0], 1.0, 2e-3);
+  EXPECT_EQ(ForecastWeights::stacked({{silent}, {silent}}), (std::vector<double>{0.5, 0.5}));
 }
 
 TEST(ForecastWeights, WhatCannotBeIsRefused) {

@@ -291,7 +291,7 @@ def check_evaluation(file):
     expect("horizon columns", file["evaluation/horizon"].dtype.names,
            ("filter", "role", "run", "horizon", "samples", "log_score", "rmse"))
     combination = file["evaluation/combination"]
-    expect("combination columns", combination.dtype.names, ("role", "horizon", "filter", "weight"))
+    expect("combination columns", combination.dtype.names, ("role", "horizon", "filter", "weight", "start"))
     expect("combination weight", combination["weight"], np.array([0.75, 0.25]))
     free = file["evaluation/free_run"]
     expect("free run columns", free.dtype.names,

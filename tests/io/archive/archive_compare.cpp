@@ -332,10 +332,18 @@ void expect_same(const Archive& actual, const Archive& expected) {
   for (std::size_t i = 0; i < actual.free_runs.size(); ++i) expect_same(actual.free_runs[i], expected.free_runs[i]);
   ASSERT_EQ(actual.horizons.size(), expected.horizons.size());
   for (std::size_t i = 0; i < actual.horizons.size(); ++i) expect_same(actual.horizons[i], expected.horizons[i]);
-  const auto combined = [](const CombinationRow& r) { return std::tuple(r.role, r.horizon, r.filter, r.weight); };
+  const auto combined = [](const CombinationRow& r) {
+    return std::tuple(r.role, r.horizon, r.filter, r.weight, r.start);
+  };
   ASSERT_EQ(actual.combination.size(), expected.combination.size());
   for (std::size_t i = 0; i < actual.combination.size(); ++i)
     EXPECT_EQ(combined(actual.combination[i]), combined(expected.combination[i]));
+  const auto left_out = [](const LeftOutRow& r) {
+    return std::tuple(r.filter, r.horizon, r.samples, r.log_score, r.rmse, r.start);
+  };
+  ASSERT_EQ(actual.left_out.size(), expected.left_out.size());
+  for (std::size_t i = 0; i < actual.left_out.size(); ++i)
+    EXPECT_EQ(left_out(actual.left_out[i]), left_out(expected.left_out[i]));
   ASSERT_EQ(actual.diagnostics.size(), expected.diagnostics.size());
   for (std::size_t i = 0; i < actual.diagnostics.size(); ++i)
     expect_same(actual.diagnostics[i], expected.diagnostics[i]);

@@ -156,7 +156,9 @@ void add_evaluation(Archive& archive) {
     archive.diagnostics.push_back(make_diagnostics(filter, count - 1, n));
   }
   archive.horizons.push_back({"combined", Role::test, "*", 5, 18, 1.75, pattern(n, 1, 85.0)});
-  archive.combination = {{Role::test, 5, "bank", 0.75}, {Role::test, 5, "baseline", 0.25}};
+  archive.combination = {{Role::test, 5, "bank", 0.75, 0.5}, {Role::test, 5, "baseline", 0.25, 0.5}};
+  archive.left_out = {{"bank", 5, 17, 1.25, pattern(n, 1, 86.0), 0.5},
+                      {"baseline", 5, 17, 1.0, pattern(n, 1, 87.0), 0.5}};
   for (const char* model : {"global", "bank"}) {
     archive.residual_tests.push_back({model, {}});
     for (Index r = 0; r < 3; ++r) archive.residual_tests.back().runs.push_back(make_residual_tests(n, m, r));

@@ -19,6 +19,7 @@ function groupsOf(axis, rows) {
     ['noise only', 'noise_only', rows],
     ['one motion', 'one_motion', rows],
     ['drifting', 'drifting', rows],
+    ['combined', 'combined', rows],
     ...axis.levels.map((level) => [String(level), 'bank', ofLevel(level)]),
   ];
 }

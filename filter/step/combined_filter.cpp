@@ -1,20 +1,19 @@
-#include "app/cli/combined_filter.hpp"
+#include "filter/step/combined_filter.hpp"
 
 #include <cmath>
 #include <utility>
 
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
-#include "modebank/base/error.hpp"
 
-namespace modebank::app {
+namespace modebank {
 
 using Eigen::Index;
 
 namespace {
 
 /// Adds a part of a mixture: its weight times its covariance and the square of its mean's distance from the mixture's.
-void add_spread(double weight, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& distance,
+void add_spread(double weight, const Eigen::Ref<const Eigen::MatrixXd>& covariance, const Eigen::VectorXd& distance,
                 Eigen::MatrixXd& mixed) {
   mixed += weight * (covariance + distance * distance.transpose());
 }
@@ -29,17 +28,42 @@ double normalised_square(const Eigen::VectorXd& innovation, const Eigen::MatrixX
   return factor.definite() ? factor.whiten(Eigen::VectorXd(innovation(there))).squaredNorm() : not_a_number;
 }
 
+/// Of a filter's estimate the measured states alone.
+void take_measured(const FilterEstimate& said, FilterEstimate& measured) {
+  const Index n = said.innovation.size();
+  measured = said;
+  measured.prediction = said.prediction.head(n);
+  measured.state = said.state.head(n);
+  measured.covariance = said.covariance.topLeftCorner(n, n);
+}
+
 }  // namespace
 
-CombinedFilter::CombinedFilter(std::vector<std::unique_ptr<LiveFilter>> filters, const std::vector<double>& start)
+Bank combined_frame(const Bank& bank) {
+  const Index n = bank.C.rows();
+  Bank frame = bank;
+  frame.structure = {n, bank.structure.inputs, bank.structure.intercept};
+  frame.state_names.resize(static_cast<std::size_t>(n));
+  frame.input_names.resize(static_cast<std::size_t>(bank.structure.inputs));
+  frame.C = Eigen::MatrixXd::Identity(n, n);
+  frame.drift = {};
+  frame.transition_logit = {};
+  const Index p = frame.structure.parameters();
+  for (Mode& mode : frame.modes)
+    mode = {unpack(frame.structure, Eigen::VectorXd(Eigen::VectorXd::Zero(p))), mode.Q.topLeftCorner(n, n).eval(),
+            Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Zero(p), mode.weight};
+  return frame;
+}
+
+CombinedFilter::CombinedFilter(std::vector<std::unique_ptr<AnyFilter>> filters, const std::vector<double>& start)
     : filters_(std::move(filters)),
       weights_(start, 1),
       remembered_(weights_),
       said_(filters_.size()),
       log_densities_(filters_.size()) {}
 
-const FilterEstimate& CombinedFilter::step(double time_s, const Eigen::VectorXd& input,
-                                           const Eigen::VectorXd& measurement) {
+const FilterEstimate& CombinedFilter::step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
+                                           const Eigen::Ref<const Eigen::VectorXd>& measurement) {
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     said_[i] = &filters_[i]->step(time_s, input, measurement);
     log_densities_[i] = said_[i]->log_density;
@@ -50,11 +74,11 @@ const FilterEstimate& CombinedFilter::step(double time_s, const Eigen::VectorXd&
   return estimate_;
 }
 
-/// With the weights from before this sample.
+/// With the weights from before this sample. What the first filter does not score is its estimate alone.
 void CombinedFilter::combine() {
-  estimate_ = *said_.front();  // modes, steps, and what one filter has alone
-  estimate_.log_density = filter::ForecastWeights::mixed_log_density(weights_.weights(), log_densities_);
+  take_measured(*said_.front(), estimate_);  // modes, steps, and what one filter has alone
   if (std::isnan(estimate_.log_density)) return;
+  estimate_.log_density = filter::ForecastWeights::mixed_log_density(weights_.weights(), log_densities_);
   mix(filter::ForecastWeights::spoken_weights(weights_.weights(), log_densities_), estimate_);
 }
 
@@ -67,7 +91,8 @@ FilterEstimate CombinedFilter::forecast(double time_s, const Eigen::VectorXd& in
     known.push_back(one.prediction.array().isNaN().any() ? not_a_number : 0.0);
   }
   for (std::size_t i = 0; i < ahead.size(); ++i) said_[i] = &ahead[i];
-  FilterEstimate mixed = ahead.front();
+  FilterEstimate mixed;
+  take_measured(ahead.front(), mixed);
   mix(filter::ForecastWeights::spoken_weights(weights_.weights(), known), mixed);
   mixed.innovation.setConstant(not_a_number);
   mixed.nis = not_a_number;
@@ -75,31 +100,35 @@ FilterEstimate CombinedFilter::forecast(double time_s, const Eigen::VectorXd& in
 }
 
 void CombinedFilter::mix(const std::vector<double>& share, FilterEstimate& mixed) const {
-  for (auto* vector : {&mixed.prediction, &mixed.innovation, &mixed.state, &mixed.pit}) vector->setZero();
+  const Index n = mixed.innovation.size();
+  for (auto* vector : {&mixed.prediction, &mixed.innovation, &mixed.state, &mixed.pit, &mixed.pit_width})
+    vector->setZero();
   for (auto* matrix : {&mixed.innovation_covariance, &mixed.covariance}) matrix->setZero();
   const auto each = [&](auto add) {
     for (std::size_t i = 0; i < share.size(); ++i)
       if (share[i] > 0.0) add(share[i], *said_[i]);
   };
+  double own = 0.0;
   each([&](double weight, const FilterEstimate& said) {
-    mixed.prediction += weight * said.prediction;
+    mixed.prediction += weight * said.prediction.head(n);
     mixed.innovation += weight * said.innovation;
-    mixed.state += weight * said.state;
+    mixed.state += weight * said.state.head(n);
     mixed.pit += weight * said.pit;
+    mixed.pit_width += weight * said.pit_width;
+    own += weight * said.innovation_covariance.trace();
   });
   each([&](double weight, const FilterEstimate& said) {
-    const Eigen::VectorXd apart =
-        (said.innovation - mixed.innovation)
-            .array()
-            .isNaN()
-            .select(Eigen::VectorXd::Zero(mixed.innovation.size()), said.innovation - mixed.innovation);
+    const Eigen::VectorXd apart = (said.innovation - mixed.innovation)
+                                      .array()
+                                      .isNaN()
+                                      .select(Eigen::VectorXd::Zero(n), said.innovation - mixed.innovation);
     add_spread(weight, said.innovation_covariance, apart, mixed.innovation_covariance);
-    add_spread(weight, said.covariance, said.state - mixed.state, mixed.covariance);
+    add_spread(weight, said.covariance.topLeftCorner(n, n), said.state.head(n) - mixed.state, mixed.covariance);
   });
+  const double together = mixed.innovation_covariance.trace();
+  mixed.spread_share = together > 0.0 ? 1.0 - own / together : 0.0;
   mixed.nis = normalised_square(mixed.innovation, mixed.innovation_covariance);
 }
-
-bool CombinedFilter::started() const { return filters_.front()->started(); }
 
 void CombinedFilter::restart() {
   for (const auto& filter : filters_) filter->restart();
@@ -116,10 +145,4 @@ void CombinedFilter::go_back() {
   weights_ = remembered_;
 }
 
-void CombinedFilter::refuse() {
-  throw ConfigurationError(
-      "track.checkpoint and track.resume: what several filters together remember is not written; leave them out, or "
-      "track one filter");
-}
-
-}  // namespace modebank::app
+}  // namespace modebank

@@ -1,0 +1,31 @@
+#include "app/chain/forecasters.hpp"
+
+#include "filter/judge/drifting.hpp"
+
+namespace modebank {
+
+std::unique_ptr<AnyFilter> Forecaster::start() const {
+  return drifting ? any_filter(*drifting, filter.time_steps) : any_filter(bank, filter);
+}
+
+HorizonEvaluation Forecaster::ahead(const Trajectory& run, const std::vector<Index>& horizons) const {
+  return drifting ? evaluate_horizons(*drifting, run, filter.time_steps, horizons)
+                  : evaluate_horizons(bank, run, filter, horizons);
+}
+
+std::vector<FreeRun> Forecaster::free(const std::vector<Trajectory>& runs, const FreeRunOptions& options) const {
+  return drifting ? free_runs(*drifting, runs, filter.time_steps, options) : free_runs(bank, runs, filter, options);
+}
+
+std::vector<Forecaster> forecasters_of(const Archive& archive, const FilterOptions& filter) {
+  std::vector<Forecaster> all;
+  if (archive.bank) all.push_back({"bank", *archive.bank, {}, filter});
+  for (const char* name : competitor_names)
+    if (const std::optional<Bank> bank = archive.bank_of(name)) {
+      all.push_back({name, *bank, {}, competitor_filter(name, filter)});
+      if (all.back().name == "drifting") all.back().drifting = archive.drifting;
+    }
+  return all;
+}
+
+}  // namespace modebank

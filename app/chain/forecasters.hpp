@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/chain/stages.hpp"
+#include "filter/judge/free_run.hpp"
+#include "filter/judge/horizon.hpp"
+#include "filter/step/any_filter.hpp"
+
+namespace modebank {
+
+/// A filter of an archive as the chain runs it.
+struct Forecaster {
+  std::string name;
+  Bank bank;                                ///< of drifting: its sizes
+  std::optional<DriftingModel> drifting{};  ///< the filter is it
+  FilterOptions filter;
+
+  std::unique_ptr<AnyFilter> start() const;
+  HorizonEvaluation ahead(const Trajectory& run, const std::vector<Index>& horizons) const;
+  std::vector<FreeRun> free(const std::vector<Trajectory>& runs, const FreeRunOptions& options) const;
+};
+
+/// The bank and its competitors, as far as the archive has them. `filter`: that runs the bank.
+std::vector<Forecaster> forecasters_of(const Archive& archive, const FilterOptions& filter);
+
+}  // namespace modebank

@@ -1,0 +1,91 @@
+// What filters predict of training runs that they were learned without.
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "app/chain/forecasters.hpp"
+#include "app/chain/stages.hpp"
+#include "filter/judge/combination.hpp"
+#include "filter/learn/competitors/drifting.hpp"
+#include "filter/learn/learn.hpp"
+#include "filter/learn/refine/folds.hpp"
+#include "filter/learn/refine/learning_part.hpp"
+#include "ident/fit/global_model.hpp"
+#include "ident/terms/find_terms.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+namespace {
+
+using OfSplits = std::vector<std::pair<std::string, std::vector<Bank>>>;
+
+/// Terms are chosen anew, too: terms judged by the runs that chose them look better than they are. Where the split's
+/// runs take none, those of all training runs are fitted to them.
+Bank relearn_nonlinear(const Archive& learned, const Recording& training, const BankInputs& inputs) {
+  FoundTerms found = find_terms(training, learned.windows->structure, inputs.window);
+  if (found.terms.empty()) {
+    found.structure = learned.nonlinear->structure;
+    found.terms = learned.nonlinear->terms;
+  }
+  return learn_nonlinear(training, found.structure, found.terms, inputs.bank.em, *inputs.filter);
+}
+
+/// The archive's filters as they were learned without the split's runs: what refinement has left, and the others with
+/// coefficients learned anew. Their few other numbers stay as they are: Q and R of baseline, rates of drifting.
+Archive learned_on(const Archive& learned, const Recording& training, const BankInputs& inputs,
+                   const OfSplits& of_splits, std::size_t split) {
+  Archive archive;
+  for (const auto& [name, banks] : of_splits) (name == "bank" ? archive.bank : archive.one_motion) = banks.at(split);
+  const auto global_of = [&](const LinearStructure& structure) { return fit_global(training, structure); };
+  if (learned.baseline) {
+    archive.baseline = learned.baseline;
+    const LinearStructure& structure = archive.baseline->structure;
+    archive.baseline->modes.front().model = unpack(structure, global_of(structure).theta);
+  }
+  if (learned.noise_only) {
+    archive.noise_only = learn_noise_only(training, learned.noise_only->structure, archive.baseline->R);
+    archive.noise_only->noise_adaptation = learned.noise_only->noise_adaptation;
+  }
+  if (learned.drifting)
+    archive.drifting = relearn_drifting(*learned.drifting, training, global_of(learned.drifting->structure));
+  if (learned.nonlinear) archive.nonlinear = relearn_nonlinear(learned, training, inputs);
+  return archive;
+}
+
+}  // namespace
+
+std::vector<LeftOutRow> score_left_out(const Archive& learned, const BankInputs& inputs, const OfSplits& of_splits,
+                                       const Listener& listener) {
+  if (!inputs.one_motion || !inputs.filter) return {};
+  const Stopwatch watch;
+  const RefineOptions& em = inputs.bank.em;
+  const std::optional<Recording> part = learning_part(*learned.recording, em.transitions, em.seed);
+  const std::vector<ValidationSplit> splits = validation_splits(part ? *part : *learned.recording, em.folds, em.tuning);
+  if (splits.empty() || std::any_of(of_splits.begin(), of_splits.end(),
+                                    [&](const auto& one) { return one.second.size() != splits.size(); }))
+    return {};
+  std::vector<Index> horizons = inputs.one_motion->horizon;
+  horizons.push_back(1);
+  std::vector<std::string> names;
+  std::vector<std::vector<HorizonEvaluation>> forecasts;
+  std::vector<std::vector<Forecaster>> filters(splits.size());
+  tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t s) {
+    filters[s] = forecasters_of(learned_on(learned, splits[s].training, inputs, of_splits, s), *inputs.filter);
+  });
+  for (const Forecaster& one : filters.front()) names.push_back(one.name);
+  forecasts.resize(names.size());
+  for (std::size_t s = 0; s < splits.size(); ++s)
+    for (std::size_t f = 0; f < names.size(); ++f) {
+      const std::vector<Trajectory>& runs = splits[s].left_out.runs;
+      const std::size_t first = forecasts[f].size();
+      forecasts[f].resize(first + runs.size());
+      tbb::parallel_for(std::size_t{0}, runs.size(),
+                        [&](std::size_t r) { forecasts[f][first + r] = filters[s][f].ahead(runs[r], horizons); });
+    }
+  listener.progress(fmt::format("left out: {} filters on training runs that they were learned without in {:.2f} s",
+                                names.size(), watch.seconds()));
+  return left_out_rows(names, forecasts);
+}
+
+}  // namespace modebank

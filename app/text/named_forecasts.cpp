@@ -1,0 +1,200 @@
+#include "app/text/named_forecasts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "app/chain/judged_runs.hpp"
+#include "filter/judge/finding.hpp"
+
+namespace modebank::app {
+namespace {
+
+constexpr double counts_nats = negligible_gain, counts_rmse = 0.02;
+
+/// What one filter reaches at one horizon.
+struct Reached {
+  std::string filter;
+  double log_score = 0.0;
+  Eigen::VectorXd rmse;
+};
+
+template <class Row>
+Index horizon_of(const Row& row) {
+  if constexpr (requires { row.horizon; }) return row.horizon;
+  return 1;
+}
+
+template <class Row>
+void add(const std::vector<Row>& rows, Role role, Index steps, std::vector<Reached>& reached) {
+  for (const Row& row : rows) {
+    if (horizon_of(row) != steps || row.samples == 0) continue;
+    if constexpr (requires { row.role; })
+      if (row.role != role || row.run != "*") continue;
+    if (std::none_of(reached.begin(), reached.end(), [&](const Reached& r) { return r.filter == row.filter; }))
+      reached.push_back({row.filter, row.log_score, row.rmse});
+  }
+}
+
+/// Of the training runs.
+std::vector<Reached> reached_in_training(const Archive& archive, Index steps) {
+  std::vector<Reached> reached;
+  add(archive.left_out, Role::train, steps, reached);
+  if (!reached.empty()) return reached;
+  if (steps == 1) add(archive.summary, Role::train, steps, reached);
+  add(archive.horizons, Role::train, steps, reached);
+  return reached;
+}
+
+/// How far a filter is from the best of all, in log score or in some state's error, whichever is further.
+double distance(const Reached& one, const std::vector<Reached>& all) {
+  double best = one.log_score;
+  Eigen::VectorXd least = one.rmse;
+  for (const Reached& other : all) {
+    best = std::fmax(best, other.log_score);
+    if (other.rmse.size() == least.size()) least = least.cwiseMin(other.rmse);
+  }
+  double furthest = (best - one.log_score) / counts_nats;
+  for (Index i = 0; i < least.size(); ++i)
+    if (least(i) > 0.0) furthest = std::fmax(furthest, (one.rmse(i) / least(i) - 1.0) / counts_rmse);
+  return furthest;
+}
+
+/// The nearest to the best of those that `may` be taken, of about equals the first (one filter before all combined);
+/// null without any.
+template <class May>
+const Reached* nearest(const std::vector<Reached>& all, May may) {
+  constexpr double about_equal = 0.1;  // 0.002 nats, 0.2 %
+  double least = std::numeric_limits<double>::infinity();
+  for (const Reached& one : all)
+    if (may(one.filter)) least = std::fmin(least, distance(one, all));
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Reached& one) {
+    return may(one.filter) && distance(one, all) <= least + about_equal;
+  });
+  return found == all.end() ? nullptr : &*found;
+}
+
+/// Mean log score and samples of each judged run.
+struct OfRuns {
+  std::vector<double> score, samples;
+};
+
+template <class Row>
+void add_runs(const std::vector<Row>& rows, const std::string& filter, Role role, Index steps, OfRuns& runs) {
+  for (const Row& row : rows) {
+    if (row.filter != filter || row.role != role || row.run == "*" || horizon_of(row) != steps || row.samples == 0)
+      continue;
+    runs.score.push_back(row.log_score);
+    runs.samples.push_back(static_cast<double>(row.samples));
+  }
+}
+
+OfRuns runs_of(const Archive& archive, const std::string& filter, Index steps) {
+  OfRuns runs;
+  if (steps == 1) add_runs(archive.summary, filter, judged_role(archive), steps, runs);
+  if (runs.score.empty()) add_runs(archive.horizons, filter, judged_role(archive), steps, runs);
+  return runs;
+}
+
+struct Gain {
+  double mean = not_a_number, error = not_a_number;
+};
+
+/// Of log score on the judged runs.
+Gain gain_over(const Archive& archive, const std::string& better, const std::string& other, Index steps) {
+  const OfRuns a = runs_of(archive, better, steps), b = runs_of(archive, other, steps);
+  if (a.score.empty() || a.samples != b.samples) return {};
+  Eigen::VectorXd sums(std::ssize(a.score)), samples(sums.size());
+  for (Index i = 0; i < sums.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    samples(i) = a.samples[at];
+    sums(i) = samples(i) * (a.score[at] - b.score[at]);
+  }
+  return {sums.sum() / samples.sum(), sums.size() > 1 ? clustered_error(sums, samples) : not_a_number};
+}
+
+/// What `export --to c` takes.
+bool runs_in_c(const Archive& archive, const std::string& filter) {
+  if (filter == "drifting" || filter == combined_name) return false;
+  const std::optional<Bank> bank = archive.bank_of(filter);
+  return bank && bank->drift.empty() && !bank->is_quantised();
+}
+
+NamedForecast named(const Archive& archive, const std::vector<Reached>& all, const Reached& chosen, Index steps) {
+  NamedForecast forecast;
+  forecast.steps = steps;
+  forecast.filter = chosen.filter;
+  if (chosen.filter != "bank")
+    forecast.other = "bank";
+  else if (const Reached* next =
+               nearest(all, [](const std::string& name) { return name != "bank" && name != combined_name; }))
+    forecast.other = next->filter;
+  const Gain gain = gain_over(archive, forecast.filter, forecast.other, steps);
+  forecast.gain = gain.mean;
+  forecast.error = gain.error;
+  const Reached* in_c = nearest(all, [&](const std::string& name) { return runs_in_c(archive, name); });
+  if (!in_c || in_c->filter == chosen.filter) return forecast;
+  forecast.c_filter = in_c->filter;
+  forecast.c_loss = gain_over(archive, forecast.filter, in_c->filter, steps).mean;
+  return forecast;
+}
+
+std::string understanding(const Archive& archive) {
+  const Finding& finding = *archive.finding;
+  if (finding.answer == Answer::evidence) return fmt::format("the bank of {} modes", archive.bank->mode_count());
+  if (!finding.better_description.empty())
+    return fmt::format("`--track.filter {}` ({})", finding.better_description,
+                       description_of(finding.better_description, finding.one_motion_drifts));
+  return archive.bank->mode_count() == 1 ? "the one mode of the bank" : "the bank, with care";
+}
+
+/// ", +0.041 +- 0.012 nats per sample over bank; in C bank loses 0.041"
+std::string worth(const NamedForecast& forecast) {
+  std::string text;
+  if (!std::isnan(forecast.gain)) {
+    const std::string error = std::isnan(forecast.error) ? "" : fmt::format(" +- {:.3f}", forecast.error);
+    text = fmt::format(", {:+.3f}{} nats over {}", forecast.gain, error, forecast.other);
+    if (!std::isnan(forecast.error) && std::abs(forecast.gain) <= forecast.error) text += " (within its error)";
+  }
+  if (!forecast.c_filter.empty())
+    text += std::isnan(forecast.c_loss) ? fmt::format(", in C {}", forecast.c_filter)
+                                        : fmt::format(", in C {} ({:+.3f})", forecast.c_filter, -forecast.c_loss);
+  return text;
+}
+
+std::string steps_words(Index steps) { return fmt::format("{} step{}", steps, steps == 1 ? "" : "s"); }
+
+}  // namespace
+
+std::vector<NamedForecast> named_forecasts(const Archive& archive) {
+  std::set<Index> horizons{1};
+  for (const HorizonRow& row : archive.horizons) horizons.insert(row.horizon);
+  std::vector<NamedForecast> forecasts;
+  for (const Index steps : horizons) {
+    const std::vector<Reached> all = reached_in_training(archive, steps);
+    if (const Reached* chosen = nearest(all, [](const std::string&) { return true; }))
+      forecasts.push_back(named(archive, all, *chosen, steps));
+  }
+  return forecasts;
+}
+
+std::string use_words(const Archive& archive) {
+  if (!archive.finding || !archive.bank) return "";
+  const std::vector<NamedForecast> forecasts = named_forecasts(archive);
+  std::string text = "to understand: " + understanding(archive);
+  const bool alike = std::all_of(forecasts.begin(), forecasts.end(),
+                                 [&](const NamedForecast& f) { return f.filter == forecasts.front().filter; });
+  for (const NamedForecast& forecast : forecasts) {
+    const bool first = &forecast == &forecasts.front();
+    text += first ? "; to predict" : ";";
+    if (!alike) text += fmt::format(" {}", steps_words(forecast.steps));
+    text += fmt::format("{} `--track.filter {}`{}", first || !alike ? ":" : "", forecast.filter, worth(forecast));
+    if (alike) break;
+  }
+  return text;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/archive/archive.hpp"
+
+namespace modebank::app {
+
+/// The filter to predict with so many steps ahead, and what it is worth on the judged runs.
+struct NamedForecast {
+  Index steps = 1;
+  std::string filter;
+  std::string other;             ///< what it is compared with: the bank, or of the bank the best of the others
+  double gain = not_a_number;    ///< of log score over that one [nats/sample]
+  double error = not_a_number;   ///< standard error over runs; NaN of fewer than two
+  std::string c_filter;          ///< the best that can be exported to C; empty where it is the filter itself
+  double c_loss = not_a_number;  ///< what that one loses against the filter [nats/sample]
+};
+
+/// One per horizon that was scored, 1 first. Training runs alone choose: as filters predict them that were learned
+/// without them (/bank/left_out), or where nothing was left out as they are. Chosen is the filter whose log score and
+/// root mean square errors are both nearest to the best of all, 0.02 nats counting as much as 2 %. Empty where nothing
+/// was scored.
+std::vector<NamedForecast> named_forecasts(const Archive& archive);
+
+/// "to understand: the bank of 3 modes; to predict: `--track.filter combined`, +0.041 +- 0.012 nats per sample over
+/// bank, ...": what the finding and the names come to. Horizons of the same name stand together.
+std::string use_words(const Archive& archive);
+
+}  // namespace modebank::app

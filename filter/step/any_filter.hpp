@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "filter/step/bank_filter.hpp"
+#include "filter/step/drifting.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+/// A filter at work whose kind the caller need not know: a bank's, the drifting model's or several together.
+class AnyFilter {
+ public:
+  virtual ~AnyFilter() = default;
+  /// As BankFilter::step.
+  virtual const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
+                                     const Eigen::Ref<const Eigen::VectorXd>& measurement) = 0;
+  /// The prediction for a later time, `input` held until then, as an estimate without a measurement. The filter stays
+  /// as it was.
+  virtual FilterEstimate forecast(double time_s, const Eigen::VectorXd& input) = 0;
+  virtual bool started() const = 0;
+  virtual void restart() = 0;
+  /// Keeps the present state, and goes back to it.
+  virtual void remember() = 0;
+  virtual void go_back() = 0;
+  /// The filter of a bank, whose snapshot can be written; null for others.
+  virtual BankFilter* of_bank() { return nullptr; }
+
+ protected:
+  AnyFilter() = default;
+  AnyFilter(const AnyFilter&) = default;
+  AnyFilter& operator=(const AnyFilter&) = default;
+};
+
+/// One of BankFilter and DriftingFilter.
+template <class Filter, class Snapshot>
+class OneFilter final : public AnyFilter {
+ public:
+  explicit OneFilter(Filter filter) : filter_(std::move(filter)) {}
+  const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
+                             const Eigen::Ref<const Eigen::VectorXd>& measurement) override {
+    return filter_.step(time_s, input, measurement);
+  }
+  FilterEstimate forecast(double time_s, const Eigen::VectorXd& input) override {
+    const Snapshot now = filter_.snapshot();
+    const Eigen::VectorXd nothing = Eigen::VectorXd::Constant(filter_.estimate().innovation.size(), not_a_number);
+    FilterEstimate ahead = filter_.step(time_s, input, nothing);
+    filter_.restore(now);
+    return ahead;
+  }
+  bool started() const override { return filter_.started(); }
+  void restart() override { filter_.restart(); }
+  void remember() override { remembered_ = filter_.snapshot(); }
+  void go_back() override { filter_.restore(*remembered_); }
+  BankFilter* of_bank() override {
+    if constexpr (std::is_same_v<Filter, BankFilter>) return &filter_;
+    return nullptr;
+  }
+
+ private:
+  Filter filter_;
+  std::optional<Snapshot> remembered_;
+};
+
+inline std::unique_ptr<AnyFilter> any_filter(const Bank& bank, const FilterOptions& options) {
+  return std::make_unique<OneFilter<BankFilter, FilterSnapshot>>(BankFilter(bank, options));
+}
+inline std::unique_ptr<AnyFilter> any_filter(const DriftingModel& model, TimeSteps time_steps) {
+  return std::make_unique<OneFilter<DriftingFilter, DriftingSnapshot>>(DriftingFilter(model, time_steps));
+}
+
+}  // namespace modebank
