@@ -20,7 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index most_levels = 4;  // beside the wide one
-constexpr std::ptrdiff_t most_iterations = 35;
+constexpr std::ptrdiff_t most_em_iterations = 35;
 constexpr double wide_factor = 9.0;  // of the widest level's variance
 constexpr double wide_share = 0.01;  // of the steps that enter the wide level
 constexpr double wide_stay = 0.9;
@@ -150,7 +150,7 @@ Bank learn_nonlinear(const Recording& recording, const LinearStructure& structur
   em.restarts = 0;
   em.look_ahead = 1;
   em.measurement_noise = false;
-  em.max_iterations = std::min(em.max_iterations, most_iterations);
+  em.max_iterations = std::min(em.max_iterations, most_em_iterations);
   const MatrixXd R = least_measurement_noise(frame, em.tuning).asDiagonal();
   Bank bank =
       refine_bank(known, frame, level_starts(known, frame.structure, R, most_levels, em.tuning.modes_kept), em, filter)
