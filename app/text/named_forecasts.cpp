@@ -13,8 +13,6 @@
 namespace modebank::app {
 namespace {
 
-constexpr double counts_nats = negligible_gain, counts_rmse = 0.02;
-
 /// What one filter reaches at one horizon.
 struct Reached {
   std::string filter;
@@ -49,32 +47,32 @@ std::vector<Reached> reached_in_training(const Archive& archive, Index steps) {
   return reached;
 }
 
-/// How far a filter is from the best of all, in log score or in some state's error, whichever is further.
-double distance(const Reached& one, const std::vector<Reached>& all) {
-  double best = one.log_score;
+/// The largest share by which an error of a state exceeds the least of all filters.
+double excess_error(const Reached& one, const std::vector<const Reached*>& all) {
   Eigen::VectorXd least = one.rmse;
-  for (const Reached& other : all) {
-    best = std::fmax(best, other.log_score);
-    if (other.rmse.size() == least.size()) least = least.cwiseMin(other.rmse);
-  }
-  double furthest = (best - one.log_score) / counts_nats;
+  for (const Reached* other : all)
+    if (other->rmse.size() == least.size()) least = least.cwiseMin(other->rmse);
+  double largest = 0.0;
   for (Index i = 0; i < least.size(); ++i)
-    if (least(i) > 0.0) furthest = std::fmax(furthest, (one.rmse(i) / least(i) - 1.0) / counts_rmse);
-  return furthest;
+    if (least(i) > 0.0) largest = std::fmax(largest, one.rmse(i) / least(i) - 1.0);
+  return largest;
 }
 
-/// The nearest to the best of those that `may` be taken, of about equals the first (one filter before all combined);
-/// null without any.
+/// Of the filters that `may` be taken and lose less than 0.02 nats to the best of these, the one of least error; of
+/// about equals the first (single filters come before their combination). Null without any.
 template <class May>
-const Reached* nearest(const std::vector<Reached>& all, May may) {
-  constexpr double about_equal = 0.1;  // 0.002 nats, 0.2 %
-  double least = std::numeric_limits<double>::infinity();
+const Reached* best_of(const std::vector<Reached>& all, May may) {
+  constexpr double about_equal = 0.002;
+  double best = -std::numeric_limits<double>::infinity();
   for (const Reached& one : all)
-    if (may(one.filter)) least = std::fmin(least, distance(one, all));
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Reached& one) {
-    return may(one.filter) && distance(one, all) <= least + about_equal;
-  });
-  return found == all.end() ? nullptr : &*found;
+    if (may(one.filter)) best = std::fmax(best, one.log_score);
+  std::vector<const Reached*> good;
+  for (const Reached& one : all)
+    if (may(one.filter) && one.log_score > best - negligible_gain) good.push_back(&one);
+  const Reached* chosen = nullptr;
+  for (const Reached* one : good)
+    if (!chosen || excess_error(*one, good) < excess_error(*chosen, good) - about_equal) chosen = one;
+  return chosen;
 }
 
 /// Mean log score and samples of each judged run.
@@ -130,12 +128,12 @@ NamedForecast named(const Archive& archive, const std::vector<Reached>& all, con
   if (chosen.filter != "bank")
     forecast.other = "bank";
   else if (const Reached* next =
-               nearest(all, [](const std::string& name) { return name != "bank" && name != combined_name; }))
+               best_of(all, [](const std::string& name) { return name != "bank" && name != combined_name; }))
     forecast.other = next->filter;
   const Gain gain = gain_over(archive, forecast.filter, forecast.other, steps);
   forecast.gain = gain.mean;
   forecast.error = gain.error;
-  const Reached* in_c = nearest(all, [&](const std::string& name) { return runs_in_c(archive, name); });
+  const Reached* in_c = best_of(all, [&](const std::string& name) { return runs_in_c(archive, name); });
   if (!in_c || in_c->filter == chosen.filter) return forecast;
   forecast.c_filter = in_c->filter;
   forecast.c_loss = gain_over(archive, forecast.filter, in_c->filter, steps).mean;
@@ -175,7 +173,7 @@ std::vector<NamedForecast> named_forecasts(const Archive& archive) {
   std::vector<NamedForecast> forecasts;
   for (const Index steps : horizons) {
     const std::vector<Reached> all = reached_in_training(archive, steps);
-    if (const Reached* chosen = nearest(all, [](const std::string&) { return true; }))
+    if (const Reached* chosen = best_of(all, [](const std::string&) { return true; }))
       forecasts.push_back(named(archive, all, *chosen, steps));
   }
   return forecasts;

@@ -19,9 +19,8 @@ struct NamedForecast {
 };
 
 /// One per horizon that was scored, 1 first. Training runs alone choose: as filters predict them that were learned
-/// without them (/bank/left_out), or where nothing was left out as they are. Chosen is the filter whose log score and
-/// root mean square errors are both nearest to the best of all, 0.02 nats counting as much as 2 %. Empty where nothing
-/// was scored.
+/// without them (/bank/left_out), or where nothing was left out as they are. The log score chooses,
+/// and among filters that lose less than 0.02 nats by it the root mean square error. Empty where nothing was scored.
 std::vector<NamedForecast> named_forecasts(const Archive& archive);
 
 /// "to understand: the bank of 3 modes; to predict: `--track.filter combined`, +0.041 +- 0.012 nats per sample over
