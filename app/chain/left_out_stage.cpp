@@ -1,4 +1,4 @@
-// What filters predict of training runs that they were learned without.
+// Forecasts of training runs by filters that were learned without them.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 

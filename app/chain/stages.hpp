@@ -68,7 +68,7 @@ LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const
 Refinement learn_one_motion(const LearnedFrom& from, const Bank& bank, const BankInputs& inputs,
                             const Listener& listener);
 
-/// What bank, competitors and all combined predict of the training runs, each run by filters that were learned without
+/// Scores of bank, competitors and all combined on the training runs, each run by filters that were learned without
 /// it; empty where nothing was left out. `of_splits`: of bank and one_motion, the others are learned anew.
 std::vector<LeftOutRow> score_left_out(const Archive& learned, const BankInputs& inputs,
                                        const std::vector<std::pair<std::string, std::vector<Bank>>>& of_splits,

@@ -21,7 +21,7 @@
 namespace modebank::app {
 namespace {
 
-/// Of a filter whose snapshot can be written. Said before the first sample is read (open_filter).
+/// Refuses a filter whose snapshot cannot be written, before the first sample is read (open_filter).
 BankFilter& kept(AnyFilter& filter) {
   if (BankFilter* const bank = filter.of_bank()) return *bank;
   throw ConfigurationError(

@@ -16,7 +16,7 @@ struct Resumed {
 };
 
 /// Writes what the filter remembers, and goes on from it. Throw as save_checkpoint and load_checkpoint do, and
-/// ConfigurationError for a filter that is no bank's.
+/// ConfigurationError for a filter that has another form than a bank.
 void save(AnyFilter& filter, const std::string& file, const std::string& identity);
 Resumed resume(AnyFilter& filter, const std::string& file, const std::string& identity);
 

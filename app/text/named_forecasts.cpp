@@ -13,7 +13,7 @@
 namespace modebank::app {
 namespace {
 
-/// What one filter reaches at one horizon.
+/// Scores of one filter at one horizon.
 struct Reached {
   std::string filter;
   double log_score = 0.0;
@@ -37,7 +37,7 @@ void add(const std::vector<Row>& rows, Role role, Index steps, std::vector<Reach
   }
 }
 
-/// Of the training runs.
+/// Scores of the training runs.
 std::vector<Reached> reached_in_training(const Archive& archive, Index steps) {
   std::vector<Reached> reached;
   add(archive.left_out, Role::train, steps, reached);
@@ -58,7 +58,7 @@ double excess_error(const Reached& one, const std::vector<const Reached*>& all) 
   return largest;
 }
 
-/// Of the filters that `may` be taken and lose less than 0.02 nats to the best of these, the one of least error; of
+/// The filter of least error among those that `may` be taken and lose less than 0.02 nats to the best of these; of
 /// about equals the first (single filters come before their combination). Null without any.
 template <class May>
 const Reached* best_of(const std::vector<Reached>& all, May may) {
@@ -101,7 +101,7 @@ struct Gain {
   double mean = not_a_number, error = not_a_number;
 };
 
-/// Of log score on the judged runs.
+/// Gain of log score on the judged runs.
 Gain gain_over(const Archive& archive, const std::string& better, const std::string& other, Index steps) {
   const OfRuns a = runs_of(archive, better, steps), b = runs_of(archive, other, steps);
   if (a.score.empty() || a.samples != b.samples) return {};
@@ -114,7 +114,7 @@ Gain gain_over(const Archive& archive, const std::string& better, const std::str
   return {sums.sum() / samples.sum(), sums.size() > 1 ? clustered_error(sums, samples) : not_a_number};
 }
 
-/// What `export --to c` takes.
+/// Whether `export --to c` takes the filter.
 bool runs_in_c(const Archive& archive, const std::string& filter) {
   if (filter == "drifting" || filter == combined_name) return false;
   const std::optional<Bank> bank = archive.bank_of(filter);

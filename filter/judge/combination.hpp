@@ -38,7 +38,7 @@ struct CombinationRow {
   double start = not_a_number;  ///< at the start of a held-out run, and of any later one
 };
 
-/// What a filter predicts of the training runs, each by a fit that was learned without it: what names and weights are
+/// Scores of a filter on the training runs, each by a fit that was learned without it: names and weights are
 /// chosen by. One row of /bank/left_out.
 struct LeftOutRow {
   std::string filter;           ///< bank, a competitor or combined_name

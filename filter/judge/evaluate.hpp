@@ -38,7 +38,7 @@ struct RunEvaluation {
 /// disagree and DataError for an input that is not finite.
 RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
-/// The same of any filter, whose estimates have the sizes of `frame`.
+/// Evaluates any filter, whose estimates have the sizes of `frame`.
 RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, AnyFilter& filter);
 
 /// Draws the transforms of quantised measurements within their intervals (pit_draw.hpp), by the seed, the run's name

@@ -28,7 +28,7 @@ double normalised_square(const Eigen::VectorXd& innovation, const Eigen::MatrixX
   return factor.definite() ? factor.whiten(Eigen::VectorXd(innovation(there))).squaredNorm() : not_a_number;
 }
 
-/// Of a filter's estimate the measured states alone.
+/// The measured states of a filter's estimate alone.
 void take_measured(const FilterEstimate& said, FilterEstimate& measured) {
   const Index n = said.innovation.size();
   measured = said;

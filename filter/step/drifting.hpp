@@ -23,8 +23,8 @@ struct DriftingTuning {
   std::vector<std::string> at_grid_end;
 };
 
-/// What of an ARX model wanders. all: every coefficient by itself. constant: the constant. gain: one factor on all
-/// coefficients of inputs, each keeping its share. The others of the last two are learned in a run, from p0 on.
+/// Coefficients of an ARX model that wander. all: every coefficient by itself. constant: the constant. gain: one factor
+/// on all coefficients of inputs, each keeping its share. The others of the last two are learned in a run, from p0 on.
 enum class Wandering { all, constant, gain };
 
 template <>
