@@ -292,6 +292,7 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   archive_.nonlinear = std::move(stored.nonlinear);
   archive_.unrefined = std::move(stored.unrefined);
   archive_.measured_fit = stored.measured_fit;
+  archive_.left_out = std::move(stored.left_out);
   const ScoringOptions scoring = scoring_inputs(options);
   score("bank", options.filter, scoring);
   for (const char* filter : competitor_names) score(filter, competitor_filter(filter, options.filter), scoring);

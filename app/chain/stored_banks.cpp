@@ -82,6 +82,7 @@ StoredBanks read_banks(const std::filesystem::path& path, const Recording& recor
   if (one_model) return banks;
   banks.unrefined = std::move(stored.unrefined);
   banks.measured_fit = stored.measured_fit;
+  banks.left_out = std::move(stored.left_out);
   banks.mode_names = std::move(stored.mode_names);
   return banks;
 }

@@ -18,6 +18,7 @@ struct StoredBanks {
   MeasuredFit measured_fit = MeasuredFit::none;
   std::vector<std::string> mode_names = {};
   std::optional<Bank> nonlinear = {};
+  std::vector<LeftOutRow> left_out = {};
 };
 
 /// What is to be said where data are sampled at another period than the bank's steps take; empty where they are not.
