@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -101,7 +102,9 @@ std::vector<double> likelier_weights(const std::vector<double>& weights, const s
       next[i] += std::isnan(density) || !(mixed > 0.0) ? weights[i] : weights[i] * density * spoken / mixed;
     }
   }
-  for (double& weight : next) weight /= static_cast<double>(densities.size() / forecasters);
+  const double samples = std::accumulate(next.begin(), next.end(), 0.0);
+  if (!(samples > 0.0)) return weights;
+  for (double& weight : next) weight /= samples;
   return next;
 }
 

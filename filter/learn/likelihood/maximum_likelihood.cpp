@@ -37,8 +37,7 @@ class Neighbourhood {
 
   /// Where the value is wanted besides: back over the filter's steps where they know the way, else by differences.
   Eigen::VectorXd gradient(const Eigen::VectorXd& at) const {
-    if (!is_exact())
-      return differences(at, [this](const Bank& bank) { return target_.value(bank); });
+    if (!is_exact()) return differences(at, [this](const Bank& bank) { return target_.value(bank); });
     const BankGradient by_bank = training_gradient(decode(at), target_.recording, target_.filter);
     Eigen::VectorXd result(size());
     tbb::parallel_for(Index{0}, size(), [&](Index c) {

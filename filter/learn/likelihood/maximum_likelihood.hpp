@@ -43,10 +43,9 @@ struct LikelihoodMaximum {
 
 /// The target's maximum near `start` by BFGS (ceres::GradientProblemSolver) over BankCoordinates in units of the
 /// standard errors: the gradients of single samples give both the gradient and the information (information.hpp), in
-/// whose metric the problem is nearly round. Gradients go back over the filter's steps (likelihood_gradient.hpp), or are
-/// central differences where a filter has no such way. Converged means that a Newton step with
-/// that information would gain less than the tolerance, and less than 1e-3 nats in all, a twentieth of a standard
-/// error.
+/// whose metric the problem is nearly round. Gradients go back over the filter's steps (likelihood_gradient.hpp), or
+/// are central differences where a filter has no such way. Converged means that a Newton step with that information
+/// would gain less than the tolerance, and less than 1e-3 nats in all, a twentieth of a standard error.
 LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start,
                                       const AscentLimits& limits);
 

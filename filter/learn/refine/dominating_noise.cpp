@@ -49,7 +49,8 @@ LikelihoodMaximum climb(const RefineInput& in, const Recording& recording, const
 
 std::optional<Bank> start_of_dominating_noise(const RefineInput& in, const Recording& recording,
                                               const GlobalModel& global, const Bank& bank) {
-  if (bank.is_quantised() || !global.covariance.allFinite() || bank.structure.states * bank.structure.dimension() > most_coefficients)
+  if (bank.is_quantised() || !global.covariance.allFinite() ||
+      bank.structure.states * bank.structure.dimension() > most_coefficients)
     return std::nullopt;
   std::optional<LikelihoodMaximum> best;
   for (const double share : R_shares) {

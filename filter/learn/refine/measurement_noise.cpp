@@ -88,8 +88,7 @@ std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const Re
   free.theta_unit =
       all_parameters(bank, sums, prior, in.options.one_theta, false, least_measurement_noise(in.fits, tuning))
           .theta_unit;
-  if (is_large(bank) && BankCoordinates(bank, free).size() > most_coordinates_of_large_filters)
-    return std::nullopt;
+  if (is_large(bank) && BankCoordinates(bank, free).size() > most_coordinates_of_large_filters) return std::nullopt;
   const double level =
       target.value(bank) + tuning.least_gain * static_cast<double>(target.recording.transitions(Role::train));
   const Bank start = with_share_as_R(bank, tuning.R_start_share_with_theta);

@@ -57,7 +57,8 @@ export function drawVerdict(verdict) {
         h('p', {}, withTips(verdict.text)), (verdict.equations || []).map((line) => h('p', {}, h('code', {}, line))));
   const next =
       verdict.next ? h('p', {id: 'next', class: 'note'}, h('strong', {}, 'Next: '), withCode(verdict.next)) : null;
-  const use = verdict.use ? h('p', {id: 'use', class: 'note'}, withCode(capital(verdict.use).replace(/ \+- /g, ' ± '))) : null;
+  const use =
+      verdict.use ? h('p', {id: 'use', class: 'note'}, withCode(capital(verdict.use).replace(/ \+- /g, ' ± '))) : null;
   const warning = verdict.warning ? h('p', {id: 'warning', class: 'soft'}, h('strong', {}, 'Warning: '),
                                       withCode(verdict.warning.replace(/ \+- /g, ' ± '))) :
                                     null;

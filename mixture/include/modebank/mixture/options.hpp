@@ -72,9 +72,9 @@ struct SelectionOptions {
   int bootstrap = 0;                                 ///< resamples of the runs for standard errors, 0: none
 };
 
-/// Numbers of a window that are clustered: its parameters; besides them the logarithms of its noise variances; or both of
-/// a one-lag fit of the same window. automatic: parameters_and_noise up to most_features numbers; beyond, one_lag where
-/// the model has lags, and of that the most_features numbers that vary most beyond their errors.
+/// Numbers of a window that are clustered: its parameters; besides them the logarithms of its noise variances; or both
+/// of a one-lag fit of the same window. automatic: parameters_and_noise up to most_features numbers; beyond, one_lag
+/// where the model has lags, and of that the most_features numbers that vary most beyond their errors.
 ///
 /// Clouds of one-lag fits find the modes best, whatever lags the motion has. In 40 clouds of ten known systems, fitted
 /// with four and eight lags (12 to 64 coefficients), their adjusted Rand index is 0.82 in the mean; all coefficients
