@@ -30,9 +30,8 @@ using Eigen::Index;
 namespace {
 
 constexpr Index affordable_heldout = 20000;  // points
-/// More points than `most_compared` are told apart no better: neighbouring windows share all samples but one. The part
-/// costs a tenth of what 700,000 points cost.
-constexpr Index most_compared = 100'000, compared_part = 50'000;
+/// Points that stand for more than most_compared, at a tenth of the cost of 700,000.
+constexpr Index compared_part = 50'000;
 
 struct FittedCandidate {
   GaussianMixture mixture;

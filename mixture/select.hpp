@@ -13,6 +13,9 @@
 
 namespace modebank {
 
+/// More points are told apart no better: neighbouring windows share all samples but one.
+inline constexpr Eigen::Index most_compared = 100'000;
+
 /// What selection must know of the points beside their values.
 struct SampleDesign {
   double effective_samples = 0.0;  ///< independent samples they are worth; 0: all are independent

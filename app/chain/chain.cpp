@@ -4,8 +4,6 @@
 
 #include "app/chain/expected_time.hpp"
 #include "app/chain/mode_names.hpp"
-#include "app/chain/model_rows.hpp"
-#include "app/chain/stored_banks.hpp"
 #include "app/chain/training_check.hpp"
 #include "ident/fit/window_length.hpp"
 #include "io/import/import.hpp"
@@ -215,95 +213,6 @@ void Chain::learn_bank(const ChainInputs& inputs) {
     archive_.learned_transitions = part.learned_transitions;
   };
   provide(Stage::bank, {learn, copy, take});
-}
-
-void Chain::score(const std::string& filter, const FilterOptions& options, const ScoringOptions& scoring) {
-  std::optional<EvaluationStream> stream;
-  if (sink_) stream = EvaluationStream{*sink_, archive_.labels.has_value()};
-  const EvaluationStream* const to = stream ? &*stream : nullptr;
-  if (filter == "drifting" && archive_.drifting)
-    put(score_drifting(*archive_.drifting, *archive_.recording, options.time_steps, scoring, to));
-  else if (const std::optional<Bank> bank = archive_.bank_of(filter))
-    put(score_filter(filter, *bank, *archive_.recording, options, scoring, to));
-}
-
-/// Several steps ahead, and all filters together.
-void Chain::score_together(const FilterOptions& filter, const ScoringOptions& scoring) {
-  score_ahead(filter, scoring, archive_);
-  forget(combined_name);
-  std::optional<EvaluationStream> stream;
-  if (sink_) stream = EvaluationStream{*sink_, archive_.labels.has_value()};
-  if (std::optional<FilterScores> together = score_combined(filter, scoring, archive_, stream ? &*stream : nullptr))
-    put(std::move(*together));
-}
-
-void Chain::put(FilterScores scores) {
-  const std::string filter = scores.evaluation.filter;
-  for (const std::string& line : remarks(filter, archive_.recording->runs, scores.evaluation.free_runs))
-    listener_.warning(line);
-  if (!scores.residual_tests.runs.empty()) put(std::move(scores.residual_tests));
-  std::vector<FilterEvaluation> evaluation;
-  evaluation.push_back(std::move(scores.evaluation));
-  put_rows(filter, std::move(evaluation), archive_.evaluations);
-  put_rows(filter, std::move(scores.summary), archive_.summary);
-  put_rows(filter, std::move(scores.free_runs), archive_.free_runs);
-  put_rows(filter, std::move(scores.diagnostics), archive_.diagnostics);
-}
-
-void Chain::put(ResidualTestSet tests) {
-  const std::string model = tests.model;
-  put_rows(model, {std::move(tests)}, archive_.residual_tests);
-}
-
-void Chain::put_scores(Archive&& part) {
-  for (FilterEvaluation& evaluation : part.evaluations) {
-    const std::string filter = evaluation.filter;
-    put({std::move(evaluation), rows_of({filter}, part.summary), rows_of({filter}, part.diagnostics),
-         rows_of({filter}, part.free_runs)});
-  }
-  for (ResidualTestSet& tests : part.residual_tests) put(std::move(tests));
-}
-
-void Chain::judge(const ChainInputs& inputs) {
-  const Stopwatch watch;
-  score_competitors(inputs.competitor_scores);
-  const auto score_bank = [&] { score("bank", inputs.bank_scores.filter, inputs.bank_scores.scoring); };
-  const auto copy = [&] { return scores_of({"bank"}, archive_); };
-  provide(Stage::bank_scores, {score_bank, copy, [&](Archive&& part) { put_scores(std::move(part)); }});
-  score_together(inputs.bank_scores.filter, inputs.bank_scores.scoring);
-  archive_.finding = find_modes(archive_);
-  archive_.confusion = confusion_of(archive_);
-  listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
-}
-
-const Archive& Chain::judge_stored(const std::filesystem::path& banks, const ChainOptions& options,
-                                   const Execution& execution, const EvaluationSink* sink) {
-  sink_ = sink;
-  wanted_ = stage_keys(chain_inputs(options), "");
-  import({options.data});
-  const Stopwatch watch;
-  // One model is the global one, as where banks are learned.
-  StoredBanks stored = read_banks(banks, *archive_.recording, options.filter.variant == FilterVariant::kf, listener_);
-  archive_.bank = std::move(stored.bank);
-  archive_.baseline = std::move(stored.baseline);
-  archive_.noise_only = std::move(stored.noise_only);
-  archive_.one_motion = std::move(stored.one_motion);
-  archive_.drifting = std::move(stored.drifting);
-  archive_.nonlinear = std::move(stored.nonlinear);
-  archive_.unrefined = std::move(stored.unrefined);
-  archive_.measured_fit = stored.measured_fit;
-  archive_.left_out = std::move(stored.left_out);
-  const ScoringOptions scoring = scoring_inputs(options);
-  score("bank", options.filter, scoring);
-  for (const char* filter : competitor_names) score(filter, competitor_filter(filter, options.filter), scoring);
-  score_together(options.filter, scoring);
-  archive_.finding = find_modes(archive_);
-  archive_.confusion = confusion_of(archive_);
-  archive_.mode_names =
-      mode_names_of(archive_, options.mode_names.empty() ? stored.mode_names : options.mode_names, listener_);
-  listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
-  describe(execution, {describe_file(banks)});
-  return archive_;
 }
 
 void Chain::describe(const Execution& execution, const std::vector<InputFile>& more_files) {

@@ -82,7 +82,8 @@ class Chain {
   void learn_bank(const ChainInputs& inputs);
   void judge(const ChainInputs& inputs);
   void score(const std::string& filter, const FilterOptions& options, const ScoringOptions& scoring);
-  void score_together(const FilterOptions& filter, const ScoringOptions& scoring);
+  void conclude(const FilterOptions& filter, const ScoringOptions& scoring);
+  std::optional<EvaluationStream> stream_to_sink() const;
   void put(FilterScores scores);
   void put_scores(Archive&& part);
   void forget(const std::string& filter);

@@ -6,9 +6,7 @@
 
 #include "filter/learn/competitors/drifting.hpp"
 #include "ident/base/not_a_number.hpp"
-#include "ident/fit/global_model.hpp"
 #include "ident/lag/structure_choice.hpp"
-#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
@@ -28,14 +26,7 @@ class DriftingChoice {
 
   /// Minus infinity where it cannot be learned.
   double score(const StructureScore& of, const DriftingGrid& grid) const {
-    const LinearStructure structure = structure_of(of, recording_, window_);
-    const Recording part = from_common_start(recording_, latest_ - structure.first_transition());
-    try {
-      return learn_drifting(part, fit_global(part, structure), structure, TimeSteps::single, {1}, grid)
-          .tuning.log_score;
-    } catch (const DataError&) {
-      return -std::numeric_limits<double>::infinity();
-    }
+    return drifting_training_score(recording_, latest_, structure_of(of, recording_, window_), TimeSteps::single, grid);
   }
 
  private:

@@ -8,6 +8,7 @@
 
 #include "ident/fit/fit_windows.hpp"
 #include "mixture/features.hpp"
+#include "mixture/select.hpp"
 #include "modebank/mixture/options.hpp"
 
 namespace modebank {
@@ -38,7 +39,6 @@ double expected_windows_s(const Recording& recording, const FitOptions& window) 
 
 double expected_mixture_s(const WindowFits& windows, const ClusterOptions& options) {
   constexpr double number_s = 1.7e-8;  // of a component's mean, variances and weight, for a point and a restart
-  constexpr Index compared = 100'000;  // at most (mixture/select.hpp)
   const Index all = windows.parameter_count() + windows.structure.states;
   const Index features = clusters_one_lag(windows, options.features)
                              ? windows.structure.with_one_lag().parameters() + windows.structure.states
@@ -50,7 +50,7 @@ double expected_mixture_s(const WindowFits& windows, const ClusterOptions& optio
   const std::vector<Index>& candidates = options.selection.components;
   const auto components = static_cast<double>(std::accumulate(candidates.begin(), candidates.end(), Index{0}));
   return number_s * numbers * components * static_cast<double>(options.selection.em.restarts) *
-         static_cast<double>(std::min(windows.count(), compared));
+         static_cast<double>(std::min(windows.count(), most_compared));
 }
 
 double expected_learning_s(const Recording& recording, const LinearStructure& structure, const RefineOptions& options) {

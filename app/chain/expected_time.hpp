@@ -14,8 +14,8 @@ double expected_mixture_s(const WindowFits& windows, const ClusterOptions& optio
 /// Refinement takes so long, and the competitor one_motion about the same.
 double expected_learning_s(const Recording& recording, const LinearStructure& structure, const RefineOptions& options);
 
-/// One line of progress where `seconds` are more than 30: "bank: about 2 min of processor time; --bank.refine none
-/// leaves this out".
+/// One line of progress where `seconds` are more than 30: "bank: begins, expected to take 2 min of processor time;
+/// --bank.refine none leaves this out".
 void tell_if_long(const Listener& listener, const std::string& stage, double seconds, const std::string& instead);
 
 }  // namespace modebank

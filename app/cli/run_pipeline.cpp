@@ -19,6 +19,7 @@
 #include "app/text/free_run_text.hpp"
 #include "app/text/summary_text.hpp"
 #include "app/text/terminal.hpp"
+#include "app/text/window_text.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"

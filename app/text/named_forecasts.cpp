@@ -9,6 +9,7 @@
 
 #include "app/chain/judged_runs.hpp"
 #include "filter/judge/finding.hpp"
+#include "ident/base/clustered_error.hpp"
 
 namespace modebank::app {
 namespace {

@@ -8,17 +8,6 @@
 
 namespace modebank::app {
 
-/// What the summary says of windows: how many, how they ended, the global model, and the batch solver's audit.
-/// `labels`: of the parameters.
-std::string windows_text(const WindowFits& common, const WindowCounts& counts, const std::vector<std::string>& labels);
-
-/// parameter_labels of the archive's windows; empty without windows.
-std::vector<std::string> window_labels(const Archive& archive);
-/// The features' names with labels in place of parameter names, those of one-lag fits included.
-std::vector<std::string> feature_labels(const Archive& archive, std::vector<std::string> names);
-/// " of one-lag fits of the same windows" where the mixture is over these, else nothing.
-std::string features_origin(const Archive& archive);
-
 std::string data_text(const Recording& recording);
 
 /// The summary of an archive as people read it: data, windows, mixture, bank, scores and what the bank gains. Lines

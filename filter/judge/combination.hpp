@@ -62,6 +62,8 @@ std::vector<std::vector<double>> start_weights(const std::vector<LeftOutRow>& ro
 std::vector<double> start_weights(const std::vector<CombinationRow>& rows, Eigen::Index horizon,
                                   const std::vector<std::string>& filters);
 
+/// Samples that stacked weights are taken from, about: evenly spaced ones where there are more.
+inline constexpr Eigen::Index enough_densities = 20000;
 /// ForecastWeights::stacked of the log densities of runs, each filters x N; of some of the samples where they are many.
 std::vector<double> stacked_weights(const std::vector<Eigen::MatrixXd>& log_densities);
 

@@ -6,6 +6,7 @@
 
 #include "filter/judge/signed_rank.hpp"
 #include "filter/judge/statistics.hpp"
+#include "ident/base/clustered_error.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/not_a_number.hpp"
 
@@ -87,13 +88,6 @@ MeanError error_by_blocks(const SeriesByRun& d, double mean, std::size_t length)
 }
 
 }  // namespace
-
-double clustered_error(const Eigen::VectorXd& sums, const Eigen::VectorXd& samples) {
-  const auto G = static_cast<double>(sums.size());
-  if (G < 2.0) return 0.0;
-  const double N = samples.sum(), mean = sums.sum() / N;
-  return std::sqrt(G / (G - 1.0) * (sums - mean * samples).squaredNorm()) / N;
-}
 
 PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::VectorXd>& better,
                        const std::vector<Eigen::VectorXd>& other) {

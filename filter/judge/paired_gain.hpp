@@ -25,9 +25,6 @@ struct PairedGain {
   bool falls_short() const { return gain < -margin; }
 };
 
-/// Standard error of the ratio sum(sums) / sum(samples) over G clusters, as below; 0 of fewer than two.
-double clustered_error(const Eigen::VectorXd& sums, const Eigen::VectorXd& samples);
-
 /// `better`, `other`: log densities of each run's samples [nats], NaN where there is none; only samples that both have
 /// count. Standard error of the mean m of N differences d clustered by run r of n_r samples and sum d_r,
 ///   SE^2 = G / (G - 1) sum_r (d_r - m n_r)^2 / N^2,   df = G - 1

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "filter/step/equations/arithmetic.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 
@@ -12,13 +13,7 @@ using Eigen::Index;
 
 namespace {
 
-/// Adds a part of a mixture: its weight times its covariance and the square of its mean's distance from the mixture's.
-void add_spread(double weight, const Eigen::Ref<const Eigen::MatrixXd>& covariance, const Eigen::VectorXd& distance,
-                Eigen::MatrixXd& mixed) {
-  mixed += weight * (covariance + distance * distance.transpose());
-}
-
-/// Of the signals that are there.
+/// Normalised square of the signals that are there.
 double normalised_square(const Eigen::VectorXd& innovation, const Eigen::MatrixXd& covariance) {
   std::vector<Index> there;
   for (Index i = 0; i < innovation.size(); ++i)
@@ -122,8 +117,8 @@ void CombinedFilter::mix(const std::vector<double>& share, FilterEstimate& mixed
                                       .array()
                                       .isNaN()
                                       .select(Eigen::VectorXd::Zero(n), said.innovation - mixed.innovation);
-    add_spread(weight, said.innovation_covariance, apart, mixed.innovation_covariance);
-    add_spread(weight, said.covariance.topLeftCorner(n, n), said.state.head(n) - mixed.state, mixed.covariance);
+    small::add_spread(mixed.innovation_covariance, weight, said.innovation_covariance, apart);
+    small::add_spread(mixed.covariance, weight, said.covariance.topLeftCorner(n, n), said.state.head(n) - mixed.state);
   });
   const double together = mixed.innovation_covariance.trace();
   mixed.spread_share = together > 0.0 ? 1.0 - own / together : 0.0;

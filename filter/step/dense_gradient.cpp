@@ -49,12 +49,17 @@ class DenseGradient {
 
   BankGradient go_back() {
     std::vector<FilterState<any>> kept;  // the state before each stretch of moments
+    std::vector<FilterState<any>> before;
     FilterState<any> state = initial_state(model_);
-    for (Index t = 0; t < instants_.count(); ++t) {
-      if (t % stretch_length == 0) kept.push_back(state);
-      step_to(model_, instants_, t, run_, state, step_);
+    for (Index first = 0; first < instants_.count(); first += stretch_length) {
+      kept.push_back(state);
+      before = follow_stretch(first, state);
     }
-    for (Index s = std::ssize(kept); s-- > 0;) back_over_stretch(s * stretch_length, kept[static_cast<std::size_t>(s)]);
+    for (Index s = std::ssize(kept); s-- > 0;) {
+      if (s + 1 < std::ssize(kept)) before = follow_stretch(s * stretch_length, kept[static_cast<std::size_t>(s)]);
+      for (Index t = std::ssize(before); t-- > 0;)
+        back_over(s * stretch_length + t, before[static_cast<std::size_t>(t)]);
+    }
     return std::move(sum_);
   }
 
@@ -69,14 +74,14 @@ class DenseGradient {
   VectorXd by_prior_;  ///< by the mode probabilities before the measurement
   BankGradient sum_;
 
-  void back_over_stretch(Index first, FilterState<any> state) {
-    const Index end = std::min(first + stretch_length, instants_.count());
+  /// Leads `state` over a stretch of moments. Returns the states before each of them.
+  std::vector<FilterState<any>> follow_stretch(Index first, FilterState<any>& state) {
     std::vector<FilterState<any>> before;
-    for (Index t = first; t < end; ++t) {
+    for (Index t = first; t < std::min(first + stretch_length, instants_.count()); ++t) {
       before.push_back(state);
       step_to(model_, instants_, t, run_, state, step_);
     }
-    for (Index t = end; t-- > first;) back_over(t, before[static_cast<std::size_t>(t - first)]);
+    return before;
   }
 
   void back_over(Index t, const FilterState<any>& before) {

@@ -10,7 +10,8 @@ namespace modebank {
 
 /// The imm, and kf of one mode, with Gaussian noise of constant scale.
 bool has_dense_gradient(const Bank& bank, const FilterOptions& options);
-/// Requires has_dense_gradient. A hundred samples are kept at a time; those before are filtered twice.
+/// Requires has_dense_gradient. A hundred samples are kept at a time; those before the last
+/// hundred are filtered twice.
 BankGradient dense_gradient(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,
                             const FilterOptions& options);
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "ident/lag/stretch_parts.hpp"
+
 namespace modebank {
 namespace {
 
@@ -12,8 +14,6 @@ using Eigen::VectorXd;
 
 constexpr Index most_entries = 4'000'000;
 constexpr Index rows_together = 500;  // rows that are kept or left out together
-constexpr Index fewest_runs = 6;      // below, stretches of runs are left out
-constexpr Index fewest_parts = 10;    // that fewer runs are cut into
 constexpr Index folds_of_parts = 5;
 
 LinearStructure widest_of(const Recording& recording, const StructureRanges& ranges, bool intercept) {
@@ -39,8 +39,7 @@ struct GatheredRows {
 
 GatheredRows gather(const Recording& recording, const LinearStructure& widest) {
   GatheredRows gathered;
-  LinearStructure narrowest = widest;
-  narrowest.state_lags = narrowest.input_lags = 1;
+  const LinearStructure narrowest = widest.with_one_lag();
   const Index all = recording.transitions(Role::train);
   const Index stride = 1 + all * widest.regressors() / most_entries;
   Index possible = 0;
@@ -72,17 +71,6 @@ std::vector<Index> runs_of(const GatheredRows& gathered) {
   for (std::size_t b = 0; b < gathered.blocks.size(); ++b)
     runs.insert(runs.end(), static_cast<std::size_t>(gathered.blocks[b].count()), gathered.run_of_block[b]);
   return runs;
-}
-
-/// Part of each row: its run, or the stretch of it.
-std::vector<Index> parts_of(const std::vector<Index>& run, Index runs, Index stretches) {
-  std::vector<Index> length(static_cast<std::size_t>(runs), 0), seen = length, part(run.size());
-  for (const Index r : run) ++length[static_cast<std::size_t>(r)];
-  for (std::size_t i = 0; i < run.size(); ++i) {
-    const auto r = static_cast<std::size_t>(run[i]);
-    part[i] = run[i] * stretches + seen[r]++ * stretches / length[r];
-  }
-  return part;
 }
 
 /// Older states become differences, columns get zero mean beside a constant, and unit root mean square.
@@ -133,10 +121,10 @@ LaggedRows make_lagged_rows(const Recording& recording, const StructureRanges& r
   rows.intercept = intercept;
   const GatheredRows gathered = gather(recording, widest);
   rows.share = gathered.share;
-  rows.by_runs = gathered.runs >= fewest_runs;
-  const Index stretches = rows.by_runs || gathered.runs == 0 ? 1 : (fewest_parts + gathered.runs - 1) / gathered.runs;
-  const std::vector<Index> part = parts_of(runs_of(gathered), gathered.runs, stretches);
-  rows.parts = gathered.runs * stretches;
+  const StretchParts parts = stretch_parts(runs_of(gathered), gathered.runs);
+  const std::vector<Index>& part = parts.part;
+  rows.by_runs = parts.by_runs;
+  rows.parts = parts.count;
   const Index folds = std::max(Index{1}, std::min(folds_of_parts, rows.parts));
   const auto fold = [&](Index row) { return part[static_cast<std::size_t>(row)] % folds; };
   std::vector<Index> order(part.size());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/base/clustered_error.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -61,12 +62,10 @@ bool StructureLoss::negligible() const { return !(mean > std::max(standard_error
 
 StructureLoss loss_against(const LeftOutForecast& best, const LeftOutForecast& other, const Eigen::VectorXd& weight) {
   const Eigen::VectorXd lost = best.of_part - other.of_part;
-  const double all = weight.sum(), parts = static_cast<double>(weight.size());
   StructureLoss loss;
-  loss.weight = all;
-  loss.mean = lost.sum() / all;
-  // The error of a ratio of sums, since parts may differ in length.
-  if (parts > 1.0) loss.standard_error = std::sqrt(parts / (parts - 1.0)) * (lost - loss.mean * weight).norm() / all;
+  loss.weight = weight.sum();
+  loss.mean = lost.sum() / loss.weight;
+  if (weight.size() > 1) loss.standard_error = clustered_error(lost, weight);
   return loss;
 }
 

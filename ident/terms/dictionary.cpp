@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ident/base/linalg.hpp"
+#include "ident/base/sample_quantile.hpp"
 
 namespace modebank {
 namespace {
@@ -69,19 +70,15 @@ std::vector<VectorXd> directions(const LinearStructure& s, const MatrixXd& fit) 
   return all;
 }
 
-double quantile(const VectorXd& sorted, double p) {
-  const double position = p * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<Index>(position);
-  return std::lerp(sorted(below), sorted(std::min(below + 1, sorted.size() - 1)),
-                   position - static_cast<double>(below));
-}
-
 void add_bends(Index variable, VectorXd z, std::vector<Term>& terms) {
   std::sort(z.begin(), z.end());
   terms.push_back({TermKind::magnitude, {variable}});
   terms.push_back({TermKind::hinge, {variable}, 0.0});
   for (int i = 0; i < knots; ++i)
-    terms.push_back({TermKind::hinge, {variable}, quantile(z, first_quantile + quantile_step * i)});
+    terms.push_back(
+        {TermKind::hinge,
+         {variable},
+         sample_quantile({z.data(), static_cast<std::size_t>(z.size())}, first_quantile + quantile_step * i)});
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 #include "ident/terms/term_rows.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
+#include "ident/base/clustered_error.hpp"
+#include "ident/lag/stretch_parts.hpp"
 #include "ident/model/transitions.hpp"
 
 namespace modebank {
@@ -15,8 +17,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index rows_together = 500;  // rows that are kept or left out together
-constexpr Index fewest_runs = 6;      // below, stretches of runs are parts
-constexpr Index fewest_parts = 10;    // that fewer runs are cut into
 
 struct RunRegression {
   MatrixXd X, Y;
@@ -45,15 +45,9 @@ RunRegression rows_of(const Trajectory& run, const LinearStructure& widest, Inde
 
 /// Cuts parts into stretches where they are few.
 void cut_few_parts(TermRows& rows) {
-  if (rows.parts >= fewest_runs || rows.parts == 0) return;
-  const Index stretches = (fewest_parts + rows.parts - 1) / rows.parts;
-  std::vector<Index> length(static_cast<std::size_t>(rows.parts), 0), seen = length;
-  for (const Index p : rows.part) ++length[static_cast<std::size_t>(p)];
-  for (Index& part : rows.part) {
-    const auto p = static_cast<std::size_t>(part);
-    part = part * stretches + seen[p]++ * stretches / length[p];
-  }
-  rows.parts *= stretches;
+  StretchParts cut = stretch_parts(std::move(rows.part), rows.parts);
+  rows.part = std::move(cut.part);
+  rows.parts = cut.count;
 }
 
 }  // namespace
@@ -118,12 +112,11 @@ PartGain gain_over_parts(const VectorXd& difference, const TermRows& rows) {
     sum(p) += difference(k);
     count(p) += 1.0;
   }
-  const double mean = difference.mean();
-  // The error of a ratio of sums over parts.
-  const VectorXd excess = sum - mean * count;
-  const auto parts = static_cast<double>((count.array() > 0.0).count());
-  if (parts < 2.0) return {mean, std::numeric_limits<double>::infinity()};
-  return {mean, std::sqrt(excess.squaredNorm() * parts / (parts - 1.0)) / static_cast<double>(difference.size())};
+  std::vector<Index> there;
+  for (Index p = 0; p < rows.parts; ++p)
+    if (count(p) > 0.0) there.push_back(p);
+  if (there.size() < 2) return {difference.mean(), std::numeric_limits<double>::infinity()};
+  return {difference.mean(), clustered_error(sum(there), count(there))};
 }
 
 }  // namespace modebank

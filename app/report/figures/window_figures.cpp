@@ -9,7 +9,7 @@
 #include "app/report/figures/shown_groups.hpp"
 #include "app/report/page/assets.hpp"
 #include "app/report/page/unit_text.hpp"
-#include "app/text/summary_text.hpp"
+#include "app/text/window_text.hpp"
 #include "io/archive/bank/units.hpp"
 
 namespace modebank::app::report {

@@ -5,7 +5,7 @@
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
 #include "app/report/page/window_modes.hpp"
-#include "app/text/summary_text.hpp"
+#include "app/text/window_text.hpp"
 #include "ident/base/distributions.hpp"
 #include "io/archive/bank/units.hpp"
 #include "mixture/features.hpp"

@@ -62,9 +62,10 @@ DriftingModel relearn_drifting(const DriftingModel& like, const Recording& recor
 
 /// Fewer settings, to compare models rather than to forecast with one.
 DriftingGrid coarse_drifting_grid();
-/// The training runs from where the model with the longest memory predicts, with the history that this one needs:
-/// without their first samples.
-Recording from_common_start(const Recording& recording, Eigen::Index earlier);
+/// Causal log score of the training runs' transitions from `latest` on, the first that the model with the longest
+/// memory predicts, by the model of this structure that they teach; minus infinity where it cannot be learned.
+double drifting_training_score(const Recording& recording, Eigen::Index latest, const LinearStructure& structure,
+                               TimeSteps time_steps, const DriftingGrid& grid, Wandering wandering = Wandering::all);
 
 /// learn_drifting of whatever wanders most likely in the training runs: all coefficients of `structure`, its constant
 /// (which it has then), one factor on the coefficients of its inputs, or the same with one lag. The causal score of at

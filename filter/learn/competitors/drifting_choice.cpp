@@ -23,8 +23,7 @@ struct Wanderer {
 
 /// The one that stays where nothing gains first.
 std::vector<Wanderer> candidates_of(const LinearStructure& structure) {
-  LinearStructure one_lag = structure;
-  one_lag.state_lags = one_lag.input_lags = 1;
+  const LinearStructure one_lag = structure.with_one_lag();
   std::vector<Wanderer> candidates{{structure, Wandering::all}};
   if (one_lag != structure) candidates.push_back({one_lag, Wandering::all});
   for (const Wanderer& with : std::vector<Wanderer>(candidates)) {
@@ -36,25 +35,7 @@ std::vector<Wanderer> candidates_of(const LinearStructure& structure) {
   return candidates;
 }
 
-/// Minus infinity where it cannot be learned.
-double training_score(const Wanderer& candidate, const Recording& part, TimeSteps time_steps) {
-  try {
-    DriftingGrid grid = coarse_drifting_grid();
-    grid.p0.push_back(10.0);  // what differs between runs is learned anew in each
-    return learn_drifting(part, fit_global(part, candidate.structure), candidate.structure, time_steps, {1}, grid,
-                          candidate.wandering)
-        .tuning.log_score;
-  } catch (const DataError&) {
-    return -std::numeric_limits<double>::infinity();
-  }
-}
-
-}  // namespace
-
-DriftingGrid coarse_drifting_grid() {
-  return {{0.0, 1e-4, 1e-3, 1e-2}, {0.0, 1e-2, 1.0}, {1.0, 0.97}, {0.7, 0.85, 0.93, 0.97}, {0.0, 4.0, 10.0}, {1e-3}};
-}
-
+/// The training runs without their first samples, so that all structures predict the same ones.
 Recording from_common_start(const Recording& recording, Index earlier) {
   Recording part{recording.states, recording.inputs, {}, recording.quantum};
   for (const Trajectory& run : recording.runs)
@@ -63,16 +44,35 @@ Recording from_common_start(const Recording& recording, Index earlier) {
   return part;
 }
 
+}  // namespace
+
+DriftingGrid coarse_drifting_grid() {
+  return {{0.0, 1e-4, 1e-3, 1e-2}, {0.0, 1e-2, 1.0}, {1.0, 0.97}, {0.7, 0.85, 0.93, 0.97}, {0.0, 4.0, 10.0}, {1e-3}};
+}
+
+double drifting_training_score(const Recording& recording, Index latest, const LinearStructure& structure,
+                               TimeSteps time_steps, const DriftingGrid& grid, Wandering wandering) {
+  const Recording part = from_common_start(recording, latest - structure.first_transition());
+  try {
+    return learn_drifting(part, fit_global(part, structure), structure, time_steps, {1}, grid, wandering)
+        .tuning.log_score;
+  } catch (const DataError&) {
+    return -std::numeric_limits<double>::infinity();
+  }
+}
+
 DriftingModel learn_likeliest_drifting(const Recording& recording, const GlobalModel& global,
                                        const LinearStructure& structure, TimeSteps time_steps,
                                        const std::vector<Index>& horizons) {
   const std::optional<Recording> fewer = learning_part(recording, most_asked_transitions, 1);
   const std::vector<Wanderer> candidates = candidates_of(structure);
   const Wanderer* chosen = &candidates.front();
+  DriftingGrid grid = coarse_drifting_grid();
+  grid.p0.push_back(10.0);  // what differs between runs is learned anew in each
   double best = -std::numeric_limits<double>::infinity();
   for (const Wanderer& candidate : candidates) {
-    const Index earlier = structure.first_transition() - candidate.structure.first_transition();
-    const double score = training_score(candidate, from_common_start(fewer ? *fewer : recording, earlier), time_steps);
+    const double score = drifting_training_score(fewer ? *fewer : recording, structure.first_transition(),
+                                                 candidate.structure, time_steps, grid, candidate.wandering);
     if (!(score > best)) continue;
     best = &candidate == &candidates.front() ? score + least_wandering_gain : score;
     chosen = &candidate;

@@ -12,6 +12,7 @@
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "ident/base/sample_quantile.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/robust_regression.hpp"
 #include "modebank/base/error.hpp"
@@ -24,20 +25,12 @@ constexpr double lowest_quantile = 0.30;
 constexpr double highest_quantile = 0.997;
 constexpr std::array<double, 4> stays{0.7, 0.8, 0.9, 0.95};
 
-/// Linear interpolation between order statistics at position (N - 1) p, as numpy and R's type 7 do.
-double quantile(const std::vector<double>& sorted, double p) {
-  const double position = static_cast<double>(sorted.size() - 1) * p;
-  const auto below = static_cast<std::size_t>(position);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return std::lerp(sorted[below], sorted[above], position - static_cast<double>(below));
-}
-
 /// Variances spaced geometrically between the squared quantiles of |r|, kept positive where most residuals are zero.
 Eigen::VectorXd noise_scales(const Eigen::VectorXd& r, Index levels) {
   std::vector<double> sizes(r.size());
   Eigen::VectorXd::Map(sizes.data(), r.size()) = r.cwiseAbs();
   std::sort(sizes.begin(), sizes.end());
-  const double low = quantile(sizes, lowest_quantile), high = quantile(sizes, highest_quantile);
+  const double low = sample_quantile(sizes, lowest_quantile), high = sample_quantile(sizes, highest_quantile);
   const double mean_square = r.squaredNorm() / static_cast<double>(r.size());
   const double floor = rounding_share * positive_variance(mean_square);
   if (levels == 1) return Eigen::VectorXd::Constant(1, std::max(mean_square, floor));

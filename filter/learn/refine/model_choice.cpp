@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filter/judge/paired_gain.hpp"
+#include "ident/base/clustered_error.hpp"
 
 namespace modebank {
 namespace {

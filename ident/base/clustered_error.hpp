@@ -1,0 +1,16 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+namespace modebank {
+
+/// Standard error of the ratio sum(sums) / sum(samples) over G clusters that differ in size; 0 of fewer than two.
+inline double clustered_error(const Eigen::VectorXd& sums, const Eigen::VectorXd& samples) {
+  const auto G = static_cast<double>(sums.size());
+  if (G < 2.0) return 0.0;
+  const double N = samples.sum(), mean = sums.sum() / N;
+  return std::sqrt(G / (G - 1.0) * (sums - mean * samples).squaredNorm()) / N;
+}
+
+}  // namespace modebank
