@@ -34,6 +34,61 @@ void multiply_transposed(Out& out, const A& a, const B& b) {
     }
 }
 
+/// out = a b where row i of `a` is that of a shift from row i - full on, for every i >= full: e_{i - full}'. The same
+/// bits as multiply, as long as b is finite. full = a.rows(): any a.
+template <class Out, class A, class B>
+void multiply_shifting(Out& out, const A& a, const B& b, Index full) {
+  for (Index j = 0; j < b.cols(); ++j) {
+    for (Index i = 0; i < full; ++i) {
+      double sum = a(i, 0) * b(0, j);
+      for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(k, j);
+      out(i, j) = sum;
+    }
+    for (Index i = full; i < a.rows(); ++i) out(i, j) = b(i - full, j);
+  }
+}
+
+/// out += a b' for such a b, where the product is known to be symmetric (add_symmetric_product).
+template <class Out, class A, class B>
+void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full) {
+  for (Index j = 0; j < b.rows(); ++j)
+    for (Index i = j; i < a.rows(); ++i) {
+      double sum = 0.0;
+      if (j >= full) {
+        sum = a(i, j - full);
+      } else {
+        sum = a(i, 0) * b(j, 0);
+        for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(j, k);
+      }
+      out(i, j) += sum;
+      if (i != j) out(j, i) = out(i, j);
+    }
+}
+
+/// out = a b where `a` differs from the identity in its first `seen` columns alone. The same bits as multiply, as long
+/// as b is finite. seen = a.cols(): any a.
+template <class Out, class A, class B>
+void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
+  for (Index j = 0; j < b.cols(); ++j)
+    for (Index i = 0; i < a.rows(); ++i) {
+      double sum = a(i, 0) * b(0, j);
+      for (Index k = 1; k < seen; ++k) sum += a(i, k) * b(k, j);
+      out(i, j) = i < seen ? sum : sum + b(i, j);
+    }
+}
+
+/// out += a b' for such a b, where the product is known to be symmetric (add_symmetric_product).
+template <class Out, class A, class B>
+void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) {
+  for (Index j = 0; j < b.rows(); ++j)
+    for (Index i = j; i < a.rows(); ++i) {
+      double sum = a(i, 0) * b(j, 0);
+      for (Index k = 1; k < seen; ++k) sum += a(i, k) * b(j, k);
+      out(i, j) += j < seen ? sum : sum + a(i, j);
+      if (i != j) out(j, i) = out(i, j);
+    }
+}
+
 /// out += a b' where the product is known to be symmetric: the lower triangle is computed and mirrored, so `out` stays
 /// symmetric to the bit.
 template <class Out, class A, class B>

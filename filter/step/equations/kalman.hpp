@@ -41,9 +41,10 @@ struct PartialSensor {
   Eigen::Matrix<double, NY, 1> y;
   Eigen::Matrix<double, NY, 1> quantum;
   bool quantised = false;
-  Eigen::Index missing = 0;  ///< signals
+  Eigen::Index seen_columns;  ///< of C (FilterModel)
+  Eigen::Index missing = 0;   ///< signals
 
-  PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y), quantum(n_y) {}
+  PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y), quantum(n_y), seen_columns(n) {}
 
   template <class Sensor, class Y>
   void assign(const Sensor& whole, const Y& measured) {
@@ -52,6 +53,7 @@ struct PartialSensor {
     y = measured;
     quantum = whole.quantum;
     quantised = whole.quantised;
+    seen_columns = whole.seen_columns;
     missing = 0;
     for (Eigen::Index i = 0; i < y.size(); ++i)
       if (is_missing(measured(i))) {
@@ -183,9 +185,9 @@ void KalmanStep<N, NY>::predict(const Gaussian<N>& from, const FilterModel<N, NY
   process_noise = noise_scale * mode.Q;
   if (mode.spread.size() > 0) add_parameter_noise(model.structure, mode.spread, from.mean, u);
   const auto& F = model.terms.empty() ? mode.F : bend(model, mode, from.mean, u);
-  small::multiply(NN_, F, from.covariance);
+  small::multiply_shifting(NN_, F, from.covariance, model.full_rows);
   predicted.covariance = process_noise;
-  small::add_symmetric_product(predicted.covariance, NN_, F);
+  small::add_symmetric_product_shifting(predicted.covariance, NN_, F, model.full_rows);
   make_usable(predicted);
 }
 
@@ -262,9 +264,9 @@ void KalmanStep<N, NY>::correct(const Sensor& sensor, Gaussian<N>& posterior) {
   small::multiply(closed_loop_, gain_, sensor.C);
   closed_loop_ = -closed_loop_;
   closed_loop_.diagonal().array() += 1.0;
-  small::multiply(NN_, closed_loop_, predicted.covariance);
+  small::multiply_seeing(NN_, closed_loop_, predicted.covariance, sensor.seen_columns);
   posterior.covariance.setZero();
-  small::add_symmetric_product(posterior.covariance, NN_, closed_loop_);
+  small::add_symmetric_product_seeing(posterior.covariance, NN_, closed_loop_, sensor.seen_columns);
   small::multiply(NY_, gain_, sensor.R);
   small::add_symmetric_product(posterior.covariance, NY_, gain_);
   if (!is_finite(posterior)) posterior = predicted;  // an overflowing correction is no information

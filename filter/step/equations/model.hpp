@@ -40,12 +40,26 @@ struct FilterModel {
   Eigen::Matrix<double, N, N> start_covariance;         ///< P[0]
   DriftModel drift;                                     ///< how the modes' coefficients wander
   MotionTerms terms;                                    ///< what bends the motion; empty: nothing
+  /// Rows of every F that are no shift of older samples by one: the measured states where there are lags, else n.
+  Eigen::Index full_rows;
+  /// Columns of C that are not zero, all others being to their right.
+  Eigen::Index seen_columns;
 
   /// Requires check_sizes(bank). Throws std::invalid_argument for FilterVariant::kf of several modes.
   FilterModel(const Bank& bank, const FilterOptions& options);
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
 };
+
+/// A bank of another make may have lags whose rows are not shifts.
+template <int N, int NY>
+Eigen::Index full_rows_of(const FilterModel<N, NY>& model) {
+  const Eigen::Index n = model.structure.dimension(), states = model.structure.states;
+  for (const auto& mode : model.modes)
+    for (Eigen::Index i = states; i < n; ++i)
+      if (mode.F.row(i) != Eigen::RowVectorXd::Unit(n, i - states)) return n;
+  return states;
+}
 
 template <int N, int NY>
 FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
@@ -77,6 +91,9 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
     modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q,
                      noisy ? mode.spread : Eigen::MatrixXd(), mode.bend});
   }
+  full_rows = full_rows_of(*this);
+  seen_columns = C.cols();
+  while (seen_columns > 1 && (C.col(seen_columns - 1).array() == 0.0).all()) --seen_columns;
   const StartMoments start = start_moments(bank);
   start_gain = start.gain;
   start_covariance = start.covariance;

@@ -32,6 +32,31 @@ void expect_same_estimates(const RunEvaluation& a, const RunEvaluation& b) {
   EXPECT_TRUE(near(a.pit, b.pit, law_rounding));
 }
 
+/// What the products for lagged samples leave out is what plain ones multiply by zero and by one.
+TEST(SmallProducts, OfShiftsAndOfPartsThatAreSeenHaveThePlainOnesBits) {
+  const Eigen::Index n = 7, full = 2;
+  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, n), gain = Eigen::MatrixXd::Random(n, full), P(n, n);
+  F.topRows(full) = Eigen::MatrixXd::Random(full, n);
+  for (Eigen::Index i = full; i < n; ++i) F(i, i - full) = 1.0;
+  const Eigen::MatrixXd root = Eigen::MatrixXd::Random(n, n);
+  P = root * root.transpose();
+  Eigen::MatrixXd closed = Eigen::MatrixXd::Identity(n, n);
+  closed.leftCols(full) -= gain;
+  Eigen::MatrixXd plain(n, n), quick(n, n), plain_sum = P, quick_sum = P;
+  small::multiply(plain, F, P);
+  small::multiply_shifting(quick, F, P, full);
+  EXPECT_EQ(plain, quick);
+  small::add_symmetric_product(plain_sum, plain, F);
+  small::add_symmetric_product_shifting(quick_sum, quick, F, full);
+  EXPECT_EQ(plain_sum, quick_sum);
+  small::multiply(plain, closed, P);
+  small::multiply_seeing(quick, closed, P, full);
+  EXPECT_EQ(plain, quick);
+  small::add_symmetric_product(plain_sum, plain, closed);
+  small::add_symmetric_product_seeing(quick_sum, quick, closed, full);
+  EXPECT_EQ(plain_sum, quick_sum);
+}
+
 TEST(MixingWeights, PredictedProbabilitiesFollowTheRowsOfTheTransitionMatrix) {
   // 0.7 * 0.95 + 0.3 * 0.10 = 0.695; with rows and columns swapped it would be 0.68.
   const TransitionMatrix T((Eigen::MatrixXd(2, 2) << 0.95, 0.05, 0.10, 0.90).finished());
