@@ -102,7 +102,7 @@ recovery: bench-programs
 
 # How often modes of motion are claimed where there are none, and found where there are some; hours on two cores.
 evidence: build
-	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_evidence.py build/modebank --table docs/results/evidence.csv --revision $$(git rev-parse --short=7 HEAD)
+	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_evidence.py build/modebank --table docs/results/evidence.csv --revision $$(git log -1 --format=%h -- app filter ident io mixture)
 
 # How much is lost against the filter with the true parameters, on systems that are known; about three hours of a processor.
 systems: build

@@ -99,7 +99,8 @@ void Chain::import(const DataInputs& inputs) {
   provide(Stage::data, {compute, copy, take});
 }
 
-void Chain::find_lags(const std::optional<StructureInputs>& inputs) {
+void Chain::find_lags(std::optional<StructureInputs> inputs) {
+  if (inputs && one_model_alone()) inputs->with_modes = false;
   if (!inputs) {
     archive_.structure.reset();
     held_[index_of(Stage::structure)].clear();
@@ -165,8 +166,7 @@ void Chain::learn_bank(const ChainInputs& inputs) {
   learn_competitor_banks(inputs.competitors);
   const auto learn = [&] {
     BankInputs asked = inputs.bank;
-    // Steps of many lengths make modes of one motion, and least squares alone keeps its time constant.
-    if (archive_.step_scatter > most_step_scatter) {
+    if (one_model_alone()) {
       asked.one_model = true;
       listener_.progress("bank: that of baseline, as steps scatter");
     }

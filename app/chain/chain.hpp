@@ -75,7 +75,9 @@ class Chain {
  private:
   void provide(Stage stage, const StagePart& part);
   void import(const DataInputs& inputs);
-  void find_lags(const std::optional<StructureInputs>& inputs);
+  /// Steps of many lengths make modes of one motion, and least squares alone keeps its time constant.
+  bool one_model_alone() const { return archive_.step_scatter > most_step_scatter; }
+  void find_lags(std::optional<StructureInputs> inputs);
   void identify_windows(const WindowInputs& inputs);
   void cluster_windows(const MixtureInputs& inputs);
   void learn_competitor_banks(const CompetitorInputs& inputs);

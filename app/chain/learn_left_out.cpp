@@ -15,7 +15,8 @@ Bank learn_on(const Recording& training, const LearningInputs& inputs) {
   const FitOptions& window = inputs.bank.window;
   const WindowFits windows = identify(training, {window});
   const MixtureResult mixture = cluster(training, windows, inputs.mixture, silent);
-  const Bank baseline = learn_single_filter(training, windows, window, inputs.baseline_filter, silent);
+  const Bank baseline =
+      learn_single_filter(training, one_model(training, windows, window, {}), inputs.baseline_filter, silent);
   return learn_modes({training, windows, mixture, baseline}, inputs.bank, silent).bank;
 }
 

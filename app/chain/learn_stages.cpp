@@ -11,6 +11,7 @@
 #include "filter/learn/learn.hpp"
 #include "filter/learn/refine/learning_part.hpp"
 #include "ident/fit/fit_windows.hpp"
+#include "ident/fit/global_model.hpp"
 #include "ident/fit/linearise.hpp"
 #include "ident/terms/find_terms.hpp"
 
@@ -21,17 +22,29 @@ GlobalModel linear_global(const Recording& recording, const WindowFits& windows,
   return modebank::linear_global(recording, windows, motion.get());
 }
 
+OneModel one_model(const Recording& recording, const WindowFits& windows, const FitOptions& window,
+                   const std::optional<Lags>& lags) {
+  OneModel one{windows.model, windows.structure, {}};
+  if (lags)
+    one.structure = {one.structure.states, one.structure.inputs, one.structure.intercept,
+                     (*lags)[0],           (*lags)[1],           (*lags)[2]};
+  const bool of_windows = one.structure == windows.structure;
+  one.global = of_windows ? linear_global(recording, windows, window) : fit_global(recording, one.structure);
+  if (!of_windows) one.model = one.structure.lagged() ? "varx" : "linear";
+  return one;
+}
+
 namespace {
 
 void tell_of_shrinking(const std::string& whose, const Bank& bank, const Listener& listener) {
   if (bank.shrinking.modes > 0) listener.warning(fmt::format("{}: {}", whose, shrinking_words(bank.shrinking)));
 }
 
-DriftingModel drifting(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
+DriftingModel drifting(const Recording& recording, const OneModel& of, const CompetitorInputs& inputs,
                        const Listener& listener) {
   const Stopwatch watch;
-  DriftingModel model = learn_likeliest_drifting(recording, linear_global(recording, windows, inputs.window),
-                                                 windows.structure, inputs.filter.time_steps, inputs.horizon);
+  DriftingModel model =
+      learn_likeliest_drifting(recording, of.global, of.structure, inputs.filter.time_steps, inputs.horizon);
   listener.progress(fmt::format("drifting: {} with {} lags, q {:g}, p0 {:g}, leak {:g}, lam {:g}, nu {:g} in {:.2f} s",
                                 name_of(model.wandering), model.structure.state_lags, model.rates.q, model.rates.p0,
                                 model.rates.leak, model.lam, model.nu, watch.seconds()));
@@ -42,11 +55,11 @@ std::string lags_of(const LinearStructure& s) {
   return fmt::format("({}, {}, {})", s.state_lags, s.input_lags, s.input_delay);
 }
 
-std::optional<Bank> nonlinear(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
-                              const Listener& listener) {
+std::optional<Bank> nonlinear(const Recording& recording, const LinearStructure& structure,
+                              const CompetitorInputs& inputs, const Listener& listener) {
   if (inputs.terms == TermsChoice::none) return {};
   const Stopwatch watch;
-  const FoundTerms found = find_terms(recording, windows.structure, inputs.window);
+  const FoundTerms found = find_terms(recording, structure, inputs.window);
   for (const TriedTerms& tried : found.tried)
     listener.detail(fmt::format("nonlinear: {} terms with lags {}: {:.4f} nats/sample left out", tried.terms,
                                 lags_of(tried.structure), tried.log_score));
@@ -69,10 +82,10 @@ std::optional<Bank> nonlinear(const Recording& recording, const WindowFits& wind
 
 }  // namespace
 
-Bank learn_single_filter(const Recording& recording, const WindowFits& windows, const FitOptions& window,
-                         const FilterOptions& filter, const Listener& listener) {
-  Baseline baseline = learn_baseline(recording, linear_global(recording, windows, window), windows.structure);
-  baseline.bank.model = windows.model;
+Bank learn_single_filter(const Recording& recording, const OneModel& of, const FilterOptions& filter,
+                         const Listener& listener) {
+  Baseline baseline = learn_baseline(recording, of.global, of.structure);
+  baseline.bank.model = of.model;
   if (baseline.at_bound) listener.progress("baseline: R is at its lower bound: the data show no measurement noise");
   if (!baseline.converged) listener.warning("baseline: its noise did not reach a maximum of the likelihood");
   if (filter.noise == FilterNoise::adaptive)
@@ -87,12 +100,14 @@ Competitors learn_competitors(const Recording& all, const WindowFits& windows, c
   if (part)
     listener.progress(fmt::format("competitors: learned {}",
                                   learned_words(part->transitions(Role::train), all.transitions(Role::train))));
-  Competitors learned{learn_single_filter(recording, windows, inputs.window, inputs.filter, listener), {}, {}};
-  learned.drifting = drifting(recording, windows, inputs, listener);
-  learned.noise_only = learn_noise_only(recording, windows.structure, learned.baseline.R);
+  const OneModel linear = one_model(recording, windows, inputs.window, inputs.linear);
+  Competitors learned{learn_single_filter(recording, linear, inputs.filter, listener), {}, {}};
+  learned.drifting =
+      drifting(recording, one_model(recording, windows, inputs.window, inputs.drifting), inputs, listener);
+  learned.noise_only = learn_noise_only(recording, linear.structure, learned.baseline.R);
   if (inputs.filter.noise == FilterNoise::adaptive)
     learned.noise_only.noise_adaptation = most_likely_adaptation(learned.noise_only, recording, inputs.filter, {});
-  learned.nonlinear = nonlinear(recording, windows, inputs, listener);
+  learned.nonlinear = nonlinear(recording, linear.structure, inputs, listener);
   return learned;
 }
 
@@ -206,9 +221,13 @@ Refinement learn_one_motion(const LearnedFrom& from, const Bank& rival, const Ba
   const std::optional<Recording> part =
       learning_part(from.recording, learned.bank.em.transitions, learned.bank.em.seed);
   const Recording& recording = part ? *part : from.recording;
-  Refinement refined = learn_one_motion(
-      recording, from.windows, linear_global(recording, from.windows, inputs.window), rival, from.baseline.R,
-      std::max(fewest_levels, from.mixture.mixture.components()), learned.bank, learned.filter);
+  const OneModel one = one_model(recording, from.windows, inputs.window, learned.lags);
+  const bool of_windows = one.structure == from.windows.structure;
+  WindowFits own;
+  own.structure = one.structure;
+  Refinement refined =
+      learn_one_motion(recording, of_windows ? from.windows : own, one.global, rival, from.baseline.R,
+                       std::max(fewest_levels, from.mixture.mixture.components()), learned.bank, learned.filter);
   const Bank& bank = refined.bank;
   tell_of_shrinking("one_motion", bank, listener);
   const DriftRates& rates = bank.drift.rates;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,13 @@ struct ScoringOptions {
   std::uint64_t seed = 1;                        ///< of the transforms of quantised measurements; the chain's
 };
 
+/// Lags and delay of stages that have others than the windows; empty: the same.
+struct OtherLags {
+  std::optional<Lags> linear = {};      ///< baseline, noise_only, and where terms are looked for
+  std::optional<Lags> one_motion = {};  ///< one motion whose noise switches
+  std::optional<Lags> drifting = {};
+};
+
 /// Everything that decides the numbers of a chain beside its data. `seed` is the one seed: it takes the place of those
 /// in `window` and `bank`.
 struct ChainOptions {
@@ -40,6 +48,7 @@ struct ChainOptions {
   bool automatic_length = false;               ///< of windows (ident/fit/window_length.hpp), whatever `window` has
   std::vector<std::string> mode_names = {};    ///< of the bank; they change no number
   TermsChoice terms = TermsChoice::automatic;  ///< whether one motion may bend
+  OtherLags other_lags = {};
 };
 
 }  // namespace modebank

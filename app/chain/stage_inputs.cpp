@@ -31,7 +31,9 @@ CompetitorInputs competitor_inputs(const ChainOptions& options, const FitOptions
           options.bank.em.transitions,
           options.seed,
           rivals ? options.terms : TermsChoice::none,
-          em};
+          em,
+          options.other_lags.linear,
+          options.other_lags.drifting};
 }
 
 /// Learned by refinement, whatever makes the bank.
@@ -41,7 +43,8 @@ std::optional<OneMotionInputs> one_motion_inputs(const ChainOptions& options) {
   learned.measurement_variance = options.bank.measurement_variance;
   learned.em = options.bank.em;
   learned.em.seed = options.seed;
-  return OneMotionInputs{learned, competitor_filter("one_motion", options.filter), options.scoring.horizon};
+  return OneMotionInputs{learned, competitor_filter("one_motion", options.filter), options.scoring.horizon,
+                         options.other_lags.one_motion};
 }
 
 }  // namespace
@@ -86,7 +89,8 @@ MixtureInputs mixture_inputs(const ChainOptions& options) {
 /// Free runs may not need more measured samples than they start from.
 std::optional<StructureInputs> structure_inputs(const ChainOptions& options) {
   if (!options.searched_lags.any()) return std::nullopt;
-  StructureInputs inputs{options.searched_lags, {}};
+  StructureInputs inputs{options.searched_lags, {}, options.filter.variant != FilterVariant::kf};
+  inputs.window.seed = options.seed;
   inputs.searched.most_samples = options.scoring.free_run.samples;
   const FitOptions& window = options.window;
   if (!options.searched_lags.state) inputs.window.state_lags = window.state_lags;

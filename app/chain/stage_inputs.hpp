@@ -37,6 +37,8 @@ struct CompetitorInputs {
   std::uint64_t seed = 1;                      ///< which these are
   TermsChoice terms = TermsChoice::automatic;  ///< of nonlinear
   RefineOptions em = {};                       ///< how that is learned
+  std::optional<Lags> linear = {};             ///< of baseline, noise_only and nonlinear; empty: the windows'
+  std::optional<Lags> drifting = {};           ///< of drifting; empty: the windows'
 };
 
 /// How the competitor one_motion is learned: as the bank.
@@ -44,6 +46,7 @@ struct OneMotionInputs {
   BankOptions bank;
   FilterOptions filter;             ///< that runs it
   std::vector<Index> horizon = {};  ///< that left-out training runs are predicted for, beside one sample ahead
+  std::optional<Lags> lags = {};    ///< empty: the windows'
 };
 
 struct BankInputs {
@@ -76,7 +79,8 @@ struct LearningInputs {
 /// The inputs of the search for a structure.
 struct StructureInputs {
   SearchedLags searched;
-  FitOptions window;  ///< the lags that are not searched for, and how a model is fitted; the rest as by default
+  FitOptions window;       ///< the lags that are not searched for, and how a model is fitted; the rest as by default
+  bool with_modes = true;  ///< whether modes, and one motion whose noise switches, choose for themselves
 };
 
 /// Of a whole chain.

@@ -34,9 +34,19 @@ MixtureResult cluster(const Recording& recording, const WindowFits& windows, con
 /// The global model of the windows in linear terms, whatever they were fitted with.
 GlobalModel linear_global(const Recording& recording, const WindowFits& windows, const FitOptions& window);
 
+/// One linear model of the training runs.
+struct OneModel {
+  std::string model;  ///< the windows', if it has their lags
+  LinearStructure structure;
+  GlobalModel global;
+};
+/// With these lags; empty: the windows'.
+OneModel one_model(const Recording& recording, const WindowFits& windows, const FitOptions& window,
+                   const std::optional<Lags>& lags);
+
 /// The baseline: one Kalman filter on the global model. `filter`: that runs competitors.
-Bank learn_single_filter(const Recording& recording, const WindowFits& windows, const FitOptions& window,
-                         const FilterOptions& filter, const Listener& listener);
+Bank learn_single_filter(const Recording& recording, const OneModel& of, const FilterOptions& filter,
+                         const Listener& listener);
 
 struct Competitors {
   Bank baseline;                       ///< one Kalman filter

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "app/chain/drifting_structure.hpp"
+#include "app/chain/stage_structures.hpp"
 #include "app/chain/stages.hpp"
 #include "ident/lag/structure_search.hpp"
 
@@ -9,7 +9,7 @@ namespace modebank {
 FoundStructure search_structure(const Recording& recording, const StructureInputs& inputs, const Listener& listener) {
   const Stopwatch watch;
   FoundStructure found = find_structure(recording, inputs.window, inputs.searched);
-  let_drifting_choose(recording, inputs, found);
+  choose_for_stages(recording, inputs, found);
   listener.progress(fmt::format("structure: {} structures compared in {:.2f} s", found.structures, watch.seconds()));
   if (!found.remark.empty()) listener.warning("structure: " + found.remark);
   return found;
@@ -21,6 +21,12 @@ ChainOptions with_structure(ChainOptions options, const FoundStructure& found) {
   window.input_lags = found.input_lags;
   window.input_delay = found.input_delay;
   if (has_lags(window)) window.model = "varx";
+  for (const StructureScore& s : found.scores) {
+    const Lags lags{s.state_lags, s.input_lags, s.input_delay};
+    if (s.linear) options.other_lags.linear = lags;
+    if (s.one_motion) options.other_lags.one_motion = lags;
+    if (s.drifting) options.other_lags.drifting = lags;
+  }
   return options;
 }
 

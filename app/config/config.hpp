@@ -73,7 +73,7 @@ enum class LagChoice { by_model, automatic, number };
 
 /// The numbers of the model's structure that are searched for, and the length that follows from it.
 struct StructureConfig {
-  bool automatic_model = false;  ///< window.model = auto: by_model means automatic
+  bool automatic_model = true;  ///< window.model = auto: by_model means automatic
   LagChoice state = LagChoice::by_model, input = LagChoice::by_model, delay = LagChoice::by_model;
   LagChoice length = LagChoice::by_model;  ///< of windows
 };

@@ -21,30 +21,35 @@ bool fits(const Config& config) {
   }
 }
 
+/// A key's default, which of lags and the windows' length depends on the model.
+std::string standard_of(const Option& option, const Config& config) {
+  Config standard;
+  if (option.key != "window.model") standard.structure.automatic_model = config.structure.automatic_model;
+  return option.get(standard);
+}
+
 /// Keys that the file sets to something else than their defaults, and no override takes back.
 Options set_by_file(const Config& config, const Origins& origins) {
-  const Config defaults;
   Options options;
   for (const Option& option : option_table()) {
     const auto origin = origins.find(option.key);
     if (origin == origins.end() || origin->second.starts_with("--")) continue;
-    if (option.section() != "data" && option.get(config) != option.get(defaults)) options.push_back(&option);
+    if (option.section() != "data" && option.get(config) != standard_of(option, config)) options.push_back(&option);
   }
   return options;
 }
 
 /// The fewest of the options, three at most, whose defaults fit the rest of the configuration; empty: there are none.
 Options fewest_to_reset(const Config& config, const Options& options, std::size_t first, std::size_t most) {
-  const Config defaults;
   for (std::size_t i = first; most > 0 && i < options.size(); ++i) {
     Config changed = config;
-    options[i]->set(changed, options[i]->get(defaults));
+    options[i]->set(changed, standard_of(*options[i], config));
     if (fits(changed)) return {options[i]};
   }
   Options fewest;
   for (std::size_t i = first; most > 1 && i < options.size(); ++i) {
     Config changed = config;
-    options[i]->set(changed, options[i]->get(defaults));
+    options[i]->set(changed, standard_of(*options[i], config));
     Options rest = fewest_to_reset(changed, options, i + 1, fewest.empty() ? most - 1 : fewest.size() - 2);
     if (rest.empty()) continue;
     fewest = std::move(rest);
@@ -59,7 +64,7 @@ std::string what_to_set_too(const Config& config, const KeyValues& overrides, co
   if (overrides.empty()) return "";
   std::vector<std::string> settings, reasons;
   for (const Option* option : fewest_to_reset(config, set_by_file(config, origins), 0, most)) {
-    const std::string standard = option->get(Config{});
+    const std::string standard = standard_of(*option, config);
     settings.push_back(fmt::format("--{} {}", option->key, standard.empty() ? "''" : standard));
     reasons.push_back(fmt::format("{} says {}", origins.at(option->key), option->get(config)));
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "app/text/text_table.hpp"
@@ -31,21 +32,45 @@ std::string feedback_words(const FoundStructure& found) {
                      found.feedback_t);
 }
 
+const StructureScore* of_linear(const FoundStructure& found) {
+  const auto one = std::find_if(found.scores.begin(), found.scores.end(), [](const auto& s) { return s.linear; });
+  return one == found.scores.end() ? nullptr : &*one;
+}
+
+std::string lag_words(std::ptrdiff_t state_lags, std::ptrdiff_t input_lags, std::ptrdiff_t delay, bool acted_on) {
+  std::string words = counted(state_lags, "state lag");
+  if (acted_on) words += fmt::format(", {}, delay {}", counted(input_lags, "input lag"), counted(delay, "sample"));
+  return words;
+}
+
 std::string table_text(const FoundStructure& found, bool acted_on, int width) {
   using Column = TextTable::Column;
-  std::vector<Column> columns{{"", 1}, {"state lags", 10}};
+  std::vector<Column> columns{{"state lags", 10}};
   if (acted_on) columns.insert(columns.end(), {Column{"input lags", 10}, Column{"delay", 5}});
   columns.insert(columns.end(), {Column{"log score", 10}, Column{"below the best", 18}, Column{"rmse", 10}});
-  if (found.by_drifting) columns.push_back({"drifting", 10});
-  TextTable table(columns, acted_on ? 4 : 2);
+  const auto asked = [&](double StructureScore::*score) {
+    return std::any_of(found.scores.begin(), found.scores.end(),
+                       [&](const StructureScore& s) { return !std::isnan(s.*score); });
+  };
+  std::vector<double StructureScore::*> more;
+  for (const auto& [score, title] :
+       {std::pair{&StructureScore::drifting_score, "drifting"},
+        std::pair{&StructureScore::one_motion_score, "one motion"}, std::pair{&StructureScore::modes_score, "modes"}}) {
+    if (!asked(score)) continue;
+    columns.push_back({title, 10});
+    more.push_back(score);
+  }
+  columns.push_back({"taken by", 8});
+  TextTable table(columns, acted_on ? 3 : 1);
   for (const StructureScore& s : found.scores) {
-    std::vector<std::string> cells{s.chosen ? "*" : "", fmt::format("{}", s.state_lags)};
+    std::vector<std::string> cells{fmt::format("{}", s.state_lags)};
     if (acted_on) cells.insert(cells.end(), {fmt::format("{}", s.input_lags), fmt::format("{}", s.input_delay)});
     const bool left_out = !std::isnan(s.log_score);
     cells.push_back(left_out ? fmt::format("{:.4f}", s.log_score) : "");
     cells.push_back(s.loss == 0.0 || !left_out ? "" : fmt::format("{:.4f} +- {:.4f}", s.loss, s.loss_standard_error));
     cells.push_back(left_out ? rmse_cell(s) : "");
-    if (found.by_drifting) cells.push_back(fmt::format("{:.4f}", s.drifting_score));
+    for (const auto score : more) cells.push_back(std::isnan(s.*score) ? "" : fmt::format("{:.4f}", s.*score));
+    cells.push_back(taken_by(s));
     table.add(std::move(cells));
   }
   return table.text(width);
@@ -53,25 +78,27 @@ std::string table_text(const FoundStructure& found, bool acted_on, int width) {
 
 }  // namespace
 
+std::string taken_by(const StructureScore& s) {
+  std::vector<std::string> stages;
+  for (const auto& [taken, stage] : {std::pair{s.chosen, "bank"}, std::pair{s.one_motion, "one_motion"},
+                                     std::pair{s.linear, "linear"}, std::pair{s.drifting, "drifting"}})
+    if (taken) stages.emplace_back(stage);
+  return fmt::format("{}", fmt::join(stages, ", "));
+}
+
 std::string structure_words(const FoundStructure& found, bool acted_on) {
-  std::string words = counted(found.state_lags, "state lag");
-  if (acted_on)
-    words +=
-        fmt::format(", {}, delay {}", counted(found.input_lags, "input lag"), counted(found.input_delay, "sample"));
-  return words;
+  return lag_words(found.state_lags, found.input_lags, found.input_delay, acted_on);
 }
 
 std::string structure_sentence(const FoundStructure& found, bool acted_on) {
   std::string text = structure_words(found, acted_on);
-  const auto chosen =
-      std::find_if(found.scores.begin(), found.scores.end(), [](const StructureScore& s) { return s.chosen; });
-  if (found.by_drifting)
-    text +=
-        ": chosen by the training runs' forecasts with wandering coefficients, which are better than with constant "
-        "ones";
-  else if (chosen != found.scores.end())
-    text +=
-        fmt::format(": log score {:.3f}, RMSE {} on {}", chosen->log_score, rmse_cell(*chosen), left_out_words(found));
+  if (const StructureScore* linear = of_linear(found)) {
+    text += fmt::format("; {}: log score {:.3f}, RMSE {} on {}",
+                        linear->chosen ? "one linear motion with them"
+                                       : "one linear motion wants " + lag_words(linear->state_lags, linear->input_lags,
+                                                                                linear->input_delay, acted_on),
+                        linear->log_score, rmse_cell(*linear), left_out_words(found));
+  }
   if (found.feedback()) text += "; " + feedback_words(found);
   if (!found.remark.empty()) text += "; " + found.remark;
   return text;
@@ -79,14 +106,11 @@ std::string structure_sentence(const FoundStructure& found, bool acted_on) {
 
 std::string structure_text(const FoundStructure& found, bool acted_on, int width) {
   std::string text = fmt::format("structure {}", structure_words(found, acted_on));
-  if (found.by_drifting)
-    text +=
-        ": the fewest lags within next to nothing of the best of the training runs' forecasts with wandering "
-        "coefficients "
-        "(drifting), which are better than with constant ones";
-  else if (!found.scores.empty())
-    text += fmt::format(": the fewest lags within one standard error of the best of {} structures, by {} ({} samples)",
-                        found.structures, left_out_words(found), found.samples);
+  if (!found.scores.empty())
+    text += fmt::format(
+        ". One linear motion has the fewest lags within one standard error of the best of {} structures, by {} ({} "
+        "samples); the other stages choose among few of them by scores of their own on the training runs",
+        found.structures, left_out_words(found), found.samples);
   text += "\n";
   if (!found.scores.empty()) text += table_text(found, acted_on, width);
   if (found.feedback()) text += "          " + feedback_words(found) + "\n";

@@ -16,4 +16,12 @@ Trajectory stretch(const Trajectory& run, Eigen::Index first, Eigen::Index count
   return part;
 }
 
+Recording from_common_start(const Recording& recording, Eigen::Index earlier) {
+  Recording part{recording.states, recording.inputs, {}, recording.quantum};
+  for (const Trajectory& run : recording.runs)
+    if (run.role == Role::train && run.samples() > earlier + 2)
+      part.runs.push_back(stretch(run, earlier, run.samples() - earlier));
+  return part;
+}
+
 }  // namespace modebank

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -10,6 +11,9 @@ namespace modebank {
 
 /// Lags that a search tries first.
 inline constexpr std::ptrdiff_t usual_lags = 12;
+
+/// State lags, input lags, delay.
+using Lags = std::array<std::ptrdiff_t, 3>;
 
 /// Which numbers of a model with lags are searched for; the others are as FitOptions state them.
 struct SearchedLags {
@@ -29,12 +33,20 @@ struct StructureScore {
   double loss = 0.0;                 ///< against the best of the table [nats/sample]
   double loss_standard_error = 0.0;  ///< over runs, or stretches of them [nats/sample]
   Eigen::VectorXd rmse = {};         ///< n, of the one-step prediction [state unit]
-  bool chosen = false;
+  bool chosen = false;               ///< for windows, mixture and bank
+  bool linear = false;               ///< for one linear motion: baseline, noise_only; where terms are looked for
+  bool one_motion = false;           ///< for one motion whose noise switches
+  bool drifting = false;             ///< for one motion that wanders
   /// Causal log score of the training runs where coefficients wander [nats/sample]; NaN where this was not asked.
   double drifting_score = std::numeric_limits<double>::quiet_NaN();
+  /// Of few modes, and of one motion whose noise switches, on training runs that were left out [nats/sample]; NaN as
+  /// above.
+  double modes_score = std::numeric_limits<double>::quiet_NaN();
+  double one_motion_score = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The chosen lags and delay, and how sure the choice is.
+/// The lags and delay that windows, mixture and bank have, those of other stages (in the table), and how sure the
+/// choice is.
 struct FoundStructure {
   std::ptrdiff_t state_lags = 1;
   std::ptrdiff_t input_lags = 1;
@@ -42,7 +54,6 @@ struct FoundStructure {
   std::ptrdiff_t samples = 0;     ///< that every structure predicted
   std::ptrdiff_t parts = 0;       ///< runs, or stretches of runs, that standard errors are taken over
   bool by_runs = false;           ///< whether parts are whole runs
-  bool by_drifting = false;       ///< chosen by drifting_score, since wandering coefficients predict better
   std::ptrdiff_t structures = 0;  ///< that were compared by least squares
   /// Largest |t| of past innovations in a regression of the inputs on their own lags: large where the inputs answer to
   /// the states. NaN without inputs or without enough samples.

@@ -95,8 +95,8 @@ std::vector<StructureScore> score_table(const ScoredStructures& all, const Lags&
   for (const Lags& lags : order) {
     const LeftOutForecast& forecast = all.at(lags);
     const StructureLoss loss = loss_against(all.at(order.front()), forecast, weight);
-    table.push_back({lags[0], lags[1], lags[2], forecast.log_score, loss.mean, loss.standard_error, forecast.rmse,
-                     lags == chosen, not_a_number});
+    table.push_back(
+        {lags[0], lags[1], lags[2], forecast.log_score, loss.mean, loss.standard_error, forecast.rmse, lags == chosen});
   }
   return table;
 }

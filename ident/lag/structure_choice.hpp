@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <map>
 #include <vector>
@@ -11,8 +10,6 @@
 /// How structures are compared once they are scored.
 namespace modebank {
 
-/// State lags, input lags, delay.
-using Lags = std::array<Eigen::Index, 3>;
 using ScoredStructures = std::map<Lags, LeftOutForecast>;
 
 /// Coefficients per equation, but for the constant.

@@ -139,7 +139,6 @@ void exchange_structure(Io& io, F& found) {
   io.attribute("samples", found.samples, rule::not_negative);
   io.attribute("parts", found.parts, rule::not_negative);
   io.attribute("by_runs", found.by_runs);
-  io.attribute("by_drifting", found.by_drifting);
   io.attribute("structures", found.structures, rule::not_negative);
   io.attribute("feedback_t", found.feedback_t, rule::not_negative_or_missing);
   io.attribute("same_sample_t", found.same_sample_t, rule::not_negative_or_missing);
@@ -150,7 +149,11 @@ void exchange_structure(Io& io, F& found) {
            column("log_score", &StructureScore::log_score, "nat"), column("loss", &StructureScore::loss, "nat"),
            amount_column("loss_standard_error", &StructureScore::loss_standard_error, "nat"),
            amount_column("rmse", &StructureScore::rmse), column("chosen", &StructureScore::chosen),
-           column("drifting_score", &StructureScore::drifting_score, "nat"));
+           column("linear", &StructureScore::linear), column("one_motion", &StructureScore::one_motion),
+           column("drifting", &StructureScore::drifting),
+           column("drifting_score", &StructureScore::drifting_score, "nat"),
+           column("modes_score", &StructureScore::modes_score, "nat"),
+           column("one_motion_score", &StructureScore::one_motion_score, "nat"));
 }
 
 }  // namespace modebank::layout

@@ -57,6 +57,7 @@ Windows identify(const std::vector<Samples>& states, const std::vector<Samples>&
     throw std::invalid_argument("as many states as inputs are needed");
   if (!(dt_s > 0.0) || !std::isfinite(dt_s)) throw std::invalid_argument("dt must be a positive number of seconds");
   app::Config config = config_of(keys, "window.");
+  if (!keys.contains("model")) config.structure.automatic_model = false;  // windows alone: of the lags that are stated
   if (app::searched_lags_of(config).any())
     throw ConfigurationError("lags and delay = auto, and window.model = auto, are found by run; give numbers here");
   const bool in_place = is_linear(config.window) && config.window.residual == ResidualKind::one_step;

@@ -19,6 +19,8 @@ const char* CliTest::config_text() {
          "inputs = run_*.csv\n"
          "state = wz\n"
          "input = left, right\n"
+         "[window]\n"
+         "model = linear\n"
          "[mixture]\n"
          "components = 1..2\n";
 }

@@ -5,8 +5,8 @@
 
 Every system is simulated here, by numpy, as twelve runs of 400 samples with inputs redrawn or held; six train and six
 are held out, as `modebank run` divides them by default, and the program runs with nothing but [data] configured. A row per system and
-seed is appended to the table, and those that it has are left out, so that runs of this script add up. Counted is the answer of
-/evaluation/evidence. Rules are fixed before their seeds are run. Prints a Markdown table of all rows.
+seed is appended to the table, and those that it has of the same revision are left out, so that runs of this script add up. Counted is the answer of
+/evaluation/evidence. Rules are fixed before their seeds are run. Prints a Markdown table of all rows of that revision.
 """
 import argparse
 import collections
@@ -102,7 +102,7 @@ def main():
     parser.add_argument("--quantum", default="none", help="data.quantum: with auto readings that come in steps count as intervals")
     options = parser.parse_args()
     wanted = options.only.split(",") if options.only else [name for systems in GROUPS.values() for name in systems]
-    known = {(r["system"], int(r["seed"])) for r in read(options.table)} if options.table else set()
+    known = {(r["system"], int(r["seed"])) for r in read(options.table) if r["revision"] == options.revision} if options.table else set()
     jobs = [(group, name, seed) for seed in range(options.first, options.first + (options.seeds or max(SEEDS[name] for name in wanted)))
             for group, systems in GROUPS.items() for name in systems
             if name in wanted and (name, seed) not in known and seed < options.first + (options.seeds or SEEDS[name])]
@@ -117,7 +117,7 @@ def main():
                     if new:
                         writer.writeheader()
                     writer.writerow(row)
-    print(table_of(read(options.table) if options.table else rows))
+    print(table_of([r for r in (read(options.table) if options.table else rows) if r["revision"] == options.revision]))
     return 0
 
 

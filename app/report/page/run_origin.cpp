@@ -60,6 +60,9 @@ json structures_of(const Archive& archive) {
                     {"loss", estimate(s.loss, s.loss_standard_error)},
                     {"rmse", number_list(s.rmse)},
                     {"drifting", number(s.drifting_score)},
+                    {"one_motion", number(s.one_motion_score)},
+                    {"modes", number(s.modes_score)},
+                    {"taken_by", taken_by(s)},
                     {"chosen", s.chosen}});
   return rows;
 }

@@ -35,15 +35,6 @@ std::vector<Wanderer> candidates_of(const LinearStructure& structure) {
   return candidates;
 }
 
-/// The training runs without their first samples, so that all structures predict the same ones.
-Recording from_common_start(const Recording& recording, Index earlier) {
-  Recording part{recording.states, recording.inputs, {}, recording.quantum};
-  for (const Trajectory& run : recording.runs)
-    if (run.role == Role::train && run.samples() > earlier + 2)
-      part.runs.push_back(stretch(run, earlier, run.samples() - earlier));
-  return part;
-}
-
 }  // namespace
 
 DriftingGrid coarse_drifting_grid() {

@@ -29,6 +29,7 @@ Config ice_config(bool odd_runs_train) {
   config.data.states = "borealtc/ICE/imu_*.csv";
   config.data.state = {"wz"};
   config.data.input = {"velL", "velR"};
+  config.structure.automatic_model = false;  // the reference has one lag
   if (odd_runs_train) config.data.train = {"02", "04", "06", "08", "10", "12"};
   return config;
 }

@@ -64,14 +64,14 @@ TEST_F(BadInput, FewerSamplesThanAWindow) {
 }
 TEST_F(BadInput, UnknownKeyNamesLineAndNearest) {
   write("test.ini", std::string(config_text()) + "[window]\nlenght = 20\n");
-  expect(run(), 2, {"test.ini:8", "window.lenght", "window.length"});
+  expect(run(), 2, {"test.ini:10", "window.lenght", "window.length"});
 }
 TEST_F(BadInput, UnknownOptionNamesNearest) {
   expect(run({"--window.lenght", "20"}), 2, {"window.lenght", "window.length"});
 }
 TEST_F(BadInput, AbbreviatedKeyInFile) {
   write("test.ini", std::string(config_text()) + "[window]\nlen = 20\n");
-  expect(run(), 2, {"test.ini:8", "window.len", "window.length"});
+  expect(run(), 2, {"test.ini:10", "window.len", "window.length"});
 }
 TEST_F(BadInput, AbbreviatedOption) { expect(run({"--window.len", "20"}), 2, {"window.len", "window.length"}); }
 TEST_F(BadInput, ValueOutOfRange) {
@@ -81,15 +81,15 @@ TEST_F(BadInput, TextForANumber) { expect(run({"--window.length", "2x"}), 2, {"w
 TEST_F(BadInput, WordThatIsNone) { expect(run({"--window.loss", "hubert"}), 2, {"window.loss", "hubert", "huber"}); }
 TEST_F(BadInput, EmptyBoolean) {
   write("test.ini", std::string(config_text()) + "[window]\nintercept =\n");
-  expect(run(), 2, {"test.ini:8", "window.intercept", "true | false"});
+  expect(run(), 2, {"test.ini:10", "window.intercept", "true | false"});
 }
 TEST_F(BadInput, KeySetTwice) {
   write("test.ini", std::string(config_text()) + "[mixture]\ncomponents = 3\n");
-  expect(run(), 2, {"test.ini:8", "mixture.components", "6"});
+  expect(run(), 2, {"test.ini:10", "mixture.components", "8"});
 }
 TEST_F(BadInput, LineThatIsNoKey) {
   write("test.ini", std::string(config_text()) + "what is this\n");
-  expect(run(), 2, {"test.ini:7", "what is this"});
+  expect(run(), 2, {"test.ini:9", "what is this"});
 }
 TEST_F(BadInput, ValueWithACommentSign) {
   expect(run({"--data.inputs", "a#b_*.csv"}), 2, {"data.inputs", "#", "comment"});
@@ -107,7 +107,7 @@ TEST_F(BadInput, OutputThatTheRunReads) {
 }
 TEST_F(BadInput, CommentThatTouchesAValue) {
   write("test.ini", std::string(config_text()) + "[window]\nloss = hub#er\n");
-  expect(run(), 2, {"test.ini:8", "window.loss", "# starts a comment"});
+  expect(run(), 2, {"test.ini:10", "window.loss", "# starts a comment"});
   write("test.ini", std::string("[data]\ninputs = run#_*.csv\nstate = wz\ninput = left, right\n"));
   expect(run(), 2, {"test.ini:2", "data.inputs is cut to 'run'", "# starts a comment"});
 }

@@ -52,7 +52,8 @@ TEST_F(ValidConfig, AFileThatContradictsItselfGetsNoAdvice) {
 }
 
 TEST_F(ValidConfig, WhatNoDefaultMendsGetsNoAdvice) {
-  EXPECT_THAT(objection("[window]\nlength = 30\n", {{"window.state_lags", "3"}}), Not(HasSubstr("too, since")));
+  EXPECT_THAT(objection("[window]\nlength = 30\n", {{"window.model", "icr"}, {"window.state_lags", "3"}}),
+              Not(HasSubstr("too, since")));
 }
 
 }  // namespace

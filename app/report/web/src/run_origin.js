@@ -16,6 +16,9 @@ const structureColumns = [
   {name: 'Below the best', of: (row) => row.loss},
   {name: 'RMSE', of: (row) => row.rmse},
   {name: 'Drifting', of: (row) => row.drifting},
+  {name: 'One motion', of: (row) => row.one_motion},
+  {name: 'Modes', of: (row) => row.modes},
+  {name: 'Taken by', text: true, of: (row) => row.taken_by},
 ];
 const fileColumns = [
   {name: 'File', text: true, of: (row) => row.path},
@@ -43,7 +46,7 @@ export function drawOrigin(origin) {
                                      'Lags and delay that were compared on training runs left out',
                                      table(
                                          structureColumns, origin.structures,
-                                         {caption: 'Structures of one linear model', chosen: (row) => row.chosen})) :
+                                         {caption: 'Structures, each with its score as one linear motion, as one that drifts, as one whose noise switches, as modes', chosen: (row) => row.chosen})) :
                                  null,
       details(`${origin.inputs.length} input files`, table(fileColumns, origin.inputs, {caption: 'Input files'})),
       details('Versions', facts(origin.versions)),
