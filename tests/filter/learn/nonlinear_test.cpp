@@ -124,6 +124,29 @@ TEST(LearnNonlinear, RecoversCoefficientsWithinTheirErrors) {
   }
 }
 
+/// Log score of the bank that runs of `like` teach on runs of another noise [nats/sample].
+double score_on(double sd, const Bent& like) {
+  const Bank bank = learn_nonlinear(like.runs(8, 3), like.structure, like.terms, RefineOptions(), FilterOptions());
+  Bent other = like;
+  other.sd = sd;
+  double sum = 0.0, samples = 0.0;
+  for (const Trajectory& run : other.runs(4, 11).runs) {
+    const VectorXd densities = evaluate_run(bank, run, FilterOptions()).log_density;
+    sum += densities.tail(densities.size() - 1).sum();
+    samples += static_cast<double>(densities.size() - 1);
+  }
+  return sum / samples;
+}
+
+/// The true density has -ln(sd sqrt(2 pi e)). Where errors are three times as large the training runs' own level would
+/// lose (9 - 1) / 2 - ln 3 = 2.9 nats.
+TEST(LearnNonlinear, OneLevelIsWiderThanTheTrainingRuns) {
+  const Bent bent;
+  const auto truth = [](double sd) { return -std::log(sd * std::sqrt(2.0 * M_PI * std::exp(1.0))); };
+  EXPECT_NEAR(score_on(bent.sd, bent), truth(bent.sd), 0.03) << "where no error is large it costs its share";
+  EXPECT_GT(score_on(3.0 * bent.sd, bent), truth(3.0 * bent.sd) - 0.3);
+}
+
 TEST(LearnNonlinear, TakesLagsAndDelaysAsTheyAre) {
   Bent bent;
   bent.structure = {1, 1, true, 2, 2, 0};
