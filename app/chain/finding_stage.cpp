@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/chain/error_pattern.hpp"
 #include "app/chain/finding_text.hpp"
 #include "app/chain/judged_runs.hpp"
 #include "app/chain/stages.hpp"
@@ -106,10 +107,10 @@ std::optional<Finding> find_modes(const Archive& archive) {
       competitors.push_back(densities_of(evaluation, *archive.recording, role));
   }
   if (!bank || !archive.bank) return {};
-  Finding finding =
-      judge_modes({*archive.bank, role, densities_of(*bank, *archive.recording, role), competitors, archive.summary,
-                   archive.horizons, resolutions(*bank, archive.bank->quantum, *archive.recording, role),
-                   archive.free_runs, archive.one_motion_drifts(), archive.step_scatter, archive.diagnostics});
+  Finding finding = judge_modes(
+      {*archive.bank, role, densities_of(*bank, *archive.recording, role), competitors, archive.summary,
+       archive.horizons, resolutions(*bank, archive.bank->quantum, *archive.recording, role), archive.free_runs,
+       archive.one_motion_drifts(), archive.step_scatter, archive.diagnostics, error_pattern(archive, *bank)});
   if (finding.without_noise && archive.baseline) finding.coefficients = coefficients_of(*archive.baseline);
   if (finding.description == Description::one_nonlinear_motion && archive.nonlinear) {
     const Bank& bent = *archive.nonlinear;

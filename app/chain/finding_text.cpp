@@ -146,6 +146,18 @@ bool was_asked(const Finding& finding, const std::string& competitor) {
                      [&](const PairedGain& gain) { return gain.competitor == competitor; });
 }
 
+std::string not_yet_words(const Finding& finding) {
+  if (finding.pattern.told())
+    return fmt::format(
+        "Modes of motion are not judged yet: the bank's errors follow a pattern. Lags would gain {:.3g} +- {:.2g} nats "
+        "per sample on training runs; `--window.model auto` looks for them.",
+        finding.pattern.gain, finding.pattern.standard_error);
+  return fmt::format(
+      "Modes of motion are not judged yet: steps scatter by {:.0f} % of their median, and the model holds for one step "
+      "length.",
+      100 * finding.step_scatter);
+}
+
 std::string answer_words(const Finding& finding) {
   switch (finding.answer) {
     case Answer::one_mode:
@@ -168,10 +180,7 @@ std::string answer_words(const Finding& finding) {
                          was_asked(finding, "nonlinear") ? "" : " (a motion that is nonlinear would show so, too)") +
              least_gain_words(finding);
     case Answer::not_yet:
-      return fmt::format(
-          "Modes of motion are not judged yet: steps scatter by {:.0f} % of their median, and the model holds for one "
-          "step length.",
-          100 * finding.step_scatter);
+      return not_yet_words(finding);
   }
   return "";
 }

@@ -62,8 +62,9 @@ void keep_for_judges(const Trajectory& run, RunEvaluation& e) {
 }
 
 /// Drops what neither the finding nor the confusion reads of a run that has been judged.
-void keep_for_finding(const Scored& scored, bool judged, RunEvaluation& e) {
+void keep_for_finding(const Scored& scored, const Trajectory& run, bool judged, RunEvaluation& e) {
   RunEvaluation kept;
+  if (run.role == Role::train && scored.name == "bank") kept.pit = std::move(e.pit);
   if (judged) kept.log_density = std::move(e.log_density);
   if (judged && scored.name == "bank") {
     kept.innovation.resize(e.innovation.rows(), 0);
@@ -116,7 +117,7 @@ FilterScores score_runs(const Scored& scored, std::vector<FreeRun> free_runs, Ev
   for (const Role role : {Role::train, Role::test}) {
     score_role(scored, role, evaluate, result);
     for (std::size_t i = 0; scored.stream && i < runs.size(); ++i)
-      if (runs[i].role == role) keep_for_finding(scored, role == judged, said.runs[i]);
+      if (runs[i].role == role) keep_for_finding(scored, runs[i], role == judged, said.runs[i]);
   }
   if (!said.free_runs.empty())
     result.free_runs = summarize_free_runs(scored.name, runs, said.free_runs, scored.scoring.free_run);

@@ -49,12 +49,6 @@ Index window_and_lags(const Situation& s) {
   return (length == "auto" ? shortest_automatic_length : std::atoi(length.c_str())) + lags;
 }
 
-/// Where lags were found it is not lags that a model lacks.
-bool may_have_more_lags(const Situation& s) {
-  const std::string model = s.setting("window.model");
-  return (model == "linear" || model == "varx") && s.setting("window.state_lags") != "auto";
-}
-
 bool is_uncertain_wrongly(const Situation& s) {
   return s.bank.verdict == Verdict::overconfident || s.bank.verdict == Verdict::underconfident;
 }
@@ -110,7 +104,7 @@ const Rule rules[] = {
      [](const Situation&) -> std::string {
        return "some windows have no finite fit: `modebank check CONFIG` says which samples are wild";
      }},
-    {[](const Situation& s) { return s.answers(Answer::not_yet); },
+    {[](const Situation& s) { return s.answers(Answer::not_yet) && !s.finding.pattern.told(); },
      [](const Situation&) -> std::string {
        return "log at even steps: a model holds for one step length, and steps that scatter look like modes";
      }},
@@ -133,7 +127,7 @@ const Rule rules[] = {
                             proposed_split(s.archive.recording->runs.front().samples(), window_and_lags(s)));
        return "hold runs out, for only they can be evidence: record another, or name some with --data.test";
      }},
-    {[](const Situation& s) { return errors_follow_a_pattern(s.bank) && may_have_more_lags(s); },
+    {[](const Situation& s) { return s.finding.pattern.told(); },
      [](const Situation& s) {
        return fmt::format("errors follow a pattern, so the model lacks memory: repeat with --window.model auto{}",
                           s.setting("data.lag_s") == "auto" ? "" : ", or with --data.lag_s auto");

@@ -86,8 +86,8 @@ bool is_coarse(const Resolution& state) {
   return state.repeated > repeated_share || state.quantum > coarse_share * state.innovation_sd;
 }
 
-Answer answer_of(const Finding& finding) {
-  if (finding.step_scatter > most_step_scatter) return Answer::not_yet;
+/// Where lags and steps leave nothing to ask first.
+Answer answer_by_scores(const Finding& finding) {
   if (finding.modes < 2 || finding.without_noise) return Answer::one_mode;
   if (!finding.coarse.empty()) return Answer::not_comparable;
   if (finding.gains.empty() || !finding.held_out()) return Answer::cannot_tell;
@@ -98,6 +98,15 @@ Answer answer_of(const Finding& finding) {
   if (!finding.modes_differ) return finding.errors_known ? Answer::no_evidence : Answer::cannot_tell;
   if (any([](const PairedGain& gain) { return !is_beaten(gain); })) return Answer::cannot_tell;
   return finding.stay < finding.stay_asked ? Answer::cannot_tell : Answer::evidence;
+}
+
+/// Competitors share the bank's lags, so that gains over them say little of modes while lags are missing.
+Answer answer_of(const Finding& finding) {
+  if (finding.step_scatter > most_step_scatter) return Answer::not_yet;
+  const Answer answer = answer_by_scores(finding);
+  const bool by_gains = answer == Answer::evidence || answer == Answer::no_evidence ||
+                        (answer == Answer::cannot_tell && finding.held_out());
+  return by_gains && finding.pattern.told() ? Answer::not_yet : answer;
 }
 
 /// How long the bank stays in a mode: one over how often it leaves one. Transitions that see the state are not known
@@ -257,6 +266,7 @@ Finding judge_modes(const FindingInputs& in) {
   finding.modes_differ = modes_differ(in.bank);
   finding.errors_known = errors_known(in.bank);
   finding.step_scatter = in.step_scatter;
+  finding.pattern = in.pattern;
   finding.stay = stay_of(in);
   finding.stay_asked = std::max(fewest_stay, static_cast<double>(in.bank.structure.first_transition() + 1));
   finding.without_noise = leaves_rounding(in);

@@ -21,8 +21,8 @@
 /// prints what stands here.
 namespace modebank {
 
-/// not_yet: a simpler fact has to be settled first (Finding::step_scatter). not_comparable: measurements are so coarse,
-/// or repeated so often, that log densities mean little.
+/// not_yet: a simpler fact has to be settled first (Finding::step_scatter, Finding::pattern). not_comparable:
+/// measurements are so coarse, or repeated so often, that log densities mean little.
 enum class Answer { one_mode, not_comparable, cannot_tell, no_evidence, evidence, not_yet };
 
 template <>
@@ -63,6 +63,15 @@ enum class Doubt {
 /// A description that loses less is as good [nats per sample], as where modes are counted (model_choice.hpp).
 inline constexpr double negligible_gain = 0.02;
 
+/// The part of a bank's errors on its training runs that past errors and inputs predict.
+struct ErrorPattern {
+  double gain = not_a_number;            ///< by predicting errors so, on parts left out [nats/sample]; NaN: unknown
+  double standard_error = not_a_number;  ///< over those parts [nats/sample]
+
+  /// Whether the gain counts, and exceeds two standard errors.
+  bool told() const { return gain >= negligible_gain && gain > 2.0 * standard_error; }
+};
+
 /// What a filter said of the judged runs.
 struct Densities {
   std::string filter;
@@ -98,6 +107,7 @@ struct Finding {
   bool modes_differ = false;       ///< in theta, beyond their errors
   bool errors_known = true;        ///< errors_known of the bank: else modes may differ all the same
   double step_scatter = 0.0;       ///< standard deviation of the time steps over their median
+  ErrorPattern pattern;            ///< of the bank's errors
   double stay = not_a_number;      ///< in a mode, harmonic mean over the samples judged [samples]; NaN: unknown
   double stay_asked = 0.0;         ///< for evidence [samples]
   std::vector<Resolution> coarse;  ///< states for which densities are not comparable
@@ -141,16 +151,18 @@ struct FindingInputs {
   bool one_motion_drifts = false;
   double step_scatter = 0.0;  ///< as in Finding
   std::vector<DiagnosticsRow> diagnostics = {};
+  ErrorPattern pattern = {};
 };
 
-/// not yet: the steps scatter beyond most_step_scatter. one mode: the bank has one, or one linear model leaves no
-/// noise: scores are then those of rounding. evidence: the gain over each competitor is told (paired_gain.hpp) and
-/// not negligible, the modes differ, and they stay for five samples and for the model's memory. no evidence: a
-/// competitor has no lower score, the gain over one is known to be negligible, or all modes have the same theta. cannot
-/// tell: all between, nothing held out, too few samples for a margin, or modes whose errors are not known. Modes that
-/// pass sooner are how noisy inputs and a delay that differs between runs come back: no competitor has them. Where the
-/// bank is not beyond doubt better than the best competitor, better_description is the simplest one that is as good as
-/// both: it loses less than 0.02 nats, or neither a t-test nor Wilcoxon's over runs tells it apart.
+/// not yet: the steps scatter beyond most_step_scatter, or the errors follow a pattern that lags would take away. one
+/// mode: the bank has one, or one linear model leaves no noise: scores are then those of rounding. evidence: the gain
+/// over each competitor is told (paired_gain.hpp) and not negligible, the modes differ, and they stay for five samples
+/// and for the model's memory. no evidence: a competitor has no lower score, the gain over one is known to be
+/// negligible, or all modes have the same theta. cannot tell: all between, nothing held out, too few samples for a
+/// margin, or modes whose errors are not known. Modes that pass sooner are how noisy inputs and a delay that differs
+/// between runs come back: no competitor has them. Where the bank is not beyond doubt better than the best competitor,
+/// better_description is the simplest one that is as good as both: it loses less than 0.02 nats, or neither a t-test
+/// nor Wilcoxon's over runs tells it apart.
 Finding judge_modes(const FindingInputs& in);
 
 }  // namespace modebank

@@ -22,10 +22,14 @@ Eigen::VectorXi likeliest_modes(const RunEvaluation& e) {
 
 }  // namespace
 
+Eigen::MatrixXd normal_scores(const Eigen::MatrixXd& pit) {
+  return pit.unaryExpr([](double value) { return std::isnan(value) ? not_a_number : normal_score(value); });
+}
+
 RunScores score_run(const RunEvaluation& e) {
   RunScores scores;
   scores.likeliest = likeliest_modes(e);
-  scores.z = e.pit.unaryExpr([](double pit) { return std::isnan(pit) ? not_a_number : normal_score(pit); });
+  scores.z = normal_scores(e.pit);
   OutputSeries z(static_cast<std::size_t>(e.pit.rows()));
   for (Eigen::Index k = 0; k < e.log_density.size(); ++k)
     if (!std::isnan(e.log_density(k)))

@@ -20,6 +20,8 @@ struct RunScores {
   double whiteness_p = 0.0;
 };
 RunScores score_run(const RunEvaluation& evaluation);
+/// Phi^-1 of each transform, NaN where there is none.
+Eigen::MatrixXd normal_scores(const Eigen::MatrixXd& pit);
 std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations);
 
 /// Residual tests of a filter's one-step predictions over one run: the residuals are z, and input lag 0 is the input of

@@ -120,6 +120,15 @@ TEST(FindingText, StepsThatScatterClaimNothing) {
                                            Not(HasSubstr("evidence")), Not(HasSubstr("gains"))));
 }
 
+TEST(FindingText, APatternNamesTheKeyThatLooksForLags) {
+  Finding finding = finding_of(Answer::not_yet);
+  finding.pattern = {0.1213, 0.0149};
+  EXPECT_THAT(finding_text(finding),
+              AllOf(HasSubstr("not judged yet: the bank's errors follow a pattern. Lags would gain 0.121 +- 0.015 nats "
+                              "per sample on training runs; `--window.model auto` looks for them."),
+                    Not(HasSubstr("evidence")), Not(HasSubstr("scatter"))));
+}
+
 TEST(FindingText, AnErrorFromBlocksSaysSo) {
   Finding finding = finding_of(Answer::evidence);
   EXPECT_THAT(finding_text(finding), Not(HasSubstr("blocks")));

@@ -289,30 +289,24 @@ TEST_F(NextStep, AnswersHaveTheirs) {
   EXPECT_THAT(advice(), HasSubstr("(one motion with changing noise), which is about as good as drifting: `modebank"));
 }
 
-TEST_F(NextStep, ColouredErrorsAskForMemory) {
-  row().whiteness_p = 1e-6;
-  row().autocorrelation = 0.45;
-  settings["window.state_lags"] = "2";
-  EXPECT_THAT(advice(), AllOf(HasSubstr("--window.model auto"), HasSubstr("--data.lag_s auto")));
+TEST_F(NextStep, APatternInErrorsAsksForMemory) {
+  archive.finding->answer = Answer::not_yet;
+  archive.finding->pattern = {0.12, 0.015};
+  EXPECT_THAT(advice(),
+              AllOf(HasSubstr("--window.model auto"), HasSubstr("--data.lag_s auto"), Not(HasSubstr("even"))));
   settings["data.lag_s"] = "auto";
   EXPECT_THAT(advice(), Not(HasSubstr("lag_s")));
-  settings["window.model"] = "auto";
-  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("window.model"))));
-  settings["window.model"] = "slip";
-  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("window.model"))));
+  archive.finding->answer = Answer::one_mode;
+  EXPECT_THAT(advice(), HasSubstr("--window.model auto")) << "one linear model lacks lags, too";
 }
 
-/// Which of two models that both lack memory predicts better says little.
-TEST_F(NextStep, MemoryComesBeforeASimplerModel) {
+/// Where lags were searched for, or held-out errors alone are coloured, no lag is what the model lacks.
+TEST_F(NextStep, ColouredErrorsWithoutAPatternAskForACheck) {
   row().whiteness_p = 1e-6;
   row().autocorrelation = -0.92;
+  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("window.model"))));
   archive.finding->answer = Answer::no_evidence;
   archive.finding->better_description = "one_motion";
-  EXPECT_THAT(advice(), HasSubstr("--window.model auto"));
-  settings["window.model"] = "auto";
-  EXPECT_THAT(advice(), HasSubstr("use the simpler one_motion"));
-  settings["window.model"] = "varx";
-  settings["window.state_lags"] = "auto";
   EXPECT_THAT(advice(), HasSubstr("use the simpler one_motion"));
 }
 

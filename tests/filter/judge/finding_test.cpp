@@ -39,6 +39,7 @@ struct Case {
   std::vector<Resolution> states{{"wz", 0.0, 0.0, 0.01}};
   double step_scatter = 0.0;
   std::vector<DiagnosticsRow> diagnostics;
+  ErrorPattern pattern;
 
   static Bank with_errors(Bank bank, double error) {
     for (Mode& mode : bank.modes) mode.standard_error = VectorXd::Constant(bank.structure.parameters(), error);
@@ -46,8 +47,8 @@ struct Case {
   }
   Finding judged() const {
     const Densities of_bank = scores_of("bank", bank_gain);
-    return judge_modes(
-        {bank, role, of_bank, competitors, summary, horizons, states, free_runs, false, step_scatter, diagnostics});
+    return judge_modes({bank, role, of_bank, competitors, summary, horizons, states, free_runs, false, step_scatter,
+                        diagnostics, pattern});
   }
 };
 
@@ -258,6 +259,25 @@ TEST(Finding, StepsThatScatterComeBeforeModes) {
   EXPECT_EQ(finding.answer, Answer::not_yet);
   EXPECT_EQ(finding.step_scatter, 0.101);
   EXPECT_TRUE(finding.better_description.empty());
+}
+
+// Gains over competitors that lack the same lags say little of modes. 0.02 nats and two standard errors count.
+TEST(Finding, APatternThatLagsWouldTakeAwayComesBeforeModes) {
+  Case patterned;
+  patterned.pattern = {0.021, 0.01};
+  EXPECT_EQ(patterned.judged().answer, Answer::not_yet);
+  EXPECT_EQ(patterned.judged().description, Description::none);
+  EXPECT_EQ(patterned.judged().pattern.gain, 0.021);
+  patterned.bank_gain = 0.0;
+  EXPECT_EQ(patterned.judged().answer, Answer::not_yet) << "no evidence without the pattern";
+  EXPECT_TRUE(patterned.judged().better_description.empty());
+  patterned.role = Role::train;
+  EXPECT_EQ(patterned.judged().answer, Answer::cannot_tell) << "held-out runs come first";
+  for (const ErrorPattern& small : {ErrorPattern{0.019, 0.001}, ErrorPattern{0.05, 0.026}, ErrorPattern{}}) {
+    Case white;
+    white.pattern = small;
+    EXPECT_EQ(white.judged().answer, Answer::evidence) << small.gain;
+  }
 }
 
 TEST(Finding, CoarseOrRepeatedMeasurementsAreNotJudgedByDensities) {
