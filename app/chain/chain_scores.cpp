@@ -84,6 +84,7 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   archive_.one_motion = std::move(stored.one_motion);
   archive_.drifting = std::move(stored.drifting);
   archive_.nonlinear = std::move(stored.nonlinear);
+  archive_.terms_asked = stored.terms_asked;
   archive_.unrefined = std::move(stored.unrefined);
   archive_.measured_fit = stored.measured_fit;
   archive_.left_out = std::move(stored.left_out);

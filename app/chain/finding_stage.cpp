@@ -117,6 +117,7 @@ std::optional<Finding> find_modes(const Archive& archive) {
     finding.equations = equations(bent.structure, bent.modes.front().model, bent.terms, bent.modes.front().bend,
                                   bent.state_names, bent.input_names);
   }
+  finding.terms_asked = archive.terms_asked || archive.nonlinear;
   finding.text = finding_text(finding);
   return finding;
 }

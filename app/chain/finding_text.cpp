@@ -141,11 +141,6 @@ std::string one_mode_words(const Finding& finding) {
   return text + fmt::format(" Its log scores say little: {}.", coarse_reasons(finding));
 }
 
-bool was_asked(const Finding& finding, const std::string& competitor) {
-  return std::any_of(finding.gains.begin(), finding.gains.end(),
-                     [&](const PairedGain& gain) { return gain.competitor == competitor; });
-}
-
 std::string not_yet_words(const Finding& finding) {
   if (finding.pattern.told())
     return fmt::format(
@@ -175,9 +170,8 @@ std::string answer_words(const Finding& finding) {
                          shows(finding)) +
              least_gain_words(finding) + instead_words(finding);
     case Answer::evidence:
-      return fmt::format("{} evidence for modes of motion: several linear models describe them better than one does{}.",
-                         shows(finding),
-                         was_asked(finding, "nonlinear") ? "" : " (a motion that is nonlinear would show so, too)") +
+      return fmt::format("{} evidence for modes of motion: several linear models describe them better than one does.{}",
+                         shows(finding), finding.terms_asked ? "" : " A single nonlinear motion would look the same.") +
              least_gain_words(finding);
     case Answer::not_yet:
       return not_yet_words(finding);

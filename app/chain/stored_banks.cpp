@@ -80,6 +80,7 @@ StoredBanks read_banks(const std::filesystem::path& path, const Recording& recor
                     {},
                     std::move(stored.nonlinear)};
   if (one_model) return banks;
+  banks.terms_asked = stored.finding && stored.finding->terms_asked;
   banks.unrefined = std::move(stored.unrefined);
   banks.measured_fit = stored.measured_fit;
   banks.left_out = std::move(stored.left_out);

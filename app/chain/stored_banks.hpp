@@ -18,6 +18,7 @@ struct StoredBanks {
   MeasuredFit measured_fit = MeasuredFit::none;
   std::vector<std::string> mode_names = {};
   std::optional<Bank> nonlinear = {};
+  bool terms_asked = false;
   std::vector<LeftOutRow> left_out = {};
 };
 

@@ -113,6 +113,7 @@ struct Finding {
   std::vector<Resolution> coarse;  ///< states for which densities are not comparable
   bool without_noise = false;      ///< one linear model leaves no more of the runs than rounding
   bool one_motion_drifts = false;  ///< the competitor of that name learns within a run, as the bank does
+  bool terms_asked = false;        ///< whether training runs were asked for terms of one nonlinear motion
   std::vector<PairedGain> gains;   ///< of the bank over each competitor
   std::string best_competitor;     ///< of highest log score; empty without competitors
   double gain = 0.0, standard_error = 0.0;  ///< over that one [nats/sample]; NaN where it is not known

@@ -100,6 +100,7 @@ struct Archive {
   std::optional<Bank> one_motion;
   std::optional<DriftingModel> drifting;
   std::optional<Bank> nonlinear = {};
+  bool terms_asked = false;  ///< for nonlinear, whether or not any gained; archives keep Finding::terms_asked
   std::vector<FilterEvaluation> evaluations;
   std::vector<SummaryRow> summary;
   std::vector<HorizonRow> horizons;              ///< with filter.horizon

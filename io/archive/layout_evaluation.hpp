@@ -194,6 +194,7 @@ void exchange_finding(Io& io, F& finding) {
   io.optional_attribute("description", finding.description);
   io.optional_attribute("stay", finding.stay, rule::not_negative_or_missing);
   io.optional_attribute("stay_asked", finding.stay_asked, rule::not_negative);
+  io.attribute_unless(false, "terms_asked", finding.terms_asked);
   io.optional_attribute("pattern_gain", finding.pattern.gain);
   io.optional_attribute("pattern_standard_error", finding.pattern.standard_error, rule::not_negative_or_missing);
   io.attribute("better_description", finding.better_description);

@@ -67,6 +67,7 @@ void expect_same(const Finding& actual, const Finding& expected) {
   EXPECT_EQ(actual.description, expected.description);
   EXPECT_EQ(actual.stay, expected.stay);
   EXPECT_EQ(actual.stay_asked, expected.stay_asked);
+  EXPECT_EQ(actual.terms_asked, expected.terms_asked);
   EXPECT_EQ(actual.pattern.gain, expected.pattern.gain);
   EXPECT_EQ(actual.pattern.standard_error, expected.pattern.standard_error);
   EXPECT_EQ(actual.better_description, expected.better_description);

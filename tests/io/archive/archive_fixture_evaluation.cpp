@@ -130,6 +130,7 @@ Finding make_finding() {
   finding.description = Description::one_linear_motion;
   finding.stay = 7.5;
   finding.stay_asked = 5.0;
+  finding.terms_asked = true;
   finding.pattern = {0.015625, 0.0078125};
   finding.better_description = "noise_only";
   finding.better_means = {{"noise_only", 10, "wz", 0.5, 0.25}};
