@@ -141,6 +141,14 @@ std::string one_mode_words(const Finding& finding) {
   return text + fmt::format(" Its log scores say little: {}.", coarse_reasons(finding));
 }
 
+/// "Over noise_only one nonlinear motion gains +0.210 nats per sample, the bank +0.450."
+std::string both_words(const Finding& finding) {
+  if (finding.over_linear.empty()) return "";
+  return fmt::format(" Over {} one nonlinear motion gains {:+.3f} nats per sample, the bank of {} {:+.3f}.",
+                     finding.over_linear, finding.nonlinear_over_linear, counted(finding.modes, "mode"),
+                     finding.bank_over_linear);
+}
+
 std::string not_yet_words(const Finding& finding) {
   if (finding.pattern.told())
     return fmt::format(
@@ -198,7 +206,7 @@ std::string better_means_words(const Finding& finding) {
 
 std::string finding_text(const Finding& finding) {
   const std::string equation = finding.equations.empty() ? "" : " `modebank show ARCHIVE` prints its equation.";
-  return answer_words(finding) + equation + better_means_words(finding);
+  return answer_words(finding) + both_words(finding) + equation + better_means_words(finding);
 }
 
 }  // namespace modebank

@@ -134,6 +134,24 @@ Description description_of(const Finding& finding, const Bank& bank) {
   return drifts ? Description::one_drifting_motion : Description::one_linear_motion;
 }
 
+/// Gains of modes and of one nonlinear motion over one linear motion, where both count and one describes the runs.
+void set_gains_over_linear(const std::vector<Densities>& competitors, Finding& finding) {
+  const Densities* bent = named(competitors, "nonlinear");
+  const bool one_of_both =
+      finding.description == Description::several_modes || finding.description == Description::one_nonlinear_motion;
+  if (!bent || !one_of_both) return;
+  const PairedGain* over = nullptr;  // the bank gains least over the better one
+  for (const char* name : {"baseline", "noise_only"})
+    if (const PairedGain* gain = gain_over(finding, name); gain && (!over || gain->gain < over->gain)) over = gain;
+  if (!over || !is_beaten(*over)) return;
+  const PairedGain of_bend =
+      paired_gain(over->competitor, bent->of_runs, named(competitors, over->competitor)->of_runs);
+  if (!is_beaten(of_bend)) return;
+  finding.over_linear = over->competitor;
+  finding.bank_over_linear = over->gain;
+  finding.nonlinear_over_linear = of_bend.gain;
+}
+
 /// Whether one linear model's errors are no more than rounding.
 bool leaves_rounding(const FindingInputs& in) {
   for (const SummaryRow& row : in.summary) {
@@ -280,6 +298,7 @@ Finding judge_modes(const FindingInputs& in) {
       finding.answer != Answer::not_comparable && finding.answer != Answer::not_yet && !finding.without_noise;
   if (densities_tell && !beats_the_best(finding)) set_better_description(in.competitors, finding);
   finding.description = description_of(finding, in.bank);
+  set_gains_over_linear(in.competitors, finding);
   if (finding.modes > 1 && !finding.without_noise) finding.better_means = better_means(in);
   return finding;
 }

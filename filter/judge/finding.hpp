@@ -120,6 +120,10 @@ struct Finding {
   Description description = Description::none;
   std::string better_description;  ///< the competitor that describes the runs instead; empty where there is none
   double description_loss = 0.0;   ///< of that one against the best competitor [nats/sample]
+  /// Where one nonlinear motion and several modes each gain over the better of baseline and noise_only, and either
+  /// describes the runs: modes that switch by state and input are both. Else empty.
+  std::string over_linear;
+  double bank_over_linear = 0.0, nonlinear_over_linear = 0.0;  ///< [nats/sample]
   std::vector<BetterMean> better_means;
   std::vector<std::pair<std::string, double>> coefficients;  ///< of one linear model, where that leaves no noise
   std::vector<std::string> equations;  ///< of the nonlinear motion that describes the runs instead

@@ -37,6 +37,18 @@ TEST(FindingText, EvidenceNamesGainErrorAndTheOtherExplanation) {
   EXPECT_THAT(finding_text(finding), Not(HasSubstr("nonlinear"))) << "no term gained on the training runs";
 }
 
+TEST(FindingText, ModesAndABendThatBothGainAreBothNamed) {
+  for (const Answer answer : {Answer::evidence, Answer::no_evidence}) {
+    Finding finding = finding_of(answer);
+    finding.terms_asked = true;
+    finding.over_linear = "noise_only";
+    finding.bank_over_linear = 0.45;
+    finding.nonlinear_over_linear = 0.21;
+    EXPECT_THAT(finding_text(finding), HasSubstr(" Over noise_only one nonlinear motion gains +0.210 nats per sample, "
+                                                 "the bank of 3 modes +0.450."));
+  }
+}
+
 TEST(FindingText, NoEvidenceNamesWhatDescribesTheRunsInstead) {
   Finding finding = finding_of(Answer::no_evidence);
   finding.better_description = "drifting";
