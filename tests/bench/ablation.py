@@ -218,7 +218,7 @@ def table(stages, title, folds, features, pool):
         errors = [r for r in results if isinstance(r, str)]
         print(f"| {name} | " + (errors[0] if errors else cells(results, "bank")) + " |", flush=True)
         if name == features[0][0] and not errors:
-            for competitor in ("noise_only", "one_motion", "drifting", "baseline"):
+            for competitor in [name for name in results[0] if name != "bank" and all(name in rows for rows in results)]:
                 print(f"| competitor: {competitor} | {cells(results, competitor)} |", flush=True)
 
 

@@ -13,7 +13,6 @@ import sys
 import h5py
 import numpy as np
 
-FILTERS = ("bank", "baseline", "noise_only", "one_motion", "drifting")
 SOURCES = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(SOURCES / "tests" / "bench"))
 
@@ -47,6 +46,17 @@ def run(program, config, archive, **options):
 
 def decoded(value):
     return value.decode() if isinstance(value, bytes) else value
+
+
+def filters(archive, *but):
+    """The filters that the archive scored, the bank first and `combined` last, without some."""
+    with h5py.File(archive) as file:
+        return [name for name in map(decoded, file["evaluation"].attrs["filters"]) if name not in but]
+
+
+def title_of(name):
+    """The name of a filter's row beside those of banks."""
+    return "all of them combined" if name == "combined" else f"competitor: {name}"
 
 
 def rows(archive, table, **wanted):

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 
-from benchmark import FILTERS, SOURCES, Arguments, decoded, head, line, numbers, rows, run
+from benchmark import SOURCES, Arguments, decoded, filters, head, line, numbers, rows, run
 from paired import by_run, mean_and_error
 
 PROTOCOL = """ICE and FLOORING by configs/husky_ice.ini, DRIVE by configs/drive_husky.ini, DART by configs/dart.ini; either half of the runs trains. Held-out log score [nats/sample] / RMSE [rad/s];
@@ -36,9 +36,10 @@ def differences(archive, horizon, ours, other):
 
 
 def table_row(name, archive, horizon):
-    pooled = {f: rows(archive, "horizon", role="test", run="*", filter=f, horizon=horizon)[0] for f in (*FILTERS, "combined")}
-    score = max(FILTERS[1:], key=lambda f: pooled[f]["log_score"])
-    rmse = min(FILTERS[1:], key=lambda f: np.mean(np.square(pooled[f]["rmse"])))
+    pooled = {f: rows(archive, "horizon", role="test", run="*", filter=f, horizon=horizon)[0] for f in filters(archive)}
+    competitors = filters(archive, "bank", "combined")
+    score = max(competitors, key=lambda f: pooled[f]["log_score"])
+    rmse = min(competitors, key=lambda f: np.mean(np.square(pooled[f]["rmse"])))
     gain, less = differences(archive, horizon, "combined", score)[0], differences(archive, horizon, "combined", rmse)[1]
     cell = lambda f: f"{pooled[f]['log_score']:.3f} / {numbers(pooled[f]['rmse'], 4)}"  # noqa: E731
     line(name, horizon, cell("bank"), f"{pooled[score]['log_score']:.3f} ({score}) / {numbers(pooled[rmse]['rmse'], 4)} ({rmse})",

@@ -4,7 +4,7 @@ import importlib.util
 import h5py
 import numpy as np
 
-from benchmark import held_out, modes, run
+from benchmark import filters, held_out, modes, run
 
 CONFIG = """[data]
 inputs = {folder}/run_*.csv
@@ -45,7 +45,7 @@ def seed_scores(program, simulate, system, seed, folder, transition="logit"):
     markov, _ = simulate.markov(system, train, test)
     measured = np.concatenate([x[1:] for x, _, _ in test])
     bank, free_run = held_out(archive, "summary", filter="bank"), held_out(archive, "free_run", filter="bank")
-    competitors = [held_out(archive, "free_run", filter=name) for name in ("baseline", "noise_only", "one_motion", "drifting")]
+    competitors = [held_out(archive, "free_run", filter=name) for name in filters(archive, "bank", "combined")]
     return {"system": system.name, "seed": seed, "true_modes": len(system.A), "modes": modes(archive),
             "score": float(bank["log_score"]), "truth": float(np.mean(np.concatenate(one[0]))),
             "markov": float(np.mean(np.concatenate(markov[0]))), "sd": measured.std(0).tolist(),

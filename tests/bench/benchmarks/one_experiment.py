@@ -1,7 +1,7 @@
 """Data of one experiment: the first part trains, the rest is held out, and both together are run free, beside ARX models by least squares."""
 import numpy as np
 
-from benchmark import FILTERS, Failed, head, line, modes, rows, run
+from benchmark import Failed, filters, head, line, modes, rows, run, title_of
 
 CONFIG = """[data]
 inputs = {folder}/part_*.csv
@@ -63,14 +63,14 @@ def gaussian(errors, variance):
 
 def filter_rows(archive, held):
     """`held`: the samples of the held-out part that are scored."""
-    for name in FILTERS:
+    for name in filters(archive):
         if not (one := rows(archive, "summary", filter=name, role="test", run="b")):
             continue
         if one[0]["samples"] != len(held):
             raise Failed(f"{one[0]['samples']} samples are scored, not {len(held)}")
         free = {r["run"]: float(np.atleast_1d(r["fit"])[0]) for r in rows(archive, "free_run", filter=name, role="test")}
         rmse = float(np.atleast_1d(one[0]["rmse"])[0])
-        line(f"bank, {modes(archive)} mode(s)" if name == "bank" else f"competitor: {name}", f"{one[0]['log_score']:.3f}", f"{rmse:.5f}",
+        line(f"bank, {modes(archive)} mode(s)" if name == "bank" else title_of(name), f"{one[0]['log_score']:.3f}", f"{rmse:.5f}",
              f"{100 * (1 - rmse / held.std()):.2f}", f"{free['whole']:.2f}", f"{free['b']:.2f}")
 
 

@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 
-from benchmark import FILTERS, decoded, line, numbers, rows
+from benchmark import decoded, filters, line, numbers, rows
 
 
 def by_run(archive, table, **wanted):
@@ -43,8 +43,8 @@ def main():
         ahead = sorted({int(row["horizon"]) for row in rows(archive, "horizon")})
         for horizon in [1] + [h for h in ahead if h > 1]:
             table = ("summary", {}) if horizon == 1 else ("horizon", {"horizon": horizon})
-            of = {name: by_run(archive, table[0], filter=name, **table[1]) for name in FILTERS}
-            for name in FILTERS:
+            of = {name: by_run(archive, table[0], filter=name, **table[1]) for name in filters(archive)}
+            for name in of:
                 pooled = rows(archive, table[0], role="test", run="*", filter=name, **table[1])
                 if pooled and of[name]:
                     gain = ("", "") if name == "bank" else cells(of["bank"], of[name])
