@@ -6,6 +6,8 @@
 #include "app/report/page/study_page.hpp"
 #include "app/study/answers/answers.hpp"
 #include "app/study/answers/value_groups.hpp"
+#include "filter/judge/finding.hpp"
+#include "filter/step/combined_filter.hpp"
 
 namespace modebank::app::report {
 namespace {
@@ -44,6 +46,15 @@ std::size_t headline_column(const StudyTable& table, const Answers& answers) {
                                   table.score_names.begin());
 }
 
+/// The competitors that trials scored, and all filters combined.
+std::vector<std::string> other_filters(const Answers& answers) {
+  std::vector<std::string> filters(competitor_names.begin(), competitor_names.end());
+  filters.emplace_back(combined_name);
+  std::erase_if(
+      filters, [&](const std::string& filter) { return std::isnan(effect(answers, "", filter + "_train_nis_above")); });
+  return filters;
+}
+
 /// Samples outside the interval over K: the paper's figure 5.
 void add_coverage(const Answers& answers, FigureSet& set) {
   const std::vector<std::string> counts = component_counts(answers);
@@ -54,10 +65,11 @@ void add_coverage(const Answers& answers, FigureSet& set) {
   struct Bar {
     std::string title, filter, value;
   };
-  std::vector<Bar> bars{{"baseline", "baseline", ""},
-                        {"noise only", "noise_only", ""},
-                        {"one motion", "one_motion", ""},
-                        {"drifting", "drifting", ""}};
+  std::vector<Bar> bars;
+  for (const std::string& filter : other_filters(answers)) {
+    bars.push_back({filter, filter, ""});
+    std::replace(bars.back().title.begin(), bars.back().title.end(), '_', ' ');
+  }
   for (const std::string& count : counts) bars.push_back({"K = " + count, "bank", count});
   Figure figure("coverage", assets::figure_coverage());
   std::vector<std::string> titles;

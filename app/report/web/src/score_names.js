@@ -24,8 +24,7 @@ const scoreWords = (score) => words[score] || score.replace(/^rmse_/, 'RMSE ').r
 
 // As axes and choices name it; keys and other columns keep their names.
 export function columnTitle(name) {
-  const filters = ['bank', 'baseline', 'noise_only', 'one_motion', 'drifting', 'nonlinear', 'combined', 'global'];
-  const found = new RegExp(`^(${filters.join('|')})_(test|train)_(.+)$`).exec(name);
+  const found = new RegExp(`^(${Object.keys(shortNames).join('|')})_(test|train)_(.+)$`).exec(name);
   if (!found) return name;
   const [, filter, role, score] = found;
   return `${shortNames[filter]}, ${roles[role]}: ${scoreWords(score)}`;

@@ -1,6 +1,6 @@
 // The paper's figure 5: samples outside the interval, above and below, training and held out, over the values of a key.
 import {choice, controls, h} from './elements.js';
-import {kindNames, sidesOf} from './filters.js';
+import {kindNames, otherFilters, shortNames, sidesOf} from './filters.js';
 import {section} from './page.js';
 import {dashedLine, figure, ink, palette, plain} from './plots.js';
 import {isNumber, mean} from './statistics.js';
@@ -12,14 +12,10 @@ const sides = [['above', 1], ['below', -1]];
 const roles = [['train', 'training', palette.modes[0]], ['test', 'held out', palette.modes[1]]];
 
 // [name, filter, its runs]: competitors over all runs, the bank by level of a key.
-function groupsOf(axis, rows) {
+function groupsOf(axis, filters, rows) {
   const ofLevel = (level) => rows.filter((row) => axis.of(row) === level);
   return [
-    ['baseline', 'baseline', rows],
-    ['noise only', 'noise_only', rows],
-    ['one motion', 'one_motion', rows],
-    ['drifting', 'drifting', rows],
-    ['combined', 'combined', rows],
+    ...filters.map((name) => [shortNames[name], name, rows]),
     ...axis.levels.map((level) => [String(level), 'bank', ofLevel(level)]),
   ];
 }
@@ -64,7 +60,9 @@ function coverageBars(study, groups, measure, [side, sign], [role, name, colour]
  * @param {any[]} rows
  */
 function coverageDrawing(study, axis, [measure, measureName], rows) {
-  const groups = groupsOf(axis, rows), line = {color: ink(), width: 1, dash: 'dash'};
+  const scores = namesOf(study, 'score');
+  const filters = otherFilters.filter((name) => scores.includes(`${name}_train_${sidesOf[measure].above}`));
+  const groups = groupsOf(axis, filters, rows), line = {color: ink(), width: 1, dash: 'dash'};
   const traces = sides.flatMap((side) => roles.map((role) => coverageBars(study, groups, measure, side, role)));
   const layout = {
     height: 380,
