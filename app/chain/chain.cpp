@@ -170,6 +170,10 @@ void Chain::learn_bank(const ChainInputs& inputs) {
       asked.one_model = true;
       listener_.progress("bank: that of baseline, as steps scatter");
     }
+    if (!archive_.noise_only->noise_factor.empty()) {
+      asked.bank.em.noise_by_input = true;
+      if (asked.one_motion) asked.one_motion->bank.em.noise_by_input = true;
+    }
     const LearnedFrom from{*archive_.recording, *archive_.windows, *archive_.mixture, *archive_.baseline};
     const double expected_s = expected_learning_s(*archive_.recording, archive_.windows->structure, asked.bank.em);
     if (asked.bank.refine == Refine::em && !asked.one_model)

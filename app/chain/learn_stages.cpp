@@ -7,6 +7,7 @@
 #include "app/chain/stages.hpp"
 #include "filter/judge/scores.hpp"
 #include "filter/learn/competitors/drifting.hpp"
+#include "filter/learn/competitors/noise_by_input.hpp"
 #include "filter/learn/from_mixture/passing_windows.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/refine/learning_part.hpp"
@@ -51,12 +52,28 @@ DriftingModel drifting(const Recording& recording, const OneModel& of, const Com
   return model;
 }
 
+/// What the competitors' noise follows; empty: nothing.
+NoiseFactor noise_factor(const Recording& recording, const LinearStructure& structure, const CompetitorInputs& inputs,
+                         const Listener& listener) {
+  if (inputs.noise_by_input == NoiseByInput::none) return {};
+  const Stopwatch watch;
+  FoundNoiseFactor found = find_noise_factor(recording, structure, inputs.em.folds, inputs.seed);
+  if (std::isnan(found.gain)) return {};
+  const std::string gain =
+      std::isnan(found.standard_error)
+          ? fmt::format("gains {:.4f} nats/sample on the runs that chose it", found.gain)
+          : fmt::format("gains {:.4f} +- {:.4f} nats/sample left out", found.gain, found.standard_error);
+  listener.progress(fmt::format("noise by input: a factor on all process noise {}: {}, in {:.2f} s", gain,
+                                found.factor.empty() ? "not taken" : "taken", watch.seconds()));
+  return std::move(found.factor);
+}
+
 std::string lags_of(const LinearStructure& s) {
   return fmt::format("({}, {}, {})", s.state_lags, s.input_lags, s.input_delay);
 }
 
 std::optional<Bank> nonlinear(const Recording& recording, const LinearStructure& structure,
-                              const CompetitorInputs& inputs, const Listener& listener) {
+                              const CompetitorInputs& inputs, bool noise_by_input, const Listener& listener) {
   if (inputs.terms == TermsChoice::none) return {};
   const Stopwatch watch;
   const FoundTerms found = find_terms(recording, structure, inputs.window);
@@ -73,7 +90,9 @@ std::optional<Bank> nonlinear(const Recording& recording, const LinearStructure&
     listener.progress(fmt::format("nonlinear: {}: not taken, in {:.2f} s", gain, watch.seconds()));
     return {};
   }
-  Bank bank = learn_nonlinear(recording, found.structure, found.terms, inputs.em, inputs.filter);
+  RefineOptions em = inputs.em;
+  em.noise_by_input = noise_by_input;
+  Bank bank = learn_nonlinear(recording, found.structure, found.terms, em, inputs.filter);
   tell_of_shrinking("nonlinear", bank, listener);
   listener.progress(fmt::format("nonlinear: {}: taken with lags {}, {} noise levels, in {:.2f} s", gain,
                                 lags_of(found.structure), bank.mode_count(), watch.seconds()));
@@ -104,10 +123,11 @@ Competitors learn_competitors(const Recording& all, const WindowFits& windows, c
   Competitors learned{learn_single_filter(recording, linear, inputs.filter, listener), {}, {}};
   learned.drifting =
       drifting(recording, one_model(recording, windows, inputs.window, inputs.drifting), inputs, listener);
-  learned.noise_only = learn_noise_only(recording, linear.structure, learned.baseline.R);
+  const NoiseFactor factor = noise_factor(recording, linear.structure, inputs, listener);
+  learned.noise_only = learn_noise_only(recording, linear.structure, learned.baseline.R, factor);
   if (inputs.filter.noise == FilterNoise::adaptive)
     learned.noise_only.noise_adaptation = most_likely_adaptation(learned.noise_only, recording, inputs.filter, {});
-  learned.nonlinear = nonlinear(recording, linear.structure, inputs, listener);
+  learned.nonlinear = nonlinear(recording, linear.structure, inputs, !factor.empty(), listener);
   return learned;
 }
 

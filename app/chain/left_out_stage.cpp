@@ -44,7 +44,8 @@ Archive learned_on(const Archive& learned, const Recording& training, const Bank
     archive.baseline->modes.front().model = unpack(structure, global_of(structure).theta);
   }
   if (learned.noise_only) {
-    archive.noise_only = learn_noise_only(training, learned.noise_only->structure, archive.baseline->R);
+    archive.noise_only = learn_noise_only(training, learned.noise_only->structure, archive.baseline->R,
+                                          learned.noise_only->noise_factor);
     archive.noise_only->noise_adaptation = learned.noise_only->noise_adaptation;
   }
   if (learned.drifting)

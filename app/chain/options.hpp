@@ -7,6 +7,7 @@
 
 #include "filter/judge/evaluate.hpp"
 #include "filter/judge/free_run.hpp"
+#include "filter/learn/competitors/noise_by_input.hpp"
 #include "filter/learn/learn.hpp"
 #include "ident/fit/options.hpp"
 #include "ident/lag/structure.hpp"
@@ -49,6 +50,7 @@ struct ChainOptions {
   std::vector<std::string> mode_names = {};    ///< of the bank; they change no number
   TermsChoice terms = TermsChoice::automatic;  ///< whether one motion may bend
   OtherLags other_lags = {};
+  NoiseByInput noise_by_input = NoiseByInput::automatic;  ///< whether noise may follow state and input
 };
 
 }  // namespace modebank

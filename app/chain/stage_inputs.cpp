@@ -20,6 +20,17 @@ BankInputs bank_inputs(const ChainOptions& options, const FitOptions& window) {
   return inputs;
 }
 
+/// Asked where all that is learned by it can have it: no logit, no drift, no look ahead, no R that is given or told
+/// from rounding, and an IMM whose noise follows nothing else.
+NoiseByInput noise_by_input(const ChainOptions& options, const FitOptions& window) {
+  const BankOptions& bank = options.bank;
+  const bool can = refinement_asked(bank, is_linear(window)) == Refine::em &&
+                   bank.transition != TransitionSource::logit && !bank.measurement_variance &&
+                   bank.em.drift.how == Drift::none && bank.em.look_ahead == 1 &&
+                   options.filter.variant == FilterVariant::imm && options.filter.noise == FilterNoise::gaussian;
+  return can ? options.noise_by_input : NoiseByInput::none;
+}
+
 CompetitorInputs competitor_inputs(const ChainOptions& options, const FitOptions& window) {
   // A single Kalman filter has no use for rivals that are learned as a bank is.
   const bool rivals = options.filter.variant != FilterVariant::kf;
@@ -33,7 +44,8 @@ CompetitorInputs competitor_inputs(const ChainOptions& options, const FitOptions
           rivals ? options.terms : TermsChoice::none,
           em,
           options.other_lags.linear,
-          options.other_lags.drifting};
+          options.other_lags.drifting,
+          noise_by_input(options, window)};
 }
 
 /// Learned by refinement, whatever makes the bank.

@@ -39,6 +39,7 @@ struct CompetitorInputs {
   RefineOptions em = {};                       ///< how that is learned
   std::optional<Lags> linear = {};             ///< of baseline, noise_only and nonlinear; empty: the windows'
   std::optional<Lags> drifting = {};           ///< of drifting; empty: the windows'
+  NoiseByInput noise_by_input = NoiseByInput::none;  ///< of all but baseline and drifting, and of the bank
 };
 
 /// How the competitor one_motion is learned: as the bank.

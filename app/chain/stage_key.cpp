@@ -79,8 +79,8 @@ MODEBANK_KEY_FIELDS(RefineTuning, checkpoints, falls, forgettings, noise_prior_s
                     R_start_shares, R_start_share_with_theta, least_gain)
 MODEBANK_KEY_FIELDS(DriftOptions, how, rate, start, leak)
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, members, look_ahead,
-                    look_ahead_score, folds, measurement_noise, screen, guards, one_theta, seed, drift, tuning,
-                    transitions)
+                    look_ahead_score, folds, measurement_noise, screen, guards, one_theta, noise_by_input, seed, drift,
+                    tuning, transitions)
 MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, modes,
                     refine, em)
 MODEBANK_KEY_FIELDS(FilterOptions, variant, parameter_noise, time_steps, noise)
@@ -91,7 +91,7 @@ MODEBANK_KEY_FIELDS(SearchedLags, state, input, delay, most_samples)
 MODEBANK_KEY_FIELDS(DataInputs, data)
 MODEBANK_KEY_FIELDS(WindowInputs, window)
 MODEBANK_KEY_FIELDS(MixtureInputs, window, mixture, start_file, start_sha256, seed)
-MODEBANK_KEY_FIELDS(CompetitorInputs, window, filter, horizon, transitions, seed, terms, em, linear, drifting)
+MODEBANK_KEY_FIELDS(CompetitorInputs, window, filter, horizon, transitions, seed, terms, em, linear, drifting, noise_by_input)
 MODEBANK_KEY_FIELDS(OneMotionInputs, bank, filter, horizon, lags)
 MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter, one_motion)
 MODEBANK_KEY_FIELDS(StructureInputs, searched, window, with_modes)

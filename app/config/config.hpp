@@ -85,6 +85,7 @@ struct Config {
   ClusterOptions mixture;
   StructureConfig structure;
   TermsChoice terms = TermsChoice::automatic;
+  NoiseByInput noise_by_input = NoiseByInput::automatic;
   std::string mixture_start;  ///< an archive as mixture.start; empty: none
   BankOptions bank;
   std::vector<std::string> mode_names;

@@ -41,7 +41,8 @@ bool automatic_length_of(const Config& c) {
 
 ChainOptions chain_options(const Config& c) {
   return {data_options_of(c), window_options_of(c), c.mixture,           c.mixture_start,        c.bank,       c.filter,
-          c.scoring,          c.job.seed,           searched_lags_of(c), automatic_length_of(c), c.mode_names, c.terms};
+          c.scoring,          c.job.seed,           searched_lags_of(c), automatic_length_of(c), c.mode_names, c.terms,
+          c.noise_by_input};
 }
 
 namespace {

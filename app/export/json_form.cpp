@@ -153,6 +153,13 @@ ordered filter_json(const ExportedBank& exported) {
                     {"parameter_noise", exported.options.parameter_noise},
                     {"time_steps", name_of(exported.options.time_steps)}};
   result["quantum"] = bank.quantum.size() > 0 ? vector_json(bank.quantum) : ordered(nullptr);
+  result["noise_factor"] = nullptr;
+  if (!bank.noise_factor.empty())
+    result["noise_factor"] = {{"directions", matrix_json(bank.noise_factor.directions)},
+                              {"weights", vector_json(bank.noise_factor.weights)},
+                              {"offset", bank.noise_factor.offset},
+                              {"softening", NoiseFactor::softening},
+                              {"largest", NoiseFactor::largest}};
   result["drift"] = nullptr;
   if (!bank.drift.empty())
     result["drift"] = {{"q", bank.drift.rates.q},

@@ -116,6 +116,10 @@ std::vector<std::string> ExportedBank::remarks() const {
   if (!bank.drift.empty())
     list.emplace_back(
         "the filter lets the modes' coefficients drift within a run: A, B and c are where each run starts");
+  if (!bank.noise_factor.empty())
+    list.emplace_back(
+        "the filter multiplies every Q by a factor between a fifth and five that follows state and input: Q is that of "
+        "factor 1");
   if (!bank.motion_parameters.empty())
     list.push_back(
         fmt::format("A, B and c linearise the motion model {} at each mode's mean state and input", bank.model));

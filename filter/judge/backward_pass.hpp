@@ -100,12 +100,13 @@ class BackwardPass {
   void step(Eigen::Index t, const U& input, Visit visit) {
     next_ = modes;
     weigh_pairs(t, input);
+    const double noise_scale = noise_of_step(t, input);
     for (std::size_t j = 0; j < modes.size(); ++j) {
       history_.get(t, j, filtered_);
       const auto row = static_cast<Eigen::Index>(j);
       for (std::size_t k = 0; k < modes.size(); ++k)
         if (const double weight = weights_(row, static_cast<Eigen::Index>(k)); weight > 0.0) {
-          smooth_pair(filtered_, input, k, history_.noise_scale(t));
+          smooth_pair(filtered_, input, k, noise_scale);
           visit(SmoothedPair<N>{j, k, weight, pairs_[k], next_[k], gain_});
         }
       if (probability(row) > 0.0)
@@ -137,14 +138,26 @@ class BackwardPass {
 
   Eigen::Index n() const { return model_.structure.dimension(); }
 
-  template <class U>
-  const Eigen::MatrixXd& transition_from(Eigen::Index t, const U& input) {
-    if (model_.transition_logit.empty()) return model_.transition.matrix();
+  void combine(Eigen::Index t) {
     combined_.setZero();
     for (std::size_t j = 0; j < modes.size(); ++j) {
       history_.get(t, j, filtered_);
       combined_ += history_.probability(t)(static_cast<Eigen::Index>(j)) * filtered_.mean;
     }
+  }
+
+  /// As the filter has it (imm.hpp).
+  template <class U>
+  double noise_of_step(Eigen::Index t, const U& input) {
+    if (model_.noise_factor.empty()) return history_.noise_scale(t);
+    combine(t);
+    return history_.noise_scale(t) * model_.noise_factor.at(combined_, input);
+  }
+
+  template <class U>
+  const Eigen::MatrixXd& transition_from(Eigen::Index t, const U& input) {
+    if (model_.transition_logit.empty()) return model_.transition.matrix();
+    combine(t);
     return transition_at(model_.transition.matrix(), model_.transition_logit, combined_, input, transition_);
   }
 

@@ -79,7 +79,7 @@ double PathForecast::log_density(const Vector& y) {
     const Eigen::VectorXd mean = centred.rowwise().mean();
     centred.colwise() -= mean;
     const Eigen::MatrixXd S = centred * centred.transpose() / static_cast<double>(in_mode.size()) +
-                              C_ * paths_.step_noise(j) * C_.transpose() + R_;
+                              C_ * paths_.step_noise(j, in_mode) * C_.transpose() + R_;
     log_likelihood(j) = modebank::log_density(StudentNoise(0.0), y - mean, S);
   }
   return paths_.count() > 0 ? bayes(share_, log_likelihood, posterior) : not_a_number;

@@ -2,6 +2,7 @@
 
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -49,11 +50,11 @@ SamplePaths::SamplePaths(const Bank& bank, const FilterOptions& options, Index p
                                                                              : Eigen::MatrixXd());
 }
 
-void SamplePaths::add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to) {
+void SamplePaths::add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to, double scale) {
   boost::random::normal_distribution<double> standard;
   normal_.resize(root.cols());
   for (double& value : normal_) value = standard(generator_);
-  to.noalias() += root * normal_;
+  to.noalias() += scale * (root * normal_);
 }
 
 Index SamplePaths::draw_mode(const Eigen::VectorXd& probability) {
@@ -104,8 +105,13 @@ void SamplePaths::add_terms(Index mode, const Vector& state, const Vector& input
   next_.head(bank_.structure.states) += bank_.modes[static_cast<std::size_t>(mode)].bend * terms_.value();
 }
 
+Eigen::MatrixXd SamplePaths::step_noise(Index mode, const std::vector<Index>& in_mode) const {
+  return noise_factor_(in_mode).mean() * noise_[static_cast<std::size_t>(mode)];
+}
+
 void SamplePaths::step(const Vector& inputs) {
   std::vector<Index> finite;
+  noise_factor_.resize(count());
   for (Index i = 0; i < count(); ++i) {
     Index& mode = modes_[static_cast<std::size_t>(i)];
     row_(mode, states_.col(i), inputs, probability_);
@@ -115,7 +121,8 @@ void SamplePaths::step(const Vector& inputs) {
     if (!bank_.terms.empty()) add_terms(mode, states_.col(i), inputs);
     predicted_.col(i) = next_;
     add_parameter_noise(mode, states_.col(i), inputs);
-    add_draw(noise_root_[static_cast<std::size_t>(mode)], next_);
+    noise_factor_(i) = bank_.noise_factor.empty() ? 1.0 : bank_.noise_factor.at(states_.col(i), inputs);
+    add_draw(noise_root_[static_cast<std::size_t>(mode)], next_, std::sqrt(noise_factor_(i)));
     states_.col(i) = next_;
     if ((states_.col(i).array().abs() < largest_mean).all()) finite.push_back(i);
   }
@@ -129,6 +136,7 @@ void SamplePaths::keep(const std::vector<Index>& which) {
   modes_ = std::move(modes);
   states_ = states_(Eigen::all, which).eval();
   predicted_ = predicted_(Eigen::all, which).eval();
+  noise_factor_ = noise_factor_(which).eval();
 }
 
 }  // namespace modebank

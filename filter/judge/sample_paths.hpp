@@ -36,9 +36,10 @@ class SamplePaths {
   const Eigen::MatrixXd& states() const { return states_; }          ///< n x count
   const Eigen::MatrixXd& predicted() const { return predicted_; }    ///< n x count: before the last step's noise
   const std::vector<Eigen::Index>& modes() const { return modes_; }  ///< count, of the last step
-  const Eigen::MatrixXd& step_noise(Eigen::Index mode) const { return noise_[static_cast<std::size_t>(mode)]; }  ///< Q
-  /// Adds a draw of N(0, root root').
-  void add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to);
+  /// Q of a mode in the last step, the mean over the paths `in_mode`.
+  Eigen::MatrixXd step_noise(Eigen::Index mode, const std::vector<Eigen::Index>& in_mode) const;
+  /// Adds a draw of N(0, scale^2 root root').
+  void add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to, double scale = 1.0);
 
  private:
   Bank bank_;
@@ -48,6 +49,7 @@ class SamplePaths {
   std::vector<Eigen::MatrixXd> noise_, noise_root_;  ///< K, scaled as at the origin
   std::vector<Eigen::MatrixXd> spread_root_;         ///< K; empty: parameters are taken as known
   Eigen::MatrixXd states_, predicted_;
+  Eigen::VectorXd noise_factor_;  ///< of every path in the last step
   std::vector<Eigen::Index> modes_;
   Eigen::VectorXd probability_, regressor_, next_, normal_, deviation_;
   TermValues terms_;

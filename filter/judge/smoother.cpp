@@ -40,15 +40,17 @@ void smooth(const Bank& bank, const Trajectory& run, const FilterOptions& option
   }
 }
 
-/// What the noise of every moment's step was multiplied by in the filter itself; ones unless it adapts.
+/// What the noise of every moment's step was multiplied by in the filter itself; ones unless it adapts or follows state
+/// and input.
 template <int N, int NY>
 Eigen::VectorXd noise_scales(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory) {
   Eigen::VectorXd scales = Eigen::VectorXd::Ones(run.count());
-  if (!model.adaptive) return scales;
+  if (!model.adaptive && model.noise_factor.empty()) return scales;
   FilterStep<N, NY> step(model);
   FilterState<N> state = initial_state(model);
   for (Index t = 0; t < run.count(); ++t) {
-    scales(t) = state.noise_scale;
+    scales(t) =
+        run.instants[static_cast<std::size_t>(t)].starts ? 1.0 : noise_of_step(model, state, run.inputs.col(t), step);
     step_to(model, run, t, trajectory, state, step);
   }
   return scales;

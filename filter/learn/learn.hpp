@@ -28,11 +28,13 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
 
 /// The competitor that switches noise only: one Huber theta, eight log-spaced noise scales, `stay` chosen on the
 /// training runs. Of rounded states theta and the scales go on from there to where their intervals are most likely.
-Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R);
+/// `factor`: on all scales.
+Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
+                      const NoiseFactor& factor = {});
 
 /// The same with another number of noise scales.
 Bank learn_noise_levels(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
-                        Eigen::Index levels);
+                        Eigen::Index levels, const NoiseFactor& factor = {});
 
 /// How the noise scale of a competitor moves in an adaptive filter: what makes the training runs most likely of the
 /// ways that a bank's cross-validation tries. A competitor has so few parameters that nothing need be left out for
@@ -58,7 +60,7 @@ Bank learn_nonlinear(const Recording& recording, const LinearStructure& structur
 /// Banks of one theta with `most` noise levels, and with three quarters as many again and again: where such a learning
 /// starts.
 std::vector<Bank> level_starts(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
-                               Eigen::Index most, double kept);
+                               Eigen::Index most, double kept, const NoiseFactor& factor = {});
 
 /// Turns clustered windows into a bank (method: section 4). `R` is used unless options.measurement_variance is set.
 /// `motion`: the model that the windows were fitted with, null for linear ones; its modes are linearised at their mean

@@ -59,6 +59,15 @@ void check_adaptation(const NoiseAdaptation& adaptation) {
           "noise adaptation starts from " + std::to_string(n0) + " prior samples, must be above 0");
 }
 
+void check_noise_factor(const Bank& bank) {
+  const NoiseFactor& factor = bank.noise_factor;
+  if (factor.empty() && factor.directions.size() == 0) return;
+  expect_size("directions of the noise factor", factor.directions.rows(), factor.directions.cols(),
+              factor.weights.size(), bank.structure.dimension() + bank.structure.acting_inputs());
+  require(factor.directions.allFinite() && factor.weights.allFinite() && std::isfinite(factor.offset),
+          "noise factor is not finite");
+}
+
 /// Coefficients can follow a run only where its states are known.
 void check_drift(const Bank& bank) {
   if (bank.drift.empty()) return;
@@ -72,6 +81,7 @@ void check_drift(const Bank& bank) {
   require((bank.R.array() == 0.0).all(), "drift needs states measured exactly: R must be 0");
   require(bank.C.isIdentity(0.0) && bank.C.rows() == s.states, "drift needs each state measured by itself");
   require(bank.terms.empty(), "drift is of linear coefficients alone, and it has terms");
+  require(bank.noise_factor.empty(), "drift needs noise that does not depend on state and input");
   if (!has_one_theta(bank)) return;
   double weight = 0.0;
   for (const Mode& mode : bank.modes) {
@@ -159,6 +169,7 @@ void validate(const Bank& bank) {
           "weights of the transition are not finite");
   check_terms(bank.terms, bank.structure.regressors());
   check_adaptation(bank.noise_adaptation);
+  check_noise_factor(bank);
   check_drift(bank);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "filter/step/drift_rates.hpp"
+#include "filter/step/noise_factor.hpp"
 #include "filter/step/transition_logit.hpp"
 #include "ident/model/linear_model.hpp"
 #include "ident/model/motion_model.hpp"
@@ -77,6 +78,7 @@ struct Bank {
   NoiseAdaptation noise_adaptation;               ///< for filters whose noise is adaptive
   BankDrift drift;                                ///< how theta of each mode wanders in a run; empty: not at all
   MotionTerms terms = {};                         ///< what bends the modes' motion, the same for all; empty: nothing
+  NoiseFactor noise_factor = {};                  ///< how state and input scale every Q; empty: not at all
   Eigen::MatrixXd R_standard_error;               ///< n_y x n_y; empty unless R was estimated with the bank
   Eigen::MatrixXd transition_standard_error;      ///< K x K; of refined banks, empty otherwise
   Eigen::MatrixXd transition_weight_error;        ///< K x d standard errors of the logit's weights; empty: not known

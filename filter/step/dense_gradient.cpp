@@ -189,7 +189,7 @@ bool has_dense_gradient(const Bank& bank, const FilterOptions& options) {
   const auto has_spread = [](const Mode& mode) { return mode.spread.size() > 0; };
   return (options.variant == FilterVariant::imm || (options.variant == FilterVariant::kf && bank.mode_count() == 1)) &&
          options.noise == FilterNoise::gaussian && !bank.is_quantised() && bank.transition_logit.empty() &&
-         bank.drift.empty() && bank.terms.empty() &&
+         bank.drift.empty() && bank.terms.empty() && bank.noise_factor.empty() &&
          !(options.parameter_noise && std::any_of(bank.modes.begin(), bank.modes.end(), has_spread));
 }
 

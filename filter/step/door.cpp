@@ -51,6 +51,7 @@ std::shared_ptr<const modebank::Bank> inside(const BankDescription& d) {
   bank.input_names = d.input_names;
   bank.dt_s = d.dt_s;
   bank.noise_adaptation = {d.noise_forgetting, d.noise_prior_samples};
+  if (!d.noise_weights.empty()) bank.noise_factor = {view(d.noise_directions), view(d.noise_weights), d.noise_offset};
   bank.drift = {{d.drift_rate, d.drift_start, d.drift_leak}, view(d.drift_scale)};
   validate(bank);
   return std::make_shared<const modebank::Bank>(std::move(bank));
@@ -116,6 +117,9 @@ BankDescription Bank::description() const {
   d.intercept = bank_->structure.intercept;
   d.noise_forgetting = bank_->noise_adaptation.forgetting;
   d.noise_prior_samples = bank_->noise_adaptation.prior_samples;
+  d.noise_directions = to_matrix(bank_->noise_factor.directions);
+  d.noise_weights = to_vector(bank_->noise_factor.weights);
+  d.noise_offset = bank_->noise_factor.offset;
   d.drift_scale = to_vector(bank_->drift.scale);
   d.drift_rate = bank_->drift.rates.q;
   d.drift_start = bank_->drift.rates.p0;

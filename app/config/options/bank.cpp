@@ -12,6 +12,11 @@ std::vector<Option> bank_options() {
            "that holds 60 % of a mode's held-out samples",
            MODEBANK_FIELD(mode_names)),
       words("bank.noise", "process noise Q", MODEBANK_FIELD(bank.noise)),
+      words("bank.noise_by_input",
+            "whether one factor on all process noise, a fifth to five, follows states and inputs: auto: where training "
+            "runs left out gain by it; it is not asked of adaptive noise, rounded or weighted samples, banks that em "
+            "does not refine, modes that drift, a given R, bank.transition = logit or bank.look_ahead above 1",
+            MODEBANK_FIELD(noise_by_input)),
       words("bank.transition",
             "transition matrix from window labels, or bank.stay; logit: as from labels, and in a refined bank a "
             "function of "

@@ -99,6 +99,7 @@ const std::unordered_map<std::string_view, std::string_view>& learning_keys() {
       {"bank.theta", "mean, for the published recipe"},
       {"bank.mode_names", "when you know what the modes are and show the results to others"},
       {"bank.noise", "shared or fixed, to see what the modes' own noise is worth; such a bank is not refined"},
+      {"bank.noise_by_input", "none, for a bank that is exported to C or whose R is looked for"},
       {"bank.transition", "stay, when switches are too few to count; logit, when they depend on where one drives"},
       {"bank.stay", "with transition = stay: 1 - 1/N for a mode that lasts N samples"},
       {"bank.process_variance", "with noise = fixed: the Q you would have tuned by hand"},

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "filter/learn/competitors/noise_levels.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"
@@ -20,10 +21,8 @@
 namespace modebank {
 namespace {
 
-constexpr Index noise_only_levels = 8;  // method: section 6, as all constants here
-constexpr double lowest_quantile = 0.30;
+constexpr double lowest_quantile = 0.30;  // method: section 6, as all constants here
 constexpr double highest_quantile = 0.997;
-constexpr std::array<double, 4> stays{0.7, 0.8, 0.9, 0.95};
 
 /// Variances spaced geometrically between the squared quantiles of |r|, kept positive where most residuals are zero.
 Eigen::VectorXd noise_scales(const Eigen::VectorXd& r, Index levels) {
@@ -38,12 +37,15 @@ Eigen::VectorXd noise_scales(const Eigen::VectorXd& r, Index levels) {
   return Eigen::VectorXd::LinSpaced(levels, log_low, log_high).array().exp();
 }
 
-/// levels x n, one column per state: row j makes mode j's diagonal Q.
+}  // namespace
+
 Eigen::MatrixXd noise_scales_per_state(const Eigen::MatrixXd& residuals, Index levels) {
   Eigen::MatrixXd variances(levels, residuals.cols());
   for (Index i = 0; i < residuals.cols(); ++i) variances.col(i) = noise_scales(residuals.col(i), levels);
   return variances;
 }
+
+namespace {
 
 /// q x n, as RobustRegression has them.
 struct Regression {
@@ -66,10 +68,10 @@ Regression regression(const Recording& recording, const LinearStructure& structu
 void choose_stay(Bank& bank, const Recording& recording) {
   Bank candidate = bank;
   double best = not_a_number;
-  for (const double stay : stays) {
+  for (const double stay : noise_level_stays) {
     set_mode_sequence(candidate, TransitionMatrix::sticky(bank.mode_count(), stay));
     const double likelihood = training_log_likelihood(candidate, recording, FilterOptions{});
-    if (stay != stays.front() && !is_below(best, likelihood)) continue;
+    if (stay != noise_level_stays.front() && !is_below(best, likelihood)) continue;
     best = likelihood;
     bank = candidate;
   }
@@ -78,10 +80,12 @@ void choose_stay(Bank& bank, const Recording& recording) {
 }  // namespace
 
 Bank learn_noise_levels(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
-                        Index levels) {
+                        Index levels, const NoiseFactor& factor) {
   Bank bank = bank_frame(recording, structure, R);
-  const Transitions transitions = unweighted(stack_training(recording, structure));
+  bank.noise_factor = factor;
+  Transitions transitions = unweighted(stack_training(recording, structure));
   if (transitions.count() == 0) throw DataError("no training run has a transition to learn from");
+  divide_by_noise(factor, structure, transitions);
   const Regression fit = regression(recording, structure, transitions);
   const Eigen::MatrixXd variances =
       noise_scales_per_state(transitions.increments - transitions.regressors * fit.coefficients, levels);
@@ -109,8 +113,9 @@ Bank by_intervals(Bank bank, const Recording& recording) {
 
 }  // namespace
 
-Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R) {
-  Bank bank = learn_noise_levels(recording, structure, R, noise_only_levels);
+Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
+                      const NoiseFactor& factor) {
+  Bank bank = learn_noise_levels(recording, structure, R, noise_only_levels, factor);
   return bank.is_quantised() ? by_intervals(std::move(bank), recording) : bank;
 }
 

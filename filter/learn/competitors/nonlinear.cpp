@@ -2,6 +2,7 @@
 #include <utility>
 #include <vector>
 
+#include "filter/learn/competitors/noise_by_input.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"
 #include "filter/learn/learn.hpp"
@@ -85,7 +86,17 @@ SplitParameters split(const VectorXd& all, const LinearStructure& s, Index terms
   return parts;
 }
 
-Bank with_terms(Bank known, const Recording& recording, const LinearStructure& s, const MotionTerms& terms) {
+/// The factor where terms are further inputs, which it does not follow.
+NoiseFactor of_known(NoiseFactor factor, const MotionTerms& terms) {
+  if (factor.empty()) return factor;
+  const Index before = factor.directions.cols();
+  factor.directions.conservativeResize(Eigen::NoChange, before + terms.count());
+  factor.directions.rightCols(terms.count()).setZero();
+  return factor;
+}
+
+Bank with_terms(Bank known, const Recording& recording, const LinearStructure& s, const MotionTerms& terms,
+                const NoiseFactor& factor) {
   const Bank frame = bank_frame(recording, s, known.R);
   std::vector<Mode> modes;
   for (Index k = 0; k < known.mode_count(); ++k) {
@@ -104,6 +115,7 @@ Bank with_terms(Bank known, const Recording& recording, const LinearStructure& s
   known.model = s.lagged() ? "varx" : "linear";
   known.structure = s;
   known.terms = terms;
+  known.noise_factor = factor;
   known.C = frame.C;
   known.state_names = frame.state_names;
   known.input_names = frame.input_names;
@@ -157,11 +169,14 @@ Bank learn_nonlinear(const Recording& recording, const LinearStructure& structur
   em.measurement_noise = false;
   em.max_iterations = std::min(em.max_iterations, most_em_iterations);
   const MatrixXd R = least_measurement_noise(frame, em.tuning).asDiagonal();
+  const NoiseFactor factor = options.noise_by_input ? fit_noise_factor(recording, structure, terms) : NoiseFactor();
   Bank bank =
-      refine_bank(known, frame, level_starts(known, frame.structure, R, most_levels, em.tuning.modes_kept), em, filter)
+      refine_bank(known, frame,
+                  level_starts(known, frame.structure, R, most_levels, em.tuning.modes_kept, of_known(factor, terms)),
+                  em, filter)
           .bank;
   add_wide_level(bank);
-  return with_terms(std::move(bank), recording, structure, terms);
+  return with_terms(std::move(bank), recording, structure, terms, factor);
 }
 
 }  // namespace modebank

@@ -2,6 +2,7 @@
 #include <utility>
 #include <vector>
 
+#include "filter/learn/competitors/noise_by_input.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
@@ -37,10 +38,10 @@ Bank with_noises_of(const Bank& rival, Bank frame, const GlobalModel& global) {
 }  // namespace
 
 std::vector<Bank> level_starts(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
-                               Index most, double kept) {
+                               Index most, double kept, const NoiseFactor& factor) {
   std::vector<Bank> starts;
   for (Index levels = most; levels >= 1; levels = static_cast<Index>(kept * static_cast<double>(levels)))
-    starts.push_back(learn_noise_levels(recording, structure, R, levels));
+    starts.push_back(learn_noise_levels(recording, structure, R, levels, factor));
   return starts;
 }
 
@@ -57,7 +58,8 @@ Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, 
                    options.measurement_variance
                        ? Eigen::MatrixXd(*options.measurement_variance * Eigen::MatrixXd::Identity(R.rows(), R.cols()))
                        : R,
-                   most_levels, em.tuning.modes_kept);
+                   most_levels, em.tuning.modes_kept,
+                   em.noise_by_input ? fit_noise_factor(recording, fits.structure) : NoiseFactor());
   if (rival.mode_count() > 1) starts.push_back(with_noises_of(rival, starts.front(), global));
   Refinement learned = refine_bank(recording, linear_frame(fits, global), starts, em, filter);
   leave_open(learned.bank, global.covariance);

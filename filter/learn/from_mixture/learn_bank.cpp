@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "filter/learn/competitors/noise_by_input.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/memberships.hpp"
 #include "filter/learn/from_mixture/motion_modes.hpp"
@@ -234,7 +235,10 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   }
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   const std::optional<Recording> part = learning_part(recording, em.transitions, em.seed);
-  Refinement refined = refine_bank(part ? *part : recording, fits, starts, em, filter);
+  const Recording& learned = part ? *part : recording;
+  if (em.noise_by_input)
+    for (Bank& start : starts) start.noise_factor = fit_noise_factor(learned, fits.structure);
+  Refinement refined = refine_bank(learned, fits, starts, em, filter);
   if (part) refined.learned_transitions = part->transitions(Role::train);
   return refined;
 }

@@ -1,6 +1,7 @@
 #include "filter/learn/from_mixture/training_transitions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -48,7 +49,22 @@ void check_structure(const Recording& recording, const LinearStructure& s) {
                               std::to_string(recording.input_count()));
 }
 
-TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure) {
+Eigen::VectorXd divide_by_noise(const NoiseFactor& factor, const LinearStructure& structure, Transitions& rows) {
+  if (factor.empty()) return {};
+  Eigen::VectorXd logs(rows.count());
+  const Index n = structure.dimension(), m = structure.acting_inputs();
+  for (Index k = 0; k < rows.count(); ++k) {
+    const auto phi = rows.regressors.row(k);
+    logs(k) = factor.log_at(phi.head(n), phi.segment(n, m));
+    const double root = std::exp(-0.5 * logs(k));
+    rows.regressors.row(k) *= root;
+    rows.increments.row(k) *= root;
+  }
+  return logs;
+}
+
+TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure,
+                                                const NoiseFactor& factor) {
   check_structure(recording, structure);
   const Index N = recording.transitions(Role::train);
   TrainingTransitions all{structure,
@@ -62,6 +78,7 @@ TrainingTransitions gather_training_transitions(const Recording& recording, cons
     all.data.increments.middleRows(rows.first, rows.count) = run.increments;
     if (run.weight.size() > 0) all.data.weight.segment(rows.first, rows.count) = run.weight;
   }
+  all.log_noise_factor = divide_by_noise(factor, structure, all.data);
   blank_unusable(all);
   if (all.usable.sum() == 0.0) throw DataError("no training run has a transition to learn from");
   return all;

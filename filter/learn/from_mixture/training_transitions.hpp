@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "filter/step/noise_factor.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/model/linear_model.hpp"
 #include "ident/model/transitions.hpp"
@@ -24,6 +25,8 @@ struct TrainingTransitions {
   Transitions data;           ///< N rows
   Eigen::VectorXd usable;     ///< N, 0 or the sample weight (1 without; mean 1 over the usable)
   std::vector<RunRows> runs;  ///< training runs, in the recording's order
+  /// N, log of what every row is divided by the root of, which makes the noise of all rows alike; empty: nothing.
+  Eigen::VectorXd log_noise_factor = {};
 
   Index count() const { return data.count(); }
 };
@@ -32,7 +35,12 @@ struct TrainingTransitions {
 void check_structure(const Recording& recording, const LinearStructure& structure);
 
 /// Throws as check_structure does, and DataError when no training run has a usable transition.
-TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure);
+/// `factor`: rows are divided by its root, so that least squares and expectation-maximisation know of no factor.
+TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure,
+                                                const NoiseFactor& factor = {});
+
+/// Divides every row by the root of its noise factor. Returns the factors' logarithms, N; empty without a factor.
+Eigen::VectorXd divide_by_noise(const NoiseFactor& factor, const LinearStructure& structure, Transitions& rows);
 
 /// What a regression needs to know of weighted transitions: sums over them, r being the residual (increment minus
 /// prediction) of whatever coefficients the sums are taken about, g the weight of a transition.

@@ -70,7 +70,9 @@ std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordi
   const Recording& recording = samples.part ? *samples.part : target.recording;
   const SampleGradients gradients =
       is_exact(target, around)
-          ? exact_sample_gradients(around, steps, gather_training_transitions(recording, around.origin().structure))
+          ? exact_sample_gradients(
+                around, steps,
+                gather_training_transitions(recording, around.origin().structure, around.origin().noise_factor))
           : sample_gradients(around, steps, recording, target.filter);
   const Eigen::MatrixXd information = samples.factor * gradients.information + prior_information(around, *target.prior);
   if (!information.allFinite()) return std::nullopt;

@@ -26,7 +26,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 /// What is searched, with units from the sums of expectation-maximisation.
 FreeParameters free_parameters(const RefineInput& in, const Recording& recording, const SwitchingPrior& prior,
                                bool R_estimated, const Bank& bank) {
-  const TrainingTransitions transitions = gather_training_transitions(recording, bank.structure);
+  const TrainingTransitions transitions = gather_training_transitions(recording, bank.structure, bank.noise_factor);
   const SwitchingSums sums = sum_transitions(transitions, smooth_modes(transitions, switching_model(bank)), prior);
   return all_parameters(bank, sums, prior, in.options.one_theta, R_estimated,
                         least_measurement_noise(in.fits, in.options.tuning));

@@ -274,7 +274,9 @@ MeasuredBank fit_untimed(const RefineInput& in, const CrossValidation& validatio
   MeasuredBank fit{bank, {}, prior};
   std::optional<MeasuredSplits> splits;
   if (validation.possible()) splits.emplace(in, validation, chosen, bank.noise_adaptation);
-  const bool with_R = in.options.measurement_noise && bank.structure.state_lags <= most_lags_beside_R;
+  // The gradients that R is searched by know of no noise that follows the state.
+  const bool with_R =
+      in.options.measurement_noise && bank.structure.state_lags <= most_lags_beside_R && bank.noise_factor.empty();
   const bool quantised = bank.is_quantised();
   const bool asks_for_R = !with_R || quantised || take_R(in, prior, splits, fit);
   if (asks_for_R && (with_R || quantised ||

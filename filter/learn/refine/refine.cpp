@@ -106,7 +106,7 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
     throw std::invalid_argument("a bank of the motion model " + banks.front().model +
                                 " cannot be refined, a linear one can");
   const Bank frame = frame_of(banks.front(), fits, options);
-  const TrainingTransitions transitions = gather_training_transitions(recording, frame.structure);
+  const TrainingTransitions transitions = gather_training_transitions(recording, frame.structure, frame.noise_factor);
   const RefineInput in{recording, fits, frame, transitions, options, filter};
 
   const CrossValidation validation = cross_validate(in, banks);

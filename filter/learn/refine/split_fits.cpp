@@ -15,7 +15,8 @@ namespace modebank {
 std::vector<SplitData> split_data(const RefineInput& in) {
   std::vector<SplitData> splits;
   for (ValidationSplit& split : validation_splits(in.recording, in.options.folds, in.options.tuning)) {
-    TrainingTransitions transitions = gather_training_transitions(split.training, in.frame.structure);
+    TrainingTransitions transitions =
+        gather_training_transitions(split.training, in.frame.structure, in.frame.noise_factor);
     GlobalModel global = fit_global(split.training, in.frame.structure);
     splits.push_back({std::move(split), std::move(transitions), std::move(global)});
   }

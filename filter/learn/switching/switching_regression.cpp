@@ -24,7 +24,11 @@ Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eige
       transitions.data.increments - transitions.data.regressors * coefficients(transitions.structure, theta);
   const Eigen::MatrixXd whitened = Cholesky(Q).whiten(Eigen::MatrixXd(r.transpose()));
   const double constant = static_cast<double>(Q.rows()) * std::log(2.0 * std::numbers::pi) + log_determinant(Q);
-  return (-0.5 * (whitened.colwise().squaredNorm().array() + constant)).transpose() * transitions.usable.array();
+  Eigen::ArrayXd log_density = -0.5 * (whitened.colwise().squaredNorm().array() + constant).transpose();
+  if (transitions.log_noise_factor.size() > 0)  // of rows as they were before they were divided
+    log_density -= (transitions.usable.array() > 0.0)
+                       .select(0.5 * static_cast<double>(Q.rows()) * transitions.log_noise_factor.array(), 0.0);
+  return log_density * transitions.usable.array();
 }
 
 /// N x K.

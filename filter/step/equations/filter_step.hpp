@@ -70,7 +70,7 @@ template <int N, int NY, class U>
 void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u, FilterStep<N, NY>& step) {
   if (step.pairs()) return gpb::predict_pairs(model, state, u, step);
   if (model.drift.on()) return drift::predict_modes(model, state, mix(model, state, u, step), u, step);
-  predict_modes(model, mix(model, state, u, step), state.noise_scale, u, step);
+  predict_modes(model, mix(model, state, u, step), noise_of_step(model, state, u, step), u, step);
 }
 
 /// A missing measurement: the prediction is all there is.

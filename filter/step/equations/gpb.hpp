@@ -25,11 +25,12 @@ void predict_pairs(const FilterModel<N, NY>& model, const FilterState<N>& state,
   const Eigen::MatrixXd& T = transition_of_step(model, state, u, step);
   mixing_weights(T, state.mode_probability, step.predicted_probability, step.mixing);
   const std::size_t K = model.modes.size();
+  const double noise_scale = noise_of_step(model, state, u, step);
   for (std::size_t j = 0; j < K; ++j)
     for (std::size_t i = 0; i < K; ++i) {
       const auto from = static_cast<Eigen::Index>(i), to = static_cast<Eigen::Index>(j);
       step.pair_probability(to * static_cast<Eigen::Index>(K) + from) = T(from, to) * state.mode_probability(from);
-      step.kalman[j * K + i].predict(state.modes[i], model, model.modes[j], u, state.noise_scale);
+      step.kalman[j * K + i].predict(state.modes[i], model, model.modes[j], u, noise_scale);
       step.kalman[j * K + i].expect(model);
     }
 }

@@ -55,6 +55,7 @@ struct FilterStep {
   Eigen::VectorXd log_likelihood;          ///< of each hypothesis
   PartialSensor<N, NY> partial;            ///< of the last measurement; `missing` is 0 when that was whole
   Eigen::Matrix<double, N, 1> difference;  ///< workspace of size n
+  double noise_factor = 1.0;               ///< NoiseFactor of the last prediction
   Eigen::Matrix<double, NY, 1> residual;   ///< workspace of size n_y
 
   DriftWorkspace<N, NY> drift;  ///< of modes that drift; empty otherwise
@@ -92,15 +93,31 @@ struct FilterStep {
   const Eigen::VectorXd& hypothesis_probability() const { return pairs() ? pair_probability : predicted_probability; }
 };
 
+template <int N>
+void combine_means(const FilterState<N>& state, Eigen::Matrix<double, N, 1>& mean) {
+  mean.setZero();
+  for (std::size_t i = 0; i < state.modes.size(); ++i)
+    mean += state.mode_probability(static_cast<Eigen::Index>(i)) * state.modes[i].mean;
+}
+
+/// What multiplies every mode's Q in the step that starts from `state` under the acting inputs `u`: the noise scale,
+/// and the noise factor at the combined estimate, which is exact where the state is measured exactly.
+template <int N, int NY, class U>
+double noise_of_step(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
+                     FilterStep<N, NY>& step) {
+  if (model.noise_factor.empty()) return state.noise_scale;
+  combine_means(state, step.difference);
+  step.noise_factor = model.noise_factor.at(step.difference, u);
+  return state.noise_scale * step.noise_factor;
+}
+
 /// T of the step that starts from `state` under the acting inputs `u`: for a logit at the combined estimate, which is
 /// exact where the state is measured exactly.
 template <int N, int NY, class U>
 const Eigen::MatrixXd& transition_of_step(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
                                           FilterStep<N, NY>& step) {
   if (model.transition_logit.empty()) return model.transition.matrix();
-  step.difference.setZero();
-  for (std::size_t i = 0; i < state.modes.size(); ++i)
-    step.difference += state.mode_probability(static_cast<Eigen::Index>(i)) * state.modes[i].mean;
+  combine_means(state, step.difference);
   return transition_at(model.transition.matrix(), model.transition_logit, step.difference, u, step.transition);
 }
 

@@ -40,6 +40,7 @@ struct FilterModel {
   Eigen::Matrix<double, N, N> start_covariance;         ///< P[0]
   DriftModel drift;                                     ///< how the modes' coefficients wander
   MotionTerms terms;                                    ///< what bends the motion; empty: nothing
+  NoiseFactor noise_factor;                             ///< on every mode's Q; empty: one
   /// Rows of every F that are no shift of older samples by one: the measured states where there are lags, else n.
   Eigen::Index full_rows;
   /// Columns of C that are not zero, all others being to their right.
@@ -75,7 +76,8 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
       transition_logit(bank.transition_logit),
       initial_probability(bank.initial_probability),
       drift(bank),
-      terms(bank.terms) {
+      terms(bank.terms),
+      noise_factor(bank.noise_factor) {
   if (variant == FilterVariant::kf && bank.mode_count() != 1)
     throw std::invalid_argument("a Kalman filter (kf) steps a bank of one mode, this one has " +
                                 std::to_string(bank.mode_count()));
@@ -83,6 +85,8 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
     throw std::invalid_argument("the paper's equations (salvi2025) know no switching by state and input");
   if (variant == FilterVariant::salvi2025 && quantised)
     throw std::invalid_argument("the paper's equations (salvi2025) know no quantised measurements");
+  if (variant == FilterVariant::salvi2025 && !noise_factor.empty())
+    throw std::invalid_argument("the paper's equations (salvi2025) know no noise that follows state and input");
   if (quantised) quantum = bank.quantum;
   if (drift.on() && variant != FilterVariant::imm && variant != FilterVariant::kf)
     throw std::invalid_argument("modes that drift are filtered by imm or kf, not by " + std::string(name_of(variant)));

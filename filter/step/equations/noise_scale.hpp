@@ -90,7 +90,7 @@ void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::Ve
     if (!(weight > 0.0)) continue;
     // The errors of coefficients that drift are known in units of the noise: the scale is theirs, too.
     const auto& Q = model.drift.on() ? step.kalman[h].process_noise : model.modes[h / per_mode].Q;
-    const double scaled = model.drift.on() ? weight : weight * s;
+    const double scaled = model.drift.on() ? weight : weight * s * step.noise_factor;
     total += weight;
     if (sensor.quantised) {
       const IntervalSums sums = interval_sums(sensor, Q, step.kalman[h], largest_standardised * largest_standardised);

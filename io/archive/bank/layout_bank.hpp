@@ -85,6 +85,9 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.field("initial_probability", stored.initial_probability, {"K"}, {}, rule::probabilities);
   io.optional_field("drift_scale", stored.drift_scale, {"regressors"}, {}, rule::positive);
   io.optional_field("drift_rates", stored.drift_rates, {"rates"}, {}, rule::not_negative);
+  io.optional_field("noise_directions", stored.noise_directions, {"noise_features", "features"}, {}, rule::finite);
+  io.optional_field("noise_weights", stored.noise_weights, {"noise_features"}, {}, rule::finite);
+  io.attribute_unless(0.0, "noise_offset", stored.noise_offset, rule::finite);
   exchange_terms(io, stored);
   io.optional_field("motion_parameters", stored.motion_parameters, {"K", "p_motion"}, motion, rule::finite);
   io.optional_field("motion_standard_error", stored.motion_standard_error, {"K", "p_motion"}, motion, error);

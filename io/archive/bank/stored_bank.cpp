@@ -212,6 +212,11 @@ StoredBank store_bank(const Bank& bank) {
   store_terms(bank.terms, stored);
   stored.quantum = bank.quantum;
   stored.initial_probability = bank.initial_probability;
+  if (const NoiseFactor& factor = bank.noise_factor; !factor.empty()) {
+    stored.noise_directions = factor.directions.transpose();
+    stored.noise_weights = factor.weights;
+    stored.noise_offset = factor.offset;
+  }
   if (const DriftRates& rates = bank.drift.rates; !bank.drift.empty()) {
     stored.drift_scale = bank.drift.scale;
     stored.drift_rates = Eigen::Vector3d(rates.q, rates.p0, rates.leak);
@@ -246,6 +251,7 @@ Bank restore_bank(const StoredBank& stored, Bank bank) {
   bank.quantum = stored.quantum;
   bank.initial_probability = stored.initial_probability;
   bank.drift = restore_drift(stored);
+  bank.noise_factor = {stored.noise_directions.transpose(), stored.noise_weights, stored.noise_offset};
   validate(bank);
   return bank;
 }

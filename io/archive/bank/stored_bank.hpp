@@ -76,8 +76,11 @@ struct StoredBank {
   Eigen::VectorXd quantum;                    ///< n_y, empty without
   Eigen::MatrixXd transition;                 ///< transposed
   Eigen::VectorXd initial_probability;
-  Eigen::VectorXd drift_scale;  ///< r, empty unless modes drift
-  Eigen::VectorXd drift_rates;  ///< q, p0, leak; empty unless modes drift
+  Eigen::VectorXd drift_scale;       ///< r, empty unless modes drift
+  Eigen::VectorXd drift_rates;       ///< q, p0, leak; empty unless modes drift
+  Eigen::MatrixXd noise_directions;  ///< (n+m) x d; empty unless noise follows state and input
+  Eigen::VectorXd noise_weights;     ///< d
+  double noise_offset = 0.0;
   // Terms; all empty without.
   std::vector<std::string> term_kinds;             ///< T
   Eigen::MatrixXd term_variables;                  ///< 3 x T positions, -1 where there is none

@@ -223,6 +223,7 @@ const std::map<std::string, std::string> without_effect{
     {"mixture.windows", "every choice takes the same windows (cause not looked into)"},
     {"mixture.straddling", "every choice treats all windows alike (cause not looked into)"},
     {"bank.mode_names", "people's names of what was learned are no stage's"},
+    {"bank.noise_by_input", "noise follows no input, or em does not refine"},
     {"bank.screen", "no mode is left out"},
     {"bank.members", "the number of members changed no bank (cause not looked into)"},
     {"bank.tolerance", "two iterations are the limit"},

@@ -245,6 +245,9 @@ void expect_same(const Bank& actual, const Bank& expected) {
   EXPECT_TRUE(same_bits(actual.transition_standard_error, expected.transition_standard_error));
   EXPECT_EQ(actual.noise_adaptation.forgetting, expected.noise_adaptation.forgetting);
   EXPECT_EQ(actual.noise_adaptation.prior_samples, expected.noise_adaptation.prior_samples);
+  EXPECT_TRUE(same_bits(actual.noise_factor.directions, expected.noise_factor.directions));
+  EXPECT_TRUE(same_bits(actual.noise_factor.weights, expected.noise_factor.weights));
+  EXPECT_EQ(actual.noise_factor.offset, expected.noise_factor.offset);
   EXPECT_TRUE(same_bits(actual.drift.scale, expected.drift.scale));
   EXPECT_EQ(actual.drift.rates, expected.drift.rates);
   EXPECT_EQ(actual.state_names, expected.state_names);

@@ -89,6 +89,21 @@ TEST(ArchiveRoundTrip, TermsComeBackOrAreRefused) {
   EXPECT_THROW(read_archive(folder.path() / "a.h5"), DataError);
 }
 
+TEST(ArchiveRoundTrip, NoiseThatFollowsStateAndInputComesBackOrIsRefused) {
+  Archive archive = full_archive(2, 1);
+  const LinearStructure& s = archive.bank->structure;
+  archive.bank->transition_logit = {};
+  archive.bank->transition_weight_error.resize(0, 0);
+  archive.bank->noise_factor = {Eigen::MatrixXd::Random(3, s.dimension() + s.acting_inputs()),
+                                Eigen::Vector3d(0.5, -0.25, 0.125), 0.75};
+  archive.noise_only->noise_factor = archive.bank->noise_factor;
+  expect_same(round_trip(archive), archive);
+  const test::TemporaryFolder folder;
+  archive.bank->noise_factor.directions.conservativeResize(2, Eigen::NoChange);
+  write_archive(folder.path() / "a.h5", archive);
+  EXPECT_THROW(read_archive(folder.path() / "a.h5"), DataError);
+}
+
 TEST(ArchiveRoundTrip, ModesThatDriftComeBackOrAreRefused) {
   Archive archive = full_archive(2, 1);
   archive.bank->R.setZero();

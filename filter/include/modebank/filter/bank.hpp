@@ -48,6 +48,11 @@ struct BankDescription {
   bool intercept = false;                    ///< whether c is part of theta
   double noise_forgetting = 0.98;            ///< of the adaptive noise scale, per sample, in (0, 1]
   double noise_prior_samples = 5.0;          ///< samples at scale one that a run's start is worth, > 0
+  /// Where state and input scale every Q: d x (n + acting inputs). A step from z under v has Q times exp(sum_i
+  /// weights_i log(|directions_i [z; v]| + 0.1) - offset), bounded to between a fifth and five; empty: Q itself.
+  Matrix noise_directions;
+  std::vector<double> noise_weights;  ///< d
+  double noise_offset = 0.0;
   /// Of modes whose theta follows the run: a size per regressor [z; v; (1)], in whose units it wanders; empty: it
   /// stays.
   std::vector<double> drift_scale;

@@ -90,9 +90,10 @@ struct RefineOptions {
   bool screen = true;             ///< take unstable, starved and duplicate modes out
   bool guards = false;            ///< switches may see state and input (TransitionSource::logit)
   bool one_theta = false;         ///< all modes have the same theta and differ in Q: the rival that knows one motion
-  std::uint64_t seed = 1;         ///< of the random starts
-  DriftOptions drift;             ///< whether theta of each mode follows a run
-  RefineTuning tuning;            ///< what has no key in configurations
+  bool noise_by_input = false;  ///< every Q times one factor that follows state and input; R then stays as good as none
+  std::uint64_t seed = 1;       ///< of the random starts
+  DriftOptions drift;           ///< whether theta of each mode follows a run
+  RefineTuning tuning;          ///< what has no key in configurations
   std::ptrdiff_t transitions = 200000;  ///< learn from so many at most, stretches of the runs drawn with the seed; 0:
                                         ///< from all
 

@@ -14,7 +14,7 @@ using vector_imm::count_of;
 using vector_imm::row_multiple;
 
 bool VectorGradient::can_step(const Bank& bank, const FilterOptions& options) {
-  return VectorImm::can_step(bank, options) &&
+  return VectorImm::can_step(bank, options) && bank.noise_factor.empty() &&
          vector_imm::reverse(count_of(bank.structure.dimension()), count_of(bank.C.rows())) != nullptr;
 }
 

@@ -54,6 +54,7 @@ VectorImm::VectorImm(const Bank& bank, const FilterOptions& options)
       quantum_(bank.is_quantised() ? bank.quantum : Eigen::VectorXd()),
       partial_quantum_(quantum_),
       adaptation_(bank.noise_adaptation),
+      factor_(bank.noise_factor),
       kernels_(vector_imm::kernels(count_of(n_), count_of(n_y_))),
       C_(bank.C.transpose()),
       R_(bank.R.transpose()),
@@ -148,12 +149,26 @@ void VectorImm::start(const Vector& y) {
   noise_samples_ = adaptation_.prior_samples;
 }
 
+/// noise_of_step of imm.hpp. start_ is free between starts.
+double VectorImm::scale_of_step(const Vector& v) {
+  if (factor_.empty()) return noise_scale_;
+  for (Index a = 0; a < n_; ++a) {
+    double sum = 0.0;
+    for (Index j = 0; j < K_; ++j) sum += rows_.probability[j] * rows_.mean[at(a, j)];
+    start_(a) = sum;
+  }
+  return noise_scale_ * factor_.at(start_, v);
+}
+
 void VectorImm::skip(const Vector& v) {
-  kernels_.predict(rows_, sensor_, v.data(), noise_scale_);
+  predict(v);
   kernels_.skip(rows_);
 }
 
-void VectorImm::predict(const Vector& v) { kernels_.predict(rows_, sensor_, v.data(), noise_scale_); }
+void VectorImm::predict(const Vector& v) {
+  applied_scale_ = scale_of_step(v);
+  kernels_.predict(rows_, sensor_, v.data(), applied_scale_);
+}
 
 /// As PartialSensor: a missing signal is one that is always zero, of variance one, unrelated to anything.
 vector_imm::Sensor VectorImm::detach_missing(const Vector& y, Index missing) {
@@ -185,7 +200,7 @@ double VectorImm::update(const Vector& y) {
     sensor = detach_missing(y, missing);
     kernels_.expect(rows_, sensor);
   }
-  last_ = kernels_.update(rows_, sensor, missing > 0 ? y_.data() : y.data(), adaptive_ ? noise_scale_ : 0.0);
+  last_ = kernels_.update(rows_, sensor, missing > 0 ? y_.data() : y.data(), adaptive_ ? applied_scale_ : 0.0);
   if (adaptive_) move_noise_scale(adaptation_, last_.share, last_.square, sensor.signals, noise_scale_, noise_samples_);
   return last_.log_density + half_log_two_pi * static_cast<double>(missing);
 }
@@ -194,7 +209,9 @@ void VectorImm::follow(const Columns& inputs, const Columns& measurements, Eigen
   const Index samples = measurements.cols();
   for (Index k = 0; k < samples;) {
     Index end = k;  // of the whole samples from k on
-    while (!adaptive_ && !sensor_.quantum && end < samples && missing_entries(measurements.col(end)) == 0) ++end;
+    while (!adaptive_ && factor_.empty() && !sensor_.quantum && end < samples &&
+           missing_entries(measurements.col(end)) == 0)
+      ++end;
     if (end > k) {
       kernels_.follow(rows_, sensor_,
                       {inputs.col(k).data(), measurements.col(k).data(), count_of(end - k), log_density.data() + k});

@@ -51,6 +51,8 @@ class VectorImm final : public Stepper {
   bool adaptive_;
   Eigen::VectorXd quantum_, partial_quantum_;  // empty: nothing is quantised
   NoiseAdaptation adaptation_;
+  NoiseFactor factor_;                              // empty: one
+  double applied_scale_ = 1.0;                      // of the last prediction: noise_scale_ times the factor
   double noise_scale_ = 1.0, noise_samples_ = 0.0;  // of FilterMemory
   vector_imm::UpdateResult last_;                   // update's
   vector_imm::Kernels kernels_;
@@ -68,6 +70,7 @@ class VectorImm final : public Stepper {
     return static_cast<std::size_t>(i) * rows_.stride + static_cast<std::size_t>(j);
   }
   Eigen::Map<const Eigen::VectorXd> row(const double* first) const { return {first, K_}; }
+  double scale_of_step(const Vector& v);
   void lay_out();
   void fill(const Bank& bank);
   vector_imm::Sensor detach_missing(const Vector& y, Eigen::Index missing);

@@ -1,0 +1,217 @@
+#include "filter/learn/competitors/noise_by_input.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "filter/learn/competitors/noise_levels.hpp"
+#include "filter/learn/from_mixture/training_transitions.hpp"
+#include "filter/learn/refine/folds.hpp"
+#include "filter/learn/refine/learning_part.hpp"
+#include "filter/learn/switching/switching_regression.hpp"
+#include "ident/base/clustered_error.hpp"
+#include "ident/base/linalg.hpp"
+#include "ident/base/sample_quantile.hpp"
+#include "ident/fit/robust_regression.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index most_transitions = 20'000;
+constexpr double least_gain_by_input = 0.02, significance = 2.0;
+constexpr double nu = 5.0;                // of the residuals' Student t
+constexpr double ridge = 4.0;             // one sample's information about each standardised logarithm
+constexpr double largest_exponent = 6.0;  // of a scale while it is searched
+constexpr int most_scoring_steps = 25;
+
+/// What noise may follow, one row each over [z; v]. `coefficients`: q x n.
+MatrixXd candidate_directions(const LinearStructure& s, const MatrixXd& coefficients) {
+  const Index n = s.dimension(), m = s.acting_inputs();
+  const bool changes = s.input_lags > 1, sums = m > 1;  // one input alone is its own sum
+  MatrixXd D = MatrixXd::Zero(s.states + s.inputs + (changes ? s.inputs : 0) + (sums ? s.states : 0), n + m);
+  Index row = 0;
+  for (Index i = 0; i < s.states; ++i) D(row++, i) = 1.0;
+  for (Index i = 0; i < s.inputs; ++i) D(row++, n + i) = 1.0;
+  for (Index i = 0; changes && i < s.inputs; ++i) {
+    D(row, n + i) = 1.0;
+    D(row++, n + s.inputs + i) = -1.0;
+  }
+  for (Index o = 0; sums && o < s.states; ++o) D.row(row++).tail(m) = coefficients.col(o).segment(n, m).transpose();
+  return D;
+}
+
+/// Residuals over a robust scale of each column; columns of zeros are left out.
+MatrixXd standardised(const MatrixXd& residuals) {
+  std::vector<Index> kept;
+  MatrixXd E = residuals;
+  for (Index i = 0; i < E.cols(); ++i) {
+    std::vector<double> sizes(static_cast<std::size_t>(E.rows()));
+    VectorXd::Map(sizes.data(), E.rows()) = E.col(i).cwiseAbs();
+    std::sort(sizes.begin(), sizes.end());
+    const double sd = std::sqrt(E.col(i).squaredNorm() / static_cast<double>(E.rows()));
+    const double scale = std::max(1.4826 * sample_quantile(sizes, 0.5), 0.05 * sd);
+    if (!(scale > 0.0)) continue;
+    E.col(i) /= scale;
+    kept.push_back(i);
+  }
+  return E(Eigen::all, kept);
+}
+
+/// g of scales exp(z'g), whose last column of z is one: Fisher scoring of a Student t with a small ridge.
+VectorXd fit_scales(const MatrixXd& z, const MatrixXd& E) {
+  VectorXd g = VectorXd::Zero(z.cols());
+  const double per_sample = 2.0 * nu / (nu + 3.0) * static_cast<double>(E.cols());
+  MatrixXd information = per_sample * z.transpose() * z;
+  information.diagonal().array() += ridge;
+  const Cholesky factor(information);
+  for (int step = 0; step < most_scoring_steps && factor.definite(); ++step) {
+    const Eigen::ArrayXd inverse = (-2.0 * (z * g).array().max(-largest_exponent).min(largest_exponent)).exp();
+    Eigen::ArrayXd excess = Eigen::ArrayXd::Zero(E.rows());
+    for (Index i = 0; i < E.cols(); ++i) {
+      const Eigen::ArrayXd squares = E.col(i).array().square() * inverse;
+      excess += (nu + 1.0) * squares / (nu + squares) - 1.0;
+    }
+    const VectorXd change =
+        factor.solve(VectorXd(z.transpose() * excess.matrix() - ridge * g)).cwiseMax(-1.0).cwiseMin(1.0);
+    g += change;
+    if (change.cwiseAbs().maxCoeff() < 1e-6) break;
+  }
+  return g;
+}
+
+/// The usable rows alone, of a structure with terms as further regressors.
+Transitions regression_rows(const TrainingTransitions& all, const MotionTerms& terms) {
+  std::vector<Index> usable;
+  for (Index k = 0; k < all.count(); ++k)
+    if (all.usable(k) > 0.0) usable.push_back(k);
+  Transitions rows{all.data.regressors(usable, Eigen::all), all.data.increments(usable, Eigen::all)};
+  if (terms.empty()) return rows;
+  const MatrixXd columns = term_columns(terms, rows.regressors);
+  const Index q = rows.regressors.cols();
+  rows.regressors.conservativeResize(Eigen::NoChange, q + columns.cols());
+  rows.regressors.rightCols(columns.cols()) = columns;
+  return rows;
+}
+
+NoiseFactor fit(const TrainingTransitions& transitions, const MotionTerms& terms) {
+  const LinearStructure& s = transitions.structure;
+  const Transitions rows = regression_rows(transitions, terms);
+  const MatrixXd theta = huber_regression(rows).coefficients;
+  const MatrixXd E = standardised(rows.increments - rows.regressors * theta);
+  if (E.cols() == 0) return {};
+  const auto N = static_cast<double>(rows.count());
+  NoiseFactor factor{candidate_directions(s, theta), {}, 0.0};
+  MatrixXd z = (rows.regressors.leftCols(factor.directions.cols()) * factor.directions.transpose()).cwiseAbs();
+  std::vector<Index> moving;
+  VectorXd mean(z.cols()), sd(z.cols());
+  for (Index i = 0; i < z.cols(); ++i) {
+    const double rms = std::sqrt(z.col(i).squaredNorm() / N);
+    if (!(rms > 0.0)) continue;
+    factor.directions.row(i) /= rms;
+    z.col(i) = (z.col(i).array() / rms + NoiseFactor::softening).log();
+    mean(i) = z.col(i).mean();
+    z.col(i).array() -= mean(i);
+    sd(i) = std::sqrt(z.col(i).squaredNorm() / N);
+    if (!(sd(i) > 1e-6)) continue;
+    z.col(i) /= sd(i);
+    moving.push_back(i);
+  }
+  if (moving.empty()) return {};
+  MatrixXd with_constant(z.rows(), std::ssize(moving) + 1);
+  with_constant.leftCols(std::ssize(moving)) = z(Eigen::all, moving);
+  with_constant.rightCols(1).setOnes();
+  factor.directions = factor.directions(moving, Eigen::all).eval();
+  factor.weights = 2.0 * fit_scales(with_constant, E).head(std::ssize(moving)).cwiseQuotient(sd(moving));
+  factor.offset = factor.weights.dot(mean(moving));
+  return factor;
+}
+
+/// One motion with noise levels that switch by themselves (method: section 6, noise_only).
+SwitchingRegression noise_levels(const TrainingTransitions& transitions) {
+  const Transitions rows = regression_rows(transitions, {});
+  const MatrixXd theta = huber_regression(rows).coefficients;
+  const MatrixXd variances = noise_scales_per_state(rows.increments - rows.regressors * theta, noise_only_levels);
+  SwitchingRegression model;
+  model.theta = theta.reshaped().replicate(1, noise_only_levels);
+  for (Index j = 0; j < noise_only_levels; ++j) model.Q.emplace_back(variances.row(j).asDiagonal());
+  model.initial = VectorXd::Constant(noise_only_levels, 1.0 / static_cast<double>(noise_only_levels));
+  std::optional<double> best;
+  SwitchingRegression chosen;
+  for (const double stay : noise_level_stays) {
+    model.transition = TransitionMatrix::sticky(noise_only_levels, stay).matrix();
+    const double likelihood = predictive_log_densities(transitions, model).sum();
+    if (best && !(likelihood > *best)) continue;
+    best = likelihood;
+    chosen = model;
+  }
+  return chosen;
+}
+
+/// Log density of every row of `judged` by the levels that `learned` has, N.
+VectorXd densities(const Recording& learned, const Recording& judged, const LinearStructure& s,
+                   const NoiseFactor& factor) {
+  return predictive_log_densities(gather_training_transitions(judged, s, factor),
+                                  noise_levels(gather_training_transitions(learned, s, factor)));
+}
+
+/// What the factor adds to the log densities of `judged`, per run, and how many rows these have.
+std::pair<VectorXd, VectorXd> gains(const Recording& learned, const Recording& judged, const LinearStructure& s) {
+  if (stack_training(judged, s).count() == 0) return {};
+  const NoiseFactor factor = fit_noise_factor(learned, s);
+  const VectorXd gain = densities(learned, judged, s, factor) - densities(learned, judged, s, {});
+  const TrainingTransitions rows = gather_training_transitions(judged, s);
+  VectorXd sums(std::ssize(rows.runs)), samples(std::ssize(rows.runs));
+  for (Index r = 0; r < sums.size(); ++r) {
+    const RunRows& run = rows.runs[static_cast<std::size_t>(r)];
+    sums(r) = gain.segment(run.first, run.count).sum();
+    samples(r) = rows.usable.segment(run.first, run.count).sum();
+  }
+  return {sums, samples};
+}
+
+}  // namespace
+
+NoiseFactor fit_noise_factor(const Recording& recording, const LinearStructure& structure, const MotionTerms& terms) {
+  return fit(gather_training_transitions(recording, structure), terms);
+}
+
+FoundNoiseFactor find_noise_factor(const Recording& all, const LinearStructure& structure, Index folds,
+                                   std::uint64_t seed) {
+  FoundNoiseFactor found;
+  if (all.quantum.size() > 0 || all.weighted() || folds < 2) return found;
+  const std::optional<Recording> part = learning_part(all, most_transitions, seed);
+  const Recording training = training_part(part ? *part : all);
+  // Runs left out gain less than the runs that chose the factor: where these gain too little, the question is answered.
+  const auto [of_all, rows] = gains(training, training, structure);
+  found.gain = of_all.sum() / rows.sum();
+  if (!(found.gain >= least_gain_by_input)) return found;
+  const std::vector<ValidationSplit> splits = validation_splits(training, folds);
+  if (splits.empty()) return found;
+  std::vector<std::pair<VectorXd, VectorXd>> left_out(splits.size());
+  tbb::parallel_for(std::size_t{0}, splits.size(),
+                    [&](std::size_t s) { left_out[s] = gains(splits[s].training, splits[s].left_out, structure); });
+  std::vector<double> sums, samples;
+  for (const auto& [gain, count] : left_out)
+    for (Index r = 0; r < gain.size(); ++r) {
+      sums.push_back(gain(r));
+      samples.push_back(count(r));
+    }
+  const VectorXd sum = VectorXd::Map(sums.data(), std::ssize(sums)),
+                 count = VectorXd::Map(samples.data(), std::ssize(samples));
+  found.gain = sum.sum() / count.sum();
+  found.standard_error = clustered_error(sum, count);
+  if (found.gain >= std::max(least_gain_by_input, significance * found.standard_error))
+    found.factor = fit_noise_factor(training, structure);
+  return found;
+}
+
+}  // namespace modebank

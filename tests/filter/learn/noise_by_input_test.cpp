@@ -1,0 +1,266 @@
+// Noise that follows state and input: the factor on every mode's Q, and when training runs ask for it.
+#include "filter/learn/competitors/noise_by_input.hpp"
+
+#include <gtest/gtest.h>
+
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/free_run.hpp"
+#include "filter/judge/sample_paths.hpp"
+#include "filter/judge/smoother.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/switching/switching_regression.hpp"
+#include "filter/step/likelihood_gradient.hpp"
+#include "ident/base/linalg.hpp"
+#include "tests/filter/learn/refine_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::near;
+
+/// Runs x[k+1] = 0.9 x[k] + 0.1 u[k] + sd w, sd a function of x[k], u[k] and of how often the run has switched.
+Recording runs_of(const std::function<double(double x, double u, bool rough)>& sd, unsigned seed = 1, Index runs = 6,
+                  Index samples = 500) {
+  std::mt19937_64 generator(seed);
+  boost::random::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Recording recording = test::empty_recording(1, 1);
+  for (Index r = 0; r < runs; ++r) {
+    MatrixXd x = MatrixXd::Zero(1, samples), u(1, samples);
+    bool rough = false;
+    for (Index k = 0; k < samples; ++k) {
+      u(k) = k % 20 == 0 ? 3.0 * (uniform(generator) - 0.5) : u(k - 1);
+      rough = rough != (uniform(generator) < 0.03);
+      if (k + 1 < samples) x(k + 1) = 0.9 * x(k) + 0.1 * u(k) + sd(x(k), u(k), rough) * normal(generator);
+    }
+    test::add_run(recording, x, u);
+  }
+  return recording;
+}
+
+double follows_input(double, double u, bool) { return 0.01 + 0.03 * std::abs(u); }
+double follows_state(double x, double, bool) { return 0.01 + 0.04 * std::abs(x); }
+
+Bank bank_of(const Recording& recording, const LinearStructure& s, double R, Index modes) {
+  const Index n = s.states;
+  Bank bank = bank_frame(recording, s, R * MatrixXd::Identity(n, n));
+  for (Index j = 0; j < modes; ++j) {
+    VectorXd theta = VectorXd::Constant(s.parameters(), 0.1);
+    for (Index i = 0; i < n; ++i) theta(i * s.regressors() + i) = -0.2 - 0.3 * static_cast<double>(j);
+    bank.modes.push_back(make_mode(s, theta, (j == 0 ? 4e-4 : 4e-3) * MatrixXd::Identity(n, n), {}, {}, 1.0));
+  }
+  set_mode_sequence(bank, TransitionMatrix::sticky(modes, 0.9));
+  return bank;
+}
+
+TEST(NoiseFactor, IsItsFormulaWithinItsBounds) {
+  const NoiseFactor factor{MatrixXd{{0.5, 0.0, 0.0}, {0.0, 1.0, -2.0}}, Eigen::Vector2d(0.8, -0.3), 0.25};
+  const double expected = 0.8 * std::log(0.5 * 3.0 + 0.1) - 0.3 * std::log(std::abs(0.4 - 2.0 * 0.7) + 0.1) - 0.25;
+  EXPECT_NEAR(factor.log_at(VectorXd::Constant(1, -3.0), Eigen::Vector2d(0.4, 0.7)), expected, 1e-15);
+  EXPECT_NEAR(factor.at(VectorXd::Constant(1, 1e9), Eigen::Vector2d(0.4, 0.7)), 5.0, 1e-14);
+  EXPECT_NEAR(factor.at(VectorXd::Zero(1), Eigen::Vector2d(0.0, 1e9)), 0.2, 1e-14);
+}
+
+/// One mode measured exactly: every density is that of a residual with f Q.
+TEST(NoiseFactor, MultipliesTheCovarianceOfEveryStep) {
+  const Recording recording = runs_of(follows_input, 3, 1, 60);
+  const LinearStructure s = test::structure_of(recording);
+  Bank bank = bank_of(recording, s, 0.0, 1);
+  bank.noise_factor = {MatrixXd{{2.0, 0.0}, {0.0, 1.5}}, Eigen::Vector2d(0.4, 1.1), -0.2};
+  const Trajectory& run = recording.runs.front();
+  const VectorXd is = log_densities(bank, run, {});
+  for (Index k = 1; k < run.samples(); ++k) {
+    const double x = run.state(k - 1), u = run.input(k - 1);
+    const double log_f =
+        std::clamp(0.4 * std::log(std::abs(2.0 * x) + 0.1) + 1.1 * std::log(std::abs(1.5 * u) + 0.1) + 0.2,
+                   -std::log(5.0), std::log(5.0));
+    const double Q = 4e-4 * std::exp(log_f), e = run.state(k) - (0.8 * x + 0.1 * u);
+    EXPECT_NEAR(is(k), -0.5 * (std::log(2.0 * std::numbers::pi * Q) + e * e / Q), 1e-9) << k;
+  }
+}
+
+class NoiseFactorOfVariant : public testing::TestWithParam<FilterVariant> {};
+
+/// States measured exactly: the filter's likelihood is that of rows over the root of their factor, less its logarithm.
+TEST_P(NoiseFactorOfVariant, LikelihoodIsThatOfRowsOverTheirFactor) {
+  const Recording recording = runs_of(follows_input, 4, 3, 200);
+  for (const Index lags : {Index{1}, Index{2}}) {
+    const LinearStructure s{1, 1, true, lags, lags};
+    Bank bank = bank_of(recording, s, 0.0, 3);
+    bank.noise_factor = fit_noise_factor(recording, s);
+    ASSERT_FALSE(bank.noise_factor.empty());
+    const VectorXd rows =
+        predictive_log_densities(gather_training_transitions(recording, s, bank.noise_factor), switching_model(bank));
+    FilterOptions options;
+    options.variant = GetParam();
+    double filtered = 0.0;
+    for (const Trajectory& run : recording.runs) filtered += log_likelihood(bank, run, options);
+    EXPECT_NEAR(filtered, rows.sum(), 1e-5 * std::abs(rows.sum())) << lags << " lags";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, NoiseFactorOfVariant, testing::Values(FilterVariant::imm, FilterVariant::gpb2),
+                         [](const auto& test) { return std::string(name_of(test.param)); });
+
+class ConstantNoiseFactor : public testing::TestWithParam<FilterNoise> {};
+
+/// An input that never moves makes a factor that never moves: whatever the filter does, it does as with Q times that.
+TEST_P(ConstantNoiseFactor, IsAsAnotherQ) {
+  Recording recording = runs_of(follows_input, 5, 1, 150);
+  recording.runs.front().input.setOnes();
+  const Trajectory& run = recording.runs.front();
+  const double c = 2.5;
+  for (const double R : {0.0, 1e-3})
+    for (const Index lags : {Index{1}, Index{2}})
+      for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::gpb2}) {
+        const LinearStructure s{1, 1, true, lags, 1};
+        Bank plain = bank_of(recording, s, R, 2), with_factor = plain;
+        for (Mode& mode : plain.modes) mode.Q *= c;
+        MatrixXd direction = MatrixXd::Zero(1, s.dimension() + 1);
+        direction(0, s.dimension()) = 1.0;
+        with_factor.noise_factor = {direction, VectorXd::Ones(1), std::log(1.1) - std::log(c)};
+        const FilterOptions options{.variant = variant, .noise = GetParam()};
+        RunEvaluation expected = evaluate_run(plain, run, options), is = evaluate_run(with_factor, run, options);
+        const std::string what = std::string(name_of(variant)) + ", R " + std::to_string(R);
+        EXPECT_TRUE(near(is.log_density.tail(140), expected.log_density.tail(140), 1e-8)) << what;
+        EXPECT_TRUE(near(is.mode_probability, expected.mode_probability, 1e-8)) << what;
+        EXPECT_TRUE(near(is.innovation_covariance.rightCols(140), expected.innovation_covariance.rightCols(140), 1e-10))
+            << what;
+        smooth_run(plain, run, options, expected);
+        smooth_run(with_factor, run, options, is);
+        EXPECT_EQ(is.viterbi_mode, expected.viterbi_mode) << what;
+        EXPECT_TRUE(near(is.smoothed_state, expected.smoothed_state, 1e-8)) << what;
+        EXPECT_TRUE(near(is.smoothed_covariance, expected.smoothed_covariance, 1e-10)) << what;
+      }
+}
+
+INSTANTIATE_TEST_SUITE_P(Noise, ConstantNoiseFactor, testing::Values(FilterNoise::gaussian, FilterNoise::adaptive),
+                         [](const auto& test) { return std::string(name_of(test.param)); });
+
+TEST(NoiseFactor, OfSamplePathsIsThatOfEachPathsOwnState) {
+  const Recording recording = runs_of(follows_input, 6, 1, 60);
+  Bank bank = bank_of(recording, test::structure_of(recording), 0.0, 1);
+  bank.noise_factor = {MatrixXd{{0.0, 1.0}}, VectorXd::Ones(1), 0.3};
+  FilterMemory origin;
+  origin.means = MatrixXd::Constant(1, 1, 0.2);
+  origin.covariances = MatrixXd::Zero(1, 1);
+  origin.mode_probability = VectorXd::Ones(1);
+  SamplePaths paths(bank, {}, 40'000, 1);
+  paths.start(origin);
+  paths.step(VectorXd::Constant(1, 1.4));
+  const Eigen::ArrayXd x = paths.states().row(0).transpose().array();
+  const double Q = 4e-4 * std::exp(std::log(1.5) - 0.3);
+  EXPECT_NEAR((x - x.mean()).square().mean(), Q, 0.03 * Q);  // four standard errors
+  std::vector<Index> all(static_cast<std::size_t>(paths.count()));
+  std::iota(all.begin(), all.end(), Index{0});
+  EXPECT_NEAR(paths.step_noise(0, all)(0, 0), Q, 1e-12);
+}
+
+TEST(NoiseFactor, IsRefusedWhereNothingCanHaveIt) {
+  const Recording recording = runs_of(follows_input, 7, 1, 60);
+  Bank bank = bank_of(recording, test::structure_of(recording), 0.0, 2);
+  EXPECT_TRUE(has_likelihood_gradient(bank, {}));
+  bank.noise_factor = {MatrixXd::Ones(1, 2), VectorXd::Ones(1), 0.0};
+  EXPECT_NO_THROW(validate(bank));
+  EXPECT_FALSE(has_likelihood_gradient(bank, {}));
+  EXPECT_THROW(log_likelihood(bank, recording.runs.front(), {.variant = FilterVariant::salvi2025}),
+               std::invalid_argument);
+  bank.noise_factor.directions = MatrixXd::Ones(1, 3);
+  EXPECT_THROW(validate(bank), std::invalid_argument);
+  bank.noise_factor = {MatrixXd::Ones(1, 2), VectorXd::Constant(1, NAN), 0.0};
+  EXPECT_THROW(validate(bank), std::invalid_argument);
+}
+
+/// Correlation of log f with the true log variance, over a grid of state and input.
+double likeness(const NoiseFactor& factor, double (*sd)(double, double, bool)) {
+  std::vector<double> is, truth;
+  for (double x = -1.4; x < 1.5; x += 0.1)
+    for (double u = -1.4; u < 1.5; u += 0.1) {
+      is.push_back(factor.log_at(VectorXd::Constant(1, x), VectorXd::Constant(1, u)));
+      truth.push_back(2.0 * std::log(sd(x, u, false)));
+    }
+  Eigen::ArrayXd a = Eigen::ArrayXd::Map(is.data(), std::ssize(is)), b = Eigen::ArrayXd::Map(truth.data(), a.size());
+  a -= a.mean();
+  b -= b.mean();
+  return (a * b).sum() / std::sqrt(a.square().sum() * b.square().sum());
+}
+
+TEST(FindNoiseFactor, FindsNoiseThatFollowsAnInputOrTheState) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    for (const auto sd : {follows_input, follows_state}) {
+      const Recording recording = runs_of(sd, seed);
+      const FoundNoiseFactor found = find_noise_factor(recording, test::structure_of(recording), 6, 1);
+      ASSERT_FALSE(found.factor.empty()) << seed << ": " << found.gain << " +- " << found.standard_error;
+      EXPECT_GT(likeness(found.factor, sd), 0.9);
+    }
+  }
+}
+
+TEST(FindNoiseFactor, FindsNoneInConstantOrSwitchingNoise) {
+  const auto constant = [](double, double, bool) { return 0.03; };
+  const auto switching = [](double, double, bool rough) { return rough ? 0.06 : 0.01; };
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const LinearStructure s{1, 1, false};
+    EXPECT_TRUE(find_noise_factor(runs_of(constant, seed), s, 6, 1).factor.empty());
+    EXPECT_TRUE(find_noise_factor(runs_of(switching, seed), s, 6, 1).factor.empty());
+  }
+}
+
+TEST(FindNoiseFactor, IsNotAskedOfRoundedOrWeightedSamples) {
+  Recording recording = runs_of(follows_input);
+  recording.quantum = VectorXd::Constant(1, 1e-3);
+  EXPECT_TRUE(std::isnan(find_noise_factor(recording, test::structure_of(recording), 6, 1).gain));
+  recording.quantum.resize(0);
+  for (Trajectory& run : recording.runs) run.weight = VectorXd::Ones(run.samples());
+  EXPECT_TRUE(std::isnan(find_noise_factor(recording, test::structure_of(recording), 6, 1).gain));
+}
+
+/// Units of states and inputs change nothing.
+TEST(FindNoiseFactor, DoesNotDependOnUnits) {
+  const Recording recording = runs_of(follows_input);
+  Recording other = recording;
+  for (Trajectory& run : other.runs) {
+    run.state *= 1e3;
+    run.input *= 1e-2;
+  }
+  const LinearStructure s = test::structure_of(recording);
+  const NoiseFactor a = fit_noise_factor(recording, s), b = fit_noise_factor(other, s);
+  for (const double x : {-0.4, 0.1, 0.7})
+    for (const double u : {-1.2, 0.0, 0.5})
+      EXPECT_NEAR(a.log_at(VectorXd::Constant(1, x), VectorXd::Constant(1, u)),
+                  b.log_at(VectorXd::Constant(1, 1e3 * x), VectorXd::Constant(1, 1e-2 * u)), 1e-6);
+}
+
+/// A bank whose start has a factor keeps it, with the Q of rows over their factor and R as good as none.
+TEST(Refine, KeepsTheFactorOfItsStart) {
+  const Recording recording = runs_of(follows_input, 8, 6, 300);
+  WindowFits fits = test::windows_of(recording, 20, 10);
+  fits.global = fit_global(recording, fits.structure);
+  Bank start = bank_of(recording, fits.structure, 0.0, 2);
+  start.noise_factor = fit_noise_factor(recording, fits.structure);
+  RefineOptions options = test::quick();
+  const Refinement refined = refine_bank(recording, fits, {start}, options, {});
+  EXPECT_EQ(refined.bank.noise_factor.weights, start.noise_factor.weights);
+  EXPECT_EQ(refined.bank.R_standard_error.size(), 0);
+  EXPECT_TRUE(refined.bank.modes.front().standard_error.allFinite());
+  double plain = 0.0, with_factor = 0.0;
+  start.noise_factor = {};
+  const Bank without = refine_bank(recording, fits, {start}, options, {}).bank;
+  for (const Trajectory& run : recording.runs) {
+    plain += log_likelihood(without, run, {});
+    with_factor += log_likelihood(refined.bank, run, {});
+  }
+  EXPECT_GT(with_factor, plain);
+}
+
+}  // namespace
+}  // namespace modebank
