@@ -52,7 +52,7 @@ DriftingModel drifting(const Recording& recording, const OneModel& of, const Com
   return model;
 }
 
-/// What the competitors' noise follows; empty: nothing.
+/// The factor on the competitors' noise; empty: none.
 NoiseFactor noise_factor(const Recording& recording, const LinearStructure& structure, const CompetitorInputs& inputs,
                          const Listener& listener) {
   if (inputs.noise_by_input == NoiseByInput::none) return {};

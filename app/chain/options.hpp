@@ -49,8 +49,8 @@ struct ChainOptions {
   bool automatic_length = false;               ///< of windows (ident/fit/window_length.hpp), whatever `window` has
   std::vector<std::string> mode_names = {};    ///< of the bank; they change no number
   TermsChoice terms = TermsChoice::automatic;  ///< whether one motion may bend
-  OtherLags other_lags = {};
   NoiseByInput noise_by_input = NoiseByInput::automatic;  ///< whether noise may follow state and input
+  OtherLags other_lags = {};
 };
 
 }  // namespace modebank

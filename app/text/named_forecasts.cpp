@@ -119,7 +119,7 @@ Gain gain_over(const Archive& archive, const std::string& better, const std::str
 bool runs_in_c(const Archive& archive, const std::string& filter) {
   if (filter == "drifting" || filter == combined_name) return false;
   const std::optional<Bank> bank = archive.bank_of(filter);
-  return bank && bank->drift.empty() && !bank->is_quantised();
+  return bank && bank->drift.empty() && bank->terms.empty() && bank->noise_factor.empty() && !bank->is_quantised();
 }
 
 NamedForecast named(const Archive& archive, const std::vector<Reached>& all, const Reached& chosen, Index steps) {

@@ -234,7 +234,7 @@ std::string equations_text(const Archive& archive, int width) {
 
 namespace {
 
-/// What a direction of a noise factor looks at: "u", "change of u", or the inputs' part of a forecast.
+/// A direction of a noise factor in words: "u", "change of u", or "what the inputs add to a forecast".
 std::string noise_feature(const Bank& bank, Index direction) {
   const std::vector<std::string> labels = regressor_labels(bank.structure, bank.state_names, bank.input_names);
   const auto row = bank.noise_factor.directions.row(direction);

@@ -40,8 +40,8 @@ void smooth(const Bank& bank, const Trajectory& run, const FilterOptions& option
   }
 }
 
-/// What the noise of every moment's step was multiplied by in the filter itself; ones unless it adapts or follows state
-/// and input.
+/// The factors that the filter itself multiplied the noise of every moment's step by; ones unless noise adapts or
+/// follows state and input.
 template <int N, int NY>
 Eigen::VectorXd noise_scales(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory) {
   Eigen::VectorXd scales = Eigen::VectorXd::Ones(run.count());

@@ -23,6 +23,7 @@ void refuse_what_c_lacks(const ExportedBank& exported) {
       std::any_of(exported.bank.modes.begin(), exported.bank.modes.end(), has_spread))
     refuse("filter.parameter_noise = true");
   if (!exported.bank.drift.empty()) refuse("modes that drift (bank.drift)");
+  if (!exported.bank.terms.empty()) refuse("a motion that bends (window.terms)");
   if (!exported.bank.noise_factor.empty())
     refuse("process noise that follows state and input (--bank.noise_by_input none learns a bank without it)");
   if (exported.bank.is_quantised()) refuse("measurements in steps (data.quantum)");

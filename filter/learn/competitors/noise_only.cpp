@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "filter/learn/competitors/noise_levels.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"
@@ -21,8 +20,10 @@
 namespace modebank {
 namespace {
 
-constexpr double lowest_quantile = 0.30;  // method: section 6, as all constants here
+constexpr Index noise_only_levels = 8;  // method: section 6, as all constants here
+constexpr double lowest_quantile = 0.30;
 constexpr double highest_quantile = 0.997;
+constexpr std::array<double, 4> stays{0.7, 0.8, 0.9, 0.95};
 
 /// Variances spaced geometrically between the squared quantiles of |r|, kept positive where most residuals are zero.
 Eigen::VectorXd noise_scales(const Eigen::VectorXd& r, Index levels) {
@@ -37,15 +38,12 @@ Eigen::VectorXd noise_scales(const Eigen::VectorXd& r, Index levels) {
   return Eigen::VectorXd::LinSpaced(levels, log_low, log_high).array().exp();
 }
 
-}  // namespace
-
+/// levels x n, one column per state: row j makes mode j's diagonal Q.
 Eigen::MatrixXd noise_scales_per_state(const Eigen::MatrixXd& residuals, Index levels) {
   Eigen::MatrixXd variances(levels, residuals.cols());
   for (Index i = 0; i < residuals.cols(); ++i) variances.col(i) = noise_scales(residuals.col(i), levels);
   return variances;
 }
-
-namespace {
 
 /// q x n, as RobustRegression has them.
 struct Regression {
@@ -68,10 +66,10 @@ Regression regression(const Recording& recording, const LinearStructure& structu
 void choose_stay(Bank& bank, const Recording& recording) {
   Bank candidate = bank;
   double best = not_a_number;
-  for (const double stay : noise_level_stays) {
+  for (const double stay : stays) {
     set_mode_sequence(candidate, TransitionMatrix::sticky(bank.mode_count(), stay));
     const double likelihood = training_log_likelihood(candidate, recording, FilterOptions{});
-    if (stay != noise_level_stays.front() && !is_below(best, likelihood)) continue;
+    if (stay != stays.front() && !is_below(best, likelihood)) continue;
     best = likelihood;
     bank = candidate;
   }

@@ -214,6 +214,19 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
   return bank;
 }
 
+namespace {
+
+/// Of the fit that was chosen, with the measurement noise that it has; NaN where nothing was left out.
+double left_out_score(const Refinement& refined) {
+  if (!std::isnan(refined.measurement.score)) return refined.measurement.score;
+  double score = std::numeric_limits<double>::quiet_NaN();
+  for (const RefineCandidate& candidate : refined.candidates)
+    if (candidate.selected) score = std::fmax(score, candidate.score);
+  return score;
+}
+
+}  // namespace
+
 Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                               const BankOptions& options, const Eigen::MatrixXd& R, const FilterOptions& filter) {
   BankOptions of_start = options;
@@ -236,9 +249,13 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   const std::optional<Recording> part = learning_part(recording, em.transitions, em.seed);
   const Recording& learned = part ? *part : recording;
-  if (em.noise_by_input)
-    for (Bank& start : starts) start.noise_factor = fit_noise_factor(learned, fits.structure);
   Refinement refined = refine_bank(learned, fits, starts, em, filter);
+  if (em.noise_by_input) {  // modes may describe more of the noise than the factor does
+    const double without = left_out_score(refined);
+    for (Bank& start : starts) start.noise_factor = fit_noise_factor(learned, fits.structure);
+    Refinement with_factor = refine_bank(learned, fits, starts, em, filter);
+    if (!(left_out_score(with_factor) < without)) refined = std::move(with_factor);
+  }
   if (part) refined.learned_transitions = part->transitions(Role::train);
   return refined;
 }

@@ -35,7 +35,7 @@ struct TrainingTransitions {
 void check_structure(const Recording& recording, const LinearStructure& structure);
 
 /// Throws as check_structure does, and DataError when no training run has a usable transition.
-/// `factor`: rows are divided by its root, so that least squares and expectation-maximisation know of no factor.
+/// `factor`: rows are divided by its root, so that least squares and expectation-maximisation stay as they are.
 TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure,
                                                 const NoiseFactor& factor = {});
 

@@ -274,7 +274,7 @@ MeasuredBank fit_untimed(const RefineInput& in, const CrossValidation& validatio
   MeasuredBank fit{bank, {}, prior};
   std::optional<MeasuredSplits> splits;
   if (validation.possible()) splits.emplace(in, validation, chosen, bank.noise_adaptation);
-  // The gradients that R is searched by know of no noise that follows the state.
+  // The search for R needs gradients, which leave out how a noise factor changes with the state.
   const bool with_R =
       in.options.measurement_noise && bank.structure.state_lags <= most_lags_beside_R && bank.noise_factor.empty();
   const bool quantised = bank.is_quantised();

@@ -93,6 +93,7 @@ struct FilterStep {
   const Eigen::VectorXd& hypothesis_probability() const { return pairs() ? pair_probability : predicted_probability; }
 };
 
+/// The mean of the combined estimate.
 template <int N>
 void combine_means(const FilterState<N>& state, Eigen::Matrix<double, N, 1>& mean) {
   mean.setZero();
@@ -100,8 +101,8 @@ void combine_means(const FilterState<N>& state, Eigen::Matrix<double, N, 1>& mea
     mean += state.mode_probability(static_cast<Eigen::Index>(i)) * state.modes[i].mean;
 }
 
-/// What multiplies every mode's Q in the step that starts from `state` under the acting inputs `u`: the noise scale,
-/// and the noise factor at the combined estimate, which is exact where the state is measured exactly.
+/// The scale of every mode's Q in the step that starts from `state` under the acting inputs `u`: the noise scale times
+/// the noise factor at the combined estimate, which is exact where the state is measured exactly.
 template <int N, int NY, class U>
 double noise_of_step(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
                      FilterStep<N, NY>& step) {

@@ -86,7 +86,8 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
   if (variant == FilterVariant::salvi2025 && quantised)
     throw std::invalid_argument("the paper's equations (salvi2025) know no quantised measurements");
   if (variant == FilterVariant::salvi2025 && !noise_factor.empty())
-    throw std::invalid_argument("the paper's equations (salvi2025) know no noise that follows state and input");
+    throw std::invalid_argument(
+        "the paper's equations (salvi2025) take constant noise, this bank's follows state and input");
   if (quantised) quantum = bank.quantum;
   if (drift.on() && variant != FilterVariant::imm && variant != FilterVariant::kf)
     throw std::invalid_argument("modes that drift are filtered by imm or kf, not by " + std::string(name_of(variant)));

@@ -140,6 +140,12 @@ TEST(ExportedC, RefusesByNameWhatItDoesNotHave) {
   Bank drifting = example_bank(1, 1, 2, 0.0);
   drifting.drift = {{1e-4, 1e-2, 1.0}, Eigen::VectorXd::Ones(3)};
   EXPECT_THAT(refusal(drifting, {}), HasSubstr("bank.drift"));
+  Bank following = example_bank(1, 1, 2);
+  following.noise_factor = {Eigen::MatrixXd::Ones(1, 2), Eigen::VectorXd::Ones(1), 0.0};
+  EXPECT_THAT(refusal(following, {}), HasSubstr("--bank.noise_by_input none"));
+  Bank bent = example_bank(1, 1, 2);
+  bent.terms.terms = {{TermKind::magnitude, {0}}};
+  EXPECT_THAT(refusal(bent, {}), HasSubstr("window.terms"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Noise that follows state and input: the factor on every mode's Q, and when training runs ask for it.
+// Noise that follows state and input: the factor on every mode's Q, and when training runs take it.
 #include "filter/learn/competitors/noise_by_input.hpp"
 
 #include <gtest/gtest.h>
@@ -238,6 +238,16 @@ TEST(FindNoiseFactor, DoesNotDependOnUnits) {
     for (const double u : {-1.2, 0.0, 0.5})
       EXPECT_NEAR(a.log_at(VectorXd::Constant(1, x), VectorXd::Constant(1, u)),
                   b.log_at(VectorXd::Constant(1, 1e3 * x), VectorXd::Constant(1, 1e-2 * u)), 1e-6);
+}
+
+TEST(LearnRefinedBank, HasTheFactorWhereRunsLeftOutDoNotLoseByIt) {
+  const Recording recording = runs_of(follows_input, 9, 4, 250);
+  WindowFits fits = test::windows_of(recording, 20, 10);
+  const MixtureResult one = test::mixture_of(fits, MatrixXd::Ones(1, fits.count()));
+  BankOptions options;
+  options.em.noise_by_input = true;
+  const Bank bank = learn_refined_bank(recording, fits, one, options, MatrixXd::Zero(1, 1), {}).bank;
+  EXPECT_FALSE(bank.noise_factor.empty());
 }
 
 /// A bank whose start has a factor keeps it, with the Q of rows over their factor and R as good as none.
