@@ -216,7 +216,7 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
 
 namespace {
 
-/// Of the fit that was chosen, with the measurement noise that it has; NaN where nothing was left out.
+/// The score of the chosen fit, with the measurement noise that it has; NaN where nothing was left out.
 double left_out_score(const Refinement& refined) {
   if (!std::isnan(refined.measurement.score)) return refined.measurement.score;
   double score = std::numeric_limits<double>::quiet_NaN();

@@ -251,7 +251,7 @@ TEST(LearnRefinedBank, HasTheFactorWhereRunsLeftOutDoNotLoseByIt) {
 }
 
 /// A bank whose start has a factor keeps it, with the Q of rows over their factor and R as good as none.
-TEST(Refine, KeepsTheFactorOfItsStart) {
+TEST(NoiseFactor, OfAStartIsKeptByRefinement) {
   const Recording recording = runs_of(follows_input, 8, 6, 300);
   WindowFits fits = test::windows_of(recording, 20, 10);
   fits.global = fit_global(recording, fits.structure);

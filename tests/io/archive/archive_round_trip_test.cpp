@@ -99,7 +99,7 @@ TEST(ArchiveRoundTrip, NoiseThatFollowsStateAndInputComesBackOrIsRefused) {
   archive.noise_only->noise_factor = archive.bank->noise_factor;
   expect_same(round_trip(archive), archive);
   const test::TemporaryFolder folder;
-  archive.bank->noise_factor.directions.conservativeResize(2, Eigen::NoChange);
+  archive.bank->noise_factor.directions.conservativeResize(Eigen::NoChange, s.dimension());
   write_archive(folder.path() / "a.h5", archive);
   EXPECT_THROW(read_archive(folder.path() / "a.h5"), DataError);
 }
