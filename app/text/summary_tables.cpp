@@ -265,10 +265,11 @@ std::string noise_factor_text(const Archive& archive, int width) {
     least = sample_quantile(factors, 0.05);
     largest = sample_quantile(factors, 0.95);
   }
-  return wrapped(fmt::format("noise: every Q times {:.2g} to {:.2g}, a factor that follows states and inputs; most of "
-                             "all it {} with the size of {}\n",
-                             least, largest, factor.weights(most) > 0.0 ? "grows" : "falls", noise_feature(bank, most)),
-                 width);
+  return wrapped(
+      fmt::format("noise: every Q times {:.2g} to {:.2g}; this factor follows states and inputs, and {} most "
+                  "with the size of {}\n",
+                  least, largest, factor.weights(most) > 0.0 ? "grows" : "falls", noise_feature(bank, most)),
+      width);
 }
 
 }  // namespace
